@@ -1,0 +1,2 @@
+//! The command `umbrage`.
+fn main() {}

@@ -1,0 +1,86 @@
+//! Axis-aligned boxes in world space.
+
+use glam::{DAffine3, DVec3};
+
+/// An axis-aligned box in world space, in metres.
+///
+/// The bounds of a caster or a receiver. A box may be flat (a plane) or a single point; it may not be inverted,
+/// infinite or NaN when it is handed to the planner, which answers such a box with an error that names it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// The corner with the smallest coordinates.
+    pub min: DVec3,
+    /// The corner with the largest coordinates.
+    pub max: DVec3,
+}
+
+impl Aabb {
+    /// The box that contains nothing: the identity of [`Aabb::union`].
+    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    /// A box from its two extreme corners.
+    #[must_use]
+    pub const fn new(min: DVec3, max: DVec3) -> Self {
+        Self { min, max }
+    }
+
+    /// The smallest box around `points`; [`Aabb::EMPTY`] if there are none.
+    #[must_use]
+    pub fn from_points(points: impl IntoIterator<Item = DVec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |bounds, point| bounds.including(point))
+    }
+
+    /// The smallest box around this one and `point`.
+    #[must_use]
+    pub fn including(self, point: DVec3) -> Self {
+        Self { min: self.min.min(point), max: self.max.max(point) }
+    }
+
+    /// The smallest box around both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// Whether the box contains no point.
+    #[must_use]
+    pub fn is_empty(self) -> bool {
+        !self.min.cmple(self.max).all()
+    }
+
+    /// Whether every coordinate is finite and the corners are in order.
+    #[must_use]
+    pub fn is_valid(self) -> bool {
+        self.min.is_finite() && self.max.is_finite() && !self.is_empty()
+    }
+
+    /// The middle of the box.
+    #[must_use]
+    pub fn center(self) -> DVec3 {
+        0.5 * self.min + 0.5 * self.max
+    }
+
+    /// Half the extent along each axis.
+    #[must_use]
+    pub fn half_extent(self) -> DVec3 {
+        0.5 * self.max - 0.5 * self.min
+    }
+
+    /// The eight corners; bit 0 of the index chooses x, bit 1 y, bit 2 z (set: the maximum).
+    #[must_use]
+    pub fn corners(self) -> [DVec3; 8] {
+        std::array::from_fn(|i| {
+            DVec3::new(
+                if i & 1 == 0 { self.min.x } else { self.max.x },
+                if i & 2 == 0 { self.min.y } else { self.max.y },
+                if i & 4 == 0 { self.min.z } else { self.max.z },
+            )
+        })
+    }
+
+    /// The smallest axis-aligned box around the transformed box.
+    #[must_use]
+    pub fn transformed(self, target_from_source: &DAffine3) -> Self {
+        Self::from_points(self.corners().map(|corner| target_from_source.transform_point3(corner)))
+    }
+}

@@ -1,0 +1,58 @@
+//! What can be wrong with settings, cameras, lights and bounds.
+
+/// [`std::result::Result`] with this crate's [`Error`].
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Why the planner refused its input. Every message names the field, what was wrong and what to give instead.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A parameter of the camera is out of range.
+    #[error("camera {field} is {value}, but it has to be {expected}")]
+    InvalidCamera {
+        /// The parameter at fault.
+        field: &'static str,
+        /// What it was.
+        value: f64,
+        /// What it may be.
+        expected: &'static str,
+    },
+    /// A parameter of a light is out of range.
+    #[error("light {field}: {reason}")]
+    InvalidLight {
+        /// The parameter at fault.
+        field: &'static str,
+        /// What was wrong and what to do.
+        reason: String,
+    },
+    /// A shadow setting is out of range.
+    #[error("shadow setting {field}: {reason}")]
+    InvalidSetting {
+        /// The setting at fault, by its name in [`crate::ShadowSettings`].
+        field: &'static str,
+        /// What was wrong and what to do.
+        reason: String,
+    },
+    /// The bounds of a caster or receiver are inverted, infinite or NaN.
+    #[error("{list}[{index}] has no valid bounds ({min} to {max}); give finite corners with min <= max")]
+    InvalidBounds {
+        /// `casters` or `receivers`.
+        list: &'static str,
+        /// Index into that list.
+        index: usize,
+        /// Its minimum corner as given.
+        min: glam::DVec3,
+        /// Its maximum corner as given.
+        max: glam::DVec3,
+    },
+}
+
+impl Error {
+    pub(crate) fn camera(field: &'static str, value: f64, expected: &'static str) -> Self {
+        Self::InvalidCamera { field, value, expected }
+    }
+
+    pub(crate) fn setting(field: &'static str, reason: impl Into<String>) -> Self {
+        Self::InvalidSetting { field, reason: reason.into() }
+    }
+}

@@ -1,0 +1,29 @@
+//! Parallel-split (cascaded) shadow maps: the planner. No GPU, no I/O; values in, values out.
+//!
+//! # Conventions
+//!
+//! | space | axes | range |
+//! |---|---|---|
+//! | world | right-handed, +Y up, metres, `f64` | unbounded; 100 km from the origin is as good as 0 |
+//! | view | right-handed, +X right, +Y up, looks down −Z | *view depth* `d = −z`, positive in front |
+//! | camera clip, NDC | x, y in [−1,1], y up | z in [0,1], reversed (1 at near), infinite far allowed |
+//! | light | u right, v down, depth along the light's travel; fixed to the light, never to the camera | metres |
+//! | shadow NDC | x, y in [−1,1], y up | z in [0,1], 0 nearest to the light |
+//! | shadow texture | u right, v **down** | texels, [0, size]² per split |
+//!
+//! Column vectors, column-major matrices, radians. A transform is named `target_from_source`. Splits count from 0;
+//! `C_0 = n` and `C_m = f` are the ends of the shadowed range.
+
+mod bounds;
+mod camera;
+mod error;
+mod light;
+mod plan;
+mod settings;
+
+pub use bounds::Aabb;
+pub use camera::{DepthConvention, Frustum, Projection, View};
+pub use error::{Error, Result};
+pub use light::DirectionalLight;
+pub use plan::{ShadowPlan, Split};
+pub use settings::{Fit, MAX_SPLITS, ShadowSettings, SplitScheme, Stabilize};

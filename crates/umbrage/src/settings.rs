@@ -1,0 +1,188 @@
+//! What the planner is told once: how many splits, where, how large and how they are fitted.
+
+use crate::{Error, Result};
+
+/// The most splits a light can have.
+pub const MAX_SPLITS: usize = 8;
+
+/// Where the planes between splits stand. Source: *Parallel-Split Shadow Maps* (seed 000) section 3.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SplitScheme {
+    /// `C_i = n + (f − n) i/m`: equal slices.
+    Uniform,
+    /// `C_i = n (f/n)^(i/m)`: equal ratios.
+    Logarithmic,
+    /// `λ C_i^log + (1 − λ) C_i^uni + δ_i`.
+    Practical {
+        /// Share of the logarithmic scheme, 0 to 1.
+        lambda: f64,
+        /// Metres added to the inner planes `C_1 .. C_{m−1}`: none, one for all, or one for each. The source adds δ to all
+        /// planes, which would move near and far; ours moves the inner ones only.
+        delta: Vec<f64>,
+    },
+    /// Inner planes `C_1 .. C_{m−1}` as view depths in metres, rising strictly.
+    Manual(Vec<f64>),
+}
+
+impl Default for SplitScheme {
+    fn default() -> Self {
+        Self::Practical { lambda: 0.5, delta: Vec::new() }
+    }
+}
+
+/// What a map's rectangle is fitted to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Fit {
+    /// The corners of the slice alone. The near plane stays at the scene's, so no caster in between is lost.
+    Independent,
+    /// The slice, clipped to its receivers, and only where casters can throw a shadow on them.
+    #[default]
+    Dependent,
+}
+
+/// Whether shadows stand still while the camera moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stabilize {
+    /// The tightest map for every frame; edges crawl when the camera moves.
+    None,
+    /// A sphere around the slice, moved in whole texels: static shadows do not change at all.
+    #[default]
+    Exact,
+}
+
+/// Everything that is settled before the first frame. Checked once, by [`crate::Planner::new`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShadowSettings {
+    /// Edge of each split's map in texels; one entry per split, 1 to [`MAX_SPLITS`] of them.
+    pub map_sizes: Vec<u32>,
+    /// Where the planes between splits stand.
+    pub scheme: SplitScheme,
+    /// View depths in metres that shadows cover, `C_0` and `C_m`. `None`: the camera's near and far, far capped by the
+    /// receivers. Receivers nearer than the first use split 0; farther than the second they are lit.
+    pub range: Option<(f64, f64)>,
+    /// What the rectangle is fitted to.
+    pub fit: Fit,
+    /// Whether shadows stand still.
+    pub stabilize: Stabilize,
+    /// How far the filter reaches from the sample, in texels (0.5 for one nearest texel, 1 for a bilinear comparison,
+    /// 1.5 and 2.5 for tents of 3 and 5). Every map is widened by it.
+    pub filter_radius: f64,
+    /// Share of each split's depth range over which it blends into the next; 0 is a hard border, at most 1.
+    pub blend: f64,
+    /// Share of the shadowed range over which shadows fade to lit at its far end; 0 to 1.
+    pub far_fade: f64,
+    /// Whether depth is not clipped (`DEPTH_CLIP_CONTROL`): casters before the near plane are then flattened onto it by the
+    /// hardware and the near plane may lie at the receivers. Otherwise near stands before the first caster.
+    pub depth_clamp: bool,
+    /// Pixels across the image, used to widen a split by one 2×2 pixel quad at its near side.
+    pub image_size: [u32; 2],
+}
+
+impl Default for ShadowSettings {
+    fn default() -> Self {
+        Self {
+            map_sizes: vec![1024; 4],
+            scheme: SplitScheme::default(),
+            range: None,
+            fit: Fit::default(),
+            stabilize: Stabilize::default(),
+            filter_radius: 1.5,
+            blend: 0.1,
+            far_fade: 0.1,
+            depth_clamp: false,
+            image_size: [800, 600],
+        }
+    }
+}
+
+impl ShadowSettings {
+    /// The number of splits.
+    #[must_use]
+    pub fn splits(&self) -> usize {
+        self.map_sizes.len()
+    }
+
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`Error::InvalidSetting`] naming the first field that is wrong.
+    pub fn validate(&self) -> Result<()> {
+        let m = self.splits();
+        if !(1..=MAX_SPLITS).contains(&m) {
+            return Err(Error::setting("map_sizes", format!("{m} splits; there may be 1 to {MAX_SPLITS}")));
+        }
+        let least = 2.0 * self.filter_radius + 3.0;
+        for (i, &size) in self.map_sizes.iter().enumerate() {
+            if size == 0 || size > 1 << 16 {
+                return Err(Error::setting("map_sizes", format!("map {i} is {size} texels wide; give 1 to 65536")));
+            }
+            if f64::from(size) < least {
+                return Err(Error::setting(
+                    "map_sizes",
+                    format!("map {i} is {size} texels wide, less than its filter's margin; give at least {least}"),
+                ));
+            }
+        }
+        let unit = |field, value: f64| {
+            if (0.0..=1.0).contains(&value) {
+                Ok(())
+            } else {
+                Err(Error::setting(field, format!("{value} is not in 0..=1")))
+            }
+        };
+        unit("blend", self.blend)?;
+        unit("far_fade", self.far_fade)?;
+        if !(self.filter_radius >= 0.0 && self.filter_radius <= 64.0) {
+            return Err(Error::setting("filter_radius", format!("{} texels; give 0 to 64", self.filter_radius)));
+        }
+        if self.image_size.contains(&0) {
+            return Err(Error::setting(
+                "image_size",
+                "the image has no pixels; give a width and a height of 1 or more",
+            ));
+        }
+        if let Some((near, far)) = self.range {
+            check_range(near, far)?;
+        }
+        match &self.scheme {
+            SplitScheme::Uniform | SplitScheme::Logarithmic => {}
+            SplitScheme::Practical { lambda, delta } => {
+                unit("lambda", *lambda)?;
+                if !(delta.len() <= 1 || delta.len() == m - 1) {
+                    return Err(Error::setting(
+                        "delta",
+                        format!("{} offsets for {} inner planes; give one, or one for each", delta.len(), m - 1),
+                    ));
+                }
+                if let Some(bad) = delta.iter().find(|d| !d.is_finite()) {
+                    return Err(Error::setting("delta", format!("{bad} is not a finite number of metres")));
+                }
+            }
+            SplitScheme::Manual(planes) => {
+                if planes.len() != m - 1 {
+                    return Err(Error::setting(
+                        "planes",
+                        format!("{} inner planes for {m} splits; give {}", planes.len(), m - 1),
+                    ));
+                }
+                if planes.iter().any(|p| !p.is_finite()) || planes.windows(2).any(|p| p[0] >= p[1]) {
+                    return Err(Error::setting("planes", format!("{planes:?} do not rise strictly")));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+pub(crate) fn check_range(near: f64, far: f64) -> Result<()> {
+    if !(near > 0.0 && near.is_finite()) {
+        return Err(Error::setting("range", format!("near is {near}; give a finite view depth greater than 0")));
+    }
+    if !(far > near && far.is_finite()) {
+        return Err(Error::setting(
+            "range",
+            format!("far is {far}; give a finite view depth greater than near ({near})"),
+        ));
+    }
+    Ok(())
+}
