@@ -14,16 +14,27 @@
 //! Column vectors, column-major matrices, radians. A transform is named `target_from_source`. Splits count from 0;
 //! `C_0 = n` and `C_m = f` are the ends of the shadowed range.
 
+mod alias;
+mod bias;
 mod bounds;
 mod camera;
 mod error;
 mod light;
 mod plan;
+mod planner;
+mod region;
 mod settings;
+mod split;
+mod stable;
+mod volume;
 
+pub use bias::{Bias, STEEPEST};
 pub use bounds::Aabb;
 pub use camera::{DepthConvention, Frustum, Projection, View};
 pub use error::{Error, Result};
 pub use light::DirectionalLight;
 pub use plan::{ShadowPlan, Split};
+pub use planner::Planner;
 pub use settings::{Fit, MAX_SPLITS, ShadowSettings, SplitScheme, Stabilize};
+pub use split::split_planes;
+pub use stable::{Sphere, slice_sphere, stable_texel};

@@ -1,0 +1,447 @@
+//! The planner: from a view, a light and bounds to a [`ShadowPlan`].
+
+use glam::{DVec2, DVec3};
+
+use crate::region::{Fan, Region};
+use crate::split::{blend_begin, coverage, split_planes};
+use crate::stable::{HeldSize, slice_sphere, stable_texel};
+use crate::volume::{Lies, Slice, SweptVolume};
+use crate::{
+    Aabb, DirectionalLight, Error, Fit, MAX_SPLITS, Result, ShadowPlan, ShadowSettings, Split, Stabilize, View,
+};
+
+/// Texels that a map keeps free around what it serves, besides the filter's reach: half for the texel that a sample's
+/// rounding may choose, one for the normal offset of the receiver's bias.
+const EDGE_TEXELS: f64 = 1.5;
+
+/// Share of a scene's extent by which a caster may rise above the lowest receiver and still count as lying below all of
+/// them: rounding in the bounds, not a length that could be seen (1.2 mm in 1.2 km).
+const BELOW_ALL: f64 = 1e-6;
+
+/// Plans shadow maps frame after frame. Keeps its buffers, so that only the first frame allocates, and the sizes that
+/// stabilised maps hold on to.
+#[derive(Clone, Debug)]
+pub struct Planner {
+    settings: ShadowSettings,
+    plan: ShadowPlan,
+    held_range: HeldSize,
+    held_radius: [HeldSize; MAX_SPLITS],
+    fan: Option<Fan>,
+    volumes: Vec<CoverageVolume>,
+    world_depths: (f64, f64),
+    casters: Vec<Placed>,
+    receivers: Vec<Placed>,
+    candidates: Vec<u32>,
+    visible: Vec<u32>,
+    across: Vec<u32>,
+}
+
+/// A box as centre and half extent.
+#[derive(Clone, Copy, Debug)]
+struct Placed {
+    center: DVec3,
+    half: DVec3,
+}
+
+impl Placed {
+    fn bounds(&self) -> Aabb {
+        Aabb::new(self.center - self.half, self.center + self.half)
+    }
+}
+
+/// The points whose shadows a split's caster list is complete for.
+#[derive(Clone, Debug, PartialEq)]
+struct CoverageVolume {
+    swept: SweptVolume,
+    /// Scene-dependent fit: the receivers inside the slice, in the light's plane and as a world box.
+    receivers: Option<(Region, Aabb)>,
+}
+
+impl Planner {
+    /// A planner for these settings.
+    ///
+    /// # Errors
+    /// [`Error::InvalidSetting`] naming the field that is wrong.
+    pub fn new(settings: ShadowSettings) -> Result<Self> {
+        settings.validate()?;
+        Ok(Self {
+            settings,
+            plan: ShadowPlan::default(),
+            held_range: HeldSize::default(),
+            held_radius: [HeldSize::default(); MAX_SPLITS],
+            fan: None,
+            volumes: Vec::new(),
+            world_depths: (0.0, 0.0),
+            casters: Vec::new(),
+            receivers: Vec::new(),
+            candidates: Vec::new(),
+            visible: Vec::new(),
+            across: Vec::new(),
+        })
+    }
+
+    /// What the planner was made with.
+    #[must_use]
+    pub fn settings(&self) -> &ShadowSettings {
+        &self.settings
+    }
+
+    /// Plans the maps of one frame.
+    ///
+    /// `casters` throw shadows, `receivers` show them; most objects are in both lists. The plan's caster indices refer to
+    /// `casters`.
+    ///
+    /// # Errors
+    /// [`Error::InvalidBounds`] naming a box that is inverted or not finite; [`Error::InvalidSetting`] if the range or the
+    /// planes do not fit this camera.
+    pub fn plan(
+        &mut self,
+        view: &View,
+        light: &DirectionalLight,
+        casters: &[Aabb],
+        receivers: &[Aabb],
+    ) -> Result<&ShadowPlan> {
+        place(casters, "casters", &mut self.casters)?;
+        place(receivers, "receivers", &mut self.receivers)?;
+        let (near, far) = self.range(view);
+        let mut planes = std::mem::take(&mut self.plan.planes);
+        let rising = split_planes(&self.settings.scheme, near, far, self.settings.splits(), &mut planes);
+        self.plan.planes = planes;
+        rising?;
+
+        let direction = light.direction();
+        let (map_u, _) = light.map_axes();
+        let ahead = (view.forward() - view.forward().dot(direction) * direction).try_normalize().unwrap_or(map_u);
+        let fan = Fan::new(ahead, direction);
+        self.fan = Some(fan);
+        self.cull_to_view(view, direction);
+        if self.settings.stabilize == Stabilize::Exact && !self.settings.depth_clamp {
+            self.world_depths = self.measure_world_depths(direction);
+        }
+
+        let plan = &mut self.plan;
+        plan.view_depth_plane = view.forward().extend(-view.forward().dot(view.eye()));
+        plan.light_direction = direction;
+        plan.fade_begin = far - self.settings.far_fade * (far - near);
+        plan.caster_indices.clear();
+        plan.split_range.clear();
+        plan.split_range.resize(casters.len(), None);
+        plan.splits.clear();
+        self.volumes.clear();
+        for i in 0..self.settings.splits() {
+            self.plan_split(i, view, light, &fan);
+        }
+        Ok(&self.plan)
+    }
+
+    /// The first split whose map holds every caster that can shade `point`, for points that the view does not show (points
+    /// that it shows use the split of their view depth). `None`: no map answers for it. Refers to the last plan.
+    #[must_use]
+    pub fn covering_split(&self, point: DVec3) -> Option<usize> {
+        let fan = self.fan.as_ref()?;
+        self.plan.splits.iter().zip(&self.volumes).position(|(split, volume)| {
+            let complete = volume.swept.contains(point)
+                && volume.receivers.is_none_or(|(region, bounds)| {
+                    region.contains(fan, point)
+                        && (0..3).all(|axis| match fan.depth[axis] {
+                            along if along < 0.0 => point[axis] >= bounds.min[axis],
+                            along if along > 0.0 => point[axis] <= bounds.max[axis],
+                            _ => true,
+                        })
+                });
+            complete && (split.casters.is_empty() || split.contains(point, self.settings.filter_radius))
+        })
+    }
+
+    /// `C_0` and `C_m`: the setting, or the camera's near and far, far capped by the receivers.
+    fn range(&mut self, view: &View) -> (f64, f64) {
+        if let Some(range) = self.settings.range {
+            return range;
+        }
+        let forward = view.forward();
+        let (near, camera_far) = (view.frustum().near, view.frustum().far);
+        let deepest = self
+            .receivers
+            .iter()
+            .map(|r| forward.dot(r.center - view.eye()) + forward.abs().dot(r.half))
+            .fold(f64::NEG_INFINITY, f64::max);
+        // Nothing before the eye: any short range will do.
+        let deepest = if deepest > near { deepest } else { 2.0 * near.abs() + 1.0 };
+        let far = match self.settings.stabilize {
+            Stabilize::None => deepest,
+            Stabilize::Exact => self.held_range.hold(deepest),
+        };
+        (near, far.min(camera_far))
+    }
+
+    /// Receivers that some slice can contain and casters that some slice's sweep can meet.
+    fn cull_to_view(&mut self, view: &View, direction: DVec3) {
+        let whole = Slice::new(
+            view,
+            view.frustum().near,
+            self.plan.planes.last().map_or(0.0, |far| far.min(view.frustum().far)),
+        );
+        self.visible.clear();
+        for (i, receiver) in self.receivers.iter().enumerate() {
+            if whole.classify(receiver.center, receiver.half) != Lies::Outside {
+                self.visible.push(i as u32);
+            }
+        }
+        let swept = whole.swept_towards_light(direction);
+        // The margin around a split is a few of its texels: at most this share of its width.
+        let margin = self.margin_share()
+            * whole.corners[4].distance(whole.corners[7]).max(whole.corners[0].distance(whole.corners[7]));
+        self.candidates.clear();
+        for (i, caster) in self.casters.iter().enumerate() {
+            if swept.meets(caster.center, caster.half, margin) {
+                self.candidates.push(i as u32);
+            }
+        }
+    }
+
+    /// The largest share of a map's width that its margin can be.
+    fn margin_share(&self) -> f64 {
+        let margin = self.settings.filter_radius + EDGE_TEXELS;
+        let smallest = self.settings.map_sizes.iter().copied().min().unwrap_or(1);
+        2.0 * margin / f64::from(smallest).max(2.0 * margin + 2.0)
+    }
+
+    fn plan_split(&mut self, i: usize, view: &View, light: &DirectionalLight, fan: &Fan) {
+        let settings = &self.settings;
+        let planes = &self.plan.planes;
+        let direction = light.direction();
+        let size = settings.map_sizes[i];
+        let margin = settings.filter_radius + EDGE_TEXELS;
+        let (from, to) = coverage(view, planes, i, settings.blend, settings.image_size);
+        let blend_begin = blend_begin(planes, i, settings.blend);
+        let (near, far) = (planes[i], planes[i + 1]);
+        let visible = to > from;
+        // A slice beyond the camera's far plane serves nothing; it still gets a valid matrix.
+        let (from, to) = if visible { (from, to) } else { (near, far) };
+        let slice = Slice::new(view, from, to);
+        let swept = slice.swept_towards_light(direction);
+        let mut slice_region = Region::EMPTY;
+        slice.corners.iter().for_each(|&corner| slice_region.include_point(fan, corner));
+
+        let sphere = slice_sphere(view.frustum(), from, to);
+        let radius = match settings.stabilize {
+            Stabilize::Exact => self.held_radius[i].hold(sphere.radius),
+            Stabilize::None => sphere.radius,
+        };
+        let stable_texel = stable_texel(radius, size, margin);
+
+        let served = match self.settings.fit {
+            Fit::Independent => None,
+            Fit::Dependent => Some(self.receivers_in(&slice, fan)),
+        };
+        let margin_m = match self.settings.stabilize {
+            Stabilize::Exact => margin * stable_texel,
+            Stabilize::None => {
+                let widest = served.as_ref().map_or(&slice_region, |(region, _)| region).widest().max(0.0);
+                widest * margin / (f64::from(size) - 2.0 * margin).max(1.0)
+            }
+        };
+        let casters =
+            if visible { self.list_casters(i, &swept, served.as_ref(), fan, margin_m) } else { self.empty_list() };
+
+        // What the map has to show, in the light's plane and in depth.
+        let listed = &self.plan.caster_indices[casters.clone()];
+        let (target, caster_near) = match &served {
+            Some((region, _)) if !listed.is_empty() => {
+                let mut target = Region::EMPTY;
+                for &index in listed {
+                    let caster = &self.casters[index as usize];
+                    target.include_box_within(fan, caster.center, caster.half, region);
+                }
+                let caster_near = target.depth.0;
+                target.depth = region.depth;
+                (target, caster_near)
+            }
+            Some((region, _)) if !region.is_empty() => (*region, region.depth.0),
+            _ => {
+                let caster_near = listed
+                    .iter()
+                    .map(|&index| &self.casters[index as usize])
+                    .map(|c| direction.dot(c.center) - direction.abs().dot(c.half))
+                    .fold(f64::INFINITY, f64::min);
+                (slice_region, caster_near)
+            }
+        };
+        let split = Split {
+            near,
+            far,
+            blend_begin,
+            coverage: (from, to),
+            size,
+            u_axis: DVec3::ZERO,
+            v_axis: DVec3::ZERO,
+            depth_axis: direction,
+            texel_m: DVec2::ONE,
+            min_texel: DVec2::ZERO,
+            depth_near: target.depth.0,
+            depth_far: target.depth.1,
+            casters,
+        };
+        let split = match self.settings.stabilize {
+            Stabilize::None => fitted(split, &target, fan, margin),
+            Stabilize::Exact => {
+                let center = view.world_from_view_point(sphere.center);
+                snapped(split, light, center, radius, stable_texel)
+            }
+        };
+        let split = self.with_depth_range(split, caster_near, radius);
+        self.plan.splits.push(split);
+        self.volumes.push(CoverageVolume { swept, receivers: served });
+    }
+
+    /// Near and far planes: before the first caster and behind the last receiver, with room for the bias. Where depth is clamped
+    /// near lies at the first receiver. A stabilised split takes the bounds of the whole world (or, clamped, of its sphere)
+    /// in whole steps, so that what it stores does not depend on where the camera stands.
+    fn with_depth_range(&self, mut split: Split, caster_near: f64, radius: f64) -> Split {
+        let texel = split.texel_m.max_element();
+        let clamped = self.settings.depth_clamp;
+        let (near, far, step) = match (self.settings.stabilize, clamped) {
+            (Stabilize::None, true) => (split.depth_near, split.depth_far, None),
+            (Stabilize::None, false) => (split.depth_near.min(caster_near), split.depth_far, None),
+            (Stabilize::Exact, true) => (split.depth_near, split.depth_far, Some(0.5 * radius)),
+            (Stabilize::Exact, false) => {
+                let (near, far) = self.world_depths;
+                let known = near.is_finite() && far > near;
+                let (near, far) = if known { (near, far) } else { (split.depth_near, split.depth_far) };
+                (near, far, Some((far - near) / 16.0))
+            }
+        };
+        let room = 4.0 * texel + 1e-4 * (far - near);
+        (split.depth_near, split.depth_far) = (near - room, far + room);
+        if let Some(step) = step {
+            let step = 2f64.powf(step.log2().round());
+            split.depth_near = (split.depth_near / step).floor() * step;
+            split.depth_far = (split.depth_far / step).ceil() * step;
+        }
+        split
+    }
+
+    /// Depth of the first caster and of the last receiver of all.
+    fn measure_world_depths(&self, depth_axis: DVec3) -> (f64, f64) {
+        let reach = depth_axis.abs();
+        let near =
+            self.casters.iter().map(|c| depth_axis.dot(c.center) - reach.dot(c.half)).fold(f64::INFINITY, f64::min);
+        let far = self
+            .receivers
+            .iter()
+            .map(|r| depth_axis.dot(r.center) + reach.dot(r.half))
+            .fold(f64::NEG_INFINITY, f64::max);
+        (near, far)
+    }
+
+    fn empty_list(&self) -> std::ops::Range<usize> {
+        let end = self.plan.caster_indices.len();
+        end..end
+    }
+
+    /// The receivers' part of a slice: its bounds in the light's plane and in the world.
+    fn receivers_in(&mut self, slice: &Slice, fan: &Fan) -> (Region, Aabb) {
+        let mut region = Region::EMPTY;
+        let mut bounds = Aabb::EMPTY;
+        self.across.clear();
+        for &index in &self.visible {
+            let receiver = &self.receivers[index as usize];
+            match slice.classify(receiver.center, receiver.half) {
+                Lies::Outside => {}
+                Lies::Inside => {
+                    region.include_box(fan, receiver.center, receiver.half);
+                    bounds = bounds.union(receiver.bounds());
+                }
+                Lies::Across => self.across.push(index),
+            }
+        }
+        for &index in &self.across {
+            let receiver = &self.receivers[index as usize];
+            let own = receiver.bounds();
+            let changes_nothing =
+                bounds.union(own) == bounds && region.encloses_box(fan, receiver.center, receiver.half);
+            if !changes_nothing {
+                slice.clip_box(&own, |point| {
+                    region.include_point(fan, point);
+                    bounds = bounds.including(point);
+                });
+            }
+        }
+        (region, bounds)
+    }
+
+    /// Appends the casters of split `i` to the plan's list.
+    fn list_casters(
+        &mut self,
+        i: usize,
+        swept: &SweptVolume,
+        served: Option<&(Region, Aabb)>,
+        fan: &Fan,
+        margin: f64,
+    ) -> std::ops::Range<usize> {
+        let begin = self.plan.caster_indices.len();
+        if served.is_some_and(|(region, _)| region.is_empty()) {
+            return begin..begin;
+        }
+        for &index in &self.candidates {
+            let Placed { center, half } = self.casters[index as usize];
+            let listed = swept.meets(center, half, margin)
+                && served.is_none_or(|(region, bounds)| {
+                    !lies_below(center, half, bounds, fan.depth) && region.can_be_shadowed_by(fan, center, half, margin)
+                });
+            if listed {
+                self.plan.caster_indices.push(index);
+                let range = &mut self.plan.split_range[index as usize];
+                *range = Some((range.map_or(i as u8, |(first, _)| first), i as u8));
+            }
+        }
+        begin..self.plan.caster_indices.len()
+    }
+}
+
+/// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers` as the light sees it: it then
+/// has nothing behind it to throw a shadow on. A flat ground under everything is the case that matters.
+fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3) -> bool {
+    let slack = BELOW_ALL * (receivers.max - receivers.min).max_element();
+    (0..3).any(|axis| match direction[axis] {
+        along if along < -1e-9 => center[axis] + half[axis] <= receivers.min[axis] + slack,
+        along if along > 1e-9 => center[axis] - half[axis] >= receivers.max[axis] - slack,
+        _ => false,
+    })
+}
+
+fn place(boxes: &[Aabb], list: &'static str, placed: &mut Vec<Placed>) -> Result<()> {
+    placed.clear();
+    for (index, bounds) in boxes.iter().enumerate() {
+        if !bounds.is_valid() {
+            return Err(Error::InvalidBounds { list, index, min: bounds.min, max: bounds.max });
+        }
+        placed.push(Placed { center: bounds.center(), half: bounds.half_extent() });
+    }
+    Ok(())
+}
+
+/// The smallest rectangle around `target`, widened by `margin` texels.
+fn fitted(mut split: Split, target: &Region, fan: &Fan, margin: f64) -> Split {
+    let (u, v, lo, hi) = target.least_rectangle(fan);
+    (split.u_axis, split.v_axis) = (u, v);
+    let texels = f64::from(split.size) - 2.0 * margin;
+    let longest = (hi - lo).max_element();
+    // A target without width (a wall seen edge-on by the light) still gets texels of some size.
+    let extent = (hi - lo).max(DVec2::splat(1e-3 * longest.max(1e-3)));
+    split.texel_m = extent / texels;
+    split.min_texel = 0.5 * (lo + hi) / split.texel_m - 0.5 * f64::from(split.size);
+    split
+}
+
+/// The square around a sphere, moved to whole texels of a grid that is fixed to the light.
+fn snapped(mut split: Split, light: &DirectionalLight, center: DVec3, radius: f64, texel: f64) -> Split {
+    let (u, v) = light.map_axes();
+    (split.u_axis, split.v_axis) = (u, v);
+    split.texel_m = DVec2::splat(texel);
+    let half = 0.5 * f64::from(split.size);
+    split.min_texel = (DVec2::new(u.dot(center), v.dot(center)) / texel - half).round();
+    let depth = split.depth_axis.dot(center);
+    (split.depth_near, split.depth_far) = (depth - radius, depth + radius);
+    split
+}

@@ -1,0 +1,221 @@
+//! Convex pieces of space: a slice of the view, and the slice swept towards the light.
+
+use glam::DVec3;
+
+use crate::{Aabb, View};
+
+/// A half space: inside is `normal · p <= offset`. The normal is a unit vector that points outwards.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Plane {
+    pub normal: DVec3,
+    pub offset: f64,
+}
+
+impl Plane {
+    /// The plane through `point` with `normal` turned away from `inside`.
+    fn facing_away(normal: DVec3, point: DVec3, inside: DVec3) -> Self {
+        let normal = normal.normalize_or_zero();
+        let normal = if normal.dot(inside - point) > 0.0 { -normal } else { normal };
+        Self { normal, offset: normal.dot(point) }
+    }
+
+    pub fn distance(&self, point: DVec3) -> f64 {
+        self.normal.dot(point) - self.offset
+    }
+
+    /// Signed distance of the box's innermost point.
+    pub fn nearest(&self, center: DVec3, half: DVec3) -> f64 {
+        self.distance(center) - self.normal.abs().dot(half)
+    }
+
+    /// Signed distance of the box's outermost point.
+    pub fn farthest(&self, center: DVec3, half: DVec3) -> f64 {
+        self.distance(center) + self.normal.abs().dot(half)
+    }
+}
+
+/// Corner indices of the faces near, far, left, right, bottom, top; corners as [`View::slice_corners`] has them.
+const FACES: [[usize; 4]; 6] = [[0, 1, 3, 2], [4, 5, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6]];
+
+/// Edges as (corner, corner, face, face).
+const EDGES: [(usize, usize, usize, usize); 12] = [
+    (0, 1, 0, 4),
+    (1, 3, 0, 3),
+    (3, 2, 0, 5),
+    (2, 0, 0, 2),
+    (4, 5, 1, 4),
+    (5, 7, 1, 3),
+    (7, 6, 1, 5),
+    (6, 4, 1, 2),
+    (0, 4, 2, 4),
+    (1, 5, 3, 4),
+    (2, 6, 2, 5),
+    (3, 7, 3, 5),
+];
+
+/// The part of a view between two view depths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Slice {
+    pub corners: [DVec3; 8],
+    pub planes: [Plane; 6],
+    center: DVec3,
+}
+
+/// How a box lies to a convex volume.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lies {
+    Outside,
+    Across,
+    Inside,
+}
+
+impl Slice {
+    pub fn new(view: &View, from: f64, to: f64) -> Self {
+        let corners = view.slice_corners(from, to);
+        let center = corners.iter().sum::<DVec3>() / 8.0;
+        let planes = std::array::from_fn(|i| match i {
+            0 => Plane::facing_away(view.forward(), corners[0], center),
+            1 => Plane::facing_away(view.forward(), corners[4], center),
+            // Sides pass through the far edge and, unless the near face is a point, the near one.
+            _ => {
+                let [a, b, c, d] = FACES[i].map(|corner| corners[corner]);
+                let diagonals = (c - a).cross(d - b);
+                Plane::facing_away(diagonals, c, center)
+            }
+        });
+        Self { corners, planes, center }
+    }
+
+    pub fn classify(&self, center: DVec3, half: DVec3) -> Lies {
+        let mut lies = Lies::Inside;
+        for plane in &self.planes {
+            if plane.nearest(center, half) > 0.0 {
+                return Lies::Outside;
+            }
+            if plane.farthest(center, half) > 0.0 {
+                lies = Lies::Across;
+            }
+        }
+        lies
+    }
+
+    /// Calls `each` with points whose convex hull is the part of `bounds` inside the slice: the box's faces clipped to the
+    /// slice and the slice's faces clipped to the box. Returns whether there was any.
+    pub fn clip_box(&self, bounds: &Aabb, mut each: impl FnMut(DVec3)) -> bool {
+        let corners = bounds.corners();
+        let box_planes = box_planes(bounds);
+        const BOX_FACES: [[usize; 4]; 6] =
+            [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
+        let mut any = false;
+        let mut emit = |polygon: &Polygon| {
+            any |= polygon.len > 0;
+            polygon.points[..polygon.len].iter().for_each(|&point| each(point));
+        };
+        for face in BOX_FACES {
+            emit(&Polygon::new(face.map(|i| corners[i])).clipped(&self.planes));
+        }
+        for face in FACES {
+            emit(&Polygon::new(face.map(|i| self.corners[i])).clipped(&box_planes));
+        }
+        any
+    }
+
+    /// The slice pushed to infinity towards the light that travels along `direction`.
+    pub fn swept_towards_light(&self, direction: DVec3) -> SweptVolume {
+        let mut swept = SweptVolume::default();
+        let away = self.planes.map(|plane| plane.normal.dot(direction) >= 0.0);
+        for (plane, away) in self.planes.iter().zip(away) {
+            if away {
+                swept.push(*plane);
+            }
+        }
+        for (a, b, f, g) in EDGES {
+            let normal = (self.corners[b] - self.corners[a]).cross(direction);
+            // An edge along the light is a point of the outline: its neighbours bound it.
+            if away[f] != away[g] && normal.length() > 1e-9 * self.corners[b].distance(self.corners[a]) {
+                swept.push(Plane::facing_away(normal, self.corners[a], self.center));
+            }
+        }
+        swept
+    }
+}
+
+fn box_planes(bounds: &Aabb) -> [Plane; 6] {
+    [
+        Plane { normal: DVec3::NEG_X, offset: -bounds.min.x },
+        Plane { normal: DVec3::X, offset: bounds.max.x },
+        Plane { normal: DVec3::NEG_Y, offset: -bounds.min.y },
+        Plane { normal: DVec3::Y, offset: bounds.max.y },
+        Plane { normal: DVec3::NEG_Z, offset: -bounds.min.z },
+        Plane { normal: DVec3::Z, offset: bounds.max.z },
+    ]
+}
+
+/// A convex volume, open towards the light.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct SweptVolume {
+    planes: [Plane; 18],
+    len: usize,
+}
+
+impl SweptVolume {
+    fn push(&mut self, plane: Plane) {
+        self.planes[self.len] = plane;
+        self.len += 1;
+    }
+
+    /// Whether a box comes within `margin` metres of the volume (conservatively).
+    pub fn meets(&self, center: DVec3, half: DVec3, margin: f64) -> bool {
+        self.planes[..self.len].iter().all(|plane| plane.nearest(center, half) <= margin)
+    }
+
+    pub fn contains(&self, point: DVec3) -> bool {
+        self.planes[..self.len].iter().all(|plane| plane.distance(point) <= 0.0)
+    }
+}
+
+/// A convex polygon of a few corners, on the stack.
+struct Polygon {
+    points: [DVec3; 16],
+    len: usize,
+}
+
+impl Polygon {
+    fn new(corners: [DVec3; 4]) -> Self {
+        let mut points = [DVec3::ZERO; 16];
+        points[..4].copy_from_slice(&corners);
+        Self { points, len: 4 }
+    }
+
+    /// Sutherland and Hodgman's clipping, plane after plane; each can add one corner, so ten is the most there can be.
+    fn clipped(mut self, planes: &[Plane; 6]) -> Self {
+        for plane in planes {
+            if self.len == 0 {
+                break;
+            }
+            let mut kept = Self { points: [DVec3::ZERO; 16], len: 0 };
+            let mut push = |point| {
+                // A concave corner cannot arise; rounding may repeat a point, which the bound of 16 leaves room for.
+                if kept.len < kept.points.len() {
+                    kept.points[kept.len] = point;
+                    kept.len += 1;
+                }
+            };
+            let mut previous = self.points[self.len - 1];
+            let mut previous_distance = plane.distance(previous);
+            for &point in &self.points[..self.len] {
+                let distance = plane.distance(point);
+                if (distance > 0.0) != (previous_distance > 0.0) {
+                    let t = previous_distance / (previous_distance - distance);
+                    push(previous + t * (point - previous));
+                }
+                if distance <= 0.0 {
+                    push(point);
+                }
+                (previous, previous_distance) = (point, distance);
+            }
+            self = kept;
+        }
+        self
+    }
+}
