@@ -1,0 +1,55 @@
+//! What CI runs, and a developer before a commit.
+
+use std::env;
+
+use anyhow::Result;
+
+use crate::{
+    adapter,
+    run::{build_umbrage, cargo, run},
+};
+
+/// Tests that need an adapter fail without one, rather than skip, where this is 1.
+const REQUIRE_GPU: &str = "UMBRAGE_REQUIRE_GPU";
+/// Tests write their references anew where this is 1.
+const BLESS: &str = "UMBRAGE_BLESS";
+
+/// Formatting, lints, all tests.
+pub fn test() -> Result<()> {
+    run(cargo().args(["fmt", "--all", "--check"]))?;
+    run(cargo().args(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
+    let has_adapter = has_adapter()?;
+    let mut tests = cargo();
+    tests.args(["test", "--workspace"]);
+    if has_adapter {
+        tests.env(REQUIRE_GPU, "1");
+    }
+    run(&mut tests)
+}
+
+/// All tests, accepting what they find as the new reference.
+pub fn bless() -> Result<()> {
+    adapter::ensure(&build_umbrage(false)?)?;
+    run(cargo().args(["test", "--workspace"]).env(BLESS, "1").env(REQUIRE_GPU, "1"))?;
+    eprintln!("xtask: look at what `git diff` says before you commit it");
+    Ok(())
+}
+
+/// Whether there is an adapter, after trying to install one. None is an error where the environment demands one.
+fn has_adapter() -> Result<bool> {
+    match adapter::ensure(&build_umbrage(false)?) {
+        Ok(name) => {
+            eprintln!("xtask: tests run on {name}");
+            Ok(true)
+        }
+        Err(error) if is_set(REQUIRE_GPU) || is_set("CI") => Err(error),
+        Err(error) => {
+            eprintln!("xtask: {error:#}\nxtask: tests that need an adapter will be SKIPPED");
+            Ok(false)
+        }
+    }
+}
+
+fn is_set(variable: &str) -> bool {
+    env::var_os(variable).is_some_and(|value| !value.is_empty() && value != "0")
+}
