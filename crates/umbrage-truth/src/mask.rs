@@ -1,0 +1,117 @@
+//! Exact hard shadows, pixel by pixel.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use glam::DVec3;
+use image::{GrayAlphaImage, LumaA};
+use rayon::prelude::*;
+use umbrage::View;
+
+use crate::truth::to_light;
+use crate::{Error, Hit, Result, Truth};
+
+/// Pixels of a block that is traced together, along each side, so that neighbouring rays find the tree in the cache.
+const BLOCK: usize = 8;
+
+/// What every pixel centre of a view sees, and whether the light reaches it.
+#[derive(Clone, Debug)]
+pub struct TruthMask {
+    size: [usize; 2],
+    to_light: DVec3,
+    hits: Vec<Option<Hit>>,
+}
+
+impl Truth {
+    /// Traces one ray through each pixel centre and one from there to the light. `light_travel` is the way the light travels
+    /// and need not be normalised; `size` is width and height in pixels. `progress` hears the share that is done, in
+    /// [0,1], from several threads, not always in order. The result does not depend on the number of threads.
+    ///
+    /// # Errors
+    /// [`Error::InvalidSetting`] if the image has no pixels or the light no direction.
+    pub fn mask(
+        &self,
+        view: &View,
+        light_travel: DVec3,
+        size: [u32; 2],
+        progress: &(dyn Fn(f32) + Sync),
+    ) -> Result<TruthMask> {
+        let to_light = to_light(light_travel)?;
+        if size.contains(&0) {
+            return Err(Error::setting("size", format!("{} x {} pixels; give 1 or more each", size[0], size[1])));
+        }
+        let [width, height] = size.map(|n| n as usize);
+        let mut hits = vec![None; width * height];
+        let rows = AtomicUsize::new(0);
+        hits.par_chunks_mut(width * BLOCK).enumerate().for_each_init(Vec::new, |stack, (band, pixels)| {
+            for (x, y) in in_blocks(width, pixels.len() / width) {
+                let at_x = (x as f64 + 0.5) / width as f64;
+                let at_y = ((band * BLOCK + y) as f64 + 0.5) / height as f64;
+                pixels[y * width + x] = self.look(view, to_light, (at_x, at_y), stack);
+            }
+            let done = rows.fetch_add(pixels.len() / width, Ordering::Relaxed) + pixels.len() / width;
+            progress(done as f32 / height as f32);
+        });
+        Ok(TruthMask { size: [width, height], to_light, hits })
+    }
+
+    /// What the view sees at one point of its image, both coordinates in [0,1] from the upper left corner.
+    fn look(&self, view: &View, to_light: DVec3, (x, y): (f64, f64), stack: &mut Vec<u32>) -> Option<Hit> {
+        let (origin, direction) = view.ray_through(x, y);
+        let frustum = view.frustum();
+        let mut hit = self.first_hit(origin, direction, (frustum.near, frustum.far), stack)?;
+        hit.lit = hit.normal.dot(to_light) > 0.0 && self.sees_light(hit.position, to_light, Some(hit.triangle), stack);
+        Some(hit)
+    }
+}
+
+impl TruthMask {
+    /// Width and height in pixels.
+    #[must_use]
+    pub fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
+    /// The unit vector towards the light, l.
+    #[must_use]
+    pub fn to_light(&self) -> DVec3 {
+        self.to_light
+    }
+
+    /// One entry per pixel, row by row from the upper left; `None` where the ray meets nothing.
+    #[must_use]
+    pub fn hits(&self) -> &[Option<Hit>] {
+        &self.hits
+    }
+
+    /// As a mask image: 255 lit, 0 shadowed or turned away from the light; alpha 255, or 0 where nothing was hit.
+    #[must_use]
+    pub fn to_image(&self) -> GrayAlphaImage {
+        mask_image(self.size, self.hits.iter().map(|hit| hit.map(|hit| f32::from(u8::from(hit.lit)))))
+    }
+}
+
+/// A mask image of visibilities in [0,1]; `None` is transparent.
+pub(crate) fn mask_image(size: [usize; 2], values: impl Iterator<Item = Option<f32>>) -> GrayAlphaImage {
+    let mut image = GrayAlphaImage::new(size[0] as u32, size[1] as u32);
+    for (pixel, value) in image.pixels_mut().zip(values) {
+        *pixel = value.map_or(LumaA([0, 0]), |v| LumaA([(255.0 * v).round() as u8, 255]));
+    }
+    image
+}
+
+/// Reads a mask as `umbrage render --visibility` and `umbrage truth` write it: grey and alpha, 8 bits.
+///
+/// # Errors
+/// [`Error::Image`] if the file is missing or no image.
+pub fn read_mask(path: &Path) -> Result<GrayAlphaImage> {
+    let image = image::open(path).map_err(|source| Error::Image { path: path.to_owned(), source })?;
+    Ok(image.into_luma_alpha8())
+}
+
+/// The pixels of a band, block after block.
+pub(crate) fn in_blocks(width: usize, height: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..width)
+        .step_by(BLOCK)
+        .flat_map(move |left| (0..height).flat_map(move |y| (left..(left + BLOCK).min(width)).map(move |x| (x, y))))
+}
