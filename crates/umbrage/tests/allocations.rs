@@ -1,0 +1,29 @@
+//! After the first frame the planner allocates nothing.
+
+use glam::DVec3;
+use umbrage::{Aabb, DirectionalLight, Fit, Frustum, Planner, ShadowSettings, Stabilize, View};
+
+#[test]
+fn only_the_first_frame_allocates() {
+    let world: Vec<Aabb> = (0..1000)
+        .map(|i| {
+            let at = DVec3::new(f64::from(i % 40) * 20.0 - 400.0, 0.0, f64::from(i / 40) * 20.0 - 250.0);
+            Aabb::new(at, at + 5.0)
+        })
+        .collect();
+    let light = DirectionalLight::new(DVec3::new(0.4, -1.0, 0.3)).expect("valid");
+    let frustum = Frustum::perspective(1.0, 1.5, 0.5, 500.0).expect("valid");
+    let view = |angle: f64| View::look_at_upright(DVec3::Y * 10.0, DVec3::new(angle.cos(), 9.9, angle.sin()), frustum);
+    for fit in [Fit::Dependent, Fit::Independent] {
+        for stabilize in [Stabilize::Exact, Stabilize::None] {
+            let settings = ShadowSettings { fit, stabilize, ..ShadowSettings::default() };
+            let mut planner = Planner::new(settings).expect("valid");
+            let view = view(0.3).expect("valid");
+            planner.plan(&view, &light, &world, &world).expect("valid");
+            let again = allocation_counter::measure(|| {
+                planner.plan(&view, &light, &world, &world).expect("valid");
+            });
+            assert_eq!(again.count_total, 0, "{fit:?} {stabilize:?} allocated {again:?}");
+        }
+    }
+}

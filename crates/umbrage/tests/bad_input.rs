@@ -1,0 +1,64 @@
+//! Settings, lights and bounds that must be refused, by name.
+
+use glam::DVec3;
+use umbrage::{Aabb, DirectionalLight, Error, Frustum, Planner, ShadowSettings, SplitScheme, View};
+
+fn refused(change: impl FnOnce(&mut ShadowSettings)) -> &'static str {
+    let mut settings = ShadowSettings::default();
+    change(&mut settings);
+    match Planner::new(settings).expect_err("these settings are not valid") {
+        Error::InvalidSetting { field, .. } => field,
+        other => panic!("another error: {other}"),
+    }
+}
+
+#[test]
+fn settings() {
+    assert_eq!(refused(|s| s.map_sizes = vec![]), "map_sizes");
+    assert_eq!(refused(|s| s.map_sizes = vec![512; 9]), "map_sizes");
+    assert_eq!(refused(|s| s.map_sizes = vec![512, 0]), "map_sizes");
+    assert_eq!(refused(|s| s.map_sizes = vec![512, 4]), "map_sizes");
+    assert_eq!(refused(|s| s.map_sizes = vec![1 << 20]), "map_sizes");
+    assert_eq!(refused(|s| s.blend = 1.5), "blend");
+    assert_eq!(refused(|s| s.blend = f64::NAN), "blend");
+    assert_eq!(refused(|s| s.far_fade = -0.1), "far_fade");
+    assert_eq!(refused(|s| s.filter_radius = f64::NAN), "filter_radius");
+    assert_eq!(refused(|s| s.filter_radius = -1.0), "filter_radius");
+    assert_eq!(refused(|s| s.image_size = [0, 600]), "image_size");
+    assert_eq!(refused(|s| s.range = Some((5.0, 5.0))), "range");
+    assert_eq!(refused(|s| s.range = Some((f64::NAN, 5.0))), "range");
+    assert_eq!(refused(|s| s.range = Some((0.0, 5.0))), "range");
+    assert_eq!(refused(|s| s.range = Some((1.0, f64::INFINITY))), "range");
+    let practical = |lambda, delta| SplitScheme::Practical { lambda, delta };
+    assert_eq!(refused(|s| s.scheme = practical(1.1, vec![])), "lambda");
+    assert_eq!(refused(|s| s.scheme = practical(f64::NAN, vec![])), "lambda");
+    assert_eq!(refused(|s| s.scheme = practical(0.5, vec![1.0, 2.0])), "delta");
+    assert_eq!(refused(|s| s.scheme = practical(0.5, vec![f64::INFINITY])), "delta");
+    assert_eq!(refused(|s| s.scheme = SplitScheme::Manual(vec![1.0])), "planes");
+    assert_eq!(refused(|s| s.scheme = SplitScheme::Manual(vec![10.0, 9.0, 20.0])), "planes");
+}
+
+#[test]
+fn lights() {
+    for direction in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY, DVec3::splat(1e-320)] {
+        assert!(matches!(DirectionalLight::new(direction), Err(Error::InvalidLight { field: "direction", .. })), "{direction}");
+    }
+}
+
+#[test]
+fn bounds() {
+    let mut planner = Planner::new(ShadowSettings::default()).expect("valid");
+    let view = View::look_at_upright(DVec3::ZERO, DVec3::X, Frustum::perspective(1.0, 1.0, 1.0, 100.0).expect("valid")).expect("valid");
+    let light = DirectionalLight::new(DVec3::NEG_Y).expect("valid");
+    let good = Aabb::new(DVec3::ZERO, DVec3::ONE);
+    for bad in [Aabb::EMPTY, Aabb::new(DVec3::ONE, DVec3::ZERO), Aabb::new(DVec3::NAN, DVec3::ONE), Aabb::new(DVec3::ZERO, DVec3::INFINITY)] {
+        let casters = planner.plan(&view, &light, &[good, bad], &[good]).expect_err("a bad caster");
+        assert!(matches!(casters, Error::InvalidBounds { list: "casters", index: 1, .. }), "{casters}");
+        let receivers = planner.plan(&view, &light, &[good], &[bad]).expect_err("a bad receiver");
+        assert!(matches!(receivers, Error::InvalidBounds { list: "receivers", index: 0, .. }), "{receivers}");
+    }
+    assert!(planner.plan(&view, &light, &[], &[]).is_ok(), "an empty world is a world");
+    let point = Aabb::new(DVec3::X * 50.0, DVec3::X * 50.0);
+    let plan = planner.plan(&view, &light, &[point], &[point]).expect("a point is a box");
+    assert!(plan.splits.iter().all(|s| s.shadow_from_world().is_finite()), "{plan:?}");
+}

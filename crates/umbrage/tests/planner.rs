@@ -1,0 +1,289 @@
+//! The planner's promises, against brute force: no caster lost, every receiver inside its map, lists no longer than needed.
+
+use glam::{DQuat, DVec3, EulerRot};
+use proptest::prelude::*;
+use umbrage::{
+    Aabb, DirectionalLight, Fit, Frustum, Planner, Projection, ShadowPlan, ShadowSettings, SplitScheme, Stabilize, View,
+};
+
+/// A world of boxes on and around a ground, a view and a sun, biased to the awkward: a sun straight down or level, a view into
+/// it, boxes behind the eye, flat boxes, boxes larger than the view.
+#[derive(Clone, Debug)]
+struct Case {
+    settings: ShadowSettings,
+    view: View,
+    light: DirectionalLight,
+    boxes: Vec<Aabb>,
+}
+
+fn boxes() -> impl Strategy<Value = Vec<Aabb>> {
+    let place = prop_oneof![(-200.0..200.0f64, -200.0..200.0f64), (-20.0..20.0f64, -20.0..20.0f64)];
+    let size = prop_oneof![4 => 0.1..10.0f64, 1 => Just(0.0), 1 => 50.0..500.0f64];
+    let one = (place, -1.0..30.0f64, [size.clone(), size.clone(), size])
+        .prop_map(|((x, z), y, [w, h, d])| Aabb::new(DVec3::new(x, y, z), DVec3::new(x + w, y + h, z + d)));
+    (prop::collection::vec(one, 1..40), any::<bool>()).prop_map(|(mut boxes, ground)| {
+        if ground {
+            boxes.push(Aabb::new(DVec3::new(-600.0, 0.0, -600.0), DVec3::new(600.0, 0.0, 600.0)));
+        }
+        boxes
+    })
+}
+
+fn settings() -> impl Strategy<Value = ShadowSettings> {
+    let scheme = prop_oneof![
+        Just(SplitScheme::Uniform),
+        Just(SplitScheme::Logarithmic),
+        (0.0..=1.0f64).prop_map(|lambda| SplitScheme::Practical { lambda, delta: vec![] })
+    ];
+    let range = prop_oneof![Just(None), Just(Some((1.0, 300.0))), Just(Some((5.0, 80.0)))];
+    (1usize..=8, scheme, range, any::<[bool; 3]>(), prop_oneof![Just(0.0), 0.0..0.5f64], 0.5..3.0f64).prop_map(
+        |(m, scheme, range, [dependent, exact, clamp], blend, filter_radius)| ShadowSettings {
+            map_sizes: vec![256; m],
+            scheme,
+            range,
+            fit: if dependent { Fit::Dependent } else { Fit::Independent },
+            stabilize: if exact { Stabilize::Exact } else { Stabilize::None },
+            filter_radius,
+            blend,
+            depth_clamp: clamp,
+            ..ShadowSettings::default()
+        },
+    )
+}
+
+fn cases() -> impl Strategy<Value = Case> {
+    let sun = prop_oneof![
+        Just(DVec3::NEG_Y),
+        Just(DVec3::new(1.0, -1e-7, 0.0)),
+        Just(DVec3::NEG_Z),
+        (-1.0..1.0f64, -1.0..-0.02f64, -1.0..1.0f64).prop_map(|(x, y, z)| DVec3::new(x, y, z)),
+    ];
+    let lens = (0.2..2.2f64, 0.5..2.5f64, any::<bool>(), any::<bool>()).prop_map(|(fov, aspect, perspective, off_axis)| {
+        let mut frustum = Frustum::perspective(fov, aspect, 0.5, 400.0).expect("valid");
+        if !perspective {
+            frustum = Frustum::orthographic(80.0, 60.0, 0.5, 400.0).expect("valid");
+        }
+        if off_axis {
+            frustum.left *= 0.2;
+            frustum.top *= 1.5;
+        }
+        frustum
+    });
+    let eye = (-50.0..50.0f64, 0.5..40.0f64, -50.0..50.0f64);
+    let turn = (-3.2..3.2f64, -1.5..0.5f64, any::<bool>());
+    (settings(), boxes(), sun, lens, eye, turn).prop_map(|(settings, boxes, sun, frustum, eye, (yaw, pitch, into_the_light))| {
+        let eye = DVec3::from(eye);
+        let light = DirectionalLight::new(sun).expect("valid");
+        let rotation = DQuat::from_euler(EulerRot::YXZ, yaw, pitch, 0.0);
+        let ahead = if into_the_light { (-light.direction()).lerp(rotation * DVec3::NEG_Z, 0.05) } else { rotation * DVec3::NEG_Z };
+        let up = if ahead.normalize().y.abs() > 0.9 { DVec3::X } else { DVec3::Y };
+        let view = View::look_at(eye, eye + ahead, up, frustum).expect("valid");
+        Case { settings, view, light, boxes }
+    })
+}
+
+/// Points of the boxes' surfaces that the view shows, as the renderer would find them.
+fn visible_points(case: &Case, plan: &ShadowPlan) -> Vec<(usize, DVec3, f64)> {
+    let frustum = case.view.frustum();
+    let far = plan.planes.last().copied().expect("a plan has planes").min(frustum.far);
+    let mut points = Vec::new();
+    for (owner, bounds) in case.boxes.iter().enumerate() {
+        for i in 0..5 {
+            for j in 0..5 {
+                for axis in 0..3 {
+                    for side in [bounds.min, bounds.max] {
+                        let (s, t) = (f64::from(i) / 4.0, f64::from(j) / 4.0);
+                        let mut at = bounds.min + (bounds.max - bounds.min) * DVec3::new(s, t, s).with_z(t);
+                        at[(axis + 1) % 3] = bounds.min[(axis + 1) % 3] * (1.0 - s) + bounds.max[(axis + 1) % 3] * s;
+                        at[(axis + 2) % 3] = bounds.min[(axis + 2) % 3] * (1.0 - t) + bounds.max[(axis + 2) % 3] * t;
+                        at[axis] = side[axis];
+                        let in_view = case.view.view_from_world_point(at);
+                        let (depth, scale) = (-in_view.z, frustum.scale_at(-in_view.z));
+                        let shown = depth >= frustum.near
+                            && depth <= far
+                            && (frustum.left * scale..=frustum.right * scale).contains(&in_view.x)
+                            && (frustum.bottom * scale..=frustum.top * scale).contains(&in_view.y);
+                        if shown {
+                            points.push((owner, at, depth));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    points
+}
+
+/// Whether the ray from `point` towards the light passes through the box, more than a millimetre away.
+fn shades(bounds: &Aabb, point: DVec3, direction: DVec3) -> bool {
+    let (mut enter, mut leave) = (1e-3, f64::INFINITY);
+    for axis in 0..3 {
+        let (p, d) = (point[axis], -direction[axis]);
+        if d.abs() < 1e-12 {
+            if p < bounds.min[axis] || p > bounds.max[axis] {
+                return false;
+            }
+            continue;
+        }
+        let (a, b) = ((bounds.min[axis] - p) / d, (bounds.max[axis] - p) / d);
+        enter = f64::max(enter, a.min(b));
+        leave = f64::min(leave, a.max(b));
+    }
+    enter <= leave
+}
+
+fn splits_of(plan: &ShadowPlan, depth: f64) -> Vec<usize> {
+    let m = plan.splits.len();
+    let own = plan.splits.iter().position(|s| depth < s.far).unwrap_or(m - 1);
+    let blended = plan.splits[own].blend_begin <= depth && own + 1 < m;
+    if blended { vec![own, own + 1] } else { vec![own] }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn no_caster_is_lost_and_every_shadowed_receiver_lies_in_its_map(case in cases()) {
+        let mut planner = Planner::new(case.settings.clone())?;
+        let plan = match planner.plan(&case.view, &case.light, &case.boxes, &case.boxes) {
+            Ok(plan) => plan.clone(),
+            // A short range before an endless one may leave no room for eight planes; that is an answer too.
+            Err(umbrage::Error::InvalidSetting { .. }) => return Ok(()),
+            Err(other) => return Err(TestCaseError::fail(other.to_string())),
+        };
+        let direction = case.light.direction();
+        for (owner, point, depth) in visible_points(&case, &plan) {
+            for split in splits_of(&plan, depth) {
+                for (index, bounds) in case.boxes.iter().enumerate() {
+                    // A box does not count as shading its own skin, nor does a touching one: what lies less than a millimetre
+                    // under the point is the point's own surface.
+                    if index == owner || !shades(bounds, point, direction) {
+                        continue;
+                    }
+                    prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} lost caster {index}, which shades {point} at {depth} m");
+                    let s = &plan.splits[split];
+                    prop_assert!(s.contains(point, case.settings.filter_radius), "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
+                    let caster_begin = direction.dot(bounds.center()) - direction.abs().dot(bounds.half_extent());
+                    prop_assert!(case.settings.depth_clamp || s.depth_near <= caster_begin, "the near plane cuts caster {index}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn lists_ranges_and_matrices_agree(case in cases()) {
+        let mut planner = Planner::new(case.settings.clone())?;
+        let Ok(plan) = planner.plan(&case.view, &case.light, &case.boxes, &case.boxes) else { return Ok(()) };
+        let plan = plan.clone();
+        prop_assert_eq!(plan.splits.len(), case.settings.splits());
+        let mut listed = vec![Vec::new(); case.boxes.len()];
+        for (i, split) in plan.splits.iter().enumerate() {
+            prop_assert!(split.near < split.far && split.texel_m.min_element() > 0.0 && split.texel_m.is_finite());
+            prop_assert!(split.depth_near < split.depth_far && split.min_texel.is_finite());
+            prop_assert!(split.u_axis.cross(split.v_axis).abs_diff_eq(split.depth_axis, 1e-9), "the axes are no right-handed frame");
+            for &caster in plan.casters(i) {
+                listed[caster as usize].push(i);
+            }
+            // The matrix says what the texels say.
+            let point = case.view.eye() + DVec3::new(3.0, -2.0, 5.0);
+            let (at, ndc) = (split.map_from_world(point), split.shadow_from_world().project_point3(point));
+            let size = f64::from(split.size);
+            prop_assert!((ndc.x - (2.0 * at.x / size - 1.0)).abs() < 1e-9 * (1.0 + ndc.x.abs()));
+            prop_assert!((ndc.y - (1.0 - 2.0 * at.y / size)).abs() < 1e-9 * (1.0 + ndc.y.abs()));
+            prop_assert!((ndc.z - at.z).abs() < 1e-9 * (1.0 + ndc.z.abs()));
+        }
+        for (caster, splits) in listed.iter().enumerate() {
+            let range = splits.first().map(|&first| (first as u8, splits[splits.len() - 1] as u8));
+            prop_assert_eq!(plan.split_range[caster], range);
+            // Unclipped sweeps of convex slices are met in a contiguous run.
+            if case.settings.fit == Fit::Independent && !splits.is_empty() {
+                prop_assert_eq!(splits[splits.len() - 1] - splits[0] + 1, splits.len(), "{:?}", splits);
+            }
+        }
+    }
+
+    #[test]
+    fn a_covered_point_has_all_its_casters(case in cases(), points in prop::collection::vec((-300.0..300.0f64, -5.0..40.0f64, -300.0..300.0f64), 50)) {
+        let mut planner = Planner::new(case.settings.clone())?;
+        let Ok(plan) = planner.plan(&case.view, &case.light, &case.boxes, &case.boxes) else { return Ok(()) };
+        let plan = plan.clone();
+        for point in points.into_iter().map(DVec3::from) {
+            let Some(split) = planner.covering_split(point) else { continue };
+            for (index, bounds) in case.boxes.iter().enumerate() {
+                if shades(bounds, point, case.light.direction()) {
+                    prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} answers for {point} without caster {index}");
+                }
+            }
+        }
+    }
+}
+
+fn robots(count: usize) -> Vec<Aabb> {
+    // A regular scatter that no test tunes: the golden ratio's sequence over the plane.
+    (0..count)
+        .map(|i| {
+            let (x, z) = ((i as f64 * 0.754_877_666_2).fract(), (i as f64 * 0.569_840_290_998).fract());
+            let at = DVec3::new(1200.0 * x - 600.0, 0.0, 1200.0 * z - 600.0);
+            Aabb::new(at + DVec3::new(-3.0, 0.0, -3.0), at + DVec3::new(3.0, 10.0, 3.0))
+        })
+        .collect()
+}
+
+#[test]
+fn lists_are_short_and_a_flat_ground_throws_no_shadow() {
+    let mut world = robots(160);
+    world.push(Aabb::new(DVec3::new(-600.0, 0.0, -600.0), DVec3::new(600.0, 0.0, 600.0)));
+    let settings = ShadowSettings {
+        map_sizes: vec![512; 4],
+        range: Some((1.0, 800.0)),
+        blend: 0.0,
+        far_fade: 0.0,
+        filter_radius: 0.5,
+        ..ShadowSettings::default()
+    };
+    let frustum = Frustum::perspective(60f64.to_radians(), 4.0 / 3.0, 1.0, 800.0).expect("valid");
+    let light = DirectionalLight::new(DVec3::new(-0.6, -1.0, 0.4)).expect("valid");
+    for stabilize in [Stabilize::None, Stabilize::Exact] {
+        let mut planner = Planner::new(ShadowSettings { stabilize, ..settings.clone() }).expect("valid");
+        for eye in [DVec3::new(0.0, 15.0, 0.0), DVec3::new(550.0, 30.0, 500.0), DVec3::new(-300.0, 3.0, 300.0)] {
+            let view = View::look_at_upright(eye, DVec3::new(0.1, 5.0, -0.2), frustum).expect("valid");
+            let plan = planner.plan(&view, &light, &world, &world).expect("valid");
+            assert!(plan.caster_indices.len() <= 200, "{} caster-split pairs from {eye}", plan.caster_indices.len());
+            assert!(!plan.caster_indices.contains(&160), "the ground is listed as a caster");
+        }
+    }
+}
+
+#[test]
+fn a_dependent_fit_is_never_larger() {
+    let mut world = robots(160);
+    world.push(Aabb::new(DVec3::new(-600.0, 0.0, -600.0), DVec3::new(600.0, 0.0, 600.0)));
+    let frustum = Frustum::perspective(1.0, 1.5, 1.0, 800.0).expect("valid");
+    let light = DirectionalLight::new(DVec3::new(-0.6, -1.0, 0.4)).expect("valid");
+    let view = View::look_at_upright(DVec3::new(100.0, 20.0, 300.0), DVec3::ZERO, frustum).expect("valid");
+    let areas = |fit| {
+        let settings = ShadowSettings { fit, stabilize: Stabilize::None, ..ShadowSettings::default() };
+        let mut planner = Planner::new(settings).expect("valid");
+        let plan = planner.plan(&view, &light, &world, &world).expect("valid");
+        plan.splits.iter().map(|s| s.texel_m.x * s.texel_m.y).collect::<Vec<_>>()
+    };
+    for (dependent, independent) in areas(Fit::Dependent).iter().zip(areas(Fit::Independent)) {
+        assert!(*dependent <= independent * (1.0 + 1e-9), "{dependent} > {independent}");
+    }
+}
+
+#[test]
+fn a_range_without_end_stops_at_the_scene() {
+    let frustum = Frustum::perspective(1.0, 1.5, 0.1, f64::INFINITY).expect("valid");
+    assert_eq!(frustum.projection, Projection::Perspective);
+    let view = View::look_at_upright(DVec3::Y, DVec3::new(0.0, 1.0, -1.0), frustum).expect("valid");
+    let light = DirectionalLight::new(DVec3::NEG_Y).expect("valid");
+    let world = [Aabb::new(DVec3::new(-5.0, 0.0, -70.0), DVec3::new(5.0, 1.0, 10.0))];
+    for stabilize in [Stabilize::None, Stabilize::Exact] {
+        let settings = ShadowSettings { stabilize, ..ShadowSettings::default() };
+        let mut planner = Planner::new(settings).expect("valid");
+        let plan = planner.plan(&view, &light, &world, &world).expect("valid");
+        assert_eq!(plan.planes.first().copied(), Some(0.1));
+        assert!((plan.planes[4] - 70.0).abs() < 1e-9, "{:?}", plan.planes);
+    }
+}
