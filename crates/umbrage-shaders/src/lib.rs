@@ -1,1 +1,44 @@
-//! umbrage-shaders.
+//! umbrage's WGSL as plain strings, and the structs that it shares with Rust.
+//!
+//! This crate knows no GPU interface: any renderer that takes WGSL can use it, given a depth texture array, a comparison
+//! sampler and a uniform buffer. `umbrage-wgpu` is that renderer's half for wgpu.
+//!
+//! * `shaders/lib` has functions without bindings, `shaders/pass` the roots with bindings. `wesl` joins them when this
+//!   crate is built; what comes out is ordinary WGSL, and every name in it begins with `umbrage`, in one case or another.
+//! * A root is text to put before one's own shader. It declares no entry point and no override, so it adds nothing to a
+//!   pipeline's constants. What varies (filter, number of splits, strength) is a value in the [`layout::Frame`] uniform:
+//!   an override would become a constant of the *app's* pipeline, to be repeated wherever it makes one, and one text per
+//!   filter would make the filter part of every pipeline's key. A branch on a uniform value costs next to nothing.
+//! * The index of the bind group is the app's choice: [`caster`] and [`receiver`] declare it as a WGSL constant.
+//!
+//! | binding of [`receiver`] | what |
+//! |---|---|
+//! | 0 | uniform [`layout::Frame`] |
+//! | 1 | `texture_depth_2d_array`, a layer for each split, cleared to 1 |
+//! | 2 | `sampler_comparison` with `LessEqual`, clamped to the edge; nearest for [`layout::FilterKind::Hard`], else linear |
+//!
+//! | binding of [`caster`] | what |
+//! |---|---|
+//! | 0 | uniform [`layout::Split`] |
+
+pub mod layout;
+pub mod twin;
+
+/// The root `shaders/pass/caster.wesl`, all but the constant `UMBRAGE_CASTER_GROUP`.
+pub const CASTER: &str = include_str!(concat!(env!("OUT_DIR"), "/caster.wgsl"));
+
+/// The root `shaders/pass/receiver.wesl`, all but the constant `UMBRAGE_RECEIVER_GROUP`.
+pub const RECEIVER: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver.wgsl"));
+
+/// Text to put before a vertex shader that draws casters: `fn umbrage_caster_position(position: vec3f) -> vec4f`.
+#[must_use]
+pub fn caster(group: u32) -> String {
+    format!("const UMBRAGE_CASTER_GROUP = {group}u;\n{CASTER}\n")
+}
+
+/// Text to put before a shader that asks what is lit: `fn umbrage_visibility(position: vec3f, normal: vec3f) -> f32`,
+/// `umbrage_shadow`, `umbrage_probe` and `umbrage_visibility_in_split`.
+#[must_use]
+pub fn receiver(group: u32) -> String {
+    format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\n{RECEIVER}\n")
+}

@@ -1,0 +1,80 @@
+//! The structs that WGSL and Rust share, member by member as `shaders/lib/layout.wesl` has them.
+
+use bytemuck::{Pod, Zeroable};
+
+/// The most splits a [`Frame`] holds.
+pub const MAX_SPLITS: usize = 8;
+
+/// How one map answers, in [`Frame::filter_kind`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum FilterKind {
+    /// One nearest texel, one comparison.
+    Hard = 0,
+    /// One linear comparison: the hardware's 2×2.
+    Pcf2 = 1,
+    /// A tent of three texels in four hardware taps.
+    Pcf3 = 2,
+    /// A tent of five texels in nine hardware taps.
+    Pcf5 = 3,
+}
+
+/// One split: where its map lies and which view depths it serves.
+///
+/// The rows take positions in metres relative to the frame's origin (with 1 as the fourth coordinate).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Split {
+    /// Place along the map's u (right) on the light's plane: `xyz` in texels per metre, `w` in texels, in `[0, 1)`.
+    pub u_row: [f32; 4],
+    /// The same along v (down).
+    pub v_row: [f32; 4],
+    /// Depth in the map: `xyz` per metre, `w` without unit; 0 nearest the light, 1 farthest.
+    pub depth_row: [f32; 4],
+    /// Added to the two places above it gives texels of the map, `[0, size]²`. Whole numbers if the map is stabilised.
+    pub texel_offset: [f32; 2],
+    /// Metres per texel along u and v.
+    pub texel_m: [f32; 2],
+    /// Edge of the map in texels; it lies in the upper left corner of its layer.
+    pub size: f32,
+    /// Where the slice ends: view depth in metres.
+    pub far: f32,
+    /// Where its blend into the next split begins: view depth in metres, `far` if there is none.
+    pub blend_begin: f32,
+    /// Metres between depth 0 and depth 1.
+    pub depth_range_m: f32,
+    /// The step in metres by which the texture's format rounds depth, 0 if it is no coarser than `f32`.
+    pub depth_step_m: f32,
+    /// 1 if nothing throws a shadow here: the map is not read and everything is lit.
+    pub is_empty: u32,
+    /// Up to the alignment of 16 bytes.
+    pub _padding: [u32; 2],
+}
+
+/// All that a receiver needs for one light and one view.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Frame {
+    /// View depth in metres of a position relative to the frame's origin.
+    pub view_depth_plane: [f32; 4],
+    /// Unit vector in the world from anywhere towards the light.
+    pub to_light: [f32; 3],
+    /// How dark a shadow is: 0 not at all, 1 black.
+    pub strength: f32,
+    /// View depth in metres at which the fade to lit begins; the last split's `far` if there is none.
+    pub fade_begin: f32,
+    /// Edge of the texture's layers in texels.
+    pub map_edge: f32,
+    /// Splits in use.
+    pub split_count: u32,
+    /// A [`FilterKind`].
+    pub filter_kind: u32,
+    /// 0: everything that faces the light is lit.
+    pub enabled: u32,
+    /// 1: answers carry their split's debug colour.
+    pub tint: u32,
+    /// Up to the alignment of 16 bytes.
+    pub _padding: [u32; 2],
+    /// The splits, nearest first; those past `split_count` are not read.
+    pub splits: [Split; MAX_SPLITS],
+}

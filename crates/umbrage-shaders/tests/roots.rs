@@ -1,0 +1,78 @@
+//! Every root is parsed and validated without a GPU, and survives export to WebGL2.
+
+use naga::back::glsl;
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+
+fn validated(source: &str) -> (naga::Module, ModuleInfo) {
+    let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
+    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
+    (module, info)
+}
+
+fn to_webgl2(source: &str, stage: naga::ShaderStage, entry_point: &str) -> String {
+    let (module, info) = validated(source);
+    let options = glsl::Options { version: glsl::Version::new_gles(300), ..glsl::Options::default() };
+    let pipeline = glsl::PipelineOptions { shader_stage: stage, entry_point: entry_point.to_owned(), multiview: None };
+    let mut text = String::new();
+    glsl::Writer::new(&mut text, &module, &info, &options, &pipeline, naga::proc::BoundsCheckPolicies::default())
+        .expect("the writer takes the module")
+        .write()
+        .expect("GLSL ES 3.00 can say it");
+    text
+}
+
+fn vertex_shader(group: u32) -> String {
+    umbrage_shaders::caster(group)
+        + "@vertex fn vertex(@location(0) position: vec3f) -> @builtin(position) vec4f {
+               return umbrage_caster_position(position);
+           }"
+}
+
+fn fragment_shader(group: u32) -> String {
+    umbrage_shaders::receiver(group)
+        + "@fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
+               let shadow = umbrage_shadow(position, vec3f(0.0, 1.0, 0.0));
+               let probe = umbrage_probe(position, vec3f(0.0, 1.0, 0.0));
+               let one = umbrage_visibility_in_split(position, vec3f(0.0, 1.0, 0.0), 1u);
+               return vec4f(shadow.tint * shadow.visibility, probe.visibility * one * f32(shadow.split));
+           }"
+}
+
+#[test]
+fn roots_are_valid_wgsl_in_any_bind_group() {
+    for group in [0, 1, 3] {
+        for source in [vertex_shader(group), fragment_shader(group)] {
+            let (module, _) = validated(&source);
+            let groups: Vec<u32> =
+                module.global_variables.iter().filter_map(|(_, v)| v.binding.map(|b| b.group)).collect();
+            assert!(!groups.is_empty() && groups.iter().all(|&g| g == group), "bindings lie in {groups:?}");
+        }
+    }
+}
+
+#[test]
+fn roots_export_to_webgl2() {
+    assert!(to_webgl2(&vertex_shader(0), naga::ShaderStage::Vertex, "vertex").contains("void main"));
+    let text = to_webgl2(&fragment_shader(1), naga::ShaderStage::Fragment, "fragment");
+    assert!(text.contains("sampler2DArrayShadow"), "depth maps become shadow samplers");
+}
+
+#[test]
+fn every_name_is_in_our_namespace() {
+    for source in [umbrage_shaders::caster(0), umbrage_shaders::receiver(0)] {
+        let module = naga::front::wgsl::parse_str(&source).expect("a valid root");
+        let names = (module.functions.iter().filter_map(|(_, f)| f.name.clone()))
+            .chain(module.global_variables.iter().filter_map(|(_, v)| v.name.clone()))
+            .chain(module.constants.iter().filter_map(|(_, c)| c.name.clone()))
+            .chain(module.types.iter().filter_map(|(_, t)| t.name.clone()));
+        let mut count = 0;
+        for name in names {
+            assert!(name.to_lowercase().starts_with("umbrage"), "{name} could clash with a name of the app");
+            count += 1;
+        }
+        assert!(count > 3, "only {count} names were looked at");
+        assert!(module.overrides.is_empty() && module.entry_points.is_empty(), "a root adds nothing to a pipeline");
+    }
+}
