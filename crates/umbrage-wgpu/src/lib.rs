@@ -1,1 +1,47 @@
-//! umbrage-wgpu.
+//! Parallel-split shadow maps for any wgpu application.
+//!
+//! [`ShadowMaps`] owns the depth maps, their uniforms and bind groups. It creates no device, owns no window and knows no
+//! mesh: the app draws its own casters, with its own pipelines and vertex formats, and calls one WGSL function where it shades.
+//!
+//! # Adopting it, in five steps
+//!
+//! 1. Request the device with `adapter.features() & umbrage_wgpu::optional_features()`, then make the maps once:
+//!    `ShadowMaps::new(&device, &ShadowMapsOptions::default())`. Tell the planner about them: `map_sizes` as here,
+//!    `filter_radius: filter.radius_texels()`, `depth_clamp: maps.depth_clamp()`.
+//! 2. **Cast.** Put [`caster_wgsl`] before your vertex shader and return `umbrage_caster_position(position)` from it. The
+//!    pipeline has [`ShadowMaps::caster_layout`] in that group, [`ShadowMaps::caster_depth_stencil`],
+//!    [`ShadowMaps::caster_primitive`] and no colour target (a fragment shader only if it discards).
+//! 3. **Receive.** Put [`receiver_wgsl`] before your shading and multiply the sun's light by
+//!    `umbrage_visibility(position, normal)`. The pipeline has [`ShadowMaps::receiver_layout`] in that group.
+//! 4. **Each frame:** `planner.plan(…)`, [`ShadowMaps::prepare`], and for every split with casters a pass from
+//!    [`ShadowMaps::begin_split`], in which you bind [`ShadowMaps::caster_bind_group`] and draw `plan.casters(split)`.
+//! 5. Draw your picture with [`ShadowMaps::receiver_bind_group`] bound.
+//!
+//! Positions in both shaders are metres relative to [`FrameOptions::origin`]. The normal is that of the surface itself, not an
+//! interpolated or mapped one, turned towards the eye: the bias comes from it. In a fragment shader
+//! `normalize(cross(dpdy(position), dpdx(position)))` will do where there is none in the vertices.
+//! `examples/empty_app.rs` has all of it in 150 lines.
+//!
+//! # What the WGSL offers
+//!
+//! | function | answer |
+//! |---|---|
+//! | `umbrage_caster_position(position: vec3f) -> vec4f` | clip position in the split that is drawn |
+//! | `umbrage_visibility(position: vec3f, normal: vec3f) -> f32` | 1 lit, 0 in shadow or turned away |
+//! | `umbrage_shadow(position, normal) -> UmbrageShadow` | the same with `split: i32` (−1: none) and `tint: vec3f` |
+//! | `umbrage_probe(position, normal) -> UmbrageShadow` | the same for points that need not be in the shadowed range |
+//! | `umbrage_visibility_in_split(position, normal, split: u32) -> f32` | what one map alone says |
+//!
+//! They need no derivatives and work in any control flow and in every stage. The two texts belong into two shader modules:
+//! both declare what they share.
+
+mod error;
+mod maps;
+mod options;
+mod uniforms;
+mod wgsl;
+
+pub use error::{Error, Result};
+pub use maps::{ShadowMaps, optional_features};
+pub use options::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions};
+pub use wgsl::{caster_wgsl, receiver_wgsl};

@@ -1,0 +1,97 @@
+//! Why maps could not be made or prepared.
+
+/// [`std::result::Result`] with this crate's [`Error`].
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Every message names the field, what was wrong and what to do.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// `map_sizes` is empty or too long.
+    #[error("map_sizes has {count} entries; give one for each split, 1 to {most}")]
+    SplitCount {
+        /// How many there were.
+        count: usize,
+        /// How many there may be.
+        most: usize,
+    },
+    /// A map has no texels, or fewer than its filter reads.
+    #[error("map_sizes[{split}] is {size}; the filter {filter:?} needs maps of at least {least} texels")]
+    MapTooSmall {
+        /// Index into `map_sizes`.
+        split: usize,
+        /// The edge that was asked for, in texels.
+        size: u32,
+        /// The filter that would read it.
+        filter: crate::Filter,
+        /// The smallest edge it can work with, in texels.
+        least: u32,
+    },
+    /// The device has no texture as large as a map.
+    #[error(
+        "map_sizes[{split}] is {size}, but this device's textures are at most {limit} texels wide \
+         (max_texture_dimension_2d); use a smaller map, or request the device with a higher limit"
+    )]
+    MapTooLarge {
+        /// Index into `map_sizes`.
+        split: usize,
+        /// The edge that was asked for, in texels.
+        size: u32,
+        /// The device's limit, in texels.
+        limit: u32,
+    },
+    /// The device has no texture array as long as the list of maps.
+    #[error(
+        "map_sizes has {count} entries, but this device's texture arrays have at most {limit} layers \
+         (max_texture_array_layers); use fewer splits"
+    )]
+    TooManyLayers {
+        /// Layers needed.
+        count: u32,
+        /// The device's limit.
+        limit: u32,
+    },
+    /// The plan was made for other maps.
+    #[error(
+        "the plan has maps of {plan:?} texels, but these ShadowMaps were created with {maps:?}; \
+         create the Planner and the ShadowMaps with the same map_sizes"
+    )]
+    PlanMismatch {
+        /// The plan's sizes, nearest split first.
+        plan: Vec<u32>,
+        /// The sizes given at creation.
+        maps: Vec<u32>,
+    },
+    /// A number of the plan cannot be used.
+    #[error("split {split} of the plan: {field} is {value}, but it has to be {expected}")]
+    InvalidSplit {
+        /// Index of the split.
+        split: usize,
+        /// Field of [`umbrage::Split`].
+        field: &'static str,
+        /// What it was.
+        value: f64,
+        /// What it may be.
+        expected: &'static str,
+    },
+    /// A number of the plan that belongs to no split cannot be used.
+    #[error("the plan's {field} is {value}, but it has to be {expected}")]
+    InvalidPlan {
+        /// Field of [`umbrage::ShadowPlan`].
+        field: &'static str,
+        /// What it was.
+        value: f64,
+        /// What it may be.
+        expected: &'static str,
+    },
+    /// A frame option is out of range.
+    #[error("frame option {field} is {value}, but it has to be {expected}")]
+    InvalidFrameOption {
+        /// Field of [`crate::FrameOptions`].
+        field: &'static str,
+        /// What it was.
+        value: f64,
+        /// What it may be.
+        expected: &'static str,
+    },
+}

@@ -1,0 +1,345 @@
+//! The maps: one depth texture array, one pass per split, two kinds of bind group.
+
+use umbrage::{MAX_SPLITS, ShadowPlan};
+use umbrage_shaders::layout;
+
+use crate::{Error, FrameOptions, Result, ShadowMapsOptions, uniforms};
+
+/// Features that make shadows better where an adapter has them: request `adapter.features() & optional_features()`.
+///
+/// `DEPTH_CLIP_CONTROL` lets the near plane lie at the receivers ([`ShadowMaps::depth_clamp`]).
+#[must_use]
+pub fn optional_features() -> wgpu::Features {
+    wgpu::Features::DEPTH_CLIP_CONTROL
+}
+
+/// The shadow maps of one light for one view, on the GPU.
+///
+/// Each split is a layer of one depth texture array whose edge is that of the largest map; a smaller map lies in the upper
+/// left corner of its layer. Each frame: [`ShadowMaps::prepare`], one pass per split from [`ShadowMaps::begin_split`], then any
+/// pass of the app with [`ShadowMaps::receiver_bind_group`].
+#[derive(Debug)]
+pub struct ShadowMaps {
+    options: ShadowMapsOptions,
+    edge: u32,
+    depth_clamp: bool,
+    texture: wgpu::Texture,
+    layers: Vec<wgpu::TextureView>,
+    frame_buffer: wgpu::Buffer,
+    caster_buffer: wgpu::Buffer,
+    caster_stride: u64,
+    caster_layout: wgpu::BindGroupLayout,
+    caster_bind_groups: Vec<wgpu::BindGroup>,
+    receiver_layout: wgpu::BindGroupLayout,
+    receiver_bind_group: wgpu::BindGroup,
+}
+
+impl ShadowMaps {
+    /// Makes the texture, buffers and bind groups. Before the first [`ShadowMaps::prepare`] every
+    /// answer is 0.
+    ///
+    /// # Errors
+    /// [`Error::SplitCount`], [`Error::MapTooSmall`], [`Error::MapTooLarge`], [`Error::TooManyLayers`].
+    pub fn new(device: &wgpu::Device, options: &ShadowMapsOptions) -> Result<Self> {
+        let edge = checked_edge(options, &device.limits())?;
+        let layer_count = layer_count(options.map_sizes.len() as u32, device.adapter_info().backend);
+        let limit = device.limits().max_texture_array_layers;
+        if layer_count > limit {
+            return Err(Error::TooManyLayers { count: layer_count, limit });
+        }
+
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("ShadowMaps::depth"),
+            size: wgpu::Extent3d { width: edge, height: edge, depth_or_array_layers: layer_count },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: options.depth_format.texture_format(),
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let layers = (0..options.map_sizes.len() as u32)
+            .map(|layer| {
+                texture.create_view(&wgpu::TextureViewDescriptor {
+                    label: Some("ShadowMaps::layer"),
+                    dimension: Some(wgpu::TextureViewDimension::D2),
+                    base_array_layer: layer,
+                    array_layer_count: Some(1),
+                    ..Default::default()
+                })
+            })
+            .collect();
+
+        let uniform = |label, size| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let split_bytes = size_of::<layout::Split>() as u64;
+        let caster_stride =
+            split_bytes.next_multiple_of(u64::from(device.limits().min_uniform_buffer_offset_alignment));
+        let frame_buffer = uniform("ShadowMaps::frame", size_of::<layout::Frame>() as u64);
+        let caster_buffer = uniform("ShadowMaps::casters", caster_stride * options.map_sizes.len() as u64);
+
+        let caster_layout = caster_layout(device);
+        let caster_bind_groups = (0..options.map_sizes.len() as u64)
+            .map(|split| {
+                device.create_bind_group(&wgpu::BindGroupDescriptor {
+                    label: Some("ShadowMaps::caster"),
+                    layout: &caster_layout,
+                    entries: &[wgpu::BindGroupEntry {
+                        binding: 0,
+                        resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                            buffer: &caster_buffer,
+                            offset: split * caster_stride,
+                            size: wgpu::BufferSize::new(split_bytes),
+                        }),
+                    }],
+                })
+            })
+            .collect();
+
+        let receiver_layout = receiver_layout(device);
+        let receiver_bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("ShadowMaps::receiver"),
+            layout: &receiver_layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: frame_buffer.as_entire_binding() },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::TextureView(&texture.create_view(&wgpu::TextureViewDescriptor {
+                        label: Some("ShadowMaps::maps"),
+                        dimension: Some(wgpu::TextureViewDimension::D2Array),
+                        ..Default::default()
+                    })),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 2,
+                    resource: wgpu::BindingResource::Sampler(&sampler(device, options)),
+                },
+            ],
+        });
+
+        Ok(Self {
+            options: options.clone(),
+            edge,
+            depth_clamp: device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL),
+            texture,
+            layers,
+            frame_buffer,
+            caster_buffer,
+            caster_stride,
+            caster_layout,
+            caster_bind_groups,
+            receiver_layout,
+            receiver_bind_group,
+        })
+    }
+
+    /// Hands a frame's plan to the GPU. Takes effect with the next submission to `queue`.
+    ///
+    /// # Errors
+    /// [`Error::PlanMismatch`] if the plan was made for other maps, [`Error::InvalidPlan`] or [`Error::InvalidSplit`] if it
+    /// holds a number that cannot be used, [`Error::InvalidFrameOption`]. Nothing has been written then.
+    pub fn prepare(&mut self, queue: &wgpu::Queue, plan: &ShadowPlan, options: &FrameOptions) -> Result<()> {
+        let frame = uniforms::frame(plan, &self.options, self.edge, options)?;
+        queue.write_buffer(&self.frame_buffer, 0, bytemuck::bytes_of(&frame));
+        for (split, offset) in frame.splits[..self.splits()].iter().zip((0..).step_by(self.caster_stride as usize)) {
+            queue.write_buffer(&self.caster_buffer, offset, bytemuck::bytes_of(split));
+        }
+        Ok(())
+    }
+
+    /// Begins the pass that draws split `split`: its map is cleared, viewport and scissor are set. Bind
+    /// [`ShadowMaps::caster_bind_group`] of the same split and draw its casters in any order. A split without casters needs
+    /// no pass; its map is not read.
+    ///
+    /// # Panics
+    /// If `split` is not less than [`ShadowMaps::splits`].
+    pub fn begin_split<'e>(
+        &self,
+        encoder: &'e mut wgpu::CommandEncoder,
+        split: usize,
+        timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) -> wgpu::RenderPass<'e> {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("ShadowMaps::split"),
+            color_attachments: &[],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.layers[split],
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            timestamp_writes,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        let size = self.options.map_sizes[split];
+        pass.set_viewport(0.0, 0.0, size as f32, size as f32, 0.0, 1.0);
+        pass.set_scissor_rect(0, 0, size, size);
+        pass
+    }
+
+    /// The number of splits.
+    #[must_use]
+    pub fn splits(&self) -> usize {
+        self.options.map_sizes.len()
+    }
+
+    /// What the maps were made with.
+    #[must_use]
+    pub fn options(&self) -> &ShadowMapsOptions {
+        &self.options
+    }
+
+    /// Bytes of the depth texture.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let size = self.texture.size();
+        u64::from(size.width)
+            * u64::from(size.height)
+            * u64::from(size.depth_or_array_layers)
+            * self.options.depth_format.texel_bytes()
+    }
+
+    /// Whether depth is not clipped: what `umbrage::ShadowSettings::depth_clamp` wants. True if the device was requested with
+    /// `DEPTH_CLIP_CONTROL` (see [`optional_features`]).
+    #[must_use]
+    pub fn depth_clamp(&self) -> bool {
+        self.depth_clamp
+    }
+
+    /// The maps themselves: split `i` is the upper left `map_sizes[i]` texels of layer `i`. Can be copied from.
+    #[must_use]
+    pub fn depth_texture(&self) -> &wgpu::Texture {
+        &self.texture
+    }
+
+    /// Layout of the group that [`crate::caster_wgsl`] declares.
+    #[must_use]
+    pub fn caster_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.caster_layout
+    }
+
+    /// The group to bind while drawing the casters of split `split`.
+    ///
+    /// # Panics
+    /// If `split` is not less than [`ShadowMaps::splits`].
+    #[must_use]
+    pub fn caster_bind_group(&self, split: usize) -> &wgpu::BindGroup {
+        &self.caster_bind_groups[split]
+    }
+
+    /// Depth state for a pipeline that draws casters. It has no slope bias: receivers know their own slope.
+    #[must_use]
+    pub fn caster_depth_stencil(&self) -> wgpu::DepthStencilState {
+        wgpu::DepthStencilState {
+            format: self.options.depth_format.texture_format(),
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::LessEqual),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }
+    }
+
+    /// Primitive state for a pipeline that draws casters: triangle lists, both faces (single-sided walls cast, too).
+    #[must_use]
+    pub fn caster_primitive(&self) -> wgpu::PrimitiveState {
+        wgpu::PrimitiveState { cull_mode: None, unclipped_depth: self.depth_clamp, ..Default::default() }
+    }
+
+    /// Layout of the group that [`crate::receiver_wgsl`] declares, visible to vertex, fragment and compute shaders.
+    #[must_use]
+    pub fn receiver_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.receiver_layout
+    }
+
+    /// The group to bind where visibility is asked for.
+    #[must_use]
+    pub fn receiver_bind_group(&self) -> &wgpu::BindGroup {
+        &self.receiver_bind_group
+    }
+}
+
+/// The edge of a layer, once every size is known to fit the filter and the device.
+fn checked_edge(options: &ShadowMapsOptions, limits: &wgpu::Limits) -> Result<u32> {
+    let sizes = &options.map_sizes;
+    let least = options.filter.least_size();
+    let limit = limits.max_texture_dimension_2d;
+    for (split, &size) in sizes.iter().enumerate() {
+        if size < least {
+            return Err(Error::MapTooSmall { split, size, filter: options.filter, least });
+        }
+        if size > limit {
+            return Err(Error::MapTooLarge { split, size, limit });
+        }
+    }
+    match sizes.iter().max() {
+        Some(&edge) if sizes.len() <= MAX_SPLITS => Ok(edge),
+        _ => Err(Error::SplitCount { count: sizes.len(), most: MAX_SPLITS }),
+    }
+}
+
+/// wgpu guesses a GL texture's kind from its number of square layers: one is no array, and a multiple of six is a cube. A spare
+/// layer makes it an array.
+fn layer_count(splits: u32, backend: wgpu::Backend) -> u32 {
+    if backend == wgpu::Backend::Gl && (splits == 1 || splits.is_multiple_of(6)) { splits + 1 } else { splits }
+}
+
+fn sampler(device: &wgpu::Device, options: &ShadowMapsOptions) -> wgpu::Sampler {
+    device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("ShadowMaps::compare"),
+        address_mode_u: wgpu::AddressMode::ClampToEdge,
+        address_mode_v: wgpu::AddressMode::ClampToEdge,
+        mag_filter: options.filter.sampler_mode(),
+        min_filter: options.filter.sampler_mode(),
+        compare: Some(wgpu::CompareFunction::LessEqual),
+        ..Default::default()
+    })
+}
+
+fn caster_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("ShadowMaps::caster"),
+        entries: &[uniform_entry::<layout::Split>(wgpu::ShaderStages::VERTEX)],
+    })
+}
+
+fn receiver_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("ShadowMaps::receiver"),
+        entries: &[
+            uniform_entry::<layout::Frame>(visibility),
+            entry(
+                1,
+                wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Depth,
+                    view_dimension: wgpu::TextureViewDimension::D2Array,
+                    multisampled: false,
+                },
+            ),
+            entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
+        ],
+    })
+}
+
+/// A uniform of type `T` at binding 0.
+fn uniform_entry<T>(visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding: 0,
+        visibility,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: wgpu::BufferSize::new(size_of::<T>() as u64),
+        },
+        count: None,
+    }
+}
