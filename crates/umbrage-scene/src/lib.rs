@@ -1,5 +1,21 @@
-//! Scenes for umbrage: what a renderer draws and a ray meets.
+//! Scenes for umbrage: what a renderer draws and a ray meets, wherever it comes from.
+//!
+//! Right-handed, +Y up, metres; conventions and names of spaces are those of the crate `umbrage`.
+//!
+//! * [`open`] takes whatever a user names: a world, a glTF file, a height map.
+//! * [`Scene`] is geometry stored once and nodes that place it; [`Scene::pose`] is a scene at one moment.
+//! * [`camera_view`], [`light_direction`] and their invented counterparts say from where and by which sun it is seen.
+//! * [`CameraPath`] walks through it, [`export_glb`] writes it down.
 
+mod error;
+mod gltf;
 mod model;
+pub mod procedural;
+mod pose;
+mod sample;
+mod validate;
 
+pub use error::{Error, Result};
+pub use gltf::{load_gltf, load_gltf_slice};
 pub use model::*;
+pub use pose::Poser;

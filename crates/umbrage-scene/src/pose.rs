@@ -1,0 +1,238 @@
+//! A scene at one moment: animation, hierarchy, skinning, bounds.
+
+use glam::{DAffine3, DMat3, DMat4, DVec3};
+use umbrage::Aabb;
+
+use crate::{AlphaMode, Error, Mesh, Object, Pose, Result, Scene, SkinnedMesh, Trs};
+
+/// Poses one scene again and again. What stands still is worked out once.
+#[derive(Debug)]
+pub struct Poser<'s> {
+    scene: &'s Scene,
+    /// Box of each mesh in its own space; empty for meshes without triangles.
+    local_bounds: Vec<Aabb>,
+    /// Whether some primitive of each mesh throws shadows.
+    mesh_casts: Vec<bool>,
+    /// Which clips play: no earlier one that plays moves a node of theirs.
+    plays: Vec<bool>,
+    /// Transform and bounds of each object that is not skinned, from the last pose; in the order of objects.
+    known_bounds: Vec<(DAffine3, Aabb)>,
+}
+
+impl Scene {
+    /// The scene `time_s` seconds after its clips began. To pose a scene many times use a [`Poser`].
+    ///
+    /// # Errors
+    /// [`Error::InvalidScene`] as [`Scene::validate`], [`Error::Pose`] as [`Poser::pose`].
+    pub fn pose(&self, time_s: f64) -> Result<Pose> {
+        Poser::new(self)?.pose(time_s)
+    }
+
+    /// Triangles that are stored.
+    #[must_use]
+    pub fn stored_triangles(&self) -> usize {
+        self.meshes.iter().map(Mesh::triangles).sum()
+    }
+
+    /// Triangles that are drawn: each placed mesh counts.
+    #[must_use]
+    pub fn placed_triangles(&self) -> usize {
+        let placed = |node: &crate::Node| {
+            let copies = if node.skin.is_some() { 1 } else { node.instances.len().max(1) };
+            node.mesh.and_then(|mesh| self.meshes.get(mesh)).map_or(0, |mesh| mesh.triangles() * copies)
+        };
+        self.nodes.iter().map(placed).sum()
+    }
+}
+
+impl Mesh {
+    /// Triangles of all primitives.
+    #[must_use]
+    pub fn triangles(&self) -> usize {
+        self.primitives.iter().map(|primitive| primitive.indices.len() / 3).sum()
+    }
+}
+
+impl<'s> Poser<'s> {
+    /// Checks the scene and prepares for posing it.
+    ///
+    /// # Errors
+    /// [`Error::InvalidScene`] as [`Scene::validate`].
+    pub fn new(scene: &'s Scene) -> Result<Self> {
+        scene.validate()?;
+        let local_bounds = scene.meshes.iter().map(|mesh| vertex_bounds(mesh, &DAffine3::IDENTITY)).collect();
+        let casts = |mesh: &Mesh| {
+            mesh.primitives
+                .iter()
+                .any(|p| scene.materials[p.material].alpha != AlphaMode::Blend && !p.indices.is_empty())
+        };
+        let mesh_casts = scene.meshes.iter().map(casts).collect();
+        let mut is_moved = vec![false; scene.nodes.len()];
+        let mut plays = Vec::with_capacity(scene.animations.len());
+        for clip in &scene.animations {
+            let is_free = clip.channels.iter().all(|channel| !is_moved[channel.node]);
+            if is_free {
+                clip.channels.iter().for_each(|channel| is_moved[channel.node] = true);
+            }
+            plays.push(is_free);
+        }
+        Ok(Self { scene, local_bounds, mesh_casts, plays, known_bounds: Vec::new() })
+    }
+
+    /// The scene `time_s` seconds after its clips began; each clip that plays is looped on its own.
+    ///
+    /// # Errors
+    /// [`Error::Pose`] if the time is not finite, or naming the node whose transform or mesh is not.
+    pub fn pose(&mut self, time_s: f64) -> Result<Pose> {
+        if !time_s.is_finite() {
+            return Err(self.error("time", format!("{time_s} s is not a finite number of seconds")));
+        }
+        let world_from_node = self.world_from_nodes(time_s)?;
+        let scene = self.scene;
+        let mut pose = Pose { world_from_node, ..Pose::default() };
+        let mut known = std::mem::take(&mut self.known_bounds).into_iter();
+        for (index, node) in scene.nodes.iter().enumerate() {
+            let Some(mesh) = node.mesh.filter(|&mesh| !self.local_bounds[mesh].is_empty()) else { continue };
+            let casts = node.cast_shadow && self.mesh_casts[mesh];
+            if let Some(skin) = node.skin {
+                let (skinned, bounds) = self.skin(&pose, mesh, skin, index)?;
+                pose.objects.push(Object {
+                    node: index,
+                    instance: None,
+                    mesh,
+                    world_from_local: DAffine3::from_translation(skinned.origin),
+                    skinned: Some(pose.skinned.len()),
+                    bounds,
+                    casts,
+                });
+                pose.skinned.push(skinned);
+                continue;
+            }
+            let world_from_node = pose.world_from_node[index];
+            let single = [Trs::IDENTITY];
+            let copies: &[Trs] = if node.instances.is_empty() { &single } else { &node.instances };
+            for (copy, node_from_local) in copies.iter().enumerate() {
+                let instance = (!node.instances.is_empty()).then_some(copy as u32);
+                let world_from_local = match instance {
+                    Some(_) => world_from_node * node_from_local.to_affine(),
+                    None => world_from_node,
+                };
+                let bounds = match known.next() {
+                    Some((transform, bounds)) if transform == world_from_local => bounds,
+                    _ => world_bounds(&scene.meshes[mesh], self.local_bounds[mesh], &world_from_local),
+                };
+                if !bounds.is_valid() {
+                    let reason = format!("its mesh has no finite bounds in the world (instance {instance:?})");
+                    return Err(self.error(scene.node_element(index), reason));
+                }
+                self.known_bounds.push((world_from_local, bounds));
+                pose.objects.push(Object {
+                    node: index,
+                    instance,
+                    mesh,
+                    world_from_local,
+                    skinned: None,
+                    bounds,
+                    casts,
+                });
+            }
+        }
+        pose.bounds = pose.objects.iter().map(|object| object.bounds).reduce(Aabb::union);
+        Ok(pose)
+    }
+
+    fn error(&self, element: impl Into<String>, reason: impl Into<String>) -> Error {
+        Error::Pose { scene: self.scene.name.clone(), element: element.into(), reason: reason.into() }
+    }
+
+    fn world_from_nodes(&self, time_s: f64) -> Result<Vec<DAffine3>> {
+        let scene = self.scene;
+        let mut local: Vec<Trs> = scene.nodes.iter().map(|node| node.local).collect();
+        for (clip, _) in scene.animations.iter().zip(&self.plays).filter(|(_, plays)| **plays) {
+            let time = if clip.duration > 0.0 { time_s.rem_euclid(clip.duration) } else { 0.0 };
+            clip.channels.iter().for_each(|channel| channel.apply(time, &mut local[channel.node]));
+        }
+        let mut world_from_node: Vec<DAffine3> = Vec::with_capacity(local.len());
+        for (index, (node, local)) in scene.nodes.iter().zip(&local).enumerate() {
+            let parent_from_node = local.to_affine();
+            let world = match node.parent {
+                Some(parent) => world_from_node[parent] * parent_from_node,
+                None => parent_from_node,
+            };
+            if !world.is_finite() {
+                let reason = format!("its transform is not finite at {time_s} s: {local:?}");
+                return Err(self.error(scene.node_element(index), reason));
+            }
+            world_from_node.push(world);
+        }
+        Ok(world_from_node)
+    }
+
+    /// Linear blend skinning in `f64`. Source: glTF 2.0 specification, section 3.7.3.3: the node's own transform counts
+    /// for nothing, each joint takes the vertex from mesh space through its bind pose into the world.
+    fn skin(&self, pose: &Pose, mesh: usize, skin: usize, node: usize) -> Result<(SkinnedMesh, Aabb)> {
+        let (mesh, skin) = (&self.scene.meshes[mesh], &self.scene.skins[skin]);
+        let world_from_mesh: Vec<DMat4> = skin
+            .joints
+            .iter()
+            .zip(&skin.inverse_bind)
+            .map(|(&joint, joint_from_mesh)| DMat4::from(pose.world_from_node[joint]) * joint_from_mesh.as_dmat4())
+            .collect();
+        let mut bounds = Aabb::EMPTY;
+        let mut posed: Vec<Vec<DVec3>> = Vec::with_capacity(mesh.primitives.len());
+        let mut normals = Vec::with_capacity(mesh.primitives.len());
+        for primitive in &mesh.primitives {
+            let mut posed_here = Vec::with_capacity(primitive.positions.len());
+            let mut normals_here = Vec::with_capacity(primitive.positions.len());
+            for (vertex, position) in primitive.positions.iter().enumerate() {
+                let (joints, weights) = (primitive.joints[vertex], primitive.weights[vertex]);
+                let blended = joints
+                    .into_iter()
+                    .zip(weights)
+                    .filter(|(_, weight)| *weight != 0.0)
+                    .map(|(joint, weight)| world_from_mesh[usize::from(joint)] * f64::from(weight))
+                    .fold(DMat4::ZERO, |sum, matrix| sum + matrix);
+                let blended = DAffine3::from_mat4(blended);
+                let point = blended.transform_point3(DVec3::from(position.map(f64::from)));
+                bounds = bounds.including(point);
+                posed_here.push(point);
+                normals_here.push(posed_normal(&blended.matrix3, primitive.normals[vertex]));
+            }
+            posed.push(posed_here);
+            normals.push(normals_here);
+        }
+        let is_finite = posed.iter().flatten().all(|p| p.is_finite());
+        if !(is_finite && bounds.is_valid()) {
+            return Err(self.error(self.scene.node_element(node), "its skinned vertices are not finite"));
+        }
+        let origin = bounds.center();
+        let relative = |points: Vec<DVec3>| points.iter().map(|p| (*p - origin).as_vec3().to_array()).collect();
+        Ok((SkinnedMesh { origin, positions: posed.into_iter().map(relative).collect(), normals }, bounds))
+    }
+}
+
+/// A normal under a linear map: by its cofactor matrix, which is the inverse transpose up to scale and exists for flat
+/// maps too. The normal stays as it was where the map leaves nothing of it.
+fn posed_normal(linear: &DMat3, normal: [f32; 3]) -> [f32; 3] {
+    let m = linear;
+    let cofactor = DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
+    let outside = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
+    let turned = cofactor * (outside * DVec3::from(normal.map(f64::from)));
+    turned.try_normalize().map_or(normal, |n| n.as_vec3().to_array())
+}
+
+/// The box of all vertices under a transform, exactly.
+fn vertex_bounds(mesh: &Mesh, world_from_local: &DAffine3) -> Aabb {
+    let drawn = mesh.primitives.iter().filter(|primitive| !primitive.indices.is_empty());
+    let positions = drawn.flat_map(|primitive| &primitive.positions);
+    Aabb::from_points(positions.map(|p| world_from_local.transform_point3(DVec3::from(p.map(f64::from)))))
+}
+
+/// The same, by way of the local box where that gives the same answer: when no axis turns into another.
+fn world_bounds(mesh: &Mesh, local: Aabb, world_from_local: &DAffine3) -> Aabb {
+    let m = world_from_local.matrix3;
+    if DMat3::from_diagonal(DVec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z)) == m {
+        return local.transformed(world_from_local);
+    }
+    vertex_bounds(mesh, world_from_local)
+}
