@@ -1,1 +1,28 @@
-//! umbrage-render.
+//! umbrage's demonstration renderer: what an application around `umbrage-wgpu` looks like, and what the command and the
+//! viewer draw with. Forward shading, one sun, no window.
+//!
+//! [`Gpu`] opens a device, [`Renderer`] uploads a [`umbrage_scene::Scene`] once and then draws [`Frame`]s of it: pictures,
+//! visibility masks, depth maps and answers at given points, with [`FrameStats`] beside them.
+
+mod capture;
+mod casters;
+mod cull;
+mod draw_list;
+mod error;
+mod forward;
+mod geometry;
+mod gpu;
+mod maps;
+mod materials;
+mod mipmaps;
+mod probe;
+mod renderer;
+mod stats;
+mod timing;
+
+pub use error::{Error, Result};
+pub use gpu::{Gpu, GpuOptions};
+pub use probe::{ProbeAnswer, ProbePoint};
+pub use renderer::{Frame, Outputs, RenderSettings, Rendered, Renderer};
+pub use stats::{FrameStats, SplitStats};
+pub use timing::PassCounts;

@@ -1,0 +1,242 @@
+//! Which objects a pass draws, where they stand relative to the origin, and the calls that draw them.
+
+use std::ops::Range;
+
+use glam::{DAffine3, DVec3};
+use umbrage_scene::{Object, Pose};
+
+use crate::geometry::{Geometry, GpuPrimitive};
+use crate::materials::{GpuMaterial, Materials};
+use crate::{Gpu, Result};
+
+/// Rows of the transform from a mesh to the frame's origin, `Instance` in `scene.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct Instance {
+    rows: [[f32; 4]; 3],
+}
+
+impl Instance {
+    /// The subtraction happens in `f64`; what is left is small near the eye and fits `f32`.
+    fn new(world_from_local: &DAffine3, origin: DVec3) -> Self {
+        let m = world_from_local.matrix3;
+        let t = world_from_local.translation - origin;
+        let row = |i: usize| [m.x_axis[i] as f32, m.y_axis[i] as f32, m.z_axis[i] as f32, t[i] as f32];
+        Self { rows: [row(0), row(1), row(2)] }
+    }
+}
+
+/// Where a run's vertices come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Source {
+    /// A mesh of the scene.
+    Mesh(usize),
+    /// An entry of [`Pose::skinned`].
+    Skinned(usize),
+}
+
+/// Objects that share a source and an orientation: drawn together, once per primitive.
+#[derive(Clone, Debug)]
+pub(crate) struct Run {
+    pub source: Source,
+    /// The transform mirrors: front faces are clockwise.
+    pub mirrored: bool,
+    pub instances: Range<u32>,
+}
+
+/// The instances of all passes of a frame, and the buffer they are uploaded into.
+pub(crate) struct Instances {
+    data: Vec<Instance>,
+    buffer: wgpu::Buffer,
+}
+
+impl Instances {
+    pub const STRIDE: u64 = size_of::<Instance>() as u64;
+
+    pub fn new(gpu: &Gpu) -> Self {
+        Self { data: Vec::new(), buffer: instance_buffer(gpu, 64) }
+    }
+
+    /// Forgets the last frame.
+    pub fn clear(&mut self) {
+        self.data.clear();
+    }
+
+    /// A list of objects in whatever order serves drawing best.
+    pub fn grouped(&mut self, pose: &Pose, origin: DVec3, objects: impl Iterator<Item = usize>) -> Vec<Run> {
+        let mut keyed: Vec<_> = objects.map(|index| (run_key(&pose.objects[index]), index)).collect();
+        keyed.sort_unstable();
+        self.list(pose, origin, keyed)
+    }
+
+    /// A list of objects that are drawn one after the other in the order given.
+    pub fn ordered(&mut self, pose: &Pose, origin: DVec3, objects: impl Iterator<Item = usize>) -> Vec<Run> {
+        self.list(pose, origin, objects.map(|index| (run_key(&pose.objects[index]), index)))
+    }
+
+    fn list(
+        &mut self,
+        pose: &Pose,
+        origin: DVec3,
+        objects: impl IntoIterator<Item = ((Source, bool), usize)>,
+    ) -> Vec<Run> {
+        let mut runs: Vec<Run> = Vec::new();
+        for ((source, mirrored), index) in objects {
+            let at = self.data.len() as u32;
+            self.data.push(Instance::new(&pose.objects[index].world_from_local, origin));
+            match runs.last_mut() {
+                Some(run) if run.source == source && run.mirrored == mirrored => run.instances.end += 1,
+                _ => runs.push(Run { source, mirrored, instances: at..at + 1 }),
+            }
+        }
+        runs
+    }
+
+    /// Sends all lists of this frame to the GPU.
+    pub fn upload(&mut self, gpu: &Gpu) -> Result<()> {
+        let needed = self.data.len() as u64 * Self::STRIDE;
+        if needed > self.buffer.size() {
+            gpu.check_buffer("the objects", needed)?;
+            self.buffer = instance_buffer(gpu, self.data.len().next_power_of_two() as u64);
+        }
+        gpu.queue.write_buffer(&self.buffer, 0, bytemuck::cast_slice(&self.data));
+        Ok(())
+    }
+}
+
+fn instance_buffer(gpu: &Gpu, count: u64) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("Instances::buffer"),
+        size: (count * Instances::STRIDE).min(gpu.device.limits().max_buffer_size),
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+fn run_key(object: &Object) -> (Source, bool) {
+    let source = object.skinned.map_or(Source::Mesh(object.mesh), Source::Skinned);
+    (source, object.world_from_local.matrix3.determinant() < 0.0)
+}
+
+/// How vertex buffers are laid out: slot 0 positions, 1 instances, 2 surfaces, 3 normals. A pipeline uses the first few.
+pub(crate) fn vertex_layouts() -> [Option<wgpu::VertexBufferLayout<'static>>; 4] {
+    const POSITION: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x3];
+    const INSTANCE: [wgpu::VertexAttribute; 3] =
+        wgpu::vertex_attr_array![4 => Float32x4, 5 => Float32x4, 6 => Float32x4];
+    const SURFACE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![1 => Float32x2, 2 => Unorm16x4];
+    const NORMAL: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![3 => Float32x3];
+    let layout =
+        |array_stride, step_mode, attributes| Some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes });
+    let vertex = wgpu::VertexStepMode::Vertex;
+    [
+        layout(12, vertex, &POSITION),
+        layout(Instances::STRIDE, wgpu::VertexStepMode::Instance, &INSTANCE),
+        layout(16, vertex, &SURFACE),
+        layout(12, vertex, &NORMAL),
+    ]
+}
+
+/// Everything that draws may refer to.
+pub(crate) struct Drawable<'a> {
+    pub scene: &'a Geometry,
+    pub skinned: &'a Geometry,
+    pub materials: &'a Materials,
+    pub instances: &'a Instances,
+}
+
+/// What a pass has drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Drawn {
+    /// Draw calls.
+    pub draws: u32,
+    /// Triangles, counting every instance, before any clipping.
+    pub triangles: u64,
+}
+
+impl std::ops::AddAssign for Drawn {
+    fn add_assign(&mut self, other: Self) {
+        self.draws += other.draws;
+        self.triangles += other.triangles;
+    }
+}
+
+impl Drawable<'_> {
+    /// The primitives of a run.
+    fn primitives(&self, source: Source) -> (&Geometry, &[GpuPrimitive]) {
+        match source {
+            Source::Mesh(mesh) => (self.scene, &self.scene.meshes[mesh]),
+            Source::Skinned(slot) => (self.skinned, &self.skinned.meshes[slot]),
+        }
+    }
+
+    /// Whether any primitive of an object has a material that `choose` likes.
+    pub fn has(&self, object: &Object, choose: impl Fn(&GpuMaterial) -> bool) -> bool {
+        let (_, primitives) = self.primitives(run_key(object).0);
+        primitives.iter().any(|primitive| choose(&self.materials.list[primitive.material]))
+    }
+
+    /// Draws the primitives for which `pipeline_for` has a pipeline. Bind group 1 is the material.
+    pub fn draw<'p>(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        runs: &[Run],
+        pipeline_for: impl Fn(&GpuMaterial, bool) -> Option<&'p wgpu::RenderPipeline>,
+    ) -> Drawn {
+        let mut drawn = Drawn::default();
+        let (mut bound_pipeline, mut bound_material, mut bound_skinned) = (None, None, None);
+        for run in runs {
+            let (geometry, primitives) = self.primitives(run.source);
+            let count = run.instances.end - run.instances.start;
+            let skinned = matches!(run.source, Source::Skinned(_));
+            let mut instances_bound = false;
+            for primitive in primitives {
+                let material = &self.materials.list[primitive.material];
+                let Some(pipeline) = pipeline_for(material, run.mirrored) else { continue };
+                if primitive.indices.is_empty() {
+                    continue;
+                }
+                if bound_skinned != Some(skinned) {
+                    pass.set_vertex_buffer(0, geometry.positions.slice(..));
+                    pass.set_vertex_buffer(2, geometry.surfaces.slice(..));
+                    pass.set_vertex_buffer(3, geometry.normals.slice(..));
+                    pass.set_index_buffer(geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
+                    bound_skinned = Some(skinned);
+                }
+                if !instances_bound {
+                    // An offset rather than a first instance: not every backend knows the latter.
+                    let offset = u64::from(run.instances.start) * Instances::STRIDE;
+                    pass.set_vertex_buffer(1, self.instances.buffer.slice(offset..));
+                    instances_bound = true;
+                }
+                if bound_pipeline != Some(pipeline) {
+                    pass.set_pipeline(pipeline);
+                    bound_pipeline = Some(pipeline);
+                }
+                if bound_material != Some(primitive.material) {
+                    pass.set_bind_group(1, &material.bind_group, &[]);
+                    bound_material = Some(primitive.material);
+                }
+                pass.draw_indexed(primitive.indices.clone(), 0, 0..count);
+                drawn.draws += 1;
+                drawn.triangles += primitive.triangles() * u64::from(count);
+            }
+        }
+        drawn
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_instance_keeps_millimetres_a_hundred_kilometres_away() {
+        let origin = DVec3::splat(102_400.0);
+        let offset = DVec3::new(1.001, -2.002, 3.003);
+        let instance = Instance::new(&DAffine3::from_translation(origin + offset), origin);
+        for axis in 0..3 {
+            assert!((f64::from(instance.rows[axis][3]) - offset[axis]).abs() < 1e-6);
+            assert_eq!(instance.rows[axis][axis], 1.0);
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! What can go wrong between a scene and its picture.
+
+/// [`std::result::Result`] with this crate's [`Error`].
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Why there is no picture. Every message names the culprit and says what to do.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// No GPU driver, not even a software one.
+    #[error(
+        "no graphics adapter was found ({reason}); install a Vulkan driver, for example Mesa's software one \
+         (Debian, Ubuntu: apt-get install mesa-vulkan-drivers), or check WGPU_BACKEND and WGPU_ADAPTER_NAME"
+    )]
+    NoAdapter {
+        /// What the driver loader or the search by name said.
+        reason: String,
+    },
+    /// The adapter would not open a device.
+    #[error("graphics adapter {adapter:?} opens no device: {reason}; try another with WGPU_ADAPTER_NAME")]
+    NoDevice {
+        /// The adapter's name.
+        adapter: String,
+        /// What it said.
+        reason: String,
+    },
+    /// The picture has no pixels or more than the device can draw.
+    #[error("size {width}x{height}: give 1 to {limit} pixels in each direction")]
+    ImageSize {
+        /// Pixels across.
+        width: u32,
+        /// Pixels down.
+        height: u32,
+        /// The device's largest texture.
+        limit: u32,
+    },
+    /// A shadow map is larger than the device allows.
+    #[error("map size {size} of split {split} is more than this device allows; give at most {limit}")]
+    MapSize {
+        /// Counted from 0.
+        split: usize,
+        /// Texels along an edge.
+        size: u32,
+        /// The device's largest texture.
+        limit: u32,
+    },
+    /// A texture of the scene is larger than the device allows.
+    #[error("texture {index} is {width}x{height} pixels, more than the {limit} this device allows; scale it down")]
+    TextureSize {
+        /// Index into the scene's textures.
+        index: usize,
+        /// Pixels across.
+        width: u32,
+        /// Pixels down.
+        height: u32,
+        /// The device's largest texture.
+        limit: u32,
+    },
+    /// The data of one buffer exceed what the device can hold in one.
+    #[error("{what} need {needed} bytes, but this device holds at most {limit} in one buffer; use a smaller scene")]
+    BufferSize {
+        /// Which data.
+        what: &'static str,
+        /// Their size.
+        needed: u64,
+        /// The device's largest buffer.
+        limit: u64,
+    },
+    /// The scene contradicts itself. Loaders make no such scene.
+    #[error("scene: {what} {index}: {reason}")]
+    Scene {
+        /// The kind of thing at fault.
+        what: &'static str,
+        /// Its index.
+        index: usize,
+        /// What was wrong and what to do.
+        reason: String,
+    },
+    /// A probe point or its normal cannot be used.
+    #[error("probe point {index}: {reason}")]
+    Probe {
+        /// Index into the points given.
+        index: usize,
+        /// What was wrong and what to do.
+        reason: &'static str,
+    },
+    /// The device ran out of memory.
+    #[error("the graphics device ran out of memory while {during}; use smaller maps, a smaller picture or scene")]
+    OutOfMemory {
+        /// What was being done.
+        during: &'static str,
+    },
+    /// The device refused a command, which is a defect of this program or of the driver.
+    #[error("the graphics device failed while {during}: {message}")]
+    Device {
+        /// What was being done.
+        during: &'static str,
+        /// What the device said.
+        message: String,
+    },
+    /// The planner refused the camera, the settings or the bounds.
+    #[error(transparent)]
+    Plan(#[from] umbrage::Error),
+    /// The shadow maps refused their options or the plan.
+    #[error(transparent)]
+    Shadows(#[from] umbrage_wgpu::Error),
+}

@@ -1,0 +1,388 @@
+//! The passes that draw the scene as the eye sees it: the picture and the visibility mask.
+
+use std::borrow::Cow;
+
+use glam::{DVec3, Vec3};
+use umbrage::{DirectionalLight, Projection, View};
+use umbrage_scene::AlphaMode;
+use umbrage_wgpu::ShadowMaps;
+
+use crate::Gpu;
+use crate::draw_list::{Drawable, Drawn, Run, vertex_layouts};
+use crate::materials::{GpuMaterial, Materials};
+
+/// What the picture is drawn in before it is resolved; the samples of a pixel share one shading.
+pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// Red is visibility, green says that a surface was hit.
+pub(crate) const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Unorm;
+const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// Samples per pixel of the picture; every WebGPU device has 4 for these formats.
+const PICTURE_SAMPLES: u32 = 4;
+
+/// A `vec3f` of a uniform buffer: it takes the room of four numbers
+/// (<https://www.w3.org/TR/WGSL/#alignment-and-size>).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct PaddedVec3 {
+    value: [f32; 3],
+    padding: f32,
+}
+
+impl From<DVec3> for PaddedVec3 {
+    fn from(value: DVec3) -> Self {
+        Self { value: value.as_vec3().to_array(), padding: 0.0 }
+    }
+}
+
+/// `Frame` in `scene.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct FrameUniform {
+    pub clip_from_eye: [[f32; 4]; 4],
+    pub eye: [f32; 3],
+    pub is_orthographic: f32,
+    pub forward: PaddedVec3,
+    pub to_light: PaddedVec3,
+    pub ray_center: PaddedVec3,
+    pub ray_right: PaddedVec3,
+    pub ray_up: PaddedVec3,
+}
+
+impl FrameUniform {
+    pub fn new(view: &View, sun: &DirectionalLight, origin: DVec3) -> Self {
+        let frustum = view.frustum();
+        let axes = view.world_from_view_rotation();
+        let (center, half) = match frustum.projection {
+            Projection::Perspective => {
+                let [x, y] = [frustum.left + frustum.right, frustum.bottom + frustum.top].map(|sum| 0.5 * sum);
+                let half = [frustum.right - frustum.left, frustum.top - frustum.bottom].map(|size| 0.5 * size);
+                (axes * DVec3::new(x, y, -1.0), half)
+            }
+            Projection::Orthographic => (view.forward(), [0.0; 2]),
+        };
+        let eye: Vec3 = (view.eye() - origin).as_vec3();
+        Self {
+            clip_from_eye: view.clip_from_relative(view.eye()).as_mat4().to_cols_array_2d(),
+            eye: eye.to_array(),
+            is_orthographic: f32::from(u8::from(frustum.projection == Projection::Orthographic)),
+            forward: view.forward().into(),
+            to_light: (-sun.direction()).into(),
+            ray_center: center.into(),
+            ray_right: (axes.x_axis * half[0]).into(),
+            ray_up: (axes.y_axis * half[1]).into(),
+        }
+    }
+}
+
+/// Pipelines of one target, by what the material and the transform ask for.
+struct SurfacePipelines([[[wgpu::RenderPipeline; 2]; 2]; 3]);
+
+impl SurfacePipelines {
+    fn of(&self, material: &GpuMaterial, mirrored: bool) -> &wgpu::RenderPipeline {
+        let alpha = match material.alpha {
+            AlphaMode::Opaque => 0,
+            AlphaMode::Mask { .. } => 1,
+            AlphaMode::Blend => 2,
+        };
+        &self.0[alpha][usize::from(material.double_sided)][usize::from(mirrored)]
+    }
+}
+
+/// Pipelines and the frame's uniform.
+pub(crate) struct Forward {
+    uniform: wgpu::Buffer,
+    bind_group: wgpu::BindGroup,
+    picture: SurfacePipelines,
+    mask: SurfacePipelines,
+    sky: wgpu::RenderPipeline,
+}
+
+impl Forward {
+    pub fn new(gpu: &Gpu, maps: &ShadowMaps, materials: &Materials) -> Self {
+        let device = &gpu.device;
+        let source =
+            [&umbrage_wgpu::receiver_wgsl(2), include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl")];
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("Forward::shader"),
+            source: wgpu::ShaderSource::Wgsl(Cow::Owned(source.join("\n"))),
+        });
+        let frame_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("Forward::frame_layout"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: wgpu::BufferSize::new(size_of::<FrameUniform>() as u64),
+                },
+                count: None,
+            }],
+        });
+        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("Forward::frame"),
+            size: size_of::<FrameUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("Forward::bind_group"),
+            layout: &frame_layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
+        });
+        let surface_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("Forward::surface_layout"),
+            bind_group_layouts: &[Some(&frame_layout), Some(&materials.layout), Some(maps.receiver_layout())],
+            immediate_size: 0,
+        });
+        let sky_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("Forward::sky_layout"),
+            bind_group_layouts: &[Some(&frame_layout)],
+            immediate_size: 0,
+        });
+        let builder = Builder { device, module: &module, layout: &surface_layout };
+        let picture = builder.pipelines([
+            builder.surface("Forward::picture_opaque", "fs_picture_opaque", PICTURE_FORMAT),
+            Surface {
+                alpha_to_coverage: true,
+                ..builder.surface("Forward::picture_masked", "fs_picture_masked", PICTURE_FORMAT)
+            },
+            Surface { blend: true, ..builder.surface("Forward::picture_blend", "fs_picture_blend", PICTURE_FORMAT) },
+        ]);
+        // The third is never drawn: translucent surfaces are not in the mask.
+        let opaque =
+            || Surface { samples: 1, ..builder.surface("Forward::mask_opaque", "fs_mask_opaque", MASK_FORMAT) };
+        let mask = builder.pipelines([
+            opaque(),
+            Surface { samples: 1, ..builder.surface("Forward::mask_masked", "fs_mask_masked", MASK_FORMAT) },
+            opaque(),
+        ]);
+        let sky = Builder { layout: &sky_layout, ..builder }.sky();
+        Self { uniform, bind_group, picture, mask, sky }
+    }
+
+    /// Writes the frame's uniform.
+    pub fn prepare(&self, gpu: &Gpu, frame: &FrameUniform) {
+        gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(frame));
+    }
+
+    /// Draws the sky, everything solid, then what is translucent from back to front.
+    pub fn draw_picture(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        maps: &ShadowMaps,
+        drawable: &Drawable<'_>,
+        solid: &[Run],
+        translucent: &[Run],
+    ) -> Drawn {
+        pass.set_bind_group(0, &self.bind_group, &[]);
+        pass.set_bind_group(2, maps.receiver_bind_group(), &[]);
+        let pick = |material: &GpuMaterial, mirrored| self.picture.of(material, mirrored);
+        let mut drawn =
+            drawable.draw(pass, solid, |m, mirrored| (m.alpha != AlphaMode::Blend).then(|| pick(m, mirrored)));
+        pass.set_pipeline(&self.sky);
+        pass.draw(0..3, 0..1);
+        drawn +=
+            drawable.draw(pass, translucent, |m, mirrored| (m.alpha == AlphaMode::Blend).then(|| pick(m, mirrored)));
+        drawn
+    }
+
+    /// Draws everything solid as bare visibility.
+    pub fn draw_mask(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        maps: &ShadowMaps,
+        drawable: &Drawable<'_>,
+        solid: &[Run],
+    ) -> Drawn {
+        pass.set_bind_group(0, &self.bind_group, &[]);
+        pass.set_bind_group(2, maps.receiver_bind_group(), &[]);
+        drawable.draw(pass, solid, |m, mirrored| (m.alpha != AlphaMode::Blend).then(|| self.mask.of(m, mirrored)))
+    }
+}
+
+/// The textures that a picture is drawn into.
+pub(crate) struct PictureTarget {
+    /// The resolved picture.
+    pub texture: wgpu::Texture,
+    resolved: wgpu::TextureView,
+    color: wgpu::TextureView,
+    depth: wgpu::TextureView,
+}
+
+impl PictureTarget {
+    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
+        let texture = target_texture(gpu, "PictureTarget::resolved", size, PICTURE_FORMAT, 1);
+        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let color = target_texture(gpu, "PictureTarget::samples", size, PICTURE_FORMAT, PICTURE_SAMPLES);
+        let depth = target_texture(gpu, "PictureTarget::depth", size, DEPTH_FORMAT, PICTURE_SAMPLES);
+        Self { resolved: view(&texture), color: view(&color), depth: view(&depth), texture }
+    }
+
+    pub fn begin<'e>(
+        &self,
+        encoder: &'e mut wgpu::CommandEncoder,
+        timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) -> wgpu::RenderPass<'e> {
+        begin("PictureTarget::pass", encoder, &self.color, Some(&self.resolved), &self.depth, timestamp_writes)
+    }
+}
+
+/// The textures that a mask is drawn into.
+pub(crate) struct MaskTarget {
+    /// The mask.
+    pub texture: wgpu::Texture,
+    color: wgpu::TextureView,
+    depth: wgpu::TextureView,
+}
+
+impl MaskTarget {
+    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
+        let texture = target_texture(gpu, "MaskTarget::visibility", size, MASK_FORMAT, 1);
+        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let depth = target_texture(gpu, "MaskTarget::depth", size, DEPTH_FORMAT, 1);
+        Self { color: view(&texture), depth: view(&depth), texture }
+    }
+
+    pub fn begin<'e>(
+        &self,
+        encoder: &'e mut wgpu::CommandEncoder,
+        timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) -> wgpu::RenderPass<'e> {
+        begin("MaskTarget::pass", encoder, &self.color, None, &self.depth, timestamp_writes)
+    }
+}
+
+fn target_texture(
+    gpu: &Gpu,
+    label: &str,
+    size: [u32; 2],
+    format: wgpu::TextureFormat,
+    sample_count: u32,
+) -> wgpu::Texture {
+    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
+    let read_back = sample_count == 1 && format != DEPTH_FORMAT;
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: if read_back { usage | wgpu::TextureUsages::COPY_SRC } else { usage },
+        view_formats: &[],
+    })
+}
+
+fn begin<'e>(
+    label: &str,
+    encoder: &'e mut wgpu::CommandEncoder,
+    color: &wgpu::TextureView,
+    resolve_target: Option<&wgpu::TextureView>,
+    depth: &wgpu::TextureView,
+    timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+) -> wgpu::RenderPass<'e> {
+    let keep_samples = if resolve_target.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: color,
+            depth_slice: None,
+            resolve_target,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: keep_samples },
+        })],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: depth,
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+            stencil_ops: None,
+        }),
+        timestamp_writes,
+        occlusion_query_set: None,
+        multiview_mask: None,
+    })
+}
+
+/// What makes one surface pipeline differ from another.
+#[derive(Clone, Copy)]
+struct Surface {
+    label: &'static str,
+    fragment_entry: &'static str,
+    format: wgpu::TextureFormat,
+    samples: u32,
+    alpha_to_coverage: bool,
+    blend: bool,
+}
+
+struct Builder<'a> {
+    device: &'a wgpu::Device,
+    module: &'a wgpu::ShaderModule,
+    layout: &'a wgpu::PipelineLayout,
+}
+
+impl Builder<'_> {
+    fn surface(&self, label: &'static str, fragment_entry: &'static str, format: wgpu::TextureFormat) -> Surface {
+        Surface { label, fragment_entry, format, samples: PICTURE_SAMPLES, alpha_to_coverage: false, blend: false }
+    }
+
+    fn pipelines(&self, surfaces: [Surface; 3]) -> SurfacePipelines {
+        SurfacePipelines(surfaces.map(|surface| {
+            [Some(wgpu::Face::Back), None].map(|cull_mode| {
+                [wgpu::FrontFace::Ccw, wgpu::FrontFace::Cw].map(|front_face| {
+                    let primitive = wgpu::PrimitiveState { front_face, cull_mode, ..Default::default() };
+                    self.pipeline(&surface, "vs_main", &vertex_layouts(), primitive, wgpu::CompareFunction::Greater)
+                })
+            })
+        }))
+    }
+
+    /// Only where nothing is: infinitely far away is depth 0.
+    fn sky(&self) -> wgpu::RenderPipeline {
+        let surface = self.surface("Forward::sky", "fs_sky", PICTURE_FORMAT);
+        self.pipeline(&surface, "vs_sky", &[], Default::default(), wgpu::CompareFunction::GreaterEqual)
+    }
+
+    fn pipeline(
+        &self,
+        surface: &Surface,
+        vertex_entry: &str,
+        buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
+        primitive: wgpu::PrimitiveState,
+        depth_compare: wgpu::CompareFunction,
+    ) -> wgpu::RenderPipeline {
+        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(surface.label),
+            layout: Some(self.layout),
+            vertex: wgpu::VertexState {
+                module: self.module,
+                entry_point: Some(vertex_entry),
+                compilation_options: Default::default(),
+                buffers,
+            },
+            primitive,
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(!surface.blend),
+                depth_compare: Some(depth_compare),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: wgpu::MultisampleState {
+                count: surface.samples,
+                alpha_to_coverage_enabled: surface.alpha_to_coverage,
+                ..Default::default()
+            },
+            fragment: Some(wgpu::FragmentState {
+                module: self.module,
+                entry_point: Some(surface.fragment_entry),
+                compilation_options: Default::default(),
+                targets: &[Some(wgpu::ColorTargetState {
+                    format: surface.format,
+                    blend: surface.blend.then_some(wgpu::BlendState::ALPHA_BLENDING),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}

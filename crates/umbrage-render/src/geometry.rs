@@ -1,0 +1,232 @@
+//! Vertices and indices on the GPU: what stands still is uploaded once, what is skinned every frame.
+//!
+//! Vertices lie in three streams, so that a shadow pass reads positions only: positions, normals, and the *surface*
+//! (texture coordinates and colour). Indices count from the start of the whole buffer, which spares base vertices.
+
+use std::ops::Range;
+
+use umbrage_scene::{Object, Pose, Primitive, Scene, SkinnedMesh};
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+
+use crate::{Error, Gpu, Result};
+
+/// Texture coordinates and colour of a vertex.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct Surface {
+    pub uv: [f32; 2],
+    /// Linear RGBA as 16-bit fractions.
+    pub color: [u16; 4],
+}
+
+/// The part of the index buffer that is one primitive.
+#[derive(Clone, Debug)]
+pub(crate) struct GpuPrimitive {
+    pub indices: Range<u32>,
+    pub material: usize,
+}
+
+impl GpuPrimitive {
+    pub fn triangles(&self) -> u64 {
+        u64::from(self.indices.end - self.indices.start) / 3
+    }
+}
+
+/// Streams, indices and, per mesh, where its primitives lie.
+pub(crate) struct Geometry {
+    pub positions: wgpu::Buffer,
+    pub normals: wgpu::Buffer,
+    pub surfaces: wgpu::Buffer,
+    pub indices: wgpu::Buffer,
+    pub meshes: Vec<Vec<GpuPrimitive>>,
+    pub bytes: u64,
+}
+
+impl Geometry {
+    /// Uploads all meshes of a scene.
+    pub fn of_scene(gpu: &Gpu, scene: &Scene) -> Result<Self> {
+        for (index, mesh) in scene.meshes.iter().enumerate() {
+            for primitive in &mesh.primitives {
+                check(primitive, scene.materials.len()).map_err(|reason| Error::Scene {
+                    what: "mesh",
+                    index,
+                    reason,
+                })?;
+            }
+        }
+        let meshes: Vec<&[Primitive]> = scene.meshes.iter().map(|mesh| mesh.primitives.as_slice()).collect();
+        Self::of_primitives(gpu, &meshes)
+    }
+
+    fn of_primitives(gpu: &Gpu, meshes: &[&[Primitive]]) -> Result<Self> {
+        let all = || meshes.iter().copied().flatten();
+        let vertices: u64 = all().map(|primitive| primitive.positions.len() as u64).sum();
+        let index_count: u64 = all().map(|primitive| primitive.indices.len() as u64).sum();
+        gpu.check_buffer("the vertices", vertices * size_of::<Surface>() as u64)?;
+        gpu.check_buffer("the indices", index_count * size_of::<u32>() as u64)?;
+        // Indices and draws count in u32: a device with enormous buffers is still bound by that.
+        let most = u64::from(u32::MAX);
+        if vertices.max(index_count) > most {
+            let [needed, limit] = [vertices.max(index_count), most].map(|count| count * size_of::<u32>() as u64);
+            return Err(Error::BufferSize { what: "the indices", needed, limit });
+        }
+
+        let mut positions: Vec<[f32; 3]> = Vec::with_capacity(vertices as usize);
+        let mut normals: Vec<[f32; 3]> = Vec::with_capacity(vertices as usize);
+        let mut surfaces: Vec<Surface> = Vec::with_capacity(vertices as usize);
+        let mut indices: Vec<u32> = Vec::with_capacity(index_count as usize);
+        let mut ranges = Vec::with_capacity(meshes.len());
+        for mesh in meshes {
+            let mut primitives = Vec::with_capacity(mesh.len());
+            for primitive in *mesh {
+                let (first_vertex, first_index) = (positions.len() as u32, indices.len() as u32);
+                positions.extend(&primitive.positions);
+                normals.extend(&primitive.normals);
+                surfaces.extend((0..primitive.positions.len()).map(|vertex| surface(primitive, vertex)));
+                indices.extend(primitive.indices.iter().map(|index| first_vertex + index));
+                primitives
+                    .push(GpuPrimitive { indices: first_index..indices.len() as u32, material: primitive.material });
+            }
+            ranges.push(primitives);
+        }
+        let buffer = |label, bytes: &[u8], usage| {
+            gpu.device.create_buffer_init(&BufferInitDescriptor {
+                label: Some(label),
+                contents: if bytes.is_empty() { &[0; 16] } else { bytes },
+                usage: usage | wgpu::BufferUsages::COPY_DST,
+            })
+        };
+        let vertex = wgpu::BufferUsages::VERTEX;
+        let positions = buffer("Geometry::positions", bytemuck::cast_slice(&positions), vertex);
+        let normals = buffer("Geometry::normals", bytemuck::cast_slice(&normals), vertex);
+        let surfaces = buffer("Geometry::surfaces", bytemuck::cast_slice(&surfaces), vertex);
+        let indices = buffer("Geometry::indices", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
+        let bytes = [&positions, &normals, &surfaces, &indices].map(wgpu::Buffer::size).iter().sum();
+        Ok(Self { positions, normals, surfaces, indices, meshes: ranges, bytes })
+    }
+}
+
+/// Geometry that changes every frame: one "mesh" per entry of [`Pose::skinned`].
+pub(crate) struct SkinnedGeometry {
+    pub geometry: Geometry,
+    /// Per entry of [`Pose::skinned`] the mesh that it poses; made anew when that changes.
+    posed_meshes: Vec<usize>,
+}
+
+impl SkinnedGeometry {
+    /// Nothing skinned yet.
+    pub fn empty(gpu: &Gpu) -> Result<Self> {
+        Ok(Self { geometry: Geometry::of_primitives(gpu, &[])?, posed_meshes: Vec::new() })
+    }
+
+    /// Writes this pose's vertices.
+    pub fn update(&mut self, gpu: &Gpu, scene: &SceneMeshes, pose: &Pose) -> Result<()> {
+        let posed_meshes = posed_meshes(scene, pose)?;
+        if posed_meshes != self.posed_meshes {
+            let meshes: Vec<&[Primitive]> = posed_meshes.iter().map(|&mesh| scene.0[mesh].as_slice()).collect();
+            self.geometry = Geometry::of_primitives(gpu, &meshes)?;
+            self.posed_meshes = posed_meshes;
+        }
+        let mut offset = 0;
+        for skinned in &pose.skinned {
+            for (positions, normals) in skinned.positions.iter().zip(&skinned.normals) {
+                gpu.queue.write_buffer(&self.geometry.positions, offset, bytemuck::cast_slice(positions));
+                gpu.queue.write_buffer(&self.geometry.normals, offset, bytemuck::cast_slice(normals));
+                offset += size_of_val(positions.as_slice()) as u64;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The primitives of those meshes that skinned nodes show (others are empty): kept to lay out skinned vertices.
+pub(crate) struct SceneMeshes(Vec<Vec<Primitive>>);
+
+impl SceneMeshes {
+    /// Keeps what [`SkinnedGeometry::update`] needs of a scene.
+    pub fn of_scene(scene: &Scene) -> Self {
+        let mut kept = vec![Vec::new(); scene.meshes.len()];
+        for node in &scene.nodes {
+            if let (Some(mesh), Some(_)) = (node.mesh, node.skin)
+                && let Some(source) = scene.meshes.get(mesh)
+            {
+                kept[mesh].clone_from(&source.primitives);
+            }
+        }
+        Self(kept)
+    }
+}
+
+/// Which mesh each entry of [`Pose::skinned`] poses, after checking that their vertices fit.
+fn posed_meshes(scene: &SceneMeshes, pose: &Pose) -> Result<Vec<usize>> {
+    let mut meshes = vec![None; pose.skinned.len()];
+    for (index, object) in pose.objects.iter().enumerate() {
+        let Some(slot) = object.skinned else { continue };
+        let wrong = |reason: &str| Error::Scene { what: "pose object", index, reason: reason.to_owned() };
+        let entry = meshes.get_mut(slot).ok_or_else(|| wrong("its skinned vertices are missing from the pose"))?;
+        let primitives = scene.0.get(object.mesh).ok_or_else(|| wrong("there is no such mesh"))?;
+        if !fits(primitives, &pose.skinned[slot]) {
+            return Err(wrong("its skinned vertices are not those of its mesh; pose the scene that was uploaded"));
+        }
+        *entry = Some(object.mesh);
+    }
+    meshes
+        .into_iter()
+        .enumerate()
+        .map(|(index, mesh)| {
+            mesh.ok_or_else(|| Error::Scene {
+                what: "skinned mesh",
+                index,
+                reason: "no object of the pose shows it".to_owned(),
+            })
+        })
+        .collect()
+}
+
+fn fits(primitives: &[Primitive], skinned: &SkinnedMesh) -> bool {
+    let lengths = |list: &[Vec<[f32; 3]>]| list.iter().map(Vec::len).collect::<Vec<_>>();
+    let expected: Vec<usize> = primitives.iter().map(|primitive| primitive.positions.len()).collect();
+    lengths(&skinned.positions) == expected && lengths(&skinned.normals) == expected
+}
+
+fn check(primitive: &Primitive, materials: usize) -> Result<(), String> {
+    let vertices = primitive.positions.len();
+    let wrong = |what: &str, count: usize| Err(format!("{count} {what} for {vertices} positions"));
+    if primitive.normals.len() != vertices {
+        return wrong("normals", primitive.normals.len());
+    }
+    if !primitive.uvs.is_empty() && primitive.uvs.len() != vertices {
+        return wrong("texture coordinates", primitive.uvs.len());
+    }
+    if !primitive.colors.is_empty() && primitive.colors.len() != vertices {
+        return wrong("colours", primitive.colors.len());
+    }
+    if !primitive.indices.len().is_multiple_of(3) {
+        return Err(format!("{} indices are no whole number of triangles", primitive.indices.len()));
+    }
+    if let Some(index) = primitive.indices.iter().find(|&&index| index as usize >= vertices) {
+        return Err(format!("index {index} points beyond its {vertices} vertices"));
+    }
+    if primitive.material >= materials {
+        return Err(format!("there is no material {}, only {materials}", primitive.material));
+    }
+    Ok(())
+}
+
+fn surface(primitive: &Primitive, vertex: usize) -> Surface {
+    let uv = primitive.uvs.get(vertex).copied().unwrap_or_default();
+    let color = primitive.colors.get(vertex).copied().unwrap_or([1.0; 4]);
+    Surface { uv, color: color.map(|channel| (channel.clamp(0.0, 1.0) * 65535.0).round() as u16) }
+}
+
+/// Whether an object of a pose belongs to the uploaded scene.
+pub(crate) fn check_object(index: usize, object: &Object, meshes: usize) -> Result<()> {
+    if object.mesh < meshes && object.world_from_local.is_finite() {
+        return Ok(());
+    }
+    Err(Error::Scene {
+        what: "pose object",
+        index,
+        reason: "its mesh is missing or its transform is not finite; pose the scene that was uploaded".to_owned(),
+    })
+}

@@ -1,0 +1,182 @@
+//! The device that everything runs on, opened without a window.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::{Error, Result};
+
+/// What the device is asked for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct GpuOptions {
+    /// Features that are not requested though the adapter has them: to try the fallbacks, or to compare them.
+    pub withhold: wgpu::Features,
+}
+
+/// An open device and its queue. Cheap to clone; clones share the device.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    /// The adapter's name, driver and kind, for reports.
+    pub adapter_info: wgpu::AdapterInfo,
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    faults: Faults,
+}
+
+/// The first error that no scope caught, kept until somebody asks. Later ones are mostly its consequences.
+#[derive(Clone, Debug, Default)]
+struct Faults(Arc<Mutex<Option<Fault>>>);
+
+#[derive(Debug)]
+enum Fault {
+    OutOfMemory,
+    Other(String),
+}
+
+impl From<wgpu::Error> for Fault {
+    fn from(error: wgpu::Error) -> Self {
+        match error {
+            wgpu::Error::OutOfMemory { .. } => Self::OutOfMemory,
+            wgpu::Error::Validation { description, .. } | wgpu::Error::Internal { description, .. } => {
+                Self::Other(description)
+            }
+        }
+    }
+}
+
+impl Fault {
+    fn into_error(self, during: &'static str) -> Error {
+        match self {
+            Self::OutOfMemory => Error::OutOfMemory { during },
+            Self::Other(message) => Error::Device { during, message },
+        }
+    }
+}
+
+impl Gpu {
+    /// Opens the best adapter, or the one that `WGPU_BACKEND`, `WGPU_ADAPTER_NAME` and `WGPU_POWER_PREF` ask for, with the
+    /// adapter's own limits and all features that shadows or timing can use.
+    ///
+    /// # Errors
+    /// [`Error::NoAdapter`] or [`Error::NoDevice`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn new(options: &GpuOptions) -> Result<Self> {
+        pollster::block_on(Self::open(options))
+    }
+
+    /// [`Gpu::new`] for callers that may not block, such as a page in a browser.
+    ///
+    /// # Errors
+    /// [`Error::NoAdapter`] or [`Error::NoDevice`].
+    pub async fn open(options: &GpuOptions) -> Result<Self> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let adapter = choose_adapter(&instance).await?;
+        let info = adapter.get_info();
+        let (device, queue) = adapter
+            .request_device(&wgpu::DeviceDescriptor {
+                label: Some("Gpu::device"),
+                required_features: adapter.features() & wanted_features().difference(options.withhold),
+                required_limits: adapter.limits(),
+                ..Default::default()
+            })
+            .await
+            .map_err(|error| Error::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
+        Ok(Self::from_parts(info, device, queue))
+    }
+
+    /// Takes over a device that somebody else opened, for example with a window. Its uncaptured errors become this crate's
+    /// errors from then on.
+    #[must_use]
+    pub fn from_parts(adapter_info: wgpu::AdapterInfo, device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let faults = Faults::default();
+        let sink = faults.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| sink.keep(error.into())));
+        Self { adapter_info, device, queue, faults }
+    }
+
+    /// Runs `work` and turns whatever the device had to complain about into an error. In a browser, where complaints come
+    /// later, they surface in the next call instead.
+    pub(crate) fn guarded<T>(&self, during: &'static str, work: impl FnOnce() -> Result<T>) -> Result<T> {
+        #[cfg(not(target_arch = "wasm32"))]
+        {
+            let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+            let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
+            let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+            let result = work();
+            // Scopes close in the reverse order. Memory comes first in the report: the others follow from it.
+            let validation = pollster::block_on(validation.pop());
+            let internal = pollster::block_on(internal.pop());
+            let memory = pollster::block_on(memory.pop());
+            if let Some(error) = memory.or(internal).or(validation) {
+                return Err(Fault::from(error).into_error(during));
+            }
+            self.faults.check(during)?;
+            result
+        }
+        #[cfg(target_arch = "wasm32")]
+        {
+            self.faults.check(during)?;
+            work()
+        }
+    }
+
+    /// [`Error::BufferSize`] unless `bytes` fit into one buffer of this device.
+    pub(crate) fn check_buffer(&self, what: &'static str, bytes: u64) -> Result<()> {
+        let limit = self.device.limits().max_buffer_size;
+        if bytes > limit { Err(Error::BufferSize { what, needed: bytes, limit }) } else { Ok(()) }
+    }
+
+    /// Waits until everything submitted has run.
+    pub(crate) fn wait(&self) -> Result<()> {
+        self.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .map(|_| ())
+            .map_err(|error| Error::Device { during: "waiting for the device", message: error.to_string() })
+    }
+
+    /// The largest edge of a texture.
+    pub(crate) fn max_texture_edge(&self) -> u32 {
+        self.device.limits().max_texture_dimension_2d
+    }
+}
+
+impl Faults {
+    fn keep(&self, fault: Fault) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(fault);
+    }
+
+    fn check(&self, during: &'static str) -> Result<()> {
+        let fault = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
+        fault.map_or(Ok(()), |fault| Err(fault.into_error(during)))
+    }
+}
+
+/// What a device is asked for where the adapter has it.
+fn wanted_features() -> wgpu::Features {
+    umbrage_wgpu::optional_features()
+        | wgpu::Features::TIMESTAMP_QUERY
+        | wgpu::Features::PIPELINE_STATISTICS_QUERY
+        | wgpu::Features::FLOAT32_FILTERABLE
+}
+
+async fn choose_adapter(instance: &wgpu::Instance) -> Result<wgpu::Adapter> {
+    #[cfg(not(target_arch = "wasm32"))]
+    if let Ok(wanted) = std::env::var("WGPU_ADAPTER_NAME")
+        && !wanted.is_empty()
+    {
+        let wanted = wanted.to_lowercase();
+        let adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
+        let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
+        return adapters
+            .into_iter()
+            .find(|adapter| adapter.get_info().name.to_lowercase().contains(&wanted))
+            .ok_or_else(|| Error::NoAdapter {
+                reason: format!("WGPU_ADAPTER_NAME is {wanted:?}, but there are only {names:?}"),
+            });
+    }
+    let options = wgpu::RequestAdapterOptions {
+        power_preference: wgpu::PowerPreference::from_env().unwrap_or(wgpu::PowerPreference::HighPerformance),
+        ..Default::default()
+    };
+    instance.request_adapter(&options).await.map_err(|error| Error::NoAdapter { reason: error.to_string() })
+}

@@ -1,0 +1,54 @@
+//! A split's depth map as a picture.
+
+use image::{GrayImage, Luma};
+use umbrage_wgpu::DepthFormat;
+
+/// Stretches the stored depths to 0 (nearest to the light) to 230 (farthest); where nothing is stored it is white.
+pub(crate) fn picture_of(depths: &[f32], size: u32) -> GrayImage {
+    const FARTHEST: f32 = 230.0;
+    let stored = || depths.iter().copied().filter(|&depth| depth < 1.0);
+    let (least, most) = (stored().fold(f32::INFINITY, f32::min), stored().fold(f32::NEG_INFINITY, f32::max));
+    let range = most - least;
+    GrayImage::from_fn(size, size, |x, y| {
+        let depth = depths[y as usize * size as usize + x as usize];
+        let gray = match depth < 1.0 {
+            true if range > 0.0 => ((depth - least) / range * FARTHEST).round() as u8,
+            true => 0,
+            false => u8::MAX,
+        };
+        Luma([gray])
+    })
+}
+
+/// Depths in [0,1] from a map's bytes.
+pub(crate) fn depths_of(bytes: &[u8], format: DepthFormat) -> Vec<f32> {
+    match format {
+        DepthFormat::D32Float => bytemuck::pod_collect_to_vec(bytes),
+        DepthFormat::D16Unorm => bytemuck::pod_collect_to_vec::<u8, u16>(bytes)
+            .into_iter()
+            .map(|depth| f32::from(depth) / f32::from(u16::MAX))
+            .collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depths_are_stretched_and_emptiness_is_white() {
+        let picture = picture_of(&[0.4, 0.5, 0.6, 1.0], 2);
+        assert_eq!(picture.as_raw(), &[0, 115, 230, 255]);
+    }
+
+    #[test]
+    fn a_flat_or_empty_map_is_no_division_by_zero() {
+        assert_eq!(picture_of(&[0.5, 1.0, 1.0, 0.5], 2).as_raw(), &[0, 255, 255, 0]);
+        assert_eq!(picture_of(&[1.0], 1).as_raw(), &[255]);
+    }
+
+    #[test]
+    fn sixteen_bits_reach_one() {
+        assert_eq!(depths_of(&[255, 255, 0, 0], DepthFormat::D16Unorm), [1.0, 0.0]);
+    }
+}

@@ -1,0 +1,178 @@
+//! Textures, samplers and one bind group per material.
+
+use umbrage_scene::{AlphaMode, Material, Scene, Texture, Wrap};
+use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
+
+use crate::mipmaps;
+use crate::{Error, Gpu, Result};
+
+/// Material parameters as the shaders see them, `Material` in `scene.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct MaterialUniform {
+    /// Linear RGBA.
+    pub base_color: [f32; 4],
+    /// Linear RGB.
+    pub emissive: [f32; 3],
+    /// Least alpha that counts; 0 where alpha is not tested.
+    pub alpha_cutoff: f32,
+}
+
+/// A material on the GPU.
+pub(crate) struct GpuMaterial {
+    pub bind_group: wgpu::BindGroup,
+    pub alpha: AlphaMode,
+    pub double_sided: bool,
+}
+
+/// All materials of a scene and the layout that their bind groups share.
+pub(crate) struct Materials {
+    pub layout: wgpu::BindGroupLayout,
+    pub list: Vec<GpuMaterial>,
+    /// Bytes of all textures with their levels.
+    pub bytes: u64,
+}
+
+impl Materials {
+    /// Uploads every texture with its mipmaps and makes the bind groups.
+    pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self> {
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("Materials::layout"),
+            entries: &[
+                layout_entry(
+                    0,
+                    wgpu::BindingType::Buffer {
+                        ty: wgpu::BufferBindingType::Uniform,
+                        has_dynamic_offset: false,
+                        min_binding_size: wgpu::BufferSize::new(size_of::<MaterialUniform>() as u64),
+                    },
+                ),
+                layout_entry(
+                    1,
+                    wgpu::BindingType::Texture {
+                        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                        view_dimension: wgpu::TextureViewDimension::D2,
+                        multisampled: false,
+                    },
+                ),
+                layout_entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+                layout_entry(3, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+            ],
+        });
+        let mut bytes = 0;
+        let mut views = Vec::with_capacity(scene.textures.len());
+        for (index, texture) in scene.textures.iter().enumerate() {
+            let (view, size) = upload_texture(gpu, index, texture)?;
+            views.push(view);
+            bytes += size;
+        }
+        let white = Texture { width: 1, height: 1, rgba: vec![255; 4], wrap: [Wrap::Repeat; 2] };
+        let (white_view, _) = upload_texture(gpu, usize::MAX, &white)?;
+        let list = scene
+            .materials
+            .iter()
+            .enumerate()
+            .map(|(index, material)| {
+                let (view, wrap) = match material.base_color_texture {
+                    None => (&white_view, white.wrap),
+                    Some(texture) => {
+                        let view = views.get(texture).ok_or_else(|| Error::Scene {
+                            what: "material",
+                            index,
+                            reason: format!("there is no texture {texture}, only {}", views.len()),
+                        })?;
+                        (view, scene.textures[texture].wrap)
+                    }
+                };
+                Ok(gpu_material(gpu, &layout, material, view, wrap))
+            })
+            .collect::<Result<Vec<_>>>()?;
+        Ok(Self { layout, list, bytes })
+    }
+}
+
+fn layout_entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None }
+}
+
+fn upload_texture(gpu: &Gpu, index: usize, texture: &Texture) -> Result<(wgpu::TextureView, u64)> {
+    let (width, height) = (texture.width, texture.height);
+    let limit = gpu.device.limits().max_texture_dimension_2d;
+    if width == 0 || height == 0 || texture.rgba.len() as u64 != 4 * u64::from(width) * u64::from(height) {
+        return Err(Error::Scene {
+            what: "texture",
+            index,
+            reason: format!("{} bytes are not {width}x{height} pixels of four", texture.rgba.len()),
+        });
+    }
+    if width > limit || height > limit {
+        return Err(Error::TextureSize { index, width, height, limit });
+    }
+    let data = mipmaps::all_levels(texture).concat();
+    let on_gpu = gpu.device.create_texture_with_data(
+        &gpu.queue,
+        &wgpu::TextureDescriptor {
+            label: Some("Materials::base_color"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: mipmaps::level_count(width, height),
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8UnormSrgb,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        },
+        TextureDataOrder::LayerMajor,
+        &data,
+    );
+    Ok((on_gpu.create_view(&wgpu::TextureViewDescriptor::default()), data.len() as u64))
+}
+
+fn gpu_material(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    material: &Material,
+    view: &wgpu::TextureView,
+    wrap: [Wrap; 2],
+) -> GpuMaterial {
+    let uniform = MaterialUniform {
+        base_color: material.base_color,
+        emissive: material.emissive,
+        alpha_cutoff: if let AlphaMode::Mask { cutoff } = material.alpha { cutoff } else { 0.0 },
+    };
+    let buffer = gpu.device.create_buffer_init(&BufferInitDescriptor {
+        label: Some("Materials::uniform"),
+        contents: bytemuck::bytes_of(&uniform),
+        usage: wgpu::BufferUsages::UNIFORM,
+    });
+    let address = wrap.map(|wrap| match wrap {
+        Wrap::Repeat => wgpu::AddressMode::Repeat,
+        Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
+        Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
+    });
+    let linear = wgpu::SamplerDescriptor {
+        address_mode_u: address[0],
+        address_mode_v: address[1],
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..Default::default()
+    };
+    let smooth = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("Materials::smooth_sampler"),
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        anisotropy_clamp: 8,
+        ..linear.clone()
+    });
+    let exact =
+        gpu.device.create_sampler(&wgpu::SamplerDescriptor { label: Some("Materials::exact_sampler"), ..linear });
+    let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("Materials::bind_group"),
+        layout,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(view) },
+            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&smooth) },
+            wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::Sampler(&exact) },
+        ],
+    });
+    GpuMaterial { bind_group, alpha: material.alpha, double_sided: material.double_sided }
+}

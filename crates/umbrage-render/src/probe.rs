@@ -1,0 +1,209 @@
+//! Visibility at given points, from the very maps and functions that shade the scene.
+
+use std::borrow::Cow;
+
+use glam::DVec3;
+use umbrage_wgpu::ShadowMaps;
+use wgpu::util::{DeviceExt, TextureDataOrder};
+
+use crate::capture::Capture;
+use crate::{Error, Gpu, Result};
+
+/// A point of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProbePoint {
+    /// World position in metres.
+    pub position: DVec3,
+    /// The surface's geometric normal on the side that is asked about; it need not be normalised.
+    pub normal: DVec3,
+}
+
+/// What the maps say of a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProbeAnswer {
+    /// 1 lit to 0 in shadow; 0 where the surface is turned away from the light.
+    pub visibility: f32,
+    /// The split that answered, −1 if no map covers the point.
+    pub split: i32,
+}
+
+/// Who answers for a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Responder {
+    /// The split that the view chooses.
+    View,
+    /// This split, though the view does not show the point.
+    Split(usize),
+    /// No map covers it: lit, unless turned away from the light.
+    Nobody,
+}
+
+/// The most points of one pass; more are asked in several. A texture row that every device can draw.
+const ROW: u32 = 2048;
+/// See [`ROW`].
+const MOST_ROWS: u32 = 512;
+/// The most points that [`Probe::record`] takes at once.
+pub(crate) const BATCH: usize = (ROW * MOST_ROWS) as usize;
+
+/// The pass that asks.
+pub(crate) struct Probe {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::RenderPipeline,
+}
+
+/// Answers on their way back.
+pub(crate) struct PendingAnswers {
+    capture: Capture,
+    count: usize,
+}
+
+impl Probe {
+    pub fn new(gpu: &Gpu, maps: &ShadowMaps) -> Self {
+        let device = &gpu.device;
+        let source = [&umbrage_wgpu::receiver_wgsl(1), include_str!("shaders/probe.wgsl")];
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("Probe::shader"),
+            source: wgpu::ShaderSource::Wgsl(Cow::Owned(source.join("\n"))),
+        });
+        let entry = |binding| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        };
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("Probe::layout"),
+            entries: &[entry(0), entry(1)],
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("Probe::pipeline_layout"),
+            bind_group_layouts: &[Some(&layout), Some(maps.receiver_layout())],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("Probe::pipeline"),
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vs_all"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fs_probe"),
+                compilation_options: Default::default(),
+                targets: &[Some(wgpu::TextureFormat::Rg32Float.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        Self { layout, pipeline }
+    }
+
+    /// Records the question for at most [`BATCH`] points; those that nobody answers for are asked of split 0 and
+    /// corrected by the caller.
+    pub fn record(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        maps: &ShadowMaps,
+        origin: DVec3,
+        points: &[(ProbePoint, Responder)],
+    ) -> Result<PendingAnswers> {
+        let height = (points.len() as u32).div_ceil(ROW).max(1);
+        let pixels = (ROW * height) as usize;
+        let mut positions = vec![[0.0_f32; 4]; pixels];
+        let mut normals = vec![[0.0_f32; 4]; pixels];
+        for (index, (point, responder)) in points.iter().enumerate() {
+            let position = (point.position - origin).as_vec3();
+            let who = match responder {
+                Responder::View => 0.0,
+                Responder::Split(split) => *split as f32 + 1.0,
+                Responder::Nobody => 1.0,
+            };
+            positions[index] = position.extend(who).to_array();
+            normals[index] = point.normal.normalize().as_vec3().extend(0.0).to_array();
+        }
+        let size = wgpu::Extent3d { width: ROW, height, depth_or_array_layers: 1 };
+        let descriptor = |label, format, usage| wgpu::TextureDescriptor {
+            label: Some(label),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        };
+        let input = |label, data: &[[f32; 4]]| {
+            let descriptor = descriptor(label, wgpu::TextureFormat::Rgba32Float, wgpu::TextureUsages::TEXTURE_BINDING);
+            let data = bytemuck::cast_slice(data);
+            let texture =
+                gpu.device.create_texture_with_data(&gpu.queue, &descriptor, TextureDataOrder::LayerMajor, data);
+            texture.create_view(&wgpu::TextureViewDescriptor::default())
+        };
+        let (positions, normals) = (input("Probe::points", &positions), input("Probe::normals", &normals));
+        let answers = gpu.device.create_texture(&descriptor(
+            "Probe::answers",
+            wgpu::TextureFormat::Rg32Float,
+            wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        ));
+        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("Probe::bind_group"),
+            layout: &self.layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&positions) },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&normals) },
+            ],
+        });
+        {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("Probe::pass"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &answers.create_view(&wgpu::TextureViewDescriptor::default()),
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations::default(),
+                })],
+                ..Default::default()
+            });
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &bind_group, &[]);
+            pass.set_bind_group(1, maps.receiver_bind_group(), &[]);
+            pass.draw(0..3, 0..1);
+        }
+        let capture = Capture::record(gpu, encoder, &answers, 0, [ROW, height])?;
+        Ok(PendingAnswers { capture, count: points.len() })
+    }
+}
+
+impl PendingAnswers {
+    /// Waits for the answers, in the order of the points.
+    pub fn read(self, gpu: &Gpu) -> Result<Vec<ProbeAnswer>> {
+        let numbers: Vec<[f32; 2]> = bytemuck::pod_collect_to_vec(&self.capture.read(gpu)?);
+        let answer = |&[visibility, split]: &[f32; 2]| ProbeAnswer { visibility, split: split as i32 };
+        Ok(numbers[..self.count].iter().map(answer).collect())
+    }
+}
+
+/// Checks points before anything is drawn for them.
+pub(crate) fn check(points: &[ProbePoint]) -> Result<()> {
+    for (index, point) in points.iter().enumerate() {
+        let wrong = |reason| Err(Error::Probe { index, reason });
+        if !point.position.is_finite() {
+            return wrong("its position is not finite; give three numbers in metres");
+        }
+        if !point.normal.is_finite() || point.normal.try_normalize().is_none() {
+            return wrong("its normal has no direction; give three finite numbers, not all zero");
+        }
+    }
+    Ok(())
+}

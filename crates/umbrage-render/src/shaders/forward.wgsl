@@ -1,0 +1,138 @@
+// The scene as the eye sees it: a shaded picture, or the bare visibility mask.
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+
+const SUN: vec3f = vec3f(2.75, 2.55, 2.25);
+const SKY_AMBIENT: vec3f = vec3f(0.30, 0.38, 0.50);
+const GROUND_AMBIENT: vec3f = vec3f(0.17, 0.155, 0.14);
+
+struct Vertex {
+    @location(0) local: vec3f,
+    @location(1) uv: vec2f,
+    @location(2) color: vec4f,
+    @location(3) normal: vec3f,
+}
+
+struct Surface {
+    @builtin(position) clip: vec4f,
+    // Relative to the origin.
+    @location(0) position: vec3f,
+    // The same relative to the eye: small near it, so that its derivatives are precise.
+    @location(1) from_eye: vec3f,
+    @location(2) normal: vec3f,
+    @location(3) uv: vec2f,
+    @location(4) color: vec4f,
+}
+
+@vertex
+fn vs_main(vertex: Vertex, instance: Instance) -> Surface {
+    let position = position_from_local(instance, vertex.local);
+    let from_eye = position - frame.eye;
+    let normal = normal_from_local(instance, vertex.normal);
+    let clip = frame.clip_from_eye * vec4f(from_eye, 1.0);
+    return Surface(clip, position, from_eye, normal, vertex.uv, vertex.color);
+}
+
+// The triangle's own unit normal, turned towards the eye. Call in uniform control flow.
+fn geometric_normal(from_eye: vec3f) -> vec3f {
+    let normal = cross(dpdx(from_eye), dpdy(from_eye));
+    let line_of_sight = select(from_eye, frame.forward, frame.is_orthographic > 0.5);
+    let turned = select(normal, -normal, dot(normal, line_of_sight) > 0.0);
+    // Not normalize(): the product of two small steps may be too small to be squared.
+    let largest = max(max(abs(turned.x), abs(turned.y)), abs(turned.z));
+    if largest == 0.0 {
+        return -normalize(line_of_sight);
+    }
+    return normalize(turned / largest);
+}
+
+// Red: visibility of the sun at the pixel's centre. Green: 1, a surface is here.
+@fragment
+fn fs_mask_opaque(in: Surface) -> @location(0) vec2f {
+    return mask_at(in.position, geometric_normal(in.from_eye));
+}
+
+@fragment
+fn fs_mask_masked(in: Surface) -> @location(0) vec2f {
+    let normal = geometric_normal(in.from_eye);
+    if tested_alpha(in.uv, in.color.a) < material.alpha_cutoff {
+        discard;
+    }
+    return mask_at(in.position, normal);
+}
+
+fn mask_at(position: vec3f, normal: vec3f) -> vec2f {
+    if dot(normal, frame.to_light) <= 0.0 {
+        return vec2f(0.0, 1.0);
+    }
+    return vec2f(umbrage_visibility(position, normal), 1.0);
+}
+
+@fragment
+fn fs_picture_opaque(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    return vec4f(shaded(in, front, base_color(in)), 1.0);
+}
+
+// Alpha becomes coverage: a step one pixel wide around the cutoff.
+@fragment
+fn fs_picture_masked(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    let color = base_color(in);
+    let coverage = (color.a - material.alpha_cutoff) / max(fwidth(color.a), 1e-4) + 0.5;
+    let lit = shaded(in, front, color);
+    if coverage <= 0.0 {
+        discard;
+    }
+    return vec4f(lit, min(coverage, 1.0));
+}
+
+@fragment
+fn fs_picture_blend(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    let color = base_color(in);
+    return vec4f(shaded(in, front, color), clamp(color.a, 0.0, 1.0));
+}
+
+fn base_color(in: Surface) -> vec4f {
+    return material.base_color * in.color * textureSample(base_color_texture, smooth_sampler, in.uv);
+}
+
+// Lambert's sun, a sky from above and light from the ground below. Display light, tone mapped.
+fn shaded(in: Surface, front: bool, base: vec4f) -> vec3f {
+    let geometric = geometric_normal(in.from_eye);
+    let smooth_normal = normalize(select(-in.normal, in.normal, front));
+    let shadow = umbrage_shadow(in.position, geometric);
+    let sun = SUN * max(dot(smooth_normal, frame.to_light), 0.0) * shadow.visibility;
+    let ambient = mix(GROUND_AMBIENT, SKY_AMBIENT, 0.5 * smooth_normal.y + 0.5);
+    return tone_mapped((base.rgb * (sun + ambient) + material.emissive) * shadow.tint);
+}
+
+struct SkyPixel {
+    @builtin(position) clip: vec4f,
+    @location(0) ray: vec3f,
+}
+
+// One triangle over the whole image, infinitely far away.
+@vertex
+fn vs_sky(@builtin(vertex_index) index: u32) -> SkyPixel {
+    let ndc = vec2f(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0;
+    return SkyPixel(vec4f(ndc, 0.0, 1.0), frame.ray_center + ndc.x * frame.ray_right + ndc.y * frame.ray_up);
+}
+
+@fragment
+fn fs_sky(in: SkyPixel) -> @location(0) vec4f {
+    let ray = normalize(in.ray);
+    let horizon = vec3f(0.68, 0.78, 0.90);
+    let zenith = vec3f(0.16, 0.32, 0.66);
+    let below = vec3f(0.36, 0.37, 0.38);
+    let up = mix(horizon, zenith, smoothstep(0.0, 0.9, pow(max(ray.y, 0.0), 0.6)));
+    let sky = mix(up, below, smoothstep(0.0, 0.12, -ray.y));
+    // The sun is half a degree wide; its glow is for the eye only.
+    let towards_sun = dot(ray, frame.to_light);
+    let glow = 0.25 * pow(max(towards_sun, 0.0), 64.0) + 4.0 * smoothstep(0.99996, 0.99998, towards_sun);
+    return vec4f(tone_mapped(sky + vec3f(1.0, 0.93, 0.8) * glow), 1.0);
+}
+
+// Narkowicz's fit of the ACES film curve (2015), at the exposure that suits SUN.
+fn tone_mapped(light: vec3f) -> vec3f {
+    let x = light * 0.6;
+    return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), vec3f(0.0), vec3f(1.0));
+}

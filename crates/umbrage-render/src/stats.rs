@@ -1,0 +1,57 @@
+//! What a frame was made of and what it cost.
+
+use umbrage::ShadowPlan;
+
+use crate::timing::PassCounts;
+
+/// One split of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SplitStats {
+    /// View depth in metres where it begins.
+    pub near: f64,
+    /// View depth in metres where it ends.
+    pub far: f64,
+    /// The larger edge of one texel in metres.
+    pub texel_m: f64,
+    /// Objects in its list: mesh nodes or instances, not primitives.
+    pub casters: usize,
+    /// Draw calls; instances share one.
+    pub draws: u32,
+    /// Triangles drawn, counting every instance.
+    pub triangles: u64,
+    /// Bytes of its map.
+    pub bytes: u64,
+}
+
+/// What a frame was made of and what it cost.
+#[derive(Clone, Debug)]
+pub struct FrameStats {
+    /// The plan that the maps were drawn by.
+    pub plan: ShadowPlan,
+    /// Milliseconds of the planner on the CPU.
+    pub plan_ms: f64,
+    /// Milliseconds from the beginning of the first map to the end of the last, on the GPU; 0 if none was drawn.
+    pub shadow_ms: f64,
+    /// Milliseconds from the beginning of the first pass to the end of the last, on the GPU.
+    pub frame_ms: f64,
+    /// Nearest first.
+    pub splits: Vec<SplitStats>,
+    /// Objects that the view may show.
+    pub objects_in_view: usize,
+    /// Draw calls of picture and mask together.
+    pub view_draws: u32,
+    /// Triangles of picture and mask together.
+    pub view_triangles: u64,
+    /// What drawing the maps took; `None` where the device does not count.
+    pub shadow_counts: Option<PassCounts>,
+    /// What drawing picture and mask took; `None` where the device does not count.
+    pub view_counts: Option<PassCounts>,
+    /// Bytes of all shadow maps.
+    pub bytes: u64,
+    /// How the maps are drawn.
+    pub generation: &'static str,
+    /// How the maps are stored.
+    pub storage: &'static str,
+    /// Fallbacks taken.
+    pub notes: Vec<String>,
+}

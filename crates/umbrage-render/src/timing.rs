@@ -1,0 +1,182 @@
+//! How long passes take and how much work they are, asked of the GPU itself where it can answer.
+
+use crate::capture::read_buffer;
+use crate::{Gpu, Result};
+
+/// Passes of a frame: one per split, the mask and the picture.
+const MOST_PASSES: u32 = umbrage::MAX_SPLITS as u32 + 2;
+
+const STATISTICS: wgpu::PipelineStatisticsTypes = wgpu::PipelineStatisticsTypes::VERTEX_SHADER_INVOCATIONS
+    .union(wgpu::PipelineStatisticsTypes::CLIPPER_PRIMITIVES_OUT)
+    .union(wgpu::PipelineStatisticsTypes::FRAGMENT_SHADER_INVOCATIONS);
+
+/// What a pass has cost, in counts that depend little on the machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PassCounts {
+    /// Runs of a vertex shader.
+    pub vertices: u64,
+    /// Triangles left after clipping.
+    pub primitives: u64,
+    /// Runs of a fragment shader; 0 for opaque casters, which have none.
+    pub fragments: u64,
+}
+
+impl std::ops::AddAssign for PassCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.vertices += other.vertices;
+        self.primitives += other.primitives;
+        self.fragments += other.fragments;
+    }
+}
+
+/// When each pass of a frame began and ended, and what it counted; passes in the order in which they were recorded.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Measured {
+    /// Milliseconds since the first pass began; `None` without timestamp queries.
+    pub spans_ms: Option<Vec<[f64; 2]>>,
+    /// `None` without pipeline statistics.
+    pub counts: Option<Vec<PassCounts>>,
+}
+
+/// The queries of one frame. Passes take slots in the order in which they are recorded.
+pub(crate) struct Timer {
+    timestamps: Option<Queries>,
+    statistics: Option<Queries>,
+    used: u32,
+}
+
+struct Queries {
+    set: wgpu::QuerySet,
+    resolved: wgpu::Buffer,
+    readable: wgpu::Buffer,
+}
+
+/// A pass that is being measured.
+#[derive(Clone, Copy)]
+pub(crate) struct Slot(u32);
+
+impl Timer {
+    pub fn new(gpu: &Gpu) -> Self {
+        let has = |feature| gpu.device.features().contains(feature);
+        let statistics = wgpu::QueryType::PipelineStatistics(STATISTICS);
+        Self {
+            timestamps: has(wgpu::Features::TIMESTAMP_QUERY)
+                .then(|| Queries::new(gpu, wgpu::QueryType::Timestamp, 2 * MOST_PASSES, 1)),
+            statistics: has(wgpu::Features::PIPELINE_STATISTICS_QUERY)
+                .then(|| Queries::new(gpu, statistics, MOST_PASSES, 3)),
+            used: 0,
+        }
+    }
+
+    /// Whether passes are timed by the GPU.
+    pub fn has_timestamps(&self) -> bool {
+        self.timestamps.is_some()
+    }
+
+    /// Forgets the last frame.
+    pub fn restart(&mut self) {
+        self.used = 0;
+    }
+
+    /// The next pass.
+    pub fn next(&mut self) -> Slot {
+        let slot = Slot(self.used);
+        self.used += 1;
+        slot
+    }
+
+    /// For the pass's descriptor.
+    pub fn timestamp_writes(&self, slot: Slot) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
+        self.timestamps.as_ref().map(|queries| wgpu::RenderPassTimestampWrites {
+            query_set: &queries.set,
+            beginning_of_pass_write_index: Some(2 * slot.0),
+            end_of_pass_write_index: Some(2 * slot.0 + 1),
+        })
+    }
+
+    /// Runs `draw` and counts what it does.
+    pub fn counted<T>(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        slot: Slot,
+        draw: impl FnOnce(&mut wgpu::RenderPass<'_>) -> T,
+    ) -> T {
+        if let Some(queries) = &self.statistics {
+            pass.begin_pipeline_statistics_query(&queries.set, slot.0);
+        }
+        let result = draw(pass);
+        if self.statistics.is_some() {
+            pass.end_pipeline_statistics_query();
+        }
+        result
+    }
+
+    /// Records the answers' way to a readable buffer, after all passes.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        if self.used == 0 {
+            return;
+        }
+        if let Some(queries) = &self.timestamps {
+            queries.record(encoder, 2 * self.used);
+        }
+        if let Some(queries) = &self.statistics {
+            queries.record(encoder, self.used);
+        }
+    }
+
+    /// Waits for the answers.
+    pub fn read(&self, gpu: &Gpu) -> Result<Measured> {
+        let passes = self.used as usize;
+        if passes == 0 {
+            return Ok(Measured::default());
+        }
+        let ms_per_tick = f64::from(gpu.queue.get_timestamp_period()) * 1e-6;
+        let spans_ms = match &self.timestamps {
+            None => None,
+            Some(queries) => {
+                let ticks = queries.read(gpu)?;
+                let start = ticks[0];
+                let since_start = |tick: u64| tick.saturating_sub(start) as f64 * ms_per_tick;
+                Some(ticks.chunks(2).take(passes).map(|span| [since_start(span[0]), since_start(span[1])]).collect())
+            }
+        };
+        let counts = match &self.statistics {
+            None => None,
+            Some(queries) => {
+                let numbers = queries.read(gpu)?;
+                // In the order of the bits of PipelineStatisticsTypes.
+                let count = |n: &[u64]| PassCounts { vertices: n[0], primitives: n[1], fragments: n[2] };
+                Some(numbers.chunks(3).take(passes).map(count).collect())
+            }
+        };
+        Ok(Measured { spans_ms, counts })
+    }
+}
+
+impl Queries {
+    fn new(gpu: &Gpu, ty: wgpu::QueryType, count: u32, numbers_each: u32) -> Self {
+        let set = gpu.device.create_query_set(&wgpu::QuerySetDescriptor { label: Some("Timer::queries"), ty, count });
+        let buffer = |label, usage| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: u64::from(count * numbers_each) * size_of::<u64>() as u64,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        Self {
+            set,
+            resolved: buffer("Timer::resolved", wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC),
+            readable: buffer("Timer::readable", wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ),
+        }
+    }
+
+    fn record(&self, encoder: &mut wgpu::CommandEncoder, used: u32) {
+        encoder.resolve_query_set(&self.set, 0..used, &self.resolved, 0);
+        encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readable, 0, self.readable.size());
+    }
+
+    fn read(&self, gpu: &Gpu) -> Result<Vec<u64>> {
+        Ok(bytemuck::pod_collect_to_vec(&read_buffer(gpu, &self.readable)?))
+    }
+}
