@@ -37,7 +37,7 @@ pub fn caster(group: u32) -> String {
 }
 
 /// Text to put before a shader that asks what is lit: `fn umbrage_visibility(position: vec3f, normal: vec3f) -> f32`,
-/// `umbrage_shadow`, `umbrage_probe` and `umbrage_visibility_in_split`.
+/// `umbrage_shadow` and `umbrage_visibility_in_split`.
 #[must_use]
 pub fn receiver(group: u32) -> String {
     format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\n{RECEIVER}\n")

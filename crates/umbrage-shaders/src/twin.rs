@@ -21,17 +21,23 @@ pub fn tent_tap(first: f32, centre: f32, r: f32) -> (f32, f32) {
 /// `map::from_world`: texels and depth of a position relative to the frame's origin.
 #[must_use]
 pub fn map_from_world(split: &Split, position: [f32; 3]) -> [f32; 3] {
-    let along = |row: [f32; 4]| row[0] * position[0] + row[1] * position[1] + row[2] * position[2] + row[3];
-    [along(split.u_row) + split.texel_offset[0], along(split.v_row) + split.texel_offset[1], along(split.depth_row)]
+    [
+        along(split.u_row, position) + split.texel_offset[0],
+        along(split.v_row, position) + split.texel_offset[1],
+        along(split.depth_row, position),
+    ]
 }
 
-/// `map::covers`: whether a map answers for a place in it.
+/// `map::covers`: whether a place lies in the map's square.
 #[must_use]
 pub fn covers(split: &Split, at: [f32; 3]) -> bool {
-    let slack = split.texel_m[0].max(split.texel_m[1]) / split.depth_range_m;
-    (0.0..=split.size).contains(&at[0])
-        && (0.0..=split.size).contains(&at[1])
-        && (-slack..=1.0 + slack).contains(&at[2])
+    (0.0..=split.size).contains(&at[0]) && (0.0..=split.size).contains(&at[1])
+}
+
+/// View depth of a position relative to the frame's origin.
+#[must_use]
+pub fn view_depth(frame: &Frame, position: [f32; 3]) -> f32 {
+    along(frame.view_depth_plane, position)
 }
 
 /// `umbrage_split_at`: the split whose slice holds a view depth, `None` beyond the last.
@@ -40,11 +46,25 @@ pub fn split_at(frame: &Frame, view_depth: f32) -> Option<usize> {
     frame.splits[..frame.split_count as usize].iter().position(|split| view_depth < split.far)
 }
 
-/// The split that `umbrage_shadow` answers from: the slice's own, or the first later one whose map covers the position.
+/// How `umbrage_shadow` weighs splits at a view depth: the slice's own split, the share of the next one, and how strong shadows
+/// are there. `None` beyond the range.
 #[must_use]
-pub fn answering_split(frame: &Frame, position: [f32; 3]) -> Option<usize> {
-    let plane = frame.view_depth_plane;
-    let depth = plane[0] * position[0] + plane[1] * position[1] + plane[2] * position[2] + plane[3];
-    let slice = split_at(frame, depth)?;
-    (slice..frame.split_count as usize).find(|&i| covers(&frame.splits[i], map_from_world(&frame.splits[i], position)))
+pub fn weights_at(frame: &Frame, view_depth: f32) -> Option<(usize, f32, f32)> {
+    let index = split_at(frame, view_depth)?;
+    let split = &frame.splits[index];
+    let last = frame.split_count as usize - 1;
+    let mut next = 0.0;
+    if index < last && view_depth > split.blend_begin {
+        next = ((view_depth - split.blend_begin) / (split.far - split.blend_begin)).clamp(0.0, 1.0);
+    }
+    let mut strength = frame.strength;
+    if view_depth > frame.fade_begin {
+        let end = frame.splits[last].far;
+        strength *= ((end - view_depth) / (end - frame.fade_begin)).clamp(0.0, 1.0);
+    }
+    Some((index, next, strength))
+}
+
+fn along(row: [f32; 4], position: [f32; 3]) -> f32 {
+    row[0] * position[0] + row[1] * position[1] + row[2] * position[2] + row[3]
 }

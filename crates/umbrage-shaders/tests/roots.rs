@@ -34,9 +34,8 @@ fn fragment_shader(group: u32) -> String {
     umbrage_shaders::receiver(group)
         + "@fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
                let shadow = umbrage_shadow(position, vec3f(0.0, 1.0, 0.0));
-               let probe = umbrage_probe(position, vec3f(0.0, 1.0, 0.0));
                let one = umbrage_visibility_in_split(position, vec3f(0.0, 1.0, 0.0), 1u);
-               return vec4f(shadow.tint * shadow.visibility, probe.visibility * one * f32(shadow.split));
+               return vec4f(shadow.tint * shadow.visibility, one * f32(shadow.split));
            }"
 }
 

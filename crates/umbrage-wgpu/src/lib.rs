@@ -29,8 +29,7 @@
 //! | `umbrage_caster_position(position: vec3f) -> vec4f` | clip position in the split that is drawn |
 //! | `umbrage_visibility(position: vec3f, normal: vec3f) -> f32` | 1 lit, 0 in shadow or turned away |
 //! | `umbrage_shadow(position, normal) -> UmbrageShadow` | the same with `split: i32` (−1: none) and `tint: vec3f` |
-//! | `umbrage_probe(position, normal) -> UmbrageShadow` | the same for points that need not be in the shadowed range |
-//! | `umbrage_visibility_in_split(position, normal, split: u32) -> f32` | what one map alone says |
+//! | `umbrage_visibility_in_split(position, normal, split: u32) -> f32` | what one map alone says, for points off screen |
 //!
 //! They need no derivatives and work in any control flow and in every stage. The two texts belong into two shader modules:
 //! both declare what they share.

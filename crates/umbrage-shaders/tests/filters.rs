@@ -1,0 +1,70 @@
+//! The filters' weights, by property; `umbrage-wgpu` runs the same functions on a GPU and compares.
+
+use proptest::prelude::*;
+use umbrage_shaders::twin::{tent_integral, tent_tap};
+
+/// A sample's place, biased to texel edges and centres.
+fn place() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        0.0f32..1024.0,
+        (0u32..2048).prop_map(|half| half as f32 / 2.0),
+        (0u32..64).prop_map(|k| 8.0 + k as f32 / 64.0)
+    ]
+}
+
+/// The weight that a tent's taps give to each texel from `first` on, as a linear sampler spreads them.
+fn texel_weights(centre: f32, r: f32, taps: usize) -> (f32, Vec<f32>) {
+    let first = (centre - r).floor();
+    let mut weights = vec![0.0; 2 * taps];
+    for tap in 0..taps {
+        let (at, weight) = tent_tap(first + 2.0 * tap as f32, centre, r);
+        let second = at - (first + 2.0 * tap as f32 + 0.5);
+        assert!((-1e-4..=1.0001).contains(&second), "the tap at {at} leaves its pair of texels");
+        weights[2 * tap] += weight * (1.0 - second);
+        weights[2 * tap + 1] += weight * second;
+    }
+    (first, weights)
+}
+
+/// Integral of a tent of half width `r` around `centre` over `[a, b]`, by the midpoint rule in f64.
+fn tent_over(centre: f64, r: f64, a: f64, b: f64) -> f64 {
+    let steps = 4096;
+    let width = (b - a) / f64::from(steps);
+    (0..steps).map(|i| (1.0 - ((a + (f64::from(i) + 0.5) * width - centre) / r).abs()).max(0.0) / r * width).sum()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn taps_give_each_texel_the_tent_over_it((r, taps) in prop_oneof![Just((1.5, 2)), Just((2.5, 3))], centre in place()) {
+        let (first, weights) = texel_weights(centre, r, taps);
+        // f32 holds a place near 1000 to 6e-5 of a texel, and a tent's integral is no steeper than 1/r.
+        let tolerance = 2e-4;
+        prop_assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{weights:?} do not sum to 1");
+        for (k, &weight) in weights.iter().enumerate() {
+            let left = f64::from(first) + k as f64;
+            let exact = tent_over(f64::from(centre), f64::from(r), left, left + 1.0);
+            prop_assert!((f64::from(weight) - exact).abs() < tolerance, "texel {k} weighs {weight}, exactly {exact}");
+        }
+        // What the taps do not touch lies outside the tent.
+        prop_assert!(first <= centre - r && first + weights.len() as f32 >= centre + r);
+    }
+
+    #[test]
+    fn tent_integral_rises_from_0_to_1(r in 0.5f32..4.0, x in -5.0f32..5.0, step in 0.0f32..1.0) {
+        prop_assert!(tent_integral(x, r) <= tent_integral(x + step, r) + 1e-6);
+        prop_assert!((tent_integral(x, r) + tent_integral(-x, r) - 1.0).abs() < 1e-6);
+        prop_assert_eq!(tent_integral(-r - step, r), 0.0);
+        prop_assert_eq!(tent_integral(r + step, r), 1.0);
+    }
+}
+
+#[test]
+fn a_centred_tent_of_three_weighs_two_five_two_ninths() {
+    // ∫ (1 − x/1.5)/1.5 from 0.5 to 1.5 = (1 − 1/3)²/2 = 2/9; the middle has the rest.
+    let (_, weights) = texel_weights(10.5, 1.5, 2);
+    for (weight, exact) in weights.iter().zip([2.0 / 9.0, 5.0 / 9.0, 2.0 / 9.0, 0.0]) {
+        assert!((weight - exact).abs() < 1e-6, "{weights:?}");
+    }
+}

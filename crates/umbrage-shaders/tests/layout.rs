@@ -1,0 +1,72 @@
+//! Name, offset and size of every member that Rust and WGSL share.
+
+use std::mem::offset_of;
+
+use naga::proc::Layouter;
+use umbrage_shaders::layout::{Frame, Split};
+
+/// A member as one side sees it: name, offset and size in bytes.
+type Member = (String, usize, usize);
+
+/// A struct as the WGSL has it: size in bytes and members.
+fn in_wgsl(source: &str, name: &str) -> (usize, Vec<Member>) {
+    let module = naga::front::wgsl::parse_str(source).expect("a valid root");
+    let mut layouter = Layouter::default();
+    layouter.update(module.to_ctx()).expect("every type has a layout");
+    let (handle, ty) =
+        module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).expect("the root uses the struct");
+    let naga::TypeInner::Struct { members, .. } = &ty.inner else { panic!("{name} is no struct") };
+    let members = members
+        .iter()
+        .map(|m| (m.name.clone().unwrap_or_default(), m.offset as usize, layouter[m.ty].size as usize))
+        .collect();
+    (layouter[handle].size as usize, members)
+}
+
+macro_rules! in_rust {
+    ($name:ident: $($member:ident),*) => {{
+        fn size_of_member<T, M>(_: fn(&T) -> &M) -> usize {
+            size_of::<M>()
+        }
+        // Without `..` this names every member, or the test does not compile.
+        let $name { $($member: _,)* _padding: _ } = $name::default();
+        (size_of::<$name>(), vec![$((
+            stringify!($member).to_owned(),
+            offset_of!($name, $member),
+            size_of_member::<$name, _>(|it| &it.$member),
+        )),*])
+    }};
+}
+
+fn split_in_rust() -> (usize, Vec<Member>) {
+    in_rust!(Split: u_row, v_row, depth_row, texel_offset, texel_m, size, far, blend_begin, depth_range_m, depth_step_m,
+        is_empty)
+}
+
+fn frame_in_rust() -> (usize, Vec<Member>) {
+    in_rust!(Frame: view_depth_plane, to_light, strength, fade_begin, map_edge, split_count, filter_kind, enabled, tint,
+        splits)
+}
+
+#[test]
+fn members_agree() {
+    let (caster, receiver) = (umbrage_shaders::caster(0), umbrage_shaders::receiver(0));
+    assert_eq!(split_in_rust(), in_wgsl(&caster, "UmbrageSplit"));
+    assert_eq!(split_in_rust(), in_wgsl(&receiver, "UmbrageSplit"));
+    assert_eq!(frame_in_rust(), in_wgsl(&receiver, "UmbrageFrame"));
+}
+
+/// The comparison above must be able to say no: one member moved, one renamed, one resized.
+#[test]
+fn disagreement_is_seen() {
+    let source = umbrage_shaders::caster(0);
+    for (from, to) in [
+        ("size: f32,\n    far: f32,", "far: f32,\n    size: f32,"),
+        ("blend_begin: f32,", "blend_start: f32,"),
+        ("texel_offset: vec2f,", "texel_offset: vec4f,"),
+    ] {
+        let changed = source.replace(from, to).replace(" + split.texel_offset", "");
+        assert!(changed.contains(to), "{from} is not in the text any more");
+        assert_ne!(split_in_rust(), in_wgsl(&changed, "UmbrageSplit"), "{from} became {to}");
+    }
+}
