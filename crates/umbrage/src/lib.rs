@@ -27,6 +27,7 @@ mod settings;
 mod split;
 mod stable;
 mod volume;
+mod warp;
 
 pub use bias::{Bias, STEEPEST};
 pub use bounds::Aabb;
@@ -38,3 +39,4 @@ pub use planner::Planner;
 pub use settings::{Fit, MAX_SPLITS, ShadowSettings, SplitScheme, Stabilize};
 pub use split::split_planes;
 pub use stable::{Sphere, slice_sphere, stable_texel};
+pub use warp::{Warp, WarpTarget, texels_along};

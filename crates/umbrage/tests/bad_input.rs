@@ -41,17 +41,26 @@ fn settings() {
 #[test]
 fn lights() {
     for direction in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY, DVec3::splat(1e-320)] {
-        assert!(matches!(DirectionalLight::new(direction), Err(Error::InvalidLight { field: "direction", .. })), "{direction}");
+        assert!(
+            matches!(DirectionalLight::new(direction), Err(Error::InvalidLight { field: "direction", .. })),
+            "{direction}"
+        );
     }
 }
 
 #[test]
 fn bounds() {
     let mut planner = Planner::new(ShadowSettings::default()).expect("valid");
-    let view = View::look_at_upright(DVec3::ZERO, DVec3::X, Frustum::perspective(1.0, 1.0, 1.0, 100.0).expect("valid")).expect("valid");
+    let view = View::look_at_upright(DVec3::ZERO, DVec3::X, Frustum::perspective(1.0, 1.0, 1.0, 100.0).expect("valid"))
+        .expect("valid");
     let light = DirectionalLight::new(DVec3::NEG_Y).expect("valid");
     let good = Aabb::new(DVec3::ZERO, DVec3::ONE);
-    for bad in [Aabb::EMPTY, Aabb::new(DVec3::ONE, DVec3::ZERO), Aabb::new(DVec3::NAN, DVec3::ONE), Aabb::new(DVec3::ZERO, DVec3::INFINITY)] {
+    for bad in [
+        Aabb::EMPTY,
+        Aabb::new(DVec3::ONE, DVec3::ZERO),
+        Aabb::new(DVec3::NAN, DVec3::ONE),
+        Aabb::new(DVec3::ZERO, DVec3::INFINITY),
+    ] {
         let casters = planner.plan(&view, &light, &[good, bad], &[good]).expect_err("a bad caster");
         assert!(matches!(casters, Error::InvalidBounds { list: "casters", index: 1, .. }), "{casters}");
         let receivers = planner.plan(&view, &light, &[good], &[bad]).expect_err("a bad receiver");

@@ -25,7 +25,13 @@ fn right_is_right_up_is_up_and_depth_is_reversed() {
 
 #[test]
 fn a_ray_through_a_pixel_projects_onto_it() {
-    let frustum = Frustum { left: -0.3, right: 0.9, bottom: -0.2, top: 0.7, ..Frustum::perspective(1.0, 1.0, 0.1, 50.0).expect("valid") };
+    let frustum = Frustum {
+        left: -0.3,
+        right: 0.9,
+        bottom: -0.2,
+        top: 0.7,
+        ..Frustum::perspective(1.0, 1.0, 0.1, 50.0).expect("valid")
+    };
     let eye = DVec3::new(3.0, 4.0, 5.0);
     let view = View::look_at_upright(eye, DVec3::new(-2.0, 1.0, 0.5), frustum).expect("valid");
     for (x, y) in [(0.0, 0.0), (0.25, 0.75), (1.0, 0.5)] {
@@ -71,9 +77,15 @@ fn bad_cameras_are_named() {
     assert_eq!(look(DVec3::NAN, DVec3::Y, DVec3::X), "eye");
     assert_eq!(look(DVec3::ZERO, DVec3::INFINITY, DVec3::X), "target");
     let strange = DMat4::from_cols(DVec4::new(1.0, 0.5, 0.0, 0.0), DVec4::Y, DVec4::Z, DVec4::W);
-    assert_eq!(field(Frustum::from_projection_matrix(strange, DepthConvention::ZeroToOne).expect_err("sheared")), "projection matrix");
+    assert_eq!(
+        field(Frustum::from_projection_matrix(strange, DepthConvention::ZeroToOne).expect_err("sheared")),
+        "projection matrix"
+    );
     let nan = DMat4::NAN;
-    assert_eq!(field(Frustum::from_projection_matrix(nan, DepthConvention::ZeroToOne).expect_err("NaN")), "projection matrix");
+    assert_eq!(
+        field(Frustum::from_projection_matrix(nan, DepthConvention::ZeroToOne).expect_err("NaN")),
+        "projection matrix"
+    );
 }
 
 /// Frusta of every sort, biased to the awkward: off-axis, thin, nearly flat, infinite.

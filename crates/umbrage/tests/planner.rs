@@ -58,28 +58,35 @@ fn cases() -> impl Strategy<Value = Case> {
         Just(DVec3::NEG_Z),
         (-1.0..1.0f64, -1.0..-0.02f64, -1.0..1.0f64).prop_map(|(x, y, z)| DVec3::new(x, y, z)),
     ];
-    let lens = (0.2..2.2f64, 0.5..2.5f64, any::<bool>(), any::<bool>()).prop_map(|(fov, aspect, perspective, off_axis)| {
-        let mut frustum = Frustum::perspective(fov, aspect, 0.5, 400.0).expect("valid");
-        if !perspective {
-            frustum = Frustum::orthographic(80.0, 60.0, 0.5, 400.0).expect("valid");
-        }
-        if off_axis {
-            frustum.left *= 0.2;
-            frustum.top *= 1.5;
-        }
-        frustum
-    });
+    let lens =
+        (0.2..2.2f64, 0.5..2.5f64, any::<bool>(), any::<bool>()).prop_map(|(fov, aspect, perspective, off_axis)| {
+            let mut frustum = Frustum::perspective(fov, aspect, 0.5, 400.0).expect("valid");
+            if !perspective {
+                frustum = Frustum::orthographic(80.0, 60.0, 0.5, 400.0).expect("valid");
+            }
+            if off_axis {
+                frustum.left *= 0.2;
+                frustum.top *= 1.5;
+            }
+            frustum
+        });
     let eye = (-50.0..50.0f64, 0.5..40.0f64, -50.0..50.0f64);
     let turn = (-3.2..3.2f64, -1.5..0.5f64, any::<bool>());
-    (settings(), boxes(), sun, lens, eye, turn).prop_map(|(settings, boxes, sun, frustum, eye, (yaw, pitch, into_the_light))| {
-        let eye = DVec3::from(eye);
-        let light = DirectionalLight::new(sun).expect("valid");
-        let rotation = DQuat::from_euler(EulerRot::YXZ, yaw, pitch, 0.0);
-        let ahead = if into_the_light { (-light.direction()).lerp(rotation * DVec3::NEG_Z, 0.05) } else { rotation * DVec3::NEG_Z };
-        let up = if ahead.normalize().y.abs() > 0.9 { DVec3::X } else { DVec3::Y };
-        let view = View::look_at(eye, eye + ahead, up, frustum).expect("valid");
-        Case { settings, view, light, boxes }
-    })
+    (settings(), boxes(), sun, lens, eye, turn).prop_map(
+        |(settings, boxes, sun, frustum, eye, (yaw, pitch, into_the_light))| {
+            let eye = DVec3::from(eye);
+            let light = DirectionalLight::new(sun).expect("valid");
+            let rotation = DQuat::from_euler(EulerRot::YXZ, yaw, pitch, 0.0);
+            let ahead = if into_the_light {
+                (-light.direction()).lerp(rotation * DVec3::NEG_Z, 0.05)
+            } else {
+                rotation * DVec3::NEG_Z
+            };
+            let up = if ahead.normalize().y.abs() > 0.9 { DVec3::X } else { DVec3::Y };
+            let view = View::look_at(eye, eye + ahead, up, frustum).expect("valid");
+            Case { settings, view, light, boxes }
+        },
+    )
 }
 
 /// Points of the boxes' surfaces that the view shows, as the renderer would find them.

@@ -14,7 +14,8 @@ fn practical(lambda: f64) -> SplitScheme {
 
 #[test]
 fn vectors() {
-    let vectors: serde_json::Value = serde_json::from_str(include_str!("data/splits.json")).expect("the vectors are JSON");
+    let vectors: serde_json::Value =
+        serde_json::from_str(include_str!("data/splits.json")).expect("the vectors are JSON");
     let cases = vectors["cases"].as_array().expect("the vectors hold cases");
     assert!(cases.len() > 20, "only {} vectors", cases.len());
     for case in cases {
@@ -50,7 +51,9 @@ fn planes_that_do_not_rise_are_refused() {
         let error = planes(&scheme, 1.0, 800.0, 4).expect_err("these planes do not rise");
         assert!(matches!(error, Error::InvalidSetting { field: f, .. } if f == field), "{error}");
     }
-    for (near, far) in [(1.0, 1.0), (2.0, 1.0), (0.0, 1.0), (-1.0, 1.0), (1.0, f64::INFINITY), (f64::NAN, 1.0), (1.0, f64::NAN)] {
+    for (near, far) in
+        [(1.0, 1.0), (2.0, 1.0), (0.0, 1.0), (-1.0, 1.0), (1.0, f64::INFINITY), (f64::NAN, 1.0), (1.0, f64::NAN)]
+    {
         let error = planes(&SplitScheme::Uniform, near, far, 2).expect_err("not a range");
         assert!(matches!(error, Error::InvalidSetting { field: "range", .. }), "{error}");
     }

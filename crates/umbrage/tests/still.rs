@@ -81,7 +81,12 @@ fn a_small_zoom_back_and_forth_changes_nothing() {
     let mut planner = Planner::new(settings).expect("valid");
     let light = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).expect("valid");
     let mut texel = |fov: f64| {
-        let view = View::look_at_upright(DVec3::ZERO, DVec3::NEG_Z, Frustum::perspective(fov, 1.5, 0.1, 1000.0).expect("valid")).expect("valid");
+        let view = View::look_at_upright(
+            DVec3::ZERO,
+            DVec3::NEG_Z,
+            Frustum::perspective(fov, 1.5, 0.1, 1000.0).expect("valid"),
+        )
+        .expect("valid");
         planner.plan(&view, &light, &[], &[]).expect("valid").splits[2].texel_m.x
     };
     let _ = texel(0.8);
