@@ -7,15 +7,24 @@
 //! * [`camera_view`], [`light_direction`] and their invented counterparts say from where and by which sun it is seen.
 //! * [`CameraPath`] walks through it, [`export_glb`] writes it down.
 
+mod camera_path;
 mod error;
+mod frame;
 mod gltf;
+mod height_map;
 mod model;
+mod open;
+mod picture;
 pub mod procedural;
 mod pose;
 mod sample;
 mod validate;
 
+pub use camera_path::CameraPath;
 pub use error::{Error, Result};
+pub use frame::{camera_view, invented_sun, invented_view, light_direction};
 pub use gltf::{load_gltf, load_gltf_slice};
+pub use height_map::{HeightMapOptions, load_height_map};
 pub use model::*;
+pub use open::open;
 pub use pose::Poser;

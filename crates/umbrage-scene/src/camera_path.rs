@@ -1,0 +1,145 @@
+//! Camera paths: a line through a scene, walked at eye height.
+
+use std::path::Path;
+
+use glam::DVec3;
+use serde::Deserialize;
+
+use crate::error::read_file;
+use crate::{Error, Result};
+
+/// How far ahead a walker looks, in metres along the path. Given by the command's contract.
+const LOOK_AHEAD_M: f64 = 20.0;
+
+/// A polyline in the world, and the sun that its author gave the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraPath {
+    /// Direction towards the sun, as the file has it (not normalised), if it has one.
+    pub sun_direction_to_light: Option<DVec3>,
+    file: String,
+    points: Vec<DVec3>,
+    /// Metres along the path to each point; one more entry for the way back to the first if the path is closed.
+    reached: Vec<f64>,
+    closed: bool,
+}
+
+/// The JSON of a path. Keys that are not listed are ignored.
+#[derive(Deserialize)]
+struct PathFile {
+    points: Vec<[f64; 3]>,
+    #[serde(default)]
+    closed: bool,
+    sun_direction_to_light: Option<[f64; 3]>,
+}
+
+impl CameraPath {
+    /// Reads a path: JSON with `points` (metres, on the ground), `closed` (default false) and `sun_direction_to_light`.
+    ///
+    /// # Errors
+    /// [`Error::Read`], [`Error::Malformed`] if it is not such JSON, and as [`CameraPath::new`].
+    pub fn load(path: &Path) -> Result<Self> {
+        let file = path.display().to_string();
+        let json: PathFile = serde_json::from_slice(&read_file(path)?)
+            .map_err(|error| Error::Malformed { file: file.clone(), reason: format!("is no camera path: {error}") })?;
+        let sun = json.sun_direction_to_light.map(DVec3::from);
+        Self::new(&file, json.points.into_iter().map(DVec3::from).collect(), json.closed, sun)
+    }
+
+    /// A path through `points`, back to the first if it is `closed`; `name` stands for the file in messages.
+    ///
+    /// # Errors
+    /// [`Error::CameraPath`] if there are fewer than two different points, or numbers are not finite, or the sun has no
+    /// direction.
+    pub fn new(name: &str, points: Vec<DVec3>, closed: bool, sun_direction_to_light: Option<DVec3>) -> Result<Self> {
+        let wrong = |element: String, reason: &str| Error::CameraPath {
+            file: name.to_owned(),
+            element,
+            reason: reason.to_owned(),
+        };
+        if let Some(bad) = points.iter().position(|point| !point.is_finite()) {
+            return Err(wrong(format!("points[{bad}]"), "holds a number that is not finite"));
+        }
+        if points.len() < 2 {
+            return Err(wrong("points".into(), "there are fewer than 2; a path needs 2 or more"));
+        }
+        if sun_direction_to_light.is_some_and(|sun| !sun.is_finite() || sun == DVec3::ZERO) {
+            return Err(wrong(
+                "sun_direction_to_light".into(),
+                "has no direction; give three finite numbers, not all 0",
+            ));
+        }
+        let mut reached = vec![0.0];
+        let behind = points[1..].iter().chain(closed.then_some(&points[0]));
+        for (from, to) in points.iter().zip(behind) {
+            reached.push(reached[reached.len() - 1] + from.distance(*to));
+        }
+        let path = Self { sun_direction_to_light, file: name.to_owned(), points, reached, closed };
+        if !(path.length() > 0.0 && path.length().is_finite()) {
+            return Err(wrong("points".into(), "all coincide, or lie too far apart; the path has no length"));
+        }
+        Ok(path)
+    }
+
+    /// Metres along the whole path.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.reached[self.reached.len() - 1]
+    }
+
+    /// Whether the path leads back to its first point.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// The points of the path, in metres.
+    #[must_use]
+    pub fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+
+    /// The point `distance` metres along the path. A closed path goes round and round; an open one goes straight on
+    /// behind its last point and before its first.
+    #[must_use]
+    pub fn point_at(&self, distance: f64) -> DVec3 {
+        let distance = if self.closed { distance.rem_euclid(self.length()) } else { distance };
+        // The last segment that starts at or before the distance; segments of no length never qualify for extrapolation.
+        let segments = self.reached.len() - 1;
+        let has_length = |s: &usize| self.reached[s + 1] > self.reached[*s];
+        let segment = (0..segments)
+            .filter(has_length)
+            .take_while(|&s| s == 0 || self.reached[s] <= distance)
+            .last()
+            .or_else(|| (0..segments).find(has_length))
+            .expect("a path has length, so some segment has");
+        let (from, to) = (self.points[segment], self.points[(segment + 1) % self.points.len()]);
+        let share = (distance - self.reached[segment]) / (self.reached[segment + 1] - self.reached[segment]);
+        from.lerp(to, share)
+    }
+
+    /// Eye and target of frame `frame` of `frames`, `eye_height` metres above the path. The frames are spread evenly over
+    /// its length: from the first point to the last, or once round without coming back to the first. The target is the
+    /// point 20 m further on, at the same height above the path.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchElement`] if the frame is not below `frames`; [`Error::CameraPath`] if `eye_height` is not finite
+    /// or the point 20 m further on is the very same (a closed path of 20 m, for one).
+    pub fn pose_at(&self, frame: usize, frames: usize, eye_height: f64) -> Result<(DVec3, DVec3)> {
+        if frame >= frames {
+            return Err(Error::NoSuchElement { kind: "frame", index: frame, count: frames });
+        }
+        let wrong = |element: String, reason: String| Error::CameraPath { file: self.file.clone(), element, reason };
+        if !eye_height.is_finite() {
+            return Err(wrong("eye height".into(), format!("is {eye_height}; it has to be a finite number of metres")));
+        }
+        let steps = if self.closed { frames } else { (frames - 1).max(1) };
+        let distance = self.length() * frame as f64 / steps as f64;
+        let above = DVec3::Y * eye_height;
+        let (eye, target) = (self.point_at(distance) + above, self.point_at(distance + LOOK_AHEAD_M) + above);
+        if eye.distance(target) < 1e-9 * (1.0 + eye.length()) {
+            let reason = format!("the point {LOOK_AHEAD_M} m further on is the same, so the eye has nowhere to look");
+            return Err(wrong(format!("frame {frame}"), reason));
+        }
+        Ok((eye, target))
+    }
+}

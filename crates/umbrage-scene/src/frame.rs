@@ -1,0 +1,110 @@
+//! From where and by which sun a scene is seen: its own cameras and lights, or invented ones.
+
+use glam::DVec3;
+use umbrage::{Frustum, View};
+
+use crate::error::element;
+use crate::{Error, Lens, LightKind, Pose, Result, Scene};
+
+/// How much larger than the scene an invented view is. Ours: a border of a few pixels.
+const FRAMING_MARGIN: f64 = 1.04;
+
+/// Least near distance of an invented view, as a share of its far distance. Ours: a ten-thousandth leaves a logarithmic
+/// split room and a 32-bit depth buffer precision.
+const LEAST_NEAR_SHARE: f64 = 1e-4;
+
+/// The view of a camera of the scene, for a picture of `aspect` (width over height).
+///
+/// The vertical angle (or height) of the lens is kept and the width follows the picture. `near` and `far` in metres
+/// take precedence over the camera's own; without either, far is infinite for a perspective camera.
+///
+/// # Errors
+/// [`Error::NoSuchElement`], or [`Error::View`] if the camera or the distances are not usable.
+pub fn camera_view(
+    scene: &Scene,
+    pose: &Pose,
+    index: usize,
+    aspect: f64,
+    near: Option<f64>,
+    far: Option<f64>,
+) -> Result<View> {
+    let count = scene.cameras.len();
+    let missing = || Error::NoSuchElement { kind: "camera", index, count };
+    let camera = scene.cameras.get(index).ok_or_else(missing)?;
+    let world_from_view = pose.world_from_node.get(camera.node).ok_or_else(missing)?;
+    let frustum = match camera.lens {
+        Lens::Perspective { yfov, znear, zfar, .. } => {
+            Frustum::perspective(yfov, aspect, near.unwrap_or(znear), far.or(zfar).unwrap_or(f64::INFINITY))?
+        }
+        Lens::Orthographic { ymag, znear, zfar, .. } => {
+            Frustum::orthographic(2.0 * ymag * aspect, 2.0 * ymag, near.unwrap_or(znear), far.unwrap_or(zfar))?
+        }
+    };
+    Ok(View::from_world_from_view((*world_from_view).into(), frustum)?)
+}
+
+/// The way the light of a light of the scene travels along its axis, a unit vector in the world.
+///
+/// # Errors
+/// [`Error::NoSuchElement`], or [`Error::Light`] if it shines from a point to all sides or its node has no direction.
+pub fn light_direction(scene: &Scene, pose: &Pose, index: usize) -> Result<DVec3> {
+    let count = scene.lights.len();
+    let missing = || Error::NoSuchElement { kind: "light", index, count };
+    let light = scene.lights.get(index).ok_or_else(missing)?;
+    let world_from_light = pose.world_from_node.get(light.node).ok_or_else(missing)?;
+    let unusable = |reason: &str| Error::Light { light: element("lights", index, &light.name), reason: reason.into() };
+    if light.kind == LightKind::Point {
+        return Err(unusable("shines to all sides; choose a directional light, or give the sun's direction"));
+    }
+    let axis = world_from_light.matrix3.z_axis;
+    // A scale may be tiny or huge; only a direction is wanted.
+    (-axis / axis.abs().max_element())
+        .try_normalize()
+        .ok_or_else(|| unusable("stands on a node without a direction (its scale is 0)"))
+}
+
+/// A sun for scenes without one: from the south-west, 45° up. The way its light travels, a unit vector.
+///
+/// An invented view looks from the south-east, so shadows fall to the right, away from the eye.
+#[must_use]
+pub fn invented_sun() -> DVec3 {
+    let (across, turn) = (std::f64::consts::FRAC_1_SQRT_2, 35_f64.to_radians());
+    DVec3::new(across * turn.sin(), -across, -across * turn.cos())
+}
+
+/// A view for scenes without a camera: from the south-east, a bit above, the whole scene in the picture.
+///
+/// `fov_y` is the full vertical angle in radians. `near` and `far` in metres follow from the scene where they are
+/// `None`. A scene without triangles is looked at from 10 m away.
+///
+/// # Errors
+/// [`Error::View`] if an angle, the aspect or a distance is out of range.
+pub fn invented_view(pose: &Pose, fov_y: f64, aspect: f64, near: Option<f64>, far: Option<f64>) -> Result<View> {
+    let (center, corners) = match pose.bounds {
+        Some(bounds) => (bounds.center(), bounds.corners()),
+        None => (DVec3::ZERO, [DVec3::ZERO; 8]),
+    };
+    // Checked before its sides are used.
+    let lens = Frustum::perspective(fov_y, aspect, 1.0, 2.0)?;
+    let back = DVec3::new(0.62, 0.45, 0.85).normalize();
+    let axes = View::look_at_upright(center + back, center, lens)?.world_from_view_rotation();
+
+    // The nearest eye on the line along `back` from which no corner lies outside a side of the frustum.
+    let mut distance: f64 = 0.0;
+    let mut reach: f64 = 0.0;
+    for corner in corners {
+        let in_view = axes.transpose() * (corner - center);
+        let outside = (in_view.x.abs() / lens.right).max(in_view.y.abs() / lens.top);
+        distance = distance.max(outside * FRAMING_MARGIN + in_view.z);
+        reach = reach.max(in_view.z.abs());
+    }
+    if distance <= 0.0 {
+        distance = 10.0;
+    }
+    let farthest = (distance + reach) * 1.1;
+    let far = far.unwrap_or(farthest);
+    let nearest = (0.5 * (distance - reach)).max(farthest * LEAST_NEAR_SHARE);
+    let near = near.unwrap_or_else(|| nearest.min(far * 0.01));
+    let lens = Frustum::perspective(fov_y, aspect, near, far)?;
+    Ok(View::look_at_upright(center + back * distance, center, lens)?)
+}
