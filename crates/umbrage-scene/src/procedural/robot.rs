@@ -331,7 +331,7 @@ fn cabin(parts: &mut Parts) {
     // Lying on its back: the stack's height becomes the cabin's length.
     let hull = [(-2.0, [1.5, 1.3]), (-1.3, [2.5, 2.0]), (0.6, [2.7, 2.2]), (1.6, [2.0, 1.6]), (2.1, [1.3, 1.0])];
     parts.armour(Solid::stack(&hull, 0.32).turned(DVec3::X, 90.0).at(0.0, 7.6, 0.1));
-    parts.glass(Solid::bevelled([1.5, 0.35, 0.6], 0.1).turned(DVec3::X, 24.0).at(0.0, 8.2, 1.6));
+    parts.glass(Solid::bevelled([1.5, 0.4, 0.9], 0.1).turned(DVec3::X, 30.0).at(0.0, 8.25, 1.75));
     parts.metal(Solid::bevelled([1.0, 0.45, 0.7], 0.1).at(0.0, 6.75, 1.5));
     let chin_gun = |x: f64| Solid::rod(dvec3(x, 6.72, 1.7), dvec3(x, 6.65, 3.1), 0.11, 5);
     parts.metal(Solid::all([chin_gun(0.25), chin_gun(-0.25)]));

@@ -266,6 +266,20 @@ impl Solid {
         Self::loft(End::Flat, &rings, End::Flat)
     }
 
+    /// A thick sheet: `at(u, v)` gives front and back of the sheet at shares 0 to 1 of its width and height; the front is
+    /// seen with u to the right and v up.
+    pub(super) fn slab(columns: usize, rows: usize, at: impl Fn(f64, f64) -> (DVec3, DVec3)) -> Self {
+        let rings: Vec<Vec<DVec3>> = (0..=rows)
+            .map(|row| {
+                let pair = |column: usize| at(column as f64 / columns as f64, row as f64 / rows as f64);
+                let front = (0..=columns).map(|column| pair(column).0);
+                front.chain((0..=columns).rev().map(|column| pair(column).1)).collect()
+            })
+            .collect();
+        // The zigzag of a flat end joins front and back in pairs, so a wavy sheet is closed as well as a straight one.
+        Self::loft(End::Flat, &rings, End::Flat)
+    }
+
     /// A ball of radius 1 made from a cube with `cells` × `cells` squares a side; 12·cells² triangles.
     pub(super) fn cube_sphere(cells: i32) -> Self {
         let mut solid = Self::default();
@@ -386,6 +400,14 @@ fn cut_rectangle(x: f64, z: f64, cut: f64) -> Vec<DVec2> {
         DVec2::new(-x, z - cut),
         DVec2::new(cut - x, z),
     ]
+}
+
+/// A round outline for [`Solid::sweep`] with ribs as deep as `depth` of the radius.
+pub(super) fn ribbed(ribs: usize, steps_per_rib: usize, depth: f64) -> Vec<DVec2> {
+    circle(ribs * steps_per_rib)
+        .enumerate()
+        .map(|(i, p)| p * (1.0 - depth * (0.5 - 0.5 * sin_cos(360.0 * i as f64 / steps_per_rib as f64).1)))
+        .collect()
 }
 
 /// The outline of a beam for [`Solid::sweep`]: a rectangle of half sizes `x`, `y` with cut corners.

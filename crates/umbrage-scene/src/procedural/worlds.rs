@@ -49,11 +49,11 @@ pub(super) fn robot_war() -> Scene {
         stage.place(format!("robot {i}"), mesh, standing(dvec3(place.x, 0.0, place.y), yaw, scale));
     }
 
-    stage.sun(SkyPoint { bearing: 35.0, elevation: 33.0 }, SkyPoint { bearing: 130.0, elevation: 58.0 });
-    stage.camera("near", dvec3(0.0, 6.0, 60.0), dvec3(0.0, 3.0, 0.0));
-    stage.camera("middle", dvec3(-150.0, 24.0, 250.0), dvec3(0.0, 0.0, 0.0));
-    stage.camera("far", dvec3(-420.0, 60.0, 420.0), dvec3(0.0, 0.0, 0.0));
-    stage.camera("dueling", dvec3(-200.0, 8.0, 120.0), dvec3(200.0, 4.0, -170.0));
+    stage.sun(SkyPoint { bearing: 35.0, elevation: 31.0 }, SkyPoint { bearing: 130.0, elevation: 58.0 });
+    stage.camera("near", dvec3(129.3, 9.6, -149.4), dvec3(140.5, -14.6, -53.1));
+    stage.camera("middle", dvec3(317.3, 36.0, 411.3), dvec3(229.6, 16.4, 367.4));
+    stage.camera("far", dvec3(86.1, 75.0, -263.1), dvec3(146.7, 46.5, -188.7));
+    stage.camera("dueling", dvec3(-549.4, 19.3, -139.2), dvec3(-463.7, 17.5, -190.7));
     stage.camera("aerial", dvec3(-250.0, 330.0, 520.0), dvec3(0.0, 0.0, -20.0));
     stage.scene
 }
@@ -103,11 +103,11 @@ pub(super) fn chessboard() -> Scene {
         }
     }
 
-    stage.sun(SkyPoint { bearing: 150.0, elevation: 34.0 }, SkyPoint { bearing: 60.0, elevation: 60.0 });
-    stage.camera("near", dvec3(-20.0, 22.0, 330.0), dvec3(20.0, 18.0, 0.0));
-    stage.camera("middle", dvec3(330.0, 90.0, 330.0), dvec3(0.0, 0.0, 0.0));
-    stage.camera("far", dvec3(-60.0, 150.0, 480.0), dvec3(0.0, 0.0, 0.0));
-    stage.camera("dueling", dvec3(320.0, 30.0, 190.0), dvec3(0.0, 20.0, 0.0));
+    stage.sun(SkyPoint { bearing: 150.0, elevation: 32.0 }, SkyPoint { bearing: 60.0, elevation: 60.0 });
+    stage.camera("near", dvec3(75.4, 33.8, -87.2), dvec3(86.7, 9.6, 9.2));
+    stage.camera("middle", dvec3(-29.1, 104.2, -100.6), dvec3(-41.4, 66.0, -9.0));
+    stage.camera("far", dvec3(47.1, 130.5, 303.2), dvec3(27.4, 90.1, 213.9));
+    stage.camera("dueling", dvec3(234.6, 55.9, 234.0), dvec3(150.6, 47.0, 180.5));
     stage.camera("aerial", dvec3(-330.0, 330.0, 430.0), dvec3(0.0, 0.0, 20.0));
     stage.scene
 }
