@@ -104,7 +104,8 @@ pub fn invented_view(pose: &Pose, fov_y: f64, aspect: f64, near: Option<f64>, fa
     let farthest = (distance + reach) * 1.1;
     let far = far.unwrap_or(farthest);
     let nearest = (0.5 * (distance - reach)).max(farthest * LEAST_NEAR_SHARE);
-    let near = near.unwrap_or_else(|| nearest.min(far * 0.01));
+    // A given far distance may end before the scene begins; the picture is then empty, not an error.
+    let near = near.unwrap_or(if nearest < far { nearest } else { far * 0.01 });
     let lens = Frustum::perspective(fov_y, aspect, near, far)?;
     Ok(View::look_at_upright(center + back * distance, center, lens)?)
 }

@@ -227,7 +227,7 @@ fn triangles(mode: Mode, corners: Vec<u32>) -> Result<Vec<u32>, String> {
     }
     let count = corners.len().saturating_sub(2);
     let triangle = |i: usize| match mode {
-        Mode::TriangleStrip if i % 2 == 0 => [corners[i], corners[i + 1], corners[i + 2]],
+        Mode::TriangleStrip if i.is_multiple_of(2) => [corners[i], corners[i + 1], corners[i + 2]],
         Mode::TriangleStrip => [corners[i], corners[i + 2], corners[i + 1]],
         _ => [corners[i + 1], corners[i + 2], corners[0]],
     };

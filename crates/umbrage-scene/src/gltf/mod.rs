@@ -82,8 +82,8 @@ type External<'a> = &'a dyn Fn(&str, &str) -> Result<Vec<u8>>;
 fn load(file: &str, bytes: &[u8], external: External<'_>) -> Result<Scene> {
     let malformed = |reason: String| Error::Malformed { file: file.to_owned(), reason };
     let chunks = container::split(bytes).map_err(malformed)?;
-    let root = json::Root::from_slice(chunks.json)
-        .map_err(|error| malformed(format!("its JSON is not a glTF 2.0 document: {error}")))?;
+    let root =
+        parse(chunks.json).map_err(|error| malformed(format!("its JSON is not a glTF 2.0 document: {error}")))?;
     if root.asset.version.split('.').next() != Some("2") {
         return Err(malformed(format!("is glTF {}; only version 2 is read", root.asset.version)));
     }
@@ -102,6 +102,28 @@ fn load(file: &str, bytes: &[u8], external: External<'_>) -> Result<Scene> {
     scene.notes = document.notes.into_lines();
     scene.validate()?;
     Ok(scene)
+}
+
+/// Parses the JSON. Two things that glTF allows are put in terms that the `gltf` crate's types know: scenes without
+/// nodes, and channels without a target node, which are to be ignored.
+fn parse(bytes: &[u8]) -> Result<json::Root, json::Error> {
+    let mut value: serde_json::Value = json::deserialize::from_slice(bytes)?;
+    for scene in list(&mut value, "scenes").into_iter().flatten() {
+        if let Some(scene) = scene.as_object_mut() {
+            scene.entry("nodes").or_insert_with(|| serde_json::Value::Array(Vec::new()));
+        }
+    }
+    for animation in list(&mut value, "animations").into_iter().flatten() {
+        if let Some(channels) = list(animation, "channels") {
+            channels.retain(|channel| channel.get("target").is_none_or(|target| target.get("node").is_some()));
+        }
+    }
+    json::deserialize::from_value(value)
+}
+
+/// A list in a JSON object.
+fn list<'v>(object: &'v mut serde_json::Value, name: &str) -> Option<&'v mut Vec<serde_json::Value>> {
+    object.get_mut(name).and_then(serde_json::Value::as_array_mut)
 }
 
 /// The file being read: its JSON, its bytes, and what there is to say about it.

@@ -295,7 +295,7 @@ fn light(document: &Document<'_>, json: &json::Node, user: &str, node: usize) ->
         }
         Checked::Invalid => return Err(document.invalid(user, "has an unknown type")),
     };
-    if let Some(range) = light.range.filter(|range| !(*range > 0.0)) {
+    if let Some(range) = light.range.filter(|range| range.is_nan() || *range <= 0.0) {
         return Err(document.invalid(user, format!("range is {range}; it has to be above 0")));
     }
     let range = light.range.filter(|range| range.is_finite()).map(f64::from);
