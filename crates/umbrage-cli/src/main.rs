@@ -1,2 +1,28 @@
-//! The command `umbrage`.
-fn main() {}
+//! The command `umbrage`: parse, run, exit code.
+
+use std::{panic, process::ExitCode};
+
+use clap::Parser;
+use umbrage_cli::args::Args;
+
+/// A defect of ours: 1, as for anything that is not the user's fault.
+const DEFECT: u8 = 1;
+
+fn main() -> ExitCode {
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(error) => {
+            // Help and version go to standard output and are no error; a reader who has left is none either.
+            drop(error.print());
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(DEFECT));
+        }
+    };
+    match panic::catch_unwind(|| umbrage_cli::run(&args)) {
+        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Err(failure)) => {
+            eprintln!("umbrage: {failure}");
+            ExitCode::from(failure.exit_code())
+        }
+        Err(_) => ExitCode::from(DEFECT),
+    }
+}

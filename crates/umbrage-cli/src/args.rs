@@ -1,0 +1,315 @@
+//! What was typed. What it means is worked out in [`crate::job`].
+//!
+//! One set of scene, camera, light and time options serves every subcommand; what a subcommand does not need it accepts
+//! and ignores, so one argument list serves `render`, `probe` and `truth`.
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand, ValueEnum};
+use glam::DVec3;
+
+use crate::parse;
+
+/// Sunlight and its shadows over large worlds: pictures, visibility masks, probes, and the exact truth to compare with.
+#[derive(Debug, Parser)]
+#[command(name = "umbrage", version, max_term_width = 110)]
+pub struct Args {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Draw the scene: a picture, its visibility mask, its shadow maps, a report
+    Render(Box<RenderArgs>),
+    /// Answer the visibility of given points, from the very maps that `render` uses
+    Probe(Box<ProbeArgs>),
+    /// Work out the visibility mask exactly, by rays
+    Truth(Box<TruthArgs>),
+    /// The procedural worlds
+    Worlds {
+        /// What to do with them.
+        #[command(subcommand)]
+        command: WorldsCommand,
+    },
+    /// Say which graphics adapter would be used, or fail if there is none
+    #[command(hide = true)]
+    Adapter,
+}
+
+/// `umbrage render`.
+#[derive(Debug, clap::Args)]
+pub struct RenderArgs {
+    /// Scene, camera, light and time.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Shadows.
+    #[command(flatten)]
+    pub shadows: ShadowArgs,
+    /// Write the picture here (PNG)
+    #[arg(short = 'o', long = "output", value_name = "PICTURE", help_heading = "Output")]
+    pub picture: Option<PathBuf>,
+    /// Write the visibility mask here (PNG, grey and alpha: 255 lit, 0 shadowed, alpha 0 where nothing was hit)
+    #[arg(long, value_name = "MASK", help_heading = "Output")]
+    pub visibility: Option<PathBuf>,
+    /// Write each split's map into this folder, as pictures
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub maps: Option<PathBuf>,
+    /// Write what was done and what it cost here (JSON)
+    #[arg(long, value_name = "JSON", help_heading = "Output")]
+    pub report: Option<PathBuf>,
+}
+
+/// `umbrage probe`.
+#[derive(Debug, clap::Args)]
+pub struct ProbeArgs {
+    /// Scene, camera, light and time.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Shadows.
+    #[command(flatten)]
+    pub shadows: ShadowArgs,
+    /// Records of six little-endian f64: a world position and a geometric normal
+    #[arg(long, value_name = "IN")]
+    pub points: PathBuf,
+    /// Write one little-endian f32 of visibility per record here
+    #[arg(long, value_name = "OUT", help_heading = "Output")]
+    pub out: PathBuf,
+    /// Write what was done and what it cost here, with the split of each point (JSON)
+    #[arg(long, value_name = "JSON", help_heading = "Output")]
+    pub report: Option<PathBuf>,
+}
+
+/// `umbrage truth`.
+#[derive(Debug, clap::Args)]
+pub struct TruthArgs {
+    /// Scene, camera, light and time.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Accepted and ignored: rays need none of it.
+    #[command(flatten)]
+    pub shadows: ShadowArgs,
+    /// Write the exact visibility mask here (PNG, grey and alpha)
+    #[arg(short = 'o', long = "output", value_name = "MASK", help_heading = "Output")]
+    pub mask: PathBuf,
+    /// Write scene, camera, sun and times here (JSON)
+    #[arg(long, value_name = "JSON", help_heading = "Output")]
+    pub report: Option<PathBuf>,
+}
+
+/// `umbrage worlds`.
+#[derive(Debug, Subcommand)]
+pub enum WorldsCommand {
+    /// Name them, with their cameras
+    List,
+    /// Write one as binary glTF
+    Export {
+        /// A world's name, see `umbrage worlds list`
+        #[arg(value_name = "NAME")]
+        name: String,
+        /// Write it here (.glb)
+        #[arg(short = 'o', long = "output", value_name = "FILE")]
+        output: PathBuf,
+    },
+}
+
+/// Scene, picture size, camera, light and time.
+#[derive(Debug, clap::Args)]
+pub struct SceneArgs {
+    /// A .glb or .gltf; a height map (.png with its .json, or the --metres options); or a world:
+    /// robot-war, chessboard, knights, mining-terrain
+    #[arg(value_name = "SCENE")]
+    pub scene: String,
+    /// Height map: metres between posts
+    #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Scene")]
+    pub metres_per_post: Option<f64>,
+    /// Height map: metres per unit of a pixel's value
+    #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Scene")]
+    pub metres_per_unit: Option<f64>,
+    /// Height map: metres added to every height
+    #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
+    pub height_offset: Option<f64>,
+    /// Seconds into the scene's animations
+    #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
+    pub time: f64,
+
+    /// Pixels
+    #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = parse::size, allow_hyphen_values = true, help_heading = "Camera")]
+    pub size: [u32; 2],
+    /// One of the scene's cameras
+    #[arg(long, value_name = "NAME|INDEX", help_heading = "Camera")]
+    pub camera: Option<String>,
+    /// Where the eye stands, in metres
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Camera")]
+    pub eye: Option<DVec3>,
+    /// The point it looks at; up is +Y, or −Z when looking along Y
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Camera")]
+    pub target: Option<DVec3>,
+    /// Vertical field of view in degrees [default: 60, or the camera's]
+    #[arg(long, value_name = "DEGREES", value_parser = parse::field_of_view, allow_hyphen_values = true, help_heading = "Camera")]
+    pub fov: Option<f64>,
+    /// Near plane in metres [default: 1, or the camera's]
+    #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Camera")]
+    pub near: Option<f64>,
+    /// Far plane in metres, or inf [default: 800, or the camera's]
+    #[arg(long, value_name = "M", value_parser = parse::positive_or_infinite, allow_hyphen_values = true, help_heading = "Camera")]
+    pub far: Option<f64>,
+    /// Move the camera along an author's path (JSON)
+    #[arg(long, value_name = "FILE", help_heading = "Camera")]
+    pub path: Option<PathBuf>,
+    /// With --path: this many frames; NAME.png becomes NAME.0000.png and so on
+    #[arg(long, value_name = "N", allow_hyphen_values = true, help_heading = "Camera")]
+    pub frames: Option<u32>,
+    /// With --path: metres from the path up to the eye
+    #[arg(long, value_name = "M", default_value = "2", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Camera")]
+    pub eye_height: f64,
+
+    /// One of the scene's directional lights [default: the first]
+    #[arg(long, value_name = "NAME|INDEX", help_heading = "Light")]
+    pub light: Option<String>,
+    /// The way light travels; any length
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Light")]
+    pub sun: Option<DVec3>,
+}
+
+/// How shadows are made.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Shadows")]
+pub struct ShadowArgs {
+    /// How the shadow maps share the view
+    #[arg(long, value_enum, default_value_t)]
+    pub technique: Technique,
+    /// Number of splits, 1 to 8 [default: 4, or as many as --map-size or --planes ask for]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub splits: Option<u32>,
+    /// Edge of each map in texels: one size, or one per split
+    #[arg(long, value_name = "TEXELS,…", default_value = "1024", value_parser = parse::map_sizes_list, allow_hyphen_values = true)]
+    pub map_size: MapSizes,
+    /// Where the planes between splits stand [default: practical, or manual where --planes is given]
+    #[arg(long, value_enum)]
+    pub scheme: Option<Scheme>,
+    /// Share of the logarithmic scheme in the practical one, 0 to 1 [default: 0.5]
+    #[arg(long, value_name = "SHARE", value_parser = parse::share, allow_hyphen_values = true)]
+    pub lambda: Option<f64>,
+    /// Metres added to the inner planes of the practical scheme: one for all, or one for each
+    #[arg(long, value_name = "M,…", value_parser = parse::number_list, allow_hyphen_values = true)]
+    pub delta: Option<Numbers>,
+    /// The inner planes of the manual scheme: view depths in metres, rising
+    #[arg(long, value_name = "M,…", value_parser = parse::plane_list, allow_hyphen_values = true)]
+    pub planes: Option<Numbers>,
+    /// View depths in metres that shadows cover [default: the camera's near and far, far capped by the scene]
+    #[arg(long, value_name = "N..F", value_parser = parse::range, allow_hyphen_values = true)]
+    pub shadow_range: Option<(f64, f64)>,
+    /// What each map is fitted to: the slice alone, or its receivers and casters too
+    #[arg(long, value_enum, default_value_t)]
+    pub fit: Fit,
+    /// Whether shadows stand still while the camera moves
+    #[arg(long, value_enum, default_value_t)]
+    pub stabilize: Stabilize,
+    /// How a map is looked up
+    #[arg(long, value_enum, default_value_t)]
+    pub filter: Filter,
+    /// Share of each split over which it blends into the next; 0 is off
+    #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
+    pub blend: f64,
+    /// Share of the shadowed range over which shadows fade out at its far end; 0 is off
+    #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
+    pub far_fade: f64,
+    /// What a map stores
+    #[arg(long, value_enum, default_value_t)]
+    pub depth_format: DepthFormat,
+    /// Colour the picture by split
+    #[arg(long)]
+    pub tint: bool,
+    /// Draw with shadows or without
+    #[arg(long, value_enum, default_value_t)]
+    pub shadows: Switch,
+}
+
+/// A list as one value, so that clap does not take it for a repeated option.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Numbers(pub Vec<f64>);
+
+/// Edges of maps in texels, as one value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MapSizes(pub Vec<u32>);
+
+/// `--technique`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Technique {
+    /// Parallel-split shadow maps
+    #[default]
+    Pssm,
+    /// One map over the whole range, with the same fit, culling and bias
+    Ssm,
+}
+
+/// `--scheme`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Scheme {
+    /// Equal slices
+    Uniform,
+    /// Equal ratios
+    Log,
+    /// A mix of both, by --lambda
+    #[default]
+    Practical,
+    /// By --planes
+    Manual,
+}
+
+/// `--fit`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Fit {
+    /// Receivers and casters tighten the map
+    #[default]
+    Dependent,
+    /// The slice alone
+    Independent,
+}
+
+/// `--stabilize`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Stabilize {
+    /// A sphere around the slice, moved in whole texels
+    #[default]
+    Exact,
+    /// The tightest map for every frame
+    None,
+}
+
+/// `--filter`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Filter {
+    /// One nearest texel, one comparison
+    Hard,
+    /// One bilinear comparison (2×2 texels)
+    Pcf2,
+    /// 3×3
+    #[default]
+    Pcf3,
+    /// 5×5
+    Pcf5,
+}
+
+/// `--depth-format`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum DepthFormat {
+    /// 32-bit float
+    #[default]
+    D32f,
+    /// 16-bit
+    D16,
+}
+
+/// `--shadows`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Switch {
+    /// With
+    #[default]
+    On,
+    /// Without
+    Off,
+}

@@ -1,0 +1,316 @@
+//! What the options mean: everything that can be checked before a file is read. The scene comes in [`crate::stage`].
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use glam::DVec3;
+use umbrage::{MAX_SPLITS, ShadowSettings, SplitScheme};
+
+use crate::{
+    args::{self, SceneArgs, Scheme, ShadowArgs, Technique},
+    failure::{Failure, Result},
+};
+
+/// `--fov` where nothing else says one, degrees.
+pub const DEFAULT_FOV: f64 = 60.0;
+/// `--near` where nothing else says one, metres.
+pub const DEFAULT_NEAR: f64 = 1.0;
+/// `--far` where nothing else says one, metres.
+pub const DEFAULT_FAR: f64 = 800.0;
+
+/// What is looked at, from where, under which sun: [`SceneArgs`], checked.
+#[derive(Debug, PartialEq)]
+pub struct SceneJob {
+    /// A world's name or a file.
+    pub scene: String,
+    /// `--metres-per-post`.
+    pub metres_per_post: Option<f64>,
+    /// `--metres-per-unit`.
+    pub metres_per_unit: Option<f64>,
+    /// `--height-offset`.
+    pub height_offset: Option<f64>,
+    /// Seconds into the animations.
+    pub time_s: f64,
+    /// Pixels across and down.
+    pub size: [u32; 2],
+    /// The eye.
+    pub camera: CameraChoice,
+    /// `--fov` as typed, degrees.
+    pub fov: Option<f64>,
+    /// `--near` as typed, metres.
+    pub near: Option<f64>,
+    /// `--far` as typed, metres.
+    pub far: Option<f64>,
+    /// The light.
+    pub sun: SunChoice,
+}
+
+/// How the eye was chosen.
+#[derive(Debug, PartialEq)]
+pub enum CameraChoice {
+    /// Not at all: the scene's first camera, or an invented one.
+    Default,
+    /// `--camera`.
+    Named(String),
+    /// `--eye` and `--target`.
+    LookAt {
+        /// Position.
+        eye: DVec3,
+        /// Another point.
+        target: DVec3,
+    },
+    /// `--path`.
+    Path {
+        /// The path's file.
+        file: PathBuf,
+        /// `--frames`; without it the path's first point is one frame without a number.
+        frames: Option<u32>,
+        /// Metres from the path up to the eye.
+        eye_height: f64,
+    },
+}
+
+/// How the light was chosen.
+#[derive(Debug, PartialEq)]
+pub enum SunChoice {
+    /// Not at all: the path's, else the scene's first directional light, else an invented one.
+    Default,
+    /// `--light`.
+    Named(String),
+    /// `--sun`: the way light travels.
+    Given(DVec3),
+}
+
+/// How shadows are made: [`ShadowArgs`], checked.
+#[derive(Debug, PartialEq)]
+pub struct ShadowJob {
+    /// `--technique`.
+    pub technique: Technique,
+    /// For the planner. Its filter radius, depth clamp and image size are set by whoever knows them.
+    pub settings: ShadowSettings,
+    /// `--filter`.
+    pub filter: args::Filter,
+    /// `--depth-format`.
+    pub depth_format: args::DepthFormat,
+    /// `--tint`.
+    pub tint: bool,
+    /// `--shadows`.
+    pub shadows_on: bool,
+    /// `--fit`, `--stabilize`, as typed.
+    pub fit: args::Fit,
+    /// As typed.
+    pub stabilize: args::Stabilize,
+}
+
+impl SceneJob {
+    /// # Errors
+    /// [`Failure::Input`] naming the options that do not go together.
+    pub fn new(args: &SceneArgs) -> Result<Self> {
+        let camera = camera_choice(args)?;
+        let sun = match (&args.light, args.sun) {
+            (Some(_), Some(_)) => return Err(Failure::input("--light and --sun both choose the light; give one of them")),
+            (Some(name), None) => SunChoice::Named(name.clone()),
+            (None, Some(direction)) => SunChoice::Given(direction),
+            (None, None) => SunChoice::Default,
+        };
+        let own_lens = matches!(camera, CameraChoice::Default | CameraChoice::Named(_));
+        let near = args.near.or((!own_lens).then_some(DEFAULT_NEAR));
+        let far = args.far.or((!own_lens).then_some(DEFAULT_FAR));
+        if let (Some(near), Some(far)) = (near, far)
+            && near >= far
+        {
+            return Err(Failure::input(format!("--near {near} is not less than --far {far}; give a nearer near or a farther far")));
+        }
+        Ok(Self {
+            scene: args.scene.clone(),
+            metres_per_post: args.metres_per_post,
+            metres_per_unit: args.metres_per_unit,
+            height_offset: args.height_offset,
+            time_s: args.time,
+            size: args.size,
+            camera,
+            fov: args.fov,
+            near,
+            far,
+            sun,
+        })
+    }
+
+    /// Width over height.
+    #[must_use]
+    pub fn aspect(&self) -> f64 {
+        f64::from(self.size[0]) / f64::from(self.size[1])
+    }
+
+    /// The files that the job reads by name, so that no output replaces one.
+    #[must_use]
+    pub fn inputs(&self) -> Vec<&Path> {
+        let scene = Path::new(&self.scene);
+        match &self.camera {
+            CameraChoice::Path { file, .. } => vec![scene, file],
+            _ => vec![scene],
+        }
+    }
+}
+
+fn camera_choice(args: &SceneArgs) -> Result<CameraChoice> {
+    let looks = args.eye.is_some() || args.target.is_some();
+    let clash = |a: &str, b: &str| Err(Failure::input(format!("{a} and {b} both choose the camera; give one of them")));
+    match (&args.camera, &args.path) {
+        (Some(_), Some(_)) => return clash("--camera", "--path"),
+        (Some(_), None) if looks => return clash("--camera", "--eye/--target"),
+        (None, Some(_)) if looks => return clash("--path", "--eye/--target"),
+        _ => {}
+    }
+    if args.path.is_none() && args.frames.is_some() {
+        return Err(Failure::input("--frames goes along a path; give one with --path FILE"));
+    }
+    if args.frames == Some(0) {
+        return Err(Failure::input("--frames 0 asks for no frame; give 1 or more"));
+    }
+    match (args.eye, args.target) {
+        (Some(eye), Some(target)) if eye == target => Err(Failure::input(format!(
+            "--eye and --target are the same point, {},{},{}; give a target to look at",
+            eye.x, eye.y, eye.z
+        ))),
+        (Some(eye), Some(target)) => Ok(CameraChoice::LookAt { eye, target }),
+        (Some(_), None) => Err(Failure::input("--eye without --target: give the point to look at")),
+        (None, Some(_)) => Err(Failure::input("--target without --eye: give the point to look from")),
+        (None, None) => Ok(match (&args.camera, &args.path) {
+            (Some(name), _) => CameraChoice::Named(name.clone()),
+            (None, Some(file)) => {
+                CameraChoice::Path { file: file.clone(), frames: args.frames, eye_height: args.eye_height }
+            }
+            (None, None) => CameraChoice::Default,
+        }),
+    }
+}
+
+impl ShadowJob {
+    /// # Errors
+    /// [`Failure::Input`] naming the options that do not go together.
+    pub fn new(args: &ShadowArgs, image_size: [u32; 2]) -> Result<Self> {
+        let map_sizes = map_sizes(args)?;
+        let settings = ShadowSettings {
+            scheme: scheme(args, map_sizes.len())?,
+            map_sizes,
+            range: args.shadow_range,
+            fit: match args.fit {
+                args::Fit::Dependent => umbrage::Fit::Dependent,
+                args::Fit::Independent => umbrage::Fit::Independent,
+            },
+            stabilize: match args.stabilize {
+                args::Stabilize::Exact => umbrage::Stabilize::Exact,
+                args::Stabilize::None => umbrage::Stabilize::None,
+            },
+            filter_radius: wgpu_filter(args.filter).radius_texels(),
+            blend: args.blend,
+            far_fade: args.far_fade,
+            depth_clamp: false,
+            image_size,
+        };
+        settings.validate()?;
+        Ok(Self {
+            technique: args.technique,
+            settings,
+            filter: args.filter,
+            depth_format: args.depth_format,
+            tint: args.tint,
+            shadows_on: args.shadows == args::Switch::On,
+            fit: args.fit,
+            stabilize: args.stabilize,
+        })
+    }
+}
+
+/// The renderer's filter.
+#[must_use]
+pub fn wgpu_filter(filter: args::Filter) -> umbrage_wgpu::Filter {
+    match filter {
+        args::Filter::Hard => umbrage_wgpu::Filter::Hard,
+        args::Filter::Pcf2 => umbrage_wgpu::Filter::Pcf2,
+        args::Filter::Pcf3 => umbrage_wgpu::Filter::Pcf3,
+        args::Filter::Pcf5 => umbrage_wgpu::Filter::Pcf5,
+    }
+}
+
+/// The renderer's depth format.
+#[must_use]
+pub fn wgpu_depth_format(format: args::DepthFormat) -> umbrage_wgpu::DepthFormat {
+    match format {
+        args::DepthFormat::D32f => umbrage_wgpu::DepthFormat::D32Float,
+        args::DepthFormat::D16 => umbrage_wgpu::DepthFormat::D16Unorm,
+    }
+}
+
+/// The name of an option's value as it is typed.
+#[must_use]
+pub fn typed_name(value: impl ValueEnum) -> String {
+    value.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+}
+
+/// One edge per split.
+fn map_sizes(args: &ShadowArgs) -> Result<Vec<u32>> {
+    let typed = &args.map_size.0;
+    let splits = match args.splits.map(|splits| splits as usize) {
+        Some(splits) if !(1..=MAX_SPLITS).contains(&splits) => {
+            return Err(Failure::input(format!("--splits {splits}: there may be 1 to {MAX_SPLITS}")));
+        }
+        Some(splits) if args.technique == Technique::Ssm && splits != 1 => {
+            return Err(Failure::input(format!(
+                "--splits {splits}: --technique ssm is one map over the whole range; leave --splits away, or use pssm"
+            )));
+        }
+        Some(splits) => splits,
+        None if args.technique == Technique::Ssm => 1,
+        None if typed.len() > 1 => typed.len(),
+        None => args.planes.as_ref().map_or(4, |planes| planes.0.len() + 1),
+    };
+    if splits > MAX_SPLITS {
+        return Err(Failure::input(format!("--map-size or --planes asks for {splits} splits; there may be 1 to {MAX_SPLITS}")));
+    }
+    match typed[..] {
+        [edge] => Ok(vec![edge; splits]),
+        _ if typed.len() == splits => Ok(typed.clone()),
+        _ => Err(Failure::input(format!(
+            "--map-size lists {} maps, but there {}; give one size, or one for each split",
+            typed.len(),
+            if splits == 1 { "is 1 split".into() } else { format!("are {splits} splits") },
+        ))),
+    }
+}
+
+fn scheme(args: &ShadowArgs, splits: usize) -> Result<SplitScheme> {
+    let scheme = args.scheme.unwrap_or(if args.planes.is_some() { Scheme::Manual } else { Scheme::Practical });
+    let name = typed_name(scheme);
+    let only_for = |option: &str, owner: &str| {
+        Err(Failure::input(format!("{option} belongs to --scheme {owner}, but the scheme is {name}; leave one of them away")))
+    };
+    if scheme != Scheme::Practical && args.lambda.is_some() {
+        return only_for("--lambda", "practical");
+    }
+    if scheme != Scheme::Practical && args.delta.is_some() {
+        return only_for("--delta", "practical");
+    }
+    if scheme != Scheme::Manual && args.planes.is_some() {
+        return only_for("--planes", "manual");
+    }
+    Ok(match scheme {
+        Scheme::Uniform => SplitScheme::Uniform,
+        Scheme::Log => SplitScheme::Logarithmic,
+        Scheme::Practical => SplitScheme::Practical {
+            lambda: args.lambda.unwrap_or(0.5),
+            delta: args.delta.as_ref().map(|delta| delta.0.clone()).unwrap_or_default(),
+        },
+        Scheme::Manual => match &args.planes {
+            Some(planes) => SplitScheme::Manual(planes.0.clone()),
+            None if splits == 1 => SplitScheme::Manual(Vec::new()),
+            None => {
+                return Err(Failure::input(format!(
+                    "--scheme manual needs --planes with the {} inner planes of {splits} splits",
+                    splits - 1
+                )));
+            }
+        },
+    })
+}

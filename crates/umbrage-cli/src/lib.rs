@@ -1,0 +1,35 @@
+//! The command `umbrage`, as a library, so that its parts can be tested.
+//!
+//! [`args`] is what was typed, [`job`] what it means, [`stage`] the scene it is about; then there is one file per
+//! subcommand. [`output`] makes files appear whole or not at all, [`failure`] decides the exit code.
+
+mod adapter;
+pub mod args;
+pub mod failure;
+pub mod job;
+pub mod output;
+pub mod parse;
+mod probe;
+pub mod progress;
+mod render;
+pub mod report;
+pub mod stage;
+mod truth;
+mod worlds;
+
+use args::{Args, Command};
+use failure::Result;
+
+/// Does what was asked for.
+///
+/// # Errors
+/// [`failure::Failure`], which knows its exit code. No output file is left behind.
+pub fn run(args: &Args) -> Result<()> {
+    match &args.command {
+        Command::Render(args) => render::run(args),
+        Command::Probe(args) => probe::run(args),
+        Command::Truth(args) => truth::run(args),
+        Command::Worlds { command } => worlds::run(command),
+        Command::Adapter => adapter::run(),
+    }
+}

@@ -1,0 +1,116 @@
+//! `umbrage probe`: visibility at given points, from the very maps that `render` uses.
+
+use std::{fs, path::Path};
+
+use glam::DVec3;
+use umbrage_render::{Outputs, ProbePoint};
+
+use crate::{
+    args::ProbeArgs,
+    failure::{Failure, Result},
+    job::{SceneJob, ShadowJob},
+    output::{self, Staged, numbered_file},
+    progress,
+    render::Studio,
+    report::{ProbeReport, to_json},
+    stage::Stage,
+};
+
+/// Six little-endian f64: a position and a normal.
+const RECORD_BYTES: usize = 6 * size_of::<f64>();
+
+/// Runs the subcommand.
+pub fn run(args: &ProbeArgs) -> Result<()> {
+    let job = SceneJob::new(&args.scene)?;
+    let shadows = ShadowJob::new(&args.shadows, job.size)?;
+    let files: Vec<&Path> = [Some(&args.out), args.report.as_ref()].into_iter().flatten().map(AsRef::as_ref).collect();
+    let inputs: Vec<&Path> = job.inputs().into_iter().chain([args.points.as_path()]).collect();
+    output::check(&files, &[], &inputs)?;
+    let bytes = fs::read(&args.points).map_err(|error| Failure::file("read", &args.points, &error))?;
+    let points = points(&args.points, &bytes)?;
+
+    let stage = Stage::open(&job)?;
+    let mut studio = Studio::open(&job, &shadows, &stage)?;
+    let mut staged = Staged::default();
+    let bar = progress::steps(stage.shots.len() as u64, "frames");
+    for shot in &stage.shots {
+        let frame = studio.frame(&stage, shot);
+        let answers = studio.renderer.probe(&frame, &points)?;
+        let visibility = answers.iter().flat_map(|answer| answer.visibility.to_le_bytes()).collect();
+        staged.file(&numbered_file(&args.out, shot.frame), visibility)?;
+        if let Some(path) = &args.report {
+            // The same maps once more, for what they cost; no picture is asked for.
+            let rendered = studio.renderer.render(&frame, Outputs::default())?;
+            let mut report = studio.report(&job, &stage, shot, &rendered.stats);
+            report.probe = Some(ProbeReport { split: answers.iter().map(|answer| answer.split).collect() });
+            staged.file(&numbered_file(path, shot.frame), to_json(&report)?)?;
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    staged.commit()
+}
+
+/// Reads the records of a file of points.
+fn points(path: &Path, bytes: &[u8]) -> Result<Vec<ProbePoint>> {
+    let bad = |reason: String| Failure::input(format!("--points {}: {reason}", path.display()));
+    if !bytes.len().is_multiple_of(RECORD_BYTES) {
+        return Err(bad(format!(
+            "{} bytes are not a whole number of records; each is {RECORD_BYTES} bytes, six little-endian f64",
+            bytes.len()
+        )));
+    }
+    bytes
+        .chunks_exact(RECORD_BYTES)
+        .enumerate()
+        .map(|(index, record)| {
+            let numbers: [f64; 6] = std::array::from_fn(|i| {
+                // chunks_exact gives 48 bytes, so each of the six slices has eight.
+                f64::from_le_bytes(std::array::from_fn(|byte| record[8 * i + byte]))
+            });
+            let [x, y, z, nx, ny, nz] = numbers;
+            let (position, normal) = (DVec3::new(x, y, z), DVec3::new(nx, ny, nz));
+            if !position.is_finite() || !normal.is_finite() {
+                return Err(bad(format!("record {index} holds a number that is not finite: {position}, {normal}")));
+            }
+            if normal.length() == 0.0 || !normal.length().is_finite() {
+                return Err(bad(format!("record {index} has the normal {normal}, which has no direction")));
+            }
+            Ok(ProbePoint { position, normal: normal.normalize() })
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bytes(numbers: &[f64]) -> Vec<u8> {
+        numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
+    }
+
+    #[test]
+    fn records_are_six_little_endian_numbers() {
+        let path = Path::new("points.bin");
+        let read = points(path, &bytes(&[1.0, 2.0, 3.0, 0.0, 2.0, 0.0, -4.0, 5.0, 6.0, 1.0, 0.0, 0.0])).expect("two points");
+        assert_eq!(read.len(), 2);
+        assert_eq!((read[0].position, read[0].normal), (DVec3::new(1.0, 2.0, 3.0), DVec3::Y));
+        assert_eq!((read[1].position, read[1].normal), (DVec3::new(-4.0, 5.0, 6.0), DVec3::X));
+        assert!(points(path, &[]).expect("no points at all").is_empty());
+    }
+
+    #[test]
+    fn bad_records_are_named() {
+        let path = Path::new("points.bin");
+        for (bad, word) in [
+            (vec![0; 47], "47 bytes"),
+            (vec![0; 49], "49 bytes"),
+            (bytes(&[0.0, 0.0, 0.0, 0.0, 1.0, 0.0, f64::NAN, 0.0, 0.0, 0.0, 1.0, 0.0]), "record 1"),
+            (bytes(&[0.0, 0.0, 0.0, 0.0, f64::INFINITY, 0.0]), "record 0"),
+            (bytes(&[0.0; 6]), "no direction"),
+        ] {
+            let error = points(path, &bad).err().expect("bad points").to_string();
+            assert!(error.contains("points.bin") && error.contains(word), "{error}");
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! `umbrage render`: the picture, its mask, its maps, its report.
+
+use std::{io::Cursor, path::Path};
+
+use image::{DynamicImage, ImageFormat};
+use umbrage_render::{Frame, FrameStats, Gpu, GpuOptions, Outputs, RenderSettings, Renderer};
+
+use crate::{
+    adapter,
+    args::RenderArgs,
+    failure::{Failure, Result},
+    job::{SceneJob, ShadowJob, typed_name, wgpu_depth_format, wgpu_filter},
+    output::{self, Staged, numbered_file, numbered_folder},
+    progress,
+    report::{Report, SplitReport, TimesMs, to_json},
+    stage::{Shot, Stage},
+};
+
+/// Runs the subcommand.
+pub fn run(args: &RenderArgs) -> Result<()> {
+    let job = SceneJob::new(&args.scene)?;
+    let shadows = ShadowJob::new(&args.shadows, job.size)?;
+    let files: Vec<&Path> =
+        [&args.picture, &args.visibility, &args.report].into_iter().flatten().map(AsRef::as_ref).collect();
+    let folders: Vec<&Path> = args.maps.iter().map(AsRef::as_ref).collect();
+    if files.is_empty() && folders.is_empty() {
+        return Err(Failure::input("nothing to write: give -o PICTURE, --visibility MASK, --maps DIR or --report JSON"));
+    }
+    output::check(&files, &folders, &job.inputs())?;
+
+    let stage = Stage::open(&job)?;
+    let mut studio = Studio::open(&job, &shadows, &stage)?;
+    let outputs =
+        Outputs { picture: args.picture.is_some(), mask: args.visibility.is_some(), maps: args.maps.is_some() };
+    let mut staged = Staged::default();
+    let bar = progress::steps(stage.shots.len() as u64, "frames");
+    for shot in &stage.shots {
+        let rendered = studio.renderer.render(&studio.frame(&stage, shot), outputs)?;
+        if let (Some(path), Some(picture)) = (&args.picture, rendered.picture) {
+            staged.file(&numbered_file(path, shot.frame), png(&picture)?)?;
+        }
+        if let (Some(path), Some(mask)) = (&args.visibility, rendered.mask) {
+            staged.file(&numbered_file(path, shot.frame), png(&mask)?)?;
+        }
+        if let Some(path) = &args.maps {
+            let maps = rendered.maps.iter().enumerate();
+            let files = maps.map(|(split, map)| Ok((format!("split{split}.png"), png(map)?))).collect::<Result<_>>()?;
+            staged.folder(&numbered_folder(path, shot.frame), files)?;
+        }
+        if let Some(path) = &args.report {
+            let report = studio.report(&job, &stage, shot, &rendered.stats);
+            staged.file(&numbered_file(path, shot.frame), to_json(&report)?)?;
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    staged.commit()
+}
+
+/// A renderer set up as the options say; `render` and `probe` share it.
+pub struct Studio<'a> {
+    /// Draws and probes.
+    pub renderer: Renderer,
+    shadows: &'a ShadowJob,
+    adapter: String,
+}
+
+impl<'a> Studio<'a> {
+    /// Opens the device and loads the scene onto it.
+    pub fn open(job: &SceneJob, shadows: &'a ShadowJob, stage: &Stage) -> Result<Self> {
+        let gpu = Gpu::new(&GpuOptions::default())?;
+        let settings = RenderSettings {
+            size: job.size,
+            shadows: shadows.settings.clone(),
+            filter: wgpu_filter(shadows.filter),
+            depth_format: wgpu_depth_format(shadows.depth_format),
+        };
+        let renderer = Renderer::new(&gpu, &stage.scene, &settings)?;
+        Ok(Self { renderer, shadows, adapter: adapter::description(&gpu) })
+    }
+
+    /// What the renderer is told about one shot.
+    pub fn frame<'s>(&self, stage: &'s Stage, shot: &'s Shot) -> Frame<'s> {
+        Frame {
+            pose: &stage.pose,
+            view: &shot.view,
+            sun: stage.sun,
+            shadows_on: self.shadows.shadows_on,
+            tint: self.shadows.tint,
+        }
+    }
+
+    /// What was done and what it cost.
+    pub fn report(&self, job: &SceneJob, stage: &Stage, shot: &Shot, stats: &FrameStats) -> Report {
+        let splits = stats.splits.iter().map(|split| SplitReport {
+            near: split.near,
+            far: split.far,
+            texel_m: split.texel_m,
+            casters: split.casters as u64,
+            draws: u64::from(split.draws),
+            triangles: split.triangles,
+            bytes: split.bytes,
+        });
+        Report {
+            shot: stage.report(job, shot),
+            adapter: self.adapter.clone(),
+            technique: typed_name(self.shadows.technique),
+            generation: stats.generation.to_string(),
+            storage: stats.storage.to_string(),
+            filter: typed_name(self.shadows.filter),
+            fit: typed_name(self.shadows.fit),
+            stabilize: typed_name(self.shadows.stabilize),
+            planes_m: stats.plan.planes.clone(),
+            times_ms: TimesMs { plan: stats.plan_ms, shadow: stats.shadow_ms, frame: stats.frame_ms },
+            bytes: stats.bytes,
+            splits: splits.collect(),
+            probe: None,
+            notes: stage.notes.iter().chain(&stats.notes).cloned().collect(),
+        }
+    }
+}
+
+/// A picture as the bytes of a PNG.
+pub fn png<I>(picture: &I) -> Result<Vec<u8>>
+where
+    I: Clone + Into<DynamicImage>,
+{
+    let mut bytes = Cursor::new(Vec::new());
+    let picture: DynamicImage = picture.clone().into();
+    picture
+        .write_to(&mut bytes, ImageFormat::Png)
+        .map_err(|error| Failure::other(format!("the picture cannot be written as PNG: {error}")))?;
+    Ok(bytes.into_inner())
+}
+
+/// No adapter and a failing device are nobody's bad input; everything else names an option or the scene.
+impl From<umbrage_render::Error> for Failure {
+    fn from(error: umbrage_render::Error) -> Self {
+        use umbrage_render::Error as E;
+        match error {
+            E::NoAdapter { .. } | E::NoDevice { .. } | E::Device { .. } | E::OutOfMemory { .. } => {
+                Self::other(error.to_string())
+            }
+            E::Plan(error) => error.into(),
+            E::ImageSize { .. } => Self::input(format!("--size: {error}")),
+            E::MapSize { .. } => Self::input(format!("--map-size: {error}")),
+            E::Probe { .. } => Self::input(format!("--points: {error}")),
+            _ => Self::input(error.to_string()),
+        }
+    }
+}
+
+/// What the loader refuses is a file or an option.
+impl From<umbrage_scene::Error> for Failure {
+    fn from(error: umbrage_scene::Error) -> Self {
+        match error {
+            umbrage_scene::Error::View(error) => error.into(),
+            _ => Self::input(error.to_string()),
+        }
+    }
+}

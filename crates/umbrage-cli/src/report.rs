@@ -1,0 +1,144 @@
+//! The report: what was drawn, with what, and what it cost. Field names are the contract of the command line.
+
+use serde::Serialize;
+
+/// The report of one frame of `render` or `probe`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// Scene, camera and sun.
+    #[serde(flatten)]
+    pub shot: ShotReport,
+    /// The graphics adapter.
+    pub adapter: String,
+    /// `pssm` or `ssm`.
+    pub technique: String,
+    /// How the maps were drawn.
+    pub generation: String,
+    /// How the maps are kept.
+    pub storage: String,
+    /// `hard`, `pcf2`, `pcf3` or `pcf5`.
+    pub filter: String,
+    /// `dependent` or `independent`.
+    pub fit: String,
+    /// `none` or `exact`.
+    pub stabilize: String,
+    /// `C_0 ..= C_m`: view depths in metres.
+    pub planes_m: Vec<f64>,
+    /// How long it took.
+    pub times_ms: TimesMs,
+    /// Bytes of all shadow maps.
+    pub bytes: u64,
+    /// The splits, nearest first.
+    pub splits: Vec<SplitReport>,
+    /// The answers of `probe`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub probe: Option<ProbeReport>,
+    /// Fallbacks taken, defaults invented.
+    pub notes: Vec<String>,
+}
+
+/// The report of one frame of `truth`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TruthReport {
+    /// Scene, camera and sun.
+    #[serde(flatten)]
+    pub shot: ShotReport,
+    /// How long it took.
+    pub times_ms: TruthTimesMs,
+    /// Defaults invented, parts of the scene left out.
+    pub notes: Vec<String>,
+}
+
+/// What was looked at, from where, under which sun.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ShotReport {
+    /// As typed.
+    pub scene: String,
+    /// Seconds into the animations.
+    pub time_s: f64,
+    /// Along a path: which frame.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frame: Option<u32>,
+    /// Pixels across and down.
+    pub size: [u32; 2],
+    /// The eye.
+    pub camera: CameraReport,
+    /// The way light travels, a unit vector.
+    pub sun: [f64; 3],
+}
+
+/// The eye: metres and degrees.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CameraReport {
+    /// Where the camera comes from: its name, or how it was chosen.
+    pub name: String,
+    /// Position.
+    pub eye: [f64; 3],
+    /// The way it looks, a unit vector.
+    pub forward: [f64; 3],
+    /// Its up, a unit vector.
+    pub up: [f64; 3],
+    /// Vertical field of view; none for an orthographic camera.
+    pub fov: Option<f64>,
+    /// Near plane.
+    pub near: f64,
+    /// Far plane; none if there is none.
+    pub far: Option<f64>,
+}
+
+/// Milliseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct TimesMs {
+    /// The planner.
+    pub plan: f64,
+    /// Drawing the maps.
+    pub shadow: f64,
+    /// The whole frame.
+    pub frame: f64,
+}
+
+/// Milliseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct TruthTimesMs {
+    /// Building the acceleration structure.
+    pub build: f64,
+    /// Casting the rays.
+    pub rays: f64,
+}
+
+/// One split.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SplitReport {
+    /// View depth where it begins, metres.
+    pub near: f64,
+    /// View depth where it ends, metres.
+    pub far: f64,
+    /// The larger edge of a texel on the ground, metres.
+    pub texel_m: f64,
+    /// glTF mesh nodes, or instances of them, in the split's list.
+    pub casters: u64,
+    /// Draw calls.
+    pub draws: u64,
+    /// Triangles drawn.
+    pub triangles: u64,
+    /// Bytes of its map.
+    pub bytes: u64,
+}
+
+/// What `probe` adds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ProbeReport {
+    /// For each point the split that answered, −1 if none did.
+    pub split: Vec<i32>,
+}
+
+/// JSON, indented, with a newline at its end.
+///
+/// # Errors
+/// [`crate::failure::Failure::Other`] if a value cannot be written as JSON, which would be a mistake of ours.
+pub fn to_json(report: &impl Serialize) -> crate::failure::Result<Vec<u8>> {
+    let mut json = serde_json::to_vec_pretty(report)
+        .map_err(|error| crate::failure::Failure::other(format!("the report cannot be written as JSON: {error}")))?;
+    json.push(b'\n');
+    Ok(json)
+}

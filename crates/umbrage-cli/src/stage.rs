@@ -1,0 +1,218 @@
+//! The scene of a job, opened and posed, with its views and its sun: what `render`, `probe` and `truth` have in common.
+
+use glam::DVec3;
+use umbrage::{DirectionalLight, Frustum, Projection, View};
+use umbrage_scene::{CameraPath, HeightMapOptions, LightKind, Pose, Scene};
+
+use crate::{
+    failure::{Failure, Result},
+    job::{CameraChoice, DEFAULT_FAR, DEFAULT_FOV, DEFAULT_NEAR, SceneJob, SunChoice},
+    report::{CameraReport, ShotReport},
+};
+
+/// A scene at one moment, with everything that is to be looked at.
+#[derive(Debug)]
+pub struct Stage {
+    /// The scene.
+    pub scene: Scene,
+    /// Posed at `--time`.
+    pub pose: Pose,
+    /// The light.
+    pub sun: DirectionalLight,
+    /// One, or one per frame of a path.
+    pub shots: Vec<Shot>,
+    /// What the loader left out, and which defaults were invented.
+    pub notes: Vec<String>,
+}
+
+/// One view of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shot {
+    /// The number that its files get.
+    pub frame: Option<u32>,
+    /// Where the view comes from.
+    pub camera: String,
+    /// The view.
+    pub view: View,
+}
+
+impl Stage {
+    /// Reads the files that the job names.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] naming the file or option at fault.
+    pub fn open(job: &SceneJob) -> Result<Self> {
+        let height_map = HeightMapOptions {
+            metres_per_post: job.metres_per_post,
+            metres_per_unit: job.metres_per_unit,
+            height_offset: job.height_offset,
+        };
+        let path = match &job.camera {
+            CameraChoice::Path { file, .. } => Some(CameraPath::load(file)?),
+            _ => None,
+        };
+        let scene = umbrage_scene::open(&job.scene, &height_map)?;
+        let pose = scene.pose(job.time_s)?;
+        let mut notes = scene.notes.clone();
+        let shots = shots(job, &scene, &pose, path.as_ref(), &mut notes)?;
+        let direction = sun(job, &scene, &pose, path.as_ref(), &mut notes)?;
+        Ok(Self { sun: DirectionalLight::new(direction)?, shots, scene, pose, notes })
+    }
+
+    /// The part of a report that says what was looked at.
+    #[must_use]
+    pub fn report(&self, job: &SceneJob, shot: &Shot) -> ShotReport {
+        let (view, frustum) = (&shot.view, shot.view.frustum());
+        ShotReport {
+            scene: job.scene.clone(),
+            time_s: job.time_s,
+            frame: shot.frame,
+            size: job.size,
+            camera: CameraReport {
+                name: shot.camera.clone(),
+                eye: view.eye().to_array(),
+                forward: view.forward().to_array(),
+                up: view.world_from_view_rotation().y_axis.to_array(),
+                fov: (frustum.projection == Projection::Perspective)
+                    .then(|| (frustum.top.atan() - frustum.bottom.atan()).to_degrees()),
+                near: frustum.near,
+                far: frustum.far.is_finite().then_some(frustum.far),
+            },
+            sun: self.sun.direction().to_array(),
+        }
+    }
+}
+
+fn shots(
+    job: &SceneJob,
+    scene: &Scene,
+    pose: &Pose,
+    path: Option<&CameraPath>,
+    notes: &mut Vec<String>,
+) -> Result<Vec<Shot>> {
+    let single = |camera: String, view: View| Ok(vec![Shot { frame: None, camera, view }]);
+    match (&job.camera, path) {
+        (CameraChoice::LookAt { eye, target }, _) => {
+            single("--eye, --target".into(), View::look_at_upright(*eye, *target, frustum(job)?)?)
+        }
+        (CameraChoice::Path { file, frames, eye_height }, Some(path)) => {
+            let count = frames.unwrap_or(1);
+            (0..count)
+                .map(|k| {
+                    let (eye, target) = path.pose_at(k as usize, count as usize, *eye_height)?;
+                    Ok(Shot {
+                        frame: frames.map(|_| k),
+                        camera: file.display().to_string(),
+                        view: View::look_at_upright(eye, target, frustum(job)?)?,
+                    })
+                })
+                .collect()
+        }
+        (CameraChoice::Named(wanted), _) => {
+            let names: Vec<&str> = scene.cameras.iter().map(|camera| camera.name.as_str()).collect();
+            let index = select("--camera", "camera", wanted, &names)?;
+            single(named(names[index], index), scene_camera(job, scene, pose, index)?)
+        }
+        _ if scene.cameras.is_empty() => {
+            notes.push("the scene has no camera and none was given: invented one that sees all of it".into());
+            let fov = job.fov.unwrap_or(DEFAULT_FOV).to_radians();
+            single("invented".into(), umbrage_scene::invented_view(pose, fov, job.aspect(), job.near, job.far)?)
+        }
+        _ => {
+            let name = named(&scene.cameras[0].name, 0);
+            notes.push(format!("no camera was chosen: took the scene's first, {name}"));
+            single(name, scene_camera(job, scene, pose, 0)?)
+        }
+    }
+}
+
+/// What the options alone say about the lens.
+fn frustum(job: &SceneJob) -> Result<Frustum> {
+    let fov = job.fov.unwrap_or(DEFAULT_FOV).to_radians();
+    Ok(Frustum::perspective(fov, job.aspect(), job.near.unwrap_or(DEFAULT_NEAR), job.far.unwrap_or(DEFAULT_FAR))?)
+}
+
+/// A camera of the scene, with what the options change about its lens.
+fn scene_camera(job: &SceneJob, scene: &Scene, pose: &Pose, index: usize) -> Result<View> {
+    let view = umbrage_scene::camera_view(scene, pose, index, job.aspect(), job.near, job.far)?;
+    let (frustum, Some(fov)) = (view.frustum(), job.fov) else { return Ok(view) };
+    if frustum.projection == Projection::Orthographic {
+        return Err(Failure::input("--fov: the chosen camera is orthographic and has no angle; leave --fov away"));
+    }
+    Ok(view.with_frustum(Frustum::perspective(fov.to_radians(), job.aspect(), frustum.near, frustum.far)?)?)
+}
+
+/// The way light travels.
+fn sun(
+    job: &SceneJob,
+    scene: &Scene,
+    pose: &Pose,
+    path: Option<&CameraPath>,
+    notes: &mut Vec<String>,
+) -> Result<DVec3> {
+    if let SunChoice::Given(direction) = job.sun {
+        return Ok(direction);
+    }
+    if let SunChoice::Named(wanted) = &job.sun {
+        let names: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
+        let index = select("--light", "light", wanted, &names)?;
+        if scene.lights[index].kind != LightKind::Directional {
+            return Err(Failure::input(format!(
+                "--light {wanted}: only directional lights throw shadows here; choose one, or give --sun X,Y,Z"
+            )));
+        }
+        return Ok(umbrage_scene::light_direction(scene, pose, index)?);
+    }
+    if let Some(to_light) = path.and_then(|path| path.sun_direction_to_light) {
+        return Ok(-to_light);
+    }
+    match scene.lights.iter().position(|light| light.kind == LightKind::Directional) {
+        Some(index) => Ok(umbrage_scene::light_direction(scene, pose, index)?),
+        None => {
+            let direction = umbrage_scene::invented_sun();
+            notes.push(format!(
+                "the scene has no directional light and no --sun was given: invented one that travels {:.3},{:.3},{:.3}",
+                direction.x, direction.y, direction.z
+            ));
+            Ok(direction)
+        }
+    }
+}
+
+/// The index of the thing called `wanted`, or with that number.
+fn select(option: &str, kind: &str, wanted: &str, names: &[&str]) -> Result<usize> {
+    let by_name = names.iter().position(|name| *name == wanted);
+    let by_index = || wanted.parse().ok().filter(|index| *index < names.len());
+    by_name.or_else(by_index).ok_or_else(|| {
+        let there = match names {
+            [] => format!("the scene has no {kind}"),
+            _ => {
+                let list: Vec<String> = names.iter().enumerate().map(|(i, name)| named(name, i)).collect();
+                format!("there is no {kind} of that name or number; there are {}", list.join(", "))
+            }
+        };
+        Failure::input(format!("{option} {wanted}: {there}"))
+    })
+}
+
+/// A name for people, for things that may have none.
+fn named(name: &str, index: usize) -> String {
+    if name.is_empty() { index.to_string() } else { name.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_go_before_numbers() {
+        let names = ["front", "0", ""];
+        assert_eq!(select("--camera", "camera", "front", &names), Ok(0));
+        assert_eq!(select("--camera", "camera", "0", &names), Ok(1));
+        assert_eq!(select("--camera", "camera", "2", &names), Ok(2));
+        let error = select("--camera", "camera", "3", &names).expect_err("there is no fourth").to_string();
+        assert!(error.contains("--camera 3") && error.contains("front, 0, 2"), "{error}");
+        assert!(select("--camera", "camera", "-1", &names).is_err());
+        assert!(select("--light", "light", "0", &[]).is_err());
+    }
+}

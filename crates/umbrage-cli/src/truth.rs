@@ -1,0 +1,55 @@
+//! `umbrage truth`: the mask by rays.
+
+use std::time::Instant;
+
+use umbrage_truth::Truth;
+
+use crate::{
+    args::TruthArgs,
+    failure::{Failure, Result},
+    job::SceneJob,
+    output::{self, Staged, numbered_file},
+    progress,
+    render::png,
+    report::{TruthReport, TruthTimesMs, to_json},
+    stage::Stage,
+};
+
+/// Runs the subcommand.
+pub fn run(args: &TruthArgs) -> Result<()> {
+    let job = SceneJob::new(&args.scene)?;
+    let files: Vec<_> = [Some(&args.mask), args.report.as_ref()].into_iter().flatten().map(AsRef::as_ref).collect();
+    output::check(&files, &[], &job.inputs())?;
+    let stage = Stage::open(&job)?;
+    let began = Instant::now();
+    let truth = Truth::build(&stage.scene, &stage.pose, stage.shots[0].view.eye())?;
+    let build = began.elapsed();
+    let mut staged = Staged::default();
+    let count = stage.shots.len() as f32;
+    let bar = progress::fraction("rays");
+    for (k, shot) in stage.shots.iter().enumerate() {
+        let began = Instant::now();
+        let mask = truth.mask(&shot.view, stage.sun.direction(), job.size, &|share| {
+            progress::set_fraction(&bar, (k as f32 + share) / count);
+        })?;
+        let rays = began.elapsed();
+        staged.file(&numbered_file(&args.mask, shot.frame), png(&mask.to_image())?)?;
+        if let Some(path) = &args.report {
+            let report = TruthReport {
+                shot: stage.report(&job, shot),
+                times_ms: TruthTimesMs { build: build.as_secs_f64() * 1e3, rays: rays.as_secs_f64() * 1e3 },
+                notes: stage.notes.clone(),
+            };
+            staged.file(&numbered_file(path, shot.frame), to_json(&report)?)?;
+        }
+    }
+    bar.finish_and_clear();
+    staged.commit()
+}
+
+/// What the judge refuses is the scene or an option.
+impl From<umbrage_truth::Error> for Failure {
+    fn from(error: umbrage_truth::Error) -> Self {
+        Self::input(error.to_string())
+    }
+}

@@ -1,0 +1,228 @@
+//! Bad input gets exit code 2 and a message that names the culprit, and leaves no file.
+
+mod common;
+
+use common::{Folder, bomb_png, glb, has_adapter, tiny_bin, tiny_glb, tiny_json};
+
+/// Every subcommand reads these the same way.
+#[test]
+fn options_that_say_nonsense() {
+    let folder = Folder::new();
+    for (options, culprits) in [
+        // Camera.
+        ("--eye 0,5,9 --target 0,5,9", &["--eye", "--target"][..]),
+        ("--eye 0,5,9", &["--eye", "--target"]),
+        ("--target 0,0,0", &["--target", "--eye"]),
+        ("--eye nan,5,9 --target 0,0,0", &["--eye", "nan"]),
+        ("--eye 0,5,inf --target 0,0,0", &["--eye", "inf"]),
+        ("--eye 0,5 --target 0,0,0", &["--eye", "0,5"]),
+        ("--eye 0,5,9 --target 0,0,zero", &["--target", "zero"]),
+        ("--eye 0,5,9 --target 0,0,0 --near 10 --far 5", &["--near 10", "--far 5"]),
+        ("--eye 0,5,9 --target 0,0,0 --near 5 --far 5", &["--near", "--far"]),
+        ("--eye 0,5,9 --target 0,0,0 --near 900", &["--near 900", "--far 800"]),
+        ("--camera front --near 900", &["near", "far"]),
+        ("--near 0", &["--near"]),
+        ("--near -1", &["--near"]),
+        ("--near nan", &["--near"]),
+        ("--near inf", &["--near"]),
+        ("--far nan", &["--far"]),
+        ("--far -inf", &["--far"]),
+        ("--fov 0", &["--fov"]),
+        ("--fov 180", &["--fov"]),
+        ("--fov -60", &["--fov"]),
+        ("--fov nan", &["--fov"]),
+        ("--camera nobody", &["--camera nobody", "front"]),
+        ("--camera 1", &["--camera 1", "front"]),
+        ("--camera front --eye 0,1,2 --target 0,0,0", &["--camera", "--eye"]),
+        ("--camera front --path path.json", &["--camera", "--path"]),
+        ("--path path.json --eye 0,1,2 --target 0,0,0", &["--path", "--eye"]),
+        ("--frames 3", &["--frames", "--path"]),
+        ("--path path.json --frames 0", &["--frames 0"]),
+        ("--path path.json --frames -1", &["--frames"]),
+        ("--path path.json --eye-height nan", &["--eye-height"]),
+        ("--path nowhere.json", &["nowhere.json"]),
+        ("--path tiny.glb", &["tiny.glb"]),
+        // Size, time, light.
+        ("--size 0x600", &["--size"]),
+        ("--size -800x600", &["--size"]),
+        ("--size 800", &["--size", "800x600"]),
+        ("--size 99999x99999", &["--size"]),
+        ("--time nan", &["--time"]),
+        ("--time soon", &["--time"]),
+        ("--sun 0,0,0", &["--sun"]),
+        ("--sun nan,-1,0", &["--sun"]),
+        ("--sun 1,2", &["--sun"]),
+        ("--light nobody", &["--light nobody", "sun", "lamp"]),
+        ("--light lamp", &["--light lamp"]),
+        ("--light sun --sun 0,-1,0", &["--light", "--sun"]),
+        ("--metres-per-post 0", &["--metres-per-post"]),
+        ("--metres-per-unit nan", &["--metres-per-unit"]),
+        ("--height-offset inf", &["--height-offset"]),
+        ("--no-such-option", &["--no-such-option"]),
+    ] {
+        folder.refuse(&format!("render tiny.glb -o out.png {options}"), culprits);
+        folder.refuse(&format!("truth tiny.glb -o out.png {options}"), culprits);
+    }
+}
+
+#[test]
+fn shadow_options_that_say_nonsense() {
+    let folder = Folder::new();
+    for (options, culprits) in [
+        ("--splits 0", &["--splits 0", "1 to 8"][..]),
+        ("--splits 9", &["--splits 9", "1 to 8"]),
+        ("--splits -1", &["--splits"]),
+        ("--splits nan", &["--splits"]),
+        ("--splits 3 --map-size 512,512", &["--map-size", "3 splits"]),
+        ("--splits 1 --map-size 512,512", &["--map-size", "1 split"]),
+        ("--map-size 512,512,512,512,512,512,512,512,512", &["--map-size", "1 to 8"]),
+        ("--map-size 0", &["--map-size"]),
+        ("--map-size -512", &["--map-size"]),
+        ("--map-size 65537", &["--map-size"]),
+        ("--map-size 512,", &["--map-size"]),
+        ("--map-size 4", &["--map-size"]),
+        ("--technique ssm --splits 2", &["--splits 2", "ssm"]),
+        ("--technique ssm --map-size 512,512", &["--map-size", "1 split"]),
+        ("--technique magic", &["--technique", "pssm", "ssm"]),
+        ("--scheme magic", &["--scheme", "uniform", "log", "practical", "manual"]),
+        ("--scheme log --lambda 0.5", &["--lambda", "practical", "log"]),
+        ("--scheme uniform --delta 1", &["--delta", "practical", "uniform"]),
+        ("--lambda 1.1", &["--lambda"]),
+        ("--lambda -0.1", &["--lambda"]),
+        ("--lambda nan", &["--lambda"]),
+        ("--delta 1,2 --splits 4", &["--delta"]),
+        ("--delta nan", &["--delta"]),
+        ("--delta 100000 --shadow-range 1..100", &["--delta"]),
+        ("--scheme manual", &["--planes", "manual"]),
+        ("--scheme practical --planes 5,10,20", &["--planes", "practical"]),
+        ("--planes 20,10,30", &["--planes"]),
+        ("--planes 10,10,30", &["--planes"]),
+        ("--planes 5,nan,30", &["--planes"]),
+        ("--planes 5,10 --splits 4", &["--planes"]),
+        ("--planes 5,10,200 --shadow-range 1..100", &["--planes"]),
+        ("--planes 5,10,15,20,25,30,35,40", &["--planes", "1 to 8"]),
+        ("--shadow-range 100..1", &["--shadow-range"]),
+        ("--shadow-range 1..1", &["--shadow-range"]),
+        ("--shadow-range 0..10", &["--shadow-range"]),
+        ("--shadow-range nan..10", &["--shadow-range"]),
+        ("--shadow-range 1..inf", &["--shadow-range"]),
+        ("--shadow-range 10", &["--shadow-range", "N..F"]),
+        ("--blend 1.5", &["--blend"]),
+        ("--blend nan", &["--blend"]),
+        ("--far-fade -0.5", &["--far-fade"]),
+        ("--filter soft", &["--filter", "hard", "pcf2", "pcf3", "pcf5"]),
+        ("--fit tight", &["--fit", "dependent", "independent"]),
+        ("--stabilize maybe", &["--stabilize", "exact", "none"]),
+        ("--depth-format d24", &["--depth-format", "d32f", "d16"]),
+        ("--shadows maybe", &["--shadows", "on", "off"]),
+    ] {
+        let planned_late = options.starts_with("--delta 100000") || options.starts_with("--planes 5,10,200");
+        if planned_late && !has_adapter() {
+            continue;
+        }
+        folder.refuse(&format!("render tiny.glb -o out.png {options}"), culprits);
+    }
+}
+
+#[test]
+fn a_map_that_the_device_does_not_allow() {
+    if has_adapter() {
+        let folder = Folder::new();
+        folder.refuse("render tiny.glb --map-size 65536 -o out.png --report out.json", &["--map-size", "65536"]);
+    }
+}
+
+#[test]
+fn scenes_that_are_none() {
+    let bomb = bomb_png(60_000, 60_000);
+    let whole = tiny_glb();
+    let mut infinite = tiny_bin();
+    infinite[60..64].copy_from_slice(&f32::INFINITY.to_le_bytes());
+    let mut not_a_number = tiny_bin();
+    not_a_number[60..64].copy_from_slice(&f32::NAN.to_le_bytes());
+    let escaping = r#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":4,"uri":"../secret.bin"}]}"#;
+    let missing = r#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":4,"uri":"gone.bin"}]}"#;
+    for (name, bytes) in [
+        ("cut.glb", whole[..whole.len() / 2].to_vec()),
+        ("header.glb", whole[..10].to_vec()),
+        ("nothing.glb", Vec::new()),
+        ("noise.glb", (0..=255).cycle().take(4000).collect()),
+        ("lies.glb", glb(&tiny_json(8_000_000), &tiny_bin())),
+        ("infinite.glb", glb(&tiny_json(8), &infinite)),
+        ("nan.glb", glb(&tiny_json(8), &not_a_number)),
+        ("text.gltf", b"not JSON at all".to_vec()),
+        ("escaping.gltf", escaping.into()),
+        ("missing.gltf", missing.into()),
+        ("bomb.png", bomb),
+        ("scene.obj", b"v 0 0 0".to_vec()),
+    ] {
+        let folder = Folder::with(name, bytes);
+        let scale = if name == "bomb.png" { "--metres-per-post 30 --metres-per-unit 1" } else { "" };
+        folder.refuse(&format!("render {name} {scale} -o out.png"), &[name]);
+        folder.refuse(&format!("truth {name} {scale} -o out.png --report out.json"), &[name]);
+    }
+    let folder = Folder::new();
+    folder.refuse("render nowhere.glb -o out.png", &["nowhere.glb"]);
+    folder.refuse("render robot-peace -o out.png", &["robot-peace", "robot-war"]);
+    folder.refuse("worlds export robot-peace -o out.glb", &["robot-peace", "robot-war"]);
+    folder.refuse("render -o out.png", &["SCENE"]);
+    folder.refuse("paint tiny.glb -o out.png", &["paint"]);
+    folder.refuse("", &["Usage"]);
+}
+
+#[test]
+fn points_that_are_none() {
+    let numbers = |numbers: &[f64]| numbers.iter().flat_map(|n| n.to_le_bytes()).collect::<Vec<u8>>();
+    for (bytes, culprit) in [
+        (vec![0; 47], "47 bytes"),
+        (vec![0; 96 + 1], "97 bytes"),
+        (numbers(&[0.0, 0.0, 0.0, 0.0, 1.0, f64::NAN]), "record 0"),
+        (numbers(&[0.0, f64::INFINITY, 0.0, 0.0, 1.0, 0.0]), "record 0"),
+    ] {
+        let folder = Folder::with("points.bin", bytes);
+        let words = "probe tiny.glb --points points.bin --out answers.bin --report out.json";
+        folder.refuse(words, &["--points", "points.bin", culprit]);
+    }
+    let folder = Folder::new();
+    folder.refuse("probe tiny.glb --points gone.bin --out answers.bin", &["gone.bin"]);
+    folder.refuse("probe tiny.glb --out answers.bin", &["--points"]);
+}
+
+#[test]
+fn outputs_that_cannot_be() {
+    let folder = Folder::new();
+    folder.refuse("render tiny.glb", &["-o", "--visibility", "--maps", "--report"]);
+    folder.refuse("truth tiny.glb", &["--output"]);
+    folder.refuse("render tiny.glb -o missing/out.png", &["missing/out.png"]);
+    folder.refuse("render tiny.glb -o out.png --report missing/out.json", &["missing/out.json"]);
+    folder.refuse("render tiny.glb -o out.png --maps missing/maps", &["missing/maps"]);
+    folder.refuse("render tiny.glb -o out.png --visibility ./out.png", &["out.png", "two outputs"]);
+    folder.refuse("render tiny.glb -o .", &["folder"]);
+    folder.refuse("render tiny.glb -o out.png --maps empty.gltf", &["empty.gltf"]);
+    folder.refuse("render tiny.glb -o tiny.glb", &["tiny.glb", "input"]);
+    folder.refuse("truth tiny.glb -o out.png --report tiny.glb", &["tiny.glb", "input"]);
+    folder.refuse("truth tiny.glb -o missing/out.png", &["missing/out.png"]);
+    folder.refuse("worlds export chessboard -o missing/out.glb", &["missing/out.glb"]);
+    assert_eq!(std::fs::read(folder.at("tiny.glb")).expect("still there"), tiny_glb(), "the input is untouched");
+}
+
+/// A device that is always full, and a limit on the size of files, stand for a full disk.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk() {
+    use std::process::Command;
+
+    let folder = Folder::new();
+    folder.refuse("truth tiny.glb --size 64x48 -o out.png --report /dev/full", &["/dev/full"]);
+    if has_adapter() {
+        let words = "render tiny.glb --size 64x48 -o out.png --maps maps --visibility mask.png --report /dev/full";
+        folder.refuse(words, &["/dev/full"]);
+    }
+    for words in
+        ["truth tiny.glb --size 64x48 -o out.png --report out.json", "worlds export chessboard -o out.glb"]
+    {
+        let script = format!("trap '' XFSZ; ulimit -f 0; exec {} {words}", common::UMBRAGE);
+        let output = Command::new("sh").current_dir(folder.at("")).args(["-c", &script]).output().expect("sh starts");
+        folder.is_refusal(words, &output, &["out."]);
+    }
+}
