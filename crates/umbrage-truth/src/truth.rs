@@ -181,7 +181,7 @@ impl Truth {
             .iter()
             .filter_map(|triangle| ray.meets(&triangle.corners, t_max).map(|crossing| (crossing, triangle)))
             .filter(|(crossing, triangle)| self.is_seen(triangle, crossing, direction))
-            .min_by(|a, b| a.0.t.total_cmp(&b.0.t).then(a.1.number.cmp(&b.1.number)))
+            .min_by(|a, b| a.0.t.partial_cmp(&b.0.t).expect("distances are numbers").then(a.1.number.cmp(&b.1.number)))
             .map(|(crossing, triangle)| self.hit(origin, direction, &crossing, triangle))
     }
 

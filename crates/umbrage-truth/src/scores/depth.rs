@@ -1,0 +1,54 @@
+//! E_log: E that is fair to every depth.
+
+use super::{Answers, Domain, MisShadowed};
+use crate::Result;
+
+/// A bin with fewer pixels of Ω_f has no say.
+pub const LEAST_PIXELS_IN_BIN: usize = 200;
+
+const BINS: usize = 8;
+
+/// E between two depths.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DepthBin {
+    /// View depth in metres at which the bin begins.
+    pub near: f64,
+    /// View depth in metres at which it ends.
+    pub far: f64,
+    /// The decisions in it.
+    pub score: MisShadowed,
+}
+
+/// E in eight equal bins of ln z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ByDepth {
+    /// From near to far.
+    pub bins: [DepthBin; BINS],
+}
+
+impl ByDepth {
+    /// E_log in [0,1]: the mean of E over the bins that have a say; `None` if none has.
+    #[must_use]
+    pub fn mean(&self) -> Option<f64> {
+        let full = self.bins.iter().filter(|bin| bin.score.pixels >= LEAST_PIXELS_IN_BIN);
+        let (count, sum) = full.fold((0, 0.0), |(count, sum), bin| (count + 1, sum + bin.score.rate()));
+        (count > 0).then(|| sum / f64::from(count))
+    }
+}
+
+/// Counts the wrong decisions over Ω_f by depth.
+///
+/// # Errors
+/// As [`super::mis_shadowed`].
+pub fn by_depth(domain: &Domain, answers: &Answers) -> Result<ByDepth> {
+    answers.check(domain)?;
+    let (near, far) = domain.range();
+    let octaves = (far / near).ln();
+    let border = |i: usize| near * (octaves * i as f64 / BINS as f64).exp();
+    let mut bins = std::array::from_fn(|i| DepthBin { near: border(i), far: border(i + 1), ..DepthBin::default() });
+    for &pixel in domain.pixels() {
+        let at = (domain.depth(pixel) / near).ln() / octaves * BINS as f64;
+        bins[(at as usize).min(BINS - 1)].score.count(domain, answers, pixel);
+    }
+    Ok(ByDepth { bins })
+}

@@ -1,0 +1,134 @@
+//! Ω_f: the pixels that are scored, and the truth about them.
+
+use glam::DVec3;
+
+use super::edges::edges_of;
+use crate::{Error, Result, TruthMask};
+
+/// Least n_g·l of a scored pixel; below it the surface is dark by its own slope.
+pub const LEAST_FACING: f64 = 0.02;
+
+/// Least |B*| of a view that counts: wholly lit and wholly shaded views say nothing.
+pub const LEAST_EDGES: usize = 2000;
+
+/// The scored pixels of a frame, Ω_f, with their depths and the truth.
+#[derive(Clone, Debug)]
+pub struct Domain {
+    size: [usize; 2],
+    range: (f64, f64),
+    /// View depth per pixel of the image; NaN outside Ω_f.
+    depth: Vec<f64>,
+    /// V* per pixel of the image; false outside Ω_f.
+    lit: Vec<bool>,
+    pixels: Vec<usize>,
+    edges: Vec<usize>,
+}
+
+impl Domain {
+    /// Ω_f of a mask for a shadowed range `[n, f]` in metres of view depth.
+    ///
+    /// # Errors
+    /// [`Error::InvalidSetting`] unless 0 < n < f < ∞.
+    pub fn new(mask: &TruthMask, range: (f64, f64)) -> Result<Self> {
+        let (near, far) = range;
+        if !(near > 0.0 && far > near && far.is_finite()) {
+            let reason = format!("{near}..{far} m; give 0 < near < far, both finite");
+            return Err(Error::setting("shadowed range", reason));
+        }
+        let mut domain = Self {
+            size: mask.size(),
+            range,
+            depth: vec![f64::NAN; mask.hits().len()],
+            lit: vec![false; mask.hits().len()],
+            pixels: Vec::new(),
+            edges: Vec::new(),
+        };
+        for (pixel, hit) in mask.hits().iter().enumerate() {
+            let Some(hit) = hit else { continue };
+            if hit.normal.dot(mask.to_light()) > LEAST_FACING && (near..=far).contains(&hit.depth) {
+                domain.depth[pixel] = hit.depth;
+                domain.lit[pixel] = hit.lit;
+                domain.pixels.push(pixel);
+            }
+        }
+        domain.edges = edges_of(&domain, |pixel| domain.lit[pixel]);
+        Ok(domain)
+    }
+
+    /// Width and height of the image.
+    #[must_use]
+    pub fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
+    /// The shadowed range `[n, f]` in metres of view depth.
+    #[must_use]
+    pub fn range(&self) -> (f64, f64) {
+        self.range
+    }
+
+    /// The pixels of Ω_f as indices into the image, rising.
+    #[must_use]
+    pub fn pixels(&self) -> &[usize] {
+        &self.pixels
+    }
+
+    /// Whether a pixel of the image belongs to Ω_f.
+    #[must_use]
+    pub fn contains(&self, pixel: usize) -> bool {
+        !self.depth[pixel].is_nan()
+    }
+
+    /// View depth of a pixel of Ω_f in metres; NaN outside.
+    #[must_use]
+    pub fn depth(&self, pixel: usize) -> f64 {
+        self.depth[pixel]
+    }
+
+    /// V* of a pixel of Ω_f; false outside.
+    #[must_use]
+    pub fn lit(&self, pixel: usize) -> bool {
+        self.lit[pixel]
+    }
+
+    /// B*, the pixels at which the true shadow has an edge, as indices into the image, rising.
+    #[must_use]
+    pub fn edges(&self) -> &[usize] {
+        &self.edges
+    }
+
+    /// The view rule: whether there are edges enough for this view to say anything.
+    #[must_use]
+    pub fn counts_as_view(&self) -> bool {
+        self.edges.len() >= LEAST_EDGES
+    }
+
+    /// World positions and geometric normals of Ω_f, in the order of [`Domain::pixels`]: what to ask `umbrage probe`.
+    ///
+    /// # Errors
+    /// [`Error::SizeMismatch`] if this is not the mask that the domain was made of.
+    pub fn points(&self, mask: &TruthMask) -> Result<Vec<(DVec3, DVec3)>> {
+        check_size("the mask", mask.size(), self.size)?;
+        self.pixels
+            .iter()
+            .map(|&pixel| mask.hits()[pixel].map(|hit| (hit.position, hit.normal)))
+            .collect::<Option<_>>()
+            .ok_or(Error::NothingToScore(
+                "the mask has no hit where its domain has a pixel: it is another frame's mask",
+            ))
+    }
+
+    pub(super) fn not_empty(&self) -> Result<()> {
+        if self.pixels.is_empty() {
+            return Err(Error::NothingToScore(
+                "no pixel faces the light inside the shadowed range; look elsewhere or widen it",
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Whether two images have one size.
+pub(super) fn check_size(what: &'static str, got: [usize; 2], expected: [usize; 2]) -> Result<()> {
+    if got == expected { Ok(()) } else { Err(Error::SizeMismatch { what, got, expected }) }
+}

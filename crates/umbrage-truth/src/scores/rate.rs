@@ -1,0 +1,63 @@
+//! E: the share of wrong decisions.
+
+use super::{Answers, Domain};
+use crate::Result;
+
+/// How many decisions were made, and how many of them were wrong.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MisShadowed {
+    /// |Ω_f|.
+    pub pixels: usize,
+    /// Lit in truth, dark in the answer: acne, shadows that are too wide.
+    pub false_shadow: usize,
+    /// Dark in truth, lit in the answer: leaks, detached shadows.
+    pub false_light: usize,
+    /// How many of the wrong ones are wrong because there was no answer.
+    pub missing: usize,
+}
+
+impl MisShadowed {
+    /// E in [0,1], or 0 of no pixels.
+    #[must_use]
+    pub fn rate(&self) -> f64 {
+        self.share(self.false_shadow + self.false_light)
+    }
+
+    /// E_fs in [0,1].
+    #[must_use]
+    pub fn false_shadow_rate(&self) -> f64 {
+        self.share(self.false_shadow)
+    }
+
+    /// E_fl in [0,1].
+    #[must_use]
+    pub fn false_light_rate(&self) -> f64 {
+        self.share(self.false_light)
+    }
+
+    pub(super) fn count(&mut self, domain: &Domain, answers: &Answers, pixel: usize) {
+        let truth = domain.lit(pixel);
+        self.pixels += 1;
+        self.missing += usize::from(answers.visibility()[pixel].is_none());
+        if answers.decision(domain, pixel) != truth {
+            *(if truth { &mut self.false_shadow } else { &mut self.false_light }) += 1;
+        }
+    }
+
+    fn share(&self, of: usize) -> f64 {
+        if self.pixels == 0 { 0.0 } else { of as f64 / self.pixels as f64 }
+    }
+}
+
+/// Counts the wrong decisions over Ω_f.
+///
+/// # Errors
+/// [`crate::Error::SizeMismatch`] if the answers have another size, [`crate::Error::NothingToScore`] if Ω_f is empty.
+pub fn mis_shadowed(domain: &Domain, answers: &Answers) -> Result<MisShadowed> {
+    answers.check(domain)?;
+    let mut count = MisShadowed::default();
+    for &pixel in domain.pixels() {
+        count.count(domain, answers, pixel);
+    }
+    Ok(count)
+}

@@ -1,0 +1,49 @@
+//! E_soft and E_pen: how far soft shadows are off.
+
+use super::domain::check_size;
+use super::{Answers, Domain};
+use crate::{Result, SoftTruth};
+
+/// Penumbra: more than this of the sun is hidden, and more than this of it is seen.
+const PENUMBRA: f32 = 0.02;
+
+/// Mean differences of visibility, in [0,1].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SoftError {
+    /// E_soft, over Ω_f.
+    pub whole: f64,
+    /// E_pen, over the penumbra; `None` if there is none.
+    pub penumbra: Option<f64>,
+    /// |Ω_f|.
+    pub pixels: usize,
+    /// Pixels of Ω_f in the penumbra.
+    pub penumbra_pixels: usize,
+}
+
+/// How far the answers are from V*_A. The noise floor is what this says of the truth by another set of directions:
+/// `soft_error(&domain, &soft, &Answers::from_pixels(soft.size(), other.visibility().to_vec())?)`.
+/// A pixel without an answer is off by 1.
+///
+/// # Errors
+/// As [`super::mis_shadowed`].
+pub fn soft_error(domain: &Domain, truth: &SoftTruth, answers: &Answers) -> Result<SoftError> {
+    answers.check(domain)?;
+    check_size("the soft truth", truth.size(), domain.size())?;
+    let (mut sum, mut penumbra_sum, mut penumbra_pixels) = (0.0, 0.0, 0);
+    for &pixel in domain.pixels() {
+        let expected = truth.visibility()[pixel].unwrap_or(0.0);
+        let off = f64::from(answers.visibility()[pixel].map_or(1.0, |answer| (answer - expected).abs()));
+        sum += off;
+        if expected > PENUMBRA && expected < 1.0 - PENUMBRA {
+            penumbra_sum += off;
+            penumbra_pixels += 1;
+        }
+    }
+    let pixels = domain.pixels().len();
+    Ok(SoftError {
+        whole: sum / pixels as f64,
+        penumbra: (penumbra_pixels > 0).then(|| penumbra_sum / f64::from(penumbra_pixels)),
+        pixels,
+        penumbra_pixels: penumbra_pixels as usize,
+    })
+}

@@ -1,0 +1,7 @@
+//! Tests of the rays through the public doors, on scenes made by hand.
+
+mod brute_force;
+mod closed_forms;
+mod scenes;
+mod soft;
+mod surfaces;
