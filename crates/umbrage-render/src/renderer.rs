@@ -239,8 +239,10 @@ impl Renderer {
             splits
                 .map(|(i, split)| {
                     let texture = self.maps.depth_texture();
-                    let capture = Capture::record(&gpu, &mut encoder, texture, i as u32, [split.size; 2])?;
-                    Ok((split.size, capture))
+                    // Depth is copied in whole layers only; a smaller map is cut out of its layer afterwards.
+                    let layer = [texture.width(), texture.height()];
+                    let capture = Capture::record(&gpu, &mut encoder, texture, i as u32, layer)?;
+                    Ok((layer[0], split.size, capture))
                 })
                 .collect::<Result<Vec<_>>>()?
         } else {
@@ -296,8 +298,8 @@ impl Renderer {
                 .transpose()?,
             maps: depth_maps
                 .into_iter()
-                .map(|(size, capture)| {
-                    Ok(maps::picture_of(&maps::depths_of(&capture.read(&gpu)?, self.depth_format), size))
+                .map(|(row, size, capture)| {
+                    Ok(maps::picture_of(&maps::depths_of(&capture.read(&gpu)?, self.depth_format), row, size))
                 })
                 .collect::<Result<_>>()?,
             stats,
