@@ -2,8 +2,13 @@
 //! from nothing: the same triangles on every machine.
 
 mod chessmen;
+mod desert;
+mod figures;
 mod maths;
+mod mine;
+mod mining;
 mod noise;
+mod plants;
 mod robot;
 mod sculpt;
 mod shapes;
@@ -23,11 +28,16 @@ pub enum World {
     RobotWar,
     /// 32 chessmen on a board of 0.49 km²; 51 thousand triangles.
     Chessboard,
+    /// 15 dwarfs and 15 knights that walk, 15 palms and 15 cactuses on a desert of 1.6 km²; 1 million triangles.
+    Knights,
+    /// 10 clawbots and 15 windmills that move, 20 rocks and 10 pines on an open-cast mine of 2.56 km²; 1.3 million
+    /// triangles.
+    MiningTerrain,
 }
 
 impl World {
     /// All of them, in the paper's order.
-    pub const ALL: [Self; 2] = [Self::RobotWar, Self::Chessboard];
+    pub const ALL: [Self; 4] = [Self::RobotWar, Self::Chessboard, Self::Knights, Self::MiningTerrain];
 
     /// As it is called on the command line.
     #[must_use]
@@ -35,6 +45,8 @@ impl World {
         match self {
             Self::RobotWar => "robot-war",
             Self::Chessboard => "chessboard",
+            Self::Knights => "knights",
+            Self::MiningTerrain => "mining-terrain",
         }
     }
 
@@ -50,13 +62,18 @@ impl World {
         match self {
             Self::RobotWar => "Robot War",
             Self::Chessboard => "Huge Chessboard",
+            Self::Knights => "Knights",
+            Self::MiningTerrain => "Mining Terrain",
         }
     }
 
     /// The camera's near and far distance in metres.
     #[must_use]
     pub const fn near_far(self) -> (f64, f64) {
-        (1.0, 800.0)
+        match self {
+            Self::RobotWar | Self::Chessboard | Self::Knights => (1.0, 800.0),
+            Self::MiningTerrain => (1.0, 1000.0),
+        }
     }
 
     /// Builds the world.
@@ -65,6 +82,8 @@ impl World {
         match self {
             Self::RobotWar => worlds::robot_war(),
             Self::Chessboard => worlds::chessboard(),
+            Self::Knights => desert::knights(),
+            Self::MiningTerrain => mine::mining_terrain(),
         }
     }
 }

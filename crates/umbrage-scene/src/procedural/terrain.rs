@@ -13,6 +13,14 @@ pub(super) struct Terrain {
     heights: Vec<f64>,
 }
 
+/// What the ground looks like and whether it throws shadows.
+pub(super) struct Surface<'a> {
+    pub(super) material: usize,
+    /// Linear colour at a place with a normal, multiplied into the material's.
+    pub(super) tint: Option<&'a dyn Fn(DVec3, DVec3) -> [f32; 3]>,
+    pub(super) cast_shadow: bool,
+}
+
 /// A grid of 1/1024 m: coordinates on it are exact in `f32` relative to a tile and in the world, so tiles meet exactly.
 fn on_grid(metres: f64) -> f64 {
     (metres * 1024.0).round() / 1024.0
@@ -97,7 +105,7 @@ impl Terrain {
         dvec3(place.x, self.height_at(place), place.y)
     }
 
-    fn tile(&self, tile_column: usize, tile_row: usize, material: usize) -> (Mesh, DVec3) {
+    fn tile(&self, tile_column: usize, tile_row: usize, surface: &Surface) -> (Mesh, DVec3) {
         let (first_column, first_row) = (tile_column * self.cells, tile_row * self.cells);
         let origin = {
             let (west, east) = (self.coordinate(first_column), self.coordinate(first_column + self.cells));
@@ -105,12 +113,17 @@ impl Terrain {
             let middle = self.post(first_column + self.cells / 2, first_row + self.cells / 2);
             dvec3(on_grid(0.5 * (west + east)), middle.y, on_grid(0.5 * (north + south)))
         };
-        let mut primitive = Primitive { material, ..Primitive::default() };
+        let mut primitive = Primitive { material: surface.material, ..Primitive::default() };
         let across = self.cells as u32 + 1;
         for row in first_row..=first_row + self.cells {
             for column in first_column..=first_column + self.cells {
                 primitive.positions.push((self.post(column, row) - origin).as_vec3().to_array());
-                primitive.normals.push(self.normal(column, row).as_vec3().to_array());
+                let normal = self.normal(column, row);
+                primitive.normals.push(normal.as_vec3().to_array());
+                if let Some(tint) = surface.tint {
+                    let [red, green, blue] = tint(self.post(column, row), normal);
+                    primitive.colors.push([red, green, blue, 1.0]);
+                }
             }
         }
         for row in 0..across - 1 {
@@ -125,14 +138,14 @@ impl Terrain {
     }
 
     /// Puts the tiles on the stage.
-    pub(super) fn place(&self, stage: &mut Stage, material: usize, cast_shadow: bool) {
+    pub(super) fn place(&self, stage: &mut Stage, surface: &Surface) {
         for row in 0..self.tiles {
             for column in 0..self.tiles {
-                let (mesh, origin) = self.tile(column, row, material);
+                let (mesh, origin) = self.tile(column, row, surface);
                 let name = mesh.name.clone();
                 let mesh = Some(stage.mesh(mesh));
                 let local = Trs { translation: origin, ..Trs::IDENTITY };
-                stage.node(Node { name, mesh, local, cast_shadow, ..Node::default() });
+                stage.node(Node { name, mesh, local, cast_shadow: surface.cast_shadow, ..Node::default() });
             }
         }
     }
@@ -141,6 +154,8 @@ impl Terrain {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const BARE: Surface = Surface { material: 0, tint: None, cast_shadow: true };
 
     fn wavy() -> Terrain {
         Terrain::new(1000.0, 3, 7, |place| 20.0 * (place.x * 0.01).sin() + 10.0 * (place.y * 0.02).cos())
@@ -151,7 +166,7 @@ mod tests {
         let terrain = wavy();
         for row in 0..terrain.tiles {
             for column in 0..terrain.tiles {
-                let (mesh, origin) = terrain.tile(column, row, 0);
+                let (mesh, origin) = terrain.tile(column, row, &BARE);
                 let primitive = &mesh.primitives[0];
                 let at = |i: u32| origin + glam::Vec3::from_array(primitive.positions[i as usize]).as_dvec3();
                 for triangle in primitive.indices.chunks_exact(3) {
@@ -169,7 +184,7 @@ mod tests {
     fn tiles_meet_exactly() {
         let terrain = wavy();
         let world = |column, row| {
-            let (mesh, origin) = terrain.tile(column, row, 0);
+            let (mesh, origin) = terrain.tile(column, row, &BARE);
             let place = |p: &[f32; 3]| origin + glam::Vec3::from_array(*p).as_dvec3();
             mesh.primitives[0].positions.iter().map(place).collect::<Vec<_>>()
         };

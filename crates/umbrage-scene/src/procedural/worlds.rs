@@ -7,14 +7,15 @@ use super::chessmen::Piece;
 use super::maths::{Random, turn};
 use super::robot::{self, Livery, Make};
 use super::stage::{SkyPoint, Stage, scatter};
-use super::terrain::Terrain;
+use super::terrain::{Surface, Terrain};
 use crate::{Mesh, Node, Scene, Trs};
 
-fn stage(world: World) -> Stage {
+pub(super) fn stage(world: World) -> Stage {
     Stage::new(world.name(), world.near_far())
 }
 
-fn standing(at: DVec3, yaw_degrees: f64, scale: f64) -> Trs {
+/// On the ground, turned about Y, scaled.
+pub(super) fn standing(at: DVec3, yaw_degrees: f64, scale: f64) -> Trs {
     Trs { translation: at, rotation: turn(DVec3::Y, yaw_degrees), scale: DVec3::splat(scale) }
 }
 
@@ -23,7 +24,7 @@ pub(super) fn robot_war() -> Scene {
     const EDGE_M: f64 = 1200.0;
     let mut stage = stage(World::RobotWar);
     let sand = stage.paint("packed earth", 0x9C_8F_7A);
-    Terrain::new(EDGE_M, 8, 3, |_| 0.0).place(&mut stage, sand, false);
+    Terrain::new(EDGE_M, 8, 3, |_| 0.0).place(&mut stage, &Surface { material: sand, tint: None, cast_shadow: false });
 
     let metal = stage.paint("gun metal", 0x4A_4D_52);
     let glass = stage.paint("visor", 0xD8_A2_3A);
