@@ -47,8 +47,11 @@ pub struct Split {
     pub depth_step_m: f32,
     /// 1 if nothing throws a shadow here: the map is not read and everything is lit.
     pub is_empty: u32,
-    /// Up to the alignment of 16 bytes.
-    pub _padding: [u32; 2],
+    /// Edge in texels of the square that clip space covers: at least `size`, by a power of two where there is room. What lies
+    /// outside the map is cut by the scissor, exactly, and not by the clipper, which would round where triangles cross the edge.
+    pub viewport_texels: f32,
+    /// Texels from the left and upper edge of that square to the map's.
+    pub guard_texels: f32,
 }
 
 /// All that a receiver needs for one light and one view.

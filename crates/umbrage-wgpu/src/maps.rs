@@ -3,7 +3,8 @@
 use umbrage::{MAX_SPLITS, ShadowPlan};
 use umbrage_shaders::layout;
 
-use crate::{Error, FrameOptions, Result, ShadowMapsOptions, uniforms};
+use crate::uniforms::{self, Viewport};
+use crate::{Error, FrameOptions, Result, ShadowMapsOptions};
 
 /// Features that make shadows better where an adapter has them: request `adapter.features() & optional_features()`.
 ///
@@ -22,6 +23,7 @@ pub fn optional_features() -> wgpu::Features {
 pub struct ShadowMaps {
     options: ShadowMapsOptions,
     edge: u32,
+    viewports: Vec<Viewport>,
     depth_clamp: bool,
     texture: wgpu::Texture,
     layers: Vec<wgpu::TextureView>,
@@ -128,6 +130,7 @@ impl ShadowMaps {
         Ok(Self {
             options: options.clone(),
             edge,
+            viewports: viewports(device, &options.map_sizes),
             depth_clamp: device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL),
             texture,
             layers,
@@ -147,7 +150,7 @@ impl ShadowMaps {
     /// [`Error::PlanMismatch`] if the plan was made for other maps, [`Error::InvalidPlan`] or [`Error::InvalidSplit`] if it
     /// holds a number that cannot be used, [`Error::InvalidFrameOption`]. Nothing has been written then.
     pub fn prepare(&mut self, queue: &wgpu::Queue, plan: &ShadowPlan, options: &FrameOptions) -> Result<()> {
-        let frame = uniforms::frame(plan, &self.options, self.edge, options)?;
+        let frame = uniforms::frame(plan, &self.options, self.edge, &self.viewports, options)?;
         queue.write_buffer(&self.frame_buffer, 0, bytemuck::bytes_of(&frame));
         for (split, offset) in frame.splits[..self.splits()].iter().zip((0..).step_by(self.caster_stride as usize)) {
             queue.write_buffer(&self.caster_buffer, offset, bytemuck::bytes_of(split));
@@ -155,9 +158,9 @@ impl ShadowMaps {
         Ok(())
     }
 
-    /// Begins the pass that draws split `split`: its map is cleared, viewport and scissor are set. Bind
-    /// [`ShadowMaps::caster_bind_group`] of the same split and draw its casters in any order. A split without casters needs
-    /// no pass; its map is not read.
+    /// Begins the pass that draws split `split`: its map is cleared, viewport and scissor are set and have to stay. Bind
+    /// [`ShadowMaps::caster_bind_group`] of the same split and draw its casters in any order. A split without casters needs no
+    /// pass; its map is not read.
     ///
     /// # Panics
     /// If `split` is not less than [`ShadowMaps::splits`].
@@ -179,8 +182,9 @@ impl ShadowMaps {
             occlusion_query_set: None,
             multiview_mask: None,
         });
-        let size = self.options.map_sizes[split];
-        pass.set_viewport(0.0, 0.0, size as f32, size as f32, 0.0, 1.0);
+        let (size, viewport) = (self.options.map_sizes[split], self.viewports[split]);
+        let (corner, edge) = (-(viewport.guard as f32), viewport.edge as f32);
+        pass.set_viewport(corner, corner, edge, edge, 0.0, 1.0);
         pass.set_scissor_rect(0, 0, size, size);
         pass
     }
@@ -289,6 +293,13 @@ fn checked_edge(options: &ShadowMapsOptions, limits: &wgpu::Limits) -> Result<u3
 /// layer makes it an array.
 fn layer_count(splits: u32, backend: wgpu::Backend) -> u32 {
     if backend == wgpu::Backend::Gl && (splits == 1 || splits.is_multiple_of(6)) { splits + 1 } else { splits }
+}
+
+/// A guard band around every map, except in browsers: those that are older than the rule reject a viewport that leaves its target.
+fn viewports(device: &wgpu::Device, sizes: &[u32]) -> Vec<Viewport> {
+    let in_browser = device.adapter_info().backend == wgpu::Backend::BrowserWebGpu;
+    let largest = if in_browser { 0 } else { device.limits().max_texture_dimension_2d };
+    sizes.iter().map(|&size| Viewport::around(size, largest)).collect()
 }
 
 fn sampler(device: &wgpu::Device, options: &ShadowMapsOptions) -> wgpu::Sampler {

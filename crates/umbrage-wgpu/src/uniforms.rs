@@ -6,11 +6,39 @@ use umbrage_shaders::layout;
 
 use crate::{Error, FrameOptions, Result, ShadowMapsOptions};
 
-/// The uniform that receivers read; its splits are what casters read. `map_edge` is the edge of a layer in texels.
+/// The square of texels that clip space covers when a split is drawn: the map and a guard band around it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Viewport {
+    /// Edge in texels.
+    pub edge: u32,
+    /// Texels from its left and upper edge to the map's.
+    pub guard: u32,
+}
+
+impl Viewport {
+    /// The widest guard band worth having, as a multiple of the map. Ours: a triangle that reaches from the map past one and a
+    /// half maps more is clipped, and its edges may then move by 1/512 texel between frames. A power of two, so that the step
+    /// from texels to clip space stays exact.
+    const WIDEST: u32 = 4;
+
+    /// For a map of `size` texels. `largest` is the device's limit for viewports: its `max_texture_dimension_2d`, or 0 where they
+    /// may not be larger than what is drawn to.
+    pub fn around(size: u32, largest: u32) -> Self {
+        let mut edge = size;
+        while edge < Self::WIDEST * size && 2 * u64::from(edge) <= u64::from(largest) {
+            edge *= 2;
+        }
+        Self { edge, guard: (edge - size) / 2 }
+    }
+}
+
+/// The uniform that receivers read; its splits are what casters read. `map_edge` is the edge of a layer in texels, `viewports`
+/// are those of the splits.
 pub(crate) fn frame(
     plan: &ShadowPlan,
     maps: &ShadowMapsOptions,
     map_edge: u32,
+    viewports: &[Viewport],
     options: &FrameOptions,
 ) -> Result<layout::Frame> {
     options.validate()?;
@@ -45,14 +73,20 @@ pub(crate) fn frame(
         tint: options.tint.into(),
         ..layout::Frame::default()
     };
-    for (index, (uniform, split)) in frame.splits.iter_mut().zip(&plan.splits).enumerate() {
-        *uniform = self::split(index, split, maps.depth_format.step(), options.origin)?;
+    for (index, ((uniform, split), viewport)) in frame.splits.iter_mut().zip(&plan.splits).zip(viewports).enumerate() {
+        *uniform = self::split(index, split, maps.depth_format.step(), *viewport, options.origin)?;
     }
     Ok(frame)
 }
 
 /// One split. `depth_step` is the format's step as a share of the depth range.
-fn split(index: usize, split: &umbrage::Split, depth_step: f64, origin: DVec3) -> Result<layout::Split> {
+fn split(
+    index: usize,
+    split: &umbrage::Split,
+    depth_step: f64,
+    viewport: Viewport,
+    origin: DVec3,
+) -> Result<layout::Split> {
     check(index, split)?;
     // The light's plane in texels. What the origin adds is split into a fraction, which stays with the row, and whole texels,
     // which join the map's own offset: a caster's place before the offset then depends on the point and the origin alone, and
@@ -73,7 +107,8 @@ fn split(index: usize, split: &umbrage::Split, depth_step: f64, origin: DVec3) -
         depth_range_m: range as f32,
         depth_step_m: (range * depth_step) as f32,
         is_empty: split.casters.is_empty().into(),
-        ..layout::Split::default()
+        viewport_texels: viewport.edge as f32,
+        guard_texels: viewport.guard as f32,
     };
     Ok(uniform)
 }

@@ -1,0 +1,347 @@
+//! What the GPU tests share: a device, plans made by hand, a pass that draws triangles and a pass that asks points.
+#![allow(dead_code, reason = "each test file uses its own part of this module")]
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec2, DVec3, DVec4, Vec3};
+use umbrage::{DirectionalLight, ShadowPlan, Split};
+use umbrage_wgpu::{FrameOptions, ShadowMaps, ShadowMapsOptions, caster_wgsl, optional_features, receiver_wgsl};
+
+/// A device of its own for each test, and the queue.
+pub struct Gpu {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+}
+
+impl Gpu {
+    /// With every optional feature that the adapter has. `None`, and a line on stderr, without an adapter.
+    pub fn new() -> Option<Self> {
+        Self::without(wgpu::Features::empty())
+    }
+
+    pub fn without(withheld: wgpu::Features) -> Option<Self> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let adapter = match pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) {
+            Ok(adapter) => adapter,
+            Err(error) => {
+                let required = std::env::var("UMBRAGE_REQUIRE_GPU").is_ok_and(|v| v == "1");
+                assert!(!required, "UMBRAGE_REQUIRE_GPU=1, but {error}");
+                eprintln!("SKIPPED: no adapter ({error})");
+                return None;
+            }
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("Test::device"),
+            required_features: (adapter.features() & optional_features()).difference(withheld),
+            ..Default::default()
+        }))
+        .expect("an adapter gives a device with features that it has");
+        Some(Self { device, queue })
+    }
+
+    /// Runs `body` and fails if wgpu found anything wrong with it.
+    pub fn checked<T>(&self, body: impl FnOnce() -> T) -> T {
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let result = body();
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            panic!("{error}");
+        }
+        result
+    }
+
+    fn read(&self, buffer: &wgpu::Buffer) -> Vec<u8> {
+        buffer.map_async(wgpu::MapMode::Read, .., |result| result.expect("a mappable buffer maps"));
+        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+        buffer.get_mapped_range(..).expect("mapped above").to_vec()
+    }
+
+    pub fn buffer_with(&self, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("Test::buffer"),
+            size: bytes.len() as u64,
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        self.queue.write_buffer(&buffer, 0, bytes);
+        buffer
+    }
+
+    /// Runs one compute shader, entry point `main`, workgroup of 64, over `input` at binding 0 of group 0 into as many `O` at
+    /// binding 1, with `maps` in group 1 if its text says so.
+    pub fn compute<I: Pod, O: Pod>(&self, source: &str, input: &[I], maps: Option<&ShadowMaps>) -> Vec<O> {
+        let bytes = size_of::<O>() as u64 * input.len() as u64;
+        self.checked(|| {
+            let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("Test::compute"),
+                source: wgpu::ShaderSource::Wgsl(source.into()),
+            });
+            let storage = |binding, read_only| wgpu::BindGroupLayoutEntry {
+                binding,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Storage { read_only },
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            };
+            let layout = self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("Test::compute"),
+                entries: &[storage(0, true), storage(1, false)],
+            });
+            let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some("Test::compute"),
+                layout: Some(&self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                    label: Some("Test::compute"),
+                    bind_group_layouts: &[Some(&layout), maps.map(ShadowMaps::receiver_layout)],
+                    immediate_size: 0,
+                })),
+                module: &module,
+                entry_point: Some("main"),
+                compilation_options: Default::default(),
+                cache: None,
+            });
+            let input_buffer = self.buffer_with(bytemuck::cast_slice(input), wgpu::BufferUsages::STORAGE);
+            let output = self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("Test::output"),
+                size: bytes,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            });
+            let back = self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("Test::back"),
+                size: bytes,
+                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("Test::compute"),
+                layout: &layout,
+                entries: &[
+                    wgpu::BindGroupEntry { binding: 0, resource: input_buffer.as_entire_binding() },
+                    wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
+                ],
+            });
+            let mut encoder = self.device.create_command_encoder(&Default::default());
+            {
+                let mut pass = encoder.begin_compute_pass(&Default::default());
+                pass.set_pipeline(&pipeline);
+                pass.set_bind_group(0, &group, &[]);
+                if let Some(maps) = maps {
+                    pass.set_bind_group(1, maps.receiver_bind_group(), &[]);
+                }
+                pass.dispatch_workgroups((input.len() as u32).div_ceil(64), 1, 1);
+            }
+            encoder.copy_buffer_to_buffer(&output, 0, &back, 0, bytes);
+            self.queue.submit([encoder.finish()]);
+            bytemuck::cast_slice(&self.read(&back)).to_vec()
+        })
+    }
+}
+
+/// A point that is asked: position relative to the frame's origin and normal.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Ask {
+    position: [f32; 4],
+    normal: [f32; 4],
+}
+
+pub fn ask(position: Vec3, normal: Vec3) -> Ask {
+    Ask { position: position.extend(0.0).to_array(), normal: normal.extend(0.0).to_array() }
+}
+
+/// What `umbrage_shadow` answered, and `umbrage_visibility_in_split` for splits 0 and 1.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Answer {
+    pub visibility: f32,
+    pub split: i32,
+    pub in_split: [f32; 2],
+    pub tint: [f32; 3],
+    pub short: f32,
+}
+
+const ASK: &str = "
+struct Ask { position: vec4f, normal: vec4f }
+struct Answer { visibility: f32, split: i32, in_split: vec2f, tint: vec3f, short: f32 }
+@group(0) @binding(0) var<storage, read> asks: array<Ask>;
+@group(0) @binding(1) var<storage, read_write> answers: array<Answer>;
+@compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
+    if id.x >= arrayLength(&asks) { return; }
+    let p = asks[id.x].position.xyz;
+    let n = asks[id.x].normal.xyz;
+    let shadow = umbrage_shadow(p, n);
+    let in_split = vec2f(umbrage_visibility_in_split(p, n, 0u), umbrage_visibility_in_split(p, n, 1u));
+    answers[id.x] = Answer(shadow.visibility, shadow.split, in_split, shadow.tint, umbrage_visibility(p, n));
+}";
+
+/// Maps, and a pipeline that draws triangles into them.
+pub struct World {
+    pub gpu: Gpu,
+    pub maps: ShadowMaps,
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl World {
+    pub fn new(gpu: Gpu, options: &ShadowMapsOptions) -> Self {
+        let (maps, pipeline) = gpu.checked(|| {
+            let maps = ShadowMaps::new(&gpu.device, options).expect("valid options");
+            let source = caster_wgsl(0)
+                + "@vertex fn vertex(@location(0) position: vec3f) -> @builtin(position) vec4f {
+                       return umbrage_caster_position(position);
+                   }";
+            let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("Test::caster"),
+                source: wgpu::ShaderSource::Wgsl(source.into()),
+            });
+            let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("Test::caster"),
+                layout: Some(&gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                    label: Some("Test::caster"),
+                    bind_group_layouts: &[Some(maps.caster_layout())],
+                    immediate_size: 0,
+                })),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some("vertex"),
+                    compilation_options: Default::default(),
+                    buffers: &[Some(wgpu::VertexBufferLayout {
+                        array_stride: 12,
+                        step_mode: wgpu::VertexStepMode::Vertex,
+                        attributes: &wgpu::vertex_attr_array![0 => Float32x3],
+                    })],
+                },
+                primitive: maps.caster_primitive(),
+                depth_stencil: Some(maps.caster_depth_stencil()),
+                multisample: Default::default(),
+                fragment: None,
+                multiview_mask: None,
+                cache: None,
+            });
+            (maps, pipeline)
+        });
+        Self { gpu, maps, pipeline }
+    }
+
+    /// Draws `triangles` (three corners each, relative to the options' origin) into every map.
+    pub fn draw(&mut self, plan: &ShadowPlan, options: &FrameOptions, triangles: &[Vec3]) {
+        self.maps.prepare(&self.gpu.queue, plan, options).expect("a valid plan");
+        self.gpu.checked(|| {
+            let vertices = self.gpu.buffer_with(bytemuck::cast_slice(triangles), wgpu::BufferUsages::VERTEX);
+            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+            for split in 0..self.maps.splits() {
+                let mut pass = self.maps.begin_split(&mut encoder, split, None);
+                pass.set_pipeline(&self.pipeline);
+                pass.set_bind_group(0, self.maps.caster_bind_group(split), &[]);
+                pass.set_vertex_buffer(0, vertices.slice(..));
+                pass.draw(0..triangles.len() as u32, 0..1);
+            }
+            self.gpu.queue.submit([encoder.finish()]);
+        });
+    }
+
+    pub fn ask(&self, asks: &[Ask]) -> Vec<Answer> {
+        self.gpu.compute(&(receiver_wgsl(1) + ASK), asks, Some(&self.maps))
+    }
+
+    /// The texels of a D32Float map, row after row.
+    pub fn texels(&self, split: usize) -> Vec<f32> {
+        let size = self.maps.options().map_sizes[split];
+        let row = (4 * size).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let bytes = self.gpu.checked(|| {
+            let back = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("Test::texels"),
+                size: u64::from(row * self.maps.depth_texture().height()),
+                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            let edge = self.maps.depth_texture().width();
+            assert_eq!(edge, size, "a copy takes whole layers of a depth texture");
+            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+            encoder.copy_texture_to_buffer(
+                wgpu::TexelCopyTextureInfo {
+                    texture: self.maps.depth_texture(),
+                    mip_level: 0,
+                    origin: wgpu::Origin3d { x: 0, y: 0, z: split as u32 },
+                    aspect: wgpu::TextureAspect::DepthOnly,
+                },
+                wgpu::TexelCopyBufferInfo {
+                    buffer: &back,
+                    layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None },
+                },
+                wgpu::Extent3d { width: edge, height: edge, depth_or_array_layers: 1 },
+            );
+            self.gpu.queue.submit([encoder.finish()]);
+            self.gpu.read(&back)
+        });
+        bytes
+            .chunks(row as usize)
+            .take(size as usize)
+            .flat_map(|r| bytemuck::pod_collect_to_vec::<u8, f32>(&r[..4 * size as usize]))
+            .collect()
+    }
+}
+
+/// A plan with one entry of `sizes` per split: slices from view depth `planes[i]` to `planes[i + 1]`, every map a square of
+/// `widths[i]` metres around the world's point `center`, depth from 100 m before it to 100 m behind it. The eye looks along +X
+/// from x = 0. Splits have a caster (index 0) each.
+pub fn plan(light: DVec3, center: DVec3, sizes: &[u32], planes: &[f64], widths: &[f64]) -> ShadowPlan {
+    let light = DirectionalLight::new(light).expect("a direction");
+    let (u, v) = light.map_axes();
+    let depth = light.direction();
+    let splits = (0..sizes.len())
+        .map(|i| {
+            let texel = widths[i] / f64::from(sizes[i]);
+            let at = DVec2::new(u.dot(center), v.dot(center)) / texel;
+            Split {
+                near: planes[i],
+                far: planes[i + 1],
+                blend_begin: planes[i + 1],
+                coverage: (planes[i], planes[i + 1]),
+                size: sizes[i],
+                u_axis: u,
+                v_axis: v,
+                depth_axis: depth,
+                texel_m: DVec2::splat(texel),
+                min_texel: (at - 0.5 * f64::from(sizes[i])).round(),
+                depth_near: depth.dot(center) - 100.0,
+                depth_far: depth.dot(center) + 100.0,
+                casters: i..i + 1,
+            }
+        })
+        .collect();
+    ShadowPlan {
+        splits,
+        planes: planes.to_vec(),
+        view_depth_plane: DVec4::new(1.0, 0.0, 0.0, 0.0),
+        light_direction: depth,
+        fade_begin: planes[sizes.len()],
+        caster_indices: vec![0; sizes.len()],
+        split_range: vec![Some((0, sizes.len() as u8 - 1))],
+    }
+}
+
+/// Two triangles: the corners of a quad in order around it.
+pub fn quad(corners: [Vec3; 4]) -> Vec<Vec3> {
+    [0, 1, 2, 0, 2, 3].map(|i| corners[i]).to_vec()
+}
+
+/// The ground around the origin, `half` metres to each side, at y = 0.
+pub fn ground(half: f32) -> Vec<Vec3> {
+    quad([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, z)| half * Vec3::new(x, 0.0, z)))
+}
+
+/// A closed box.
+pub fn cuboid(min: Vec3, max: Vec3) -> Vec<Vec3> {
+    let corner = |i: usize| {
+        Vec3::new(
+            if i & 1 == 0 { min.x } else { max.x },
+            if i & 2 == 0 { min.y } else { max.y },
+            if i & 4 == 0 { min.z } else { max.z },
+        )
+    };
+    [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]]
+        .iter()
+        .flat_map(|face| quad(face.map(corner)))
+        .collect()
+}
