@@ -66,6 +66,13 @@ impl Truth {
 }
 
 impl TruthMask {
+    /// A mask made by hand.
+    #[cfg(test)]
+    pub(crate) fn from_hits(size: [usize; 2], to_light: DVec3, hits: Vec<Option<Hit>>) -> Self {
+        assert_eq!(hits.len(), size[0] * size[1]);
+        Self { size, to_light, hits }
+    }
+
     /// Width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {

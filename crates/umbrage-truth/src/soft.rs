@@ -142,6 +142,13 @@ impl Truth {
 }
 
 impl SoftTruth {
+    /// A soft truth made by hand.
+    #[cfg(test)]
+    pub(crate) fn from_values(size: [usize; 2], visibility: Vec<Option<f32>>) -> Self {
+        assert_eq!(visibility.len(), size[0] * size[1]);
+        Self { size, visibility }
+    }
+
     /// Width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {

@@ -51,3 +51,6 @@ pub use picture::{false_colour, false_colour_soft};
 pub use rate::{MisShadowed, mis_shadowed};
 pub use similarity::{Similarity, similarity};
 pub use soft::{SoftError, soft_error};
+
+#[cfg(test)]
+mod tests;

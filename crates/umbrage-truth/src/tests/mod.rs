@@ -2,6 +2,6 @@
 
 mod brute_force;
 mod closed_forms;
-mod scenes;
+pub(crate) mod scenes;
 mod soft;
 mod surfaces;

@@ -198,7 +198,8 @@ fn an_empty_scene_is_all_sky() {
 
 #[test]
 fn broken_scenes_are_refused_by_name() {
-    let broken: [(&str, fn(&mut Primitive)); 5] = [
+    type Damage = fn(&mut Primitive);
+    let broken: [(&str, Damage); 5] = [
         ("whole triangles", |p| p.indices.truncate(4)),
         ("points past", |p| p.indices[2] = 99),
         ("not a number", |p| p.positions[1][0] = f32::NAN),

@@ -1,0 +1,8 @@
+//! Every score where its value is known, and where it has to say no.
+
+mod beside;
+mod flicker;
+mod footprint;
+mod frames;
+mod hard;
+mod soft;
