@@ -62,6 +62,9 @@ impl Capture {
     }
 }
 
+/// How long a callback may be on its way after the device has nothing left to do. Only a lost device takes that long.
+const CALLBACK_PATIENCE: std::time::Duration = std::time::Duration::from_secs(60);
+
 /// Waits until everything submitted has run, and returns a mappable buffer's content.
 pub(crate) fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>> {
     const DURING: &str = "reading results back";
@@ -72,8 +75,9 @@ pub(crate) fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>> {
         let _ = sender.send(result);
     });
     gpu.wait()?;
+    // Another thread that waits for the same device may have taken this buffer's callback and be about to call it.
     receiver
-        .try_recv()
+        .recv_timeout(CALLBACK_PATIENCE)
         .map_err(|_| failed("the buffer was never mapped".to_owned()))?
         .map_err(|error| failed(error.to_string()))?;
     let bytes = buffer.get_mapped_range(..).map_err(|error| failed(error.to_string()))?.to_vec();

@@ -62,24 +62,23 @@ impl Instances {
         self.data.clear();
     }
 
-    /// A list of objects in whatever order serves drawing best.
+    /// Objects that share a source drawn together, those given first as early as that allows.
     pub fn grouped(&mut self, pose: &Pose, origin: DVec3, objects: impl Iterator<Item = usize>) -> Vec<Run> {
-        let mut keyed: Vec<_> = objects.map(|index| (run_key(&pose.objects[index]), index)).collect();
+        let mut keyed: Vec<_> = objects.enumerate().map(|(rank, i)| (run_key(&pose.objects[i]), rank, i)).collect();
         keyed.sort_unstable();
-        self.list(pose, origin, keyed)
+        let ranks: Vec<usize> = keyed.iter().map(|&(_, rank, _)| rank).collect();
+        let first = self.data.len() as u32;
+        let mut runs = self.list(pose, origin, keyed.into_iter().map(|(key, _, index)| (key, index)));
+        runs.sort_unstable_by_key(|run| ranks[(run.instances.start - first) as usize]);
+        runs
     }
 
-    /// A list of objects that are drawn one after the other in the order given.
+    /// Objects drawn one after the other in the order given.
     pub fn ordered(&mut self, pose: &Pose, origin: DVec3, objects: impl Iterator<Item = usize>) -> Vec<Run> {
         self.list(pose, origin, objects.map(|index| (run_key(&pose.objects[index]), index)))
     }
 
-    fn list(
-        &mut self,
-        pose: &Pose,
-        origin: DVec3,
-        objects: impl IntoIterator<Item = ((Source, bool), usize)>,
-    ) -> Vec<Run> {
+    fn list(&mut self, pose: &Pose, origin: DVec3, objects: impl Iterator<Item = ((Source, bool), usize)>) -> Vec<Run> {
         let mut runs: Vec<Run> = Vec::new();
         for ((source, mirrored), index) in objects {
             let at = self.data.len() as u32;

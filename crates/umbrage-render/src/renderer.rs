@@ -369,11 +369,12 @@ impl Renderer {
         self.forward.prepare(&self.gpu, &FrameUniform::new(view, &frame.sun, origin));
         self.timer.restart();
 
-        let visible: Vec<usize> =
-            (0..pose.objects.len()).filter(|&i| cull::may_be_seen(view, &pose.objects[i].bounds)).collect();
-        let mut far_to_near = self.with_translucent_parts(pose, &visible);
-        let depth = |i: usize| view.view_depth(pose.objects[i].bounds.center());
-        far_to_near.sort_by(|&a, &b| depth(b).total_cmp(&depth(a)));
+        let mut near_to_far: Vec<(f64, usize)> = (0..pose.objects.len())
+            .filter(|&i| cull::may_be_seen(view, &pose.objects[i].bounds))
+            .map(|i| (view.view_depth(pose.objects[i].bounds.center()), i))
+            .collect();
+        near_to_far.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let visible: Vec<usize> = near_to_far.into_iter().map(|(_, i)| i).collect();
 
         self.instances.clear();
         let caster_runs = (0..plan.splits.len())
@@ -383,15 +384,16 @@ impl Renderer {
             })
             .collect();
         let solid = self.instances.grouped(pose, origin, visible.iter().copied());
+        let far_to_near = self.with_translucent_parts(pose, visible.iter().rev().copied());
         let translucent = self.instances.ordered(pose, origin, far_to_near.into_iter());
         self.instances.upload(&self.gpu)?;
         Ok(Prepared { origin, plan, plan_ms, caster_runs, solid, translucent, objects_in_view: visible.len() })
     }
 
-    fn with_translucent_parts(&self, pose: &Pose, objects: &[usize]) -> Vec<usize> {
+    fn with_translucent_parts(&self, pose: &Pose, objects: impl Iterator<Item = usize>) -> Vec<usize> {
         let drawable = self.drawable();
         let translucent = |i: &usize| drawable.has(&pose.objects[*i], |material| material.alpha == AlphaMode::Blend);
-        objects.iter().copied().filter(translucent).collect()
+        objects.filter(translucent).collect()
     }
 
     fn drawable(&self) -> Drawable<'_> {

@@ -17,7 +17,7 @@ pub struct PassCounts {
     pub vertices: u64,
     /// Triangles left after clipping.
     pub primitives: u64,
-    /// Runs of a fragment shader; 0 for opaque casters, which have none.
+    /// Runs of a fragment shader. Opaque casters have none, but some drivers count their pixels all the same.
     pub fragments: u64,
 }
 

@@ -2,9 +2,9 @@
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 
-const SUN: vec3f = vec3f(2.75, 2.55, 2.25);
-const SKY_AMBIENT: vec3f = vec3f(0.30, 0.38, 0.50);
-const GROUND_AMBIENT: vec3f = vec3f(0.17, 0.155, 0.14);
+const SUN: vec3f = vec3f(2.7, 2.5, 2.2);
+const SKY_AMBIENT: vec3f = vec3f(0.58, 0.70, 0.88);
+const GROUND_AMBIENT: vec3f = vec3f(0.30, 0.27, 0.24);
 
 struct Vertex {
     @location(0) local: vec3f,
@@ -133,6 +133,6 @@ fn fs_sky(in: SkyPixel) -> @location(0) vec4f {
 
 // Narkowicz's fit of the ACES film curve (2015), at the exposure that suits SUN.
 fn tone_mapped(light: vec3f) -> vec3f {
-    let x = light * 0.6;
+    let x = light * 0.45;
     return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), vec3f(0.0), vec3f(1.0));
 }
