@@ -161,23 +161,23 @@ fn sections() -> Vec<Section> {
             shots: vec![
                 ShotPlan {
                     name: "near",
-                    caption: "A street from a driver's height.",
-                    camera: &["--eye", "9.13,-5.9,-41.4", "--target", "0.85,-8.4,-22.05"],
+                    caption: "A lamp, a tree and the truss, from the pavement.",
+                    camera: &["--eye", "-60,-5,-20", "--target", "-110,-9,5"],
                 },
                 ShotPlan {
                     name: "middle",
-                    caption: "A straight of two hundred metres along the houses.",
-                    camera: &["--eye", "-50.8,-7.5,-8.25", "--target", "-108.3,-9.5,-8.25"],
+                    caption: "The truss's shadow across the square and up the houses.",
+                    camera: &["--eye", "-245,-7.9,11", "--target", "-225,-9.5,-4"],
                 },
                 ShotPlan {
                     name: "far",
                     caption: "Over the roofs to the hills.",
-                    camera: &["--eye", "-20,45,-190", "--target", "-150,-10,-20"],
+                    camera: &["--eye", "-255,70,-200", "--target", "-120,-10,0"],
                 },
                 ShotPlan {
                     name: "dueling",
-                    caption: "Nearly into the light: the case that warped shadow maps cannot do.",
-                    camera: &["--eye", "-250,-6,-5", "--target", "-180,-6,-7"],
+                    caption: "Along the author's driveline, nearly into the light: the case that warped shadow maps cannot do.",
+                    camera: &["--eye", "-114.77,-7.95,8.25", "--target", "-134.77,-7.95,8.25"],
                 },
             ],
         },

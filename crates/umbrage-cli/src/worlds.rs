@@ -20,7 +20,7 @@ pub fn run(command: &WorldsCommand) -> Result<()> {
             })?;
             output::check(&[output], &[], &[])?;
             let mut staged = Staged::default();
-            staged.file(output, Vec::new())?;
+            staged.file(output, umbrage_scene::export_glb(&world.build())?)?;
             staged.commit()
         }
     }

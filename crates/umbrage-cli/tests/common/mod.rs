@@ -145,10 +145,7 @@ pub const EMPTY_GLTF: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{
 /// Two points and a sun.
 pub fn path_json() -> String {
     let points: Vec<String> = (0..20).map(|i| format!("[{},0,{}]", i - 10, 15 - i)).collect();
-    format!(
-        r#"{{"sun_direction_to_light":[0.3,1.0,0.2],"closed":false,"points":[{}]}}"#,
-        points.join(",")
-    )
+    format!(r#"{{"sun_direction_to_light":[0.3,1.0,0.2],"closed":false,"points":[{}]}}"#, points.join(","))
 }
 
 /// A plane of 40 m at y = 0 and a box of 2 m whose middle stands at y = 2, as binary glTF.
@@ -159,13 +156,14 @@ pub fn tiny_glb() -> Vec<u8> {
 /// The JSON of [`tiny_glb`]; `corners` is what it claims the box has.
 pub fn tiny_json(corners: u32) -> String {
     format!(
-        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0,1,2]}}],
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0,1,2,4]}}],
 "extensionsUsed":["KHR_lights_punctual"],
 "extensions":{{"KHR_lights_punctual":{{"lights":[{{"type":"directional","name":"sun"}},{{"type":"point","name":"lamp"}}]}}}},
 "cameras":[{{"type":"perspective","name":"front","perspective":{{"yfov":1.0,"znear":0.5,"zfar":200}}}}],
 "nodes":[{{"name":"ground","mesh":0}},{{"name":"box","mesh":1,"translation":[0,2,0]}},
 {{"name":"rig","camera":0,"translation":[0,6,14],"rotation":[-0.2,0,0,0.979796],"children":[3]}},
-{{"name":"sun","rotation":[-0.5,0,0,0.866025],"extensions":{{"KHR_lights_punctual":{{"light":0}}}}}}],
+{{"name":"sun","rotation":[-0.5,0,0,0.866025],"extensions":{{"KHR_lights_punctual":{{"light":0}}}}}},
+{{"name":"lamp","translation":[0,9,0],"extensions":{{"KHR_lights_punctual":{{"light":1}}}}}}],
 "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}},{{"primitives":[{{"attributes":{{"POSITION":2}},"indices":3}}]}}],
 "accessors":[
 {{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[-20,0,-20],"max":[20,0,20]}},
