@@ -176,6 +176,16 @@ impl Renderer {
         self.planner.settings()
     }
 
+    /// Forgets what earlier frames have left behind in the planner (sizes that stabilisation holds), as if nothing had been
+    /// drawn yet: for views that do not follow each other.
+    ///
+    /// # Errors
+    /// Never in practice: the settings were accepted before.
+    pub fn restart(&mut self) -> Result<()> {
+        self.planner = Planner::new(self.planner.settings().clone())?;
+        Ok(())
+    }
+
     /// Bytes of vertices, indices and textures on the GPU.
     #[must_use]
     pub fn scene_bytes(&self) -> u64 {
