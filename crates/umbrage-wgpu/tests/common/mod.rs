@@ -161,7 +161,7 @@ pub struct Answer {
     pub short: f32,
 }
 
-const ASK: &str = "
+pub const ASK: &str = "
 struct Ask { position: vec4f, normal: vec4f }
 struct Answer { visibility: f32, split: i32, in_split: vec2f, tint: vec3f, short: f32 }
 @group(0) @binding(0) var<storage, read> asks: array<Ask>;
