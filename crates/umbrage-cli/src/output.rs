@@ -10,7 +10,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use tempfile::{NamedTempFile, TempDir};
+use tempfile::{NamedTempFile, TempDir, TempPath};
 
 use crate::failure::{Failure, Result};
 
@@ -89,7 +89,8 @@ pub struct Staged {
 #[derive(Debug)]
 enum Entry {
     File {
-        file: NamedTempFile,
+        /// Written and closed: a long path of frames must not run out of open files.
+        file: TempPath,
         target: PathBuf,
     },
     Folder {
@@ -120,7 +121,7 @@ impl Staged {
         let failed = |error: io::Error| Failure::file("write", target, &error);
         let mut file = temporary_file(folder_of(&resolved)).map_err(failed)?;
         write_whole(file.as_file_mut(), &bytes).map_err(failed)?;
-        self.entries.push(Entry::File { file, target: resolved });
+        self.entries.push(Entry::File { file: file.into_temp_path(), target: resolved });
         Ok(())
     }
 

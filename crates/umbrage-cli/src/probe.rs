@@ -109,7 +109,7 @@ mod tests {
             (bytes(&[0.0, 0.0, 0.0, 0.0, f64::INFINITY, 0.0]), "record 0"),
             (bytes(&[0.0; 6]), "no direction"),
         ] {
-            let error = points(path, &bad).err().expect("bad points").to_string();
+            let error = points(path, &bad).expect_err("bad points").to_string();
             assert!(error.contains("points.bin") && error.contains(word), "{error}");
         }
     }
