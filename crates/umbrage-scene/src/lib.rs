@@ -6,6 +6,20 @@
 //! * [`Scene`] is geometry stored once and nodes that place it; [`Scene::pose`] is a scene at one moment.
 //! * [`camera_view`], [`light_direction`] and their invented counterparts say from where and by which sun it is seen.
 //! * [`CameraPath`] walks through it, [`export_glb`] writes it down.
+//!
+//! ```
+//! use umbrage_scene::{HeightMapOptions, camera_view, export_glb, light_direction, open};
+//!
+//! let scene = open("chessboard", &HeightMapOptions::default())?;
+//! let pose = scene.pose(2.5)?;
+//! let view = camera_view(&scene, &pose, 0, 800.0 / 600.0, None, None)?;
+//! let sun = light_direction(&scene, &pose, 0)?;
+//! assert!(sun.y < 0.0, "the sun is up");
+//! assert!(pose.objects.iter().any(|object| object.casts && view.view_depth(object.bounds.center()) > 0.0));
+//! let glb = export_glb(&scene)?;
+//! # assert!(glb.starts_with(b"glTF"));
+//! # Ok::<(), umbrage_scene::Error>(())
+//! ```
 
 mod camera_path;
 mod error;
@@ -16,8 +30,8 @@ mod height_map;
 mod model;
 mod open;
 mod picture;
-pub mod procedural;
 mod pose;
+pub mod procedural;
 mod sample;
 mod validate;
 

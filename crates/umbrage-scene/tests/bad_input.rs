@@ -127,6 +127,19 @@ fn zeros_without_bytes_cannot_fill_the_memory() {
         });
     });
     refused(&glb, &["accessors[0]", "without any bytes"]);
+
+    // The same few bytes used again and again.
+    let mut glb = Glb::triangle();
+    let (indices, values) = (glb.view(&[0, 0]), glb.view(&[0; 12]));
+    glb.push("accessors", json!({
+        "componentType": F32, "type": "VEC3", "count": 1_u64 << 20,
+        "sparse": { "count": 1, "indices": { "bufferView": indices, "componentType": U16 }, "values": { "bufferView": values } },
+    }));
+    let node =
+        json!({ "mesh": 0, "extensions": { "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": 2 } } } });
+    glb.json["nodes"] = json!([node, node, node, node, node]);
+    glb.json["scenes"][0]["nodes"] = json!([0, 1, 2, 3, 4]);
+    refused(&glb, &["nodes[4]", "instances"]);
 }
 
 #[test]

@@ -87,7 +87,7 @@ fn children_follow_their_parents_wherever_they_stand_in_the_file() {
         g.json["nodes"] = json!([
             { "name": "leaf", "mesh": 0, "translation": [1, 0, 0] },
             { "name": "root", "children": [2], "scale": [2, 2, 2], "translation": [0, 10, 0] },
-            { "name": "branch", "children": [0], "rotation": [0, 0.70710678, 0, 0.70710678] },
+            { "name": "branch", "children": [0], "rotation": [0, 1, 0, 1] },
         ]);
         g.json["scenes"][0]["nodes"] = json!([1]);
     });

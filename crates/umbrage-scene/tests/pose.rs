@@ -170,7 +170,8 @@ fn inconsistent_scenes_are_refused() {
         scene
     };
     assert!(good().validate().is_ok());
-    let bends: [(&str, fn(&mut Scene)); 18] = [
+    type Bend = (&'static str, fn(&mut Scene));
+    let bends: [Bend; 18] = [
         ("index", |s| s.meshes[0].primitives[0].indices[0] = 3),
         ("indices", |s| s.meshes[0].primitives[0].indices.truncate(2)),
         ("normals", |s| s.meshes[0].primitives[0].normals.truncate(2)),

@@ -5,6 +5,7 @@ use gltf::json::animation::{Interpolation as JsonInterpolation, Property};
 use gltf::json::validation::Checked;
 
 use super::Document;
+use super::budget::Part;
 use super::buffers::{self, Integers};
 use super::nodes::Places;
 use crate::error::element;
@@ -76,6 +77,7 @@ fn load_channel(
         Keys::Rotation(keys) => keys.len(),
     };
     let expected = times.len() * if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+    document.count(Part::Key, count as u64, user)?;
     if count != expected {
         return Err(invalid(format!("has {} keys, so it needs {expected} values, but it has {count}", times.len())));
     }

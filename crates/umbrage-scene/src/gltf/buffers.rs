@@ -5,15 +5,9 @@ use std::borrow::Cow;
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::validation::Checked;
 
+use super::budget::Part;
 use super::{Document, uri};
 use crate::Result;
-
-/// Most elements of an accessor that has no bytes of its own (all zeros but for a sparse part): such a count costs
-/// nothing in the file. Ours; far above any real mesh, and it keeps a file of a few bytes from taking all memory.
-const MOST_ZERO_ELEMENTS: u64 = 1 << 24;
-
-/// Most elements decoded for one file. Ours; it stops files that refer to one large accessor from thousands of places.
-const MOST_ELEMENTS: u64 = 1 << 31;
 
 /// What integers mean that are not marked as normalized.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -99,11 +93,7 @@ fn packed(document: &Document<'_>, index: usize, user: &str, expected: &[Type]) 
     };
     let component = component.0;
     let size = component.size() * ty.multiplicity();
-    let total = document.elements_read.get().saturating_add(accessor.count.0);
-    if total > MOST_ELEMENTS {
-        return Err(invalid(format!("makes this file refer to more than {MOST_ELEMENTS} elements")));
-    }
-    document.elements_read.set(total);
+    document.count(Part::Element, accessor.count.0, &element)?;
 
     let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
     let mut bytes = match accessor.buffer_view {
@@ -114,10 +104,10 @@ fn packed(document: &Document<'_>, index: usize, user: &str, expected: &[Type]) 
                 invalid(format!("takes {count} elements of {size} bytes from byte {offset} of a view of {there} bytes"))
             })?
         }
-        None if accessor.count.0 > MOST_ZERO_ELEMENTS => {
-            return Err(invalid(format!("has {} elements without any bytes", accessor.count.0)));
+        None if accessor.sparse.is_some() => {
+            document.count(Part::ZeroElement, accessor.count.0, &element)?;
+            vec![0; accessor.count.0 as usize * size]
         }
-        None if accessor.sparse.is_some() => vec![0; accessor.count.0 as usize * size],
         None => return Err(invalid("has no buffer view and no sparse values".into())),
     };
     let count = bytes.len() / size;

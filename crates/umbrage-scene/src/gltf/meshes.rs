@@ -6,6 +6,7 @@ use glam::DVec3;
 use gltf::json::mesh::{Mode, Primitive as JsonPrimitive, Semantic};
 use gltf::json::validation::Checked;
 
+use super::budget::Part;
 use super::buffers::{self, Integers};
 use super::materials::TextureCoordinates;
 use super::{Document, Notes};
@@ -133,11 +134,13 @@ fn load_primitive(
     same_count("JOINTS_0", if primitive.joints.is_empty() { vertices } else { primitive.joints.len() })?;
 
     drop_unused_vertices(&mut primitive);
+    document.count(Part::Corner, primitive.indices.len() as u64, user)?;
     if primitive.normals.is_empty() {
         give_flat_normals(&mut primitive);
     } else if repair_normals(&mut primitive) {
         notes.add("a primitive has normals of no length; they are taken from its triangles");
     }
+    document.count(Part::Vertex, primitive.positions.len() as u64, user)?;
     Ok(Some(primitive))
 }
 

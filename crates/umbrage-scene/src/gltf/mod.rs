@@ -5,6 +5,7 @@
 //! buffer, a `POSITION` that does not exist, a .glb header shorter than itself).
 
 mod animations;
+mod budget;
 mod buffers;
 mod container;
 mod decompose;
@@ -16,10 +17,10 @@ mod nodes;
 mod uri;
 
 use std::borrow::Cow;
-use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use budget::Used;
 use gltf::json;
 
 use crate::error::read_file;
@@ -90,8 +91,8 @@ fn load(file: &str, bytes: &[u8], external: External<'_>) -> Result<Scene> {
     if let Some(extension) = root.extensions_required.iter().find(|e| !SUPPORTED_EXTENSIONS.contains(&e.as_str())) {
         return Err(Error::UnsupportedExtension { file: file.to_owned(), extension: extension.clone() });
     }
-    let mut document =
-        Document { file, root, buffers: Vec::new(), external, elements_read: Cell::new(0), notes: Notes::default() };
+    let (used, notes) = (Used::default(), Notes::default());
+    let mut document = Document { file, root, buffers: Vec::new(), external, used, notes };
     document.buffers = buffers::load(&document, chunks.binary)?;
 
     let (materials, textures, texture_coordinates) = materials::load(&mut document)?;
@@ -132,8 +133,7 @@ struct Document<'a> {
     root: json::Root,
     buffers: Vec<Cow<'a, [u8]>>,
     external: External<'a>,
-    /// How many accessor elements have been decoded so far, see [`buffers`].
-    elements_read: Cell<u64>,
+    used: Used,
     notes: Notes,
 }
 

@@ -6,6 +6,7 @@ use gltf::json::camera::Type as CameraType;
 use gltf::json::extensions::scene::khr_lights_punctual::{Light as JsonLight, Type as LightType};
 use gltf::json::validation::Checked;
 
+use super::budget::Part;
 use super::buffers::{self, Integers};
 use super::decompose::decompose;
 use super::hierarchy::{self, Hierarchy, node_name};
@@ -141,6 +142,7 @@ fn instances(document: &Document<'_>, extension: &serde_json::Value, user: &str)
             return Err(document.invalid(user, format!("{name} has {this} elements, another attribute has not")));
         }
     }
+    document.count(Part::Instance, count.unwrap_or_default(), &user)?;
     let index = |name: &str| attributes.get(name).and_then(accessor_index);
     let read = |name: &str| {
         let purpose = format!("{user} {name}");
