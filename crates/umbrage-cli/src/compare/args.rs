@@ -1,0 +1,179 @@
+//! What was typed after `umbrage compare`.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use glam::DVec3;
+
+use super::shots::SunSpec;
+use crate::{
+    args::{SceneArgs, Switch},
+    parse,
+};
+
+const TECHNIQUES_HELP: &str = "\
+A technique is KIND:SPLITS:SIZE for pssm and KIND:SIZE for single maps, then settings: the shadow options of `umbrage render` \
+without their dashes, as :KEY=VALUE, lists with / between their numbers, and :label=TEXT. For example
+  pssm:4:512,pssm:4:512:lambda=0.9:stabilize=none:fit=independent,pssm:3:1024/512/256:filter=hard,ssm:1024
+
+A file of techniques (TOML) says the same:
+  [with]                       # for all techniques that do not say otherwise
+  filter = \"hard\"
+  [[technique]]
+  technique = \"pssm\"
+  splits = 4
+  map-size = [1024, 512, 512, 256]
+  label = \"ours\"
+
+Suns: own (the scene's), an elevation in degrees at the own sun's bearing (43), an elevation at a bearing from north by east (43@120), \
+into (the sun ahead of the camera, 11 degrees up; into@30: 30 degrees up), metrics (43 and 11 for all cameras, into for the first).
+
+Presets, each reproduced by one command such as `umbrage compare --preset ladder -o ladder`; options given beside take precedence:
+  ladder   SSM and PSSM at 1 and 4 Mtexel, tight and still, over the worlds under the suns `metrics`, with flicker
+  figure8  the rows and worlds of the paper's Figure 8, columns (a) to (d)
+  dueling  its column (e): looking into the light, larger maps
+  table    PSSM(2, 3, 4; 512) beside SSM(1024) over all cameras of all worlds";
+
+/// `umbrage compare`.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = TECHNIQUES_HELP)]
+pub struct CompareArgs {
+    /// Scenes as for `umbrage render`: .glb or .gltf files, height maps, worlds [default: the preset's]
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<String>,
+    /// Height maps: metres between posts
+    #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Scene")]
+    pub metres_per_post: Option<f64>,
+    /// Height maps: metres per unit of a pixel's value
+    #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Scene")]
+    pub metres_per_unit: Option<f64>,
+    /// Height maps: metres added to every height
+    #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
+    pub height_offset: Option<f64>,
+    /// Seconds into the scenes' animations
+    #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
+    pub time: f64,
+
+    /// Techniques to compare, see below
+    #[arg(long, value_name = "LIST", value_delimiter = ',', help_heading = "Techniques")]
+    pub techniques: Vec<String>,
+    /// Techniques to compare, from a file (TOML), see below
+    #[arg(long, value_name = "FILE", help_heading = "Techniques")]
+    pub techniques_file: Option<PathBuf>,
+    /// A known set of techniques, scenes, cameras and suns
+    #[arg(long, value_enum, help_heading = "Techniques")]
+    pub preset: Option<Preset>,
+    /// Settings for all techniques that do not say otherwise: filter=hard:blend=0
+    #[arg(long, value_name = "SETTINGS", help_heading = "Techniques")]
+    pub with: Option<String>,
+    /// View depths in metres that shadows cover and scores count, for all techniques [default: the camera's near and far]
+    #[arg(long, value_name = "N..F", value_parser = parse::range, allow_hyphen_values = true, help_heading = "Techniques")]
+    pub shadow_range: Option<(f64, f64)>,
+
+    /// Pixels
+    #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = parse::size, allow_hyphen_values = true, help_heading = "Shots")]
+    pub size: [u32; 2],
+    /// Cameras of the scenes, by name or number [default: all that have names, or an invented one]
+    #[arg(long, value_name = "NAME|INDEX,…", value_delimiter = ',', help_heading = "Shots")]
+    pub camera: Vec<String>,
+    /// Where one more camera stands, in metres
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Shots")]
+    pub eye: Option<DVec3>,
+    /// The point it looks at
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Shots")]
+    pub target: Option<DVec3>,
+    /// Vertical field of view in degrees [default: 60, or the camera's]
+    #[arg(long, value_name = "DEGREES", value_parser = parse::field_of_view, allow_hyphen_values = true, help_heading = "Shots")]
+    pub fov: Option<f64>,
+    /// Near plane in metres [default: 1, or the camera's]
+    #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Shots")]
+    pub near: Option<f64>,
+    /// Far plane in metres, or inf [default: 800, or the camera's]
+    #[arg(long, value_name = "M", value_parser = parse::positive_or_infinite, allow_hyphen_values = true, help_heading = "Shots")]
+    pub far: Option<f64>,
+    /// Move a camera along an author's path (JSON); one scene only
+    #[arg(long, value_name = "FILE", help_heading = "Shots")]
+    pub path: Option<PathBuf>,
+    /// Frames of the path, or of --step; 2 or more give flicker
+    #[arg(long, value_name = "N", allow_hyphen_values = true, help_heading = "Shots")]
+    pub frames: Option<u32>,
+    /// With --path: metres from the path up to the eye
+    #[arg(long, value_name = "M", default_value = "2", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Shots")]
+    pub eye_height: f64,
+    /// Move every other camera forward by this many metres a frame, for --frames
+    #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Shots")]
+    pub step: Option<f64>,
+    /// One of the scenes' directional lights as their own sun [default: the first]
+    #[arg(long, value_name = "NAME|INDEX", help_heading = "Shots")]
+    pub light: Option<String>,
+    /// The own sun: the way light travels; any length
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Shots")]
+    pub sun: Option<DVec3>,
+    /// Suns that every camera is seen under, see below [default: own]
+    #[arg(long, value_name = "SUN,…", value_delimiter = ',', value_parser = super::shots::sun_spec, allow_hyphen_values = true, help_heading = "Shots")]
+    pub suns: Vec<SunSpec>,
+    /// A view counts in means and comparisons if the true shadow has this many edge pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = umbrage_truth::scores::LEAST_EDGES, help_heading = "Shots")]
+    pub least_edges: usize,
+
+    /// Write everything into this folder: sheet.png, errors.png, scores.json, compare.html
+    #[arg(short = 'o', long = "output", value_name = "DIR", help_heading = "Output")]
+    pub folder: Option<PathBuf>,
+    /// Write the contact sheet here (PNG)
+    #[arg(long, value_name = "PNG", help_heading = "Output")]
+    pub sheet: Option<PathBuf>,
+    /// Write the sheet of errors here (PNG): leaks red, acne blue, on the truth in grey
+    #[arg(long, value_name = "PNG", help_heading = "Output")]
+    pub errors: Option<PathBuf>,
+    /// Write all scores here (JSON)
+    #[arg(long, value_name = "JSON", help_heading = "Output")]
+    pub json: Option<PathBuf>,
+    /// Write one page with sheets, tables and plots here (HTML)
+    #[arg(long, value_name = "HTML", help_heading = "Output")]
+    pub html: Option<PathBuf>,
+    /// Columns of the sheets; of more shots, evenly chosen ones are shown
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=64), help_heading = "Output")]
+    pub columns: u32,
+    /// FLIP and SSIM beside the scores, over the shots on the sheets
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub image_metrics: Switch,
+}
+
+/// `--preset`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Preset {
+    /// A ladder of techniques to stand beside: error, memory and flicker
+    Ladder,
+    /// The paper's Figure 8, columns (a) to (d)
+    Figure8,
+    /// The paper's Figure 8, column (e): the dueling frusta
+    Dueling,
+    /// What stands in the first table of measurements
+    Table,
+}
+
+impl CompareArgs {
+    /// What the options say about one scene, seen by no camera in particular.
+    #[must_use]
+    pub fn scene_args(&self, scene: &str) -> SceneArgs {
+        SceneArgs {
+            scene: scene.to_owned(),
+            metres_per_post: self.metres_per_post,
+            metres_per_unit: self.metres_per_unit,
+            height_offset: self.height_offset,
+            time: self.time,
+            size: self.size,
+            camera: None,
+            eye: None,
+            target: None,
+            fov: self.fov,
+            near: self.near,
+            far: self.far,
+            path: None,
+            frames: None,
+            eye_height: self.eye_height,
+            light: self.light.clone(),
+            sun: self.sun,
+        }
+    }
+}

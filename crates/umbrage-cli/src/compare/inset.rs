@@ -1,0 +1,105 @@
+//! Where to look closer: the part of a view in which techniques differ most.
+
+use umbrage_truth::scores::Domain;
+
+/// An inset shows one part in this many of the picture's width and height.
+const PARTS: usize = 8;
+
+/// A rectangle of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rect {
+    /// Its left edge.
+    pub x: u32,
+    /// Its upper edge.
+    pub y: u32,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+}
+
+/// The window in which `wrong` (one picture of wrong decisions per technique) differ most: where k of n techniques are wrong, a
+/// pixel counts k (n − k), which is greatest where half of them are. Where all techniques are wrong alike, the window with the
+/// most errors; without errors, the one with the most true edges; without edges, none.
+#[must_use]
+pub fn find(domain: &Domain, wrong: &[Vec<bool>]) -> Option<Rect> {
+    let [width, height] = domain.size();
+    let window = [width.div_ceil(PARTS), height.div_ceil(PARTS)];
+    let count = |pixel: usize| wrong.iter().filter(|of| of[pixel]).count();
+    let differ = |pixel: usize| (count(pixel) * (wrong.len() - count(pixel))) as u64;
+    let mut is_edge = vec![false; width * height];
+    domain.edges().iter().for_each(|&pixel| is_edge[pixel] = true);
+    best_window([width, height], window, differ)
+        .or_else(|| best_window([width, height], window, |pixel| count(pixel) as u64))
+        .or_else(|| best_window([width, height], window, |pixel| u64::from(is_edge[pixel])))
+}
+
+/// The window with the greatest sum of weights, the upper left of equals; `None` if all weights are 0.
+fn best_window([width, height]: [usize; 2], window: [usize; 2], weight: impl Fn(usize) -> u64) -> Option<Rect> {
+    // Sums over everything above and to the left.
+    let stride = width + 1;
+    let mut sums = vec![0; stride * (height + 1)];
+    for y in 0..height {
+        let mut row = 0;
+        for x in 0..width {
+            row += weight(y * width + x);
+            sums[(y + 1) * stride + x + 1] = sums[y * stride + x + 1] + row;
+        }
+    }
+    let mut best = (0, [0, 0]);
+    for y in 0..=height - window[1] {
+        for x in 0..=width - window[0] {
+            let (right, below) = (x + window[0], y + window[1]);
+            let sum = sums[below * stride + right] + sums[y * stride + x]
+                - sums[y * stride + right]
+                - sums[below * stride + x];
+            if sum > best.0 {
+                best = (sum, [x, y]);
+            }
+        }
+    }
+    let (sum, [x, y]) = best;
+    (sum > 0).then(|| Rect { x: x as u32, y: y as u32, width: window[0] as u32, height: window[1] as u32 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: [usize; 2] = [80, 64];
+
+    fn spot(at: [usize; 2], radius: usize) -> impl Fn(usize) -> bool {
+        move |pixel| (pixel % SIZE[0]).abs_diff(at[0]) <= radius && (pixel / SIZE[0]).abs_diff(at[1]) <= radius
+    }
+
+    #[test]
+    fn the_window_lies_over_the_weight() {
+        let one = spot([61, 20], 3);
+        let rect = best_window(SIZE, [10, 8], |pixel| u64::from(one(pixel))).expect("a window");
+        assert!((rect.x..rect.x + 10).contains(&61) && (rect.y..rect.y + 8).contains(&20), "{rect:?}");
+        let corner = best_window(SIZE, [10, 8], |pixel| u64::from(pixel == SIZE[0] * SIZE[1] - 1)).expect("a window");
+        assert_eq!(corner, Rect { x: 70, y: 56, width: 10, height: 8 }, "wholly inside the picture");
+        assert_eq!(best_window(SIZE, [10, 8], |_| 0), None);
+        assert_eq!(best_window([1, 1], [1, 1], |_| 1), Some(Rect { x: 0, y: 0, width: 1, height: 1 }));
+    }
+
+    #[test]
+    fn differences_count_more_than_common_errors() {
+        let domain = crate::compare::tests::chessboard_shot([SIZE[0] as u32, SIZE[1] as u32]).domain;
+        let picture = |of: &dyn Fn(usize) -> bool| (0..SIZE[0] * SIZE[1]).map(of).collect::<Vec<bool>>();
+        let (common, single) = (spot([10, 10], 4), spot([60, 50], 2));
+        let wrong = [picture(&|pixel| common(pixel)), picture(&|pixel| common(pixel) || single(pixel))];
+        let rect = find(&domain, &wrong).expect("an inset");
+        assert!(
+            (rect.x..rect.x + rect.width).contains(&60) && (rect.y..rect.y + rect.height).contains(&50),
+            "{rect:?}"
+        );
+        let rect = find(&domain, &wrong[..1]).expect("one technique has errors but no differences");
+        assert!(
+            (rect.x..rect.x + rect.width).contains(&10) && (rect.y..rect.y + rect.height).contains(&10),
+            "{rect:?}"
+        );
+        let none = vec![vec![false; SIZE[0] * SIZE[1]]; 2];
+        assert_eq!(find(&domain, &none).is_some(), !domain.edges().is_empty(), "edges are better than nothing");
+    }
+}

@@ -1,0 +1,96 @@
+//! Known sets of techniques and shots, so that published numbers come out of one command.
+
+use super::args::Preset;
+
+/// What a preset says where the command line says nothing.
+#[derive(Debug)]
+pub struct Content {
+    /// Techniques, in the grammar of [`super::techniques`]; kinds that do not exist yet are left out with a note.
+    pub techniques: &'static [&'static str],
+    /// Settings of all of them.
+    pub with: &'static str,
+    /// Scenes.
+    pub scenes: &'static [&'static str],
+    /// Cameras; none: all.
+    pub cameras: &'static [&'static str],
+    /// Suns, as `--suns` takes them.
+    pub suns: &'static [&'static str],
+    /// Near plane in metres.
+    pub near: Option<f64>,
+    /// Far plane in metres.
+    pub far: Option<f64>,
+    /// Metres a frame and frames, for flicker.
+    pub steps: Option<(f64, u32)>,
+}
+
+/// One map or slice, one nearest texel, one comparison, no blend, no fade, fitted to the slice alone: what the papers measured, and
+/// what the project's ladder was measured with.
+const PLAIN: &str = "filter=hard:blend=0:far-fade=0:fit=independent:stabilize=none";
+
+const LADDER: Content = Content {
+    techniques: &[
+        "ssm:1024",
+        "ssm:2048",
+        "pssm:2:512",
+        "pssm:3:512",
+        "pssm:4:512:lambda=0",
+        "pssm:4:512:lambda=0.5",
+        "pssm:4:512:lambda=0.9",
+        "pssm:4:512:lambda=0.5:stabilize=exact",
+        "pssm:4:1024:lambda=0.5",
+        "pssm:4:1024:lambda=0.9",
+        "pssm:4:1024:lambda=0.9:stabilize=exact",
+    ],
+    with: PLAIN,
+    scenes: &["robot-war", "chessboard", "knights", "mining-terrain"],
+    cameras: &[],
+    suns: &["metrics"],
+    near: Some(0.5),
+    far: Some(500.0),
+    steps: Some((0.5, 2)),
+};
+
+/// *Parallel-Split Shadow Maps*, Figure 8: SSM, PSM, LiSPSM, TSM (1024²), PSSM(2, 3, 4; 512²); columns (a) to (d).
+const FIGURE_8: Content = Content {
+    techniques: &["ssm:1024", "psm:1024", "lispsm:1024", "tsm:1024", "pssm:2:512", "pssm:3:512", "pssm:4:512"],
+    with: PLAIN,
+    scenes: &["chessboard", "robot-war", "mining-terrain", "knights"],
+    cameras: &["middle"],
+    suns: &["own"],
+    near: None,
+    far: None,
+    steps: None,
+};
+
+/// The same figure, column (e): light and eye nearly opposite; single maps of 2048², splits of 1024².
+const DUELING: Content = Content {
+    techniques: &["ssm:2048", "psm:2048", "lispsm:2048", "tsm:2048", "pssm:2:1024", "pssm:3:1024", "pssm:4:1024"],
+    cameras: &["dueling"],
+    ..FIGURE_8
+};
+
+/// The paper's techniques as the paper had them, then as umbrage makes them by default.
+const TABLE: Content = Content {
+    techniques: &[
+        "ssm:1024",
+        "pssm:2:512",
+        "pssm:3:512",
+        "pssm:4:512",
+        "pssm:4:512:fit=dependent:lambda=0.9",
+        "pssm:4:512:fit=dependent:stabilize=exact",
+        "pssm:4:512:fit=dependent:stabilize=exact:filter=pcf3:blend=0.1:label=PSSM(4; 512²) as shipped",
+    ],
+    cameras: &[],
+    ..FIGURE_8
+};
+
+/// What a preset says.
+#[must_use]
+pub fn content(preset: Preset) -> &'static Content {
+    match preset {
+        Preset::Ladder => &LADDER,
+        Preset::Figure8 => &FIGURE_8,
+        Preset::Dueling => &DUELING,
+        Preset::Table => &TABLE,
+    }
+}

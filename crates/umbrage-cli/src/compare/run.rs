@@ -1,0 +1,323 @@
+//! Draws, asks, scores, writes.
+
+use indicatif::ProgressBar;
+use umbrage_render::{Frame, Gpu, GpuOptions, Outputs, ProbePoint, RenderSettings, Renderer};
+use umbrage_truth::{
+    Truth,
+    scores::{Flicker, FramePair, shared_points},
+};
+
+use super::{
+    args::CompareArgs,
+    columns::{self, Answer, Place, Plain, columns},
+    judge::{Judged, score},
+    order::Order,
+    page,
+    report::{self, Comparison, FlickerReport, TechniqueReport, ViewReport, WalkReport},
+    sheet::{self, Column, Label},
+    shots::{Series, Set},
+    techniques::Technique,
+};
+use crate::{
+    adapter,
+    args::Switch,
+    failure::{Failure, Result},
+    job::{wgpu_depth_format, wgpu_filter},
+    output::Staged,
+    progress,
+    render::png,
+    report::to_json,
+    stage,
+};
+
+const REPRODUCE: &str = "umbrage render OPTIONS-OF-THE-VIEW OPTIONS-OF-THE-TECHNIQUE --visibility MASK.png; truth: umbrage truth OPTIONS-OF-THE-VIEW -o TRUTH.png";
+
+/// Runs the subcommand.
+pub fn run(args: &CompareArgs) -> Result<()> {
+    let Order { techniques, sets, outputs, notes } = Order::new(args)?;
+    let gpu = Gpu::new(&GpuOptions::default())?;
+    let shown = columns::chosen(&sets, args.columns as usize);
+    let views: usize = sets.iter().flat_map(|set| &set.series).map(|series| series.views.len()).sum();
+    let mut bench = Bench {
+        args,
+        gpu: &gpu,
+        techniques: &techniques,
+        cell: sheet::cell_size(shown.len(), args.size),
+        shown,
+        bar: progress::steps((views * (techniques.len() + 1)) as u64, "views × techniques"),
+        views: Vec::new(),
+        walks: Vec::new(),
+        columns: [Vec::new(), Vec::new()],
+    };
+    let mut all_notes = notes;
+    for (number, set) in sets.into_iter().enumerate() {
+        all_notes.extend(set.notes.iter().map(|note| format!("{}: {note}", set.name)));
+        bench.scene(number, &set)?;
+    }
+    bench.bar.finish_and_clear();
+    let (comparison, columns) = bench.finish(all_notes)?;
+
+    let sheets = sheets(&comparison, &techniques, &columns, args.size);
+    let pictures = [png(&sheets[0])?, png(&sheets[1])?];
+    let page = page::page(&comparison, &sheets)?;
+    let [sheet, errors] = pictures;
+    let mut staged = Staged::default();
+    outputs.stage([sheet, errors, to_json(&comparison)?, page.into_bytes()], &mut staged)?;
+    staged.commit()
+}
+
+/// What grows while scenes are gone through.
+struct Bench<'a> {
+    args: &'a CompareArgs,
+    gpu: &'a Gpu,
+    techniques: &'a [Technique],
+    cell: [u32; 2],
+    shown: Vec<Place>,
+    bar: ProgressBar,
+    views: Vec<ViewReport>,
+    walks: Vec<WalkReport>,
+    columns: [Vec<Column>; 2],
+}
+
+/// A frame whose points the next one is asked about again.
+struct Before {
+    judged: Judged,
+    /// P_k.
+    points: Vec<ProbePoint>,
+    /// What each technique answered there.
+    answers: Vec<Vec<f32>>,
+}
+
+impl Bench<'_> {
+    fn scene(&mut self, number: usize, set: &Set) -> Result<()> {
+        let Some(first) = set.series.first() else { return Ok(()) };
+        let truth = Truth::build(&set.scene, &set.pose, first.views[0].eye())?;
+        let mut renderers = Vec::new();
+        for technique in self.techniques {
+            let settings = RenderSettings {
+                size: self.args.size,
+                shadows: technique.job.settings.clone(),
+                filter: wgpu_filter(technique.job.filter),
+                depth_format: wgpu_depth_format(technique.job.depth_format),
+            };
+            let renderer = Renderer::new(self.gpu, &set.scene, &settings);
+            renderers.push(renderer.map_err(|error| in_technique(technique, error))?);
+        }
+        for (of, series) in set.series.iter().enumerate() {
+            self.series(set, series, [number, of], &truth, &mut renderers)?;
+        }
+        Ok(())
+    }
+
+    fn series(
+        &mut self,
+        set: &Set,
+        series: &Series,
+        [scene, of]: [usize; 2],
+        truth: &Truth,
+        renderers: &mut [Renderer],
+    ) -> Result<()> {
+        for renderer in renderers.iter_mut() {
+            renderer.restart()?;
+        }
+        let first_view = self.views.len();
+        let mut flicker = vec![Flicker::default(); self.techniques.len()];
+        let mut before: Option<Before> = None;
+        for (k, view) in series.views.iter().enumerate() {
+            let range = self.args.shadow_range;
+            let judged = Judged::new(truth, &set.pose, view, series.sun, self.args.size, range)?;
+            self.bar.inc(1);
+            let is_shown = self.shown.contains(&[scene, of, k]);
+            let frame = Frame { pose: &set.pose, view, sun: series.sun, shadows_on: true, tint: false };
+            let points = match series.views.get(k + 1) {
+                Some(next) => points_shared_with(&judged, next),
+                None => Vec::new(),
+            };
+            let old_points = before.as_ref().map_or(&[][..], |before| &before.points);
+            let both: Vec<ProbePoint> = old_points.iter().chain(&points).copied().collect();
+            let (mut scores, mut shown, mut now) = (Vec::new(), Vec::new(), Vec::new());
+            for (number, (technique, renderer)) in self.techniques.iter().zip(renderers.iter_mut()).enumerate() {
+                let wanted = Outputs { picture: is_shown, mask: true, maps: false };
+                let rendered = renderer.render(&frame, wanted).map_err(|error| in_technique(technique, error))?;
+                let mask = rendered.mask.ok_or_else(|| Failure::other("the renderer gave no mask"))?;
+                let image_metrics = is_shown && self.args.image_metrics == Switch::On;
+                let of_view = score(&judged, &mask, &rendered.stats, image_metrics)?;
+                scores.push(of_view.clone());
+                if let Some(picture) = rendered.picture {
+                    shown.push(Answer { mask, picture, scores: of_view });
+                }
+                if !both.is_empty() {
+                    let answers = renderer.probe(&frame, &both).map_err(|error| in_technique(technique, error))?;
+                    let answers: Vec<f32> = answers.iter().map(|answer| answer.visibility).collect();
+                    let (next, of_now) = answers.split_at(old_points.len());
+                    if let Some(before) = &before {
+                        let pair = FramePair { domain: &before.judged.domain, now: &before.answers[number], next };
+                        flicker[number].add(pair)?;
+                    }
+                    now.push(of_now.to_vec());
+                }
+                self.bar.inc(1);
+            }
+            self.views.push(ViewReport {
+                scene: set.name.clone(),
+                camera: stage::camera_report(&series.camera, view),
+                frame: (series.views.len() > 1).then_some(k as u32),
+                sun_name: series.sun_name.clone(),
+                sun: series.sun.direction().to_array(),
+                options: series.options[k].clone(),
+                range_m: [judged.domain.range().0, judged.domain.range().1],
+                scored_pixels: judged.domain.pixels().len(),
+                true_edges: judged.domain.edges().len(),
+                counts: judged.domain.edges().len() >= self.args.least_edges && !judged.domain.pixels().is_empty(),
+                scores,
+            });
+            if is_shown {
+                self.show(&judged, &shown, &frame, &mut renderers[0], series)?;
+            }
+            now.resize(self.techniques.len(), Vec::new());
+            before = Some(Before { judged, points, answers: now });
+        }
+        if series.views.len() > 1 {
+            let report = |flicker: &Flicker| FlickerReport { rate: flicker.rate(), per_edge: flicker.per_edge() };
+            self.walks.push(WalkReport {
+                scene: set.name.clone(),
+                camera: series.camera.clone(),
+                sun_name: series.sun_name.clone(),
+                frames: series.views.len(),
+                counts: self.views[first_view..].iter().all(|view| view.counts),
+                flicker: flicker.iter().map(report).collect(),
+            });
+        }
+        Ok(())
+    }
+
+    /// Adds a column to both sheets.
+    fn show(
+        &mut self,
+        judged: &Judged,
+        answers: &[Answer],
+        frame: &Frame<'_>,
+        renderer: &mut Renderer,
+        series: &Series,
+    ) -> Result<()> {
+        let against = umbrage::DirectionalLight::new(-frame.sun.direction())?;
+        let mut plain = |sun| -> Result<_> {
+            let frame = Frame { sun, shadows_on: false, ..*frame };
+            let wanted = Outputs { picture: true, mask: false, maps: false };
+            renderer.render(&frame, wanted)?.picture.ok_or_else(|| Failure::other("the renderer gave no picture"))
+        };
+        let plain = Plain { lit: plain(frame.sun)?, dark: plain(against)? };
+        let view = self.views.last();
+        let title = view.map_or(String::new(), |view| format!("{} · {}", short(&view.scene), series.camera));
+        let mut lines = vec![series.sun_name.clone()];
+        if let Some(number) = view.and_then(|view| view.frame) {
+            lines.push(format!("frame {number} of {}", series.views.len()));
+        }
+        let warning = columns::warning(&judged.domain, self.args.least_edges);
+        for (sheet, column) in self.columns.iter_mut().zip(columns(judged, answers, &plain, self.cell)?) {
+            sheet.push(Column { title: title.clone(), lines: lines.clone(), warning: warning.clone(), ..column });
+        }
+        Ok(())
+    }
+
+    fn finish(self, mut notes: Vec<String>) -> Result<(Comparison, [Vec<Column>; 2])> {
+        let reports = self.techniques.iter().enumerate().map(|(number, technique)| TechniqueReport {
+            label: technique.label.clone(),
+            spec: technique.spec.clone(),
+            family: technique.family.clone(),
+            options: technique.options.clone(),
+            texels: technique.texels(),
+            bytes: self.views.first().map_or(0, |view| view.scores[number].cost.bytes),
+            mean: report::means(number, &self.views, &self.walks),
+        });
+        let techniques: Vec<TechniqueReport> = reports.collect();
+        let counting = self.views.iter().filter(|view| view.counts).count();
+        if counting == 0 {
+            notes.push(format!(
+                "no view counts: none has {} edge pixels; there are no means. Give a larger --size, other shots, or a smaller --least-edges",
+                self.args.least_edges
+            ));
+        } else if counting < self.views.len() {
+            notes.push(format!(
+                "{} of {} views do not count: fewer than {} edge pixels",
+                self.views.len() - counting,
+                self.views.len(),
+                self.args.least_edges
+            ));
+        }
+        let labels: Vec<String> = techniques.iter().map(|technique| technique.label.clone()).collect();
+        let comparison = Comparison {
+            command: ["umbrage".to_owned()].into_iter().chain(std::env::args().skip(1)).collect(),
+            reproduce: REPRODUCE,
+            adapter: adapter::description(self.gpu),
+            size: self.args.size,
+            least_edges: self.args.least_edges,
+            pairs: report::pairs(&labels, &self.views)?,
+            memory_at_half_percent: report::families(&techniques)?,
+            techniques,
+            views: self.views,
+            walks: self.walks,
+            notes,
+        };
+        Ok((comparison, self.columns))
+    }
+}
+
+/// P_k, as the renderer is asked about it.
+fn points_shared_with(judged: &Judged, next: &umbrage::View) -> Vec<ProbePoint> {
+    let shared = shared_points(&judged.truth, &judged.domain, next, judged.domain.range());
+    let point =
+        |pixel: usize| judged.truth.hits()[pixel].map(|hit| ProbePoint { position: hit.position, normal: hit.normal });
+    shared.into_iter().filter_map(point).collect()
+}
+
+/// Says which technique it was.
+fn in_technique(technique: &Technique, error: umbrage_render::Error) -> Failure {
+    match Failure::from(error) {
+        Failure::Input(message) => Failure::Input(format!("technique {}: {message}", technique.spec)),
+        Failure::Other(message) => Failure::Other(format!("technique {}: {message}", technique.spec)),
+    }
+}
+
+/// A scene's name without its folders.
+fn short(scene: &str) -> String {
+    std::path::Path::new(scene).file_name().map_or(scene.into(), |name| name.to_string_lossy().into_owned())
+}
+
+/// The contact sheet and the sheet of errors.
+fn sheets(
+    comparison: &Comparison,
+    techniques: &[Technique],
+    columns: &[Vec<Column>; 2],
+    size: [u32; 2],
+) -> [image::RgbImage; 2] {
+    let labels: Vec<Label> = comparison
+        .techniques
+        .iter()
+        .zip(techniques)
+        .map(|(report, technique)| {
+            let mut lines = vec![
+                format!(
+                    "{:.2} Mtexel, {:.1} MiB",
+                    technique.texels() as f64 / 1048576.0,
+                    report.bytes as f64 / 1048576.0
+                ),
+                format!("filter {}", crate::job::typed_name(technique.job.filter)),
+            ];
+            if let Some(e) = report.mean.e {
+                lines.push(format!("mean E {:.2} %, {} views", 100.0 * e, report.mean.views));
+            }
+            if let Some(flicker) = report.mean.flicker_per_edge {
+                lines.push(format!("F_edge {:.1} %", 100.0 * flicker));
+            }
+            Label { title: report.label.clone(), lines }
+        })
+        .chain([Label { title: "ray-traced truth".into(), lines: Vec::new() }])
+        .collect();
+    let cell = sheet::cell_size(columns[0].len(), size);
+    let title = |what: &str| format!("{what}, {} × {} pixels", size[0], size[1]);
+    [
+        sheet::assemble(&title("Shadows; insets: where techniques differ most"), &labels, &columns[0], cell),
+        sheet::assemble(&title("Errors on the truth in grey: leaks red, acne blue"), &labels, &columns[1], cell),
+    ]
+}

@@ -1,0 +1,348 @@
+//! Which views are compared: cameras × suns, along paths or a few steps, scene by scene.
+
+use glam::DVec3;
+use umbrage::{DirectionalLight, Projection, View};
+use umbrage_scene::{CameraPath, HeightMapOptions, Pose, Scene};
+
+use super::args::CompareArgs;
+use crate::{
+    failure::{Failure, Result},
+    job::{CameraChoice, SceneJob},
+    stage,
+};
+
+/// Elevation of `into` where it says none, degrees.
+const INTO_ELEVATION: f64 = 11.0;
+
+/// The suns of `metrics`: degrees up.
+const METRICS_ELEVATIONS: [f64; 2] = [43.0, 11.0];
+
+/// One entry of `--suns`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SunSpec {
+    /// The scene's own, or the one that `--sun` or `--light` chooses.
+    Own,
+    /// At this elevation, at a bearing from north by east or at the own sun's, in degrees.
+    At {
+        /// Above the horizon.
+        elevation: f64,
+        /// North is −Z, east is +X.
+        bearing: Option<f64>,
+    },
+    /// Ahead of the camera at this elevation, so that light and eye nearly meet.
+    Into(f64),
+    /// Two suns for every camera and one view into the light for each scene.
+    Metrics,
+}
+
+/// `--suns`: `own`, `43`, `43@120`, `into`, `into@30`, `metrics`.
+pub fn sun_spec(text: &str) -> Result<SunSpec, String> {
+    let text = text.trim();
+    let number = |text: &str, what: &str, range: std::ops::RangeInclusive<f64>| match text.trim().parse::<f64>() {
+        Ok(value) if range.contains(&value) => Ok(value),
+        Ok(value) => Err(format!("{what} {value} is not in {} to {} degrees", range.start(), range.end())),
+        Err(_) => Err(format!("{text:?} is no {what} in degrees; give own, 43, 43@120, into, into@30 or metrics")),
+    };
+    let elevation = |text: &str| number(text, "elevation", 0.1..=90.0);
+    match (text, text.split_once('@')) {
+        ("own", _) => Ok(SunSpec::Own),
+        ("metrics", _) => Ok(SunSpec::Metrics),
+        ("into", _) => Ok(SunSpec::Into(INTO_ELEVATION)),
+        (_, Some(("into", up))) => Ok(SunSpec::Into(elevation(up)?)),
+        (_, Some((up, bearing))) => {
+            Ok(SunSpec::At { elevation: elevation(up)?, bearing: Some(number(bearing, "bearing", -360.0..=360.0)?) })
+        }
+        _ => Ok(SunSpec::At { elevation: elevation(text)?, bearing: None }),
+    }
+}
+
+/// A scene with everything that is looked at in it.
+#[derive(Debug)]
+pub struct Set {
+    /// As it was named.
+    pub name: String,
+    /// The scene.
+    pub scene: Scene,
+    /// At `--time`.
+    pub pose: Pose,
+    /// Cameras under suns.
+    pub series: Vec<Series>,
+    /// What the loader left out and what was invented.
+    pub notes: Vec<String>,
+}
+
+/// One camera under one sun: a single view, or the frames of a walk.
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// The camera.
+    pub camera: String,
+    /// The sun in words: `own sun, 31° up`.
+    pub sun_name: String,
+    /// The sun.
+    pub sun: DirectionalLight,
+    /// Frames in order; one for a single view.
+    pub views: Vec<View>,
+    /// Options of `umbrage render` that show the same; of a walk along a path, all frames at once.
+    pub options: Vec<Vec<String>>,
+}
+
+/// A camera before the sun is chosen.
+struct Walk {
+    camera: String,
+    views: Vec<View>,
+    options: Vec<Vec<String>>,
+}
+
+/// What decides on the views of a scene, the preset's defaults filled in.
+#[derive(Debug)]
+pub struct Wish<'a> {
+    /// What was typed.
+    pub args: &'a CompareArgs,
+    /// `--camera`.
+    pub cameras: Vec<String>,
+    /// `--suns`.
+    pub suns: Vec<SunSpec>,
+    /// `--step` and `--frames` without a path.
+    pub steps: Option<(f64, u32)>,
+    /// `--near`.
+    pub near: Option<f64>,
+    /// `--far`.
+    pub far: Option<f64>,
+}
+
+impl Wish<'_> {
+    fn job(&self, scene: &str, choice: &CameraChoice) -> Result<SceneJob> {
+        let mut args = self.args.scene_args(scene);
+        (args.near, args.far) = (self.near, self.far);
+        match choice {
+            CameraChoice::Named(name) => args.camera = Some(name.clone()),
+            CameraChoice::LookAt { eye, target } => (args.eye, args.target) = (Some(*eye), Some(*target)),
+            CameraChoice::Path { file, frames, .. } => (args.path, args.frames) = (Some(file.clone()), *frames),
+            CameraChoice::Default => {}
+        }
+        SceneJob::new(&args)
+    }
+
+    /// Opens a scene and finds its views.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] naming the file or option at fault.
+    pub fn open(&self, name: &str) -> Result<Set> {
+        let args = self.args;
+        let height_map = HeightMapOptions {
+            metres_per_post: args.metres_per_post,
+            metres_per_unit: args.metres_per_unit,
+            height_offset: args.height_offset,
+        };
+        let path = args.path.as_deref().map(CameraPath::load).transpose()?;
+        let scene = umbrage_scene::open(name, &height_map)?;
+        let pose = scene.pose(args.time)?;
+        let mut notes = scene.notes.clone();
+        let mut walks = Vec::new();
+        for choice in self.cameras_of(&scene)? {
+            walks.push(self.walk(name, &choice, &scene, &pose, path.as_ref(), &mut notes)?);
+        }
+        let any = self.job(name, &CameraChoice::Default)?;
+        let own = stage::sun(&any, &scene, &pose, path.as_ref(), &mut notes)?;
+        let mut series = Vec::new();
+        for (number, walk) in walks.iter().enumerate() {
+            for (sun_name, travel) in self.suns_of(own.normalize(), walk, number == 0) {
+                let mut options = walk.options.clone();
+                for frame in &mut options {
+                    frame.push(format!("--sun={},{},{}", travel.x, travel.y, travel.z));
+                }
+                series.push(Series {
+                    camera: walk.camera.clone(),
+                    sun_name,
+                    sun: DirectionalLight::new(travel)?,
+                    views: walk.views.clone(),
+                    options,
+                });
+            }
+        }
+        Ok(Set { name: name.to_owned(), scene, pose, series, notes })
+    }
+
+    fn cameras_of(&self, scene: &Scene) -> Result<Vec<CameraChoice>> {
+        let args = self.args;
+        let mut choices: Vec<CameraChoice> = self.cameras.iter().cloned().map(CameraChoice::Named).collect();
+        match (args.eye, args.target) {
+            (Some(eye), Some(target)) => choices.push(CameraChoice::LookAt { eye, target }),
+            (None, None) => {}
+            (Some(_), None) => return Err(Failure::input("--eye without --target: give the point to look at")),
+            (None, Some(_)) => return Err(Failure::input("--target without --eye: give the point to look from")),
+        }
+        if let Some(file) = &args.path {
+            let frames = Some(args.frames.unwrap_or(1));
+            choices.push(CameraChoice::Path { file: file.clone(), frames, eye_height: args.eye_height });
+        }
+        if choices.is_empty() {
+            for (number, camera) in scene.cameras.iter().enumerate() {
+                // Cameras without a name of their own are called by their number.
+                let taken = scene.cameras[..number].iter().any(|other| other.name == camera.name);
+                let name = if camera.name.is_empty() || taken { number.to_string() } else { camera.name.clone() };
+                choices.push(CameraChoice::Named(name));
+            }
+        }
+        if choices.is_empty() {
+            choices.push(CameraChoice::Default);
+        }
+        Ok(choices)
+    }
+
+    fn walk(
+        &self,
+        name: &str,
+        choice: &CameraChoice,
+        scene: &Scene,
+        pose: &Pose,
+        path: Option<&CameraPath>,
+        notes: &mut Vec<String>,
+    ) -> Result<Walk> {
+        let job = self.job(name, choice)?;
+        let shots = stage::shots(&job, scene, pose, path, notes)?;
+        let camera = match choice {
+            CameraChoice::Path { .. } => "path".to_owned(),
+            CameraChoice::Named(name) => name.clone(),
+            _ => shots[0].camera.clone(),
+        };
+        let mut common = vec![name.to_owned(), format!("--size={}x{}", job.size[0], job.size[1])];
+        let numbers = [
+            ("time", (job.time_s != 0.0).then_some(job.time_s)),
+            ("fov", job.fov),
+            ("near", job.near),
+            ("far", job.far),
+            ("metres-per-post", job.metres_per_post),
+            ("metres-per-unit", job.metres_per_unit),
+            ("height-offset", job.height_offset),
+        ];
+        common.extend(numbers.iter().filter_map(|(option, value)| value.map(|value| format!("--{option}={value}"))));
+        let with = |more: Vec<String>| common.iter().cloned().chain(more).collect::<Vec<_>>();
+        let vector = |option: &str, v: DVec3| format!("--{option}={},{},{}", v.x, v.y, v.z);
+        if let CameraChoice::Path { file, frames, eye_height } = choice {
+            let path = [
+                format!("--path={}", file.display()),
+                format!("--frames={}", frames.unwrap_or(1)),
+                format!("--eye-height={eye_height}"),
+            ];
+            let options = vec![with(path.to_vec()); shots.len()];
+            return Ok(Walk { camera, views: shots.into_iter().map(|shot| shot.view).collect(), options });
+        }
+        let first = shots[0].view;
+        let Some((metres, frames)) = self.steps else {
+            let options = match choice {
+                CameraChoice::Named(name) => vec![format!("--camera={name}")],
+                CameraChoice::LookAt { eye, target } => vec![vector("eye", *eye), vector("target", *target)],
+                _ => Vec::new(),
+            };
+            return Ok(Walk { camera, views: vec![first], options: vec![with(options)] });
+        };
+        let views: Vec<View> =
+            (0..frames).map(|k| moved_forward(&first, metres * f64::from(k))).collect::<Result<_>>()?;
+        let options = views.iter().map(|view| {
+            let frustum = view.frustum();
+            let mut own = vec![vector("eye", view.eye()), vector("target", view.eye() + view.forward())];
+            if frustum.projection == Projection::Perspective && job.fov.is_none() {
+                own.push(format!("--fov={}", (frustum.top.atan() - frustum.bottom.atan()).to_degrees()));
+            }
+            // A camera of the scene has its own lens, which has to be said of another eye.
+            if job.near.is_none() {
+                own.push(format!("--near={}", frustum.near));
+            }
+            if job.far.is_none() {
+                own.push(format!("--far={}", frustum.far));
+            }
+            with(own)
+        });
+        let options = options.collect();
+        Ok(Walk { camera, views, options })
+    }
+
+    /// Names and ways of travel of the suns that a camera is seen under.
+    fn suns_of(&self, own_travel: DVec3, walk: &Walk, first: bool) -> Vec<(String, DVec3)> {
+        let to_own = -own_travel;
+        let ahead = walk.views[0].forward();
+        let at = |elevation: f64, towards: DVec3| -sun_at(elevation, towards);
+        let own_elevation = to_own.y.clamp(-1.0, 1.0).asin().to_degrees();
+        let into = |elevation: f64| (format!("into the sun, {elevation}° up"), at(elevation, ahead));
+        let mut suns = Vec::new();
+        for spec in &self.suns {
+            match *spec {
+                SunSpec::Own => suns.push((format!("own sun, {own_elevation:.0}° up"), own_travel)),
+                SunSpec::At { elevation, bearing: None } => {
+                    suns.push((format!("sun {elevation}° up"), at(elevation, to_own)));
+                }
+                SunSpec::At { elevation, bearing: Some(bearing) } => {
+                    let radians = bearing.to_radians();
+                    let towards = DVec3::new(radians.sin(), 0.0, -radians.cos());
+                    suns.push((format!("sun {elevation}° up at {bearing}°"), at(elevation, towards)));
+                }
+                SunSpec::Into(elevation) => suns.push(into(elevation)),
+                SunSpec::Metrics => {
+                    suns.extend(METRICS_ELEVATIONS.map(|up| (format!("sun {up}° up"), at(up, to_own))));
+                    if first {
+                        suns.push(into(INTO_ELEVATION));
+                    }
+                }
+            }
+        }
+        suns
+    }
+}
+
+/// The unit vector to a sun at an elevation in degrees, in the horizontal direction of `towards`.
+fn sun_at(elevation: f64, towards: DVec3) -> DVec3 {
+    let across = DVec3::new(towards.x, 0.0, towards.z).try_normalize().unwrap_or_else(|| {
+        // Straight above or below: as the invented sun stands.
+        let invented = -umbrage_scene::invented_sun();
+        DVec3::new(invented.x, 0.0, invented.z).normalize()
+    });
+    let (sine, cosine) = elevation.to_radians().sin_cos();
+    across * cosine + DVec3::Y * sine
+}
+
+/// The same view from `metres` further on.
+fn moved_forward(view: &View, metres: f64) -> Result<View> {
+    let eye = view.eye() + view.forward() * metres;
+    let up = view.world_from_view_rotation().y_axis;
+    Ok(View::look_at(eye, eye + view.forward(), up, *view.frustum())?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn suns_are_read() {
+        assert_eq!(sun_spec("own"), Ok(SunSpec::Own));
+        assert_eq!(sun_spec(" 43 "), Ok(SunSpec::At { elevation: 43.0, bearing: None }));
+        assert_eq!(sun_spec("11@-30"), Ok(SunSpec::At { elevation: 11.0, bearing: Some(-30.0) }));
+        assert_eq!(sun_spec("into"), Ok(SunSpec::Into(11.0)));
+        assert_eq!(sun_spec("into@30"), Ok(SunSpec::Into(30.0)));
+        assert_eq!(sun_spec("metrics"), Ok(SunSpec::Metrics));
+        for bad in ["", "noon", "0", "-5", "91", "nan", "into@", "into@x", "43@", "43@500", "@5"] {
+            let message = sun_spec(bad).expect_err(bad);
+            assert!(message.contains("degrees"), "{bad}: {message}");
+        }
+    }
+
+    #[test]
+    fn suns_stand_where_they_should() {
+        let sun = sun_at(43.0, DVec3::new(3.0, 9.0, 0.0));
+        assert!((sun.length() - 1.0).abs() < 1e-12 && sun.z.abs() < 1e-12 && sun.x > 0.0);
+        assert!((sun.y.asin().to_degrees() - 43.0).abs() < 1e-9);
+        assert!(sun_at(11.0, DVec3::NEG_Y).is_finite(), "a sun straight above has no bearing, one is invented");
+    }
+
+    #[test]
+    fn steps_keep_the_direction() {
+        let lens = umbrage::Frustum::perspective(1.0, 1.5, 0.5, 90.0).expect("a lens");
+        let view =
+            View::look_at(DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 1.0, -7.0), DVec3::new(0.2, 1.0, 0.0), lens)
+                .expect("a view");
+        let moved = moved_forward(&view, 2.5).expect("moved");
+        assert!((moved.eye() - view.eye() - 2.5 * view.forward()).length() < 1e-12);
+        assert!((moved.world_from_view_rotation().y_axis - view.world_from_view_rotation().y_axis).length() < 1e-12);
+        assert_eq!(moved_forward(&view, 0.0).expect("not moved").eye(), view.eye());
+    }
+}
