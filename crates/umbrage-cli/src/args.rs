@@ -28,6 +28,14 @@ pub enum Command {
     Probe(Box<ProbeArgs>),
     /// Work out the visibility mask exactly, by rays
     Truth(Box<TruthArgs>),
+    /// Draw the papers' theory: split schemes and aliasing, areas, fits, frusta
+    Theory {
+        /// Write the page here (HTML, one file)
+        #[arg(short = 'o', long = "output", value_name = "HTML")]
+        output: PathBuf,
+    },
+    /// Judge techniques beside each other: contact sheets, scores, one page
+    Compare(Box<crate::compare::args::CompareArgs>),
     /// The procedural worlds
     Worlds {
         /// What to do with them.

@@ -2,18 +2,23 @@
 //!
 //! [`args`] is what was typed, [`job`] what it means, [`stage`] the scene it is about; then there is one file per
 //! subcommand. [`output`] makes files appear whole or not at all, [`failure`] decides the exit code.
+//! [`plot`] draws charts, [`html`] makes report pages of them, [`theory`] and [`compare`] are such pages.
 
 mod adapter;
 pub mod args;
+pub mod compare;
 pub mod failure;
+pub mod html;
 pub mod job;
 pub mod output;
 pub mod parse;
+pub mod plot;
 mod probe;
 pub mod progress;
 mod render;
 pub mod report;
 pub mod stage;
+pub mod theory;
 mod truth;
 mod worlds;
 
@@ -29,6 +34,8 @@ pub fn run(args: &Args) -> Result<()> {
         Command::Render(args) => render::run(args),
         Command::Probe(args) => probe::run(args),
         Command::Truth(args) => truth::run(args),
+        Command::Compare(args) => compare::run(args),
+        Command::Theory { output } => theory::run(output),
         Command::Worlds { command } => worlds::run(command),
         Command::Adapter => adapter::run(),
     }
