@@ -39,7 +39,12 @@ fn all_load_with_their_triangles_and_extents() {
         let pose = scene.pose(0.0).unwrap_or_else(|error| panic!("{error}"));
         let bounds = pose.bounds.expect("there are triangles");
         let size = bounds.max - bounds.min;
-        eprintln!("{name}: {} objects, {size:.2} m from {:.2}, notes {:?}", pose.objects.len(), bounds.min, scene.notes);
+        eprintln!(
+            "{name}: {} objects, {size:.2} m from {:.2}, notes {:?}",
+            pose.objects.len(),
+            bounds.min,
+            scene.notes
+        );
         // Those of skinned scenes are listed in bind pose.
         if scene.skins.is_empty() {
             let expected = glam::DVec3::from(extents);
