@@ -5,9 +5,9 @@ use std::borrow::Cow;
 use umbrage_scene::AlphaMode;
 use umbrage_wgpu::ShadowMaps;
 
-use crate::Gpu;
 use crate::draw_list::{Drawable, Drawn, Run, vertex_layouts};
 use crate::materials::Materials;
+use crate::{Gpu, shaders};
 
 /// Pipelines of the shadow passes.
 pub(crate) struct Casters {
@@ -17,11 +17,9 @@ pub(crate) struct Casters {
 
 impl Casters {
     pub fn new(gpu: &Gpu, maps: &ShadowMaps, materials: &Materials) -> Self {
-        let source =
-            [&umbrage_wgpu::caster_wgsl(0), include_str!("shaders/scene.wgsl"), include_str!("shaders/caster.wgsl")];
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("Casters::shader"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(source.join("\n"))),
+            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::casters())),
         });
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("Casters::layout"),

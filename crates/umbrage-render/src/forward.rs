@@ -7,9 +7,9 @@ use umbrage::{DirectionalLight, Projection, View};
 use umbrage_scene::AlphaMode;
 use umbrage_wgpu::ShadowMaps;
 
-use crate::Gpu;
 use crate::draw_list::{Drawable, Drawn, Run, vertex_layouts};
 use crate::materials::{GpuMaterial, Materials};
+use crate::{Gpu, shaders};
 
 /// What the picture is drawn in before it is resolved; the samples of a pixel share one shading.
 pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -100,11 +100,9 @@ pub(crate) struct Forward {
 impl Forward {
     pub fn new(gpu: &Gpu, maps: &ShadowMaps, materials: &Materials) -> Self {
         let device = &gpu.device;
-        let source =
-            [&umbrage_wgpu::receiver_wgsl(2), include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl")];
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("Forward::shader"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(source.join("\n"))),
+            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::forward())),
         });
         let frame_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("Forward::frame_layout"),

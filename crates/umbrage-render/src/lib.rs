@@ -17,6 +17,7 @@ mod materials;
 mod mipmaps;
 mod probe;
 mod renderer;
+mod shaders;
 mod stats;
 mod timing;
 

@@ -7,7 +7,7 @@ use umbrage_wgpu::ShadowMaps;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 
 use crate::capture::Capture;
-use crate::{Error, Gpu, Result};
+use crate::{Error, Gpu, Result, shaders};
 
 /// A point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,10 +60,9 @@ pub(crate) struct PendingAnswers {
 impl Probe {
     pub fn new(gpu: &Gpu, maps: &ShadowMaps) -> Self {
         let device = &gpu.device;
-        let source = [&umbrage_wgpu::receiver_wgsl(1), include_str!("shaders/probe.wgsl")];
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("Probe::shader"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(source.join("\n"))),
+            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::probe())),
         });
         let entry = |binding| wgpu::BindGroupLayoutEntry {
             binding,

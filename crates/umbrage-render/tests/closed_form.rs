@@ -259,3 +259,20 @@ fn probes_off_screen_are_answered_where_a_map_reaches_and_lit_where_none_does() 
     assert_eq!(answers[3].visibility, 0.0);
     assert_eq!((answers[4].visibility, answers[4].split), (1.0, -1));
 }
+
+#[test]
+fn two_triangles_of_forty_kilometres_are_lit_by_a_low_sun_right_up_to_the_eye() {
+    let Some(gpu) = gpu() else { return };
+    // 2 degrees up: a geometric normal that is off by 2 degrees would turn away from it.
+    let light = sun(DVec3::new(-1.0, -(2_f64.to_radians().tan()), 0.3));
+    for offset in [DVec3::ZERO, DVec3::new(511.0, 0.0, -511.0), DVec3::new(-60_000.25, 1_000.5, 80_000.125)] {
+        let scene = moved(&scene(vec![ground(0.0, 20_000.0)]), offset);
+        // Off the diagonal, with the eye a hand above the ground.
+        let eye = DVec3::new(300.0, 0.6, 120.0);
+        let mask = Stage::new(&gpu, &scene, &settings())
+            .mask(&look(eye + offset, eye + DVec3::new(1.0, -0.45, -0.7) + offset), light);
+        let seen = mask.pixels().filter(|pixel| pixel.0[1] == 255).count();
+        let dark = mask.pixels().filter(|pixel| pixel.0 == [0, 255]).count();
+        assert!(seen > 15_000 && dark == 0, "{dark} of {seen} pixels are dark at {offset}");
+    }
+}

@@ -102,6 +102,25 @@ fn fallbacks_and_depth_formats_draw_the_same_shadow() {
 }
 
 #[test]
+fn maps_of_different_sizes_come_out_in_their_own_size() {
+    let Some(gpu) = gpu() else { return };
+    let scene = scene(vec![ground(0.0, 30.0), cuboid(DVec3::new(-1.0, 2.0, -1.0), DVec3::new(1.0, 4.0, 1.0))]);
+    let view = look(DVec3::new(-6.0, 9.0, 12.0), DVec3::ZERO);
+    let mut mixed = settings();
+    mixed.shadows.map_sizes = vec![128, 256, 64];
+    for depth_format in [DepthFormat::D32Float, DepthFormat::D16Unorm] {
+        let mut stage = Stage::new(&gpu, &scene, &RenderSettings { depth_format, ..mixed.clone() });
+        let rendered = stage.render(&view, sun(DVec3::new(0.3, -1.0, 0.4)), ALL);
+        assert_eq!(rendered.maps.iter().map(|map| map.width()).collect::<Vec<_>>(), [128, 256, 64]);
+        let drawn = |map: &image::GrayImage| map.pixels().any(|pixel| pixel.0 != [255]);
+        for (map, split) in rendered.maps.iter().zip(&rendered.stats.splits) {
+            assert_eq!(drawn(map), split.casters > 0, "split {}..{}", split.near, split.far);
+        }
+        assert!(rendered.maps.iter().any(drawn));
+    }
+}
+
+#[test]
 fn bad_sizes_are_named() {
     let Some(gpu) = gpu() else { return };
     let new = |settings: &RenderSettings| Renderer::new(&gpu, &Scene::default(), settings).err().map(|e| e.to_string());

@@ -100,9 +100,18 @@ fn shaded(in: Surface, front: bool, base: vec4f) -> vec3f {
     let geometric = geometric_normal(in.from_eye);
     let smooth_normal = normalize(select(-in.normal, in.normal, front));
     let shadow = umbrage_shadow(in.position, geometric);
-    let sun = SUN * max(dot(smooth_normal, frame.to_light), 0.0) * shadow.visibility;
+    let lambert = max(dot(smooth_normal, frame.to_light), 0.0);
+    let sun = SUN * lambert * softened_terminator(geometric, smooth_normal, lambert) * shadow.visibility;
     let ambient = mix(GROUND_AMBIENT, SKY_AMBIENT, 0.5 * smooth_normal.y + 0.5);
     return tone_mapped((base.rgb * (sun + ambient) + material.emissive) * shadow.tint);
+}
+
+// Facets of a smooth surface turn away from the light one by one; this fades each before it does, instead of a jagged edge.
+// M. J.-Y. Chiang, Y. K. Li, B. Burley, "Taming the Shadow Terminator", SIGGRAPH 2019 talks. 1 where both normals agree.
+fn softened_terminator(geometric: vec3f, smooth_normal: vec3f, lambert: f32) -> f32 {
+    let facet = max(dot(geometric, frame.to_light), 0.0);
+    let g = min(1.0, facet / max(lambert * dot(geometric, smooth_normal), 1e-4));
+    return g + g * g - g * g * g;
 }
 
 struct SkyPixel {
@@ -122,7 +131,7 @@ fn fs_sky(in: SkyPixel) -> @location(0) vec4f {
     let ray = normalize(in.ray);
     let horizon = vec3f(0.68, 0.78, 0.90);
     let zenith = vec3f(0.16, 0.32, 0.66);
-    let below = vec3f(0.36, 0.37, 0.38);
+    let below = mix(vec3f(0.52, 0.53, 0.55), vec3f(0.30, 0.31, 0.33), smoothstep(0.0, 0.9, -ray.y));
     let up = mix(horizon, zenith, smoothstep(0.0, 0.9, pow(max(ray.y, 0.0), 0.6)));
     let sky = mix(up, below, smoothstep(0.0, 0.12, -ray.y));
     // The sun is half a degree wide; its glow is for the eye only.

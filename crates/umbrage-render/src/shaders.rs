@@ -1,0 +1,72 @@
+//! The WGSL of every pass: the library's text, what all passes share, and the pass's own.
+
+/// Bind group 0 is the split, 1 the material.
+pub(crate) fn casters() -> String {
+    [&umbrage_wgpu::caster_wgsl(0), include_str!("shaders/scene.wgsl"), include_str!("shaders/caster.wgsl")].join("\n")
+}
+
+/// Bind group 0 is the frame, 1 the material, 2 the shadow maps.
+pub(crate) fn forward() -> String {
+    [&umbrage_wgpu::receiver_wgsl(2), include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl")]
+        .join("\n")
+}
+
+/// Bind group 0 is the points, 1 the shadow maps.
+pub(crate) fn probe() -> String {
+    [&umbrage_wgpu::receiver_wgsl(1), include_str!("shaders/probe.wgsl")].join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use super::*;
+    use crate::forward::FrameUniform;
+    use crate::materials::MaterialUniform;
+
+    fn parsed(source: &str) -> naga::Module {
+        let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
+        let mut validator =
+            naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
+        validator.validate(&module).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
+        module
+    }
+
+    /// Members of a struct with their offsets, and its size.
+    fn layout(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
+        let (_, ty) =
+            module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).expect("the struct is there");
+        let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no struct") };
+        let member = |m: &naga::StructMember| (m.name.clone().unwrap_or_default(), m.offset as usize);
+        (members.iter().map(member).collect(), *span as usize)
+    }
+
+    macro_rules! offsets {
+        ($ty:ty: $($field:ident),+) => {
+            (vec![$((stringify!($field).to_owned(), offset_of!($ty, $field))),+], size_of::<$ty>())
+        };
+    }
+
+    #[test]
+    fn every_pass_is_valid_wgsl() {
+        for source in [casters(), forward(), probe()] {
+            assert!(!parsed(&source).entry_points.is_empty());
+        }
+    }
+
+    #[test]
+    fn both_sides_lay_out_their_structs_alike() {
+        let module = parsed(&forward());
+        let frame = offsets!(
+            FrameUniform: clip_from_eye, eye, is_orthographic, forward, to_light, ray_center, ray_right, ray_up
+        );
+        assert_eq!(layout(&module, "Frame"), frame);
+        assert_eq!(layout(&module, "Material"), offsets!(MaterialUniform: base_color, emissive, alpha_cutoff));
+    }
+
+    #[test]
+    fn a_moved_member_is_noticed() {
+        let module = parsed(&forward().replace("base_color: vec4f,", "base_color: vec4f, more: f32,"));
+        assert_ne!(layout(&module, "Material"), offsets!(MaterialUniform: base_color, emissive, alpha_cutoff));
+    }
+}
