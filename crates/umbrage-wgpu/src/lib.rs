@@ -6,8 +6,8 @@
 //! # Adopting it, in five steps
 //!
 //! 1. Request the device with `adapter.features() & umbrage_wgpu::optional_features()`, then make the maps once:
-//!    `ShadowMaps::new(&device, &ShadowMapsOptions::default())`. Tell the planner about them: `map_sizes` as here,
-//!    `filter_radius: filter.radius_texels()`, `depth_clamp: maps.depth_clamp()`.
+//!    `ShadowMaps::new(&device, &ShadowMapsOptions::default())`, and a planner that knows them:
+//!    `Planner::new(ShadowSettings { image_size, ..maps.matching_settings() })`.
 //! 2. **Cast.** Put [`caster_wgsl`] before your vertex shader and return `umbrage_caster_position(position)` from it. The
 //!    pipeline has [`ShadowMaps::caster_layout`] in that group, [`ShadowMaps::caster_depth_stencil`],
 //!    [`ShadowMaps::caster_primitive`] and no colour target (a fragment shader only if it discards).

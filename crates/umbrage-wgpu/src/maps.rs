@@ -1,6 +1,6 @@
 //! The maps: one depth texture array, one pass per split, two kinds of bind group.
 
-use umbrage::{MAX_SPLITS, ShadowPlan};
+use umbrage::{MAX_SPLITS, ShadowPlan, ShadowSettings};
 use umbrage_shaders::layout;
 
 use crate::uniforms::{self, Viewport};
@@ -199,6 +199,18 @@ impl ShadowMaps {
     #[must_use]
     pub fn options(&self) -> &ShadowMapsOptions {
         &self.options
+    }
+
+    /// Planner settings that fit these maps: their sizes, their filter's radius and whether depth is clamped. Everything else,
+    /// `image_size` in the first place, is the default and the app's to change.
+    #[must_use]
+    pub fn matching_settings(&self) -> ShadowSettings {
+        ShadowSettings {
+            map_sizes: self.options.map_sizes.clone(),
+            filter_radius: self.options.filter.radius_texels(),
+            depth_clamp: self.depth_clamp,
+            ..ShadowSettings::default()
+        }
     }
 
     /// Bytes of the depth texture.
