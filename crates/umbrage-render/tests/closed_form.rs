@@ -5,7 +5,7 @@ mod common;
 use common::*;
 use glam::{DQuat, DVec2, DVec3, Vec3Swizzles as _};
 use umbrage_render::{Outputs, ProbePoint};
-use umbrage_scene::{AlphaMode, Material, Primitive, Texture, Wrap};
+use umbrage_scene::{AlphaMode, Material, Node, Primitive, Skin, Texture, Wrap};
 
 /// Compares a mask with `occluded(point on the ground, towards the light, growth in metres)` on those pixels that show the
 /// ground at y = 0 and nothing before it (`covered(eye, ray)`), leaving out a band of `band` metres around shadow edges.
@@ -275,4 +275,68 @@ fn two_triangles_of_forty_kilometres_are_lit_by_a_low_sun_right_up_to_the_eye() 
         let dark = mask.pixels().filter(|pixel| pixel.0 == [0, 255]).count();
         assert!(seen > 15_000 && dark == 0, "{dark} of {seen} pixels are dark at {offset}");
     }
+}
+
+#[test]
+fn a_skinned_mesh_is_drawn_and_casts_where_its_joints_put_it() {
+    let Some(gpu) = gpu() else { return };
+    let view = look(DVec3::new(-9.0, 12.0, 16.0), DVec3::new(1.0, 0.0, -1.0));
+    let light = sun(DVec3::new(0.5, -0.8, 0.3));
+    let turn = DQuat::from_rotation_y(0.6);
+    let place = trs(DVec3::new(1.0, 2.5, -1.0), turn, DVec3::ONE);
+    let unit = cuboid(DVec3::splat(-1.0), DVec3::splat(1.0));
+    let mut rigid = scene(vec![ground(0.0, 30.0), unit.clone()]);
+    rigid.nodes[1].local = place;
+
+    let mut bound = unit;
+    bound.joints = vec![[0; 4]; bound.positions.len()];
+    bound.weights = vec![[1.0, 0.0, 0.0, 0.0]; bound.positions.len()];
+    let mut skinned = scene(vec![ground(0.0, 30.0), bound]);
+    skinned.nodes.push(Node { local: place, ..Default::default() });
+    skinned.skins.push(Skin { joints: vec![2], inverse_bind: vec![glam::Mat4::IDENTITY] });
+    skinned.nodes[1].skin = Some(0);
+
+    let expected = Stage::new(&gpu, &rigid, &settings()).mask(&view, light);
+    let mut stage = Stage::new(&gpu, &skinned, &settings());
+    assert_eq!(stage.pose.skinned.len(), 1);
+    let found = stage.mask(&view, light);
+    let differ = expected.pixels().zip(found.pixels()).filter(|(a, b)| a != b).count();
+    assert!(differ <= 10, "{differ} pixels differ");
+
+    // And after it has moved, from the same renderer.
+    skinned.nodes[2].local.translation.x += 3.0;
+    rigid.nodes[1].local.translation.x += 3.0;
+    stage.pose = skinned.pose(0.0).expect("a pose");
+    let expected = Stage::new(&gpu, &rigid, &settings()).mask(&view, light);
+    let moved = stage.mask(&view, light);
+    let differ = expected.pixels().zip(moved.pixels()).filter(|(a, b)| a != b).count();
+    assert!(differ <= 10 && moved != found, "{differ} pixels differ");
+}
+
+#[test]
+fn translucent_surfaces_tint_what_is_behind_them() {
+    let Some(gpu) = gpu() else { return };
+    let view = look(DVec3::new(-8.0, 11.0, 15.0), DVec3::ZERO);
+    let light = sun(DVec3::new(0.3, -1.0, 0.2));
+    let center = |scene: &umbrage_scene::Scene| {
+        let outputs = Outputs { picture: true, ..Default::default() };
+        let picture = Stage::new(&gpu, scene, &settings()).render(&view, light, outputs).picture.expect("a picture");
+        // Where the ray goes through the card at (-1.5, 3, 0): its opaque half.
+        let at = pixels(&view, SIZE)
+            .filter_map(|pixel| {
+                pixel.on_ground(3.0).map(|p| (p.distance(DVec3::new(-1.5, 3.0, 0.0)), pixel.x, pixel.y))
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .expect("the card is in view");
+        picture.get_pixel(at.1, at.2).0.map(i32::from)
+    };
+    let mut half = half_card(AlphaMode::Blend);
+    half.materials[1].base_color = [1.0, 1.0, 1.0, 0.5];
+    let (through, solid) = (center(&half), center(&half_card(AlphaMode::Opaque)));
+    let bare = center(&scene(vec![ground(0.0, 30.0)]));
+    for channel in 0..3 {
+        let (low, high) = (solid[channel].min(bare[channel]), solid[channel].max(bare[channel]));
+        assert!((low..=high).contains(&through[channel]), "{solid:?} {through:?} {bare:?}");
+    }
+    assert!(through[2] > solid[2] + 10 && through[2] < bare[2] - 10, "{solid:?} {through:?} {bare:?}");
 }
