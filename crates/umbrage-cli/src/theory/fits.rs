@@ -140,9 +140,9 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
         .figure(&Figure::svg(
             bars.to_svg()?,
             format!(
-                "Camera `{CAMERA}` at time 0, {}, practical scheme, not stabilised, default filter and blend. Shorter is better; a \
-                 dash stands for a split in which nothing can throw a shadow.",
-                setting.describe()
+                "Each world's own camera `{CAMERA}` and sun at time 0, {} to {} m, practical scheme, not stabilised, default filter and \
+                 blend. Shorter is better; a dash stands for a split in which nothing can throw a shadow.",
+                setting.near, setting.far
             ),
         ))
         .table(&table))

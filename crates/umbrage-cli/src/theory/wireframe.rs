@@ -26,7 +26,7 @@ pub(super) fn section() -> Result<Section> {
     let example = Example::new()?;
     let plan = example.plan(Fit::Dependent)?;
     let mut figures =
-        vec![Figure::svg(all_splits(&example, &plan)?, "The slices V_i of the view, nearest first, over the ground.")];
+        vec![Figure::svg(all_splits(&example, &plan)?, "The slices Vᵢ of the view, nearest first, over the ground.")];
     for split in 0..SPLITS {
         let casters = plan.casters(split).len();
         let range = &plan.splits[split];
