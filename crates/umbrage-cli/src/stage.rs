@@ -62,28 +62,34 @@ impl Stage {
     /// The part of a report that says what was looked at.
     #[must_use]
     pub fn report(&self, job: &SceneJob, shot: &Shot) -> ShotReport {
-        let (view, frustum) = (&shot.view, shot.view.frustum());
         ShotReport {
             scene: job.scene.clone(),
             time_s: job.time_s,
             frame: shot.frame,
             size: job.size,
-            camera: CameraReport {
-                name: shot.camera.clone(),
-                eye: view.eye().to_array(),
-                forward: view.forward().to_array(),
-                up: view.world_from_view_rotation().y_axis.to_array(),
-                fov: (frustum.projection == Projection::Perspective)
-                    .then(|| (frustum.top.atan() - frustum.bottom.atan()).to_degrees()),
-                near: frustum.near,
-                far: frustum.far.is_finite().then_some(frustum.far),
-            },
+            camera: camera_report(&shot.camera, &shot.view),
             sun: self.sun.direction().to_array(),
         }
     }
 }
 
-fn shots(
+/// The eye, for a report.
+pub(crate) fn camera_report(name: &str, view: &View) -> CameraReport {
+    let frustum = view.frustum();
+    CameraReport {
+        name: name.to_owned(),
+        eye: view.eye().to_array(),
+        forward: view.forward().to_array(),
+        up: view.world_from_view_rotation().y_axis.to_array(),
+        fov: (frustum.projection == Projection::Perspective)
+            .then(|| (frustum.top.atan() - frustum.bottom.atan()).to_degrees()),
+        near: frustum.near,
+        far: frustum.far.is_finite().then_some(frustum.far),
+    }
+}
+
+/// The views that a job asks for.
+pub(crate) fn shots(
     job: &SceneJob,
     scene: &Scene,
     pose: &Pose,
@@ -143,7 +149,7 @@ fn scene_camera(job: &SceneJob, scene: &Scene, pose: &Pose, index: usize) -> Res
 }
 
 /// The way light travels.
-fn sun(
+pub(crate) fn sun(
     job: &SceneJob,
     scene: &Scene,
     pose: &Pose,
