@@ -53,9 +53,8 @@ pub(crate) fn frame(
     if !plane.is_finite() {
         return bad("view_depth_plane", f64::NAN, "four finite numbers");
     }
-    let length = plan.light_direction.length();
-    if !((length - 1.0).abs() < 1e-6) {
-        return bad("light_direction", length, "a vector of length 1");
+    if !is_unit(plan.light_direction) {
+        return bad("light_direction", plan.light_direction.length(), "a vector of length 1");
     }
     if !plan.fade_begin.is_finite() {
         return bad("fade_begin", plan.fade_begin, "a finite view depth");
@@ -117,7 +116,7 @@ fn split(
 fn check(index: usize, split: &umbrage::Split) -> Result<()> {
     let bad = |field, value, expected| Err(Error::InvalidSplit { split: index, field, value, expected });
     for (field, axis) in [("u_axis", split.u_axis), ("v_axis", split.v_axis), ("depth_axis", split.depth_axis)] {
-        if !((axis.length() - 1.0).abs() < 1e-6) {
+        if !is_unit(axis) {
             return bad(field, axis.length(), "a vector of length 1");
         }
     }
@@ -134,12 +133,119 @@ fn check(index: usize, split: &umbrage::Split) -> Result<()> {
     if !split.far.is_finite() {
         return bad("far", split.far, "a finite view depth");
     }
-    if !(split.blend_begin <= split.far) || !split.blend_begin.is_finite() {
+    if !split.blend_begin.is_finite() || split.blend_begin > split.far {
         return bad("blend_begin", split.blend_begin, "a finite view depth no greater than far");
     }
     Ok(())
 }
 
+/// False for NaN, too.
+fn is_unit(axis: DVec3) -> bool {
+    (axis.length() - 1.0).abs() < 1e-6
+}
+
 fn row(xyz: DVec3, w: f64) -> [f32; 4] {
     xyz.extend(w).as_vec4().to_array()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec2, DVec3};
+    use proptest::prelude::*;
+    use umbrage::DirectionalLight;
+    use umbrage_shaders::twin;
+
+    use super::{Viewport, split};
+
+    /// A stabilised split of a light and a point near which its map lies.
+    fn split_near(direction: DVec3, center: DVec3, texel: f64, size: u32) -> umbrage::Split {
+        let light = DirectionalLight::new(direction).expect("not zero");
+        let (u_axis, v_axis) = light.map_axes();
+        let depth_axis = light.direction();
+        let at = DVec2::new(u_axis.dot(center), v_axis.dot(center)) / texel;
+        umbrage::Split {
+            near: 1.0,
+            far: 10.0,
+            blend_begin: 9.0,
+            coverage: (1.0, 10.0),
+            size,
+            u_axis,
+            v_axis,
+            depth_axis,
+            texel_m: DVec2::splat(texel),
+            min_texel: (at - 0.5 * f64::from(size)).round(),
+            depth_near: depth_axis.dot(center) - 50.0,
+            depth_far: depth_axis.dot(center) + 50.0,
+            casters: 0..1,
+        }
+    }
+
+    fn unit() -> impl Strategy<Value = DVec3> {
+        let random = (-1.0f64..1.0, -1.0f64..1.0, -1.0f64..1.0).prop_map(|(x, y, z)| DVec3::new(x, y, z));
+        prop_oneof![4 => random.prop_filter("has a direction", |v| v.length() > 0.1), 1 => Just(DVec3::NEG_Y), 1 => Just(DVec3::X)]
+    }
+
+    /// Up to 100 km from the world's origin.
+    fn far_away() -> impl Strategy<Value = DVec3> {
+        (prop_oneof![Just(0.0), Just(1e4), Just(1e5)], unit()).prop_map(|(distance, v)| distance * v.normalize())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(400))]
+
+        #[test]
+        fn uniforms_say_what_the_plan_says(
+            direction in unit(),
+            center in far_away(),
+            offset in unit(),
+            texel in prop_oneof![Just(0.005), Just(0.1), Just(3.0)],
+            place in unit(),
+        ) {
+            // The frame's origin lies up to a kilometre from what the map shows.
+            let origin = center + 500.0 * offset;
+            let planned = split_near(direction, center, texel, 1024);
+            let uniform = split(0, &planned, 0.0, Viewport::around(1024, 8192), origin).expect("a valid split");
+            prop_assert_eq!(uniform.texel_offset.map(f32::fract), [0.0; 2], "whole texels stay whole");
+            prop_assert!((0.0..=1.0).contains(&uniform.u_row[3]) && (0.0..=1.0).contains(&uniform.v_row[3]));
+            let point = center + 300.0 * texel * place;
+            let relative = (point - origin).as_vec3();
+            let at = twin::map_from_world(&uniform, relative.to_array());
+            let exact = planned.map_from_world(point);
+            // A position 1000 m from the origin is known to 6e-5 m, three times over; then 1e5 texels to 2^-7 at most.
+            let texels = 3.0 * (6e-5 / texel) + 3.0 * (1000.0 / texel) * 2f64.powi(-24) + 1e-3;
+            prop_assert!((f64::from(at[0]) - exact.x).abs() < texels, "{at:?} instead of {exact}");
+            prop_assert!((f64::from(at[1]) - exact.y).abs() < texels, "{at:?} instead of {exact}");
+            prop_assert!((f64::from(at[2]) - exact.z).abs() < 1e-5, "{at:?} instead of {exact}");
+        }
+
+        #[test]
+        fn moving_the_map_by_texels_moves_the_offset_alone(
+            direction in unit(),
+            center in far_away(),
+            x in -500i32..500,
+            y in -500i32..500,
+        ) {
+            let planned = split_near(direction, center, 0.1, 512);
+            let mut moved = planned.clone();
+            moved.min_texel += DVec2::new(x.into(), y.into());
+            let uniform = |it| split(0, it, 0.0, Viewport::around(512, 8192), center.round()).expect("a valid split");
+            let (before, mut after) = (uniform(&planned), uniform(&moved));
+            prop_assert_eq!(after.texel_offset, [before.texel_offset[0] - x as f32, before.texel_offset[1] - y as f32]);
+            after.texel_offset = before.texel_offset;
+            prop_assert_eq!(after, before);
+        }
+    }
+
+    #[test]
+    fn viewports_are_as_wide_as_the_device_allows() {
+        let edges = |size, largest| {
+            let Viewport { edge, guard } = Viewport::around(size, largest);
+            (edge, guard)
+        };
+        assert_eq!(edges(1024, 8192), (4096, 1536));
+        assert_eq!(edges(4096, 8192), (8192, 2048));
+        assert_eq!(edges(8192, 8192), (8192, 0));
+        assert_eq!(edges(5, 8192), (20, 7));
+        assert_eq!(edges(1024, 0), (1024, 0));
+    }
 }

@@ -42,13 +42,13 @@ fn outside_shadow(point: Vec3, shadow_length: f32) -> f32 {
 /// Every answer farther from the shadow's edge than the filter and the bias reach must be exact.
 fn check_box(light: DVec3, shadow_length: f32, filter: Filter, depth_format: DepthFormat) {
     let Some(gpu) = Gpu::new() else { return };
-    let mut world = World::new(gpu, &options(&[256], filter, depth_format));
-    let plan = plan(light, DVec3::new(20.0, 0.0, 0.0), &[256], &[0.1, 100.0], &[64.0]);
+    let mut world = World::new(gpu, &options(&[512], filter, depth_format));
+    let plan = plan(light, DVec3::new(20.0, 0.0, 0.0), &[512], &[0.1, 100.0], &[64.0]);
     world.draw(&plan, &FrameOptions::default(), &box_on_ground());
     let points = ground_points();
     let texel = plan.splits[0].texel_m.x as f32;
-    // A slanted texel is √2 longer on the ground; the bias moves an edge by less than half a texel.
-    let unsure = 1.5 * texel * (filter.radius_texels() as f32 + 0.5);
+    // A slanted texel is √2 longer on the ground; the bias grows with the filter and lets light in under a caster that is lower.
+    let unsure = texel * (2.0 * filter.radius_texels() as f32 + 1.5);
     let (mut lit, mut dark, mut wrong) = (0, 0, 0);
     for (&point, answer) in points.iter().zip(world.ask(&up(&points))) {
         assert_eq!(answer.split, 0);
@@ -67,7 +67,7 @@ fn check_box(light: DVec3, shadow_length: f32, filter: Filter, depth_format: Dep
         }
         if outside > 0.0 { lit += 1 } else { dark += 1 }
     }
-    assert!(lit > 1000 && dark > 50, "only {lit} lit and {dark} dark points were compared");
+    assert!(lit > 1000 && dark > 70, "only {lit} lit and {dark} dark points were compared");
     assert_eq!(wrong, 0, "of {} points", lit + dark);
 }
 
