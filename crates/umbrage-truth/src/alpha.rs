@@ -71,7 +71,7 @@ impl AlphaPicture {
         }
     }
 
-    /// Bilinear alpha in [0,1]; texel centres at half-integers, v down.
+    /// Bilinear alpha in `[0, 1]`; texel centres at half-integers, v down.
     fn sample(&self, uv: [f64; 2]) -> f64 {
         let axis = |i: usize| {
             let at = uv[i] * self.size[i] as f64 - 0.5;

@@ -23,8 +23,9 @@ const SLAB_ERROR: f32 = 4.0 * f32::EPSILON;
 /// Direction components closer to 0 than this are taken as this, so that the inverse stays finite.
 const LEAST_DIRECTION: f64 = 1e-25;
 
-/// Metres by which a ray's origin is blurred to either side beyond its rounding: a flat box that holds an axis-parallel ray is
-/// then met, and the error of [`LEAST_DIRECTION`] is covered up to 1e16 m.
+/// Metres by which a ray's origin is blurred to either side, beyond its rounding and one ulp more. The blur is never 0, neither near
+/// the origin nor far from it: a flat box that holds an axis-parallel ray is then met, and the error of
+/// [`LEAST_DIRECTION`] is covered up to 1e16 m.
 const ORIGIN_BLUR: f64 = 1e-9;
 
 /// A binary tree of boxes; leaves are ranges of the order that [`Tree::build`] answers.
@@ -48,8 +49,8 @@ impl BoxRay {
             (1.0 / away_from_zero) as f32
         };
         Self {
-            origin_high: each(&|x| round_up(x + ORIGIN_BLUR), origin),
-            origin_low: each(&|x| round_down(x - ORIGIN_BLUR), origin),
+            origin_high: each(&|x| round_up(x + ORIGIN_BLUR).next_up(), origin),
+            origin_low: each(&|x| round_down(x - ORIGIN_BLUR).next_down(), origin),
             inverse: each(&inverse, direction),
             t_min: round_down(t_min),
         }

@@ -25,7 +25,7 @@ pub struct TruthMask {
 impl Truth {
     /// Traces one ray through each pixel centre and one from there to the light. `light_travel` is the way the light travels
     /// and need not be normalised; `size` is width and height in pixels. `progress` hears the share that is done, in
-    /// [0,1], from several threads, not always in order. The result does not depend on the number of threads.
+    /// `[0, 1]`, from several threads, not always in order. The result does not depend on the number of threads.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] if the image has no pixels or the light no direction.
@@ -55,7 +55,7 @@ impl Truth {
         Ok(TruthMask { size: [width, height], to_light, hits })
     }
 
-    /// What the view sees at one point of its image, both coordinates in [0,1] from the upper left corner.
+    /// What the view sees at one point of its image, both coordinates in `[0, 1]` from the upper left corner.
     fn look(&self, view: &View, to_light: DVec3, (x, y): (f64, f64), stack: &mut Vec<u32>) -> Option<Hit> {
         let (origin, direction) = view.ray_through(x, y);
         let frustum = view.frustum();
@@ -98,7 +98,7 @@ impl TruthMask {
     }
 }
 
-/// A mask image of visibilities in [0,1]; `None` is transparent.
+/// A mask image of visibilities in `[0, 1]`; `None` is transparent.
 pub(crate) fn mask_image(size: [usize; 2], values: impl Iterator<Item = Option<f32>>) -> GrayAlphaImage {
     let mut image = GrayAlphaImage::new(size[0] as u32, size[1] as u32);
     for (pixel, value) in image.pixels_mut().zip(values) {

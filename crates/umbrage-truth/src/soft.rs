@@ -155,7 +155,7 @@ impl SoftTruth {
         self.size
     }
 
-    /// One entry per pixel, row by row from the upper left, in [0,1]; `None` where the ray meets nothing.
+    /// One entry per pixel, row by row from the upper left, in `[0, 1]`; `None` where the ray meets nothing.
     #[must_use]
     pub fn visibility(&self) -> &[Option<f32>] {
         &self.visibility

@@ -6,7 +6,7 @@ use super::Domain;
 use super::domain::check_size;
 use crate::{Error, Result};
 
-/// A technique's visibility per pixel of a frame, in [0,1]; `None` where it has no answer.
+/// A technique's visibility per pixel of a frame, in `[0, 1]`; `None` where it has no answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answers {
     size: [usize; 2],
@@ -24,7 +24,7 @@ impl Answers {
     /// From one answer for each pixel of Ω_f, in the order of [`Domain::pixels`]: `umbrage probe` asked for [`Domain::points`].
     ///
     /// # Errors
-    /// [`Error::SizeMismatch`] if there are more or fewer, [`Error::NotAVisibility`] for one outside [0,1].
+    /// [`Error::SizeMismatch`] if there are more or fewer, [`Error::NotAVisibility`] for one outside `[0, 1]`.
     pub fn from_points(domain: &Domain, answers: &[f32]) -> Result<Self> {
         check_size("the list of answers", [answers.len(), 1], [domain.pixels().len(), 1])?;
         check_visibilities("answer", answers.iter().copied().enumerate())?;
@@ -38,7 +38,7 @@ impl Answers {
     /// From one answer for each pixel of an image.
     ///
     /// # Errors
-    /// [`Error::SizeMismatch`] if there are more or fewer than pixels, [`Error::NotAVisibility`] for one outside [0,1].
+    /// [`Error::SizeMismatch`] if there are more or fewer than pixels, [`Error::NotAVisibility`] for one outside `[0, 1]`.
     pub fn from_pixels(size: [usize; 2], visibility: Vec<Option<f32>>) -> Result<Self> {
         check_size("the list of answers", [visibility.len(), 1], [size[0] * size[1], 1])?;
         check_visibilities("pixel", visibility.iter().enumerate().filter_map(|(i, v)| v.map(|v| (i, v))))?;

@@ -27,7 +27,7 @@ pub struct ByDepth {
 }
 
 impl ByDepth {
-    /// E_log in [0,1]: the mean of E over the bins that have a say; `None` if none has.
+    /// E_log in `[0, 1]`: the mean of E over the bins that have a say; `None` if none has.
     #[must_use]
     pub fn mean(&self) -> Option<f64> {
         let full = self.bins.iter().filter(|bin| bin.score.pixels >= LEAST_PIXELS_IN_BIN);

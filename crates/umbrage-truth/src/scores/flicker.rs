@@ -47,7 +47,7 @@ impl Flicker {
     /// Counts one more pair of frames. A pair that shares no point is left out.
     ///
     /// # Errors
-    /// [`Error::SizeMismatch`] if the two lists differ in length, [`Error::NotAVisibility`] for an answer outside [0,1].
+    /// [`Error::SizeMismatch`] if the two lists differ in length, [`Error::NotAVisibility`] for an answer outside `[0, 1]`.
     pub fn add(&mut self, pair: FramePair) -> Result<()> {
         check_size("the next frame's list of answers", [pair.next.len(), 1], [pair.now.len(), 1])?;
         check_visibilities("answer of this frame", pair.now.iter().copied().enumerate())?;
@@ -67,7 +67,7 @@ impl Flicker {
         self.rates.len()
     }
 
-    /// F in [0,1]; `None` of no pairs.
+    /// F in `[0, 1]`; `None` of no pairs.
     #[must_use]
     pub fn rate(&self) -> Option<f64> {
         (!self.rates.is_empty()).then(|| self.rates.iter().sum::<f64>() / self.rates.len() as f64)

@@ -5,7 +5,7 @@
 //! # Definitions
 //! Frame k, light direction l (towards the light), W × H pixels, one ray through each pixel centre; `p` is the first hit, `n_g`
 //! its geometric normal turned towards the eye, `z` its view depth. **Ω_f** ([`Domain`]) are the pixels with a hit, `n_g·l > 0.02`
-//! and `z` inside the shadowed range `[n, f]`. **V\*** is the truth, **V̂** in [0,1] the technique's answer; the hard decision is
+//! and `z` inside the shadowed range `[n, f]`. **V\*** is the truth, **V̂** in `[0, 1]` the technique's answer; the hard decision is
 //! `V̂ ≥ ½`. A pixel of Ω_f that the technique's image leaves transparent counts as a wrong decision everywhere.
 //!
 //! | name | formula | here |

@@ -17,19 +17,19 @@ pub struct MisShadowed {
 }
 
 impl MisShadowed {
-    /// E in [0,1], or 0 of no pixels.
+    /// E in `[0, 1]`, or 0 of no pixels.
     #[must_use]
     pub fn rate(&self) -> f64 {
         self.share(self.false_shadow + self.false_light)
     }
 
-    /// E_fs in [0,1].
+    /// E_fs in `[0, 1]`.
     #[must_use]
     pub fn false_shadow_rate(&self) -> f64 {
         self.share(self.false_shadow)
     }
 
-    /// E_fl in [0,1].
+    /// E_fl in `[0, 1]`.
     #[must_use]
     pub fn false_light_rate(&self) -> f64 {
         self.share(self.false_light)

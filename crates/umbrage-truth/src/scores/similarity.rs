@@ -9,7 +9,7 @@ use crate::{Error, Result};
 /// How alike two pictures look.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Similarity {
-    /// Mean ꟻLIP error in [0,1], 0 for equal pictures (Andersson et al., "FLIP: A Difference Evaluator for Alternating
+    /// Mean ꟻLIP error in `[0, 1]`, 0 for equal pictures (Andersson et al., "FLIP: A Difference Evaluator for Alternating
     /// Images", 2020), at its authors' default of 67 pixels per degree. `None` if the feature `flip` is off.
     pub flip: Option<f64>,
     /// Mean structural similarity, 1 for equal pictures (Wang et al., 2004), the least of the three channels.

@@ -7,7 +7,7 @@ use crate::{Result, SoftTruth};
 /// Penumbra: more than this of the sun is hidden, and more than this of it is seen.
 const PENUMBRA: f32 = 0.02;
 
-/// Mean differences of visibility, in [0,1].
+/// Mean differences of visibility, in `[0, 1]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftError {
     /// E_soft, over Ω_f.

@@ -168,3 +168,24 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_flat_triangle_far_away_holds_rays_along_an_axis() {
+    // An origin whose f64 cannot tell a nanometre: found by the property above when the box walk blurred by that alone.
+    for far in [4.706_968_96e8_f32, -4.706_968_96e8, 1e5, 0.0] {
+        let mut stage = Stage::default();
+        let shape = Shape {
+            positions: vec![[-1.0, far, 0.0], [1.0, far, 0.0], [0.0, far * 1.000_001, 0.0]],
+            indices: vec![0, 1, 2],
+        };
+        stage.add(shape, DAffine3::IDENTITY);
+        let truth = stage.truth(DVec3::ZERO);
+        let from = DVec3::new(0.0, f64::from(far), 7.0);
+        let range = (0.0, f64::INFINITY);
+        for direction in [DVec3::new(0.0, -0.0, -1.0), DVec3::new(-0.0, 0.0, -1.0)] {
+            let hit = truth.first_hit(from, direction, range, &mut Vec::new());
+            assert_eq!(hit, truth.first_hit_by_brute_force(from, direction, range));
+            assert_eq!(hit.is_some(), far != 0.0, "{far}");
+        }
+    }
+}

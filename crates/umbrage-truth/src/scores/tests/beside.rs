@@ -44,7 +44,7 @@ fn memory_is_found_between_measurements() {
 
 fn stripes(shift: u32, invert: bool) -> RgbImage {
     RgbImage::from_fn(64, 48, |x, _| {
-        let light = ((x + shift) / 16) % 2 == 0;
+        let light = ((x + shift) / 16).is_multiple_of(2);
         Rgb([if light == invert { 20 } else { 220 }; 3])
     })
 }
