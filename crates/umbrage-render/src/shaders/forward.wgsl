@@ -3,8 +3,8 @@
 @group(0) @binding(0) var<uniform> frame: Frame;
 
 const SUN: vec3f = vec3f(2.7, 2.5, 2.2);
-const SKY_AMBIENT: vec3f = vec3f(0.58, 0.70, 0.88);
-const GROUND_AMBIENT: vec3f = vec3f(0.30, 0.27, 0.24);
+const SKY_AMBIENT: vec3f = vec3f(0.47, 0.57, 0.72);
+const GROUND_AMBIENT: vec3f = vec3f(0.25, 0.225, 0.20);
 
 struct Vertex {
     @location(0) local: vec3f,
@@ -99,19 +99,22 @@ fn base_color(in: Surface) -> vec4f {
 fn shaded(in: Surface, front: bool, base: vec4f) -> vec3f {
     let geometric = geometric_normal(in.from_eye);
     let smooth_normal = normalize(select(-in.normal, in.normal, front));
-    let shadow = umbrage_shadow(in.position, geometric);
-    let lambert = max(dot(smooth_normal, frame.to_light), 0.0);
-    let sun = SUN * lambert * softened_terminator(geometric, smooth_normal, lambert) * shadow.visibility;
-    let ambient = mix(GROUND_AMBIENT, SKY_AMBIENT, 0.5 * smooth_normal.y + 0.5);
+    let shadow = umbrage_shadow(in.position, lookup_normal(geometric));
+    let sun = SUN * max(dot(smooth_normal, frame.to_light), 0.0) * shadow.visibility;
+    // Brighter on the sun's side of the sky, so that corners can be told apart in the shade.
+    let side = 1.0 + 0.15 * dot(smooth_normal, frame.to_light);
+    let ambient = side * mix(GROUND_AMBIENT, SKY_AMBIENT, 0.5 * smooth_normal.y + 0.5);
     return tone_mapped((base.rgb * (sun + ambient) + material.emissive) * shadow.tint);
 }
 
-// Facets of a smooth surface turn away from the light one by one; this fades each before it does, instead of a jagged edge.
-// M. J.-Y. Chiang, Y. K. Li, B. Burley, "Taming the Shadow Terminator", SIGGRAPH 2019 talks. 1 where both normals agree.
-fn softened_terminator(geometric: vec3f, smooth_normal: vec3f, lambert: f32) -> f32 {
-    let facet = max(dot(geometric, frame.to_light), 0.0);
-    let g = min(1.0, facet / max(lambert * dot(geometric, smooth_normal), 1e-4));
-    return g + g * g - g * g * g;
+// Facets of a smooth surface turn away from the light one by one, which would cut its terminator into jags. For the picture
+// a facet that turns away is looked up as if it were grazed: its neighbours shade it or do not, and the smooth normal
+// darkens it. Surfaces whose two normals agree are not concerned. The mask knows nothing of this.
+fn lookup_normal(geometric: vec3f) -> vec3f {
+    // Cosine of about 84 degrees. Lower: jags come back. Higher: light leaks past terminators.
+    const LEAST_FACING: f32 = 0.1;
+    let facing = dot(geometric, frame.to_light);
+    return normalize(geometric + max(LEAST_FACING - facing, 0.0) * frame.to_light);
 }
 
 struct SkyPixel {
