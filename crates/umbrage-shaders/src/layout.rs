@@ -31,7 +31,7 @@ pub struct Split {
     pub v_row: [f32; 4],
     /// Depth in the map: `xyz` per metre, `w` without unit; 0 nearest the light, 1 farthest.
     pub depth_row: [f32; 4],
-    /// Added to the two places above it gives texels of the map, `[0, size]²`. Whole numbers if the map is stabilised.
+    /// Added to the two places above it gives texels of the map, `[0, size]²`. Whole numbers.
     pub texel_offset: [f32; 2],
     /// Metres per texel along u and v.
     pub texel_m: [f32; 2],
