@@ -56,7 +56,7 @@ pub struct Plain {
 pub fn columns(judged: &Judged, answers: &[Answer], plain: &Plain, cell: [u32; 2]) -> Result<[Column; 2]> {
     let decided: Vec<Answers> = answers.iter().map(|answer| Answers::from_mask(&answer.mask)).collect();
     let wrong: Vec<Vec<bool>> = decided.iter().map(|answers| wrong_pixels(judged, answers)).collect();
-    let inset = inset::find(&judged.domain, &wrong);
+    let inset = inset::find(judged, &wrong);
     let least = answers.iter().filter_map(|answer| answer.scores.e).fold(f64::INFINITY, f64::min);
     let captioned = |picture: &RgbImage, scores: &Scores| Cell {
         picture: sheet::framed(picture, cell, inset),

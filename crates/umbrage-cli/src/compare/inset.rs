@@ -1,9 +1,12 @@
 //! Where to look closer: the part of a view in which techniques differ most.
 
-use umbrage_truth::scores::Domain;
+use super::judge::Judged;
 
 /// An inset shows one part in this many of the picture's width and height.
 const PARTS: usize = 8;
+
+/// Steps of brightness by which errors are weighed: a wrong decision is seen the better the more light the surface would get.
+const BRIGHTNESS: f64 = 16.0;
 
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,18 +22,25 @@ pub struct Rect {
 }
 
 /// The window in which `wrong` (one picture of wrong decisions per technique) differ most: where k of n techniques are wrong, a
-/// pixel counts k (n − k), which is greatest where half of them are. Where all techniques are wrong alike, the window with the
-/// most errors; without errors, the one with the most true edges; without edges, none.
+/// pixel counts k (n − k), which is greatest where half of them are, times the sun's light on its surface. Where all techniques
+/// are wrong alike, the window with the most errors; without errors, the one with the most true edges; without edges, none.
 #[must_use]
-pub fn find(domain: &Domain, wrong: &[Vec<bool>]) -> Option<Rect> {
-    let [width, height] = domain.size();
+pub fn find(judged: &Judged, wrong: &[Vec<bool>]) -> Option<Rect> {
+    let [width, height] = judged.domain.size();
     let window = [width.div_ceil(PARTS), height.div_ceil(PARTS)];
+    let to_light = judged.truth.to_light();
+    let brightness: Vec<u64> = judged
+        .truth
+        .hits()
+        .iter()
+        .map(|hit| hit.map_or(0, |hit| (BRIGHTNESS * hit.normal.dot(to_light)).clamp(0.0, BRIGHTNESS).ceil() as u64))
+        .collect();
     let count = |pixel: usize| wrong.iter().filter(|of| of[pixel]).count();
-    let differ = |pixel: usize| (count(pixel) * (wrong.len() - count(pixel))) as u64;
+    let differ = |pixel: usize| (count(pixel) * (wrong.len() - count(pixel))) as u64 * brightness[pixel];
     let mut is_edge = vec![false; width * height];
-    domain.edges().iter().for_each(|&pixel| is_edge[pixel] = true);
+    judged.domain.edges().iter().for_each(|&pixel| is_edge[pixel] = true);
     best_window([width, height], window, differ)
-        .or_else(|| best_window([width, height], window, |pixel| count(pixel) as u64))
+        .or_else(|| best_window([width, height], window, |pixel| count(pixel) as u64 * brightness[pixel]))
         .or_else(|| best_window([width, height], window, |pixel| u64::from(is_edge[pixel])))
 }
 
@@ -85,21 +95,24 @@ mod tests {
 
     #[test]
     fn differences_count_more_than_common_errors() {
-        let domain = crate::compare::tests::chessboard_shot([SIZE[0] as u32, SIZE[1] as u32]).domain;
+        let judged = crate::compare::tests::chessboard_shot(SIZE.map(|edge| edge as u32));
+        // Two places on the board, which the sun shines on.
+        let lit: Vec<usize> =
+            judged.domain.pixels().iter().copied().filter(|&pixel| judged.domain.lit(pixel)).collect();
+        let place = |pixel: usize| [pixel % SIZE[0], pixel / SIZE[0]];
+        let (first, last) = (place(lit[0]), place(lit[lit.len() - 1]));
+        assert!(first[1] + 20 < last[1], "the places lie apart: {first:?} {last:?}");
         let picture = |of: &dyn Fn(usize) -> bool| (0..SIZE[0] * SIZE[1]).map(of).collect::<Vec<bool>>();
-        let (common, single) = (spot([10, 10], 4), spot([60, 50], 2));
+        let (common, single) = (spot(first, 4), spot(last, 2));
         let wrong = [picture(&|pixel| common(pixel)), picture(&|pixel| common(pixel) || single(pixel))];
-        let rect = find(&domain, &wrong).expect("an inset");
-        assert!(
-            (rect.x..rect.x + rect.width).contains(&60) && (rect.y..rect.y + rect.height).contains(&50),
-            "{rect:?}"
-        );
-        let rect = find(&domain, &wrong[..1]).expect("one technique has errors but no differences");
-        assert!(
-            (rect.x..rect.x + rect.width).contains(&10) && (rect.y..rect.y + rect.height).contains(&10),
-            "{rect:?}"
-        );
+        let holds = |rect: Rect, [x, y]: [usize; 2]| {
+            (rect.x..rect.x + rect.width).contains(&(x as u32)) && (rect.y..rect.y + rect.height).contains(&(y as u32))
+        };
+        let rect = find(&judged, &wrong).expect("an inset");
+        assert!(holds(rect, last), "{rect:?} {last:?}");
+        let rect = find(&judged, &wrong[..1]).expect("one technique has errors but no differences");
+        assert!(holds(rect, first), "{rect:?} {first:?}");
         let none = vec![vec![false; SIZE[0] * SIZE[1]]; 2];
-        assert_eq!(find(&domain, &none).is_some(), !domain.edges().is_empty(), "edges are better than nothing");
+        assert_eq!(find(&judged, &none).is_some(), !judged.domain.edges().is_empty(), "edges are better than nothing");
     }
 }

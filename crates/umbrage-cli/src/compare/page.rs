@@ -1,11 +1,12 @@
 //! Everything on one page: sheets, tables, plots.
 
-use image::RgbImage;
-
-use super::report::{Comparison, DepthMeans, LIMIT, TechniqueReport, ViewReport};
+use super::{
+    report::{Comparison, DepthMeans, LIMIT, TechniqueReport, ViewReport},
+    sheet::{Column as Shot, Label},
+};
 use crate::{
     failure::{Failure, Result},
-    html::{Best, Cell, Column, Figure, Page, Section, Table},
+    html::{Best, Cell, Column, Figure, Page, Section, Sheet, Table},
     plot::{self, Axis, Chart, Mark, Series, Style},
     render::png,
 };
@@ -13,11 +14,11 @@ use crate::{
 /// Series with colours of their own; further ones are dashed.
 const COLOURS: usize = 8;
 
-/// The page's text. `sheets` are the contact sheet and the sheet of errors.
+/// The page's text. `labels` and `columns` are those of the contact sheet and of the sheet of errors.
 ///
 /// # Errors
 /// [`Failure::Other`] if a chart or picture cannot be made, which would be a mistake of ours.
-pub fn page(comparison: &Comparison, sheets: &[RgbImage; 2]) -> Result<String> {
+pub fn page(comparison: &Comparison, labels: &[Label], columns: &[Vec<Shot>; 2]) -> Result<String> {
     let [width, height] = comparison.size;
     let counting = comparison.views.iter().filter(|view| view.counts).count();
     let lead = vec![
@@ -33,7 +34,7 @@ pub fn page(comparison: &Comparison, sheets: &[RgbImage; 2]) -> Result<String> {
          pixels that a texel spans on the screen. F_edge: decisions that flip from frame to frame, per pixel of true edge."
             .to_owned(),
     ];
-    let mut sections = vec![pictures(sheets)?, table(comparison)];
+    let mut sections = vec![pictures(labels, columns)?, table(comparison)];
     sections.extend(plots(comparison)?);
     sections.push(pairs(comparison));
     sections.push(views(comparison));
@@ -51,20 +52,37 @@ pub fn page(comparison: &Comparison, sheets: &[RgbImage; 2]) -> Result<String> {
     Ok(Page { title, lead, sections, footer }.html())
 }
 
-fn pictures(sheets: &[RgbImage; 2]) -> Result<Section> {
-    let [pictures, errors] = sheets;
-    Ok(Section::new("Shots")
-        .figure(&Figure::png(
-            &png(pictures)?,
-            "contact sheet: techniques in rows, shots in columns, the truth below",
-            "Rows are techniques, columns shots. The inset enlarges the part in which techniques differ most. E and D of each \
-             picture stand below it, the least E of a column in green.",
-        ))
-        .figure(&Figure::png(
-            &png(errors)?,
-            "the same shots, wrong decisions in colour",
-            "Wrong decisions on the truth in grey: leaks (lit instead of dark) red, acne (dark instead of lit) blue. Dimmed: not scored.",
-        )))
+fn pictures(labels: &[Label], columns: &[Vec<Shot>; 2]) -> Result<Section> {
+    let [pictures, errors] = columns;
+    let section = Section::new("Shots")
+        .text(
+            "Rows are techniques, columns shots; the truth is the last row. The inset enlarges the part in which techniques differ most. \
+             E and D of each picture stand below it.",
+        )
+        .sheet(&grid(labels, pictures)?)
+        .heading("Errors")
+        .text(
+            "The same shots: wrong decisions on the truth in grey. Leaks (lit instead of dark) are red, acne (dark instead of lit) is \
+             blue; what is dimmed is not scored.",
+        );
+    Ok(section.sheet(&grid(labels, errors)?))
+}
+
+fn grid(labels: &[Label], columns: &[Shot]) -> Result<Sheet> {
+    let heading = |shot: &Shot| {
+        let parts = [std::slice::from_ref(&shot.title), &shot.lines].concat();
+        parts.into_iter().chain(shot.warning.clone()).collect::<Vec<_>>().join(", ")
+    };
+    let rows = labels.iter().enumerate().map(|(row, label)| {
+        let figures = columns.iter().map(|shot| {
+            let cell = &shot.cells[row];
+            let least = if cell.is_best { ", the least" } else { "" };
+            let alt = format!("{}, {}", shot.title, label.title);
+            Ok(Figure::png(&png(&cell.picture)?, &alt, format!("{}{least}", cell.caption)))
+        });
+        Ok((label.title.clone(), figures.collect::<Result<_>>()?))
+    });
+    Ok(Sheet { columns: columns.iter().map(heading).collect(), rows: rows.collect::<Result<_>>()? })
 }
 
 fn percent(value: Option<f64>, decimals: usize) -> Cell {
@@ -217,9 +235,12 @@ fn drawn(chart: &Chart, caption: &str) -> Result<Option<Figure>> {
 
 fn pairs(comparison: &Comparison) -> Section {
     let labels: Vec<&str> = comparison.techniques.iter().map(|technique| technique.label.as_str()).collect();
-    let columns = [Column::text("E of the row less E of the column, % (views in which each is better)")];
+    let columns = [Column::text("")];
     let columns = columns.into_iter().chain(labels.iter().map(|&label| Column::number(label))).collect();
-    let mut table = Table::new("Below 0 the row's technique is better.", columns);
+    let mut table = Table::new(
+        "Mean E of the row less that of the column, in % (in how many views the row : the column is better). Below 0 the row is better.",
+        columns,
+    );
     for row in &labels {
         let cells = labels.iter().map(|column| {
             let pair = |a: &str, b: &str| comparison.pairs.iter().find(|pair| pair.first == a && pair.second == b);

@@ -57,12 +57,18 @@ pub fn run(args: &CompareArgs) -> Result<()> {
     bench.bar.finish_and_clear();
     let (comparison, columns) = bench.finish(all_notes)?;
 
-    let sheets = sheets(&comparison, &techniques, &columns, args.size);
-    let pictures = [png(&sheets[0])?, png(&sheets[1])?];
-    let page = page::page(&comparison, &sheets)?;
-    let [sheet, errors] = pictures;
+    let labels = labels(&comparison, &techniques);
+    let cell = sheet::cell_size(columns[0].len(), args.size);
+    let title = |what: &str| format!("{what}, {} × {} pixels", args.size[0], args.size[1]);
+    let [pictures, errors] = &columns;
+    let contents = [
+        png(&sheet::assemble(&title("Shadows; insets: where techniques differ most"), &labels, pictures, cell))?,
+        png(&sheet::assemble(&title("Errors on the truth in grey: leaks red, acne blue"), &labels, errors, cell))?,
+        to_json(&comparison)?,
+        page::page(&comparison, &labels, &columns)?.into_bytes(),
+    ];
     let mut staged = Staged::default();
-    outputs.stage([sheet, errors, to_json(&comparison)?, page.into_bytes()], &mut staged)?;
+    outputs.stage(contents, &mut staged)?;
     staged.commit()
 }
 
@@ -284,40 +290,22 @@ fn short(scene: &str) -> String {
     std::path::Path::new(scene).file_name().map_or(scene.into(), |name| name.to_string_lossy().into_owned())
 }
 
-/// The contact sheet and the sheet of errors.
-fn sheets(
-    comparison: &Comparison,
-    techniques: &[Technique],
-    columns: &[Vec<Column>; 2],
-    size: [u32; 2],
-) -> [image::RgbImage; 2] {
-    let labels: Vec<Label> = comparison
-        .techniques
-        .iter()
-        .zip(techniques)
-        .map(|(report, technique)| {
-            let mut lines = vec![
-                format!(
-                    "{:.2} Mtexel, {:.1} MiB",
-                    technique.texels() as f64 / 1048576.0,
-                    report.bytes as f64 / 1048576.0
-                ),
-                format!("filter {}", crate::job::typed_name(technique.job.filter)),
-            ];
-            if let Some(e) = report.mean.e {
-                lines.push(format!("mean E {:.2} %, {} views", 100.0 * e, report.mean.views));
-            }
-            if let Some(flicker) = report.mean.flicker_per_edge {
-                lines.push(format!("F_edge {:.1} %", 100.0 * flicker));
-            }
-            Label { title: report.label.clone(), lines }
-        })
-        .chain([Label { title: "ray-traced truth".into(), lines: Vec::new() }])
-        .collect();
-    let cell = sheet::cell_size(columns[0].len(), size);
-    let title = |what: &str| format!("{what}, {} × {} pixels", size[0], size[1]);
-    [
-        sheet::assemble(&title("Shadows; insets: where techniques differ most"), &labels, &columns[0], cell),
-        sheet::assemble(&title("Errors on the truth in grey: leaks red, acne blue"), &labels, &columns[1], cell),
-    ]
+/// What stands beside the rows: techniques, then the truth.
+fn labels(comparison: &Comparison, techniques: &[Technique]) -> Vec<Label> {
+    let of = |(report, technique): (&TechniqueReport, &Technique)| {
+        let [texels, bytes] = [report.texels, report.bytes].map(|count| count as f64 / f64::from(1 << 20));
+        let mut lines = vec![
+            format!("{texels:.2} Mtexel, {bytes:.1} MiB"),
+            format!("filter {}", crate::job::typed_name(technique.job.filter)),
+        ];
+        if let Some(e) = report.mean.e {
+            lines.push(format!("mean E {:.2} %, {} views", 100.0 * e, report.mean.views));
+        }
+        if let Some(flicker) = report.mean.flicker_per_edge {
+            lines.push(format!("F_edge {:.1} %", 100.0 * flicker));
+        }
+        Label { title: report.label.clone(), lines }
+    };
+    let truth = Label { title: "ray-traced truth".into(), lines: Vec::new() };
+    comparison.techniques.iter().zip(techniques).map(of).chain([truth]).collect()
 }

@@ -106,9 +106,17 @@ pub fn parse(text: &str) -> Result<Draft> {
             options.push(("splits".into(), splits.trim().into()));
             options.push(("map-size".into(), list(sizes)));
         }
-        ("pssm", _) => return Err(wrong("write pssm:SPLITS:SIZE, for example pssm:4:1024".into())),
+        ("pssm", _) => {
+            return Err(wrong(
+                "write pssm:SPLITS:SIZE, then settings as KEY=VALUE, for example pssm:4:1024:lambda=0.9".into(),
+            ));
+        }
         (_, [size]) => options.push(("map-size".into(), list(size))),
-        _ => return Err(wrong(format!("write {kind}:SIZE, for example {kind}:1024"))),
+        _ => {
+            return Err(wrong(format!(
+                "write {kind}:SIZE, then settings as KEY=VALUE, for example {kind}:1024:filter=hard"
+            )));
+        }
     }
     let (label, settings) = read_settings(&settings).map_err(wrong)?;
     if let Some((key, _)) = settings.iter().find(|(key, _)| SHAPE.contains(&key.as_str())) {

@@ -69,7 +69,7 @@ fn mistakes_name_the_culprit() {
         ("pssm:4:0", &["pssm:4:0", "0 texels"]),
         ("pssm:4:512/256", &["--map-size"]),
         ("pssm:4:512:lambda=2", &["--lambda", "2 is not in 0..1"]),
-        ("pssm:4:512:lambda", &["\"lambda\"", "KEY=VALUE"]),
+        ("pssm:4:512:lambda", &["SPLITS:SIZE", "KEY=VALUE"]),
         ("pssm:4:512:lambda=", &["lambda has no value"]),
         ("pssm:4:512:lambda=0.5:lambda=0.6", &["lambda is said twice"]),
         ("pssm:4:512:scheme=log:lambda=0.5", &["--lambda", "practical"]),
