@@ -87,18 +87,20 @@ fn split(
     origin: DVec3,
 ) -> Result<layout::Split> {
     check(index, split)?;
-    // The light's plane in texels. What the origin adds is split into a fraction, which stays with the row, and whole texels,
-    // which join the map's own offset: a caster's place before the offset then depends on the point and the origin alone, and
-    // the offset of a stabilised map is a whole number (see `from_caster` in shaders/lib/map.wesl).
-    let of_origin = DVec2::new(split.u_axis.dot(origin), split.v_axis.dot(origin)) / split.texel_m;
-    let whole = of_origin.floor();
-    let fraction = of_origin - whole;
+    // The light's plane in texels. What the origin adds (less the fraction of a map that is not stabilised) is split into a fraction,
+    // which stays with the row, and whole texels, which join the map's offset: a place before the offset then depends on the
+    // point and the origin alone, and offsets are whole numbers (see `from_caster` in shaders/lib/map.wesl).
+    let corner = split.min_texel.floor();
+    let constant =
+        DVec2::new(split.u_axis.dot(origin), split.v_axis.dot(origin)) / split.texel_m - (split.min_texel - corner);
+    let whole = constant.floor();
+    let fraction = constant - whole;
     let range = split.depth_far - split.depth_near;
     let uniform = layout::Split {
         u_row: row(split.u_axis / split.texel_m.x, fraction.x),
         v_row: row(split.v_axis / split.texel_m.y, fraction.y),
         depth_row: row(split.depth_axis / range, (split.depth_axis.dot(origin) - split.depth_near) / range),
-        texel_offset: (whole - split.min_texel).as_vec2().to_array(),
+        texel_offset: (whole - corner).as_vec2().to_array(),
         texel_m: split.texel_m.as_vec2().to_array(),
         size: split.size as f32,
         far: split.far as f32,
@@ -200,10 +202,14 @@ mod tests {
             offset in unit(),
             texel in prop_oneof![Just(0.005), Just(0.1), Just(3.0)],
             place in unit(),
+            stabilised in any::<bool>(),
         ) {
             // The frame's origin lies up to a kilometre from what the map shows.
             let origin = center + 500.0 * offset;
-            let planned = split_near(direction, center, texel, 1024);
+            let mut planned = split_near(direction, center, texel, 1024);
+            if !stabilised {
+                planned.min_texel += DVec2::new(0.37, -0.81);
+            }
             let uniform = split(0, &planned, 0.0, Viewport::around(1024, 8192), origin).expect("a valid split");
             prop_assert_eq!(uniform.texel_offset.map(f32::fract), [0.0; 2], "whole texels stay whole");
             prop_assert!((0.0..=1.0).contains(&uniform.u_row[3]) && (0.0..=1.0).contains(&uniform.v_row[3]));

@@ -7,7 +7,7 @@
 
 mod common;
 
-use common::{Gpu, World, plan};
+use common::{Gpu, World, ask, plan};
 use glam::{DVec2, DVec3, Vec3};
 use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions};
 
@@ -95,6 +95,50 @@ fn whole_texels_change_nothing() {
             }
         }
     }
+}
+
+/// What receivers are told stands still with the maps: points of the triangles themselves, at any place of the map, under every
+/// filter. A linear sampler weighs in steps of 1/256 from a coordinate that does round.
+#[test]
+fn whole_texels_change_no_answer() {
+    let mut compared = 0;
+    for (filter, tolerance) in
+        [(Filter::Hard, 0.0), (Filter::Pcf2, 1.0 / 64.0), (Filter::Pcf3, 1.0 / 64.0), (Filter::Pcf5, 1.0 / 64.0)]
+    {
+        let Some(gpu) = Gpu::new() else { return };
+        let options = ShadowMapsOptions { map_sizes: vec![SIZE], depth_format: DepthFormat::D32Float, filter };
+        let mut world = World::new(gpu, &options);
+        let light = DVec3::new(0.3, -1.0, 0.2);
+        let triangles = without_slivers(&soup(3000), light);
+        let asks: Vec<_> = triangles
+            .chunks(3)
+            .flat_map(|t| [(0.2, 0.3), (0.6, 0.3), (0.1, 0.8), (0.33, 0.34)].map(|(a, b)| (t, a, b)))
+            .map(|(t, a, b)| {
+                let normal = (t[1] - t[0]).cross(t[2] - t[0]).normalize();
+                let towards = normal * -normal.dot(light.as_vec3()).signum();
+                ask(t[0] + a * (t[1] - t[0]) + b * (1.0 - a) * (t[2] - t[0]), towards)
+            })
+            .collect();
+        let origin = DVec3::new(99_999.9, -31.4, 77.7);
+        let answers = |world: &mut World, shift| {
+            drawn(world, light, origin, shift, &triangles);
+            world.ask(&asks)
+        };
+        let still = answers(&mut world, DVec2::ZERO);
+        for shift in [DVec2::new(1.0, 0.0), DVec2::new(-7.0, 12.0)] {
+            let moved = answers(&mut world, shift);
+            // Points that one of the maps does not cover, or covers at its edge, are lit there and left out.
+            let plan = plan(light, origin, &[SIZE], &[0.1, 100.0], &[WIDTH_M]);
+            for ((a, b), it) in still.iter().zip(&moved).zip(&asks) {
+                if plan.splits[0].contains(origin + it.position().as_dvec3(), 16.0) {
+                    let change = (a.in_split[0] - b.in_split[0]).abs();
+                    assert!(change <= tolerance, "{filter:?}, {shift}: changes by {change}");
+                    compared += 1;
+                }
+            }
+        }
+    }
+    assert!(compared > 20_000, "{compared} answers were compared");
 }
 
 /// The comparison must be able to say no: half a texel is no whole one.

@@ -146,6 +146,12 @@ pub struct Ask {
     normal: [f32; 4],
 }
 
+impl Ask {
+    pub fn position(&self) -> Vec3 {
+        Vec3::from_slice(&self.position)
+    }
+}
+
 pub fn ask(position: Vec3, normal: Vec3) -> Ask {
     Ask { position: position.extend(0.0).to_array(), normal: normal.extend(0.0).to_array() }
 }
