@@ -28,41 +28,10 @@ pub fn map_from_world(split: &Split, position: [f32; 3]) -> [f32; 3] {
     ]
 }
 
-/// `map::covers`: whether a place lies in the map's square.
-#[must_use]
-pub fn covers(split: &Split, at: [f32; 3]) -> bool {
-    (0.0..=split.size).contains(&at[0]) && (0.0..=split.size).contains(&at[1])
-}
-
-/// View depth of a position relative to the frame's origin.
-#[must_use]
-pub fn view_depth(frame: &Frame, position: [f32; 3]) -> f32 {
-    along(frame.view_depth_plane, position)
-}
-
 /// `umbrage_split_at`: the split whose slice holds a view depth, `None` beyond the last.
 #[must_use]
 pub fn split_at(frame: &Frame, view_depth: f32) -> Option<usize> {
     frame.splits[..frame.split_count as usize].iter().position(|split| view_depth < split.far)
-}
-
-/// How `umbrage_shadow` weighs splits at a view depth: the slice's own split, the share of the next one, and how strong shadows
-/// are there. `None` beyond the range.
-#[must_use]
-pub fn weights_at(frame: &Frame, view_depth: f32) -> Option<(usize, f32, f32)> {
-    let index = split_at(frame, view_depth)?;
-    let split = &frame.splits[index];
-    let last = frame.split_count as usize - 1;
-    let mut next = 0.0;
-    if index < last && view_depth > split.blend_begin {
-        next = ((view_depth - split.blend_begin) / (split.far - split.blend_begin)).clamp(0.0, 1.0);
-    }
-    let mut strength = frame.strength;
-    if view_depth > frame.fade_begin {
-        let end = frame.splits[last].far;
-        strength *= ((end - view_depth) / (end - frame.fade_begin)).clamp(0.0, 1.0);
-    }
-    Some((index, next, strength))
 }
 
 fn along(row: [f32; 4], position: [f32; 3]) -> f32 {
