@@ -36,6 +36,8 @@ pub enum Command {
     },
     /// Judge techniques beside each other: contact sheets, scores, one page
     Compare(Box<crate::compare::args::CompareArgs>),
+    /// Measure what shadows cost: times and counts of techniques in turn, ratios to the first, one page
+    Bench(Box<crate::bench::args::BenchArgs>),
     /// The procedural worlds
     Worlds {
         /// What to do with them.

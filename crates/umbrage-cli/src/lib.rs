@@ -6,6 +6,7 @@
 
 mod adapter;
 pub mod args;
+mod bench;
 pub mod compare;
 pub mod failure;
 pub mod html;
@@ -35,6 +36,7 @@ pub fn run(args: &Args) -> Result<()> {
         Command::Probe(args) => probe::run(args),
         Command::Truth(args) => truth::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Bench(args) => bench::run(args),
         Command::Theory { output } => theory::run(output),
         Command::Worlds { command } => worlds::run(command),
         Command::Adapter => adapter::run(),

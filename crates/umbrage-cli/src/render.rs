@@ -74,6 +74,7 @@ impl<'a> Studio<'a> {
             shadows: shadows.settings.clone(),
             filter: wgpu_filter(shadows.filter),
             depth_format: wgpu_depth_format(shadows.depth_format),
+            samples: umbrage_render::Samples::default(),
         };
         let renderer = Renderer::new(&gpu, &stage.scene, &settings)?;
         Ok(Self { renderer, shadows, adapter: adapter::description(&gpu) })

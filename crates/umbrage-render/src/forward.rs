@@ -16,8 +16,32 @@ pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba
 /// Red is visibility, green says that a surface was hit.
 pub(crate) const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Unorm;
 const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// Samples per pixel of the picture; every WebGPU device has 4 for these formats.
-const PICTURE_SAMPLES: u32 = 4;
+/// Samples per pixel of the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Samples {
+    /// The pixel's centre alone: the cheapest, for measurements.
+    One,
+    /// Smooth edges; every WebGPU device has 4 for the picture's formats.
+    #[default]
+    Four,
+}
+
+impl Samples {
+    fn count(self) -> u32 {
+        match self {
+            Self::One => 1,
+            Self::Four => 4,
+        }
+    }
+
+    /// Least coverage at which an alpha-tested pixel is drawn: with several samples its coverage decides how many.
+    fn least_coverage(self) -> f64 {
+        match self {
+            Self::One => 0.5,
+            Self::Four => 0.0,
+        }
+    }
+}
 
 /// A `vec3f` of a uniform buffer: it takes the room of four numbers
 /// (<https://www.w3.org/TR/WGSL/#alignment-and-size>).
@@ -98,7 +122,7 @@ pub(crate) struct Forward {
 }
 
 impl Forward {
-    pub fn new(gpu: &Gpu, maps: &ShadowMaps, materials: &Materials) -> Self {
+    pub fn new(gpu: &Gpu, maps: &ShadowMaps, materials: &Materials, samples: Samples) -> Self {
         let device = &gpu.device;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("Forward::shader"),
@@ -138,11 +162,11 @@ impl Forward {
             bind_group_layouts: &[Some(&frame_layout)],
             immediate_size: 0,
         });
-        let builder = Builder { device, module: &module, layout: &surface_layout };
+        let builder = Builder { device, module: &module, layout: &surface_layout, samples };
         let picture = builder.pipelines([
             builder.surface("Forward::picture_opaque", "fs_picture_opaque", PICTURE_FORMAT),
             Surface {
-                alpha_to_coverage: true,
+                alpha_to_coverage: samples != Samples::One,
                 ..builder.surface("Forward::picture_masked", "fs_picture_masked", PICTURE_FORMAT)
             },
             Surface { blend: true, ..builder.surface("Forward::picture_blend", "fs_picture_blend", PICTURE_FORMAT) },
@@ -204,17 +228,19 @@ pub(crate) struct PictureTarget {
     /// The resolved picture.
     pub texture: wgpu::Texture,
     resolved: wgpu::TextureView,
-    color: wgpu::TextureView,
+    /// Several samples a pixel, to be resolved.
+    samples: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
 }
 
 impl PictureTarget {
-    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
+    pub fn new(gpu: &Gpu, size: [u32; 2], samples: Samples) -> Self {
         let texture = target_texture(gpu, "PictureTarget::resolved", size, PICTURE_FORMAT, 1);
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let color = target_texture(gpu, "PictureTarget::samples", size, PICTURE_FORMAT, PICTURE_SAMPLES);
-        let depth = target_texture(gpu, "PictureTarget::depth", size, DEPTH_FORMAT, PICTURE_SAMPLES);
-        Self { resolved: view(&texture), color: view(&color), depth: view(&depth), texture }
+        let count = samples.count();
+        let several = (count > 1).then(|| target_texture(gpu, "PictureTarget::samples", size, PICTURE_FORMAT, count));
+        let depth = target_texture(gpu, "PictureTarget::depth", size, DEPTH_FORMAT, count);
+        Self { resolved: view(&texture), samples: several.as_ref().map(view), depth: view(&depth), texture }
     }
 
     pub fn begin<'e>(
@@ -222,7 +248,11 @@ impl PictureTarget {
         encoder: &'e mut wgpu::CommandEncoder,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'e> {
-        begin("PictureTarget::pass", encoder, &self.color, Some(&self.resolved), &self.depth, timestamp_writes)
+        let (color, resolve_target) = match &self.samples {
+            Some(samples) => (samples, Some(&self.resolved)),
+            None => (&self.resolved, None),
+        };
+        begin("PictureTarget::pass", encoder, color, resolve_target, &self.depth, timestamp_writes)
     }
 }
 
@@ -315,11 +345,13 @@ struct Builder<'a> {
     device: &'a wgpu::Device,
     module: &'a wgpu::ShaderModule,
     layout: &'a wgpu::PipelineLayout,
+    samples: Samples,
 }
 
 impl Builder<'_> {
     fn surface(&self, label: &'static str, fragment_entry: &'static str, format: wgpu::TextureFormat) -> Surface {
-        Surface { label, fragment_entry, format, samples: PICTURE_SAMPLES, alpha_to_coverage: false, blend: false }
+        let samples = self.samples.count();
+        Surface { label, fragment_entry, format, samples, alpha_to_coverage: false, blend: false }
     }
 
     fn pipelines(&self, surfaces: [Surface; 3]) -> SurfacePipelines {
@@ -372,7 +404,10 @@ impl Builder<'_> {
             fragment: Some(wgpu::FragmentState {
                 module: self.module,
                 entry_point: Some(surface.fragment_entry),
-                compilation_options: Default::default(),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &[("LEAST_COVERAGE", self.samples.least_coverage())],
+                    ..Default::default()
+                },
                 targets: &[Some(wgpu::ColorTargetState {
                     format: surface.format,
                     blend: surface.blend.then_some(wgpu::BlendState::ALPHA_BLENDING),

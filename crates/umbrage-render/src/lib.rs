@@ -22,6 +22,7 @@ mod stats;
 mod timing;
 
 pub use error::{Error, Result};
+pub use forward::Samples;
 pub use gpu::{Gpu, GpuOptions};
 pub use probe::{ProbeAnswer, ProbePoint};
 pub use renderer::{Frame, Outputs, RenderSettings, Rendered, Renderer};

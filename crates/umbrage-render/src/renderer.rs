@@ -10,7 +10,7 @@ use web_time::Instant;
 use crate::capture::Capture;
 use crate::casters::Casters;
 use crate::draw_list::{Drawable, Drawn, Instances, Run};
-use crate::forward::{Forward, FrameUniform, MaskTarget, PictureTarget};
+use crate::forward::{Forward, FrameUniform, MaskTarget, PictureTarget, Samples};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry, check_object};
 use crate::materials::Materials;
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint, Responder};
@@ -27,13 +27,15 @@ const ORIGIN_STEP: f64 = 1024.0;
 pub struct RenderSettings {
     /// Pixels across and down.
     pub size: [u32; 2],
-    /// How shadows are planned. `filter_radius`, `depth_clamp` and `image_size` are taken from the filter, the device and
-    /// `size` instead.
+    /// How shadows are planned. `filter_radius`, `depth_clamp` and `image_size` are taken from the filter, the device with its
+    /// depth format, and `size` instead.
     pub shadows: ShadowSettings,
     /// How maps are looked up.
     pub filter: Filter,
     /// What maps store.
     pub depth_format: DepthFormat,
+    /// Samples per pixel of the picture; masks have one always.
+    pub samples: Samples,
 }
 
 /// What varies from frame to frame.
@@ -80,6 +82,7 @@ pub struct Renderer {
     gpu: Gpu,
     size: [u32; 2],
     depth_format: DepthFormat,
+    samples: Samples,
     planner: Planner,
     maps: ShadowMaps,
     scene: Geometry,
@@ -138,12 +141,16 @@ impl Renderer {
                     filter: settings.filter,
                 },
             )?;
-            shadows.depth_clamp = maps.depth_clamp();
+            // Floats hold the depth of a whole world; 16 bits want the shorter range that casters flattened onto the near plane
+            // allow, and pay for it with maps that step along the light.
+            shadows.depth_clamp = maps.depth_clamp() && settings.depth_format == DepthFormat::D16Unorm;
             let materials = Materials::new(gpu, scene)?;
             let timer = Timer::new(gpu);
             let mut notes = Vec::new();
-            if !maps.depth_clamp() {
-                notes.push("no depth clip control: near planes of maps stand before their first caster".to_owned());
+            if settings.depth_format == DepthFormat::D16Unorm && !maps.depth_clamp() {
+                notes.push(
+                    "no depth clip control: near planes of 16-bit maps stand before their first caster".to_owned(),
+                );
             }
             if !timer.has_timestamps() {
                 notes.push("no timestamp queries: times of the GPU are measured by the CPU's clock".to_owned());
@@ -157,7 +164,8 @@ impl Renderer {
                 skinned: SkinnedGeometry::empty(gpu)?,
                 instances: Instances::new(gpu),
                 casters: Casters::new(gpu, &maps, &materials),
-                forward: Forward::new(gpu, &maps, &materials),
+                forward: Forward::new(gpu, &maps, &materials, settings.samples),
+                samples: settings.samples,
                 probe: Probe::new(gpu, &maps),
                 timer,
                 picture: None,
@@ -216,7 +224,7 @@ impl Renderer {
     fn render_unguarded(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
         if outputs.picture && self.picture.is_none() {
-            self.picture = Some(PictureTarget::new(&gpu, self.size));
+            self.picture = Some(PictureTarget::new(&gpu, self.size, self.samples));
         }
         if outputs.mask && self.mask.is_none() {
             self.mask = Some(MaskTarget::new(&gpu, self.size));

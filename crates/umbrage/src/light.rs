@@ -17,7 +17,7 @@ impl DirectionalLight {
     /// [`Error::InvalidLight`] if the vector is zero or not finite.
     pub fn new(direction: DVec3) -> Result<Self> {
         let length = direction.length();
-        if !direction.is_finite() || !(length > 0.0) || !length.is_finite() {
+        if length == 0.0 || !length.is_finite() {
             return Err(Error::InvalidLight {
                 field: "direction",
                 reason: format!(

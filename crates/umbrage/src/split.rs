@@ -30,7 +30,7 @@ pub fn split_planes(scheme: &SplitScheme, near: f64, far: f64, splits: usize, pl
         });
     }
     planes.push(far);
-    if let Some(pair) = planes.windows(2).find(|pair| !(pair[0] < pair[1])) {
+    if let Some(pair) = planes.windows(2).find(|pair| pair[0] >= pair[1] || pair[0].is_nan() || pair[1].is_nan()) {
         let (field, remedy) = match scheme {
             SplitScheme::Manual(_) => ("planes", "give planes that rise strictly between the range's ends"),
             SplitScheme::Practical { delta, .. } if !delta.is_empty() => ("delta", "give smaller offsets"),

@@ -73,13 +73,15 @@ fn fs_picture_opaque(in: Surface, @builtin(front_facing) front: bool) -> @locati
     return vec4f(shaded(in, front, base_color(in)), 1.0);
 }
 
-// Alpha becomes coverage: a step one pixel wide around the cutoff.
+// Alpha becomes coverage: a step one pixel wide around the cutoff. With one sample a pixel it is all or nothing: 0.5.
+override LEAST_COVERAGE: f32 = 0.0;
+
 @fragment
 fn fs_picture_masked(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let color = base_color(in);
     let coverage = (color.a - material.alpha_cutoff) / max(fwidth(color.a), 1e-4) + 0.5;
     let lit = shaded(in, front, color);
-    if coverage <= 0.0 {
+    if coverage <= LEAST_COVERAGE {
         discard;
     }
     return vec4f(lit, min(coverage, 1.0));

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use glam::{DQuat, DVec3};
 use image::GrayAlphaImage;
 use umbrage::{DirectionalLight, Frustum, ShadowSettings, Stabilize, View};
-use umbrage_render::{Frame, Gpu, GpuOptions, Outputs, RenderSettings, Rendered, Renderer};
+use umbrage_render::{Frame, Gpu, GpuOptions, Outputs, RenderSettings, Rendered, Renderer, Samples};
 use umbrage_scene::{Material, Mesh, Node, Pose, Primitive, Scene, Trs};
 use umbrage_wgpu::{DepthFormat, Filter};
 
@@ -40,6 +40,7 @@ pub fn settings() -> RenderSettings {
         },
         filter: Filter::Hard,
         depth_format: DepthFormat::D32Float,
+        samples: Samples::Four,
     }
 }
 

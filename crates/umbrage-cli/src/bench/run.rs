@@ -1,0 +1,121 @@
+//! Opens, measures, writes.
+
+use std::path::Path;
+
+use umbrage::{DirectionalLight, Frustum, View};
+use umbrage_render::{Gpu, GpuOptions, Samples};
+use umbrage_scene::procedural::World;
+
+use super::{
+    args::BenchArgs,
+    crowd::crowd,
+    measure::measure,
+    page, papers,
+    report::{CrowdReport, Report, SceneReport},
+};
+use crate::{
+    adapter,
+    compare::techniques::{self, Technique},
+    failure::{Failure, Result},
+    job::SceneJob,
+    output::{self, Staged},
+    progress,
+    report::to_json,
+    stage::{Shot, Stage},
+};
+
+/// The camera that is taken if none is named: shadows near, in the middle and far in one picture.
+const CAMERA: &str = "middle";
+
+/// Figure 10-9's paths, four splits: filtered in the shader from one nearest texel's comparison, and compared and filtered in
+/// hardware. Multipass and single-submission paths stand beside them as they come to exist.
+const PATHS: [&str; 2] = [
+    "pssm:4:1024:filter=hard:label=per split, one texel",
+    "pssm:4:1024:filter=pcf2:label=per split, hardware comparison",
+];
+
+/// Runs the subcommand.
+pub fn run(args: &BenchArgs) -> Result<()> {
+    let files: Vec<&Path> = [&args.json, &args.html].into_iter().flatten().map(AsRef::as_ref).collect();
+    if files.is_empty() {
+        return Err(Failure::input("nothing to write: give -o HTML or --json JSON"));
+    }
+    let techniques = parsed(&args.techniques, &args.with, args)?;
+    let paths = parsed(&PATHS.map(str::to_owned), "stabilize=none", args)?;
+    let samples = if args.samples == "4" { Samples::Four } else { Samples::One };
+    let scenes: Vec<String> = match &args.scenes[..] {
+        [] => World::ALL.iter().map(|world| world.name().to_owned()).collect(),
+        given => given.to_vec(),
+    };
+    let inputs: Vec<&Path> = scenes.iter().map(Path::new).collect();
+    output::check(&files, &[], &inputs)?;
+
+    let gpu = Gpu::new(&GpuOptions::default())?;
+    let rounds = u64::from(args.rounds) + 1;
+    let tables = scenes.len() * techniques.len() + args.objects.len() * paths.len();
+    let bar = progress::steps(rounds * tables as u64, "frames with and without shadows");
+    let mut report = Report {
+        adapter: adapter::description(&gpu),
+        size: args.size,
+        samples: args.samples.clone(),
+        rounds: args.rounds,
+        with: args.with.clone(),
+        scenes: Vec::new(),
+        crowds: Vec::new(),
+    };
+    for scene in &scenes {
+        let stage = open(args, scene)?;
+        let mut rows = measure(&gpu, &stage, &techniques, args.size, samples, args.rounds, &bar)?;
+        for (row, technique) in rows.iter_mut().zip(&techniques) {
+            let alike = technique.job.settings.map_sizes.iter().all(|&size| size == 512);
+            row.paper_ratio = alike.then(|| papers::table_1(scene, row.splits)).flatten();
+        }
+        report.scenes.push(SceneReport {
+            scene: scene.clone(),
+            camera: stage.shots[0].camera.clone(),
+            triangles: stage.scene.placed_triangles(),
+            rows,
+        });
+    }
+    for &objects in &args.objects {
+        let stage = crowd_stage(args, objects)?;
+        let rows = measure(&gpu, &stage, &paths, args.size, samples, args.rounds, &bar)?;
+        report.crowds.push(CrowdReport { objects, rows });
+    }
+    bar.finish_and_clear();
+
+    let mut staged = Staged::default();
+    if let Some(path) = &args.json {
+        staged.file(path, to_json(&report)?)?;
+    }
+    if let Some(path) = &args.html {
+        staged.file(path, page::page(&report)?.into_bytes())?;
+    }
+    staged.commit()
+}
+
+fn parsed(specs: &[String], with: &str, args: &BenchArgs) -> Result<Vec<Technique>> {
+    let drafts = specs.iter().map(|text| techniques::parse(text)).collect::<Result<Vec<_>>>()?;
+    Ok(techniques::finish(&drafts, &techniques::parse_with(with)?, None, args.size)?)
+}
+
+/// The scene, by the camera that was named, the one in the middle, or its first.
+fn open(args: &BenchArgs, scene: &str) -> Result<Stage> {
+    if args.camera.is_none() && World::from_name(scene).is_some() {
+        return Stage::open(&SceneJob::new(&args.scene_args(scene, Some(CAMERA)))?);
+    }
+    Stage::open(&SceneJob::new(&args.scene_args(scene, None))?)
+}
+
+fn crowd_stage(args: &BenchArgs, objects: u32) -> Result<Stage> {
+    let (scene, eye, target) = crowd(objects)?;
+    let aspect = f64::from(args.size[0]) / f64::from(args.size[1]);
+    let view = View::look_at_upright(eye, target, Frustum::perspective(60f64.to_radians(), aspect, 1.0, 800.0)?)?;
+    Ok(Stage {
+        pose: scene.pose(0.0)?,
+        scene,
+        sun: DirectionalLight::new(umbrage_scene::invented_sun())?,
+        shots: vec![Shot { frame: None, camera: "crowd".into(), view }],
+        notes: Vec::new(),
+    })
+}
