@@ -78,14 +78,14 @@ pub fn run() -> Result<()> {
     let index = folder.join("index.html");
     let page = page::html(&adapter, &drawn)?;
     fs::write(&index, page).with_context(|| format!("cannot write {}", index.display()))?;
-    eprintln!("xtask: the page is");
-    println_path(&index);
+    eprintln!("xtask: look at it with a browser:");
+    print_result(&index);
     Ok(())
 }
 
 /// The one line that goes to standard output, so that scripts can use it.
 #[expect(clippy::print_stdout, reason = "the result of the command")]
-fn println_path(path: &Path) {
+fn print_result(path: &Path) {
     println!("{}", path.display());
 }
 

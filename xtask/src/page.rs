@@ -4,7 +4,7 @@ use std::{fmt::Write, io::Cursor, path::Path};
 
 use anyhow::{Context, Result};
 use base64::{Engine, engine::general_purpose::STANDARD};
-use image::{DynamicImage, codecs::jpeg::JpegEncoder};
+use image::{DynamicImage, Rgba, codecs::jpeg::JpegEncoder};
 use serde_json::Value;
 
 use crate::demo::{Section, Shot};
@@ -14,6 +14,8 @@ const STYLE: &str = include_str!("page.css");
 const JPEG_QUALITY: u8 = 90;
 /// Longest edge of a shadow map on the page, pixels.
 const MAP_EDGE: u32 = 320;
+/// Where a mask hits nothing.
+const SKY: [u8; 3] = [186, 207, 232];
 
 /// The whole page.
 pub fn html(adapter: &str, sections: &[(Section, Vec<Shot>)]) -> Result<String> {
@@ -52,9 +54,9 @@ fn write_shot(page: &mut String, section: &Section, shot: &Shot) -> Result<()> {
     write_figure(page, &picture(&shot.picture)?, "The picture.")?;
     write_figure(page, &picture(&shot.tint)?, "The same, coloured by the split that answers.")?;
     page.push_str("</div>\n<div class=\"maps\">\n");
-    write_figure(page, &small(&shot.mask)?, "Visibility: white lit, black shadowed.")?;
+    write_figure(page, &small(&shot.mask)?, "Visibility: white lit, black shadowed, blue nothing there.")?;
     for (split, map) in shot.maps.iter().enumerate() {
-        write_figure(page, &small(map)?, &format!("Map of split {split}."))?;
+        write_figure(page, &small(map)?, &format!("Map of split {split}, as the light sees it."))?;
     }
     page.push_str("</div>\n");
     write_report(page, &shot.report)?;
@@ -122,9 +124,20 @@ fn picture(path: &Path) -> Result<String> {
     data_uri(&open(path)?)
 }
 
-/// A mask or map, made smaller, as a data URI.
+/// A mask or map, made smaller, as a data URI. What is transparent becomes the colour of the sky.
 fn small(path: &Path) -> Result<String> {
-    data_uri(&DynamicImage::ImageLuma8(open(path)?.thumbnail(MAP_EDGE, MAP_EDGE).to_luma8()))
+    let picture = open(path)?.thumbnail(MAP_EDGE, MAP_EDGE);
+    if !picture.color().has_alpha() {
+        return data_uri(&DynamicImage::ImageLuma8(picture.to_luma8()));
+    }
+    let mut over_sky = picture.to_rgba8();
+    for Rgba([red, green, blue, alpha]) in over_sky.pixels_mut() {
+        for (channel, sky) in [red, green, blue].into_iter().zip(SKY) {
+            let mixed = u32::from(*channel) * u32::from(*alpha) + u32::from(sky) * u32::from(u8::MAX - *alpha);
+            *channel = u8::try_from(mixed / u32::from(u8::MAX)).unwrap_or(u8::MAX);
+        }
+    }
+    data_uri(&DynamicImage::ImageRgba8(over_sky))
 }
 
 fn open(path: &Path) -> Result<DynamicImage> {
