@@ -28,6 +28,8 @@ pub enum Command {
     Probe(Box<ProbeArgs>),
     /// Work out the visibility mask exactly, by rays
     Truth(Box<TruthArgs>),
+    /// Say how shadows would be made, without a GPU: planes, matrices and casters of each split, as JSON
+    Plan(Box<PlanArgs>),
     /// Draw the papers' theory: split schemes and aliasing, areas, fits, frusta
     Theory {
         /// Write the page here (HTML, one file)
@@ -107,6 +109,23 @@ pub struct TruthArgs {
     /// Write scene, camera, sun and times here (JSON)
     #[arg(long, value_name = "JSON", help_heading = "Output")]
     pub report: Option<PathBuf>,
+}
+
+/// `umbrage plan`.
+#[derive(Debug, clap::Args)]
+pub struct PlanArgs {
+    /// Scene, camera, light and time.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Shadows.
+    #[command(flatten)]
+    pub shadows: ShadowArgs,
+    /// Depth of the matrices' normalised device coordinates
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub depth_convention: DepthConvention,
+    /// Write the plan here (JSON) instead of printing it; with --frames, NAME.json becomes NAME.0000.json and so on
+    #[arg(short = 'o', long = "output", value_name = "JSON", help_heading = "Output")]
+    pub output: Option<PathBuf>,
 }
 
 /// `umbrage worlds`.
@@ -215,9 +234,15 @@ pub struct ShadowArgs {
     /// What each map is fitted to: the slice alone, or its receivers and casters too
     #[arg(long, value_enum, default_value_t)]
     pub fit: Fit,
-    /// Whether shadows stand still while the camera moves
-    #[arg(long, value_enum, default_value_t)]
-    pub stabilize: Stabilize,
+    /// Whether shadows stand still while the camera moves [default: exact, or none where a map is warped]
+    #[arg(long, value_enum)]
+    pub stabilize: Option<Stabilize>,
+    /// How each split's map spreads its texels: none, psm, lispsm or tsm; one, or one per split [default: none]
+    #[arg(long, value_name = "WARP,…", value_parser = parse::warp_list)]
+    pub warp: Option<Warps>,
+    /// Share of the depth range that trapezoidal maps give four fifths of their texels [default: 0.15]
+    #[arg(long, value_name = "SHARE", value_parser = parse::focus, allow_hyphen_values = true)]
+    pub tsm_focus: Option<f64>,
     /// How a map is looked up
     #[arg(long, value_enum, default_value_t)]
     pub filter: Filter,
@@ -246,6 +271,24 @@ pub struct Numbers(pub Vec<f64>);
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapSizes(pub Vec<u32>);
 
+/// `--warp`, as one value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Warps(pub Vec<Warp>);
+
+/// One entry of `--warp`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Warp {
+    /// Evenly
+    #[default]
+    None,
+    /// As a perspective shadow map
+    Psm,
+    /// As a light space perspective shadow map
+    Lispsm,
+    /// As a trapezoidal shadow map
+    Tsm,
+}
+
 /// `--technique`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Technique {
@@ -254,6 +297,26 @@ pub enum Technique {
     Pssm,
     /// One map over the whole range, with the same fit, culling and bias
     Ssm,
+    /// One perspective shadow map
+    Psm,
+    /// One light space perspective shadow map
+    Lispsm,
+    /// One trapezoidal shadow map
+    Tsm,
+}
+
+impl Technique {
+    /// The warp of techniques that are one map; `None` for those that are split.
+    #[must_use]
+    pub fn single_map(self) -> Option<Warp> {
+        match self {
+            Self::Pssm => None,
+            Self::Ssm => Some(Warp::None),
+            Self::Psm => Some(Warp::Psm),
+            Self::Lispsm => Some(Warp::Lispsm),
+            Self::Tsm => Some(Warp::Tsm),
+        }
+    }
 }
 
 /// `--scheme`.
@@ -312,6 +375,16 @@ pub enum DepthFormat {
     D32f,
     /// 16-bit
     D16,
+}
+
+/// `--depth-convention`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum DepthConvention {
+    /// wgpu, Direct3D, Metal, Vulkan
+    #[default]
+    ZeroToOne,
+    /// OpenGL
+    MinusOneToOne,
 }
 
 /// `--shadows`.

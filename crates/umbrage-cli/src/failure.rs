@@ -64,8 +64,10 @@ impl From<umbrage::Error> for Failure {
                 "far_fade" => "--far-fade",
                 "filter_radius" => "--filter",
                 "image_size" => "--size",
+                "warps" => "--warp, --tsm-focus",
                 _ => "",
             },
+            umbrage::Error::ConflictingSettings { .. } => "--warp, --stabilize",
             umbrage::Error::InvalidCamera { field, .. } => match *field {
                 "fov" => "--fov",
                 "near" | "far" => "--near, --far",

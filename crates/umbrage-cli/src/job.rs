@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use glam::DVec3;
-use umbrage::{MAX_SPLITS, ShadowSettings, SplitScheme};
+use umbrage::{MAX_SPLITS, ShadowSettings, SplitScheme, Warp};
 
 use crate::{
     args::{self, SceneArgs, Scheme, ShadowArgs, Technique},
@@ -17,6 +17,8 @@ pub const DEFAULT_FOV: f64 = 60.0;
 pub const DEFAULT_NEAR: f64 = 1.0;
 /// `--far` where nothing else says one, metres.
 pub const DEFAULT_FAR: f64 = 800.0;
+/// `--tsm-focus` where nothing else says one.
+pub const DEFAULT_TSM_FOCUS: f64 = 0.15;
 
 /// What is looked at, from where, under which sun: [`SceneArgs`], checked.
 #[derive(Debug, PartialEq)]
@@ -98,8 +100,10 @@ pub struct ShadowJob {
     pub shadows_on: bool,
     /// `--fit`, `--stabilize`, as typed.
     pub fit: args::Fit,
-    /// As typed.
+    /// As typed, or the default that goes with the maps.
     pub stabilize: args::Stabilize,
+    /// `--warp`, or the technique's: one for all splits, or one for each.
+    pub warps: Vec<args::Warp>,
 }
 
 impl SceneJob {
@@ -108,7 +112,9 @@ impl SceneJob {
     pub fn new(args: &SceneArgs) -> Result<Self> {
         let camera = camera_choice(args)?;
         let sun = match (&args.light, args.sun) {
-            (Some(_), Some(_)) => return Err(Failure::input("--light and --sun both choose the light; give one of them")),
+            (Some(_), Some(_)) => {
+                return Err(Failure::input("--light and --sun both choose the light; give one of them"));
+            }
             (Some(name), None) => SunChoice::Named(name.clone()),
             (None, Some(direction)) => SunChoice::Given(direction),
             (None, None) => SunChoice::Default,
@@ -119,7 +125,9 @@ impl SceneJob {
         if let (Some(near), Some(far)) = (near, far)
             && near >= far
         {
-            return Err(Failure::input(format!("--near {near} is not less than --far {far}; give a nearer near or a farther far")));
+            return Err(Failure::input(format!(
+                "--near {near} is not less than --far {far}; give a nearer near or a farther far"
+            )));
         }
         Ok(Self {
             scene: args.scene.clone(),
@@ -191,6 +199,8 @@ impl ShadowJob {
     /// [`Failure::Input`] naming the options that do not go together.
     pub fn new(args: &ShadowArgs, image_size: [u32; 2]) -> Result<Self> {
         let map_sizes = map_sizes(args)?;
+        let warps = warps(args, map_sizes.len())?;
+        let stabilize = stabilize(args, &warps)?;
         let settings = ShadowSettings {
             scheme: scheme(args, map_sizes.len())?,
             map_sizes,
@@ -199,10 +209,11 @@ impl ShadowJob {
                 args::Fit::Dependent => umbrage::Fit::Dependent,
                 args::Fit::Independent => umbrage::Fit::Independent,
             },
-            stabilize: match args.stabilize {
+            stabilize: match stabilize {
                 args::Stabilize::Exact => umbrage::Stabilize::Exact,
                 args::Stabilize::None => umbrage::Stabilize::None,
             },
+            warps: warps.iter().map(|&warp| planner_warp(warp, args.tsm_focus)).collect(),
             filter_radius: wgpu_filter(args.filter).radius_texels(),
             blend: args.blend,
             far_fade: args.far_fade,
@@ -218,7 +229,8 @@ impl ShadowJob {
             tint: args.tint,
             shadows_on: args.shadows == args::Switch::On,
             fit: args.fit,
-            stabilize: args.stabilize,
+            stabilize,
+            warps,
         })
     }
 }
@@ -256,18 +268,21 @@ fn map_sizes(args: &ShadowArgs) -> Result<Vec<u32>> {
         Some(splits) if !(1..=MAX_SPLITS).contains(&splits) => {
             return Err(Failure::input(format!("--splits {splits}: there may be 1 to {MAX_SPLITS}")));
         }
-        Some(splits) if args.technique == Technique::Ssm && splits != 1 => {
+        Some(splits) if args.technique.single_map().is_some() && splits != 1 => {
             return Err(Failure::input(format!(
-                "--splits {splits}: --technique ssm is one map over the whole range; leave --splits away, or use pssm"
+                "--splits {splits}: --technique {} is one map over the whole range; leave --splits away, or use pssm",
+                typed_name(args.technique)
             )));
         }
         Some(splits) => splits,
-        None if args.technique == Technique::Ssm => 1,
+        None if args.technique.single_map().is_some() => 1,
         None if typed.len() > 1 => typed.len(),
         None => args.planes.as_ref().map_or(4, |planes| planes.0.len() + 1),
     };
     if splits > MAX_SPLITS {
-        return Err(Failure::input(format!("--map-size or --planes asks for {splits} splits; there may be 1 to {MAX_SPLITS}")));
+        return Err(Failure::input(format!(
+            "--map-size or --planes asks for {splits} splits; there may be 1 to {MAX_SPLITS}"
+        )));
     }
     match typed[..] {
         [edge] => Ok(vec![edge; splits]),
@@ -280,11 +295,66 @@ fn map_sizes(args: &ShadowArgs) -> Result<Vec<u32>> {
     }
 }
 
+/// One warp for all splits, or one for each.
+fn warps(args: &ShadowArgs, splits: usize) -> Result<Vec<args::Warp>> {
+    let warps = match (args.technique.single_map(), &args.warp) {
+        (Some(own), Some(typed)) if typed.0 != [own] => {
+            let typed: Vec<String> = typed.0.iter().map(|&warp| typed_name(warp)).collect();
+            return Err(Failure::input(format!(
+                "--warp {}: --technique {} says how its one map is warped; leave --warp away, or use pssm with --splits 1",
+                typed.join(","),
+                typed_name(args.technique)
+            )));
+        }
+        (Some(own), _) => vec![own],
+        (None, Some(typed)) => typed.0.clone(),
+        (None, None) => vec![args::Warp::None],
+    };
+    if warps.len() != 1 && warps.len() != splits {
+        return Err(Failure::input(format!(
+            "--warp lists {} warps, but the number of splits is {splits}; give one warp, or one for each split",
+            warps.len()
+        )));
+    }
+    if args.tsm_focus.is_some() && !warps.contains(&args::Warp::Tsm) {
+        return Err(Failure::input("--tsm-focus belongs to --technique tsm and --warp tsm; leave it away"));
+    }
+    Ok(warps)
+}
+
+/// What was typed, or what goes with the maps: a warp follows the camera and cannot stand still.
+fn stabilize(args: &ShadowArgs, warps: &[args::Warp]) -> Result<args::Stabilize> {
+    let Some(warp) = warps.iter().find(|warp| **warp != args::Warp::None) else {
+        return Ok(args.stabilize.unwrap_or_default());
+    };
+    if args.stabilize == Some(args::Stabilize::Exact) {
+        let culprit = match args.technique.single_map() {
+            Some(_) => format!("--technique {}", typed_name(args.technique)),
+            None => format!("--warp {}", typed_name(*warp)),
+        };
+        return Err(Failure::input(format!(
+            "{culprit} and --stabilize exact exclude each other: a warped map follows the camera; leave one of them away"
+        )));
+    }
+    Ok(args::Stabilize::None)
+}
+
+fn planner_warp(warp: args::Warp, focus: Option<f64>) -> Warp {
+    match warp {
+        args::Warp::None => Warp::None,
+        args::Warp::Psm => Warp::Psm,
+        args::Warp::Lispsm => Warp::Lispsm,
+        args::Warp::Tsm => Warp::Tsm { focus: focus.unwrap_or(DEFAULT_TSM_FOCUS) },
+    }
+}
+
 fn scheme(args: &ShadowArgs, splits: usize) -> Result<SplitScheme> {
     let scheme = args.scheme.unwrap_or(if args.planes.is_some() { Scheme::Manual } else { Scheme::Practical });
     let name = typed_name(scheme);
     let only_for = |option: &str, owner: &str| {
-        Err(Failure::input(format!("{option} belongs to --scheme {owner}, but the scheme is {name}; leave one of them away")))
+        Err(Failure::input(format!(
+            "{option} belongs to --scheme {owner}, but the scheme is {name}; leave one of them away"
+        )))
     };
     if scheme != Scheme::Practical && args.lambda.is_some() {
         return only_for("--lambda", "practical");

@@ -13,6 +13,7 @@ pub mod html;
 pub mod job;
 pub mod output;
 pub mod parse;
+mod plan;
 pub mod plot;
 mod probe;
 pub mod progress;
@@ -35,6 +36,7 @@ pub fn run(args: &Args) -> Result<()> {
         Command::Render(args) => render::run(args),
         Command::Probe(args) => probe::run(args),
         Command::Truth(args) => truth::run(args),
+        Command::Plan(args) => plan::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Bench(args) => bench::run(args),
         Command::Theory { output } => theory::run(output),

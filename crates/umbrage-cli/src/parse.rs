@@ -4,7 +4,9 @@
 
 use glam::DVec3;
 
-use crate::args::{MapSizes, Numbers};
+use clap::ValueEnum as _;
+
+use crate::args::{MapSizes, Numbers, Warp, Warps};
 
 /// More pixels than this are a typing error, and more than a picture's buffers should take.
 const MAX_PIXELS: u64 = 1 << 26;
@@ -100,6 +102,21 @@ pub fn map_sizes_list(text: &str) -> Result<MapSizes, String> {
     map_sizes(text).map(MapSizes)
 }
 
+/// Names of warps: one, or one per split.
+pub fn warp_list(text: &str) -> Result<Warps, String> {
+    let warp = |name: &str| {
+        Warp::from_str(name.trim(), false).map_err(|_| format!("{name:?} is no warp; there are none, psm, lispsm, tsm"))
+    };
+    text.split(',').map(warp).collect::<Result<_, _>>().map(Warps)
+}
+
+/// A number between 0 and 1, both excluded.
+pub fn focus(text: &str) -> Result<f64, String> {
+    number(text).and_then(|v| {
+        if v > 0.0 && v < 1.0 { Ok(v) } else { Err(format!("{v} is not between 0 and 1, both excluded")) }
+    })
+}
+
 /// `WIDTHxHEIGHT` in pixels.
 pub fn size(text: &str) -> Result<[u32; 2], String> {
     let form = || format!("{text:?} is not a size; give WIDTHxHEIGHT in pixels, such as 800x600");
@@ -169,7 +186,12 @@ mod tests {
             assert!(planes(bad).is_err(), "{bad}");
         }
         for bad in ["1.01", "-0.1", "nan", "half"] {
-            assert!(share(bad).is_err(), "{bad}");
+            assert!(share(bad).is_err() && focus(bad).is_err(), "{bad}");
+        }
+        assert!(focus("0").is_err() && focus("1").is_err());
+        assert_eq!(warp_list("tsm, none"), Ok(Warps(vec![Warp::Tsm, Warp::None])));
+        for bad in ["", "tsm,", "TSM", "warp"] {
+            assert!(warp_list(bad).is_err(), "{bad}");
         }
         for bad in ["0", "180", "-60", "nan"] {
             assert!(field_of_view(bad).is_err(), "{bad}");

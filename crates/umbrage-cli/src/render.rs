@@ -24,7 +24,9 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         [&args.picture, &args.visibility, &args.report].into_iter().flatten().map(AsRef::as_ref).collect();
     let folders: Vec<&Path> = args.maps.iter().map(AsRef::as_ref).collect();
     if files.is_empty() && folders.is_empty() {
-        return Err(Failure::input("nothing to write: give -o PICTURE, --visibility MASK, --maps DIR or --report JSON"));
+        return Err(Failure::input(
+            "nothing to write: give -o PICTURE, --visibility MASK, --maps DIR or --report JSON",
+        ));
     }
     output::check(&files, &folders, &job.inputs())?;
 
@@ -97,6 +99,7 @@ impl<'a> Studio<'a> {
             near: split.near,
             far: split.far,
             texel_m: split.texel_m,
+            warped: split.warped,
             casters: split.casters as u64,
             draws: u64::from(split.draws),
             triangles: split.triangles,
@@ -111,6 +114,7 @@ impl<'a> Studio<'a> {
             filter: typed_name(self.shadows.filter),
             fit: typed_name(self.shadows.fit),
             stabilize: typed_name(self.shadows.stabilize),
+            warp: self.shadows.warps.iter().map(|&warp| typed_name(warp)).collect(),
             planes_m: stats.plan.planes.clone(),
             times_ms: TimesMs { plan: stats.plan_ms, shadow: stats.shadow_ms, frame: stats.frame_ms },
             bytes: stats.bytes,

@@ -10,7 +10,7 @@ pub struct Report {
     pub shot: ShotReport,
     /// The graphics adapter.
     pub adapter: String,
-    /// `pssm` or `ssm`.
+    /// `pssm`, or a single map: `ssm`, `psm`, `lispsm` or `tsm`.
     pub technique: String,
     /// How the maps were drawn.
     pub generation: String,
@@ -22,6 +22,8 @@ pub struct Report {
     pub fit: String,
     /// `none` or `exact`.
     pub stabilize: String,
+    /// `none`, `psm`, `lispsm` or `tsm`: one for all splits, or one for each.
+    pub warp: Vec<String>,
     /// `C_0 ..= C_m`: view depths in metres.
     pub planes_m: Vec<f64>,
     /// How long it took.
@@ -113,8 +115,10 @@ pub struct SplitReport {
     pub near: f64,
     /// View depth where it ends, metres.
     pub far: f64,
-    /// The larger edge of a texel on the ground, metres.
+    /// The larger edge of a texel on the light's plane, metres; of a warped map in the middle of its receivers.
     pub texel_m: f64,
+    /// Whether its map is warped; a warp that has nothing to gain leaves it plain.
+    pub warped: bool,
     /// glTF mesh nodes, or instances of them, in the split's list.
     pub casters: u64,
     /// Draw calls.

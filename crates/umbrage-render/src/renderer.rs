@@ -484,6 +484,7 @@ impl Renderer {
                 near: split.near,
                 far: split.far,
                 texel_m: split.texel_m.max_element(),
+                warped: split.warp.is_some(),
                 casters: split.casters.len(),
                 draws,
                 triangles,

@@ -11,8 +11,10 @@ pub struct SplitStats {
     pub near: f64,
     /// View depth in metres where it ends.
     pub far: f64,
-    /// The larger edge of one texel in metres.
+    /// The larger edge of one texel in metres; in a warped map in the middle of its receivers.
     pub texel_m: f64,
+    /// Whether its map is warped.
+    pub warped: bool,
     /// Objects in its list: mesh nodes or instances, not primitives.
     pub casters: usize,
     /// Draw calls; instances share one.

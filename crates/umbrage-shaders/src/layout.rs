@@ -21,7 +21,8 @@ pub enum FilterKind {
 
 /// One split: where its map lies and which view depths it serves.
 ///
-/// The rows take positions in metres relative to the frame's origin (with 1 as the fourth coordinate).
+/// The rows take positions in metres relative to the frame's origin (with 1 as the fourth coordinate). In a warped map what the first
+/// three give is to be divided by what the fourth gives, which is positive at every receiver.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Split {
@@ -31,9 +32,11 @@ pub struct Split {
     pub v_row: [f32; 4],
     /// Depth in the map: `xyz` per metre, `w` without unit; 0 nearest the light, 1 farthest.
     pub depth_row: [f32; 4],
+    /// What a warped map divides by; all 0 in a plain map.
+    pub w_row: [f32; 4],
     /// Added to the two places above it gives texels of the map, `[0, size]²`. Whole numbers.
     pub texel_offset: [f32; 2],
-    /// Metres per texel along u and v.
+    /// Metres per texel along u and v; in a warped map in the middle of its receivers.
     pub texel_m: [f32; 2],
     /// Edge of the map in texels; it lies in the upper left corner of its layer.
     pub size: f32,
@@ -41,9 +44,10 @@ pub struct Split {
     pub far: f32,
     /// Where its blend into the next split begins: view depth in metres, `far` if there is none.
     pub blend_begin: f32,
-    /// Metres between depth 0 and depth 1.
+    /// Metres between depth 0 and depth 1; in a warped map where `w_row` gives 1, elsewhere as many times as many.
     pub depth_range_m: f32,
-    /// The step in metres by which the texture's format rounds depth, 0 if it is no coarser than `f32`.
+    /// The step in metres by which the texture's format rounds depth, 0 if it is no coarser than `f32`. Scales as
+    /// `depth_range_m` does.
     pub depth_step_m: f32,
     /// 1 if nothing throws a shadow here: the map is not read and everything is lit.
     pub is_empty: u32,

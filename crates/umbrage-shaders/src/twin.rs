@@ -21,6 +21,13 @@ pub fn tent_tap(first: f32, centre: f32, r: f32) -> (f32, f32) {
 /// `map::from_world`: texels and depth of a position relative to the frame's origin.
 #[must_use]
 pub fn map_from_world(split: &Split, position: [f32; 3]) -> [f32; 3] {
+    if split.w_row != [0.0; 4] {
+        let w = along(split.w_row, position);
+        if w <= 0.0 {
+            return [-1.0, -1.0, 1.0];
+        }
+        return [split.u_row, split.v_row, split.depth_row].map(|row| along(row, position) / w);
+    }
     [
         along(split.u_row, position) + split.texel_offset[0],
         along(split.v_row, position) + split.texel_offset[1],

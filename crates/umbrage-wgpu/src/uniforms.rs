@@ -1,6 +1,6 @@
 //! From a plan in `f64` world metres to the uniforms in `f32` relative to the frame's origin.
 
-use glam::{DVec2, DVec3};
+use glam::{DMat4, DVec2, DVec3, DVec4};
 use umbrage::ShadowPlan;
 use umbrage_shaders::layout;
 
@@ -87,6 +87,9 @@ fn split(
     origin: DVec3,
 ) -> Result<layout::Split> {
     check(index, split)?;
+    if let Some(shadow_from_world) = split.warp {
+        return warped(index, split, shadow_from_world, depth_step, viewport, origin);
+    }
     // The light's plane in texels. What the origin adds (less the fraction of a map that is not stabilised) is split into a fraction,
     // which stays with the row, and whole texels, which join the map's offset: a place before the offset then depends on the
     // point and the origin alone, and offsets are whole numbers (see `from_caster` in shaders/lib/map.wesl).
@@ -110,8 +113,52 @@ fn split(
         is_empty: split.casters.is_empty().into(),
         viewport_texels: viewport.edge as f32,
         guard_texels: viewport.guard as f32,
+        ..layout::Split::default()
     };
     Ok(uniform)
+}
+
+/// One split whose map is warped.
+fn warped(
+    index: usize,
+    split: &umbrage::Split,
+    shadow_from_world: DMat4,
+    depth_step: f64,
+    viewport: Viewport,
+    origin: DVec3,
+) -> Result<layout::Split> {
+    let bad = |value, expected| Err(Error::InvalidSplit { split: index, field: "warp", value, expected });
+    let matrix = shadow_from_world * DMat4::from_translation(origin);
+    let [x, y, z, w] = [0, 1, 2, 3].map(|i| matrix.row(i));
+    let largest = w.abs().max_element();
+    if !(matrix.is_finite() && largest > 0.0) {
+        return bad(f64::NAN, "finite numbers with a fourth row");
+    }
+    // What a metre along the light adds to depth, where w is 1.
+    let depth_per_metre = z.truncate().dot(split.depth_axis) / largest;
+    if !(depth_per_metre > 0.0 && depth_per_metre.is_finite()) {
+        return bad(depth_per_metre, "a matrix whose depth grows along the light");
+    }
+    // Any multiple of the matrix is the same map; this one has numbers near 1 to divide by.
+    let half = 0.5 * f64::from(split.size) / largest;
+    let range = 1.0 / depth_per_metre;
+    let row = |row: DVec4| row.as_vec4().to_array();
+    Ok(layout::Split {
+        u_row: row((w + x) * half),
+        v_row: row((w - y) * half),
+        depth_row: row(z / largest),
+        w_row: row(w / largest),
+        texel_m: split.texel_m.as_vec2().to_array(),
+        size: split.size as f32,
+        far: split.far as f32,
+        blend_begin: split.blend_begin as f32,
+        depth_range_m: range as f32,
+        depth_step_m: (range * depth_step) as f32,
+        is_empty: split.casters.is_empty().into(),
+        viewport_texels: viewport.edge as f32,
+        guard_texels: viewport.guard as f32,
+        ..layout::Split::default()
+    })
 }
 
 /// What the arithmetic above needs: every number finite and nothing divided by zero.
@@ -178,6 +225,7 @@ mod tests {
             min_texel: (at - 0.5 * f64::from(size)).round(),
             depth_near: depth_axis.dot(center) - 50.0,
             depth_far: depth_axis.dot(center) + 50.0,
+            warp: None,
             casters: 0..1,
         }
     }

@@ -10,11 +10,15 @@ impl Split {
     /// the map's texels.
     ///
     /// Source: *Parallel-Split Shadow Maps* eq. 1, `dp/ds ∝ (1/z)(dz/ds)`, with the texel's width from the split's matrix in
-    /// place of the source's unit map.
+    /// place of the source's unit map. A warped map's texel is that of the view's axis at `d`.
     #[must_use]
     pub fn pixels_per_texel(&self, view: &View, image_height: u32, d: f64) -> f64 {
         let f = view.frustum();
-        self.texel_m.max_element() * f64::from(image_height) / ((f.top - f.bottom) * f.scale_at(d))
+        let texel = match self.warp {
+            None => self.texel_m,
+            Some(_) => self.texel_edges(view.eye() + view.forward() * d),
+        };
+        texel.max_element() * f64::from(image_height) / ((f.top - f.bottom) * f.scale_at(d))
     }
 
     /// The same at a point of a surface with unit `normal`, projection aliasing included: `1/σ_min(J)`, where
@@ -33,8 +37,8 @@ impl Split {
             Projection::Orthographic => view.forward(),
         };
         let on_plane = |step: DVec3| step - ray * (normal.dot(step) / normal.dot(ray));
-        let texel =
-            |step: DVec3| DVec2::new(self.u_axis.dot(step) / self.texel_m.x, self.v_axis.dot(step) / self.texel_m.y);
+        let [u, v] = self.texel_gradients(point);
+        let texel = |step: DVec3| DVec2::new(u.dot(step), v.dot(step));
         let texel_from_pixel =
             DMat2::from_cols(texel(on_plane(rotation.x_axis * pixel.x)), texel(on_plane(rotation.y_axis * pixel.y)));
         let smallest = smallest_singular_value(texel_from_pixel);

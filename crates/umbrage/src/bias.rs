@@ -25,6 +25,8 @@ impl Split {
     /// On the receiver's plane depth changes by `−(n·u)/(n·d)` metres per metre along u, and likewise along v: following it makes
     /// the comparison exact for flat surfaces at any filter width. What is left is the corner between two surfaces, for which the
     /// sample moves along the normal by the texel's half diagonal plus the filter's reach, scaled by the slope's sine.
+    ///
+    /// In a warped map this holds in the middle of its receivers; elsewhere ask [`Split::bias_at`].
     #[must_use]
     pub fn bias(&self, normal: DVec3, filter_radius: f64) -> Bias {
         let facing = -normal.dot(self.depth_axis);
@@ -36,6 +38,22 @@ impl Split {
         Bias {
             normal_m: texel * (0.5 + 0.5 * filter_radius) * sine,
             depth_per_texel: slope * self.texel_m,
+            constant_m: 0.1 * texel,
+        }
+    }
+
+    /// The same for a receiver at a world point, in plain and warped maps: a warped map's texels differ from place to place.
+    /// Depths are metres along the light, whatever the map stores.
+    #[must_use]
+    pub fn bias_at(&self, point: DVec3, normal: DVec3, filter_radius: f64) -> Bias {
+        let Some(_) = self.warp else { return self.bias(normal, filter_radius) };
+        let facing = -normal.dot(self.depth_axis);
+        let [u, v] = self.texel_steps(point);
+        let texel = u.length().max(v.length());
+        let sine = (1.0 - facing * facing).max(0.0).sqrt();
+        Bias {
+            normal_m: texel * (0.5 + 0.5 * filter_radius) * sine,
+            depth_per_texel: DVec2::new(normal.dot(u), normal.dot(v)) / facing.max(sine / STEEPEST).max(1e-6),
             constant_m: 0.1 * texel,
         }
     }

@@ -33,6 +33,16 @@ pub enum Error {
         /// What was wrong and what to do.
         reason: String,
     },
+    /// Two shadow settings exclude each other.
+    #[error("shadow settings {first} and {second} exclude each other: {reason}")]
+    ConflictingSettings {
+        /// One of them, by its name in [`crate::ShadowSettings`].
+        first: &'static str,
+        /// The other.
+        second: &'static str,
+        /// Why, and what to do.
+        reason: String,
+    },
     /// The bounds of a caster or receiver are inverted, infinite or NaN.
     #[error("{list}[{index}] has no valid bounds ({min} to {max}); give finite corners with min <= max")]
     InvalidBounds {

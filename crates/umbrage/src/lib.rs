@@ -28,6 +28,7 @@ mod split;
 mod stable;
 mod volume;
 mod warp;
+mod warped;
 
 pub use bias::{Bias, STEEPEST};
 pub use bounds::Aabb;

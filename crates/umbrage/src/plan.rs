@@ -34,9 +34,12 @@ impl ShadowPlan {
 
 /// One slice of the view and the map that serves it.
 ///
-/// The map is an orthographic picture taken along [`Split::depth_axis`]. With `p` a world point,
+/// A plain map is an orthographic picture taken along [`Split::depth_axis`]. With `p` a world point,
 /// `texel = ((u_axis·p)/texel_m.x − min_texel.x, (v_axis·p)/texel_m.y − min_texel.y)` is its place in the map in texels, v down,
 /// `[0, size]²`, and `depth = (depth_axis·p − depth_near)/(depth_far − depth_near)` what the map stores.
+///
+/// A warped map is the picture that [`Split::warp`] takes. The axes, `min_texel` and the depths are then those of the plain map
+/// that it replaces; [`Split::map_from_world`] and its neighbours answer for either kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Split {
     /// Where the slice begins, `C_i`: a view depth in metres.
@@ -55,7 +58,8 @@ pub struct Split {
     pub v_axis: DVec3,
     /// World direction of depth: the way light travels, a unit vector.
     pub depth_axis: DVec3,
-    /// Metres per texel along u and v.
+    /// Metres per texel along u and v. A warped map has this size of texel in the middle of its receivers only, see
+    /// [`Split::texel_edges`].
     pub texel_m: DVec2,
     /// The map's upper left corner in texels of the light's plane; whole numbers when the split is stabilised.
     pub min_texel: DVec2,
@@ -63,21 +67,38 @@ pub struct Split {
     pub depth_near: f64,
     /// Metres along `depth_axis` at depth 1.
     pub depth_far: f64,
+    /// Shadow NDC (x, y in [−1,1], y up, z in [0,1]) from world, to be divided by w; `None` for a plain map. w is positive at every
+    /// receiver, and does not change along the light.
+    pub warp: Option<DMat4>,
     /// This split's part of [`ShadowPlan::caster_indices`]. Empty: nothing throws a shadow here and the split is lit.
     pub casters: std::ops::Range<usize>,
 }
 
 impl Split {
-    /// Where a world point lies in the map: texels (v down) and stored depth.
+    /// Where a world point lies in the map: texels (v down) and stored depth. NaN behind a warped map's projection centre, where
+    /// it shows nothing.
     #[must_use]
     pub fn map_from_world(&self, point: DVec3) -> DVec3 {
+        if let Some(shadow_from_world) = self.warp {
+            let at = shadow_from_world * point.extend(1.0);
+            if at.w <= 0.0 {
+                return DVec3::NAN;
+            }
+            let half = 0.5 * f64::from(self.size);
+            let ndc = at.truncate() / at.w;
+            return DVec3::new(half * (1.0 + ndc.x), half * (1.0 - ndc.y), ndc.z);
+        }
         let texel = DVec2::new(self.u_axis.dot(point), self.v_axis.dot(point)) / self.texel_m - self.min_texel;
         texel.extend((self.depth_axis.dot(point) - self.depth_near) / (self.depth_far - self.depth_near))
     }
 
-    /// The same as a matrix to NDC (x right, y up, both in [−1,1], z in [0,1]).
+    /// The same as a matrix to NDC (x right, y up, both in [−1,1], z in [0,1]); to be divided by w, which is 1 in a plain map.
     #[must_use]
     pub fn shadow_from_world(&self) -> DMat4 {
+        self.warp.unwrap_or_else(|| self.plain_shadow_from_world())
+    }
+
+    fn plain_shadow_from_world(&self) -> DMat4 {
         let half = 0.5 * f64::from(self.size);
         let u = self.u_axis / (self.texel_m.x * half);
         let v = -self.v_axis / (self.texel_m.y * half);
@@ -97,5 +118,34 @@ impl Split {
         let at = self.map_from_world(point);
         let inside = margin..=f64::from(self.size) - margin;
         inside.contains(&at.x) && inside.contains(&at.y) && (0.0..=1.0).contains(&at.z)
+    }
+
+    /// How u and v change with the world around a point, in texels per metre. Both vectors lie in the light's plane. The same
+    /// everywhere in a plain map.
+    #[must_use]
+    pub fn texel_gradients(&self, point: DVec3) -> [DVec3; 2] {
+        let Some(shadow_from_world) = self.warp else {
+            return [self.u_axis / self.texel_m.x, self.v_axis / self.texel_m.y];
+        };
+        let at = shadow_from_world * point.extend(1.0);
+        let [x, y, w] = [0, 1, 3].map(|row| shadow_from_world.row(row).truncate());
+        let texels = 0.5 * f64::from(self.size) / at.w;
+        [texels * (x - w * (at.x / at.w)), -texels * (y - w * (at.y / at.w))]
+    }
+
+    /// A texel's edges along u and v at a world point, as vectors of the light's plane in metres: the steps that change u alone
+    /// and v alone, by one.
+    #[must_use]
+    pub fn texel_steps(&self, point: DVec3) -> [DVec3; 2] {
+        let [u, v] = self.texel_gradients(point);
+        let (along_u, along_v) = (v.cross(self.depth_axis), self.depth_axis.cross(u));
+        [along_u / u.dot(along_u), along_v / v.dot(along_v)]
+    }
+
+    /// The lengths of a texel's edges along u and v at a world point, metres.
+    #[must_use]
+    pub fn texel_edges(&self, point: DVec3) -> DVec2 {
+        let [u, v] = self.texel_steps(point);
+        DVec2::new(u.length(), v.length())
     }
 }

@@ -6,8 +6,9 @@ use crate::region::{Fan, Region};
 use crate::split::{blend_begin, coverage, split_planes};
 use crate::stable::{HeldSize, slice_sphere, stable_texel};
 use crate::volume::{Lies, Slice, SweptVolume};
+use crate::warped::WarpPoints;
 use crate::{
-    Aabb, DirectionalLight, Error, Fit, MAX_SPLITS, Result, ShadowPlan, ShadowSettings, Split, Stabilize, View,
+    Aabb, DirectionalLight, Error, Fit, MAX_SPLITS, Result, ShadowPlan, ShadowSettings, Split, Stabilize, View, Warp,
 };
 
 /// Texels that a map keeps free around what it serves, besides the filter's reach: half for the texel that a sample's
@@ -34,17 +35,18 @@ pub struct Planner {
     candidates: Vec<u32>,
     visible: Vec<u32>,
     across: Vec<u32>,
+    warp_points: WarpPoints,
 }
 
 /// A box as centre and half extent.
 #[derive(Clone, Copy, Debug)]
-struct Placed {
-    center: DVec3,
-    half: DVec3,
+pub(crate) struct Placed {
+    pub center: DVec3,
+    pub half: DVec3,
 }
 
 impl Placed {
-    fn bounds(&self) -> Aabb {
+    pub fn bounds(&self) -> Aabb {
         Aabb::new(self.center - self.half, self.center + self.half)
     }
 }
@@ -61,7 +63,7 @@ impl Planner {
     /// A planner for these settings.
     ///
     /// # Errors
-    /// [`Error::InvalidSetting`] naming the field that is wrong.
+    /// [`Error::InvalidSetting`] naming the field that is wrong, [`Error::ConflictingSettings`] naming two that exclude each other.
     pub fn new(settings: ShadowSettings) -> Result<Self> {
         settings.validate()?;
         Ok(Self {
@@ -77,6 +79,7 @@ impl Planner {
             candidates: Vec::new(),
             visible: Vec::new(),
             across: Vec::new(),
+            warp_points: WarpPoints::default(),
         })
     }
 
@@ -280,6 +283,7 @@ impl Planner {
             min_texel: DVec2::ZERO,
             depth_near: target.depth.0,
             depth_far: target.depth.1,
+            warp: None,
             casters,
         };
         let split = match self.settings.stabilize {
@@ -289,7 +293,18 @@ impl Planner {
                 snapped(split, light, center, radius, stable_texel)
             }
         };
-        let split = self.with_depth_range(split, caster_near, radius);
+        let mut split = self.with_depth_range(split, caster_near, radius);
+        let warp = self.settings.warp(i);
+        if warp != Warp::None && !split.casters.is_empty() {
+            let boxes = match self.settings.fit {
+                Fit::Independent => None,
+                Fit::Dependent => Some((&self.receivers[..], &self.visible[..])),
+            };
+            self.warp_points.receivers_of(&slice, boxes);
+            let casters = self.plan.caster_indices[split.casters.clone()].iter();
+            self.warp_points.casters_of(&swept, margin_m, casters.map(|&index| &self.casters[index as usize]));
+            self.warp_points.warp(&mut split, warp, view, margin, self.settings.fit);
+        }
         self.plan.splits.push(split);
         self.volumes.push(CoverageVolume { swept, receivers: served });
     }

@@ -1,6 +1,6 @@
 //! What the planner is told once: how many splits, where, how large and how they are fitted.
 
-use crate::{Error, Result};
+use crate::{Error, Result, Warp};
 
 /// The most splits a light can have.
 pub const MAX_SPLITS: usize = 8;
@@ -64,6 +64,10 @@ pub struct ShadowSettings {
     pub fit: Fit,
     /// Whether shadows stand still.
     pub stabilize: Stabilize,
+    /// How each map spreads its texels: none for plain maps, one for all, or one for each split. A warp follows the camera, so it
+    /// cannot be combined with [`Stabilize::Exact`]. Where a warp has nothing to gain (the light along the view, an orthographic
+    /// camera) the split gets its plain map.
+    pub warps: Vec<Warp>,
     /// How far the filter reaches from the sample, in texels (0.5 for one nearest texel, 1 for a bilinear comparison,
     /// 1.5 and 2.5 for tents of 3 and 5). Every map is widened by it.
     pub filter_radius: f64,
@@ -86,6 +90,7 @@ impl Default for ShadowSettings {
             range: None,
             fit: Fit::default(),
             stabilize: Stabilize::default(),
+            warps: Vec::new(),
             filter_radius: 1.5,
             blend: 0.1,
             far_fade: 0.1,
@@ -102,10 +107,20 @@ impl ShadowSettings {
         self.map_sizes.len()
     }
 
+    /// The warp of split `index`.
+    #[must_use]
+    pub fn warp(&self, index: usize) -> Warp {
+        match self.warps[..] {
+            [for_all] => for_all,
+            _ => self.warps.get(index).copied().unwrap_or_default(),
+        }
+    }
+
     /// Checks every field.
     ///
     /// # Errors
-    /// [`Error::InvalidSetting`] naming the first field that is wrong.
+    /// [`Error::InvalidSetting`] naming the first field that is wrong, [`Error::ConflictingSettings`] naming two that exclude each
+    /// other.
     pub fn validate(&self) -> Result<()> {
         let m = self.splits();
         if !(1..=MAX_SPLITS).contains(&m) {
@@ -144,6 +159,7 @@ impl ShadowSettings {
         if let Some((near, far)) = self.range {
             check_range(near, far)?;
         }
+        self.check_warps()?;
         match &self.scheme {
             SplitScheme::Uniform | SplitScheme::Logarithmic => {}
             SplitScheme::Practical { lambda, delta } => {
@@ -169,6 +185,36 @@ impl ShadowSettings {
                     return Err(Error::setting("planes", format!("{planes:?} do not rise strictly")));
                 }
             }
+        }
+        Ok(())
+    }
+
+    fn check_warps(&self) -> Result<()> {
+        let m = self.splits();
+        if !(self.warps.len() <= 1 || self.warps.len() == m) {
+            return Err(Error::setting(
+                "warps",
+                format!("{} warps for {m} splits; give none, one for all, or one for each", self.warps.len()),
+            ));
+        }
+        for warp in &self.warps {
+            if let Warp::Tsm { focus } = *warp
+                && !(focus > 0.0 && focus < 1.0)
+            {
+                return Err(Error::setting("warps", format!("the focus {focus} is not between 0 and 1")));
+            }
+        }
+        if self.stabilize == Stabilize::Exact
+            && let Some(warp) = self.warps.iter().find(|warp| **warp != Warp::None)
+        {
+            return Err(Error::ConflictingSettings {
+                first: "warps",
+                second: "stabilize",
+                reason: format!(
+                    "a {warp:?} map follows the camera and cannot stand still as Exact promises; \
+                     set stabilize to None, or leave the warp away"
+                ),
+            });
         }
         Ok(())
     }

@@ -61,6 +61,9 @@ pub(crate) struct Slice {
     center: DVec3,
 }
 
+/// Corner indices of a box's faces; corners as [`Aabb::corners`] has them.
+const BOX_FACES: [[usize; 4]; 6] = [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
+
 /// How a box lies to a convex volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Lies {
@@ -104,18 +107,16 @@ impl Slice {
     pub fn clip_box(&self, bounds: &Aabb, mut each: impl FnMut(DVec3)) -> bool {
         let corners = bounds.corners();
         let box_planes = box_planes(bounds);
-        const BOX_FACES: [[usize; 4]; 6] =
-            [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
         let mut any = false;
         let mut emit = |polygon: &Polygon| {
             any |= polygon.len > 0;
             polygon.points[..polygon.len].iter().for_each(|&point| each(point));
         };
         for face in BOX_FACES {
-            emit(&Polygon::new(face.map(|i| corners[i])).clipped(&self.planes));
+            emit(&Polygon::new(face.map(|i| corners[i])).clipped(&self.planes, 0.0));
         }
         for face in FACES {
-            emit(&Polygon::new(face.map(|i| self.corners[i])).clipped(&box_planes));
+            emit(&Polygon::new(face.map(|i| self.corners[i])).clipped(&box_planes, 0.0));
         }
         any
     }
@@ -151,6 +152,9 @@ fn box_planes(bounds: &Aabb) -> [Plane; 6] {
     ]
 }
 
+/// Room for every corner that clipping can make.
+const MOST_CORNERS: usize = 28;
+
 /// A convex volume, open towards the light.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct SweptVolume {
@@ -169,6 +173,16 @@ impl SweptVolume {
         self.planes[..self.len].iter().all(|plane| plane.nearest(center, half) <= margin)
     }
 
+    /// Calls `each` with the corners of those parts of the box's faces that come within `margin` metres of the volume: of all of
+    /// the box there, none lies nearer to the light.
+    pub fn clip_box(&self, bounds: &Aabb, margin: f64, mut each: impl FnMut(DVec3)) {
+        let corners = bounds.corners();
+        for face in BOX_FACES {
+            let part = Polygon::new(face.map(|i| corners[i])).clipped(&self.planes[..self.len], margin);
+            part.points[..part.len].iter().for_each(|&point| each(point));
+        }
+    }
+
     pub fn contains(&self, point: DVec3) -> bool {
         self.planes[..self.len].iter().all(|plane| plane.distance(point) <= 0.0)
     }
@@ -176,35 +190,36 @@ impl SweptVolume {
 
 /// A convex polygon of a few corners, on the stack.
 struct Polygon {
-    points: [DVec3; 16],
+    points: [DVec3; MOST_CORNERS],
     len: usize,
 }
 
 impl Polygon {
     fn new(corners: [DVec3; 4]) -> Self {
-        let mut points = [DVec3::ZERO; 16];
+        let mut points = [DVec3::ZERO; MOST_CORNERS];
         points[..4].copy_from_slice(&corners);
         Self { points, len: 4 }
     }
 
-    /// Sutherland and Hodgman's clipping, plane after plane; each can add one corner, so ten is the most there can be.
-    fn clipped(mut self, planes: &[Plane; 6]) -> Self {
+    /// Sutherland and Hodgman's clipping, plane after plane, each moved outwards by `margin` metres. A plane can add one corner, so
+    /// four and the 18 planes of a swept volume are the most there can be.
+    fn clipped(mut self, planes: &[Plane], margin: f64) -> Self {
         for plane in planes {
             if self.len == 0 {
                 break;
             }
-            let mut kept = Self { points: [DVec3::ZERO; 16], len: 0 };
+            let mut kept = Self { points: [DVec3::ZERO; MOST_CORNERS], len: 0 };
             let mut push = |point| {
-                // A concave corner cannot arise; rounding may repeat a point, which the bound of 16 leaves room for.
+                // A concave corner cannot arise; rounding may repeat a point, which the bound leaves room for.
                 if kept.len < kept.points.len() {
                     kept.points[kept.len] = point;
                     kept.len += 1;
                 }
             };
             let mut previous = self.points[self.len - 1];
-            let mut previous_distance = plane.distance(previous);
+            let mut previous_distance = plane.distance(previous) - margin;
             for &point in &self.points[..self.len] {
-                let distance = plane.distance(point);
+                let distance = plane.distance(point) - margin;
                 if (distance > 0.0) != (previous_distance > 0.0) {
                     let t = previous_distance / (previous_distance - distance);
                     push(previous + t * (point - previous));

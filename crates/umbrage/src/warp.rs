@@ -15,8 +15,10 @@ pub enum Warp {
     #[default]
     None,
     /// Perspective shadow maps: a map of the camera's own post-perspective space.
-    /// M. Stamminger, G. Drettakis, *Perspective Shadow Maps*, SIGGRAPH 2002. Our deviation: the virtual camera slides back until
-    /// every caster is in front of it (S. Kozlov, *GPU Gems*, chapter 14).
+    /// M. Stamminger, G. Drettakis, *Perspective Shadow Maps*, SIGGRAPH 2002. The virtual camera slides back until every caster is
+    /// in front of it, as there and in S. Kozlov, *GPU Gems*, chapter 14. Our deviations: both perspectives are one matrix, so
+    /// that nothing is divided twice and what is behind the eye keeps its order; depth is linear along the light; and the warp
+    /// fades where the source's picture of the view would turn inside out, with the light or its opposite in view.
     Psm,
     /// Light space perspective shadow maps, `n_opt = (z_n + √(z_n z_f)) / sin γ` with γ between view and light.
     /// M. Wimmer, D. Scherzer, W. Purgathofer, *Light Space Perspective Shadow Maps*, EGSR 2004.
@@ -35,6 +37,10 @@ const FOCUS_LINE: f64 = -0.6;
 
 /// A projection distance beyond this many slice lengths is no warp at all to `f32`.
 const NO_WARP: f64 = 1e6;
+
+/// The least w of a receiver in a perspective shadow map, as a multiple of `near/far` of the largest. 1 is what the camera's own
+/// perspective has; half of it leaves room for light that is not quite across the view.
+const PSM_LEAST: f64 = 0.5;
 
 /// What a warp has to show.
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +76,7 @@ impl Warp {
             _ if !perspective => f64::INFINITY,
             Self::None => f64::INFINITY,
             Self::Psm => match psm(target) {
-                Some(matrix) => return Some(matrix),
+                Some(rows) => return frame.fitted(target, rows),
                 None => f64::INFINITY,
             },
             Self::Lispsm => (near + (near * far).sqrt()) / sine,
@@ -83,8 +89,8 @@ impl Warp {
                 if denominator > 0.0 && open > 0.0 { open / sine } else { f64::INFINITY }
             }
         };
-        let distance = if distance < NO_WARP * length { Some(distance) } else { None };
-        frame.fitted(target, begin, distance)
+        let rows = if distance < NO_WARP * length { frame.perspective(begin, distance) } else { frame.parallel() };
+        frame.fitted(target, rows)
     }
 }
 
@@ -109,21 +115,28 @@ impl LightFrame {
         self.ahead.dot(point - self.eye)
     }
 
-    /// The map whose projection centre lies `distance` before `begin` along the view (none: a parallel projection), fitted to
-    /// the receivers.
-    fn fitted(&self, target: &WarpTarget<'_>, begin: f64, distance: Option<f64>) -> Option<DMat4> {
-        let relative = DMat4::from_translation(-self.eye);
-        let row = |axis: DVec3, offset: f64| axis.extend(offset);
+    /// Rows of `(x, y, w)`, relative to the eye, of the map whose projection centre lies `distance` before `begin` along the view.
+    fn perspective(&self, begin: f64, distance: f64) -> [DVec4; 3] {
         // w grows from `distance` at the near end of the receivers; y falls from there as the trapezoid's −1/w does.
-        let (w, y) = match distance {
-            Some(n) => (row(self.ahead, n - begin), row(DVec3::ZERO, -1.0)),
-            None => (row(DVec3::ZERO, 1.0), row(self.ahead, 0.0)),
-        };
-        let x = row(self.across, 0.0);
-        let project =
-            |row: DVec4, point: DVec3| row.dot((point - self.eye).extend(1.0)) / w.dot((point - self.eye).extend(1.0));
-        let (x_lo, x_hi) = bounds(target.receivers.iter().map(|&p| project(x, p)))?;
-        let (y_lo, y_hi) = bounds(target.receivers.iter().map(|&p| project(y, p)))?;
+        [self.across.extend(0.0), DVec4::NEG_W, self.ahead.extend(distance - begin)]
+    }
+
+    /// The same for a parallel projection.
+    fn parallel(&self) -> [DVec4; 3] {
+        [self.across.extend(0.0), self.ahead.extend(0.0), DVec4::W]
+    }
+
+    /// The matrix with these rows, fitted to the receivers. w may not change along the light and has to be positive at them.
+    fn fitted(&self, target: &WarpTarget<'_>, [x, y, w]: [DVec4; 3]) -> Option<DMat4> {
+        let relative = |p: &DVec3| (*p - self.eye).extend(1.0);
+        let (w_lo, w_hi) = bounds(target.receivers.iter().map(|p| w.dot(relative(p))))?;
+        if w_lo.is_nan() || w_lo <= 0.0 {
+            return None;
+        }
+        let w = w / w_hi;
+        let project = |row: DVec4, p: &DVec3| row.dot(relative(p)) / w.dot(relative(p));
+        let (x_lo, x_hi) = bounds(target.receivers.iter().map(|p| project(x, p)))?;
+        let (y_lo, y_hi) = bounds(target.receivers.iter().map(|p| project(y, p)))?;
         // Depth starts at the first point of all, so that nothing that can shade lies before it; w is the same all along a ray.
         let first = target
             .receivers
@@ -131,89 +144,62 @@ impl LightFrame {
             .chain(target.casters)
             .map(|&p| self.depth.dot(p - self.eye))
             .fold(f64::INFINITY, f64::min);
-        let z = row(self.depth, -first);
-        let (_, z_hi) = bounds(target.receivers.iter().map(|&p| project(z, p)))?;
+        let z = self.depth.extend(-first);
+        let (_, z_hi) = bounds(target.receivers.iter().map(|p| project(z, p)))?;
         let inside = 1.0 - target.margin;
         let scale = |lo: f64, hi: f64| 2.0 * inside / (hi - lo).max(1e-9 * (1.0 + hi.abs()));
         let (sx, sy) = (scale(x_lo, x_hi), scale(y_lo, y_hi));
         let rows = [sx * (x - w * (0.5 * (x_lo + x_hi))), sy * (y - w * (0.5 * (y_lo + y_hi))), z / z_hi.max(1e-9), w];
-        let matrix = DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose() * relative;
+        let shadow_from_relative = DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose();
+        let matrix = shadow_from_relative * DMat4::from_translation(-self.eye);
         matrix.is_finite().then_some(matrix)
     }
 }
 
-/// A map of the camera's post-perspective cube. `None` where the light is so nearly parallel to the view that the cube is seen from a
-/// point inside it or the fit has no extent.
-fn psm(target: &WarpTarget<'_>) -> Option<DMat4> {
+/// Rows of `(x, y, w)` for a map of the camera's post-perspective cube, relative to the frame's eye. `None` if the cube has no depth.
+///
+/// In that space the light has a source (or a sink) at a finite point, just beyond the far plane; the map is its picture of the cube.
+/// Where that point comes so near to the cube that no picture plane has all receivers before it, the plane is turned towards the far
+/// plane, just as far as it has to: turned all the way, the two perspectives cancel and the map is plain.
+fn psm(target: &WarpTarget<'_>) -> Option<[DVec4; 3]> {
     let view = target.view;
     let (near, far) = target.slice;
     // Slide the virtual eye back until every caster and receiver is at least `near` in front of it.
-    let nearest =
-        target.receivers.iter().chain(target.casters).map(|&p| view.view_depth(p)).fold(f64::INFINITY, f64::min);
-    let slide = (near - nearest).max(0.0);
-    let eye = view.eye() - view.forward() * slide;
+    let all = || target.receivers.iter().chain(target.casters).map(|&p| view.view_depth(p));
+    let (first, last) = bounds(all())?;
+    let slide = (near - first).max(0.0);
+    let (n, f) = (near, last.max(far) + slide);
     let rotation = view.world_from_view_rotation().transpose();
-    let view_from_world = DMat4::from_mat3_translation(rotation, rotation * -eye);
+    let view_from_relative = DMat4::from_mat3_translation(rotation, DVec3::NEG_Z * slide);
     // A plain perspective with w = depth and z from 0 at the nearest point to 1 at the slice's end.
-    let (n, f) = (near, far + slide);
-    let f = target.receivers.iter().chain(target.casters).map(|&p| view.view_depth(p) + slide).fold(f, f64::max);
-    let clip_from_view = DMat4::from_cols(
-        DVec4::X,
-        DVec4::Y,
-        DVec4::new(0.0, 0.0, -f / (f - n), -1.0),
-        DVec4::new(0.0, 0.0, -n * f / (f - n), 0.0),
-    );
-    let post_from_world = clip_from_view * view_from_world;
-    let post = |p: DVec3| post_from_world.project_point3(p);
-    // Where the rays of light meet in that space: the image of the light's direction. They run towards it if it lies behind the
-    // virtual eye (w < 0 for the way to the light).
-    let to_light = post_from_world * (-target.light).extend(0.0);
-    let centre = target.receivers.iter().map(|&p| post(p)).sum::<DVec3>() / target.receivers.len() as f64;
-    // Rays as seen from the middle of the receivers.
-    let (towards_light, meeting) = if to_light.w.abs() < 1e-9 {
-        (to_light.truncate().try_normalize()?, None)
-    } else {
-        let point = to_light.truncate() / to_light.w;
-        let away = (point - centre) * to_light.w.signum();
-        (away.try_normalize()?, Some(point))
-    };
-    let down = -towards_light;
-    let across = down.any_orthonormal_vector();
-    let up = across.cross(down);
+    let scale = f / (f - n);
+    let clip_from_view =
+        DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::new(0.0, 0.0, -scale, -1.0), DVec4::new(0.0, 0.0, -n * scale, 0.0));
+    let post_from_relative = clip_from_view * view_from_relative;
+    let post4 = |p: DVec3| post_from_relative * (p - view.eye()).extend(1.0);
+    let sum = target.receivers.iter().map(|&p| post4(p)).map(|p| p.truncate() / p.w).sum::<DVec3>();
+    let centre = sum / target.receivers.len() as f64;
+    let to_light = post_from_relative * (-target.light).extend(0.0);
+    // The light's source or sink; rays are parallel there where the light is parallel to the picture.
+    let meeting = (to_light.w.abs() > 1e-9).then(|| to_light.truncate() / to_light.w);
+    let along_rays = meeting.map_or(to_light.truncate(), |point| point - centre).try_normalize()?;
+    let across = along_rays.cross(DVec3::Z).try_normalize().unwrap_or_else(|| along_rays.any_orthonormal_vector());
+    let up = across.cross(along_rays);
     let row = |axis: DVec3| axis.extend(-axis.dot(centre));
-    // Distance from the meeting point along `down`; positive on the receivers' side whichever way the rays run.
-    let w = match meeting {
-        None => DVec4::W,
-        Some(point) => {
-            let reach = down.dot(centre - point);
-            let sign = reach.signum();
-            (down * sign).extend(-sign * down.dot(point)) / reach.abs()
-        }
-    };
-    let at = |row: DVec4, p: DVec3| row.dot(p.extend(1.0)) / w.dot(p.extend(1.0));
-    let all = || target.receivers.iter().chain(target.casters).map(|&p| post(p));
-    if all().any(|p| w.dot(p.extend(1.0)) < 1e-6) {
-        return None;
-    }
-    let receivers = || target.receivers.iter().map(|&p| post(p));
-    let (x_lo, x_hi) = bounds(receivers().map(|p| at(row(across), p)))?;
-    let (y_lo, y_hi) = bounds(receivers().map(|p| at(row(up), p)))?;
-    // Depth must grow along the rays: (down·p)/w does where w does not change its order, else −1/w.
-    let depth_row = match meeting {
-        None => row(down),
-        // w grows along rays that start at the meeting point (then −1/w grows), falls along rays that end there (then 1/w grows).
-        Some(_) => DVec4::W * if to_light.w > 0.0 { -1.0 } else { 1.0 },
-    };
-    let (z_lo, z_hi) = bounds(all().map(|p| at(depth_row, p)))?;
-    if !(x_hi > x_lo && y_hi > y_lo && z_hi > z_lo) {
-        return None;
-    }
-    let inside = 1.0 - target.margin;
-    let fit = |row: DVec4, lo: f64, hi: f64| (2.0 * inside / (hi - lo)) * (row - w * (0.5 * (lo + hi)));
-    let z = (depth_row - w * z_lo) / (z_hi - z_lo);
-    let light = DMat4::from_cols(fit(row(across), x_lo, x_hi), fit(row(up), y_lo, y_hi), z, w).transpose();
-    let matrix = light * post_from_world;
-    matrix.is_finite().then_some(matrix)
+    // 1 at the centre, 0 where the rays meet.
+    let w = meeting.map_or(DVec4::W, |point| {
+        let reach = along_rays.dot(point - centre);
+        (-along_rays).extend(along_rays.dot(point)) / reach
+    });
+    let in_world = |row: DVec4| post_from_relative.transpose() * row;
+    let perspective = in_world(w);
+    // The same with the far plane for its picture plane, `(scale − z) / (scale − centre.z)`, is a constant in the world.
+    let plain = n * scale / (scale - centre.z);
+    let (least, most) = bounds(target.receivers.iter().map(|&p| perspective.dot((p - view.eye()).extend(1.0))))?;
+    let lacking = PSM_LEAST * (n / f) * most - least;
+    let turn = if lacking > 0.0 { lacking / (lacking + plain * (1.0 - PSM_LEAST * n / f)) } else { 0.0 };
+    let w = perspective * (1.0 - turn) + DVec4::W * (plain * turn);
+    Some([in_world(row(across)), in_world(row(up)), w])
 }
 
 fn bounds(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {

@@ -3,7 +3,8 @@
 use glam::{DQuat, DVec3, EulerRot};
 use proptest::prelude::*;
 use umbrage::{
-    Aabb, DirectionalLight, Fit, Frustum, Planner, Projection, ShadowPlan, ShadowSettings, SplitScheme, Stabilize, View,
+    Aabb, DirectionalLight, Fit, Frustum, Planner, Projection, ShadowPlan, ShadowSettings, SplitScheme, Stabilize,
+    View, Warp,
 };
 
 /// A world of boxes on and around a ground, a view and a sun, biased to the awkward: a sun straight down or level, a view into
@@ -36,8 +37,15 @@ fn settings() -> impl Strategy<Value = ShadowSettings> {
         (0.0..=1.0f64).prop_map(|lambda| SplitScheme::Practical { lambda, delta: vec![] })
     ];
     let range = prop_oneof![Just(None), Just(Some((1.0, 300.0))), Just(Some((5.0, 80.0)))];
-    (1usize..=8, scheme, range, any::<[bool; 3]>(), prop_oneof![Just(0.0), 0.0..0.5f64], 0.5..3.0f64).prop_map(
-        |(m, scheme, range, [dependent, exact, clamp], blend, filter_radius)| ShadowSettings {
+    let warp = prop_oneof![
+        Just(Warp::None),
+        Just(Warp::Psm),
+        Just(Warp::Lispsm),
+        (0.01..0.99f64).prop_map(|focus| Warp::Tsm { focus })
+    ];
+    let warps = prop_oneof![Just(vec![]), prop::collection::vec(warp.clone(), 1), prop::collection::vec(warp, 8)];
+    (1usize..=8, scheme, range, any::<[bool; 3]>(), prop_oneof![Just(0.0), 0.0..0.5f64], 0.5..3.0f64, warps).prop_map(
+        |(m, scheme, range, [dependent, exact, clamp], blend, filter_radius, mut warps)| ShadowSettings {
             map_sizes: vec![256; m],
             scheme,
             range,
@@ -46,6 +54,10 @@ fn settings() -> impl Strategy<Value = ShadowSettings> {
             filter_radius,
             blend,
             depth_clamp: clamp,
+            warps: {
+                warps.truncate(if exact { 0 } else { m });
+                warps
+            },
             ..ShadowSettings::default()
         },
     )
@@ -123,12 +135,17 @@ fn visible_points(case: &Case, plan: &ShadowPlan) -> Vec<(usize, DVec3, f64)> {
 
 /// Whether the ray from `point` towards the light passes through the box, more than a millimetre away.
 fn shades(bounds: &Aabb, point: DVec3, direction: DVec3) -> bool {
+    shading_end(bounds, point, direction).is_some()
+}
+
+/// How far from `point` the ray towards the light leaves a box that it passes through more than a millimetre away.
+fn shading_end(bounds: &Aabb, point: DVec3, direction: DVec3) -> Option<f64> {
     let (mut enter, mut leave) = (1e-3, f64::INFINITY);
     for axis in 0..3 {
         let (p, d) = (point[axis], -direction[axis]);
         if d.abs() < 1e-12 {
             if p < bounds.min[axis] || p > bounds.max[axis] {
-                return false;
+                return None;
             }
             continue;
         }
@@ -136,7 +153,7 @@ fn shades(bounds: &Aabb, point: DVec3, direction: DVec3) -> bool {
         enter = f64::max(enter, a.min(b));
         leave = f64::min(leave, a.max(b));
     }
-    enter <= leave
+    (enter <= leave).then_some(leave)
 }
 
 fn splits_of(plan: &ShadowPlan, depth: f64) -> Vec<usize> {
@@ -161,17 +178,25 @@ proptest! {
         let direction = case.light.direction();
         for (owner, point, depth) in visible_points(&case, &plan) {
             for split in splits_of(&plan, depth) {
+                let s = &plan.splits[split];
+                if let Some(warp) = s.warp {
+                    prop_assert!((warp * point.extend(1.0)).w > 0.0, "{point} at {depth} m lies behind the warp of split {split}");
+                    let inside = case.settings.fit == Fit::Dependent || s.contains(point, case.settings.filter_radius);
+                    prop_assert!(inside, "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
+                }
                 for (index, bounds) in case.boxes.iter().enumerate() {
                     // A box does not count as shading its own skin, nor does a touching one: what lies less than a millimetre
                     // under the point is the point's own surface.
-                    if index == owner || !shades(bounds, point, direction) {
-                        continue;
-                    }
+                    let Some(end) = shading_end(bounds, point, direction).filter(|_| index != owner) else { continue };
                     prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} lost caster {index}, which shades {point} at {depth} m");
-                    let s = &plan.splits[split];
                     prop_assert!(s.contains(point, case.settings.filter_radius), "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
                     let caster_begin = direction.dot(bounds.center()) - direction.abs().dot(bounds.half_extent());
                     prop_assert!(case.settings.depth_clamp || s.depth_near <= caster_begin, "the near plane cuts caster {index}");
+                    if s.warp.is_some() {
+                        let (at, caster) = (s.map_from_world(point), s.map_from_world(point - direction * end));
+                        prop_assert!((at - caster).truncate().length() < 1e-3, "split {split} shows {point} at {at}, caster {index} at {caster}");
+                        prop_assert!((0.0..at.z).contains(&caster.z), "caster {index} lies at {caster}, the point that it shades at {at}");
+                    }
                 }
             }
         }
@@ -195,6 +220,10 @@ proptest! {
             let point = case.view.eye() + DVec3::new(3.0, -2.0, 5.0);
             let (at, ndc) = (split.map_from_world(point), split.shadow_from_world().project_point3(point));
             let size = f64::from(split.size);
+            if at.is_nan() {
+                prop_assert!(split.warp.is_some_and(|warp| (warp * point.extend(1.0)).w <= 0.0), "{split:?}");
+                continue;
+            }
             prop_assert!((ndc.x - (2.0 * at.x / size - 1.0)).abs() < 1e-9 * (1.0 + ndc.x.abs()));
             prop_assert!((ndc.y - (1.0 - 2.0 * at.y / size)).abs() < 1e-9 * (1.0 + ndc.y.abs()));
             prop_assert!((ndc.z - at.z).abs() < 1e-9 * (1.0 + ndc.z.abs()));

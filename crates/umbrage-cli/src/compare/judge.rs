@@ -224,8 +224,11 @@ fn split_at(plan: &ShadowPlan, depth: f64) -> Option<&Split> {
 }
 
 fn footprint(judged: &Judged, plan: &ShadowPlan) -> Result<Option<TexelPixels>> {
-    let gradient = |_, depth| {
-        split_at(plan, depth).map(|split| TexelGradient::orthographic(split.u_axis, split.v_axis, split.texel_m))
+    let gradient = |point, depth| {
+        split_at(plan, depth).map(|split| {
+            let [u, v] = split.texel_gradients(point);
+            TexelGradient { u, v, width: split.texel_edges(point).max_element() }
+        })
     };
     let footprint = texel_footprint(&judged.view, &judged.truth, &judged.domain, gradient)?;
     Ok(footprint.map(|Footprint { median, p99, perspective_median, perspective_p99, .. }| TexelPixels {

@@ -24,7 +24,7 @@ use crate::{
 };
 
 /// Kinds that are spoken of and do not exist yet.
-const PLANNED: [&str; 5] = ["psm", "lispsm", "tsm", "sdsm", "vsm"];
+const PLANNED: [&str; 2] = ["sdsm", "vsm"];
 
 /// Options that say what is looked at rather than how shadows are made: they hold for the whole comparison, or not at all.
 const NOT_SETTINGS: [(&str, &str); 3] = [

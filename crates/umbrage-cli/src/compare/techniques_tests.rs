@@ -1,6 +1,6 @@
 //! Techniques by name: good ones, bad ones, files.
 
-use umbrage::SplitScheme;
+use umbrage::{SplitScheme, Warp};
 
 use super::*;
 
@@ -20,6 +20,19 @@ fn shapes_and_settings_become_options_of_render() {
     let single = technique("ssm:2048", "").expect("single");
     assert_eq!((single.job.technique, single.label.as_str()), (Kind::Ssm, "SSM(2048²)"));
     assert_eq!(single.texels(), 2048 * 2048);
+
+    for (text, warp) in
+        [("psm:1024", Warp::Psm), ("lispsm:1024", Warp::Lispsm), ("tsm:1024:tsm-focus=0.4", Warp::Tsm { focus: 0.4 })]
+    {
+        let warped = technique(text, "").expect(text);
+        assert_eq!((warped.job.settings.map_sizes.len(), &warped.job.settings.warps[..]), (1, &[warp][..]), "{text}");
+        assert_eq!(warped.job.settings.stabilize, umbrage::Stabilize::None, "{text}");
+        assert_eq!(technique(&warped.spec, "").expect("its own short form").job, warped.job);
+    }
+    assert_eq!(technique("lispsm:1024", "").expect("single").label, "LISPSM(1024²)");
+    let mixed = technique("pssm:3:512:warp=tsm/lispsm/none", "").expect("warps in splits");
+    assert!(matches!(mixed.job.settings.warps[..], [Warp::Tsm { .. }, Warp::Lispsm, Warp::None]));
+    assert_eq!(mixed.label, "PSSM(3; 512²) warp tsm,lispsm,none");
 
     let rich = "pssm:3:1024/512/256:lambda=0.9:stabilize=none:fit=independent:filter=pcf5:delta=1/2:label=ours";
     let rich = technique(rich, "").expect("rich");
@@ -79,9 +92,17 @@ fn mistakes_name_the_culprit() {
         ("pssm:4:512:shadow-range=1..5", &["--shadow-range"]),
         ("pssm:4:512:tint=true", &["tint"]),
         ("ssm:1024:lambda=0.5:2048", &["\"2048\""]),
-        ("psm:1024", &["psm is not built yet", "pssm, ssm"]),
-        ("lispsm:1024", &["lispsm is not built yet"]),
-        ("tsm:1024", &["tsm is not built yet"]),
+        ("sdsm:1024", &["sdsm is not built yet", "pssm, ssm, psm, lispsm, tsm"]),
+        ("vsm:1024", &["vsm is not built yet"]),
+        ("psm:2:1024", &["psm:SIZE"]),
+        ("psm:1024:stabilize=exact", &["--technique psm", "--stabilize exact"]),
+        ("lispsm:1024:warp=tsm", &["--warp tsm", "--technique lispsm"]),
+        ("ssm:1024:warp=tsm", &["--warp tsm", "--technique ssm"]),
+        ("tsm:1024:tsm-focus=1", &["--tsm-focus"]),
+        ("ssm:1024:tsm-focus=0.5", &["--tsm-focus", "--warp tsm"]),
+        ("pssm:3:512:warp=tsm/none", &["--warp", "2 warps", "3"]),
+        ("pssm:3:512:warp=trapeze", &["--warp", "lispsm"]),
+        ("pssm:3:512:warp=tsm:stabilize=exact", &["--warp tsm", "--stabilize exact"]),
         ("magic:1024", &["no technique magic"]),
     ] {
         let message = technique(text, "").expect_err(text).to_string();
@@ -101,7 +122,7 @@ fn mistakes_name_the_culprit() {
 #[test]
 fn a_planned_kind_is_told_from_a_mistake() {
     let rejected = |text: &str| parse(text).expect("a draft").finish(&Vec::new(), None, [8, 8]).expect_err(text);
-    assert!(matches!(rejected("tsm:64"), Rejected::NotBuilt(_)));
+    assert!(matches!(rejected("vsm:64"), Rejected::NotBuilt(_)));
     assert!(matches!(rejected("magic:64"), Rejected::Wrong(_)));
 }
 

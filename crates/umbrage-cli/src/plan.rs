@@ -1,0 +1,166 @@
+//! `umbrage plan`: what the planner answers, as JSON, without a GPU.
+
+use std::path::Path;
+
+use glam::{DMat4, DVec4};
+use serde::Serialize;
+use umbrage::{Aabb, Planner, ShadowPlan, Split};
+
+use crate::{
+    args::{DepthConvention, PlanArgs},
+    failure::Result,
+    job::{SceneJob, ShadowJob, typed_name},
+    output::{self, Staged, numbered_file},
+    report::{ShotReport, to_json},
+    stage::{Shot, Stage},
+    worlds::print,
+};
+
+/// The plan of one frame.
+#[derive(Debug, Serialize)]
+struct PlanReport {
+    /// Scene, camera and sun.
+    #[serde(flatten)]
+    shot: ShotReport,
+    technique: String,
+    fit: String,
+    stabilize: String,
+    /// One for all splits, or one for each.
+    warp: Vec<String>,
+    /// Of the matrices.
+    depth_convention: String,
+    /// `C_0 ..= C_m`: view depths in metres.
+    planes_m: Vec<f64>,
+    /// View depth of a world point: `xyz · point + w`, metres.
+    view_depth_plane: [f64; 4],
+    /// View depth at which the fade to lit begins, metres.
+    fade_begin_m: f64,
+    splits: Vec<SplitPlan>,
+    /// What `splits[].casters` refers to: for each caster its node, and its place among the node's instances.
+    casters: Vec<Caster>,
+    /// Defaults invented, parts of the scene left out.
+    notes: Vec<String>,
+}
+
+/// One split.
+#[derive(Debug, Serialize)]
+struct SplitPlan {
+    near_m: f64,
+    far_m: f64,
+    blend_begin_m: f64,
+    /// View depths that may sample the map.
+    coverage_m: [f64; 2],
+    /// Edge of the map in texels.
+    size: u32,
+    /// Metres per texel along u and v; of a warped map in the middle of its receivers.
+    texel_m: [f64; 2],
+    warped: bool,
+    /// To normalised device coordinates, x right, y up, column after column; divide by w.
+    shadow_from_world: [[f64; 4]; 4],
+    /// To texture coordinates (u right, v down, in 0..1) and stored depth in 0..1, column after column; divide by w.
+    texture_from_world: [[f64; 4]; 4],
+    /// Those that are drawn into the map. Empty: nothing throws a shadow here.
+    casters: Vec<u32>,
+}
+
+/// Something that throws shadows.
+#[derive(Debug, Serialize)]
+struct Caster {
+    node: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    instance: Option<u32>,
+    /// First and last split that it is drawn into.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    split_range: Option<[u8; 2]>,
+}
+
+/// Runs the subcommand.
+pub fn run(args: &PlanArgs) -> Result<()> {
+    let job = SceneJob::new(&args.scene)?;
+    let shadows = ShadowJob::new(&args.shadows, job.size)?;
+    if let Some(path) = &args.output {
+        output::check(&[path], &[], &job.inputs())?;
+    }
+    let stage = Stage::open(&job)?;
+    let mut planner = Planner::new(shadows.settings.clone())?;
+    let receivers: Vec<Aabb> = stage.pose.objects.iter().map(|object| object.bounds).collect();
+    let casters: Vec<Aabb> =
+        stage.pose.objects.iter().filter(|object| object.casts).map(|object| object.bounds).collect();
+    let mut frames = Vec::new();
+    for shot in &stage.shots {
+        let plan = planner.plan(&shot.view, &stage.sun, &casters, &receivers)?;
+        frames.push((shot.frame, report(&job, &shadows, &stage, shot, plan, args.depth_convention)));
+    }
+    match &args.output {
+        Some(path) => write(path, &frames),
+        None => frames.iter().try_for_each(|(_, frame)| print(&String::from_utf8_lossy(&to_json(frame)?))),
+    }
+}
+
+fn write(path: &Path, frames: &[(Option<u32>, PlanReport)]) -> Result<()> {
+    let mut staged = Staged::default();
+    for (number, frame) in frames {
+        staged.file(&numbered_file(path, *number), to_json(frame)?)?;
+    }
+    staged.commit()
+}
+
+fn report(
+    job: &SceneJob,
+    shadows: &ShadowJob,
+    stage: &Stage,
+    shot: &Shot,
+    plan: &ShadowPlan,
+    convention: DepthConvention,
+) -> PlanReport {
+    let casters = stage.pose.objects.iter().filter(|object| object.casts).zip(&plan.split_range);
+    PlanReport {
+        shot: stage.report(job, shot),
+        technique: typed_name(shadows.technique),
+        fit: typed_name(shadows.fit),
+        stabilize: typed_name(shadows.stabilize),
+        warp: shadows.warps.iter().map(|&warp| typed_name(warp)).collect(),
+        depth_convention: typed_name(convention),
+        planes_m: plan.planes.clone(),
+        view_depth_plane: plan.view_depth_plane.to_array(),
+        fade_begin_m: plan.fade_begin,
+        splits: (0..plan.splits.len()).map(|i| split(plan, i, convention)).collect(),
+        casters: casters
+            .map(|(object, range)| Caster {
+                node: stage.scene.nodes[object.node].name.clone(),
+                instance: object.instance,
+                split_range: range.map(|(first, last)| [first, last]),
+            })
+            .collect(),
+        notes: stage.notes.clone(),
+    }
+}
+
+fn split(plan: &ShadowPlan, index: usize, convention: DepthConvention) -> SplitPlan {
+    let split: &Split = &plan.splits[index];
+    let shadow_from_world = split.shadow_from_world();
+    let to_convention = match convention {
+        DepthConvention::ZeroToOne => DMat4::IDENTITY,
+        DepthConvention::MinusOneToOne => {
+            DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::new(0.0, 0.0, 2.0, 0.0), DVec4::new(0.0, 0.0, -1.0, 1.0))
+        }
+    };
+    let texture_from_shadow = DMat4::from_cols(
+        DVec4::new(0.5, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, -0.5, 0.0, 0.0),
+        DVec4::Z,
+        DVec4::new(0.5, 0.5, 0.0, 1.0),
+    );
+    SplitPlan {
+        near_m: split.near,
+        far_m: split.far,
+        blend_begin_m: split.blend_begin,
+        coverage_m: [split.coverage.0, split.coverage.1],
+        size: split.size,
+        texel_m: split.texel_m.to_array(),
+        warped: split.warp.is_some(),
+        shadow_from_world: (to_convention * shadow_from_world).to_cols_array_2d(),
+        texture_from_world: (texture_from_shadow * shadow_from_world).to_cols_array_2d(),
+        casters: plan.casters(index).to_vec(),
+    }
+}
