@@ -84,6 +84,15 @@ fn shadow_options_that_say_nonsense() {
         ("--technique ssm --splits 2", &["--splits 2", "ssm"]),
         ("--technique ssm --map-size 512,512", &["--map-size", "1 split"]),
         ("--technique magic", &["--technique", "pssm", "ssm"]),
+        ("--technique psm --splits 2", &["--splits 2", "psm"]),
+        ("--technique psm --stabilize exact", &["--technique psm", "--stabilize exact"]),
+        ("--technique lispsm --warp tsm", &["--technique lispsm", "--warp tsm"]),
+        ("--warp tsm --stabilize exact", &["--warp tsm", "--stabilize exact"]),
+        ("--warp tsm,none", &["--warp", "2 warps"]),
+        ("--warp trapeze", &["--warp", "trapeze", "lispsm"]),
+        ("--tsm-focus 0.5", &["--tsm-focus", "tsm"]),
+        ("--technique tsm --tsm-focus 0", &["--tsm-focus"]),
+        ("--technique tsm --tsm-focus nan", &["--tsm-focus"]),
         ("--scheme magic", &["--scheme", "uniform", "log", "practical", "manual"]),
         ("--scheme log --lambda 0.5", &["--lambda", "practical", "log"]),
         ("--scheme uniform --delta 1", &["--delta", "practical", "uniform"]),
@@ -121,7 +130,11 @@ fn shadow_options_that_say_nonsense() {
             continue;
         }
         folder.refuse(&format!("render tiny.glb -o out.png {options}"), culprits);
+        folder.refuse(&format!("plan tiny.glb -o out.json {options}"), culprits);
     }
+    folder.refuse("plan tiny.glb --depth-convention backwards", &["--depth-convention", "zero-to-one"]);
+    folder.refuse("plan missing.glb", &["missing.glb"]);
+    folder.refuse("plan tiny.glb -o tiny.glb", &["tiny.glb", "input"]);
 }
 
 #[test]

@@ -210,11 +210,63 @@ fn techniques_schemes_and_formats() {
         ("--depth-format d16 --filter pcf5 --map-size 128", 4),
         ("--fit independent --stabilize exact --filter pcf2 --map-size 128", 4),
         ("--tint --shadows off --map-size 64", 4),
+        ("--technique psm --map-size 128", 1),
+        ("--technique lispsm --map-size 128 --stabilize none --filter hard", 1),
+        ("--technique tsm --map-size 128 --tsm-focus 0.4 --fit independent", 1),
+        ("--splits 3 --map-size 64 --warp tsm,lispsm,none --depth-format d16", 3),
     ] {
         folder.succeed(&format!("render tiny.glb --size 32x24 {options} --report r.json -o p.png --visibility m.png"));
         let report = folder.json("r.json");
         assert_eq!(report["splits"].as_array().map(Vec::len), Some(splits), "{options}: {report}");
+        let kind = options.split_once("--technique ").map_or("pssm", |(_, rest)| rest.split(' ').next().unwrap_or(""));
+        assert_eq!(report["technique"], kind, "{options}");
+        let warped = !matches!(kind, "ssm" | "pssm") || options.contains("--warp");
+        assert_eq!(report["stabilize"] == "none", warped, "{options}: {report}");
+        assert_eq!(report["splits"][0]["warped"], warped, "{options}: {report}");
     }
+}
+
+#[test]
+fn a_plan_needs_no_gpu_and_says_it_in_both_conventions() {
+    let folder = Folder::new();
+    let options = "--splits 2 --map-size 256,128 --warp lispsm,none --shadow-range 1..60 --fit independent";
+    folder.succeed(&format!("plan tiny.glb {options} -o z.json"));
+    folder.succeed(&format!("plan tiny.glb {options} --depth-convention minus-one-to-one -o gl.json"));
+    let printed = folder.run(&format!("plan tiny.glb {options}"));
+    assert!(printed.status.success());
+    let printed: serde_json::Value = serde_json::from_slice(&printed.stdout).expect("JSON is printed");
+    let (plan, gl) = (folder.json("z.json"), folder.json("gl.json"));
+    assert_eq!(plan, printed);
+    assert_eq!((&plan["technique"], &plan["warp"]), (&"pssm".into(), &serde_json::json!(["lispsm", "none"])));
+    assert_eq!(
+        (&plan["depth_convention"], &gl["depth_convention"]),
+        (&"zero-to-one".into(), &"minus-one-to-one".into())
+    );
+    assert_eq!(plan["planes_m"].as_array().map(Vec::len), Some(3));
+    assert_eq!((plan["planes_m"][0].as_f64(), plan["planes_m"][2].as_f64()), (Some(1.0), Some(60.0)));
+    let casters = plan["casters"].as_array().expect("casters");
+    let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+    for (split, warped) in [(0, true), (1, false)] {
+        let (here, there) = (&plan["splits"][split], &gl["splits"][split]);
+        assert_eq!(here["warped"], warped, "{here}");
+        let listed = here["casters"].as_array().expect("a list");
+        assert!(listed.iter().all(|c| c.as_u64().is_some_and(|c| (c as usize) < casters.len())), "{here}");
+        // z' = 2z − w for any point, the other rows are the same; texture coordinates are 0..1 and v runs down.
+        let (a, b, t) = (&here["shadow_from_world"], &there["shadow_from_world"], &here["texture_from_world"]);
+        for column in 0..4 {
+            let [x, y, z, w] = [0, 1, 2, 3].map(|row| number(&a[column][row]));
+            let [x2, y2, z2, w2] = [0, 1, 2, 3].map(|row| number(&b[column][row]));
+            assert_eq!((x, y, w), (x2, y2, w2));
+            assert!((z2 - (2.0 * z - w)).abs() < 1e-9 * (1.0 + z.abs() + w.abs()));
+            assert!((number(&t[column][0]) - 0.5 * (x + w)).abs() < 1e-9 * (1.0 + x.abs() + w.abs()));
+            assert!((number(&t[column][1]) - 0.5 * (w - y)).abs() < 1e-9 * (1.0 + y.abs() + w.abs()));
+            assert_eq!(number(&t[column][2]), z);
+        }
+    }
+    folder.succeed("plan tiny.glb --path path.json --frames 2 -o n.json");
+    assert!(folder.at("n.0000.json").exists() && folder.at("n.0001.json").exists());
+    folder.succeed("plan empty.gltf -o e.json");
+    assert!(folder.json("e.json")["splits"].as_array().is_some_and(|splits| splits.len() == 4));
 }
 
 #[test]

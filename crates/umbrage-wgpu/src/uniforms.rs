@@ -201,7 +201,7 @@ fn row(xyz: DVec3, w: f64) -> [f32; 4] {
 mod tests {
     use glam::{DVec2, DVec3};
     use proptest::prelude::*;
-    use umbrage::DirectionalLight;
+    use umbrage::{DirectionalLight, Frustum, View, Warp, WarpTarget};
     use umbrage_shaders::twin;
 
     use super::{Viewport, split};
@@ -270,6 +270,41 @@ mod tests {
             prop_assert!((f64::from(at[0]) - exact.x).abs() < texels, "{at:?} instead of {exact}");
             prop_assert!((f64::from(at[1]) - exact.y).abs() < texels, "{at:?} instead of {exact}");
             prop_assert!((f64::from(at[2]) - exact.z).abs() < 1e-5, "{at:?} instead of {exact}");
+        }
+
+        #[test]
+        fn warped_uniforms_say_what_the_plan_says(
+            center in far_away(),
+            offset in unit(),
+            warp in prop_oneof![Just(Warp::Psm), Just(Warp::Lispsm), Just(Warp::Tsm { focus: 0.2 })],
+            at in (0.0..1.0f64, 0.0..1.0f64, 0.01..1.0f64),
+        ) {
+            let frustum = Frustum::perspective(1.0, 1.3, 1.0, 200.0).expect("valid");
+            let view = View::look_at(center, center + DVec3::new(1.0, -0.2, 0.5), DVec3::Y, frustum).expect("valid");
+            let receivers = view.slice_corners(1.0, 200.0);
+            let direction = DVec3::new(0.3, -0.8, 0.4).normalize();
+            let mut planned = split_near(direction, center, 0.1, 1024);
+            planned.warp = warp.shadow_from_world(&WarpTarget {
+                view: &view,
+                slice: (1.0, 200.0),
+                light: direction,
+                receivers: &receivers,
+                casters: &[],
+                margin: 0.01,
+            });
+            prop_assert!(planned.warp.is_some());
+            let origin = center + 500.0 * offset;
+            let uniform = split(0, &planned, 0.0, Viewport::around(1024, 8192), origin).expect("a valid split");
+            let depth = 1.0 + 199.0 * at.2;
+            let corners = view.slice_corners(depth, depth + 1.0);
+            let point = corners[0] + (corners[1] - corners[0]) * at.0 + (corners[2] - corners[0]) * at.1;
+            let relative = (point - origin).as_vec3();
+            let found = twin::map_from_world(&uniform, relative.to_array());
+            let exact = planned.map_from_world(origin + relative.as_dvec3());
+            // Sums of terms near 1000 m lose some 1e-4 m, divided by a w of 3 m or more, times 1024 texels.
+            let [x, y, z] = found.map(f64::from);
+            prop_assert!((x - exact.x).abs() < 0.1 && (y - exact.y).abs() < 0.1, "{found:?} instead of {exact}");
+            prop_assert!((z - exact.z).abs() < 2e-4, "{found:?} instead of {exact}");
         }
 
         #[test]

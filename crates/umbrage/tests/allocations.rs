@@ -1,7 +1,7 @@
 //! After the first frame the planner allocates nothing.
 
 use glam::DVec3;
-use umbrage::{Aabb, DirectionalLight, Fit, Frustum, Planner, ShadowSettings, Stabilize, View};
+use umbrage::{Aabb, DirectionalLight, Fit, Frustum, Planner, ShadowSettings, Stabilize, View, Warp};
 
 #[test]
 fn only_the_first_frame_allocates() {
@@ -24,6 +24,17 @@ fn only_the_first_frame_allocates() {
                 planner.plan(&view, &light, &world, &world).expect("valid");
             });
             assert_eq!(again.count_total, 0, "{fit:?} {stabilize:?} allocated {again:?}");
+        }
+        for warp in [Warp::Psm, Warp::Lispsm, Warp::Tsm { focus: 0.2 }] {
+            let settings =
+                ShadowSettings { fit, stabilize: Stabilize::None, warps: vec![warp], ..ShadowSettings::default() };
+            let mut planner = Planner::new(settings).expect("valid");
+            let view = view(0.3).expect("valid");
+            planner.plan(&view, &light, &world, &world).expect("valid");
+            let again = allocation_counter::measure(|| {
+                planner.plan(&view, &light, &world, &world).expect("valid");
+            });
+            assert_eq!(again.count_total, 0, "{fit:?} {warp:?} allocated {again:?}");
         }
     }
 }
