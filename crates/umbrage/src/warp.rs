@@ -18,7 +18,7 @@ pub enum Warp {
     /// M. Stamminger, G. Drettakis, *Perspective Shadow Maps*, SIGGRAPH 2002. The virtual camera slides back until every caster is
     /// in front of it, as there and in S. Kozlov, *GPU Gems*, chapter 14. Our deviations: both perspectives are one matrix, so
     /// that nothing is divided twice and what is behind the eye keeps its order; depth is linear along the light; and the warp
-    /// fades where the source's picture of the view would turn inside out, with the light or its opposite in view.
+    /// fades as view and light become parallel, where the source's is torn apart.
     Psm,
     /// Light space perspective shadow maps, `n_opt = (z_n + √(z_n z_f)) / sin γ` with γ between view and light.
     /// M. Wimmer, D. Scherzer, W. Purgathofer, *Light Space Perspective Shadow Maps*, EGSR 2004.
@@ -37,10 +37,6 @@ const FOCUS_LINE: f64 = -0.6;
 
 /// A projection distance beyond this many slice lengths is no warp at all to `f32`.
 const NO_WARP: f64 = 1e6;
-
-/// The least w of a receiver in a perspective shadow map, as a multiple of `near/far` of the largest. 1 is what the camera's own
-/// perspective has; half of it leaves room for light that is not quite across the view.
-const PSM_LEAST: f64 = 0.5;
 
 /// What a warp has to show.
 #[derive(Clone, Copy, Debug)]
@@ -159,8 +155,9 @@ impl LightFrame {
 /// Rows of `(x, y, w)` for a map of the camera's post-perspective cube, relative to the frame's eye. `None` if the cube has no depth.
 ///
 /// In that space the light has a source (or a sink) at a finite point, just beyond the far plane; the map is its picture of the cube.
-/// Where that point comes so near to the cube that no picture plane has all receivers before it, the plane is turned towards the far
-/// plane, just as far as it has to: turned all the way, the two perspectives cancel and the map is plain.
+/// The nearer the light comes to the view's axis, the nearer comes that point to the cube's far side, and the picture is torn apart.
+/// Its plane is then turned towards the far plane, just as far as it takes to keep w within `(near/far)^sin γ`, γ being the angle
+/// between view and light: turned all the way, the two perspectives cancel and the map is plain.
 fn psm(target: &WarpTarget<'_>) -> Option<[DVec4; 3]> {
     let view = target.view;
     let (near, far) = target.slice;
@@ -196,8 +193,10 @@ fn psm(target: &WarpTarget<'_>) -> Option<[DVec4; 3]> {
     // The same with the far plane for its picture plane, `(scale − z) / (scale − centre.z)`, is a constant in the world.
     let plain = n * scale / (scale - centre.z);
     let (least, most) = bounds(target.receivers.iter().map(|&p| perspective.dot((p - view.eye()).extend(1.0))))?;
-    let lacking = PSM_LEAST * (n / f) * most - least;
-    let turn = if lacking > 0.0 { lacking / (lacking + plain * (1.0 - PSM_LEAST * n / f)) } else { 0.0 };
+    // Light across the view may have all of the camera's own perspective, from near to far; light along it none.
+    let share = (n / f).powf(view.forward().cross(target.light).length());
+    let lacking = share * most - least;
+    let turn = if lacking > 0.0 { lacking / (lacking + plain * (1.0 - share)) } else { 0.0 };
     let w = perspective * (1.0 - turn) + DVec4::W * (plain * turn);
     Some([in_world(row(across)), in_world(row(up)), w])
 }

@@ -111,7 +111,7 @@ fn warps_fade_to_the_plain_map_when_the_frusta_duel() {
         let w: Vec<f64> = receivers.iter().map(|&p| (matrix * p.extend(1.0)).w).collect();
         w.iter().copied().fold(f64::MIN, f64::max) / w.iter().copied().fold(f64::MAX, f64::min)
     };
-    for warp in [Warp::Lispsm, Warp::Tsm { focus: 0.3 }] {
+    for warp in [Warp::Psm, Warp::Lispsm, Warp::Tsm { focus: 0.3 }] {
         let spreads: Vec<f64> = [1.5, 0.3, 0.03, 3e-3, 3e-4, 3e-5, 0.0].map(|angle| spread(warp, angle)).to_vec();
         assert!(spreads[0] > 2.0, "{warp:?} does not warp at all: {spreads:?}");
         assert!(spreads.last().is_some_and(|s| (s - 1.0).abs() < 1e-6), "{warp:?}: {spreads:?}");
