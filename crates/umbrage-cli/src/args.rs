@@ -240,7 +240,7 @@ pub struct ShadowArgs {
     /// How each split's map spreads its texels: none, psm, lispsm or tsm; one, or one per split [default: none]
     #[arg(long, value_name = "WARP,…", value_parser = parse::warp_list)]
     pub warp: Option<Warps>,
-    /// Share of the depth range that trapezoidal maps give four fifths of their texels [default: 0.15]
+    /// Share of the depth range that trapezoidal maps give four fifths of their texels [default: 0.3]
     #[arg(long, value_name = "SHARE", value_parser = parse::focus, allow_hyphen_values = true)]
     pub tsm_focus: Option<f64>,
     /// How a map is looked up

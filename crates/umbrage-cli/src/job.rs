@@ -18,7 +18,7 @@ pub const DEFAULT_NEAR: f64 = 1.0;
 /// `--far` where nothing else says one, metres.
 pub const DEFAULT_FAR: f64 = 800.0;
 /// `--tsm-focus` where nothing else says one.
-pub const DEFAULT_TSM_FOCUS: f64 = 0.15;
+pub const DEFAULT_TSM_FOCUS: f64 = 0.3;
 
 /// What is looked at, from where, under which sun: [`SceneArgs`], checked.
 #[derive(Debug, PartialEq)]
