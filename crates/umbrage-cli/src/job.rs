@@ -108,7 +108,9 @@ impl SceneJob {
     pub fn new(args: &SceneArgs) -> Result<Self> {
         let camera = camera_choice(args)?;
         let sun = match (&args.light, args.sun) {
-            (Some(_), Some(_)) => return Err(Failure::input("--light and --sun both choose the light; give one of them")),
+            (Some(_), Some(_)) => {
+                return Err(Failure::input("--light and --sun both choose the light; give one of them"));
+            }
             (Some(name), None) => SunChoice::Named(name.clone()),
             (None, Some(direction)) => SunChoice::Given(direction),
             (None, None) => SunChoice::Default,
@@ -119,7 +121,9 @@ impl SceneJob {
         if let (Some(near), Some(far)) = (near, far)
             && near >= far
         {
-            return Err(Failure::input(format!("--near {near} is not less than --far {far}; give a nearer near or a farther far")));
+            return Err(Failure::input(format!(
+                "--near {near} is not less than --far {far}; give a nearer near or a farther far"
+            )));
         }
         Ok(Self {
             scene: args.scene.clone(),
@@ -267,7 +271,9 @@ fn map_sizes(args: &ShadowArgs) -> Result<Vec<u32>> {
         None => args.planes.as_ref().map_or(4, |planes| planes.0.len() + 1),
     };
     if splits > MAX_SPLITS {
-        return Err(Failure::input(format!("--map-size or --planes asks for {splits} splits; there may be 1 to {MAX_SPLITS}")));
+        return Err(Failure::input(format!(
+            "--map-size or --planes asks for {splits} splits; there may be 1 to {MAX_SPLITS}"
+        )));
     }
     match typed[..] {
         [edge] => Ok(vec![edge; splits]),
@@ -284,7 +290,9 @@ fn scheme(args: &ShadowArgs, splits: usize) -> Result<SplitScheme> {
     let scheme = args.scheme.unwrap_or(if args.planes.is_some() { Scheme::Manual } else { Scheme::Practical });
     let name = typed_name(scheme);
     let only_for = |option: &str, owner: &str| {
-        Err(Failure::input(format!("{option} belongs to --scheme {owner}, but the scheme is {name}; leave one of them away")))
+        Err(Failure::input(format!(
+            "{option} belongs to --scheme {owner}, but the scheme is {name}; leave one of them away"
+        )))
     };
     if scheme != Scheme::Practical && args.lambda.is_some() {
         return only_for("--lambda", "practical");

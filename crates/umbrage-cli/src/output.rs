@@ -140,7 +140,9 @@ impl Staged {
         let failed = |error: io::Error| Failure::file("write", target, &error);
         let folder = temporary_folder(folder_of(&resolved)).map_err(failed)?;
         for (name, bytes) in files {
-            fs::File::create(folder.path().join(name)).and_then(|mut file| write_whole(&mut file, &bytes)).map_err(failed)?;
+            fs::File::create(folder.path().join(name))
+                .and_then(|mut file| write_whole(&mut file, &bytes))
+                .map_err(failed)?;
         }
         self.entries.push(Entry::Folder { folder, target: resolved });
         Ok(())
@@ -229,9 +231,9 @@ fn resolve(path: &Path) -> Result<PathBuf> {
     if let Ok(existing) = path.canonicalize() {
         return Ok(existing);
     }
-    let name = path
-        .file_name()
-        .ok_or_else(|| Failure::input(format!("{:?} is not the name of a file to write", path.display().to_string())))?;
+    let name = path.file_name().ok_or_else(|| {
+        Failure::input(format!("{:?} is not the name of a file to write", path.display().to_string()))
+    })?;
     let folder = folder_of(path).canonicalize().map_err(|error| Failure::file("write", path, &error))?;
     Ok(folder.join(name))
 }

@@ -92,7 +92,8 @@ mod tests {
     #[test]
     fn records_are_six_little_endian_numbers() {
         let path = Path::new("points.bin");
-        let read = points(path, &bytes(&[1.0, 2.0, 3.0, 0.0, 2.0, 0.0, -4.0, 5.0, 6.0, 1.0, 0.0, 0.0])).expect("two points");
+        let read =
+            points(path, &bytes(&[1.0, 2.0, 3.0, 0.0, 2.0, 0.0, -4.0, 5.0, 6.0, 1.0, 0.0, 0.0])).expect("two points");
         assert_eq!(read.len(), 2);
         assert_eq!((read[0].position, read[0].normal), (DVec3::new(1.0, 2.0, 3.0), DVec3::Y));
         assert_eq!((read[1].position, read[1].normal), (DVec3::new(-4.0, 5.0, 6.0), DVec3::X));

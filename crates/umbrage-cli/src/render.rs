@@ -24,7 +24,9 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         [&args.picture, &args.visibility, &args.report].into_iter().flatten().map(AsRef::as_ref).collect();
     let folders: Vec<&Path> = args.maps.iter().map(AsRef::as_ref).collect();
     if files.is_empty() && folders.is_empty() {
-        return Err(Failure::input("nothing to write: give -o PICTURE, --visibility MASK, --maps DIR or --report JSON"));
+        return Err(Failure::input(
+            "nothing to write: give -o PICTURE, --visibility MASK, --maps DIR or --report JSON",
+        ));
     }
     output::check(&files, &folders, &job.inputs())?;
 
