@@ -90,7 +90,7 @@ fn cast(stage: &mut Stage) -> [Vec<usize>; 4] {
     let leather = stage.paint("leather", 0x5E_42_2E);
     let iron = stage.paint("iron", 0x5A_5D_62);
     let skin = stage.paint("skin", 0xC7_94_75);
-    let knights = [("red knight", 0x8E_2F_2B), ("blue knight", 0x2F_4B_7A), ("green knight", 0x3B_62_44)]
+    let knights = [("red knight", 0x8C_42_3C), ("blue knight", 0x46_5E_86), ("green knight", 0x50_70_56)]
         .into_iter()
         .map(|(name, colour)| {
             let cloth = stage.paint(name, colour);
@@ -98,7 +98,7 @@ fn cast(stage: &mut Stage) -> [Vec<usize>; 4] {
             stage.mesh(mesh)
         })
         .collect();
-    let dwarfs = [("red-haired dwarf", 0x9C_55_2B, 0x4C_5A_3A), ("grey dwarf", 0xA8_A2_98, 0x6B_3D_33)]
+    let dwarfs = [("red-haired dwarf", 0x9A_62_40, 0x5C_66_4A), ("grey dwarf", 0xA8_A2_98, 0x6B_3D_33)]
         .into_iter()
         .map(|(name, hair, cloth)| {
             let beard = stage.paint(&format!("{name}'s beard"), hair);
@@ -117,13 +117,13 @@ fn cast(stage: &mut Stage) -> [Vec<usize>; 4] {
     };
     let colours = PalmsColours {
         bark,
-        leaf: leaf("palm leaf", 0x5C_7A_3E),
+        leaf: leaf("palm leaf", 0x6A_80_4C),
         dry_leaf: leaf("dry palm leaf", 0x94_7E_50),
         fruit: stage.paint("dates", 0x8A_4A_22),
     };
     let palms = (0..3).map(|i| stage.mesh(plants::palm(&format!("palm {i}"), 100 + i, colours))).collect();
     let colours = CactusColours {
-        flesh: stage.paint("cactus", 0x56_78_50),
+        flesh: stage.paint("cactus", 0x66_80_5C),
         spine: stage.paint("cactus spine", 0xCF_C3_9A),
         flower: stage.paint("cactus flower", 0xC9_6A_86),
     };

@@ -179,7 +179,7 @@ fn place_clawbots(stage: &mut Stage, terrain: &Terrain, random: &mut Random, pla
     let steel = stage.paint("clawbot steel", 0x55_58_5C);
     let rubber = stage.paint("track", 0x38_36_34);
     let glass = stage.paint("clawbot eye", 0xD9_8E_2B);
-    let makes = [("yellow paint", 0xC2_94_2E), ("orange paint", 0xB5_5F_2C)].map(|(name, colour)| {
+    let makes = [("yellow paint", 0xC0_9C_4C), ("orange paint", 0xAE_6C_44)].map(|(name, colour)| {
         let paint = stage.paint(name, colour);
         let robot = mining::clawbot(ClawbotsColours { paint, steel, rubber, glass });
         let [left, right] = robot.jaws;

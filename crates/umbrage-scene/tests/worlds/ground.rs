@@ -51,7 +51,7 @@ impl Ground {
             let area = ab.perp_dot(ac);
             let (v, w) = (to.perp_dot(ac) / area, ab.perp_dot(to) / area);
             let inside = v >= -1e-9 && w >= -1e-9 && v + w <= 1.0 + 1e-9;
-            inside.then(|| a.y + v * (b.y - a.y) + w * (c.y - a.y))
+            inside.then_some(a.y + v * (b.y - a.y) + w * (c.y - a.y))
         })
     }
 }

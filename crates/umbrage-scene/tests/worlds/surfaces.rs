@@ -30,7 +30,7 @@ fn unsound(primitive: &Primitive) -> Option<String> {
     }
     for (position, normal) in primitive.positions.iter().zip(&primitive.normals) {
         let (position, normal) = (Vec3::from_array(*position), Vec3::from_array(*normal));
-        if !position.is_finite() || !((normal.length() - 1.0).abs() < 1e-4) {
+        if !position.is_finite() || !normal.is_normalized() {
             return Some(format!("position {position}, normal {normal}"));
         }
     }
@@ -39,7 +39,8 @@ fn unsound(primitive: &Primitive) -> Option<String> {
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
         let height = (b - a).cross(c - a).length() / longest;
         // A thousandth of the longest side is thin; a millimetre is small; less is a mistake of construction.
-        (!(height > 2e-4 * longest) || !(longest > 1e-3)).then(|| format!("degenerate triangle {a} {b} {c}"))
+        let fine = height > 2e-4 * longest && longest > 1e-3;
+        (!fine).then(|| format!("degenerate triangle {a} {b} {c}"))
     })
 }
 
@@ -92,7 +93,7 @@ fn leaky(triangles: &[[DVec3; 3]]) -> Option<String> {
         let origin = entry.1;
         entry.0 += (a - origin).dot((b - origin).cross(c - origin)) / 6.0;
     }
-    volumes.values().find(|(volume, _)| !(*volume > 0.0)).map(|(volume, at)| format!("volume {volume} m³ at {at}"))
+    volumes.values().find(|(volume, _)| *volume <= 0.0).map(|(volume, at)| format!("volume {volume} m³ at {at}"))
 }
 
 #[test]
