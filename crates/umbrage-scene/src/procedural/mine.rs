@@ -201,7 +201,7 @@ fn place_clawbots(stage: &mut Stage, terrain: &Terrain, random: &mut Random, pla
         let (facing, swing) = (random.between(-40.0, 40.0), random.between(30.0, 70.0));
         let turret = limb("trunk", base, trunk, TURRET, turn(DVec3::Y, facing));
         let jaws = [(left, 1.0, "left jaw"), (right, -1.0, "right jaw")].map(|(mesh, side, part)| {
-            let node = limb(part, turret, mesh, HINGE * dvec3(side, 1.0, 1.0), turn(DVec3::Y, side * 28.0));
+            let node = limb(part, turret, mesh, HINGE * dvec3(side, 1.0, 1.0), turn(DVec3::Y, side * 40.0));
             (node, side)
         });
         let period = random.between(11.0, 17.0);
@@ -209,7 +209,7 @@ fn place_clawbots(stage: &mut Stage, terrain: &Terrain, random: &mut Random, pla
             vec![rotations(turret, DVec3::Y, period, 32, |share| facing + swing * sin_cos(360.0 * share).0)];
         for (node, side) in jaws {
             // Three bites in one swing.
-            let open = move |share: f64| side * (16.0 + 12.0 * sin_cos(3.0 * 360.0 * share).1);
+            let open = move |share: f64| side * (22.0 + 18.0 * sin_cos(3.0 * 360.0 * share).1);
             channels.push(rotations(node, DVec3::Y, period, 48, open));
         }
         stage.clip(&format!("clawbot {i} works"), channels);

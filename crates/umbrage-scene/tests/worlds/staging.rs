@@ -229,3 +229,25 @@ fn what_should_move_moves_and_the_rest_stands_still() {
         }
     }
 }
+
+#[test]
+fn walkers_go_where_they_look() {
+    let (_, scene) = &worlds()[2];
+    let mut walkers = 0;
+    for &time in &[0.0, 6.3, 22.1] {
+        let (now, soon) = (scene.pose(time).expect("a pose"), scene.pose(time + 0.4).expect("a pose"));
+        for (node, description) in scene.nodes.iter().enumerate() {
+            if !(description.name.starts_with("knight ") || description.name.starts_with("dwarf ")) {
+                continue;
+            }
+            let way = (soon.world_from_node[node].translation - now.world_from_node[node].translation).xz();
+            let look = now.world_from_node[node].matrix3.z_axis.xz();
+            let angle = way.angle_to(look).to_degrees().abs();
+            assert!(angle < 8.0, "{} looks {angle}° off its way at {time} s", description.name);
+            let speed = way.length() / 0.4;
+            assert!((3.5..5.0).contains(&speed), "{} walks at {speed} m/s", description.name);
+            walkers += 1;
+        }
+    }
+    assert_eq!(walkers, 90);
+}
