@@ -14,7 +14,7 @@ Usage: cargo xtask COMMAND
   demo    install the software Vulkan driver if there is no graphics adapter, build, render the four worlds and the
           city, and write out/demo/index.html
   test    formatting, lints and all tests, as CI runs them
-  bless   run the tests and accept their pictures and scores as the new reference
+  bless   draw the reference pictures of the tests anew
 ";
 
 fn main() -> ExitCode {

@@ -69,7 +69,8 @@ impl Gpu {
     /// # Errors
     /// [`Error::NoAdapter`] or [`Error::NoDevice`].
     pub async fn open(options: &GpuOptions) -> Result<Self> {
-        let adapter = open_adapter().await?;
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let adapter = choose_adapter(&instance).await?;
         let info = adapter.get_info();
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
@@ -156,23 +157,6 @@ fn wanted_features() -> wgpu::Features {
         | wgpu::Features::TIMESTAMP_QUERY
         | wgpu::Features::PIPELINE_STATISTICS_QUERY
         | wgpu::Features::FLOAT32_FILTERABLE
-}
-
-/// The best adapter of the first-class interfaces; OpenGL only where there is none of those, because merely trying it makes
-/// its libraries talk to the terminal. `WGPU_BACKEND` decides alone where it is set.
-async fn open_adapter() -> Result<wgpu::Adapter> {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-    if wgpu::Backends::from_env().is_some() {
-        return choose_adapter(&wgpu::Instance::new(descriptor)).await;
-    }
-    descriptor.backends = wgpu::Backends::PRIMARY;
-    match choose_adapter(&wgpu::Instance::new(descriptor)).await {
-        Err(Error::NoAdapter { .. }) => {
-            let everything = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-            choose_adapter(&wgpu::Instance::new(everything)).await
-        }
-        found => found,
-    }
 }
 
 async fn choose_adapter(instance: &wgpu::Instance) -> Result<wgpu::Adapter> {

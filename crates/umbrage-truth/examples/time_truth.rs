@@ -1,5 +1,5 @@
 //! How long the truth of a scene takes and how much memory: `cargo run --release -p umbrage-truth --example time_truth --
-//! SCENE [--eye x,y,z --target x,y,z --sun x,y,z] [-o MASK]`.
+//! SCENE [--eye x,y,z --target x,y,z --sun x,y,z] [--soft SAMPLES] [-o MASK]`.
 //!
 //! The scene is loaded before the clock starts; posing, building and tracing are timed. Peak memory is the whole process's,
 //! scene included, as Linux counts it.
@@ -11,7 +11,7 @@ use std::time::Instant;
 use glam::DVec3;
 use umbrage::{Frustum, View};
 use umbrage_scene::{HeightMapOptions, invented_sun, invented_view, open};
-use umbrage_truth::Truth;
+use umbrage_truth::{SunDisc, Truth};
 
 const SIZE: [u32; 2] = [800, 600];
 
@@ -50,6 +50,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{} triangles, {} bytes kept, {} threads", truth.triangle_count(), truth.bytes(), rayon_threads());
     println!("{hits} pixels hit, {lit} lit");
     println!("pose {posed:.2?}, build {:.2?}, trace {:.2?}, all {traced:.2?}", built - posed, traced - built);
+    if let Some(samples) = option("--soft") {
+        let start = Instant::now();
+        truth.soft(&mask, &SunDisc::new(0.53_f64.to_radians(), samples.parse()?), &|_| {})?;
+        println!("soft, {samples} directions a pixel: {:.2?}", start.elapsed());
+    }
     println!("peak memory {}", peak_memory());
     if let Some(path) = option("-o") {
         mask.to_image().save(path)?;

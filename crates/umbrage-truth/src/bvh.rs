@@ -75,7 +75,7 @@ impl Tree {
         if boxes.is_empty() {
             return (Self { nodes: Vec::new() }, Vec::new());
         }
-        let tree = build_bvh2(boxes, BvhBuildParams::very_fast_build(), &mut Duration::default());
+        let tree = build_bvh2(boxes, BvhBuildParams::fast_build(), &mut Duration::default());
         let mut nodes = tree.nodes;
         nodes.shrink_to_fit();
         (Self { nodes }, tree.primitive_indices)

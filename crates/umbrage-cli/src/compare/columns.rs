@@ -1,7 +1,7 @@
 //! Which shots stand on the sheets, and their pictures.
 
 use image::{DynamicImage, GrayAlphaImage, Rgb, RgbImage, RgbaImage};
-use umbrage_truth::scores::{Answers, Domain, false_colour};
+use umbrage_truth::scores::{Answers, Domain, LEAST_FACING, false_colour};
 
 use super::{
     inset,
@@ -44,11 +44,11 @@ pub struct Answer {
     pub scores: Scores,
 }
 
-/// The pictures that the truth's picture is put together from: everything that faces the sun lit, and nothing lit.
+/// What the truth's picture is put together from, beside the techniques' pictures: all that faces the sun lit, and nothing lit.
 pub struct Plain {
     /// Without shadows.
     pub lit: RgbaImage,
-    /// Without sun; right only where a surface faces the sun.
+    /// Without sun; about right where a surface faces the sun.
     pub dark: RgbaImage,
 }
 
@@ -75,19 +75,31 @@ pub fn columns(judged: &Judged, answers: &[Answer], plain: &Plain, cell: [u32; 2
         caption: format!("{edges} edge pixels, {} scored", judged.domain.pixels().len()),
         is_best: false,
     };
-    pictures.push(truth(&true_picture(judged, plain)));
+    pictures.push(truth(&true_picture(judged, answers, plain)));
     errors.push(truth(&false_colour(&judged.truth, &judged.domain, &true_answers)?));
     Ok([pictures, errors].map(|cells| Column { title: String::new(), lines: Vec::new(), warning: None, cells }))
 }
 
-/// Lit where the truth is lit. Surfaces turned away from the sun are the same in both.
-fn true_picture(judged: &Judged, plain: &Plain) -> RgbImage {
+/// The picture with true shadows: without shadows where the sun shines; elsewhere as a technique has it that rightly finds shadow
+/// there, and if none does, without sun. Surfaces that hardly face the sun or turn away are as the best technique has them: how
+/// they are shaded is no matter of shadows.
+fn true_picture(judged: &Judged, answers: &[Answer], plain: &Plain) -> RgbImage {
     let to_light = judged.truth.to_light();
+    let errors = answers.iter().map(|answer| answer.scores.e.unwrap_or(1.0));
+    let best = errors.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(number, _)| &answers[number].picture);
     let width = plain.lit.width();
     RgbImage::from_fn(width, plain.lit.height(), |x, y| {
         let hit = judged.truth.hits()[(y * width + x) as usize];
-        let in_shadow = hit.is_some_and(|hit| !hit.lit && hit.normal.dot(to_light) > 0.0);
-        let [r, g, b, _] = if in_shadow { plain.dark.get_pixel(x, y).0 } else { plain.lit.get_pixel(x, y).0 };
+        let source = match hit {
+            Some(hit) if hit.normal.dot(to_light) <= LEAST_FACING => best.unwrap_or(&plain.lit),
+            Some(hit) if !hit.lit => {
+                let visibility = |answer: &&Answer| answer.mask.get_pixel(x, y).0[0];
+                let darkest = answers.iter().min_by_key(visibility).filter(|answer| visibility(answer) < 128);
+                darkest.map_or(&plain.dark, |answer| &answer.picture)
+            }
+            _ => &plain.lit,
+        };
+        let [r, g, b, _] = source.get_pixel(x, y).0;
         Rgb([r, g, b])
     })
 }
@@ -98,8 +110,8 @@ fn opaque(picture: &RgbaImage) -> RgbImage {
 
 fn caption(scores: &Scores) -> String {
     match (scores.e, scores.edge_distance_px) {
-        (Some(e), Some(distance)) => format!("E {:.2} %  D {distance:.2} px", 100.0 * e),
-        (Some(e), None) => format!("E {:.2} %  no edges", 100.0 * e),
+        (Some(e), Some(distance)) => format!("E {:.2} % · D {distance:.2} px", 100.0 * e),
+        (Some(e), None) => format!("E {:.2} % · no edges", 100.0 * e),
         (None, _) => "nothing to score".into(),
     }
 }

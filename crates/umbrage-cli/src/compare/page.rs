@@ -23,8 +23,8 @@ pub fn page(comparison: &Comparison, labels: &[Label], columns: &[Vec<Shot>; 2])
     let counting = comparison.views.iter().filter(|view| view.counts).count();
     let lead = vec![
         format!(
-            "{} techniques on {} views of {width} × {height} pixels, judged by exact rays. Means are over the {counting} views whose \
-             true shadows have {} edge pixels or more.",
+            "Techniques: {}; views: {}, of {width} × {height} pixels, judged by exact rays. Means are over the views whose true shadows \
+             have {} edge pixels or more: {counting}.",
             comparison.techniques.len(),
             comparison.views.len(),
             comparison.least_edges

@@ -25,10 +25,15 @@ fn dunes(place: DVec2) -> f64 {
     13.0 * broad + 7.0 * crest * crest + 0.35 * ripple
 }
 
+/// Where there is life: in groups, more of them towards the middle, with empty desert between.
+fn inhabited(place: DVec2) -> bool {
+    noise::plane_octaves(16, place / 300.0, 2, 0.5) + 0.4 * (1.0 - place.length() / 420.0) > 0.2
+}
+
 /// The world.
 pub(super) fn knights() -> Scene {
     let mut stage = stage(World::Knights);
-    let terrain = Terrain::new(EDGE_M, 8, 34, dunes);
+    let terrain = Terrain::new(EDGE_M, 8, 30, dunes);
     let sand = stage.paint("sand", 0xFF_FF_FF);
     let tint = |at: DVec3, normal: DVec3| {
         let pale = smoothstep(-6.0, 14.0, at.y) + 0.25 * noise::plane(15, DVec2::new(at.x, at.z) / 55.0);
@@ -41,14 +46,14 @@ pub(super) fn knights() -> Scene {
     let [knights, dwarfs, palms, cactuses] = cast(&mut stage);
     let mut random = Random::new(1515);
     // A figure's loop, a crown of leaves, arms.
-    let loops: Vec<f64> = (0..30).map(|_| random.between(13.0, 24.0)).collect();
-    let mut radii: Vec<f64> = loops.iter().map(|radius| radius + 9.0).collect();
-    radii.extend([13.0; 15]);
-    radii.extend([7.0; 15]);
-    let places = scatter(&mut random, 0.94 * EDGE_M, &radii, |_| true);
+    let loops: Vec<f64> = (0..30).map(|_| random.between(14.0, 26.0)).collect();
+    let mut radii: Vec<f64> = loops.iter().map(|radius| radius + 11.0).collect();
+    radii.extend([16.0; 15]);
+    radii.extend([9.0; 15]);
+    let places = scatter(&mut random, 0.94 * EDGE_M, &radii, inhabited);
 
     for (i, (&place, &radius)) in places.iter().zip(&loops).enumerate() {
-        let (kind, meshes, size) = if i % 2 == 0 { ("knight", &knights, 1.75) } else { ("dwarf", &dwarfs, 1.7) };
+        let (kind, meshes, size) = if i % 2 == 0 { ("knight", &knights, 2.2) } else { ("dwarf", &dwarfs, 2.2) };
         let walk = Walk {
             center: place,
             radius,
@@ -60,21 +65,21 @@ pub(super) fn knights() -> Scene {
     }
     for (i, &place) in places[30..45].iter().enumerate() {
         let at = terrain.on_ground(place);
-        let trs = standing(at, random.between(0.0, 360.0), random.between(1.75, 2.4));
+        let trs = standing(at, random.between(0.0, 360.0), random.between(2.1, 2.9));
         stage.place(format!("palm {i}"), palms[i % palms.len()], trs);
     }
     for (i, &place) in places[45..].iter().enumerate() {
         let at = terrain.on_ground(place);
-        let trs = standing(at, random.between(0.0, 360.0), random.between(1.3, 1.9));
+        let trs = standing(at, random.between(0.0, 360.0), random.between(1.7, 2.4));
         stage.place(format!("cactus {i}"), cactuses[i % cactuses.len()], trs);
     }
 
     stage.sun(SkyPoint { bearing: 205.0, elevation: 31.0 }, SkyPoint { bearing: 110.0, elevation: 62.0 });
-    stage.camera("near", dvec3(0.0, 12.0, 60.0), dvec3(0.0, 6.0, 0.0));
-    stage.camera("middle", dvec3(0.0, 30.0, 60.0), dvec3(0.0, 6.0, 0.0));
-    stage.camera("far", dvec3(0.0, 70.0, 60.0), dvec3(0.0, 50.0, 0.0));
-    stage.camera("dueling", dvec3(0.0, 20.0, 60.0), dvec3(-100.0, 6.0, 0.0));
-    stage.camera("aerial", dvec3(-250.0, 330.0, 520.0), dvec3(0.0, 0.0, -20.0));
+    stage.camera("near", dvec3(146.0, 19.2, -276.2), dvec3(123.9, -4.1, -370.8));
+    stage.camera("middle", dvec3(-458.9, 38.4, 101.5), dvec3(-418.2, 5.0, 186.6));
+    stage.camera("far", dvec3(85.1, 78.2, 548.0), dvec3(65.1, 42.1, 456.9));
+    stage.camera("dueling", dvec3(181.8, 23.0, -396.7), dvec3(97.1, 15.7, -344.1));
+    stage.camera("aerial", dvec3(-220.0, 300.0, 470.0), dvec3(0.0, 0.0, 0.0));
     stage.scene
 }
 
@@ -85,7 +90,7 @@ fn cast(stage: &mut Stage) -> [Vec<usize>; 4] {
     let leather = stage.paint("leather", 0x5E_42_2E);
     let iron = stage.paint("iron", 0x5A_5D_62);
     let skin = stage.paint("skin", 0xC7_94_75);
-    let knights = [("red knight", 0x8E_2F_2B), ("blue knight", 0x2F_4B_7A), ("green knight", 0x3B_62_44)]
+    let knights = [("red knight", 0x8C_42_3C), ("blue knight", 0x46_5E_86), ("green knight", 0x50_70_56)]
         .into_iter()
         .map(|(name, colour)| {
             let cloth = stage.paint(name, colour);
@@ -93,7 +98,7 @@ fn cast(stage: &mut Stage) -> [Vec<usize>; 4] {
             stage.mesh(mesh)
         })
         .collect();
-    let dwarfs = [("red-haired dwarf", 0x9C_55_2B, 0x4C_5A_3A), ("grey dwarf", 0xA8_A2_98, 0x6B_3D_33)]
+    let dwarfs = [("red-haired dwarf", 0x9A_62_40, 0x5C_66_4A), ("grey dwarf", 0xA8_A2_98, 0x6B_3D_33)]
         .into_iter()
         .map(|(name, hair, cloth)| {
             let beard = stage.paint(&format!("{name}'s beard"), hair);
@@ -112,13 +117,13 @@ fn cast(stage: &mut Stage) -> [Vec<usize>; 4] {
     };
     let colours = PalmsColours {
         bark,
-        leaf: leaf("palm leaf", 0x5C_7A_3E),
+        leaf: leaf("palm leaf", 0x6A_80_4C),
         dry_leaf: leaf("dry palm leaf", 0x94_7E_50),
         fruit: stage.paint("dates", 0x8A_4A_22),
     };
     let palms = (0..3).map(|i| stage.mesh(plants::palm(&format!("palm {i}"), 100 + i, colours))).collect();
     let colours = CactusColours {
-        flesh: stage.paint("cactus", 0x56_78_50),
+        flesh: stage.paint("cactus", 0x66_80_5C),
         spine: stage.paint("cactus spine", 0xCF_C3_9A),
         flower: stage.paint("cactus flower", 0xC9_6A_86),
     };

@@ -30,7 +30,7 @@ fn natural_height(place: DVec2) -> f64 {
     let bowl = 62.0 * smoothstep(470.0, 70.0, away);
     let height = hills * smoothstep(40.0, 420.0, away) - bowl;
     let level = height / BENCH_M;
-    let step = level.floor() + smoothstep(0.6, 0.98, level - level.floor());
+    let step = level.floor() + smoothstep(0.76, 0.97, level - level.floor());
     let stepped = mix(height, step * BENCH_M, smoothstep(500.0, 400.0, away));
     stepped + 0.5 * noise::plane_octaves(33, place / 22.0, 2, 0.5)
 }
@@ -53,17 +53,17 @@ pub(super) fn mining_terrain() -> Scene {
     radii.extend([15.0; 10]);
     let rock_sizes: Vec<f64> = (0..20).map(|i| mix(19.0, 6.0, f64::from(i) / 19.0)).collect();
     radii.extend(rock_sizes.iter().map(|size| 1.5 * size));
-    let even = |place: DVec2, radius: f64| {
+    let even = |place: DVec2, radius: f64, most: f64| {
         let heights = (0..8).map(|i| {
             let (sin, cos) = sin_cos(45.0 * f64::from(i));
             natural_height(place + radius * DVec2::new(cos, sin))
         });
         let (low, high) = heights.fold((f64::MAX, f64::MIN), |(low, high), h| (low.min(h), high.max(h)));
-        high - low < 9.0
+        high - low < most
     };
-    let windmills = scatter(&mut random, EDGE_M, &radii[..15], |p| from_pit(p) > 420.0 && even(p, 16.0));
-    let clawbots = more(&mut random, &radii[..25], &windmills, |p| from_pit(p) < 430.0 && even(p, 12.0));
-    let pines = more(&mut random, &radii[..35], &clawbots, |p| from_pit(p) > 400.0);
+    let windmills = scatter(&mut random, EDGE_M, &radii[..15], |p| from_pit(p) > 420.0 && even(p, 16.0, 9.0));
+    let clawbots = more(&mut random, &radii[..25], &windmills, |p| from_pit(p) < 430.0 && even(p, 12.0, 9.0));
+    let pines = more(&mut random, &radii[..35], &clawbots, |p| from_pit(p) > 400.0 && even(p, 10.0, 4.0));
     let places = more(&mut random, &radii, &pines, |_| true);
 
     let pads: Vec<Pad> = places[..25]
@@ -71,7 +71,7 @@ pub(super) fn mining_terrain() -> Scene {
         .enumerate()
         .map(|(i, &place)| Pad { place, radius: if i < 15 { 15.0 } else { 13.0 }, height: natural_height(place) })
         .collect();
-    let terrain = Terrain::new(EDGE_M, 10, 51, |place| {
+    let terrain = Terrain::new(EDGE_M, 10, 50, |place| {
         pads.iter().fold(natural_height(place), |height, pad| {
             mix(pad.height, height, smoothstep(pad.radius, pad.radius + 16.0, place.distance(pad.place)))
         })
@@ -94,10 +94,10 @@ pub(super) fn mining_terrain() -> Scene {
     }
 
     stage.sun(SkyPoint { bearing: 300.0, elevation: 31.0 }, SkyPoint { bearing: 210.0, elevation: 60.0 });
-    stage.camera("near", dvec3(0.0, 12.0, 60.0), dvec3(0.0, 6.0, 0.0));
-    stage.camera("middle", dvec3(0.0, 30.0, 60.0), dvec3(0.0, 6.0, 0.0));
-    stage.camera("far", dvec3(0.0, 70.0, 60.0), dvec3(0.0, 50.0, 0.0));
-    stage.camera("dueling", dvec3(0.0, 20.0, 60.0), dvec3(-100.0, 6.0, 0.0));
+    stage.camera("near", dvec3(-190.5, -55.0, -17.1), dvec3(-239.0, -59.4, 70.3));
+    stage.camera("middle", dvec3(-463.7, 50.7, 346.3), dvec3(-448.2, 18.2, 439.6));
+    stage.camera("far", dvec3(-161.6, 76.6, 317.6), dvec3(-67.5, 44.3, 307.2));
+    stage.camera("dueling", dvec3(-669.0, 54.4, -270.2), dvec3(-624.4, 43.5, -181.3));
     stage.camera("aerial", dvec3(-350.0, 420.0, 620.0), dvec3(0.0, 0.0, -20.0));
     stage.scene
 }
@@ -179,7 +179,7 @@ fn place_clawbots(stage: &mut Stage, terrain: &Terrain, random: &mut Random, pla
     let steel = stage.paint("clawbot steel", 0x55_58_5C);
     let rubber = stage.paint("track", 0x38_36_34);
     let glass = stage.paint("clawbot eye", 0xD9_8E_2B);
-    let makes = [("yellow paint", 0xC2_94_2E), ("orange paint", 0xB5_5F_2C)].map(|(name, colour)| {
+    let makes = [("yellow paint", 0xC0_9C_4C), ("orange paint", 0xAE_6C_44)].map(|(name, colour)| {
         let paint = stage.paint(name, colour);
         let robot = mining::clawbot(ClawbotsColours { paint, steel, rubber, glass });
         let [left, right] = robot.jaws;
@@ -187,7 +187,7 @@ fn place_clawbots(stage: &mut Stage, terrain: &Terrain, random: &mut Random, pla
     });
     for (i, &place) in places.iter().enumerate() {
         let [tracks, trunk, left, right] = makes[i % makes.len()];
-        let trs = standing(terrain.on_ground(place), random.between(0.0, 360.0), random.between(1.7, 2.0));
+        let trs = standing(terrain.on_ground(place), random.between(0.0, 360.0), random.between(1.9, 2.3));
         let base = stage.place(format!("clawbot {i}"), tracks, trs);
         let mut limb = |part: &str, parent: usize, mesh: usize, translation: DVec3, rotation| {
             stage.node(Node {
@@ -201,7 +201,7 @@ fn place_clawbots(stage: &mut Stage, terrain: &Terrain, random: &mut Random, pla
         let (facing, swing) = (random.between(-40.0, 40.0), random.between(30.0, 70.0));
         let turret = limb("trunk", base, trunk, TURRET, turn(DVec3::Y, facing));
         let jaws = [(left, 1.0, "left jaw"), (right, -1.0, "right jaw")].map(|(mesh, side, part)| {
-            let node = limb(part, turret, mesh, HINGE * dvec3(side, 1.0, 1.0), turn(DVec3::Y, side * 28.0));
+            let node = limb(part, turret, mesh, HINGE * dvec3(side, 1.0, 1.0), turn(DVec3::Y, side * 40.0));
             (node, side)
         });
         let period = random.between(11.0, 17.0);
@@ -209,7 +209,7 @@ fn place_clawbots(stage: &mut Stage, terrain: &Terrain, random: &mut Random, pla
             vec![rotations(turret, DVec3::Y, period, 32, |share| facing + swing * sin_cos(360.0 * share).0)];
         for (node, side) in jaws {
             // Three bites in one swing.
-            let open = move |share: f64| side * (16.0 + 12.0 * sin_cos(3.0 * 360.0 * share).1);
+            let open = move |share: f64| side * (22.0 + 18.0 * sin_cos(3.0 * 360.0 * share).1);
             channels.push(rotations(node, DVec3::Y, period, 48, open));
         }
         stage.clip(&format!("clawbot {i} works"), channels);

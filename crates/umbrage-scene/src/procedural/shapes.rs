@@ -414,3 +414,73 @@ pub(super) fn ribbed(ribs: usize, steps_per_rib: usize, depth: f64) -> Vec<DVec2
 pub(super) fn beam(x: f64, y: f64, cut: f64) -> Vec<DVec2> {
     cut_rectangle(x, y, cut).into_iter().map(|p| DVec2::new(p.x, -p.y)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn volume(solid: &Solid) -> f64 {
+        let at = |i: u32| solid.points[i as usize];
+        solid.faces.iter().map(|&[a, b, c]| at(a).dot(at(b).cross(at(c))) / 6.0).sum()
+    }
+
+    /// Every edge is walked once in each direction.
+    fn is_closed(solid: &Solid) -> bool {
+        let mut balance = BTreeMap::new();
+        for face in &solid.faces {
+            for k in 0..3 {
+                let (from, to) = (face[k], face[(k + 1) % 3]);
+                *balance.entry((from.min(to), from.max(to))).or_insert(0) += if from < to { 1 } else { -1 };
+            }
+        }
+        balance.values().all(|&sum| sum == 0)
+    }
+
+    #[test]
+    fn solids_are_closed_and_as_large_as_geometry_says() {
+        use std::f64::consts::PI;
+        let disc = |segments: usize, radius: f64| {
+            // A regular polygon's area.
+            0.5 * segments as f64 * radius * radius * (2.0 * PI / segments as f64).sin()
+        };
+        let cases = [
+            ("box", Solid::cuboid([1.0, 2.0, 3.0]), 6.0),
+            // A box less twelve triangular prisms, plus what they take twice at the corners.
+            ("bevelled", Solid::bevelled([2.0, 2.0, 2.0], 0.5), 8.0 - 12.0 * 0.125 - 8.0 * 5.0 / 48.0),
+            ("block", Solid::block([2.0, 1.0], [2.0, 1.0], 3.0, 0.0), 6.0),
+            ("cut block", Solid::block([2.0, 2.0], [2.0, 2.0], 1.0, 0.5), 3.5),
+            ("cylinder", Solid::cone(2.0, 2.0, 3.0, 9), 3.0 * disc(9, 2.0)),
+            ("cone", Solid::cone(2.0, 0.0, 3.0, 9), disc(9, 2.0)),
+            ("rod", Solid::rod(dvec3(1.0, 2.0, 3.0), dvec3(1.0, 4.0, 3.0), 0.5, 7), 2.0 * disc(7, 0.5)),
+            ("hoop", Solid::hoop(&[[1.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0]], 12), disc(12, 2.0) - disc(12, 1.0)),
+            ("sector", Solid::sector([1.0, 2.0], [0.0, 1.0], [0.0, 90.0], 3), 0.25 * (disc(12, 2.0) - disc(12, 1.0))),
+            ("slab", Solid::slab(4, 3, |u, v| (dvec3(u, v, 0.1), dvec3(u, v, 0.0))), 0.1),
+        ];
+        for (name, solid, expected) in cases {
+            assert!(is_closed(&solid), "{name}");
+            assert!((volume(&solid) - expected).abs() < 1e-9, "{name}: {} m³, not {expected}", volume(&solid));
+            let mirrored = solid.scaled(-1.0, 1.0, 1.0);
+            assert!((volume(&mirrored) - expected).abs() < 1e-9, "mirrored {name} stays outside out");
+        }
+        for (name, ball) in [("sphere", Solid::sphere(1.0, 48, 32)), ("cube sphere", Solid::cube_sphere(16))] {
+            assert!(is_closed(&ball), "{name}");
+            let share = volume(&ball) / (4.0 / 3.0 * PI);
+            assert!((0.98..1.0).contains(&share), "{name} fills {share} of its ball");
+        }
+    }
+
+    #[test]
+    fn an_open_solid_is_noticed() {
+        let mut open = Solid::cuboid([1.0; 3]);
+        open.faces.pop();
+        assert!(!is_closed(&open));
+    }
+
+    #[test]
+    fn triangles_are_as_many_as_promised() {
+        assert_eq!(Solid::cuboid([1.0; 3]).faces.len(), 12);
+        assert_eq!(Solid::bevelled([1.0; 3], 0.1).faces.len(), 44);
+        assert_eq!(Solid::block([1.0; 2], [1.0; 2], 1.0, 0.1).faces.len(), 28);
+        assert_eq!(Solid::cube_sphere(5).faces.len(), 12 * 25);
+    }
+}

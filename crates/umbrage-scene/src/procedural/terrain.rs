@@ -21,6 +21,13 @@ pub(super) struct Surface<'a> {
     pub(super) cast_shadow: bool,
 }
 
+/// The diagonal that divides a square: from north-west to south-east, or from south-west to north-east.
+#[derive(Clone, Copy)]
+enum Cut {
+    Falling,
+    Rising,
+}
+
 /// A grid of 1/1024 m: coordinates on it are exact in `f32` relative to a tile and in the world, so tiles meet exactly.
 fn on_grid(metres: f64) -> f64 {
     (metres * 1024.0).round() / 1024.0
@@ -78,16 +85,25 @@ impl Terrain {
             (cell, (coordinate - from) / (to - from))
         };
         let ((column, u), (row, v)) = (locate(place.x), locate(place.y));
-        let height = |column, row| self.post(column, row).y;
-        let (here, across) = (height(column, row), height(column + 1, row + 1));
-        // Squares are cut from north-west to south-east, see `tile`.
-        if u >= v {
-            let east = height(column + 1, row);
-            here + (east - here) * u + (across - east) * v
-        } else {
-            let south = height(column, row + 1);
-            here + (across - south) * u + (south - here) * v
+        let [north_west, north_east, south_west, south_east] = self.corners(column, row);
+        match self.cut(column, row) {
+            Cut::Falling if u >= v => north_west + (north_east - north_west) * u + (south_east - north_east) * v,
+            Cut::Falling => north_west + (south_east - south_west) * u + (south_west - north_west) * v,
+            Cut::Rising if u + v <= 1.0 => north_west + (north_east - north_west) * u + (south_west - north_west) * v,
+            Cut::Rising => south_east + (south_west - south_east) * (1.0 - u) + (north_east - south_east) * (1.0 - v),
         }
+    }
+
+    /// Heights of a square's corners: north-west, north-east, south-west, south-east.
+    fn corners(&self, column: usize, row: usize) -> [f64; 4] {
+        let height = |column, row| self.heights[row * self.posts() + column];
+        [height(column, row), height(column + 1, row), height(column, row + 1), height(column + 1, row + 1)]
+    }
+
+    /// The cut that follows the ground's contour lines, so that the crest of a bench is no saw.
+    fn cut(&self, column: usize, row: usize) -> Cut {
+        let [north_west, north_east, south_west, south_east] = self.corners(column, row);
+        if (north_west - south_east).abs() <= (north_east - south_west).abs() { Cut::Falling } else { Cut::Rising }
     }
 
     /// The lowest ground on a circle and in its middle: where something wide has to stand so as not to float.
@@ -130,8 +146,12 @@ impl Terrain {
             for column in 0..across - 1 {
                 let north_west = row * across + column;
                 let (north_east, south_west) = (north_west + 1, north_west + across);
-                primitive.indices.extend([north_west, south_west, south_west + 1]);
-                primitive.indices.extend([north_west, south_west + 1, north_east]);
+                let south_east = south_west + 1;
+                let triangles = match self.cut(first_column + column as usize, first_row + row as usize) {
+                    Cut::Falling => [[north_west, south_west, south_east], [north_west, south_east, north_east]],
+                    Cut::Rising => [[north_west, south_west, north_east], [north_east, south_west, south_east]],
+                };
+                primitive.indices.extend(triangles.as_flattened());
             }
         }
         (Mesh { name: format!("ground {tile_column} {tile_row}"), primitives: vec![primitive] }, origin)

@@ -23,15 +23,15 @@ pub(super) fn standing(at: DVec3, yaw_degrees: f64, scale: f64) -> Trs {
 pub(super) fn robot_war() -> Scene {
     const EDGE_M: f64 = 1200.0;
     let mut stage = stage(World::RobotWar);
-    let sand = stage.paint("packed earth", 0x9C_8F_7A);
+    let sand = stage.paint("packed earth", 0xA2_96_84);
     Terrain::new(EDGE_M, 8, 3, |_| 0.0).place(&mut stage, &Surface { material: sand, tint: None, cast_shadow: false });
 
     let metal = stage.paint("gun metal", 0x4A_4D_52);
     let glass = stage.paint("visor", 0xD8_A2_3A);
     let armours = [
-        stage.paint("rust red armour", 0x8F_4A_3A),
-        stage.paint("olive armour", 0x6B_70_48),
-        stage.paint("steel blue armour", 0x52_68_7C),
+        stage.paint("rust red armour", 0x8C_58_4A),
+        stage.paint("olive armour", 0x74_78_58),
+        stage.paint("steel blue armour", 0x62_72_80),
     ];
     let meshes: Vec<usize> = armours
         .iter()
@@ -64,9 +64,9 @@ pub(super) fn chessboard() -> Scene {
     const SQUARE_M: f64 = 87.5;
     let mut stage = stage(World::Chessboard);
     let light = stage.paint("maple", 0xCB_B6_8C);
-    let dark = stage.paint("walnut", 0x6E_4A_33);
+    let dark = stage.paint("walnut", 0x7A_5A_45);
     let white = stage.paint("boxwood", 0xD9_C3_8F);
-    let black = stage.paint("ebony", 0x3B_31_2C);
+    let black = stage.paint("ebony", 0x5E_50_46);
 
     // Two by two squares are the pattern; 16 of them are the board.
     let pattern = stage.mesh(four_squares(SQUARE_M, [light, dark]));

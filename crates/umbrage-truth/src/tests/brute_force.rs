@@ -172,7 +172,7 @@ proptest! {
 #[test]
 fn a_flat_triangle_far_away_holds_rays_along_an_axis() {
     // An origin whose f64 cannot tell a nanometre: found by the property above when the box walk blurred by that alone.
-    for far in [4.706_968_96e8_f32, -4.706_968_96e8, 1e5, 0.0] {
+    for far in [4.7e8_f32, -4.7e8, 1e5, 0.0] {
         let mut stage = Stage::default();
         let shape = Shape {
             positions: vec![[-1.0, far, 0.0], [1.0, far, 0.0], [0.0, far * 1.000_001, 0.0]],

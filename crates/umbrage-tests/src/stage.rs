@@ -1,0 +1,211 @@
+//! What is drawn and with what: a device, the four worlds and techniques by name.
+
+use std::sync::OnceLock;
+
+use image::GrayAlphaImage;
+use umbrage::{DirectionalLight, Fit, ShadowSettings, Stabilize, View};
+use umbrage_render::{Frame, Gpu, GpuOptions, Outputs, RenderSettings, Rendered, Renderer, Samples};
+use umbrage_scene::procedural::World;
+use umbrage_scene::{Pose, Scene, camera_view, light_direction};
+use umbrage_wgpu::{DepthFormat, Filter};
+
+/// The device that all tests of a binary share, or `None`, said loudly, where there is no adapter.
+///
+/// # Panics
+/// Without an adapter where the environment variable `UMBRAGE_REQUIRE_GPU` is 1.
+pub fn gpu() -> Option<&'static Gpu> {
+    static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
+    GPU.get_or_init(|| match Gpu::new(&GpuOptions::default()) {
+        Ok(gpu) => Some(gpu),
+        Err(error) if std::env::var("UMBRAGE_REQUIRE_GPU").is_ok_and(|value| value == "1") => {
+            panic!("UMBRAGE_REQUIRE_GPU is 1, but {error}")
+        }
+        Err(error) => {
+            eprintln!("SKIPPED: no adapter: {error}");
+            None
+        }
+    })
+    .as_ref()
+}
+
+/// A world at time 0 under its own sun.
+#[derive(Debug)]
+pub struct Stage {
+    /// Which.
+    pub world: World,
+    /// Its geometry.
+    pub scene: Scene,
+    /// At time 0.
+    pub pose: Pose,
+    /// Its sun then.
+    pub sun: DirectionalLight,
+}
+
+impl Stage {
+    /// A world, built when it is first asked for.
+    ///
+    /// # Panics
+    /// If the world has no pose or no sun, which would be a mistake in the world.
+    pub fn of(world: World) -> &'static Self {
+        static STAGES: [OnceLock<Stage>; 4] = [const { OnceLock::new() }; 4];
+        let index = World::ALL.iter().position(|&other| other == world).expect("all worlds are in the list");
+        STAGES[index].get_or_init(|| {
+            let scene = world.build();
+            let pose = scene.pose(0.0).expect("a world has a pose");
+            let travel = light_direction(&scene, &pose, 0).expect("a world has a sun");
+            Self { world, sun: DirectionalLight::new(travel).expect("a direction"), pose, scene }
+        })
+    }
+
+    /// The view of one of the world's cameras.
+    ///
+    /// # Panics
+    /// If the world has no camera of that name.
+    #[must_use]
+    pub fn view(&self, camera: &str, size: [u32; 2]) -> View {
+        let index = self.scene.cameras.iter().position(|other| other.name == camera);
+        let index = index.unwrap_or_else(|| panic!("{} has no camera {camera}", self.world.name()));
+        let aspect = f64::from(size[0]) / f64::from(size[1]);
+        camera_view(&self.scene, &self.pose, index, aspect, None, None).expect("a world's camera is usable")
+    }
+
+    /// A view as a renderer takes it.
+    #[must_use]
+    pub fn frame<'a>(&'a self, view: &'a View, tint: bool) -> Frame<'a> {
+        Frame { pose: &self.pose, view, sun: self.sun, shadows_on: true, tint }
+    }
+
+    /// A technique, ready to draw this world at a size.
+    ///
+    /// # Panics
+    /// If the device cannot hold it.
+    #[must_use]
+    pub fn drawer<'a>(&'a self, gpu: &Gpu, technique: &Technique, size: [u32; 2]) -> Drawer<'a> {
+        let mut settings = technique.settings.clone();
+        settings.size = size;
+        settings.shadows.range = Some(self.world.near_far());
+        let renderer = Renderer::new(gpu, &self.scene, &settings).expect("the device holds a world");
+        Drawer { stage: self, renderer }
+    }
+}
+
+/// A technique that draws a world.
+pub struct Drawer<'a> {
+    /// The world.
+    pub stage: &'a Stage,
+    /// The technique.
+    pub renderer: Renderer,
+}
+
+impl Drawer<'_> {
+    /// Draws a view as if it were the first.
+    ///
+    /// # Panics
+    /// If it cannot be drawn.
+    pub fn draw(&mut self, view: &View, outputs: Outputs, tint: bool) -> Rendered {
+        self.renderer.restart().expect("the settings were accepted before");
+        self.renderer.render(&self.stage.frame(view, tint), outputs).expect("a frame")
+    }
+
+    /// The mask of a view.
+    ///
+    /// # Panics
+    /// If it cannot be drawn.
+    pub fn mask(&mut self, view: &View) -> GrayAlphaImage {
+        let outputs = Outputs { mask: true, ..Outputs::default() };
+        self.draw(view, outputs, false).mask.expect("a mask was asked for")
+    }
+}
+
+/// Shadow settings with a name.
+#[derive(Clone, Debug)]
+pub struct Technique {
+    /// As it stands in tables and file names.
+    pub name: String,
+    /// What it means.
+    pub settings: RenderSettings,
+}
+
+impl Technique {
+    /// PSSM with maps of one size: practical scheme with λ = 0.5, fitted to the scene, not stabilised, one nearest texel, no blend, no
+    /// fade, 32-bit depth: the tightest, hardest and most exact that there is, so that nothing hides an error.
+    #[must_use]
+    pub fn pssm(splits: usize, map_size: u32) -> Self {
+        let shadows = ShadowSettings {
+            map_sizes: vec![map_size; splits],
+            fit: Fit::Dependent,
+            stabilize: Stabilize::None,
+            blend: 0.0,
+            far_fade: 0.0,
+            ..ShadowSettings::default()
+        };
+        let settings = RenderSettings {
+            size: [1, 1],
+            shadows,
+            filter: Filter::Hard,
+            depth_format: DepthFormat::D32Float,
+            samples: Samples::Four,
+        };
+        Self { name: format!("pssm{splits}"), settings }
+    }
+
+    /// One map over the whole range, otherwise as [`Technique::pssm`].
+    #[must_use]
+    pub fn ssm(map_size: u32) -> Self {
+        Self { name: "ssm".to_owned(), ..Self::pssm(1, map_size) }
+    }
+
+    /// What a user gets who chooses nothing: four maps, exact stillness, 3 × 3 filter, blend and fade.
+    #[must_use]
+    pub fn default_of_the_command() -> Self {
+        let mut technique = Self::pssm(4, 1024);
+        technique.settings.shadows = ShadowSettings::default();
+        technique.settings.filter = Filter::Pcf3;
+        Self { name: "default".to_owned(), ..technique }
+    }
+
+    /// With another filter.
+    #[must_use]
+    pub fn filter(mut self, filter: Filter) -> Self {
+        self.settings.filter = filter;
+        self.named(match filter {
+            Filter::Hard => "hard",
+            Filter::Pcf2 => "pcf2",
+            Filter::Pcf3 => "pcf3",
+            Filter::Pcf5 => "pcf5",
+        })
+    }
+
+    /// Stabilised.
+    #[must_use]
+    pub fn exact(mut self) -> Self {
+        self.settings.shadows.stabilize = Stabilize::Exact;
+        self.named("exact")
+    }
+
+    /// Fitted to the slices alone.
+    #[must_use]
+    pub fn independent(mut self) -> Self {
+        self.settings.shadows.fit = Fit::Independent;
+        self.named("independent")
+    }
+
+    /// With 16-bit maps.
+    #[must_use]
+    pub fn d16(mut self) -> Self {
+        self.settings.depth_format = DepthFormat::D16Unorm;
+        self.named("d16")
+    }
+
+    /// With splits that blend into each other and shadows that fade at the far end.
+    #[must_use]
+    pub fn blended(mut self, blend: f64, far_fade: f64) -> Self {
+        (self.settings.shadows.blend, self.settings.shadows.far_fade) = (blend, far_fade);
+        self.named("blend")
+    }
+
+    fn named(mut self, part: &str) -> Self {
+        self.name = format!("{}-{part}", self.name);
+        self
+    }
+}
