@@ -2,8 +2,9 @@
 
 use wesl::{CompileOptions, Mangler, ModulePath, Wesl};
 
-/// The roots in `shaders/pass`; each becomes `OUT_DIR/<name>.wgsl`.
-const ROOTS: [&str; 2] = ["caster", "receiver"];
+/// The roots in `shaders/pass`, whether depth textures can be loaded from, and the file that each becomes in `OUT_DIR`.
+const ROOTS: [(&str, bool, &str); 3] =
+    [("caster", true, "caster"), ("receiver", true, "receiver"), ("receiver", false, "receiver_without_loads")];
 
 fn main() {
     let mut compiler = Wesl::new("shaders");
@@ -16,9 +17,10 @@ fn main() {
         validate: false,
         ..CompileOptions::default()
     });
-    for root in ROOTS {
+    for (root, depth_loads, file) in ROOTS {
+        compiler.set_feature("depth_loads", depth_loads);
         let path: ModulePath = format!("package::pass::{root}").parse().expect("a root's name is a module path");
-        compiler.build_artifact(&path, root);
+        compiler.build_artifact(&path, file);
     }
     println!("cargo::rerun-if-changed=shaders");
 }

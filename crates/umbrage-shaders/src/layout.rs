@@ -17,6 +17,24 @@ pub enum FilterKind {
     Pcf3 = 2,
     /// A tent of five texels in nine hardware taps.
     Pcf5 = 3,
+    /// A tent of seven texels in sixteen hardware taps.
+    Pcf7 = 4,
+    /// A disc of 32 hardware taps.
+    Disc = 5,
+    /// A disc as wide as the penumbra of a sun with a size; without depth loads as [`FilterKind::Disc`].
+    Pcss = 6,
+}
+
+/// How one split goes over into the next, in [`Frame::transition`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum TransitionKind {
+    /// A mix of both over the band.
+    Blend = 0,
+    /// One of both for each pixel of the band, by noise.
+    Dither = 1,
+    /// No band.
+    Hard = 2,
 }
 
 /// One split: where its map lies and which view depths it serves.
@@ -80,6 +98,14 @@ pub struct Frame {
     pub enabled: u32,
     /// 1: answers carry their split's debug colour.
     pub tint: u32,
+    /// Full width of the filter across the light in metres, in every split; 0: as many texels as its kind says.
+    pub filter_width_m: f32,
+    /// tan(a/2) of the sun's angle a across.
+    pub sun_tangent: f32,
+    /// How far the disc's pattern turns from pixel to pixel at most: 0 not at all, 2π all the way. Radians.
+    pub turn_per_pixel: f32,
+    /// A [`TransitionKind`].
+    pub transition: u32,
     /// Up to the alignment of 16 bytes.
     pub _padding: [u32; 2],
     /// The splits, nearest first; those past `split_count` are not read.

@@ -21,6 +21,9 @@
 //! |---|---|
 //! | 0 | uniform [`layout::Split`] |
 
+//!
+//! GL and WebGL2 can compare with a depth texture but not load from it: [`receiver_without_loads`] is for them.
+
 pub mod layout;
 pub mod twin;
 
@@ -29,6 +32,9 @@ pub const CASTER: &str = include_str!(concat!(env!("OUT_DIR"), "/caster.wgsl"));
 
 /// The root `shaders/pass/receiver.wesl`, all but the constant `UMBRAGE_RECEIVER_GROUP`.
 pub const RECEIVER: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver.wgsl"));
+
+/// The same root for devices that cannot load from depth textures: PCSS is an ordinary disc.
+pub const RECEIVER_WITHOUT_LOADS: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver_without_loads.wgsl"));
 
 /// Text to put before a vertex shader that draws casters: `fn umbrage_caster_position(position: vec3f) -> vec4f`.
 #[must_use]
@@ -41,4 +47,10 @@ pub fn caster(group: u32) -> String {
 #[must_use]
 pub fn receiver(group: u32) -> String {
     format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\n{RECEIVER}\n")
+}
+
+/// [`receiver`] for GL and WebGL2, where depth textures cannot be loaded from.
+#[must_use]
+pub fn receiver_without_loads(group: u32) -> String {
+    format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\n{RECEIVER_WITHOUT_LOADS}\n")
 }

@@ -15,7 +15,28 @@ pub fn tent_tap(first: f32, centre: f32, r: f32) -> (f32, f32) {
     let left = first - centre;
     let (below, between, above) = (tent_integral(left, r), tent_integral(left + 1.0, r), tent_integral(left + 2.0, r));
     let weight = above - below;
-    (first + 0.5 + (above - between) / weight, weight)
+    (first + 0.5 + (above - between) / weight.max(1e-9), weight)
+}
+
+/// `filter::half_width` along one axis: half the kernel in texels, from its width and the texel in metres.
+#[must_use]
+pub fn half_width(width_m: f32, texel_m: f32, own: f32, most: f32) -> f32 {
+    if width_m > 0.0 { (0.5 * width_m / texel_m).clamp(1.0, most) } else { own }
+}
+
+/// `filter::vogel`: point `i` of `count` on Vogel's spiral over the unit disc.
+#[must_use]
+pub fn vogel(i: u32, count: u32, turn: f32) -> [f32; 2] {
+    let angle = i as f32 * 2.399_963_2 + turn;
+    let radius = ((i as f32 + 0.5) / count as f32).sqrt();
+    [radius * angle.cos(), radius * angle.sin()]
+}
+
+/// `filter::gradient_noise`: noise in `[0, 1)` of a pixel.
+#[must_use]
+pub fn gradient_noise(pixel: [f32; 2]) -> f32 {
+    let inner = pixel[0] * 0.067_110_56 + pixel[1] * 0.005_837_15;
+    (52.982_918_9 * inner.fract()).fract()
 }
 
 /// `map::from_world`: texels and depth of a position relative to the frame's origin.

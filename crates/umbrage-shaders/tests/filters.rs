@@ -1,7 +1,7 @@
 //! The filters' weights, by property; `umbrage-wgpu` runs the same functions on a GPU and compares.
 
 use proptest::prelude::*;
-use umbrage_shaders::twin::{tent_integral, tent_tap};
+use umbrage_shaders::twin::{gradient_noise, half_width, tent_integral, tent_tap, vogel};
 
 /// A sample's place, biased to texel edges and centres.
 fn place() -> impl Strategy<Value = f32> {
@@ -37,10 +37,18 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
 
     #[test]
-    fn taps_give_each_texel_the_tent_over_it((r, taps) in prop_oneof![Just((1.5, 2)), Just((2.5, 3))], centre in place()) {
+    fn taps_give_each_texel_the_tent_over_it((r, taps) in prop_oneof![
+            Just((1.5, 2)),
+            Just((2.5, 3)),
+            Just((3.5, 4)),
+            // Made narrower by a width in metres: some taps have nothing left.
+            (1.0f32..=1.5).prop_map(|r| (r, 2)),
+            (1.0f32..=2.5).prop_map(|r| (r, 3)),
+            (1.0f32..=3.5).prop_map(|r| (r, 4)),
+        ], centre in place()) {
         let (first, weights) = texel_weights(centre, r, taps);
         // f32 holds a place near 1000 to 6e-5 of a texel, and a tent's integral is no steeper than 1/r.
-        let tolerance = 2e-4;
+        let tolerance = 3e-4;
         prop_assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{weights:?} do not sum to 1");
         for (k, &weight) in weights.iter().enumerate() {
             let left = f64::from(first) + k as f64;
@@ -66,5 +74,36 @@ fn a_centred_tent_of_three_weighs_two_five_two_ninths() {
     let (_, weights) = texel_weights(10.5, 1.5, 2);
     for (weight, exact) in weights.iter().zip([2.0 / 9.0, 5.0 / 9.0, 2.0 / 9.0, 0.0]) {
         assert!((weight - exact).abs() < 1e-6, "{weights:?}");
+    }
+}
+
+#[test]
+fn a_disc_stands_evenly_around_its_middle() {
+    for turn in [0.0, 1.0, -2.5] {
+        let points: Vec<[f32; 2]> = (0..32).map(|i| vogel(i, 32, turn)).collect();
+        let mean = |of: fn(&[f32; 2]) -> f32| points.iter().map(of).sum::<f32>() / 32.0;
+        assert!(points.iter().all(|p| p[0].hypot(p[1]) <= 1.0));
+        assert!(mean(|p| p[0]).abs() < 0.03 && mean(|p| p[1]).abs() < 0.03);
+        // A disc's variance per axis is a quarter of its radius squared.
+        assert!((mean(|p| p[0] * p[0]) - 0.25).abs() < 0.03 && (mean(|p| p[1] * p[1]) - 0.25).abs() < 0.03);
+    }
+}
+
+#[test]
+fn widths_become_texels_within_their_limits() {
+    assert_eq!(half_width(0.0, 0.1, 2.5, 2.5), 2.5);
+    assert_eq!(half_width(0.4, 0.1, 2.5, 15.0), 2.0);
+    assert_eq!(half_width(0.4, 1.0, 2.5, 15.0), 1.0, "never less than a texel");
+    assert_eq!(half_width(40.0, 0.1, 2.5, 15.0), 15.0, "never more than the taps reach");
+}
+
+#[test]
+fn noise_is_even() {
+    let noise: Vec<f32> =
+        (0..64).flat_map(|y| (0..64).map(move |x| gradient_noise([x as f32 + 0.5, y as f32 + 0.5]))).collect();
+    assert!(noise.iter().all(|n| (0.0..1.0).contains(n)));
+    for share in [0.1, 0.5, 0.9] {
+        let below = noise.iter().filter(|n| **n < share).count() as f32 / 4096.0;
+        assert!((below - share).abs() < 0.02, "{below} below {share}");
     }
 }

@@ -44,7 +44,7 @@ fn split_in_rust() -> (usize, Vec<Member>) {
 
 fn frame_in_rust() -> (usize, Vec<Member>) {
     in_rust!(Frame: view_depth_plane, to_light, strength, fade_begin, map_edge, split_count, filter_kind, enabled, tint,
-        splits)
+        filter_width_m, sun_tangent, turn_per_pixel, transition, splits)
 }
 
 #[test]

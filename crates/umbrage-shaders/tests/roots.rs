@@ -31,18 +31,23 @@ fn vertex_shader(group: u32) -> String {
 }
 
 fn fragment_shader(group: u32) -> String {
-    umbrage_shaders::receiver(group)
-        + "@fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
+    umbrage_shaders::receiver(group) + FRAGMENT
+}
+
+fn fragment_shader_without_loads(group: u32) -> String {
+    umbrage_shaders::receiver_without_loads(group) + FRAGMENT
+}
+
+const FRAGMENT: &str = "@fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
                let shadow = umbrage_shadow(position, vec3f(0.0, 1.0, 0.0));
                let one = umbrage_visibility_in_split(position, vec3f(0.0, 1.0, 0.0), 1u);
                return vec4f(shadow.tint * shadow.visibility, one * f32(shadow.split));
-           }"
-}
+           }";
 
 #[test]
 fn roots_are_valid_wgsl_in_any_bind_group() {
     for group in [0, 1, 3] {
-        for source in [vertex_shader(group), fragment_shader(group)] {
+        for source in [vertex_shader(group), fragment_shader(group), fragment_shader_without_loads(group)] {
             let (module, _) = validated(&source);
             let groups: Vec<u32> =
                 module.global_variables.iter().filter_map(|(_, v)| v.binding.map(|b| b.group)).collect();
@@ -54,13 +59,14 @@ fn roots_are_valid_wgsl_in_any_bind_group() {
 #[test]
 fn roots_export_to_webgl2() {
     assert!(to_webgl2(&vertex_shader(0), naga::ShaderStage::Vertex, "vertex").contains("void main"));
-    let text = to_webgl2(&fragment_shader(1), naga::ShaderStage::Fragment, "fragment");
+    let text = to_webgl2(&fragment_shader_without_loads(1), naga::ShaderStage::Fragment, "fragment");
     assert!(text.contains("sampler2DArrayShadow"), "depth maps become shadow samplers");
 }
 
 #[test]
 fn every_name_is_in_our_namespace() {
-    for source in [umbrage_shaders::caster(0), umbrage_shaders::receiver(0)] {
+    for source in [umbrage_shaders::caster(0), umbrage_shaders::receiver(0), umbrage_shaders::receiver_without_loads(0)]
+    {
         let module = naga::front::wgsl::parse_str(&source).expect("a valid root");
         let names = (module.functions.iter().filter_map(|(_, f)| f.name.clone()))
             .chain(module.global_variables.iter().filter_map(|(_, v)| v.name.clone()))
