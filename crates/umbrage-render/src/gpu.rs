@@ -54,6 +54,11 @@ impl Fault {
 }
 
 impl Gpu {
+    /// Whether shaders can load from depth textures: not on GL, where every depth texture is for comparisons only.
+    pub(crate) fn depth_loads(&self) -> bool {
+        self.adapter_info.backend != wgpu::Backend::Gl
+    }
+
     /// Opens the best adapter, or the one that `WGPU_BACKEND`, `WGPU_ADAPTER_NAME` and `WGPU_POWER_PREF` ask for, with the
     /// adapter's own limits and all features that shadows or timing can use.
     ///

@@ -4,7 +4,7 @@ use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
 use umbrage::{Aabb, DirectionalLight, Planner, ShadowPlan, ShadowSettings, View};
 use umbrage_scene::{AlphaMode, Pose, Scene};
-use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMaps, ShadowMapsOptions};
+use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMaps, ShadowMapsOptions, Softness, Transition};
 use web_time::Instant;
 
 use crate::capture::Capture;
@@ -36,6 +36,10 @@ pub struct RenderSettings {
     pub depth_format: DepthFormat,
     /// Samples per pixel of the picture; masks have one always.
     pub samples: Samples,
+    /// How soft edges are.
+    pub softness: Softness,
+    /// How splits meet.
+    pub transition: Transition,
 }
 
 /// What varies from frame to frame.
@@ -83,6 +87,8 @@ pub struct Renderer {
     size: [u32; 2],
     depth_format: DepthFormat,
     samples: Samples,
+    softness: Softness,
+    transition: Transition,
     planner: Planner,
     maps: ShadowMaps,
     scene: Geometry,
@@ -129,6 +135,7 @@ impl Renderer {
         shadows.filter_radius = settings.filter.radius_texels();
         shadows.image_size = settings.size;
         shadows.validate()?;
+        settings.softness.validate()?;
         if let Some((split, &size)) = shadows.map_sizes.iter().enumerate().find(|&(_, &size)| size > limit) {
             return Err(Error::MapSize { split, size, limit });
         }
@@ -152,6 +159,9 @@ impl Renderer {
                     "no depth clip control: near planes of 16-bit maps stand before their first caster".to_owned(),
                 );
             }
+            if settings.filter == Filter::Pcss && !gpu.depth_loads() {
+                notes.push("no loads from depth textures on GL: pcss is a disc of fixed width".to_owned());
+            }
             if !timer.has_timestamps() {
                 notes.push("no timestamp queries: times of the GPU are measured by the CPU's clock".to_owned());
             }
@@ -166,6 +176,8 @@ impl Renderer {
                 casters: Casters::new(gpu, &maps, &materials),
                 forward: Forward::new(gpu, &maps, &materials, settings.samples),
                 samples: settings.samples,
+                softness: settings.softness,
+                transition: settings.transition,
                 probe: Probe::new(gpu, &maps),
                 timer,
                 picture: None,
@@ -381,7 +393,14 @@ impl Renderer {
         let plan = self.planner.plan(view, &frame.sun, &casters, &receivers)?;
         let plan_ms = begun.elapsed().as_secs_f64() * 1e3;
         let plan = plan.clone();
-        let options = FrameOptions { origin, enabled: frame.shadows_on, tint: frame.tint, strength: 1.0 };
+        let options = FrameOptions {
+            origin,
+            enabled: frame.shadows_on,
+            tint: frame.tint,
+            strength: 1.0,
+            softness: self.softness,
+            transition: self.transition,
+        };
         self.maps.prepare(&self.gpu.queue, &plan, &options)?;
         self.skinned.update(&self.gpu, &self.scene_meshes, pose)?;
         self.forward.prepare(&self.gpu, &FrameUniform::new(view, &frame.sun, origin));

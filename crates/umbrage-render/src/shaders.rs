@@ -6,14 +6,18 @@ pub(crate) fn casters() -> String {
 }
 
 /// Bind group 0 is the frame, 1 the material, 2 the shadow maps.
-pub(crate) fn forward() -> String {
-    [&umbrage_wgpu::receiver_wgsl(2), include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl")]
-        .join("\n")
+pub(crate) fn forward(depth_loads: bool) -> String {
+    [&receiver(2, depth_loads), include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl")].join("\n")
 }
 
 /// Bind group 0 is the points, 1 the shadow maps.
-pub(crate) fn probe() -> String {
-    [&umbrage_wgpu::receiver_wgsl(1), include_str!("shaders/probe.wgsl")].join("\n")
+pub(crate) fn probe(depth_loads: bool) -> String {
+    [&receiver(1, depth_loads), include_str!("shaders/probe.wgsl")].join("\n")
+}
+
+/// The library's text for devices that can, or cannot, load from depth textures.
+fn receiver(group: u32, depth_loads: bool) -> String {
+    if depth_loads { umbrage_wgpu::receiver_wgsl(group) } else { umbrage_wgpu::receiver_wgsl_without_loads(group) }
 }
 
 #[cfg(test)]
@@ -49,14 +53,14 @@ mod tests {
 
     #[test]
     fn every_pass_is_valid_wgsl() {
-        for source in [casters(), forward(), probe()] {
+        for source in [casters(), forward(true), probe(true), forward(false), probe(false)] {
             assert!(!parsed(&source).entry_points.is_empty());
         }
     }
 
     #[test]
     fn both_sides_lay_out_their_structs_alike() {
-        let module = parsed(&forward());
+        let module = parsed(&forward(true));
         let frame = offsets!(
             FrameUniform: clip_from_eye, eye, is_orthographic, forward, to_light, ray_center, ray_right, ray_up
         );
@@ -66,7 +70,7 @@ mod tests {
 
     #[test]
     fn a_moved_member_is_noticed() {
-        let module = parsed(&forward().replace("base_color: vec4f,", "base_color: vec4f, more: f32,"));
+        let module = parsed(&forward(true).replace("base_color: vec4f,", "base_color: vec4f, more: f32,"));
         assert_ne!(layout(&module, "Material"), offsets!(MaterialUniform: base_color, emissive, alpha_cutoff));
     }
 }

@@ -7,7 +7,7 @@ use umbrage::{DirectionalLight, Fit, ShadowSettings, Stabilize, View};
 use umbrage_render::{Frame, Gpu, GpuOptions, Outputs, RenderSettings, Rendered, Renderer, Samples};
 use umbrage_scene::procedural::World;
 use umbrage_scene::{Pose, Scene, camera_view, light_direction};
-use umbrage_wgpu::{DepthFormat, Filter};
+use umbrage_wgpu::{DepthFormat, Filter, Softness, Transition};
 
 /// The device that all tests of a binary share, or `None`, said loudly, where there is no adapter.
 ///
@@ -145,6 +145,8 @@ impl Technique {
             filter: Filter::Hard,
             depth_format: DepthFormat::D32Float,
             samples: Samples::Four,
+            softness: Softness::default(),
+            transition: Transition::default(),
         };
         Self { name: format!("pssm{splits}"), settings }
     }
@@ -173,6 +175,9 @@ impl Technique {
             Filter::Pcf2 => "pcf2",
             Filter::Pcf3 => "pcf3",
             Filter::Pcf5 => "pcf5",
+            Filter::Pcf7 => "pcf7",
+            Filter::Disc => "disc",
+            Filter::Pcss => "pcss",
         })
     }
 

@@ -29,6 +29,7 @@
 //! | `umbrage_caster_position(position: vec3f) -> vec4f` | clip position in the split that is drawn |
 //! | `umbrage_visibility(position: vec3f, normal: vec3f) -> f32` | 1 lit, 0 in shadow or turned away |
 //! | `umbrage_shadow(position, normal) -> UmbrageShadow` | the same with `split: i32` (−1: none) and `tint: vec3f` |
+//! | `umbrage_shadow_at_pixel(position, normal, pixel: vec2f) -> UmbrageShadow` | the same for a fragment's `@builtin(position).xy`: for dithered borders and turned discs |
 //! | `umbrage_visibility_in_split(position, normal, split: u32) -> f32` | what one map alone says, for points off screen |
 //!
 //! They need no derivatives and work in any control flow and in every stage. The two texts belong into two shader modules:
@@ -42,5 +43,5 @@ mod wgsl;
 
 pub use error::{Error, Result};
 pub use maps::{ShadowMaps, optional_features};
-pub use options::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions};
-pub use wgsl::{caster_wgsl, receiver_wgsl};
+pub use options::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions, Softness, Transition};
+pub use wgsl::{caster_wgsl, receiver_wgsl, receiver_wgsl_without_loads};

@@ -1,7 +1,7 @@
 //! What is settled when the maps are made, and what may change with every frame.
 
 use glam::DVec3;
-use umbrage_shaders::layout::FilterKind;
+use umbrage_shaders::layout::{FilterKind, TransitionKind};
 
 use crate::{Error, Result};
 
@@ -55,10 +55,18 @@ pub enum Filter {
     Pcf3,
     /// A tent of five texels in nine hardware taps.
     Pcf5,
+    /// A tent of seven texels in sixteen hardware taps.
+    Pcf7,
+    /// A disc in 32 hardware taps, of a radius of 3 texels or of [`Softness::width_m`].
+    Disc,
+    /// A disc as wide as the penumbra of a sun of [`Softness::sun_angle`], found from 32 texels around the receiver. On GL, where depth
+    /// cannot be loaded, it is [`Filter::Disc`]. Where casters are flattened onto the near plane
+    /// (`umbrage::ShadowSettings::depth_clamp`) they seem nearer than they are and penumbrae come out too narrow.
+    Pcss,
 }
 
 impl Filter {
-    /// How far the filter reaches from the sample, in texels: what `umbrage::ShadowSettings::filter_radius` wants.
+    /// How far the filter reaches from the sample at most, in texels: what `umbrage::ShadowSettings::filter_radius` wants.
     #[must_use]
     pub const fn radius_texels(self) -> f64 {
         match self {
@@ -66,7 +74,16 @@ impl Filter {
             Self::Pcf2 => 1.0,
             Self::Pcf3 => 1.5,
             Self::Pcf5 => 2.5,
+            Self::Pcf7 => 3.5,
+            // The widest disc, 15 texels, and the reach of a tap on its rim.
+            Self::Disc | Self::Pcss => 16.0,
         }
+    }
+
+    /// Whether [`Softness::width_m`] changes it: what is one texel, one tap, or as wide as a penumbra, has no width of its own.
+    #[must_use]
+    pub const fn has_width(self) -> bool {
+        matches!(self, Self::Pcf3 | Self::Pcf5 | Self::Pcf7 | Self::Disc)
     }
 
     /// The smallest map that holds the filter once, in texels.
@@ -76,6 +93,8 @@ impl Filter {
             Self::Pcf2 => 3,
             Self::Pcf3 => 4,
             Self::Pcf5 => 6,
+            Self::Pcf7 => 8,
+            Self::Disc | Self::Pcss => 33,
         }
     }
 
@@ -85,13 +104,86 @@ impl Filter {
             Self::Pcf2 => FilterKind::Pcf2,
             Self::Pcf3 => FilterKind::Pcf3,
             Self::Pcf5 => FilterKind::Pcf5,
+            Self::Pcf7 => FilterKind::Pcf7,
+            Self::Disc => FilterKind::Disc,
+            Self::Pcss => FilterKind::Pcss,
         }
     }
 
     pub(crate) fn sampler_mode(self) -> wgpu::FilterMode {
         match self {
             Self::Hard => wgpu::FilterMode::Nearest,
-            Self::Pcf2 | Self::Pcf3 | Self::Pcf5 => wgpu::FilterMode::Linear,
+            _ => wgpu::FilterMode::Linear,
+        }
+    }
+}
+
+/// How soft edges are, for filters that leave a choice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Softness {
+    /// Full width of the filter across the light in metres, the same in every split, so that an edge is as soft on both sides of a
+    /// border; `None`: as many texels as the filter's name says. Where it asks for less than two texels it gets two, and for more
+    /// than the filter reaches ([`Filter::radius_texels`]) that. For the filters that [`Filter::has_width`] names.
+    pub width_m: Option<f32>,
+    /// Angle in radians across the sun, for [`Filter::Pcss`]: 0 to a right angle. The real one is 0.0093 (0.53°) wide.
+    pub sun_angle: f32,
+    /// Whether the pattern of a disc turns from pixel to pixel, which makes noise out of bands. Needs
+    /// `umbrage_shadow_at_pixel`.
+    pub turned: bool,
+}
+
+impl Softness {
+    /// Angle across the sun as seen from the earth, radians.
+    pub const SUN: f32 = 0.0093;
+}
+
+impl Default for Softness {
+    fn default() -> Self {
+        Self { width_m: None, sun_angle: Self::SUN, turned: false }
+    }
+}
+
+impl Softness {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`Error::InvalidFrameOption`] naming the first field that is wrong.
+    pub fn validate(&self) -> Result<()> {
+        if let Some(width) = self.width_m
+            && !(width > 0.0 && width.is_finite())
+        {
+            let value = f64::from(width);
+            return Err(Error::InvalidFrameOption { field: "width_m", value, expected: "finite metres above 0" });
+        }
+        if !(0.0..=std::f32::consts::FRAC_PI_2).contains(&self.sun_angle) {
+            return Err(Error::InvalidFrameOption {
+                field: "sun_angle",
+                value: f64::from(self.sun_angle),
+                expected: "radians from 0 to a right angle",
+            });
+        }
+        Ok(())
+    }
+}
+
+/// How one split goes over into the next, over the band that `umbrage::ShadowSettings::blend` gives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Transition {
+    /// Both are asked and mixed.
+    #[default]
+    Blend,
+    /// Each pixel asks one of both, chosen by noise: half the samples. Needs `umbrage_shadow_at_pixel`.
+    Dither,
+    /// Each pixel asks the split of its view depth.
+    Hard,
+}
+
+impl Transition {
+    pub(crate) fn kind(self) -> TransitionKind {
+        match self {
+            Self::Blend => TransitionKind::Blend,
+            Self::Dither => TransitionKind::Dither,
+            Self::Hard => TransitionKind::Hard,
         }
     }
 }
@@ -126,11 +218,22 @@ pub struct FrameOptions {
     pub tint: bool,
     /// How dark a shadow is, 0 (not at all) to 1 (no light).
     pub strength: f32,
+    /// How soft edges are.
+    pub softness: Softness,
+    /// How splits meet.
+    pub transition: Transition,
 }
 
 impl Default for FrameOptions {
     fn default() -> Self {
-        Self { origin: DVec3::ZERO, enabled: true, tint: false, strength: 1.0 }
+        Self {
+            origin: DVec3::ZERO,
+            enabled: true,
+            tint: false,
+            strength: 1.0,
+            softness: Softness::default(),
+            transition: Transition::default(),
+        }
     }
 }
 
@@ -150,6 +253,6 @@ impl FrameOptions {
                 expected: "in 0..=1",
             });
         }
-        Ok(())
+        self.softness.validate()
     }
 }

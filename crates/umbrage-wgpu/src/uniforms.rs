@@ -1,5 +1,7 @@
 //! From a plan in `f64` world metres to the uniforms in `f32` relative to the frame's origin.
 
+use std::f32::consts::TAU;
+
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use umbrage::ShadowPlan;
 use umbrage_shaders::layout;
@@ -70,6 +72,10 @@ pub(crate) fn frame(
         filter_kind: maps.filter.kind() as u32,
         enabled: options.enabled.into(),
         tint: options.tint.into(),
+        filter_width_m: options.softness.width_m.unwrap_or(0.0),
+        sun_tangent: (0.5 * options.softness.sun_angle).tan(),
+        turn_per_pixel: if options.softness.turned { TAU } else { 0.0 },
+        transition: options.transition.kind() as u32,
         ..layout::Frame::default()
     };
     for (index, ((uniform, split), viewport)) in frame.splits.iter_mut().zip(&plan.splits).zip(viewports).enumerate() {

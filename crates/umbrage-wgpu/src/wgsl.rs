@@ -13,3 +13,10 @@ pub fn caster_wgsl(group: u32) -> String {
 pub fn receiver_wgsl(group: u32) -> String {
     umbrage_shaders::receiver(group)
 }
+
+/// [`receiver_wgsl`] for GL and WebGL2, where depth textures cannot be loaded from: [`crate::Filter::Pcss`] is then
+/// [`crate::Filter::Disc`].
+#[must_use]
+pub fn receiver_wgsl_without_loads(group: u32) -> String {
+    umbrage_shaders::receiver_without_loads(group)
+}

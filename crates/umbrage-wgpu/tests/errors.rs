@@ -5,7 +5,11 @@ mod common;
 use common::{Gpu, plan};
 use glam::DVec3;
 use umbrage::ShadowPlan;
-use umbrage_wgpu::{DepthFormat, Error, Filter, FrameOptions, ShadowMaps, ShadowMapsOptions};
+use umbrage_wgpu::{DepthFormat, Error, Filter, FrameOptions, ShadowMaps, ShadowMapsOptions, Softness};
+
+fn soft(softness: Softness) -> FrameOptions {
+    FrameOptions { softness, ..Default::default() }
+}
 
 fn options(map_sizes: &[u32], filter: Filter) -> ShadowMapsOptions {
     ShadowMapsOptions { map_sizes: map_sizes.to_vec(), depth_format: DepthFormat::D32Float, filter }
@@ -96,6 +100,13 @@ fn plans_and_frames_that_make_no_sense() {
         ("origin", FrameOptions { origin: DVec3::new(f64::INFINITY, 0.0, 0.0), ..Default::default() }),
         ("strength", FrameOptions { strength: f32::NAN, ..Default::default() }),
         ("strength", FrameOptions { strength: 1.5, ..Default::default() }),
+        ("width_m", soft(Softness { width_m: Some(0.0), ..Default::default() })),
+        ("width_m", soft(Softness { width_m: Some(-1.0), ..Default::default() })),
+        ("width_m", soft(Softness { width_m: Some(f32::NAN), ..Default::default() })),
+        ("width_m", soft(Softness { width_m: Some(f32::INFINITY), ..Default::default() })),
+        ("sun_angle", soft(Softness { sun_angle: -0.01, ..Default::default() })),
+        ("sun_angle", soft(Softness { sun_angle: f32::NAN, ..Default::default() })),
+        ("sun_angle", soft(Softness { sun_angle: 2.0, ..Default::default() })),
     ] {
         match maps.prepare(&gpu.queue, &good, &frame) {
             Err(Error::InvalidFrameOption { field, .. }) => assert_eq!(field, name),

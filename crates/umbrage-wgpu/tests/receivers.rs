@@ -73,14 +73,14 @@ fn check_box(light: DVec3, shadow_length: f32, filter: Filter, depth_format: Dep
 
 #[test]
 fn a_box_under_the_zenith_sun_shades_its_footprint() {
-    for filter in [Filter::Hard, Filter::Pcf2, Filter::Pcf3, Filter::Pcf5] {
+    for filter in [Filter::Hard, Filter::Pcf2, Filter::Pcf3, Filter::Pcf5, Filter::Pcf7, Filter::Disc, Filter::Pcss] {
         check_box(DOWN, 0.0, filter, DepthFormat::D32Float);
     }
 }
 
 #[test]
 fn a_box_under_a_slanted_sun_throws_its_height() {
-    for filter in [Filter::Hard, Filter::Pcf2, Filter::Pcf3, Filter::Pcf5] {
+    for filter in [Filter::Hard, Filter::Pcf2, Filter::Pcf3, Filter::Pcf5, Filter::Pcf7, Filter::Disc, Filter::Pcss] {
         check_box(SLANTED, 2.0, filter, DepthFormat::D32Float);
     }
 }
@@ -99,7 +99,7 @@ fn planes_do_not_shade_themselves() {
     let Some(gpu) = Gpu::new() else { return };
     let mut count = 0;
     let mut gpu = Some(gpu);
-    for filter in [Filter::Hard, Filter::Pcf2, Filter::Pcf3, Filter::Pcf5] {
+    for filter in [Filter::Hard, Filter::Pcf2, Filter::Pcf3, Filter::Pcf5, Filter::Pcf7, Filter::Disc, Filter::Pcss] {
         let mut world = World::new(
             gpu.take().or_else(Gpu::new).expect("there was one"),
             &options(&[128], filter, DepthFormat::D32Float),

@@ -5,7 +5,7 @@ mod common;
 use common::{Gpu, World, ask, plan};
 use glam::{DVec3, Vec3};
 use umbrage_shaders::{layout, twin};
-use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions, receiver_wgsl};
+use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions, receiver_wgsl, receiver_wgsl_without_loads};
 
 /// Numbers in [0, 1) from a linear congruential generator (Knuth's constants).
 fn random() -> impl FnMut() -> f32 {
@@ -25,14 +25,14 @@ fn tent_taps_agree() {
            @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
                if id.x >= arrayLength(&input) { return; }
                let it = input[id.x];
-               let tap = umbrage_filter_tent_tap(vec2f(it.x), vec2f(it.y), it.z);
-               output[id.x] = vec4f(tap.texel.x, tap.weight.x, umbrage_filter_tent_integral(vec2f(it.w), it.z).x, 0.0);
+               let tap = umbrage_filter_tent_tap(vec2f(it.x), vec2f(it.y), vec2f(it.z));
+               output[id.x] = vec4f(tap.texel.x, tap.weight.x, umbrage_filter_tent_integral(vec2f(it.w), vec2f(it.z)).x, 0.0);
            }";
     let mut next = random();
     let input: Vec<[f32; 4]> = (0..20_000)
         .map(|i| {
             // Every tap of every kernel, at places that include texel edges and centres.
-            let r = [1.5f32, 2.5][i % 2];
+            let r = [1.5f32, 2.5, 3.5, 1.0 + 2.5 * next()][i % 4];
             let centre = if i % 3 == 0 { (next() * 2048.0).floor() / 2.0 } else { next() * 1024.0 };
             let tap = (next() * (r + 0.5)).floor();
             [(centre - r).floor() + 2.0 * tap, centre, r, 8.0 * next() - 4.0]
@@ -58,11 +58,45 @@ fn filters_reach_as_far_as_they_say() {
            @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
                if id.x < arrayLength(&input) { output[id.x] = umbrage_filter_radius(input[id.x]); }
            }";
-    let kinds =
-        [layout::FilterKind::Hard, layout::FilterKind::Pcf2, layout::FilterKind::Pcf3, layout::FilterKind::Pcf5];
-    let radii: Vec<f32> = gpu.compute(&source, &kinds.map(|kind| kind as u32), None);
-    for (radius, filter) in radii.iter().zip([Filter::Hard, Filter::Pcf2, Filter::Pcf3, Filter::Pcf5]) {
+    let filters = [
+        (layout::FilterKind::Hard, Filter::Hard),
+        (layout::FilterKind::Pcf2, Filter::Pcf2),
+        (layout::FilterKind::Pcf3, Filter::Pcf3),
+        (layout::FilterKind::Pcf5, Filter::Pcf5),
+        (layout::FilterKind::Pcf7, Filter::Pcf7),
+        (layout::FilterKind::Disc, Filter::Disc),
+        (layout::FilterKind::Pcss, Filter::Pcss),
+    ];
+    let radii: Vec<f32> = gpu.compute(&source, &filters.map(|(kind, _)| kind as u32), None);
+    for (radius, (_, filter)) in radii.iter().zip(filters) {
         assert_eq!(f64::from(*radius), filter.radius_texels(), "{filter:?}");
+    }
+}
+
+#[test]
+fn discs_widths_and_noise_agree() {
+    let Some(gpu) = Gpu::new() else { return };
+    let source = umbrage_shaders::receiver(1)
+        + "@group(0) @binding(0) var<storage, read> input: array<vec4f>;
+           @group(0) @binding(1) var<storage, read_write> output: array<vec4f>;
+           @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
+               if id.x >= arrayLength(&input) { return; }
+               let it = input[id.x];
+               let point = umbrage_filter_vogel(u32(it.x), 32u, it.y);
+               let wide = umbrage_filter_half_width(it.z, vec2f(it.w), 2.5, 15.0).x;
+               output[id.x] = vec4f(point, wide, umbrage_filter_gradient_noise(vec2f(it.x + 0.5, it.x * 2.0 + 0.5)));
+           }";
+    let mut next = random();
+    let input: Vec<[f32; 4]> = (0..4096u16)
+        .map(|i| [f32::from(i % 32), 6.0 * next() - 3.0, if i % 5 == 0 { 0.0 } else { 2.0 * next() }, 0.01 + next()])
+        .collect();
+    let output: Vec<[f32; 4]> = gpu.compute(&source, &input, None);
+    for (&[i, turn, width, texel], &[x, y, wide, noise]) in input.iter().zip(&output) {
+        let [twin_x, twin_y] = twin::vogel(i as u32, 32, turn);
+        // Sines of angles up to 80: WGSL promises 2^-11 near 0 and nothing beyond; drivers keep 1e-4.
+        assert!((x - twin_x).abs() < 1e-3 && (y - twin_y).abs() < 1e-3, "{x} {y}, {twin_x} {twin_y}");
+        assert!((wide - twin::half_width(width, texel, 2.5, 15.0)).abs() < 1e-4);
+        assert!((noise - twin::gradient_noise([i + 0.5, i * 2.0 + 0.5])).abs() < 1e-3);
     }
 }
 
@@ -101,5 +135,6 @@ fn selection_agrees_at_and_around_every_border() {
 #[test]
 fn texts_for_the_app_are_the_shaders_crate_s() {
     assert_eq!(receiver_wgsl(3), umbrage_shaders::receiver(3));
+    assert_eq!(receiver_wgsl_without_loads(3), umbrage_shaders::receiver_without_loads(3));
     assert_eq!(umbrage_wgpu::caster_wgsl(1), umbrage_shaders::caster(1));
 }

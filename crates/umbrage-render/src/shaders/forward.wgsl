@@ -49,7 +49,7 @@ fn geometric_normal(from_eye: vec3f) -> vec3f {
 // Red: visibility of the sun at the pixel's centre. Green: 1, a surface is here.
 @fragment
 fn fs_mask_opaque(in: Surface) -> @location(0) vec2f {
-    return mask_at(in.position, geometric_normal(in.from_eye));
+    return mask_at(in, geometric_normal(in.from_eye));
 }
 
 @fragment
@@ -58,14 +58,14 @@ fn fs_mask_masked(in: Surface) -> @location(0) vec2f {
     if tested_alpha(in.uv, in.color.a) < material.alpha_cutoff {
         discard;
     }
-    return mask_at(in.position, normal);
+    return mask_at(in, normal);
 }
 
-fn mask_at(position: vec3f, normal: vec3f) -> vec2f {
+fn mask_at(in: Surface, normal: vec3f) -> vec2f {
     if dot(normal, frame.to_light) <= 0.0 {
         return vec2f(0.0, 1.0);
     }
-    return vec2f(umbrage_visibility(position, normal), 1.0);
+    return vec2f(umbrage_shadow_at_pixel(in.position, normal, in.clip.xy).visibility, 1.0);
 }
 
 @fragment
@@ -101,7 +101,7 @@ fn base_color(in: Surface) -> vec4f {
 fn shaded(in: Surface, front: bool, base: vec4f) -> vec3f {
     let geometric = geometric_normal(in.from_eye);
     let smooth_normal = normalize(select(-in.normal, in.normal, front));
-    let shadow = umbrage_shadow(in.position, lookup_normal(geometric));
+    let shadow = umbrage_shadow_at_pixel(in.position, lookup_normal(geometric), in.clip.xy);
     let sun = SUN * max(dot(smooth_normal, frame.to_light), 0.0) * shadow.visibility;
     // Brighter on the sun's side of the sky, so that corners can be told apart in the shade.
     let side = 1.0 + 0.15 * dot(smooth_normal, frame.to_light);
