@@ -103,7 +103,7 @@ pub struct TruthArgs {
     /// Accepted and ignored: rays need none of it.
     #[command(flatten)]
     pub shadows: ShadowArgs,
-    /// Write the exact visibility mask here (PNG, grey and alpha)
+    /// Write the exact visibility mask here (PNG, grey and alpha); soft with --sun-angle, by 256 directions
     #[arg(short = 'o', long = "output", value_name = "MASK", help_heading = "Output")]
     pub mask: PathBuf,
     /// Write scene, camera, sun and times here (JSON)
@@ -201,6 +201,10 @@ pub struct SceneArgs {
     /// The way light travels; any length
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Light")]
     pub sun: Option<DVec3>,
+    /// Angle across the sun in degrees: what --filter pcss and the exact soft mask of `umbrage truth` go by
+    /// [default: 0.53 for pcss; the exact mask is hard]
+    #[arg(long, value_name = "DEGREES", value_parser = parse::sun_angle, allow_hyphen_values = true, help_heading = "Light")]
+    pub sun_angle: Option<f64>,
 }
 
 /// How shadows are made.
@@ -246,6 +250,12 @@ pub struct ShadowArgs {
     /// How a map is looked up
     #[arg(long, value_enum, default_value_t)]
     pub filter: Filter,
+    /// Full width of the filter in metres, the same in every split: for pcf3, pcf5, pcf7 and disc [default: in texels]
+    #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true)]
+    pub filter_width: Option<f64>,
+    /// How one split goes over into the next
+    #[arg(long, value_enum, default_value_t)]
+    pub transition: Transition,
     /// Share of each split over which it blends into the next; 0 is off
     #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
     pub blend: f64,
@@ -365,6 +375,24 @@ pub enum Filter {
     Pcf3,
     /// 5×5
     Pcf5,
+    /// 7×7
+    Pcf7,
+    /// A disc of 32 taps
+    Disc,
+    /// As wide as the penumbra of a sun of --sun-angle
+    Pcss,
+}
+
+/// `--transition`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Transition {
+    /// Both are mixed over the band of --blend
+    #[default]
+    Blend,
+    /// Each pixel of the band takes one of both, by noise
+    Dither,
+    /// No band
+    Hard,
 }
 
 /// `--depth-format`.

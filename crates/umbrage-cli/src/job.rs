@@ -45,6 +45,8 @@ pub struct SceneJob {
     pub far: Option<f64>,
     /// The light.
     pub sun: SunChoice,
+    /// `--sun-angle`, degrees across the sun.
+    pub sun_angle: Option<f64>,
 }
 
 /// How the eye was chosen.
@@ -92,6 +94,10 @@ pub struct ShadowJob {
     pub settings: ShadowSettings,
     /// `--filter`.
     pub filter: args::Filter,
+    /// `--filter-width`, metres.
+    pub filter_width: Option<f64>,
+    /// `--transition`.
+    pub transition: args::Transition,
     /// `--depth-format`.
     pub depth_format: args::DepthFormat,
     /// `--tint`.
@@ -141,6 +147,7 @@ impl SceneJob {
             near,
             far,
             sun,
+            sun_angle: args.sun_angle,
         })
     }
 
@@ -221,10 +228,18 @@ impl ShadowJob {
             image_size,
         };
         settings.validate()?;
+        if args.filter_width.is_some() && !wgpu_filter(args.filter).has_width() {
+            return Err(Failure::input(format!(
+                "--filter-width: --filter {} has no width to choose; leave it away, or use pcf3, pcf5, pcf7 or disc",
+                typed_name(args.filter)
+            )));
+        }
         Ok(Self {
             technique: args.technique,
             settings,
             filter: args.filter,
+            filter_width: args.filter_width,
+            transition: args.transition,
             depth_format: args.depth_format,
             tint: args.tint,
             shadows_on: args.shadows == args::Switch::On,
@@ -232,6 +247,26 @@ impl ShadowJob {
             stabilize,
             warps,
         })
+    }
+
+    /// How soft edges are under a sun of this angle in degrees.
+    #[must_use]
+    pub fn softness(&self, sun_angle: Option<f64>) -> umbrage_wgpu::Softness {
+        umbrage_wgpu::Softness {
+            width_m: self.filter_width.map(|width| width as f32),
+            sun_angle: sun_angle.map_or(umbrage_wgpu::Softness::SUN, |degrees| degrees.to_radians() as f32),
+            turned: false,
+        }
+    }
+
+    /// How splits meet.
+    #[must_use]
+    pub fn transition(&self) -> umbrage_wgpu::Transition {
+        match self.transition {
+            args::Transition::Blend => umbrage_wgpu::Transition::Blend,
+            args::Transition::Dither => umbrage_wgpu::Transition::Dither,
+            args::Transition::Hard => umbrage_wgpu::Transition::Hard,
+        }
     }
 }
 
@@ -243,6 +278,9 @@ pub fn wgpu_filter(filter: args::Filter) -> umbrage_wgpu::Filter {
         args::Filter::Pcf2 => umbrage_wgpu::Filter::Pcf2,
         args::Filter::Pcf3 => umbrage_wgpu::Filter::Pcf3,
         args::Filter::Pcf5 => umbrage_wgpu::Filter::Pcf5,
+        args::Filter::Pcf7 => umbrage_wgpu::Filter::Pcf7,
+        args::Filter::Disc => umbrage_wgpu::Filter::Disc,
+        args::Filter::Pcss => umbrage_wgpu::Filter::Pcss,
     }
 }
 

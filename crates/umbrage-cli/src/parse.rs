@@ -47,6 +47,12 @@ pub fn field_of_view(text: &str) -> Result<f64, String> {
     }
 }
 
+/// The sun's angle in degrees, 0 to 90.
+pub fn sun_angle(text: &str) -> Result<f64, String> {
+    let angle = number(text)?;
+    if (0.0..=90.0).contains(&angle) { Ok(angle) } else { Err(format!("{angle} degrees; give an angle from 0 to 90")) }
+}
+
 /// `x,y,z`, three finite numbers.
 pub fn vector(text: &str) -> Result<DVec3, String> {
     match numbers(text)?[..] {
@@ -193,6 +199,10 @@ mod tests {
         for bad in ["", "tsm,", "TSM", "warp"] {
             assert!(warp_list(bad).is_err(), "{bad}");
         }
+        for bad in ["-1", "90.5", "nan", "inf", "wide"] {
+            assert!(sun_angle(bad).is_err(), "{bad}");
+        }
+        assert_eq!((sun_angle("0"), sun_angle("0.53")), (Ok(0.0), Ok(0.53)));
         for bad in ["0", "180", "-60", "nan"] {
             assert!(field_of_view(bad).is_err(), "{bad}");
         }

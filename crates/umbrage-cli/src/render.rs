@@ -77,6 +77,8 @@ impl<'a> Studio<'a> {
             filter: wgpu_filter(shadows.filter),
             depth_format: wgpu_depth_format(shadows.depth_format),
             samples: umbrage_render::Samples::default(),
+            softness: shadows.softness(job.sun_angle),
+            transition: shadows.transition(),
         };
         let renderer = Renderer::new(&gpu, &stage.scene, &settings)?;
         Ok(Self { renderer, shadows, adapter: adapter::description(&gpu) })

@@ -1,8 +1,8 @@
-//! `umbrage truth`: the mask by rays.
+//! `umbrage truth`: the mask by rays, hard or under a sun with a size.
 
 use std::time::Instant;
 
-use umbrage_truth::Truth;
+use umbrage_truth::{SunDisc, Truth};
 
 use crate::{
     args::TruthArgs,
@@ -14,6 +14,15 @@ use crate::{
     report::{TruthReport, TruthTimesMs, to_json},
     stage::Stage,
 };
+
+/// Directions by which a sun with a size is looked at.
+const SOFT_SAMPLES: u32 = 256;
+
+/// The sun's disc of an angle in degrees; a sun of 0 degrees is a point and throws hard shadows.
+#[must_use]
+pub fn sun_disc(degrees: f64) -> Option<SunDisc> {
+    (degrees > 0.0).then(|| SunDisc::new(degrees.to_radians(), SOFT_SAMPLES))
+}
 
 /// Runs the subcommand.
 pub fn run(args: &TruthArgs) -> Result<()> {
@@ -32,8 +41,17 @@ pub fn run(args: &TruthArgs) -> Result<()> {
         let mask = truth.mask(&shot.view, stage.sun.direction(), job.size, &|share| {
             progress::set_fraction(&bar, (k as f32 + share) / count);
         })?;
+        let image = match job.sun_angle.and_then(sun_disc) {
+            Some(disc) => {
+                let soft = truth.soft(&mask, &disc, &|share| {
+                    progress::set_fraction(&bar, (k as f32 + share) / count);
+                })?;
+                soft.to_image()
+            }
+            None => mask.to_image(),
+        };
         let rays = began.elapsed();
-        staged.file(&numbered_file(&args.mask, shot.frame), png(&mask.to_image())?)?;
+        staged.file(&numbered_file(&args.mask, shot.frame), png(&image)?)?;
         if let Some(path) = &args.report {
             let report = TruthReport {
                 shot: stage.report(&job, shot),

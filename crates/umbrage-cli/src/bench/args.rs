@@ -74,6 +74,7 @@ impl BenchArgs {
             eye_height: 2.0,
             light: None,
             sun: self.sun,
+            sun_angle: None,
         }
     }
 }

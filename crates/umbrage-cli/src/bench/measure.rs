@@ -45,6 +45,8 @@ pub fn measure(
             filter: wgpu_filter(technique.job.filter),
             depth_format: wgpu_depth_format(technique.job.depth_format),
             samples,
+            softness: technique.job.softness(None),
+            transition: technique.job.transition(),
         };
         renderers.push(Renderer::new(gpu, &stage.scene, &settings)?);
     }

@@ -109,6 +109,10 @@ pub struct CompareArgs {
     /// The own sun: the way light travels; any length
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Shots")]
     pub sun: Option<DVec3>,
+    /// Angle across the sun in degrees: techniques with pcss go by it, and soft masks are scored beside hard ones
+    /// [default: 0.53 for pcss, no soft scores]
+    #[arg(long, value_name = "DEGREES", value_parser = parse::sun_angle, allow_hyphen_values = true, help_heading = "Shots")]
+    pub sun_angle: Option<f64>,
     /// Suns that every camera is seen under, see below [default: own]
     #[arg(long, value_name = "SUN,…", value_delimiter = ',', value_parser = super::shots::sun_spec, allow_hyphen_values = true, help_heading = "Shots")]
     pub suns: Vec<SunSpec>,
@@ -174,6 +178,7 @@ impl CompareArgs {
             eye_height: self.eye_height,
             light: self.light.clone(),
             sun: self.sun,
+            sun_angle: self.sun_angle,
         }
     }
 }

@@ -7,14 +7,14 @@ use umbrage::{ShadowPlan, Split, View};
 use umbrage_render::FrameStats;
 use umbrage_scene::Pose;
 use umbrage_truth::{
-    Hit, Truth, TruthMask,
+    Hit, SoftTruth, Truth, TruthMask,
     scores::{
         Answers, ByDepth, Domain, Footprint, TexelGradient, by_depth, edge_distance, mis_shadowed, similarity,
-        texel_footprint,
+        soft_error, texel_footprint,
     },
 };
 
-use crate::failure::Result;
+use crate::{failure::Result, truth::sun_disc};
 
 /// Neighbouring pixels whose depths differ by this share, or whose normals' cosine is less than [`SAME_NORMAL`], do not lie on one
 /// surface.
@@ -33,6 +33,8 @@ pub struct Judged {
     pub truth: TruthMask,
     /// What is scored.
     pub domain: Domain,
+    /// The truth under a sun with a size.
+    pub soft: Option<SoftTruth>,
 }
 
 impl Judged {
@@ -50,7 +52,19 @@ impl Judged {
     ) -> Result<Self> {
         let mask = truth.mask(view, sun.direction(), size, &|_| {})?;
         let domain = Domain::new(&mask, range.unwrap_or_else(|| range_of(view, pose)))?;
-        Ok(Self { view: *view, truth: mask, domain })
+        Ok(Self { view: *view, truth: mask, domain, soft: None })
+    }
+
+    /// Adds the truth under a sun that is so many degrees across; nothing for none and for 0.
+    ///
+    /// # Errors
+    /// [`crate::failure::Failure::Input`] for an angle out of range.
+    pub fn soften(&mut self, truth: &Truth, sun_angle: Option<f64>) -> Result<()> {
+        self.soft = match sun_angle.and_then(sun_disc) {
+            Some(disc) => Some(truth.soft(&self.truth, &disc, &|_| {})?),
+            None => None,
+        };
+        Ok(())
     }
 
     fn hit(&self, pixel: usize) -> Option<&Hit> {
@@ -93,6 +107,12 @@ pub struct Scores {
     pub flip: Option<f64>,
     /// SSIM against the truth's mask; beside, never gating.
     pub ssim: Option<f64>,
+    /// E_soft, with --sun-angle: mean difference from the share of the sun that is seen.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub e_soft: Option<f64>,
+    /// E_pen: the same over penumbrae.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub e_pen: Option<f64>,
     /// What it cost.
     pub cost: Cost,
     /// View depths of the planes, metres.
@@ -181,7 +201,10 @@ pub fn decisions(judged: &Judged, answers: &Answers) -> Result<Scores> {
     let rates = mis_shadowed(domain, answers)?;
     let depths = by_depth(domain, answers)?;
     let distance = edge_distance(domain, answers)?;
+    let soft = judged.soft.as_ref().map(|soft| soft_error(domain, soft, answers)).transpose()?;
     Ok(Scores {
+        e_soft: soft.map(|soft| soft.whole),
+        e_pen: soft.and_then(|soft| soft.penumbra),
         e: Some(rates.rate()),
         e_false_shadow: Some(rates.false_shadow_rate()),
         e_false_light: Some(rates.false_light_rate()),

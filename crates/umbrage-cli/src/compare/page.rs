@@ -116,6 +116,10 @@ fn table(comparison: &Comparison) -> Section {
     if metrics {
         columns.extend([Column::number("FLIP"), Column::number("SSIM")]);
     }
+    let soft = comparison.techniques.iter().any(|technique| technique.mean.e_soft.is_some());
+    if soft {
+        columns.extend([least("E_soft %"), least("E_pen %")]);
+    }
     let caption = "Means over the views that count; the best of a column in bold.";
     let mut table = Table::new(caption, columns);
     for TechniqueReport { label, texels, bytes, mean, .. } in &comparison.techniques {
@@ -139,6 +143,9 @@ fn table(comparison: &Comparison) -> Section {
         ];
         if metrics {
             row.extend([number(mean.flip, 4), number(mean.ssim, 4)]);
+        }
+        if soft {
+            row.extend([percent(mean.e_soft, 2), percent(mean.e_pen, 2)]);
         }
         table = table.row(row);
     }

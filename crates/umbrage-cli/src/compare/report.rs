@@ -65,6 +65,10 @@ pub struct Means {
     pub e_false_shadow: Option<f64>,
     pub e_false_light: Option<f64>,
     pub e_log: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub e_soft: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub e_pen: Option<f64>,
     pub edge_distance_px: Option<f64>,
     pub edge_distance_p95_px: Option<f64>,
     pub texel_px: Option<TexelPixels>,
@@ -202,6 +206,8 @@ pub fn means(number: usize, views: &[ViewReport], walks: &[WalkReport]) -> Means
         e_false_shadow: over(&|scores| scores.e_false_shadow),
         e_false_light: over(&|scores| scores.e_false_light),
         e_log: over(&|scores| scores.e_log),
+        e_soft: over(&|scores| scores.e_soft),
+        e_pen: over(&|scores| scores.e_pen),
         edge_distance_px: over(&|scores| scores.edge_distance_px),
         edge_distance_p95_px: over(&|scores| scores.edge_distance_p95_px),
         texel_px: (|| {

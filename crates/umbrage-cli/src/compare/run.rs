@@ -106,6 +106,8 @@ impl Bench<'_> {
                 filter: wgpu_filter(technique.job.filter),
                 depth_format: wgpu_depth_format(technique.job.depth_format),
                 samples: umbrage_render::Samples::default(),
+                softness: technique.job.softness(self.args.sun_angle),
+                transition: technique.job.transition(),
             };
             let renderer = Renderer::new(self.gpu, &set.scene, &settings);
             renderers.push(renderer.map_err(|error| in_technique(technique, error))?);
@@ -132,7 +134,8 @@ impl Bench<'_> {
         let mut before: Option<Before> = None;
         for (k, view) in series.views.iter().enumerate() {
             let range = self.args.shadow_range;
-            let judged = Judged::new(truth, &set.pose, view, series.sun, self.args.size, range)?;
+            let mut judged = Judged::new(truth, &set.pose, view, series.sun, self.args.size, range)?;
+            judged.soften(truth, self.args.sun_angle)?;
             self.bar.inc(1);
             let is_shown = self.shown.contains(&[scene, of, k]);
             let frame = Frame { pose: &set.pose, view, sun: series.sun, shadows_on: true, tint: false };
