@@ -1,0 +1,96 @@
+//! How wide edges are, against closed forms: the shadow of a half plane.
+
+mod common;
+
+use common::{Gpu, World, ask, plan, quad};
+use glam::{DVec3, Vec3};
+use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions, Softness};
+
+/// Where the half plane ends, and how high it lies.
+const EDGE: f32 = 20.0;
+const HEIGHT: f32 = 10.0;
+
+/// Share of a disc of radius 1 on the far side of a line at distance `x` from its middle.
+fn disc_share(x: f64) -> f64 {
+    let x = x.clamp(-1.0, 1.0);
+    1.0 - (x.acos() - x * (1.0 - x * x).sqrt()) / std::f64::consts::PI
+}
+
+/// The same of a tent of half width 1.
+fn tent_share(x: f64) -> f64 {
+    let x = x.clamp(-1.0, 1.0);
+    0.5 + x - 0.5 * x * x.abs()
+}
+
+/// ∫ v (1 − v) over places: grows with an edge's width, whatever its form, and needs no threshold.
+fn softness_of(values: impl Iterator<Item = f64>, step: f64) -> f64 {
+    values.map(|v| v * (1.0 - v) * step).sum()
+}
+
+/// Full widths of the edge in splits 0 and 1, in metres, if it has the form `share`.
+fn widths(filter: Filter, softness: Softness, maps: [f64; 2], share: fn(f64) -> f64) -> Option<[f64; 2]> {
+    let options = ShadowMapsOptions { map_sizes: vec![512, 512], depth_format: DepthFormat::D32Float, filter };
+    let mut world = World::new(Gpu::new()?, &options);
+    let plan = plan(DVec3::NEG_Y, DVec3::new(f64::from(EDGE), 0.0, 0.0), &[512, 512], &[1.0, 20.0, 60.0], &maps);
+    // The edge runs askew so that it meets texels everywhere.
+    let end = |z: f32| Vec3::new(EDGE + 0.1 * z, HEIGHT, z);
+    let roof = quad([Vec3::new(-300.0, HEIGHT, -200.0), end(-200.0), end(200.0), Vec3::new(-300.0, HEIGHT, 200.0)]);
+    let ground = common::ground(300.0);
+    world.draw(&plan, &FrameOptions { softness, ..FrameOptions::default() }, &[roof, ground].concat());
+
+    let step = 0.01f32;
+    let rows: Vec<f32> = (0..24).map(|row| -1.5 + 0.131 * row as f32).collect();
+    let asks: Vec<_> = (rows.iter())
+        .flat_map(|&z| (-200..=200).map(move |i| ask(Vec3::new(EDGE + 0.1 * z + step * i as f32, 0.0, z), Vec3::Y)))
+        .collect();
+    let answers = world.ask(&asks);
+    let unit = softness_of((-1000..=1000).map(|i| share(f64::from(i) / 1000.0)), 1e-3);
+    Some([0, 1].map(|split| {
+        let values = answers.iter().map(|answer| f64::from(answer.in_split[split]));
+        2.0 * softness_of(values, f64::from(step)) / rows.len() as f64 / unit
+    }))
+}
+
+fn check(found: [f64; 2], expected: f64, what: &str) {
+    for width in found {
+        assert!((width / expected - 1.0).abs() < 0.1, "{what}: {found:?} m wide instead of {expected} m");
+    }
+    assert!((found[0] / found[1] - 1.0).abs() < 0.1, "{what}: {found:?} m on the two sides of a border");
+}
+
+#[test]
+fn discs_are_as_wide_as_they_are_told_in_every_split() {
+    for width in [0.3f32, 0.8] {
+        let softness = Softness { width_m: Some(width), ..Softness::default() };
+        let Some(found) = widths(Filter::Disc, softness, [16.0, 40.0], disc_share) else { return };
+        check(found, f64::from(width), "disc");
+    }
+}
+
+#[test]
+fn tents_are_as_wide_as_they_are_told_up_to_their_texels() {
+    let softness = Softness { width_m: Some(0.8), ..Softness::default() };
+    let Some(found) = widths(Filter::Pcf7, softness, [64.0, 90.0], tent_share) else { return };
+    check(found, 0.8, "pcf7");
+    // Seven texels of 1/64 m are the most that it has.
+    let Some(capped) = widths(Filter::Pcf7, softness, [8.0, 90.0], tent_share) else { return };
+    assert!((capped[0] / (7.0 / 64.0) - 1.0).abs() < 0.1, "{capped:?}");
+}
+
+#[test]
+fn penumbrae_follow_from_height_and_angle() {
+    for degrees in [2.0f64, 4.0] {
+        let softness = Softness { sun_angle: degrees.to_radians() as f32, ..Softness::default() };
+        let Some(found) = widths(Filter::Pcss, softness, [16.0, 40.0], disc_share) else { return };
+        check(found, 2.0 * f64::from(HEIGHT) * (0.5 * degrees).to_radians().tan(), "pcss");
+    }
+}
+
+#[test]
+fn a_point_of_a_sun_throws_the_narrowest_edge() {
+    let softness = Softness { sun_angle: 0.0, ..Softness::default() };
+    let Some(found) = widths(Filter::Pcss, softness, [16.0, 40.0], disc_share) else { return };
+    for (width, map) in found.iter().zip([16.0, 40.0]) {
+        assert!(*width < 3.0 * map / 512.0, "{found:?}");
+    }
+}
