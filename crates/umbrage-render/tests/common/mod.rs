@@ -41,8 +41,8 @@ pub fn settings() -> RenderSettings {
         filter: Filter::Hard,
         depth_format: DepthFormat::D32Float,
         samples: Samples::Four,
-            softness: Softness::default(),
-            transition: Transition::default(),
+        softness: Softness::default(),
+        transition: Transition::default(),
     }
 }
 
