@@ -105,7 +105,7 @@ impl Bench<'_> {
                 shadows: technique.job.settings.clone(),
                 filter: wgpu_filter(technique.job.filter),
                 depth_format: wgpu_depth_format(technique.job.depth_format),
-            samples: umbrage_render::Samples::default(),
+                samples: umbrage_render::Samples::default(),
             };
             let renderer = Renderer::new(self.gpu, &set.scene, &settings);
             renderers.push(renderer.map_err(|error| in_technique(technique, error))?);
