@@ -222,7 +222,9 @@ fn techniques_schemes_and_formats() {
         assert_eq!(report["technique"], kind, "{options}");
         let warped = !matches!(kind, "ssm" | "pssm") || options.contains("--warp");
         assert_eq!(report["stabilize"] == "none", warped, "{options}: {report}");
-        assert_eq!(report["splits"][0]["warped"], warped, "{options}: {report}");
+        // A split without casters has no need of a warp.
+        let any = report["splits"].as_array().is_some_and(|splits| splits.iter().any(|split| split["warped"] == true));
+        assert_eq!(any, warped, "{options}: {report}");
     }
 }
 

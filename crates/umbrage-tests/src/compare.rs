@@ -10,8 +10,8 @@ use image::{GrayAlphaImage, Rgb, RgbImage};
 
 /// The share of a mask's pixels that may decide otherwise (lit, dark, or nothing there).
 ///
-/// 160 × 120 pixels are 19,200, so 0.002 lets 38 of them flip. A mask of a world at that size has about 1,500 pixels beside a shadow's
-/// edge: one in forty of those may fall to the other side, while a shadow that moves by one pixel flips half of them.
+/// 160 × 120 pixels are 19,200, so 0.002 lets 38 of them flip. The masks kept here have 1,100 to 2,000 pixels beside an edge: one in forty
+/// of those may fall to the other side, while a mask that moves by one pixel flips half of them.
 pub const MASK_DECISIONS: f64 = 0.002;
 
 /// The mean of `|visibility - reference|` over the pixels that show a surface in either mask, visibility from 0 to 1.

@@ -177,3 +177,21 @@ fn references_tell_techniques_apart() {
     }
     assert!(pairs >= 13, "6 pairs of split counts, 6 of filters, 1 of fits, but only {pairs} were compared");
 }
+
+/// The same for pictures: one hard map in place of four soft ones has to be seen in every one of them.
+#[test]
+fn pictures_tell_techniques_apart() {
+    let goldens = goldens();
+    if goldens.mode == Mode::Bless {
+        eprintln!("SKIPPED: the references are being replaced; run the tests again");
+        return;
+    }
+    for shot in shots().into_iter().filter(|shot| shot.what == What::Picture) {
+        let reference = goldens.read(&shot.name).expect("a reference");
+        let other = Shot { technique: Technique::ssm(1024), ..shot };
+        let Some(image) = draw(&other) else { return };
+        let verdict = compare(&reference, &image).expect("two pictures of one size");
+        eprintln!("{} with {}: {verdict}", other.name, other.technique.name);
+        assert!(!verdict.is_same(), "{} passes with {}: {verdict}", other.name, other.technique.name);
+    }
+}
