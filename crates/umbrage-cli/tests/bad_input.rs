@@ -80,7 +80,7 @@ fn shadow_options_that_say_nonsense() {
         ("--filter-width 0.5 --filter hard", &["--filter-width", "hard"]),
         ("--filter-width 0.5 --filter pcss", &["--filter-width", "pcss"]),
         ("--filter vogel", &["--filter", "vogel"]),
-        ("--filter disc --map-size 20", &["--filter", "20"]),
+        ("--filter disc --map-size 20", &["--map-size", "20", "filter"]),
         ("--transition soft", &["--transition", "soft"]),
         ("--splits 9", &["--splits 9", "1 to 8"]),
         ("--splits -1", &["--splits"]),

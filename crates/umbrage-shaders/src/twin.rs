@@ -36,7 +36,7 @@ pub fn vogel(i: u32, count: u32, turn: f32) -> [f32; 2] {
 #[must_use]
 pub fn gradient_noise(pixel: [f32; 2]) -> f32 {
     let inner = pixel[0] * 0.067_110_56 + pixel[1] * 0.005_837_15;
-    (52.982_918_9 * inner.fract()).fract()
+    (52.982_92 * inner.fract()).fract()
 }
 
 /// `map::from_world`: texels and depth of a position relative to the frame's origin.
