@@ -97,8 +97,12 @@ fn fallbacks_and_depth_formats_draw_the_same_shadow() {
         assert!(rendered.stats.frame_ms > 0.0 && rendered.stats.shadow_ms > 0.0);
         assert_eq!(rendered.maps.len(), 2);
     }
-    let notes = Stage::new(&bare, &scene, &settings()).render(&view, light, ALL).stats.notes;
-    assert_eq!(notes.len(), 2, "{notes:?}");
+    // Without timestamps the CPU's clock is read, and 16-bit maps without depth clip control keep their near planes back.
+    let d16 = RenderSettings { depth_format: DepthFormat::D16Unorm, ..settings() };
+    for (settings, notes) in [(settings(), 1), (d16, 2)] {
+        let said = Stage::new(&bare, &scene, &settings).render(&view, light, ALL).stats.notes;
+        assert_eq!(said.len(), notes, "{said:?}");
+    }
 }
 
 #[test]
