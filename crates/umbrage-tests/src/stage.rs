@@ -4,7 +4,7 @@ use std::io::Write;
 use std::sync::OnceLock;
 
 use image::GrayAlphaImage;
-use umbrage::{DirectionalLight, Fit, ShadowSettings, Stabilize, View};
+use umbrage::{DirectionalLight, Fit, ShadowSettings, Stabilize, View, Warp};
 use umbrage_render::{Frame, Gpu, GpuOptions, Outputs, RenderSettings, Rendered, Renderer, Samples};
 use umbrage_scene::procedural::World;
 use umbrage_scene::{Pose, Scene, camera_view, light_direction};
@@ -180,6 +180,18 @@ impl Technique {
             Filter::Pcf7 => "pcf7",
             Filter::Disc => "disc",
             Filter::Pcss => "pcss",
+        })
+    }
+
+    /// With all maps warped.
+    #[must_use]
+    pub fn warped(mut self, warp: Warp) -> Self {
+        self.settings.shadows.warps = vec![warp];
+        self.named(match warp {
+            Warp::None => "plain",
+            Warp::Psm => "psm",
+            Warp::Lispsm => "lispsm",
+            Warp::Tsm { .. } => "tsm",
         })
     }
 

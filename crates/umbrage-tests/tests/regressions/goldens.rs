@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use umbrage::Warp;
 use umbrage_render::Outputs;
 use umbrage_scene::procedural::World;
 use umbrage_tests::compare::{Golden, compare};
@@ -64,6 +65,9 @@ fn shots() -> Vec<Shot> {
         shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Pcf2)),
         shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Pcf3)),
         shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Pcf5)),
+        shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Pcf7)),
+        shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Disc)),
+        shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Pcss)),
         shot(Chessboard, "far", Mask, pssm(3).exact().filter(Filter::Pcf5).blended(0.3, 0.4)),
         shot(Chessboard, "far", Tint, default()),
         // Which fit; leaves with holes.
@@ -72,6 +76,11 @@ fn shots() -> Vec<Shot> {
         shot(Knights, "middle", Mask, pssm(3).independent()),
         shot(Knights, "dueling", Mask, pssm(4).d16()),
         shot(Knights, "far", Picture, default()),
+        // Which warp.
+        shot(Knights, "near", Mask, ssm().warped(Warp::Psm)),
+        shot(Knights, "near", Mask, ssm().warped(Warp::Lispsm)),
+        shot(Knights, "near", Mask, ssm().warped(Warp::Tsm { focus: 0.3 })),
+        shot(Knights, "dueling", Mask, pssm(3).warped(Warp::Lispsm)),
         // Ground that throws shadows.
         shot(MiningTerrain, "near", Mask, pssm(4)),
         shot(MiningTerrain, "middle", Mask, ssm().independent()),

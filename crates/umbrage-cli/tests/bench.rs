@@ -1,0 +1,54 @@
+//! `umbrage bench`: what it writes and what it refuses. How long anything takes is not looked at.
+
+mod common;
+
+use std::fs;
+
+use common::{Folder, has_adapter};
+
+#[test]
+fn every_technique_and_crowd_has_its_row() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = Folder::new();
+    folder.succeed(
+        "bench tiny.glb chessboard --size 64x48 --rounds 2 --objects 2,5 --techniques ssm:128,pssm:3:512 --json all.json -o page.html",
+    );
+    assert_eq!(folder.new_names(), ["all.json", "page.html"]);
+    let report = folder.json("all.json");
+    let scenes = report["scenes"].as_array().expect("scenes");
+    assert_eq!(scenes.iter().map(|scene| &scene["scene"]).collect::<Vec<_>>(), ["tiny.glb", "chessboard"]);
+    for scene in scenes {
+        let rows = scene["rows"].as_array().expect("rows");
+        assert_eq!(rows.len(), 2);
+        assert_eq!(rows[0]["frame_ratio"]["median"], 1.0, "the baseline over itself");
+        assert_eq!(rows[1]["splits"], 3);
+        assert_eq!(rows[1]["map_bytes"], 3 * 512 * 512 * 4);
+        for row in rows {
+            assert!(row["frame_ratio"]["median"].as_f64().is_some_and(|ratio| ratio > 0.0), "{row}");
+            assert!(row["draws"].as_u64().is_some_and(|draws| draws > 0), "{row}");
+        }
+    }
+    // Only the paper's own worlds and sizes have a figure of the paper beside them.
+    assert!(scenes[0]["rows"][1]["paper_ratio"].is_null());
+    assert!(scenes[1]["rows"][1]["paper_ratio"].as_f64().is_some_and(|ratio| (ratio - 67.29 / 50.08).abs() < 1e-12));
+    let crowds = report["crowds"].as_array().expect("crowds");
+    assert_eq!(crowds.iter().map(|crowd| &crowd["objects"]).collect::<Vec<_>>(), [2, 5]);
+    let page = fs::read_to_string(folder.at("page.html")).expect("the page");
+    for part in ["chessboard", "Over the number of objects", "<svg"] {
+        assert!(page.contains(part), "the page lacks {part}");
+    }
+    assert!(!page.contains("src=\"http"), "the page fetches something");
+}
+
+#[test]
+fn mistakes_are_named() {
+    let folder = Folder::new();
+    folder.refuse("bench tiny.glb", &["-o"]);
+    folder.refuse("bench tiny.glb --rounds 0 -o page.html", &["--rounds"]);
+    folder.refuse("bench tiny.glb --objects 0 -o page.html", &["--objects"]);
+    folder.refuse("bench tiny.glb --techniques pssm:9:512 -o page.html", &["pssm:9:512"]);
+    folder.refuse("bench tiny.glb --samples 3 -o page.html", &["--samples"]);
+    folder.refuse("bench missing.glb -o page.html", &["missing.glb"]);
+}
