@@ -65,7 +65,7 @@ pub(super) fn edges_of(domain: &Domain, lit: impl Fn(usize) -> bool) -> Vec<usiz
 ///
 /// Felzenszwalb and Huttenlocher, "Distance Transforms of Sampled Functions" (2012): the lower envelope of parabolas, first
 /// down the columns, then along the rows. (The crate `edt` is exact too, but takes seconds where this takes milliseconds.)
-fn squared_distances(width: usize, height: usize, seeds: &[usize]) -> Vec<f64> {
+pub(super) fn squared_distances(width: usize, height: usize, seeds: &[usize]) -> Vec<f64> {
     let mut grid = vec![f64::INFINITY; width * height];
     for &seed in seeds {
         grid[seed] = 0.0;
