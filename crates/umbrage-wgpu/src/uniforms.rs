@@ -232,6 +232,7 @@ mod tests {
             depth_near: depth_axis.dot(center) - 50.0,
             depth_far: depth_axis.dot(center) + 50.0,
             warp: None,
+            light_position: None,
             casters: 0..1,
         }
     }
