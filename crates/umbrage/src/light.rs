@@ -262,12 +262,6 @@ impl From<PointLight> for Light {
     }
 }
 
-impl<L: Copy + Into<Light>> From<&L> for Light {
-    fn from(light: &L) -> Self {
-        (*light).into()
-    }
-}
-
 /// Unit vectors along u (right) and v (down) of a map whose depth runs along `direction`.
 pub(crate) fn map_axes(direction: DVec3) -> (DVec3, DVec3) {
     // −Z is "up" for a light that comes straight down, so a map then has north on top.

@@ -109,13 +109,13 @@ impl Planner {
     pub fn plan(
         &mut self,
         view: &View,
-        light: impl Into<Light>,
+        light: &(impl Copy + Into<Light>),
         casters: &[Aabb],
         receivers: &[Aabb],
     ) -> Result<&ShadowPlan> {
         place(casters, "casters", &mut self.casters)?;
         place(receivers, "receivers", &mut self.receivers)?;
-        let light = light.into();
+        let light = (*light).into();
         match &light {
             Light::Directional(sun) => self.plan_sun(view, sun)?,
             Light::Spot(spot) => {

@@ -25,9 +25,9 @@ fn only_the_first_frame_allocates() {
             let lamp = PointLight::new(at, 80.0).expect("valid");
             let spot = SpotLight::new(at, DVec3::new(0.3, -1.0, 0.0), 0.8, 90.0).expect("valid");
             for light in [Light::from(light), lamp.into(), spot.into()] {
-                planner.plan(&view, light, &world, &world).expect("valid");
+                planner.plan(&view, &light, &world, &world).expect("valid");
                 let again = allocation_counter::measure(|| {
-                    planner.plan(&view, light, &world, &world).expect("valid");
+                    planner.plan(&view, &light, &world, &world).expect("valid");
                 });
                 assert_eq!(again.count_total, 0, "{fit:?} {stabilize:?} {light:?} allocated {again:?}");
             }

@@ -175,7 +175,7 @@ fn splits_of(case: &Case, plan: &ShadowPlan, point: DVec3, depth: f64) -> Vec<us
 }
 
 fn planned(case: &Case, planner: &mut Planner) -> Result<ShadowPlan, TestCaseError> {
-    match planner.plan(&case.view, case.light, &case.boxes, &case.boxes) {
+    match planner.plan(&case.view, &case.light, &case.boxes, &case.boxes) {
         Ok(plan) => Ok(plan.clone()),
         Err(error) => Err(TestCaseError::fail(error.to_string())),
     }
@@ -236,7 +236,7 @@ proptest! {
                 Aabb::new(at - 1e-3, at + 1e-3)
             })
             .collect();
-        let plan = planner.plan(&case.view, case.light, &specks, &case.boxes)?.clone();
+        let plan = planner.plan(&case.view, &case.light, &specks, &case.boxes)?.clone();
         for (index, &((_, point, depth), share)) in chosen.iter().enumerate() {
             // A speck may lie below the lowest receiver by its own size, which counts as below all.
             let below = (0..3).any(|axis| (specks[index].center()[axis] - point[axis]).abs() < 2e-3);
@@ -349,7 +349,7 @@ fn a_lamp_in_a_room_has_the_faces_that_are_seen() {
     for stabilize in [Stabilize::None, Stabilize::Exact] {
         let settings = ShadowSettings { map_sizes: vec![512], stabilize, ..ShadowSettings::default() };
         let mut planner = Planner::new(settings).expect("valid");
-        let plan = planner.plan(&view, lamp, &boxes, &boxes).expect("valid");
+        let plan = planner.plan(&view, &lamp, &boxes, &boxes).expect("valid");
         assert_eq!(plan.faces(), 6);
         // Down are the table and the chest; nothing stands between the lamp and the ceiling above it.
         assert!(plan.casters(3).contains(&6) && plan.casters(3).contains(&7), "{:?}", plan.casters(3));
@@ -366,7 +366,7 @@ fn a_light_that_the_view_cannot_see_the_work_of_has_empty_splits() {
     for (position, range) in [(DVec3::new(0.0, 500.0, 0.0), 20.0), (view.eye() - 50.0 * view.forward(), 30.0)] {
         let plan_of = |light: Light| {
             let mut planner = Planner::new(ShadowSettings::default()).expect("valid");
-            planner.plan(&view, light, &boxes, &boxes).expect("valid").clone()
+            planner.plan(&view, &light, &boxes, &boxes).expect("valid").clone()
         };
         let lamp = PointLight::new(position, range).expect("valid");
         let spot = SpotLight::new(position, DVec3::X, 0.5, range).expect("valid");
@@ -385,7 +385,7 @@ fn boxes_behind_a_spot_light_are_not_listed_and_those_around_it_are() {
     let behind = boxes.len() as u32 - 1;
     let spot = SpotLight::new(DVec3::new(4.1, 1.5, 0.0), DVec3::NEG_X, 0.7, 15.0).expect("valid");
     let mut planner = Planner::new(ShadowSettings::default()).expect("valid");
-    let plan = planner.plan(&view, spot, &boxes, &boxes).expect("valid");
+    let plan = planner.plan(&view, &spot, &boxes, &boxes).expect("valid");
     let all = &plan.caster_indices;
     assert!(all.contains(&3), "the wall that the light stands in");
     assert!(!all.contains(&behind), "a box behind the light");
@@ -401,7 +401,7 @@ fn a_stabilised_spot_light_keeps_its_texels_while_the_camera_moves() {
     for k in 0..100 {
         let eye = view.eye() + DVec3::new(0.01, 0.0, -0.013) * f64::from(k);
         let moved = View::look_at_upright(eye, DVec3::new(0.3, 0.5, -1.0), *view.frustum()).expect("valid");
-        let plan = planner.plan(&moved, spot, &boxes, &boxes).expect("valid").clone();
+        let plan = planner.plan(&moved, &spot, &boxes, &boxes).expect("valid").clone();
         if let Some(last) = &last {
             for (a, b) in last.splits.iter().zip(&plan.splits) {
                 let point = DVec3::new(0.4, 0.0, 0.3);
@@ -448,10 +448,10 @@ fn what_is_no_light_is_refused_by_name() {
     let settings =
         ShadowSettings { warps: vec![Warp::Lispsm], stabilize: Stabilize::None, ..ShadowSettings::default() };
     let mut planner = Planner::new(settings).expect("valid");
-    let error = planner.plan(&view, lamp, &boxes, &boxes).expect_err("a warp needs a sun");
+    let error = planner.plan(&view, &lamp, &boxes, &boxes).expect_err("a warp needs a sun");
     assert!(matches!(error, Error::ConflictingSettings { first: "warps", second: "light", .. }), "{error}");
     let sun = DirectionalLight::new(down).expect("valid");
-    assert!(planner.plan(&view, sun, &boxes, &boxes).is_ok(), "the planner goes on with another light");
+    assert!(planner.plan(&view, &sun, &boxes, &boxes).is_ok(), "the planner goes on with another light");
 }
 
 #[test]
