@@ -322,6 +322,7 @@ impl Planner {
             min_texel: DVec2::ZERO,
             depth_near: target.depth.0,
             depth_far: target.depth.1,
+            receiver_depths: target.depth,
             warp: None,
             light_position: None,
             casters,
@@ -366,13 +367,12 @@ impl Planner {
                 (near, far, Some((far - near) / 16.0))
             }
         };
-        let room = 4.0 * texel + 1e-4 * (far - near);
-        (split.depth_near, split.depth_far) = (near - room, far + room);
-        if let Some(step) = step {
-            let step = 2f64.powf(step.log2().round());
-            split.depth_near = (split.depth_near / step).floor() * step;
-            split.depth_far = (split.depth_far / step).ceil() * step;
-        }
+        let receivers = match self.settings.stabilize {
+            Stabilize::None => None,
+            _ => Some(0.5 * radius),
+        };
+        split.receiver_depths = with_room(split.depth_near, split.depth_far, texel, receivers);
+        (split.depth_near, split.depth_far) = with_room(near, far, texel, step);
         split
     }
 
@@ -452,6 +452,15 @@ impl Planner {
         }
         begin..self.plan.caster_indices.len()
     }
+}
+
+/// A range of depths with room for the bias, in whole steps if there is one.
+fn with_room(near: f64, far: f64, texel: f64, step: Option<f64>) -> (f64, f64) {
+    let room = 4.0 * texel + 1e-4 * (far - near);
+    let (near, far) = (near - room, far + room);
+    let Some(step) = step else { return (near, far) };
+    let step = 2f64.powf(step.log2().round());
+    ((near / step).floor() * step, (far / step).ceil() * step)
 }
 
 /// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers` as the light sees it: it then
