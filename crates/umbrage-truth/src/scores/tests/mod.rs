@@ -6,4 +6,5 @@ mod flicker;
 mod footprint;
 mod frames;
 mod hard;
+mod seams;
 mod soft;
