@@ -9,8 +9,8 @@ use umbrage_scene::Pose;
 use umbrage_truth::{
     Hit, SoftTruth, Truth, TruthMask,
     scores::{
-        Answers, ByDepth, Domain, Footprint, Seams, TexelGradient, acne_and_leak, by_depth, edge_distance, mis_shadowed,
-        seams, similarity, soft_error, texel_footprint,
+        Answers, ByDepth, Domain, Footprint, Seams, TexelGradient, acne_and_leak, by_depth, edge_distance,
+        mis_shadowed, seams, similarity, soft_error, texel_footprint,
     },
 };
 
