@@ -23,6 +23,16 @@ pub enum FilterKind {
     Disc = 5,
     /// A disc as wide as the penumbra of a sun with a size; without depth loads as [`FilterKind::Disc`].
     Pcss = 6,
+    /// The mean of an exponential of depth.
+    Esm = 7,
+    /// Two moments of depth.
+    Vsm = 8,
+    /// Two moments of an exponential of depth.
+    Evsm2 = 9,
+    /// The same, and two of a falling exponential.
+    Evsm4 = 10,
+    /// Four moments of depth.
+    Msm = 11,
 }
 
 /// How one split goes over into the next, in [`Frame::transition`].
@@ -110,4 +120,40 @@ pub struct Frame {
     pub _padding: [u32; 2],
     /// The splits, nearest first; those past `split_count` are not read.
     pub splits: [Split; MAX_SPLITS],
+}
+
+/// How one split's moments are made and read.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct MomentSplit {
+    /// From stored depth to the z of moments, -1 at the first and 1 at the last place that is seen: `z = depth[0] · stored + depth[1]`.
+    pub depth: [f32; 2],
+    /// Half width of the blur in texels along u and v, 1 or more: the tent that blur and linear sampling make together.
+    pub radius: [f32; 2],
+}
+
+/// What the passes that make a split's moments need.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct MomentPass {
+    /// The split.
+    pub split: MomentSplit,
+    /// Edge of its map in texels.
+    pub size: f32,
+    /// Up to the alignment of 8 bytes.
+    pub _padding: f32,
+}
+
+/// What a receiver needs of moments beside its [`Frame`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Moments {
+    /// Exponents of exponential kinds, of the rising and of the falling one.
+    pub exponents: [f32; 2],
+    /// Share of light that is taken for a leak: 0 none, less than 1.
+    pub bleeding: f32,
+    /// 1: all pixels of a quad use one split.
+    pub quads: u32,
+    /// The splits, nearest first.
+    pub splits: [MomentSplit; MAX_SPLITS],
 }

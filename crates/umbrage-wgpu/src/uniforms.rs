@@ -231,7 +231,9 @@ mod tests {
             min_texel: (at - 0.5 * f64::from(size)).round(),
             depth_near: depth_axis.dot(center) - 50.0,
             depth_far: depth_axis.dot(center) + 50.0,
+            receiver_depths: (depth_axis.dot(center) - 50.0, depth_axis.dot(center) + 50.0),
             warp: None,
+            light_position: None,
             casters: 0..1,
         }
     }

@@ -196,6 +196,8 @@ proptest! {
                     let Some(end) = shading_end(bounds, point, direction).filter(|_| index != owner) else { continue };
                     prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} lost caster {index}, which shades {point} at {depth} m");
                     prop_assert!(s.contains(point, case.settings.filter_radius), "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
+                    let along = s.depth_axis.dot(point);
+                    prop_assert!((s.receiver_depths.0..=s.receiver_depths.1).contains(&along), "{point} at {along} m along the light, outside {:?}", s.receiver_depths);
                     let caster_begin = direction.dot(bounds.center()) - direction.abs().dot(bounds.half_extent());
                     prop_assert!(case.settings.depth_clamp || s.depth_near <= caster_begin, "the near plane cuts caster {index}");
                     if s.warp.is_some() {
