@@ -153,8 +153,8 @@ impl Split {
     }
 
     /// By how many texels (u, v) this map has moved since `earlier`, a map of the same split: what was at texel `t` then is at `t` less the
-    /// shift now, with the same depth. `None` if a step was taken in between, or if the map is not stabilised: then the two do not
-    /// share a grid.
+    /// shift now, with the same depth. `None` if the two do not share a grid: a step was taken in between, the map is not
+    /// stabilised, or not a sun's.
     #[must_use]
     pub fn texels_moved_since(&self, earlier: &Self) -> Option<DVec2> {
         let grid = |s: &Self| {
