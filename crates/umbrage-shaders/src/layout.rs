@@ -94,6 +94,25 @@ pub struct Split {
     pub _padding: [u32; 3],
 }
 
+/// What a pass needs that draws several splits at once.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct CasterPass {
+    /// The first split that it draws.
+    pub first: u32,
+    /// One past the last.
+    pub end: u32,
+    /// Layers that are drawn at once. Split `first + t · views + v` is tile `t` of layer `v`.
+    pub views: u32,
+    /// Up to the alignment of 16 bytes.
+    pub _padding: u32,
+    /// All splits of the frame.
+    pub splits: [Split; MAX_SPLITS],
+}
+
+/// [`Frame::slice`] where every map is there.
+pub const EVERY_SLICE: u32 = u32::MAX;
+
 /// All that a receiver needs for one light and one view.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -122,8 +141,10 @@ pub struct Frame {
     pub turn_per_pixel: f32,
     /// A [`TransitionKind`].
     pub transition: u32,
+    /// The only split whose map there is, where one map is used again and again; [`EVERY_SLICE`] where all are there.
+    pub slice: u32,
     /// Up to the alignment of 16 bytes.
-    pub _padding: [u32; 3],
+    pub _padding: [u32; 2],
     /// The splits, nearest first; those past `split_count` are not read.
     pub splits: [Split; MAX_SPLITS],
 }
