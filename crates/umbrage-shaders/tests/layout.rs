@@ -3,8 +3,8 @@
 use std::mem::offset_of;
 
 use naga::proc::Layouter;
-use umbrage_shaders::{Casters, Maps};
 use umbrage_shaders::layout::{CasterPass, Frame, Split};
+use umbrage_shaders::{Casters, Maps};
 
 /// A member as one side sees it: name, offset and size in bytes.
 type Member = (String, usize, usize);
@@ -61,7 +61,8 @@ fn no_member_is_forgotten() {
 
 #[test]
 fn members_agree() {
-    let (caster, receiver) = (umbrage_shaders::caster(0, Casters::default(), ""), umbrage_shaders::receiver(0, Maps::default()));
+    let (caster, receiver) =
+        (umbrage_shaders::caster(0, Casters::default(), ""), umbrage_shaders::receiver(0, Maps::default()));
     assert_eq!(split_in_rust(), in_wgsl(&caster, "UmbrageSplit"));
     assert_eq!(split_in_rust(), in_wgsl(&receiver, "UmbrageSplit"));
     assert_eq!(frame_in_rust(), in_wgsl(&receiver, "UmbrageFrame"));

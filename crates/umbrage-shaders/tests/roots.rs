@@ -11,8 +11,11 @@ fn all_maps() -> Vec<Maps> {
     let bounds = [Bound::Array, Bound::Cube].into_iter().chain((1..=8).map(Bound::Separate));
     bounds
         .flat_map(|bound| {
-            [(false, false), (false, true), (true, false)]
-                .map(|(r32f, without_loads)| Maps { bound, r32f, without_loads })
+            [(false, false), (false, true), (true, false)].map(|(r32f, without_loads)| Maps {
+                bound,
+                r32f,
+                without_loads,
+            })
         })
         .collect()
 }

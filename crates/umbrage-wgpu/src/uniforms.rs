@@ -96,6 +96,7 @@ pub(crate) fn frame(
         sun_tangent: (0.5 * options.softness.sun_angle).tan(),
         turn_per_pixel: if options.softness.turned { TAU } else { 0.0 },
         transition: options.transition.kind() as u32,
+        slice: layout::EVERY_SLICE,
         ..layout::Frame::default()
     };
     for (index, ((uniform, split), place)) in frame.splits.iter_mut().zip(&plan.splits).zip(places).enumerate() {

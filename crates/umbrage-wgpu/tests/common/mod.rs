@@ -32,6 +32,7 @@ impl Gpu {
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("Test::device"),
             required_features: (adapter.features() & optional_features()).difference(withheld),
+            required_limits: adapter.limits(),
             ..Default::default()
         }))
         .expect("an adapter gives a device with features that it has");
@@ -193,8 +194,11 @@ impl World {
         let (maps, pipeline) = gpu.checked(|| {
             let maps = ShadowMaps::new(&gpu.device, options).expect("valid options");
             let source = maps.caster_wgsl(0)
-                + "@vertex fn vertex(@location(0) position: vec3f) -> @builtin(position) vec4f {
-                       return umbrage_caster_position(position);
+                + "@vertex fn vertex(@location(0) position: vec3f, copy: UmbrageCopy) -> UmbrageCast {
+                       return umbrage_cast(position, copy);
+                   }
+                   @fragment fn fragment(@builtin(position) at: vec4f) -> @location(0) f32 {
+                       return umbrage_caster_depth(at);
                    }";
             let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("Test::caster"),
@@ -220,8 +224,13 @@ impl World {
                 primitive: maps.caster_primitive(),
                 depth_stencil: Some(maps.caster_depth_stencil()),
                 multisample: Default::default(),
-                fragment: None,
-                multiview_mask: None,
+                fragment: (!maps.caster_targets().is_empty()).then(|| wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some("fragment"),
+                    compilation_options: Default::default(),
+                    targets: maps.caster_targets(),
+                }),
+                multiview_mask: maps.caster_multiview_mask(),
                 cache: None,
             });
             (maps, pipeline)
@@ -235,12 +244,12 @@ impl World {
         self.gpu.checked(|| {
             let vertices = self.gpu.buffer_with(bytemuck::cast_slice(triangles), wgpu::BufferUsages::VERTEX);
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-            for split in 0..self.maps.splits() {
-                let mut pass = self.maps.begin_split(&mut encoder, split, None);
+            for (index, map_pass) in self.maps.passes().iter().enumerate() {
+                let mut pass = self.maps.begin_pass(&mut encoder, index, None);
                 pass.set_pipeline(&self.pipeline);
-                pass.set_bind_group(0, self.maps.caster_bind_group(split), &[]);
+                pass.set_bind_group(0, self.maps.caster_bind_group(index), &[]);
                 pass.set_vertex_buffer(0, vertices.slice(..));
-                pass.draw(0..triangles.len() as u32, 0..1);
+                pass.draw(0..triangles.len() as u32, map_pass.copies(u8::MAX));
             }
             self.gpu.queue.submit([encoder.finish()]);
         });
@@ -257,16 +266,16 @@ impl World {
         let bytes = self.gpu.checked(|| {
             let back = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("Test::texels"),
-                size: u64::from(row * self.maps.depth_texture().height()),
+                size: u64::from(row * self.maps.map_texture(split).height()),
                 usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
-            let edge = self.maps.depth_texture().width();
+            let edge = self.maps.map_texture(split).width();
             assert_eq!(edge, size, "a copy takes whole layers of a depth texture");
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
             encoder.copy_texture_to_buffer(
                 wgpu::TexelCopyTextureInfo {
-                    texture: self.maps.depth_texture(),
+                    texture: self.maps.map_texture(split),
                     mip_level: 0,
                     origin: wgpu::Origin3d { x: 0, y: 0, z: split as u32 },
                     aspect: wgpu::TextureAspect::DepthOnly,
