@@ -23,6 +23,16 @@ pub enum FilterKind {
     Disc = 5,
     /// A disc as wide as the penumbra of a sun with a size; without depth loads as [`FilterKind::Disc`].
     Pcss = 6,
+    /// The mean of an exponential of depth.
+    Esm = 7,
+    /// Two moments of depth.
+    Vsm = 8,
+    /// Two moments of an exponential of depth.
+    Evsm2 = 9,
+    /// The same, and two of a falling exponential.
+    Evsm4 = 10,
+    /// Four moments of depth.
+    Msm = 11,
 }
 
 /// How one split goes over into the next, in [`Frame::transition`].
@@ -56,7 +66,7 @@ pub struct Split {
     pub texel_offset: [f32; 2],
     /// Metres per texel along u and v; in a warped map in the middle of its receivers.
     pub texel_m: [f32; 2],
-    /// Edge of the map in texels; it lies in the upper left corner of its layer.
+    /// Edge of the map in texels.
     pub size: f32,
     /// Where the slice ends: view depth in metres.
     pub far: f32,
@@ -74,6 +84,14 @@ pub struct Split {
     pub viewport_texels: f32,
     /// Texels from the left and upper edge of that square to the map's.
     pub guard_texels: f32,
+    /// Upper left corner of the map in its layer, in texels; 0 unless the layer holds several maps as tiles.
+    pub corner: [f32; 2],
+    /// Width and height of its layer in texels.
+    pub layer_texels: [f32; 2],
+    /// The layer of the texture, the face of the cube or the number of the texture that holds the map.
+    pub layer: u32,
+    /// Up to the alignment of 16 bytes.
+    pub _padding: [u32; 3],
 }
 
 /// All that a receiver needs for one light and one view.
@@ -88,8 +106,6 @@ pub struct Frame {
     pub strength: f32,
     /// View depth in metres at which the fade to lit begins; the last split's `far` if there is none.
     pub fade_begin: f32,
-    /// Edge of the texture's layers in texels.
-    pub map_edge: f32,
     /// Splits in use.
     pub split_count: u32,
     /// A [`FilterKind`].
@@ -107,7 +123,43 @@ pub struct Frame {
     /// A [`TransitionKind`].
     pub transition: u32,
     /// Up to the alignment of 16 bytes.
-    pub _padding: [u32; 2],
+    pub _padding: [u32; 3],
     /// The splits, nearest first; those past `split_count` are not read.
     pub splits: [Split; MAX_SPLITS],
+}
+
+/// How one split's moments are made and read.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct MomentSplit {
+    /// From stored depth to the z of moments, -1 at the first and 1 at the last place that is seen: `z = depth[0] · stored + depth[1]`.
+    pub depth: [f32; 2],
+    /// Half width of the blur in texels along u and v, 1 or more: the tent that blur and linear sampling make together.
+    pub radius: [f32; 2],
+}
+
+/// What the passes that make a split's moments need.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct MomentPass {
+    /// The split.
+    pub split: MomentSplit,
+    /// Edge of its map in texels.
+    pub size: f32,
+    /// Up to the alignment of 8 bytes.
+    pub _padding: f32,
+}
+
+/// What a receiver needs of moments beside its [`Frame`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Moments {
+    /// Exponents of exponential kinds, of the rising and of the falling one.
+    pub exponents: [f32; 2],
+    /// Share of light that is taken for a leak: 0 none, less than 1.
+    pub bleeding: f32,
+    /// 1: all pixels of a quad use one split.
+    pub quads: u32,
+    /// The splits, nearest first.
+    pub splits: [MomentSplit; MAX_SPLITS],
 }

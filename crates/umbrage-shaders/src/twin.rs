@@ -2,6 +2,8 @@
 
 use crate::layout::{Frame, Split};
 
+pub mod moments;
+
 /// `filter::tent_integral`: the share of a tent of half width `r` around 0 that lies left of `x`.
 #[must_use]
 pub fn tent_integral(x: f32, r: f32) -> f32 {

@@ -2,15 +2,17 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::local::{Given, LightFrustum, LocalPlanner};
 use crate::range::{HeldRange, visible_range};
+use crate::rectangle::{HeldRectangle, Rectangle, longest_edge};
 use crate::region::{Fan, Region};
 use crate::split::{blend_begin, coverage, split_planes};
 use crate::stable::{HeldSize, slice_sphere, stable_texel};
 use crate::volume::{Lies, Slice, SweptVolume};
 use crate::warped::WarpPoints;
 use crate::{
-    Aabb, DirectionalLight, Error, Fit, MAX_SPLITS, RangeFit, Result, ShadowPlan, ShadowSettings, Split, Stabilize,
-    View, Warp,
+    Aabb, DirectionalLight, Error, Fit, Light, MAX_SPLITS, RangeFit, Result, ShadowPlan, ShadowSettings, Split,
+    Stabilize, View, Warp,
 };
 
 /// Texels that a map keeps free around what it serves, besides the filter's reach: half for the texel that a sample's
@@ -19,7 +21,7 @@ const EDGE_TEXELS: f64 = 1.5;
 
 /// Share of a scene's extent by which a caster may rise above the lowest receiver and still count as lying below all of
 /// them: rounding in the bounds, not a length that could be seen (1.2 mm in 1.2 km).
-const BELOW_ALL: f64 = 1e-6;
+pub(crate) const BELOW_ALL: f64 = 1e-6;
 
 /// The least length of a range that is fitted to what is visible, as a share of its far end.
 const LEAST_RANGE: f64 = 0.01;
@@ -33,6 +35,10 @@ pub struct Planner {
     held_range: HeldSize,
     held_visible_range: HeldRange,
     held_radius: [HeldSize; MAX_SPLITS],
+    held_whole: HeldSize,
+    /// Stabilised: across the sphere around everything that is shadowed, metres. 0 otherwise.
+    whole_width: f64,
+    held_rectangle: [HeldRectangle; MAX_SPLITS],
     fan: Option<Fan>,
     volumes: Vec<CoverageVolume>,
     world_depths: (f64, f64),
@@ -42,6 +48,7 @@ pub struct Planner {
     visible: Vec<u32>,
     across: Vec<u32>,
     warp_points: WarpPoints,
+    local: LocalPlanner,
 }
 
 /// A box as centre and half extent.
@@ -78,6 +85,9 @@ impl Planner {
             held_range: HeldSize::default(),
             held_visible_range: HeldRange::default(),
             held_radius: [HeldSize::default(); MAX_SPLITS],
+            held_whole: HeldSize::default(),
+            whole_width: 0.0,
+            held_rectangle: [HeldRectangle::default(); MAX_SPLITS],
             fan: None,
             volumes: Vec::new(),
             world_depths: (0.0, 0.0),
@@ -87,6 +97,7 @@ impl Planner {
             visible: Vec::new(),
             across: Vec::new(),
             warp_points: WarpPoints::default(),
+            local: LocalPlanner::default(),
         })
     }
 
@@ -96,23 +107,59 @@ impl Planner {
         &self.settings
     }
 
-    /// Plans the maps of one frame.
+    /// Plans the maps of one frame for one light: a [`DirectionalLight`], a [`crate::SpotLight`], a [`crate::PointLight`] or any
+    /// [`Light`].
     ///
     /// `casters` throw shadows, `receivers` show them; most objects are in both lists. The plan's caster indices refer to
-    /// `casters`.
+    /// `casters`. A point light's plan has six times as many splits as the settings: those of its first face, then those of the
+    /// next ([`Light::FACE_AXES`]). Splits that the light does not reach have no casters.
+    ///
+    /// A local light's default range is narrowed to where it reaches. Its stabilised maps stand on whole texels, of a size that
+    /// changes in steps: between two steps a shadow's texels stay where they are.
     ///
     /// # Errors
     /// [`Error::InvalidBounds`] naming a box that is inverted or not finite; [`Error::InvalidSetting`] if the range or the
-    /// planes do not fit this camera.
+    /// planes do not fit this camera; [`Error::ConflictingSettings`] for a warp with a local light.
     pub fn plan(
         &mut self,
         view: &View,
-        light: &DirectionalLight,
+        light: &(impl Copy + Into<Light>),
         casters: &[Aabb],
         receivers: &[Aabb],
     ) -> Result<&ShadowPlan> {
         place(casters, "casters", &mut self.casters)?;
         place(receivers, "receivers", &mut self.receivers)?;
+        let light = (*light).into();
+        match &light {
+            Light::Directional(sun) => self.plan_sun(view, sun)?,
+            Light::Spot(spot) => {
+                self.plan_local(view, &light, spot.position(), &[LightFrustum::of_spot(spot)])?;
+            }
+            Light::Point(point) => {
+                let frusta = Light::FACE_AXES.map(|axis| LightFrustum::of_face(point, axis));
+                self.plan_local(view, &light, point.position(), &frusta)?;
+            }
+        }
+        Ok(&self.plan)
+    }
+
+    fn plan_local(&mut self, view: &View, light: &Light, position: DVec3, frusta: &[LightFrustum]) -> Result<()> {
+        let given = Given {
+            settings: &self.settings,
+            view,
+            position,
+            range: light.range(),
+            casters: &self.casters,
+            receivers: &self.receivers,
+            margin: self.settings.filter_radius + EDGE_TEXELS,
+        };
+        self.fan = None;
+        self.plan.begin(view, *light);
+        self.local.plan(&given, frusta, &mut self.plan)
+    }
+
+    fn plan_sun(&mut self, view: &View, light: &DirectionalLight) -> Result<()> {
+        let casters = self.casters.len();
         let (near, far) = self.range(view);
         let mut planes = std::mem::take(&mut self.plan.planes);
         let rising = split_planes(&self.settings.scheme, near, far, self.settings.splits(), &mut planes);
@@ -121,33 +168,44 @@ impl Planner {
 
         let direction = light.direction();
         let (map_u, _) = light.map_axes();
-        let ahead = (view.forward() - view.forward().dot(direction) * direction).try_normalize().unwrap_or(map_u);
-        let fan = Fan::new(ahead, direction);
+        let first = match self.settings.stabilize {
+            Stabilize::Approximate(_) => map_u,
+            Stabilize::None | Stabilize::Exact => {
+                (view.forward() - view.forward().dot(direction) * direction).try_normalize().unwrap_or(map_u)
+            }
+        };
+        if self.plan.light_direction != direction {
+            self.held_rectangle = [HeldRectangle::default(); MAX_SPLITS];
+        }
+        let fan = Fan::new(first, direction);
         self.fan = Some(fan);
+        if self.settings.stabilize != Stabilize::None {
+            let sphere = slice_sphere(view.frustum(), view.frustum().near, far);
+            self.whole_width = 2.0 * self.held_whole.hold(sphere.radius);
+        }
         self.cull_to_view(view, direction);
-        if self.settings.stabilize == Stabilize::Exact && !self.settings.depth_clamp {
+        if self.settings.stabilize != Stabilize::None && !self.settings.depth_clamp {
             self.world_depths = self.measure_world_depths(direction);
         }
 
         let plan = &mut self.plan;
-        plan.view_depth_plane = view.forward().extend(-view.forward().dot(view.eye()));
-        plan.light_direction = direction;
+        plan.begin(view, (*light).into());
         plan.fade_begin = far - self.settings.far_fade * (far - near);
-        plan.caster_indices.clear();
-        plan.split_range.clear();
-        plan.split_range.resize(casters.len(), None);
-        plan.splits.clear();
+        plan.split_range.resize(casters, None);
         self.volumes.clear();
         for i in 0..self.settings.splits() {
             self.plan_split(i, view, light, &fan);
         }
-        Ok(&self.plan)
+        Ok(())
     }
 
     /// The first split whose map holds every caster that can shade `point`, for points that the view does not show (points
     /// that it shows use the split of their view depth). `None`: no map answers for it. Refers to the last plan.
     #[must_use]
     pub fn covering_split(&self, point: DVec3) -> Option<usize> {
+        if let Some(light) = self.plan.light.filter(|light| light.position().is_some()) {
+            return self.local.covering_split(&self.plan, &light, point, self.settings.filter_radius);
+        }
         let fan = self.fan.as_ref()?;
         self.plan.splits.iter().zip(&self.volumes).position(|(split, volume)| {
             let complete = volume.swept.contains(point)
@@ -185,7 +243,7 @@ impl Planner {
         }
         let far = match self.settings.stabilize {
             Stabilize::None => deepest,
-            Stabilize::Exact => self.held_range.hold(deepest),
+            Stabilize::Exact | Stabilize::Approximate(_) => self.held_range.hold(deepest),
         };
         (near, far.min(camera_far))
     }
@@ -193,7 +251,7 @@ impl Planner {
     /// A range around the visible receivers: as it is, or in steps where maps have to stand still.
     fn held_within(&mut self, first: f64, last: f64, camera_near: f64, camera_far: f64) -> (f64, f64) {
         let (first, last) = match self.settings.stabilize {
-            Stabilize::Exact if first > 0.0 => self.held_visible_range.hold(first, last),
+            Stabilize::Exact | Stabilize::Approximate(_) if first > 0.0 => self.held_visible_range.hold(first, last),
             _ => (first, last),
         };
         // A single wall that faces the camera still gets slices of some depth.
@@ -216,8 +274,8 @@ impl Planner {
         }
         let swept = whole.swept_towards_light(direction);
         // The margin around a split is a few of its texels: at most this share of its width.
-        let margin = self.margin_share()
-            * whole.corners[4].distance(whole.corners[7]).max(whole.corners[0].distance(whole.corners[7]));
+        let across = whole.corners[4].distance(whole.corners[7]).max(whole.corners[0].distance(whole.corners[7]));
+        let margin = self.margin_share() * across.max(self.whole_width);
         self.candidates.clear();
         for (i, caster) in self.casters.iter().enumerate() {
             if swept.meets(caster.center, caster.half, margin) {
@@ -255,7 +313,7 @@ impl Planner {
 
         let sphere = slice_sphere(view.frustum(), from, to);
         let radius = match settings.stabilize {
-            Stabilize::Exact => self.held_radius[i].hold(sphere.radius),
+            Stabilize::Exact | Stabilize::Approximate(_) => self.held_radius[i].hold(sphere.radius),
             Stabilize::None => sphere.radius,
         };
         let stable_texel = stable_texel(radius, size, margin);
@@ -264,12 +322,13 @@ impl Planner {
             Fit::Independent => None,
             Fit::Dependent => Some(self.receivers_in(&slice, fan)),
         };
+        let widest = served.as_ref().map_or(&slice_region, |(region, _)| region).widest().max(0.0);
         let margin_m = match self.settings.stabilize {
             Stabilize::Exact => margin * stable_texel,
-            Stabilize::None => {
-                let widest = served.as_ref().map_or(&slice_region, |(region, _)| region).widest().max(0.0);
-                widest * margin / (f64::from(size) - 2.0 * margin).max(1.0)
+            Stabilize::Approximate(steps) => {
+                margin * longest_edge(steps, widest, self.whole_width) / (f64::from(size) - 2.0 * margin - 1.0)
             }
+            Stabilize::None => widest * margin / (f64::from(size) - 2.0 * margin).max(1.0),
         };
         let casters =
             if visible { self.list_casters(i, &swept, served.as_ref(), fan, margin_m) } else { self.empty_list() };
@@ -310,7 +369,9 @@ impl Planner {
             min_texel: DVec2::ZERO,
             depth_near: target.depth.0,
             depth_far: target.depth.1,
+            receiver_depths: target.depth,
             warp: None,
+            light_position: None,
             casters,
         };
         let split = match self.settings.stabilize {
@@ -318,6 +379,14 @@ impl Planner {
             Stabilize::Exact => {
                 let center = view.world_from_view_point(sphere.center);
                 snapped(split, light, center, radius, stable_texel)
+            }
+            Stabilize::Approximate(steps) => {
+                // A split without casters is lit, whatever its rectangle; it changes nothing that is held.
+                let mut unheld = HeldRectangle::default();
+                let held = if split.casters.is_empty() { &mut unheld } else { &mut self.held_rectangle[i] };
+                let rectangle = held.hold(&target, steps, self.whole_width);
+                let depth = direction.dot(view.world_from_view_point(sphere.center));
+                stepped(split, &target, fan, margin, rectangle, (depth - radius, depth + radius))
             }
         };
         let mut split = self.with_depth_range(split, caster_near, radius);
@@ -345,21 +414,20 @@ impl Planner {
         let (near, far, step) = match (self.settings.stabilize, clamped) {
             (Stabilize::None, true) => (split.depth_near, split.depth_far, None),
             (Stabilize::None, false) => (split.depth_near.min(caster_near), split.depth_far, None),
-            (Stabilize::Exact, true) => (split.depth_near, split.depth_far, Some(0.5 * radius)),
-            (Stabilize::Exact, false) => {
+            (_, true) => (split.depth_near, split.depth_far, Some(0.5 * radius)),
+            (_, false) => {
                 let (near, far) = self.world_depths;
                 let known = near.is_finite() && far > near;
                 let (near, far) = if known { (near, far) } else { (split.depth_near, split.depth_far) };
                 (near, far, Some((far - near) / 16.0))
             }
         };
-        let room = 4.0 * texel + 1e-4 * (far - near);
-        (split.depth_near, split.depth_far) = (near - room, far + room);
-        if let Some(step) = step {
-            let step = 2f64.powf(step.log2().round());
-            split.depth_near = (split.depth_near / step).floor() * step;
-            split.depth_far = (split.depth_far / step).ceil() * step;
-        }
+        let receivers = match self.settings.stabilize {
+            Stabilize::None => None,
+            _ => Some(0.5 * radius),
+        };
+        split.receiver_depths = with_room(split.depth_near, split.depth_far, texel, receivers);
+        (split.depth_near, split.depth_far) = with_room(near, far, texel, step);
         split
     }
 
@@ -441,6 +509,15 @@ impl Planner {
     }
 }
 
+/// A range of depths with room for the bias, in whole steps if there is one.
+fn with_room(near: f64, far: f64, texel: f64, step: Option<f64>) -> (f64, f64) {
+    let room = 4.0 * texel + 1e-4 * (far - near);
+    let (near, far) = (near - room, far + room);
+    let Some(step) = step else { return (near, far) };
+    let step = 2f64.powf(step.log2().round());
+    ((near / step).floor() * step, (far / step).ceil() * step)
+}
+
 /// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers` as the light sees it: it then
 /// has nothing behind it to throw a shadow on. A flat ground under everything is the case that matters.
 fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3) -> bool {
@@ -473,6 +550,16 @@ fn fitted(mut split: Split, target: &Region, fan: &Fan, margin: f64) -> Split {
     let extent = (hi - lo).max(DVec2::splat(1e-3 * longest.max(1e-3)));
     split.texel_m = extent / texels;
     split.min_texel = 0.5 * (lo + hi) / split.texel_m - 0.5 * f64::from(split.size);
+    split
+}
+
+/// A rectangle that is held, moved to whole texels of a grid that is fixed to the light.
+fn stepped(mut split: Split, target: &Region, fan: &Fan, margin: f64, held: Rectangle, depth: (f64, f64)) -> Split {
+    (split.u_axis, split.v_axis) = fan.axes(held.direction);
+    let size = f64::from(split.size);
+    split.texel_m = held.extent / (size - 2.0 * margin - 1.0);
+    split.min_texel = (held.center(target) / split.texel_m - 0.5 * size).round();
+    (split.depth_near, split.depth_far) = depth;
     split
 }
 

@@ -3,8 +3,8 @@
 use glam::{DQuat, DVec3, EulerRot};
 use proptest::prelude::*;
 use umbrage::{
-    Aabb, DirectionalLight, Fit, Frustum, Planner, Projection, RangeFit, ShadowPlan, ShadowSettings, SplitScheme,
-    Stabilize, View, Warp,
+    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, Projection, RangeFit, ShadowPlan, ShadowSettings,
+    SplitScheme, Stabilize, View, Warp,
 };
 
 /// A world of boxes on and around a ground, a view and a sun, biased to the awkward: a sun straight down or level, a view into
@@ -43,25 +43,33 @@ fn settings() -> impl Strategy<Value = ShadowSettings> {
         Just(Warp::Lispsm),
         (0.01..0.99f64).prop_map(|focus| Warp::Tsm { focus })
     ];
+    let stabilize = prop_oneof![
+        2 => Just(Stabilize::None),
+        2 => Just(Stabilize::Exact),
+        1 => Just(Stabilize::Approximate(ExtentSteps::default())),
+        1 => Just(Stabilize::Approximate(ExtentSteps::PerDoubling(4))),
+        1 => Just(Stabilize::Approximate(ExtentSteps::Levels(64)))
+    ];
     let warps = prop_oneof![Just(vec![]), prop::collection::vec(warp.clone(), 1), prop::collection::vec(warp, 8)];
-    (1usize..=8, scheme, range, any::<[bool; 4]>(), prop_oneof![Just(0.0), 0.0..0.5f64], 0.5..3.0f64, warps).prop_map(
-        |(m, scheme, range, [dependent, exact, clamp, visible], blend, filter_radius, mut warps)| ShadowSettings {
-            map_sizes: vec![256; m],
-            scheme,
-            range,
-            range_fit: if visible && range.is_none() { RangeFit::Visible } else { RangeFit::Camera },
-            fit: if dependent { Fit::Dependent } else { Fit::Independent },
-            stabilize: if exact { Stabilize::Exact } else { Stabilize::None },
-            filter_radius,
-            blend,
-            depth_clamp: clamp,
-            warps: {
-                warps.truncate(if exact { 0 } else { m });
-                warps
-            },
-            ..ShadowSettings::default()
-        },
-    )
+    (1usize..=8, scheme, range, any::<[bool; 3]>(), stabilize, prop_oneof![Just(0.0), 0.0..0.5f64], 0.5..3.0f64, warps)
+        .prop_map(|(m, scheme, range, [dependent, clamp, visible], stabilize, blend, filter_radius, mut warps)| {
+            ShadowSettings {
+                map_sizes: vec![256; m],
+                scheme,
+                range,
+                range_fit: if visible && range.is_none() { RangeFit::Visible } else { RangeFit::Camera },
+                fit: if dependent { Fit::Dependent } else { Fit::Independent },
+                stabilize,
+                filter_radius,
+                blend,
+                depth_clamp: clamp,
+                warps: {
+                    warps.truncate(if stabilize == Stabilize::None { m } else { 0 });
+                    warps
+                },
+                ..ShadowSettings::default()
+            }
+        })
 }
 
 fn cases() -> impl Strategy<Value = Case> {
@@ -191,6 +199,8 @@ proptest! {
                     let Some(end) = shading_end(bounds, point, direction).filter(|_| index != owner) else { continue };
                     prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} lost caster {index}, which shades {point} at {depth} m");
                     prop_assert!(s.contains(point, case.settings.filter_radius), "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
+                    let along = s.depth_axis.dot(point);
+                    prop_assert!((s.receiver_depths.0..=s.receiver_depths.1).contains(&along), "{point} at {along} m along the light, outside {:?}", s.receiver_depths);
                     let caster_begin = direction.dot(bounds.center()) - direction.abs().dot(bounds.half_extent());
                     prop_assert!(case.settings.depth_clamp || s.depth_near <= caster_begin, "the near plane cuts caster {index}");
                     if s.warp.is_some() {

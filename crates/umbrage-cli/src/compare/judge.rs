@@ -9,8 +9,8 @@ use umbrage_scene::Pose;
 use umbrage_truth::{
     Hit, SoftTruth, Truth, TruthMask,
     scores::{
-        Answers, ByDepth, Domain, Footprint, TexelGradient, by_depth, edge_distance, mis_shadowed, similarity,
-        soft_error, texel_footprint,
+        Answers, ByDepth, Domain, Footprint, Seams, TexelGradient, by_depth, edge_distance, mis_shadowed, seams,
+        similarity, soft_error, texel_footprint,
     },
 };
 
@@ -113,10 +113,40 @@ pub struct Scores {
     /// E_pen: the same over penumbrae.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub e_pen: Option<f64>,
+    /// Decisions on and beside the borders of splits.
+    pub seams: SeamScores,
     /// What it cost.
     pub cost: Cost,
     /// View depths of the planes, metres.
     pub planes_m: Vec<f64>,
+}
+
+/// Counts of [`Seams`], to be pooled over views.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct SeamScores {
+    /// Within 2 px of a border.
+    pub pixels: usize,
+    /// E there.
+    pub e: f64,
+    /// E at 3 to 12 px on the near side.
+    pub e_nearer: f64,
+    /// E at 3 to 12 px on the far side.
+    pub e_farther: f64,
+    /// What the numbers were made of.
+    #[serde(skip)]
+    pub counts: Seams,
+}
+
+impl From<Seams> for SeamScores {
+    fn from(counts: Seams) -> Self {
+        Self {
+            pixels: counts.seam.pixels,
+            e: counts.seam.rate(),
+            e_nearer: counts.nearer.rate(),
+            e_farther: counts.farther.rate(),
+            counts,
+        }
+    }
 }
 
 /// Pixels per texel over a view.
@@ -171,7 +201,9 @@ pub struct Cost {
 /// # Errors
 /// [`crate::failure::Failure`] if the mask has another size.
 pub fn score(judged: &Judged, mask: &GrayAlphaImage, stats: &FrameStats, image_metrics: bool) -> Result<Scores> {
-    let mut scores = decisions(judged, &Answers::from_mask(mask))?;
+    let answers = Answers::from_mask(mask);
+    let mut scores = decisions(judged, &answers)?;
+    scores.seams = seam_scores(&judged.domain, &answers, &stats.plan)?;
     scores.texel_px = footprint(judged, &stats.plan)?;
     for (bin, (predicted, measured)) in scores.by_depth.iter_mut().zip(densities(judged, &stats.plan)) {
         (bin.predicted_texels_per_px, bin.measured_texels_per_px) = (predicted, measured);
@@ -190,6 +222,15 @@ pub fn score(judged: &Judged, mask: &GrayAlphaImage, stats: &FrameStats, image_m
     };
     scores.planes_m.clone_from(&stats.plan.planes);
     Ok(scores)
+}
+
+/// The seam score of one view; nothing where there is nothing to score or no border.
+fn seam_scores(domain: &Domain, answers: &Answers, plan: &ShadowPlan) -> Result<SeamScores> {
+    let inner = plan.planes.get(1..plan.planes.len().saturating_sub(1)).unwrap_or_default();
+    if domain.pixels().is_empty() || inner.is_empty() {
+        return Ok(SeamScores::default());
+    }
+    Ok(seams(domain, answers, inner, |pixel| domain.depth(pixel))?.into())
 }
 
 /// What the decisions alone say.

@@ -105,6 +105,7 @@ fn table(comparison: &Comparison) -> Section {
         least("E_log %"),
         least("D px"),
         least("D p95 px"),
+        Column::number("seam"),
         least("m_p p50"),
         least("m_p p99"),
         least("F_edge %"),
@@ -120,7 +121,8 @@ fn table(comparison: &Comparison) -> Section {
     if soft {
         columns.extend([least("E_soft %"), least("E_pen %")]);
     }
-    let caption = "Means over the views that count; the best of a column in bold.";
+    let caption = "Means over the views that count; the best of a column in bold. Seam: E within 2 px of a split's border over the larger E of \
+         its sides, pooled over all views; 1 is none, 1.1 the most.";
     let mut table = Table::new(caption, columns);
     for TechniqueReport { label, texels, bytes, mean, .. } in &comparison.techniques {
         let texel = mean.texel_px;
@@ -134,6 +136,7 @@ fn table(comparison: &Comparison) -> Section {
             percent(mean.e_log, 2),
             number(mean.edge_distance_px, 2),
             number(mean.edge_distance_p95_px, 1),
+            number(mean.seam_ratio, 2),
             number(texel.map(|texel| texel.perspective_p50), 1),
             number(texel.map(|texel| texel.perspective_p99), 1),
             percent(mean.flicker_per_edge, 2),

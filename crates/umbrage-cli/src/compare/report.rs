@@ -1,7 +1,7 @@
 //! Everything that was measured, as the JSON has it.
 
 use serde::Serialize;
-use umbrage_truth::scores::{MemoryAt, memory_at, paired};
+use umbrage_truth::scores::{MemoryAt, Seams, memory_at, paired};
 
 use super::judge::{Cost, Scores, TexelPixels};
 use crate::{failure::Result, report::CameraReport};
@@ -72,6 +72,8 @@ pub struct Means {
     pub edge_distance_px: Option<f64>,
     pub edge_distance_p95_px: Option<f64>,
     pub texel_px: Option<TexelPixels>,
+    /// The seam score: E on the borders of splits over the larger E of their sides, pooled over all views; none on fewer than 2,000 pixels.
+    pub seam_ratio: Option<f64>,
     /// F, over the walks that count.
     pub flicker: Option<f64>,
     /// F_edge, over the walks that count.
@@ -218,6 +220,7 @@ pub fn means(number: usize, views: &[ViewReport], walks: &[WalkReport]) -> Means
                 perspective_p99: texel(|t| t.perspective_p99)?,
             })
         })(),
+        seam_ratio: seam_ratio(number, views),
         flicker: flicker(|f| f.rate),
         flicker_per_edge: flicker(|f| f.per_edge),
         flip: over(&|scores| scores.flip),
@@ -227,6 +230,13 @@ pub fn means(number: usize, views: &[ViewReport], walks: &[WalkReport]) -> Means
         triangles: cost(|cost| cost.triangles),
         by_depth: by_depth.collect(),
     }
+}
+
+/// A seam needs pixels, not edges: every view is pooled.
+fn seam_ratio(number: usize, views: &[ViewReport]) -> Option<f64> {
+    let mut sum = Seams::default();
+    views.iter().for_each(|view| sum += view.scores[number].seams.counts);
+    sum.ratio().filter(|ratio| sum.counts() && ratio.is_finite())
 }
 
 /// Every technique against every later one, over the views that count.

@@ -50,10 +50,7 @@ pub fn edge_distance(domain: &Domain, answers: &Answers) -> Result<Option<EdgeDi
 pub(super) fn edges_of(domain: &Domain, lit: impl Fn(usize) -> bool) -> Vec<usize> {
     let [width, _] = domain.size();
     let count = domain.size()[0] * domain.size()[1];
-    let differs = |pixel: usize, other: usize| {
-        let (z, other_z) = (domain.depth(pixel), domain.depth(other));
-        domain.contains(other) && (z - other_z).abs() < SAME_SURFACE * z.min(other_z) && lit(pixel) != lit(other)
-    };
+    let differs = |pixel: usize, other: usize| same_surface(domain, pixel, other) && lit(pixel) != lit(other);
     let has_edge = |&pixel: &usize| {
         (pixel % width + 1 < width && differs(pixel, pixel + 1))
             || (pixel + width < count && differs(pixel, pixel + width))
@@ -61,11 +58,17 @@ pub(super) fn edges_of(domain: &Domain, lit: impl Fn(usize) -> bool) -> Vec<usiz
     domain.pixels().iter().copied().filter(has_edge).collect()
 }
 
+/// Whether two neighbours, the first in Ω_f, lie in Ω_f both and on one surface.
+pub(super) fn same_surface(domain: &Domain, pixel: usize, other: usize) -> bool {
+    let (z, other_z) = (domain.depth(pixel), domain.depth(other));
+    domain.contains(other) && (z - other_z).abs() < SAME_SURFACE * z.min(other_z)
+}
+
 /// Squared distance in pixels from every pixel to the nearest of `seeds`, exact; infinite without seeds.
 ///
 /// Felzenszwalb and Huttenlocher, "Distance Transforms of Sampled Functions" (2012): the lower envelope of parabolas, first
 /// down the columns, then along the rows. (The crate `edt` is exact too, but takes seconds where this takes milliseconds.)
-fn squared_distances(width: usize, height: usize, seeds: &[usize]) -> Vec<f64> {
+pub(super) fn squared_distances(width: usize, height: usize, seeds: &[usize]) -> Vec<f64> {
     let mut grid = vec![f64::INFINITY; width * height];
     for &seed in seeds {
         grid[seed] = 0.0;

@@ -18,6 +18,7 @@
 //! | m_p | `t_w H / (2 z tan(fov_y/2))`, t_w the texel's larger edge in metres | [`texel_footprint`] |
 //! | F | `mean_k │{p in P_k: V̂_k(p) ≠ V̂_{k+1}(p)}│ / │P_k│`, P_k: the points of Ω_f of frame k that lie in frame k + 1's frustum cut by 3 % at each border | [`Flicker`] |
 //! | F_edge | `F · │Ω_f│/│B*│`; both counts are summed over the path | [`Flicker::per_edge`] |
+//! | seam | E within 2 px of a split's border over the larger E of both sides at 3 to 12 px; at most 1.1, pooled over 2,000 pixels or more | [`seams`] |
 //! | E_soft, E_pen | `mean │V̂ − V*_A│` over Ω_f, and over its part with `0.02 < V*_A < 0.98` | [`soft_error`] |
 //!
 //! A view counts only if `│B*│ ≥ 2000` ([`Domain::counts_as_view`]); techniques are compared per view ([`paired`]), and one
@@ -36,6 +37,7 @@ mod flicker;
 mod footprint;
 mod picture;
 mod rate;
+mod seams;
 mod similarity;
 mod soft;
 mod stats;
@@ -49,6 +51,7 @@ pub use flicker::{BORDER_CUT, Flicker, FlickerFrame, FramePair, flicker_along, s
 pub use footprint::{Footprint, TexelGradient, texel_footprint};
 pub use picture::{false_colour, false_colour_soft};
 pub use rate::{MisShadowed, mis_shadowed};
+pub use seams::{BESIDE_PX, LEAST_SEAM_PIXELS, MOST_RATIO, SEAM_PX, Seams, seams};
 pub use similarity::{Similarity, similarity};
 pub use soft::{SoftError, soft_error};
 

@@ -49,6 +49,15 @@ impl MisShadowed {
     }
 }
 
+impl std::ops::AddAssign for MisShadowed {
+    fn add_assign(&mut self, other: Self) {
+        self.pixels += other.pixels;
+        self.false_shadow += other.false_shadow;
+        self.false_light += other.false_light;
+        self.missing += other.missing;
+    }
+}
+
 /// Counts the wrong decisions over Ω_f.
 ///
 /// # Errors

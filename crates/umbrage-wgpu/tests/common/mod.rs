@@ -4,7 +4,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, DVec4, Vec3};
 use umbrage::{DirectionalLight, ShadowPlan, Split};
-use umbrage_wgpu::{FrameOptions, ShadowMaps, ShadowMapsOptions, caster_wgsl, optional_features, receiver_wgsl};
+use umbrage_wgpu::{FrameOptions, ShadowMaps, ShadowMapsOptions, optional_features};
 
 /// A device of its own for each test, and the queue.
 pub struct Gpu {
@@ -192,7 +192,7 @@ impl World {
     pub fn new(gpu: Gpu, options: &ShadowMapsOptions) -> Self {
         let (maps, pipeline) = gpu.checked(|| {
             let maps = ShadowMaps::new(&gpu.device, options).expect("valid options");
-            let source = caster_wgsl(0)
+            let source = maps.caster_wgsl(0)
                 + "@vertex fn vertex(@location(0) position: vec3f) -> @builtin(position) vec4f {
                        return umbrage_caster_position(position);
                    }";
@@ -247,7 +247,7 @@ impl World {
     }
 
     pub fn ask(&self, asks: &[Ask]) -> Vec<Answer> {
-        self.gpu.compute(&(receiver_wgsl(1) + ASK), asks, Some(&self.maps))
+        self.gpu.compute(&(self.maps.receiver_wgsl(1) + ASK), asks, Some(&self.maps))
     }
 
     /// The texels of a D32Float map, row after row.
@@ -312,7 +312,9 @@ pub fn plan(light: DVec3, center: DVec3, sizes: &[u32], planes: &[f64], widths: 
                 min_texel: (at - 0.5 * f64::from(sizes[i])).round(),
                 depth_near: depth.dot(center) - 100.0,
                 depth_far: depth.dot(center) + 100.0,
+                receiver_depths: (depth.dot(center) - 100.0, depth.dot(center) + 100.0),
                 warp: None,
+                light_position: None,
                 casters: i..i + 1,
             }
         })
@@ -322,6 +324,7 @@ pub fn plan(light: DVec3, center: DVec3, sizes: &[u32], planes: &[f64], widths: 
         planes: planes.to_vec(),
         view_depth_plane: DVec4::new(1.0, 0.0, 0.0, 0.0),
         light_direction: depth,
+        light: None,
         fade_begin: planes[sizes.len()],
         caster_indices: vec![0; sizes.len()],
         split_range: vec![Some((0, sizes.len() as u8 - 1))],

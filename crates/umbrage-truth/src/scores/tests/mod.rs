@@ -5,4 +5,5 @@ mod flicker;
 mod footprint;
 mod frames;
 mod hard;
+mod seams;
 mod soft;

@@ -1,0 +1,95 @@
+//! `lib/moments.wesl` on the CPU.
+
+use crate::layout::FilterKind;
+
+/// `moments::LEAST_VARIANCE`.
+pub const LEAST_VARIANCE: f32 = 5e-7;
+/// `moments::MOMENT_BIAS`.
+pub const MOMENT_BIAS: f32 = 1e-6;
+
+/// `moments::PLANE_BIAS`.
+pub const PLANE_BIAS: f32 = 2.0;
+
+/// `moments::of_depth`: what is stored for a depth `z` in `[-1, 1]`.
+#[must_use]
+pub fn of_depth(kind: FilterKind, exponents: [f32; 2], z: f32) -> [f32; 4] {
+    let warped = (exponents[0] * z).exp();
+    let negative = -(-exponents[1] * z).exp();
+    match kind {
+        FilterKind::Vsm => [z, z * z, 0.0, 0.0],
+        FilterKind::Msm => [z, z * z, z * z * z, z * z * z * z],
+        FilterKind::Esm => [warped, 0.0, 0.0, 0.0],
+        FilterKind::Evsm2 => [warped, warped * warped, 0.0, 0.0],
+        _ => [warped, warped * warped, negative, negative * negative],
+    }
+}
+
+/// `moments::chebyshev`: the most of a distribution with these two moments that can lie at `t` or beyond.
+#[must_use]
+pub fn chebyshev(mean: f32, square: f32, least_variance: f32, t: f32) -> f32 {
+    if t <= mean {
+        return 1.0;
+    }
+    let variance = (square - mean * mean).max(least_variance);
+    variance / (variance + (t - mean) * (t - mean))
+}
+
+/// `moments::hamburger`: the same of a distribution on `[-1, 1]` with these four moments.
+#[must_use]
+pub fn hamburger(moments: [f32; 4], t: f32) -> f32 {
+    const WIDEST: [f32; 4] = [0.0, 2.0 / 3.0, 0.0, 2.0 / 3.0];
+    let [b1, b2, b3, b4] = std::array::from_fn(|i| moments[i] + (WIDEST[i] - moments[i]) * MOMENT_BIAS);
+    let d2 = (b2 - b1 * b1).max(1e-9);
+    let l = (b3 - b1 * b2) / d2;
+    let d3 = (b4 - b2 * b2 - l * l * d2).max(1e-12);
+    let y = t - b1;
+    let z = (t * t - b2 - l * y) / d3;
+    let c1 = y / d2 - l * z;
+    let c0 = 1.0 - c1 * b1 - z * b2;
+    let half = 0.5 * (c1 + if c1 >= 0.0 { 1.0 } else { -1.0 } * (c1 * c1 - 4.0 * z * c0).max(0.0).sqrt());
+    let not_zero = |x: f32| if x == 0.0 { 1e-12 } else { x };
+    let (one, other) = (-c0 / not_zero(half), -half / not_zero(z));
+    let (first, second) = (one.min(other), one.max(other));
+    if t <= first {
+        1.0
+    } else if t <= second {
+        let weight = (t * second - b1 * (t + second) + b2) / ((t - first) * (second - first).max(1e-9));
+        (1.0 - weight).clamp(0.0, 1.0)
+    } else {
+        let weight = (first * second - b1 * (first + second) + b2) / ((t - first) * (t - second));
+        weight.clamp(0.0, 1.0)
+    }
+}
+
+/// `moments::lit_share`: the lit share at a receiver at `t`; `spread` is how much depth may differ within a texel, `plane` how
+/// much the receiver's plane does within the filter.
+#[must_use]
+pub fn lit_share(kind: FilterKind, exponents: [f32; 2], moments: [f32; 4], t: f32, spread: f32, plane: f32) -> f32 {
+    let warped = (exponents[0] * t).exp();
+    let positive = || chebyshev(moments[0], moments[1], (spread * exponents[0] * warped).powi(2), warped);
+    match kind {
+        FilterKind::Vsm => chebyshev(moments[0], moments[1], (spread * spread).max(LEAST_VARIANCE), t),
+        FilterKind::Msm => hamburger(moments, t - PLANE_BIAS * plane),
+        FilterKind::Esm => (moments[0] / warped).clamp(0.0, 1.0),
+        FilterKind::Evsm2 => positive(),
+        _ => {
+            let negative = -(-exponents[1] * t).exp();
+            positive().min(chebyshev(moments[2], moments[3], (spread * exponents[1] * negative).powi(2), negative))
+        }
+    }
+}
+
+/// `moments::without_bleeding`.
+#[must_use]
+pub fn without_bleeding(lit: f32, bleeding: f32) -> f32 {
+    ((lit - bleeding) / (1.0 - bleeding)).clamp(0.0, 1.0)
+}
+
+/// `moments::blur_weight`: the weight of the texel `k` texels aside in a blur of half width `radius` texels.
+#[must_use]
+pub fn blur_weight(k: f32, radius: f32) -> f32 {
+    let n = radius.floor();
+    let share = (radius * radius - n * n) / (2.0 * n + 1.0);
+    let tent = |n: f32| (1.0 - k.abs() / n).max(0.0) / n;
+    tent(n) * (1.0 - share) + tent(n + 1.0) * share
+}
