@@ -497,7 +497,8 @@ impl Planner {
             let Placed { center, half } = self.casters[index as usize];
             let listed = swept.meets(center, half, margin)
                 && served.is_none_or(|(region, bounds)| {
-                    !lies_below(center, half, bounds, fan.depth) && region.can_be_shadowed_by(fan, center, half, margin)
+                    !lies_below(center, half, bounds, fan.depth, margin)
+                        && region.can_be_shadowed_by(fan, center, half, margin)
                 });
             if listed {
                 self.plan.caster_indices.push(index);
@@ -519,13 +520,18 @@ fn with_room(near: f64, far: f64, texel: f64, step: Option<f64>) -> (f64, f64) {
 }
 
 /// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers` as the light sees it: it then
-/// has nothing behind it to throw a shadow on. A flat ground under everything is the case that matters.
-fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3) -> bool {
+/// has nothing behind it to throw a shadow on. A flat ground under everything is the case that matters, and touches what
+/// stands on it. Anything that is not flat has to lie `margin` metres beyond: a filter asks beside its receiver, too.
+fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3, margin: f64) -> bool {
     let slack = BELOW_ALL * (receivers.max - receivers.min).max_element();
-    (0..3).any(|axis| match direction[axis] {
-        along if along < -1e-9 => center[axis] + half[axis] <= receivers.min[axis] + slack,
-        along if along > 1e-9 => center[axis] - half[axis] >= receivers.max[axis] - slack,
-        _ => false,
+    (0..3).any(|axis| {
+        let beyond = match direction[axis] {
+            along if along < -1e-9 => receivers.min[axis] - (center[axis] + half[axis]),
+            along if along > 1e-9 => (center[axis] - half[axis]) - receivers.max[axis],
+            _ => f64::NEG_INFINITY,
+        };
+        let is_flat = 2.0 * half[axis] <= slack;
+        beyond >= if is_flat { -slack } else { margin }
     })
 }
 
