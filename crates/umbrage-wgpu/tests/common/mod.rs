@@ -231,11 +231,16 @@ impl World {
 
     /// Draws `triangles` (three corners each, relative to the options' origin) into every map.
     pub fn draw(&mut self, plan: &ShadowPlan, options: &FrameOptions, triangles: &[Vec3]) {
-        self.maps.prepare(&self.gpu.queue, plan, options).expect("a valid plan");
+        self.draw_all(&[plan], options, triangles);
+    }
+
+    /// The same for the plans of several lights.
+    pub fn draw_all(&mut self, plans: &[&ShadowPlan], options: &FrameOptions, triangles: &[Vec3]) {
+        self.maps.prepare_lights(&self.gpu.queue, plans, options).expect("valid plans");
         self.gpu.checked(|| {
             let vertices = self.gpu.buffer_with(bytemuck::cast_slice(triangles), wgpu::BufferUsages::VERTEX);
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-            for split in 0..self.maps.splits() {
+            for split in 0..self.maps.map_count() {
                 let mut pass = self.maps.begin_split(&mut encoder, split, None);
                 pass.set_pipeline(&self.pipeline);
                 pass.set_bind_group(0, self.maps.caster_bind_group(split), &[]);
