@@ -1,4 +1,5 @@
-//! Flicker of one technique along a walk: over all points, and over those that keep their split.
+//! Flicker of one technique along a walk: over all points, over those that keep their split, and over those of them whose map takes no
+//! step.
 
 use umbrage::ShadowPlan;
 use umbrage_render::ProbePoint;
@@ -13,7 +14,8 @@ pub struct Stillness {
     transition: Transition,
     all: Flicker,
     kept: Flicker,
-    kept_points: usize,
+    standing: Flicker,
+    standing_points: usize,
     steps: usize,
     before: Option<Before>,
 }
@@ -41,8 +43,8 @@ impl Stillness {
     /// Nothing yet.
     #[must_use]
     pub fn new(transition: Transition) -> Self {
-        let (all, kept) = Default::default();
-        Self { transition, all, kept, kept_points: 0, steps: 0, before: None }
+        let (all, kept, standing) = Default::default();
+        Self { transition, all, kept, standing, standing_points: 0, steps: 0, before: None }
     }
 
     /// One more frame. `shared` are the domain of the frame before and the points that it shares with this one.
@@ -54,17 +56,30 @@ impl Stillness {
         if let (Some(before), Some((domain, points))) = (&self.before, shared) {
             let (old, new) = (&before.answers[..], answered.shared);
             self.all.add(FramePair { domain, now: old, next: new })?;
-            let decides = |plan, point: &ProbePoint| deciding_split(plan, point, self.transition);
-            let keeps = |point| decides(&before.plan, point) == decides(&now.plan, point);
-            let kept = points.iter().zip(old.iter().zip(new)).filter(|(point, _)| keeps(point)).map(|(_, pair)| pair);
-            let (old, new): (Vec<f32>, Vec<f32>) = kept.unzip();
-            self.kept_points += old.len();
-            self.kept.add(FramePair { domain, now: &old, next: &new })?;
-            let drawn = |plan: &ShadowPlan, split: usize| !plan.splits[split].casters.is_empty();
-            self.steps += (0..now.plan.splits.len().min(before.plan.splits.len()))
-                .filter(|&split| drawn(&before.plan, split) && drawn(&now.plan, split))
-                .filter(|&split| now.plan.splits[split].texels_moved_since(&before.plan.splits[split]).is_none())
-                .count();
+            let splits = now.plan.splits.iter().zip(&before.plan.splits);
+            // A split that nothing throws a shadow in stands still, whatever its map.
+            let stands: Vec<bool> = splits
+                .map(|(new, old)| {
+                    (new.casters.is_empty() && old.casters.is_empty()) || new.texels_moved_since(old).is_some()
+                })
+                .collect();
+            self.steps += stands.iter().filter(|stands| !**stands).count();
+            let (mut kept, mut standing) = ((Vec::new(), Vec::new()), (Vec::new(), Vec::new()));
+            for ((point, &old), &new) in points.iter().zip(old).zip(new) {
+                let decides = |plan| deciding_split(plan, point, self.transition);
+                let split = decides(&now.plan);
+                if split == decides(&before.plan) {
+                    kept.0.push(old);
+                    kept.1.push(new);
+                    if split.is_none_or(|split| stands[split]) {
+                        standing.0.push(old);
+                        standing.1.push(new);
+                    }
+                }
+            }
+            self.kept.add(FramePair { domain, now: &kept.0, next: &kept.1 })?;
+            self.standing_points += standing.0.len();
+            self.standing.add(FramePair { domain, now: &standing.0, next: &standing.1 })?;
         }
         self.before = Some(now);
         Ok(())
@@ -76,9 +91,9 @@ impl Stillness {
         FlickerReport {
             rate: self.all.rate(),
             per_edge: self.all.per_edge(),
-            kept_points: self.kept_points,
-            kept_rate: self.kept.rate(),
             kept_per_edge: self.kept.per_edge(),
+            standing_points: self.standing_points,
+            standing_per_edge: self.standing.per_edge(),
             steps: self.steps,
         }
     }
