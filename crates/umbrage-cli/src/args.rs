@@ -235,6 +235,10 @@ pub struct ShadowArgs {
     /// View depths in metres that shadows cover [default: the camera's near and far, far capped by the scene]
     #[arg(long, value_name = "N..F", value_parser = parse::range, allow_hyphen_values = true)]
     pub shadow_range: Option<(f64, f64)>,
+    /// What the shadowed range is fitted to where --shadow-range does not say it: the camera's near and far, or the visible
+    /// objects
+    #[arg(long, value_enum, default_value_t)]
+    pub range_fit: RangeFit,
     /// What each map is fitted to: the slice alone, or its receivers and casters too
     #[arg(long, value_enum, default_value_t)]
     pub fit: Fit,
@@ -262,15 +266,21 @@ pub struct ShadowArgs {
     /// How one split goes over into the next
     #[arg(long, value_enum, default_value_t)]
     pub transition: Transition,
-    /// Share of each split over which it blends into the next; 0 is off
-    #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
-    pub blend: f64,
+    /// Share of each split over which it blends into the next; 0 is off [default: 0.1, or 0 where one map is reused]
+    #[arg(long, value_name = "SHARE", value_parser = parse::share, allow_hyphen_values = true)]
+    pub blend: Option<f64>,
     /// Share of the shadowed range over which shadows fade out at its far end; 0 is off
     #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
     pub far_fade: f64,
     /// What a map stores
     #[arg(long, value_enum, default_value_t)]
     pub depth_format: DepthFormat,
+    /// How maps are drawn; multipass goes with reused, layered with array or cube, instanced with atlas, mixed with array
+    #[arg(long, value_enum, default_value_t)]
+    pub generation: crate::paths::Generation,
+    /// Where maps are kept
+    #[arg(long, value_enum, default_value_t)]
+    pub storage: crate::paths::Storage,
     /// Colour the picture by split
     #[arg(long)]
     pub tint: bool,
@@ -349,6 +359,16 @@ pub enum Scheme {
     Manual,
 }
 
+/// `--range-fit`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum RangeFit {
+    /// The camera's near and far, far capped by the scene
+    #[default]
+    Camera,
+    /// The nearest and the farthest thing in view
+    Visible,
+}
+
 /// `--fit`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Fit {
@@ -411,6 +431,8 @@ pub enum DepthFormat {
     D32f,
     /// 16-bit
     D16,
+    /// 32-bit float in a colour texture, compared by hand
+    R32f,
 }
 
 /// `--depth-convention`.

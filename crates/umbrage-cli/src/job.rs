@@ -9,6 +9,7 @@ use umbrage::{ExtentSteps, MAX_SPLITS, ShadowSettings, SplitScheme, Warp};
 use crate::{
     args::{self, SceneArgs, Scheme, ShadowArgs, Technique},
     failure::{Failure, Result},
+    paths,
 };
 
 /// `--fov` where nothing else says one, degrees.
@@ -100,6 +101,12 @@ pub struct ShadowJob {
     pub transition: args::Transition,
     /// `--depth-format`.
     pub depth_format: args::DepthFormat,
+    /// `--generation`.
+    pub generation: umbrage_wgpu::Generation,
+    /// `--storage`.
+    pub storage: umbrage_wgpu::Storage,
+    /// Defaults invented.
+    pub notes: Vec<String>,
     /// `--tint`.
     pub tint: bool,
     /// `--shadows`.
@@ -205,13 +212,23 @@ impl ShadowJob {
     /// # Errors
     /// [`Failure::Input`] naming the options that do not go together.
     pub fn new(args: &ShadowArgs, image_size: [u32; 2]) -> Result<Self> {
+        if args.shadow_range.is_some() && args.range_fit == args::RangeFit::Visible {
+            return Err(Failure::input(
+                "--shadow-range and --range-fit visible both choose the shadowed range; give one of them",
+            ));
+        }
         let map_sizes = map_sizes(args)?;
         let warps = warps(args, map_sizes.len())?;
         let stabilize = stabilize(args, &warps)?;
+        let (blend, note) = paths::blend(args, &map_sizes)?;
         let settings = ShadowSettings {
             scheme: scheme(args, map_sizes.len())?,
             map_sizes,
             range: args.shadow_range,
+            range_fit: match args.range_fit {
+                args::RangeFit::Camera => umbrage::RangeFit::Camera,
+                args::RangeFit::Visible => umbrage::RangeFit::Visible,
+            },
             fit: match args.fit {
                 args::Fit::Dependent => umbrage::Fit::Dependent,
                 args::Fit::Independent => umbrage::Fit::Independent,
@@ -223,7 +240,7 @@ impl ShadowJob {
             },
             warps: warps.iter().map(|&warp| planner_warp(warp, args.tsm_focus)).collect(),
             filter_radius: wgpu_filter(args.filter).radius_texels(),
-            blend: args.blend,
+            blend,
             far_fade: args.far_fade,
             depth_clamp: false,
             image_size,
@@ -242,6 +259,9 @@ impl ShadowJob {
             filter_width: args.filter_width,
             transition: args.transition,
             depth_format: args.depth_format,
+            generation: args.generation.into(),
+            storage: args.storage.into(),
+            notes: note.into_iter().collect(),
             tint: args.tint,
             shadows_on: args.shadows == args::Switch::On,
             fit: args.fit,
@@ -291,6 +311,7 @@ pub fn wgpu_depth_format(format: args::DepthFormat) -> umbrage_wgpu::DepthFormat
     match format {
         args::DepthFormat::D32f => umbrage_wgpu::DepthFormat::D32Float,
         args::DepthFormat::D16 => umbrage_wgpu::DepthFormat::D16Unorm,
+        args::DepthFormat::R32f => umbrage_wgpu::DepthFormat::R32Float,
     }
 }
 

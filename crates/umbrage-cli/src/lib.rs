@@ -13,6 +13,7 @@ pub mod html;
 pub mod job;
 pub mod output;
 pub mod parse;
+mod paths;
 mod plan;
 pub mod plot;
 mod probe;

@@ -16,6 +16,7 @@ mod maps;
 mod materials;
 mod mipmaps;
 mod probe;
+mod record;
 mod renderer;
 mod shaders;
 mod stats;

@@ -17,9 +17,9 @@ pub struct SplitStats {
     pub warped: bool,
     /// Objects in its list: mesh nodes or instances, not primitives.
     pub casters: usize,
-    /// Draw calls; instances share one.
+    /// Draw calls that draw into its map; instances share one, and so may splits.
     pub draws: u32,
-    /// Triangles drawn, counting every instance.
+    /// Triangles of its casters.
     pub triangles: u64,
     /// Bytes of its map.
     pub bytes: u64,
@@ -38,6 +38,10 @@ pub struct FrameStats {
     pub frame_ms: f64,
     /// Nearest first.
     pub splits: Vec<SplitStats>,
+    /// Draw calls into all maps.
+    pub shadow_draws: u32,
+    /// Triangles submitted to all maps, counting every instance; multiview draws each of them into several.
+    pub shadow_triangles: u64,
     /// Objects that the view may show.
     pub objects_in_view: usize,
     /// Draw calls of picture and mask together.

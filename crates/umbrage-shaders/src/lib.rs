@@ -14,7 +14,7 @@
 //!
 //! | binding of [`receiver`] | what |
 //! |---|---|
-//! | 0 | uniform [`layout::Frame`] |
+//! | 0 | uniform array of [`layout::Frame`]: one for each light, six for a point light |
 //! | 1 | `texture_depth_2d_array` or `texture_depth_cube`, cleared to 1; [`layout::Split`] says where in it a map lies |
 //! | 2 | `sampler_comparison` with `LessEqual`, clamped to the edge; nearest for [`layout::FilterKind::Hard`], else linear |
 //! | 3 … | [`Bound::Separate`]: a `texture_depth_2d` for each split. [`Bound::Cube`]: its faces as layers, where loads are possible |
@@ -78,7 +78,7 @@ pub enum Bound {
 }
 
 /// How a receiver reads its maps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Maps {
     /// How they are bound.
     pub bound: Bound,
@@ -86,6 +86,15 @@ pub struct Maps {
     pub r32f: bool,
     /// Depth textures can be compared with but not loaded from (GL, WebGL2): [`layout::FilterKind::Pcss`] is an ordinary disc.
     pub without_loads: bool,
+    /// Length of the array of frames.
+    pub frames: u32,
+}
+
+impl Default for Maps {
+    /// One light, read with everything that a device can have.
+    fn default() -> Self {
+        Self { bound: Bound::Array, r32f: false, without_loads: false, frames: 1 }
+    }
 }
 
 /// How casters are copied into the maps of several splits in one pass; neither: each pass draws one split.
@@ -120,12 +129,13 @@ pub fn caster(group: u32, casters: Casters, members: &str) -> String {
 }
 
 /// Text to put before a shader that asks what is lit: `fn umbrage_visibility(position: vec3f, normal: vec3f) -> f32`,
-/// `umbrage_shadow` and `umbrage_visibility_in_split`.
+/// `umbrage_shadow` and `umbrage_visibility_in_split`, and the same of one of several lights: `umbrage_visibility_of(light: u32, …)`.
 ///
 /// # Panics
 /// If there are fewer than 1 or more than [`layout::MAX_SPLITS`] separate maps.
 #[must_use]
 pub fn receiver(group: u32, maps: Maps) -> String {
+    let frames = maps.frames.max(1);
     let loads = maps.r32f || !maps.without_loads;
     let receiver = if loads { text!("receiver") } else { text!("receiver_without_loads") };
     let maps = match (maps.bound, maps.r32f, loads) {
@@ -139,5 +149,5 @@ pub fn receiver(group: u32, maps: Maps) -> String {
         (Bound::Separate(count), false, true) => SEPARATE[count - 1],
         (Bound::Separate(count), false, false) => SEPARATE_WITHOUT_LOADS[count - 1],
     };
-    format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\n{maps}\n{receiver}\n")
+    format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\nconst UMBRAGE_FRAMES = {frames}u;\n{maps}\n{receiver}\n")
 }

@@ -4,7 +4,7 @@ use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use umbrage_shaders::{Bound, Casters, Maps};
 
-const WITHOUT_LOADS: Maps = Maps { bound: Bound::Array, r32f: false, without_loads: true };
+const WITHOUT_LOADS: Maps = Maps { bound: Bound::Array, r32f: false, without_loads: true, frames: 7 };
 
 /// Every way to bind maps and to read them.
 fn all_maps() -> Vec<Maps> {
@@ -15,6 +15,7 @@ fn all_maps() -> Vec<Maps> {
                 bound,
                 r32f,
                 without_loads,
+                frames: 1,
             })
         })
         .collect()
@@ -72,7 +73,8 @@ fn fragment_shader_without_loads(group: u32) -> String {
 const FRAGMENT: &str = "@fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
                let shadow = umbrage_shadow(position, vec3f(0.0, 1.0, 0.0));
                let one = umbrage_visibility_in_split(position, vec3f(0.0, 1.0, 0.0), 1u);
-               return vec4f(shadow.tint * shadow.visibility, one * f32(shadow.split));
+               let other = umbrage_visibility_of(u32(position.x), position, vec3f(0.0, 1.0, 0.0));
+               return vec4f(shadow.tint * shadow.visibility, one * other * f32(shadow.split));
            }";
 
 #[test]

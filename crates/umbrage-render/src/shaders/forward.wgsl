@@ -46,16 +46,29 @@ fn geometric_normal(from_eye: vec3f) -> vec3f {
     return normalize(turned / largest);
 }
 
+// The picture is drawn slice by slice, and triangles are not cut at the slices' borders, nor at the camera's own planes.
+override SLICED: bool = false;
+
+// Whether a pixel belongs to what is drawn now.
+fn is_drawn(in: Surface) -> bool {
+    let depth = dot(in.from_eye, frame.forward);
+    return !SLICED || (umbrage_in_slice(in.position) && depth >= frame.near && depth <= frame.far);
+}
+
 // Red: visibility of the sun at the pixel's centre. Green: 1, a surface is here.
 @fragment
 fn fs_mask_opaque(in: Surface) -> @location(0) vec2f {
-    return mask_at(in, geometric_normal(in.from_eye));
+    let normal = geometric_normal(in.from_eye);
+    if !is_drawn(in) {
+        discard;
+    }
+    return mask_at(in, normal);
 }
 
 @fragment
 fn fs_mask_masked(in: Surface) -> @location(0) vec2f {
     let normal = geometric_normal(in.from_eye);
-    if tested_alpha(in.uv, in.color.a) < material.alpha_cutoff {
+    if tested_alpha(in.uv, in.color.a) < material.alpha_cutoff || !is_drawn(in) {
         discard;
     }
     return mask_at(in, normal);
@@ -70,7 +83,12 @@ fn mask_at(in: Surface, normal: vec3f) -> vec2f {
 
 @fragment
 fn fs_picture_opaque(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
-    return vec4f(shaded(in, front, base_color(in)), 1.0);
+    let base = base_color(in);
+    let geometric = geometric_normal(in.from_eye);
+    if !is_drawn(in) {
+        discard;
+    }
+    return vec4f(shaded(in, front, base, geometric), 1.0);
 }
 
 // Alpha becomes coverage: a step one pixel wide around the cutoff. With one sample a pixel it is all or nothing: 0.5.
@@ -80,17 +98,21 @@ override LEAST_COVERAGE: f32 = 0.0;
 fn fs_picture_masked(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let color = base_color(in);
     let coverage = (color.a - material.alpha_cutoff) / max(fwidth(color.a), 1e-4) + 0.5;
-    let lit = shaded(in, front, color);
-    if coverage <= LEAST_COVERAGE {
+    let geometric = geometric_normal(in.from_eye);
+    if coverage <= LEAST_COVERAGE || !is_drawn(in) {
         discard;
     }
-    return vec4f(lit, min(coverage, 1.0));
+    return vec4f(shaded(in, front, color, geometric), min(coverage, 1.0));
 }
 
 @fragment
 fn fs_picture_blend(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let color = base_color(in);
-    return vec4f(shaded(in, front, color), clamp(color.a, 0.0, 1.0));
+    let geometric = geometric_normal(in.from_eye);
+    if !is_drawn(in) {
+        discard;
+    }
+    return vec4f(shaded(in, front, color, geometric), clamp(color.a, 0.0, 1.0));
 }
 
 fn base_color(in: Surface) -> vec4f {
@@ -98,8 +120,7 @@ fn base_color(in: Surface) -> vec4f {
 }
 
 // Lambert's sun, a sky from above and light from the ground below. Display light, tone mapped.
-fn shaded(in: Surface, front: bool, base: vec4f) -> vec3f {
-    let geometric = geometric_normal(in.from_eye);
+fn shaded(in: Surface, front: bool, base: vec4f, geometric: vec3f) -> vec3f {
     let smooth_normal = normalize(select(-in.normal, in.normal, front));
     let shadow = umbrage_shadow_at_pixel(in.position, lookup_normal(geometric), in.clip.xy);
     let sun = SUN * max(dot(smooth_normal, frame.to_light), 0.0) * shadow.visibility;

@@ -3,4 +3,5 @@
 
 mod ceilings;
 mod goldens;
+mod paths;
 mod robot_war;

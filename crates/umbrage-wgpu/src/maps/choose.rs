@@ -14,6 +14,9 @@ pub(crate) struct Abilities {
 }
 
 impl Abilities {
+    /// Everything that any path needs.
+    pub const ALL: Self = Self { views: umbrage::MAX_SPLITS as u32, clip_distances: true, leads: false };
+
     pub fn of(device: &wgpu::Device) -> Self {
         let has = |feature| device.features().contains(feature);
         Self {
@@ -119,7 +122,6 @@ fn check_cube(options: &ShadowMapsOptions, storage: Storage) -> Result<()> {
 mod tests {
     use super::*;
 
-    const ALL: Abilities = Abilities { views: 6, clip_distances: true, leads: false };
     const GENERATIONS: [Generation; 6] = [
         Generation::Auto,
         Generation::Multipass,
@@ -140,7 +142,7 @@ mod tests {
         let mut valid = 0;
         for generation in GENERATIONS {
             for storage in STORAGES {
-                match choose(&options(generation, storage), ALL) {
+                match choose(&options(generation, storage), Abilities::ALL) {
                     Ok(chosen) => {
                         assert!(chosen.notes.is_empty() && goes_together(chosen.generation, chosen.storage));
                         assert!(generation == Generation::Auto || chosen.generation == generation);
@@ -186,7 +188,7 @@ mod tests {
     fn cubes_have_six_faces_alike() {
         let cube = |sizes: &[u32]| {
             let options = ShadowMapsOptions { map_sizes: sizes.to_vec(), ..options(Generation::Auto, Storage::Cube) };
-            choose(&options, ALL).map_err(|error| error.to_string())
+            choose(&options, Abilities::ALL).map_err(|error| error.to_string())
         };
         assert!(cube(&[512; 6]).is_ok() && cube(&[512]).is_ok());
         let seven = cube(&[512; 7]).expect_err("seven");

@@ -27,11 +27,11 @@ impl Uniforms {
         Self::new(device, "ShadowMaps::caster", layout, bytes, passes.len(), Vec::new())
     }
 
-    /// What receivers are told: the frame, once for all splits, and where one map is reused, once more for each; and the maps.
+    /// What receivers are told: the frames, once for all splits, and where one map is reused, once more for each; and the maps.
     pub fn of_receivers(device: &wgpu::Device, options: &ShadowMapsOptions, targets: &Targets, loads: bool) -> Self {
         let count = if options.storage == Storage::Reused { 1 + options.map_sizes.len() } else { 1 };
         let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
-        let bytes = size_of::<layout::Frame>() as u64;
+        let bytes = super::lights::frame_bytes(options);
         let bindings = MapBindings::new(device, options, targets, loads);
         let mut entries = vec![uniform_entry(bytes, visibility)];
         let types = bindings.list.iter().map(|(binding, ty, _)| (*binding, *ty));
@@ -83,9 +83,9 @@ impl Uniforms {
         Self { buffer, stride, layout, groups }
     }
 
-    /// Writes the uniform of group `index`.
-    pub fn write(&self, queue: &wgpu::Queue, index: usize, uniform: &impl bytemuck::NoUninit) {
-        queue.write_buffer(&self.buffer, index as u64 * self.stride, bytemuck::bytes_of(uniform));
+    /// Writes the uniforms of group `index`.
+    pub fn write<T: bytemuck::NoUninit>(&self, queue: &wgpu::Queue, index: usize, uniforms: &[T]) {
+        queue.write_buffer(&self.buffer, index as u64 * self.stride, bytemuck::cast_slice(uniforms));
     }
 }
 

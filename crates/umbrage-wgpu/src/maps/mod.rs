@@ -2,6 +2,7 @@
 
 pub(crate) mod choose;
 mod groups;
+mod lights;
 mod passes;
 mod slices;
 pub(crate) mod storage;
@@ -10,7 +11,7 @@ mod targets;
 use std::num::NonZeroU32;
 
 use umbrage::{MAX_SPLITS, ShadowPlan, ShadowSettings};
-use umbrage_shaders::{Bound, Casters, Maps, layout};
+use umbrage_shaders::{Bound, Casters, Maps};
 
 use choose::{Abilities, Chosen};
 use groups::Uniforms;
@@ -19,8 +20,8 @@ pub use slices::Slice;
 use storage::{Arrangement, Tile};
 use targets::Targets;
 
-use crate::uniforms::{self, Place, Viewport};
-use crate::{Error, FrameOptions, Generation, Result, ShadowMapsOptions, Storage, Transition};
+use crate::uniforms::{Place, Viewport};
+use crate::{Error, FrameOptions, Generation, Result, ShadowMapsOptions, Storage};
 
 /// Features that make shadows better where an adapter has them: request `adapter.features() & optional_features()`.
 ///
@@ -32,11 +33,12 @@ pub fn optional_features() -> wgpu::Features {
     wgpu::Features::DEPTH_CLIP_CONTROL | wgpu::Features::MULTIVIEW | wgpu::Features::CLIP_DISTANCES
 }
 
-/// The shadow maps of one light for one view, on the GPU.
+/// The shadow maps of one light for one view, or of several lights ([`ShadowMaps::prepare_lights`]), on the GPU.
 ///
 /// [`Storage`] says where maps are kept, [`Generation`] how they are drawn. Each frame: [`ShadowMaps::prepare`], every pass of
 /// [`ShadowMaps::passes`] from [`ShadowMaps::begin_pass`], then any pass of the app with [`ShadowMaps::receiver_bind_group`]. With
-/// [`Storage::Reused`] the app's pass is taken apart into slices, each after its map: see [`ShadowMaps::slice_bind_group`].
+/// [`Storage::Reused`] the app's pass is taken apart into slices, each after its map: see [`ShadowMaps::slice_bind_group`]. Several views of
+/// one scene are as many `ShadowMaps`, each planned for its view.
 #[derive(Debug)]
 pub struct ShadowMaps {
     options: ShadowMapsOptions,
@@ -60,14 +62,15 @@ impl ShadowMaps {
     ///
     /// # Errors
     /// [`Error::SplitCount`], [`Error::MapTooSmall`], [`Error::MapTooLarge`], [`Error::TooManyLayers`], [`Error::AtlasTooLarge`],
-    /// [`Error::TooManyTextures`], [`Error::ConflictingOptions`], [`Error::MissingFeature`].
+    /// [`Error::TooManyTextures`], [`Error::TooManyLights`], [`Error::LightsNeedArray`], [`Error::ConflictingOptions`],
+    /// [`Error::MissingFeature`].
     pub fn new(device: &wgpu::Device, options: &ShadowMapsOptions) -> Result<Self> {
         let limits = device.limits();
         check_sizes(options, &limits)?;
         let abilities = Abilities::of(device);
         let Chosen { storage, generation, notes } = choose::choose(options, abilities)?;
         let options = ShadowMapsOptions { storage, generation, ..options.clone() };
-        let sizes = &options.map_sizes;
+        let sizes = &lights::map_sizes(&options, &limits)?;
         let passes = MapPass::all(generation, sizes.len(), abilities);
         let arrangement = Arrangement::new(storage, generation, &passes, sizes, limits.max_texture_dimension_2d)?;
         check_limits(device, storage, &arrangement)?;
@@ -103,42 +106,7 @@ impl ShadowMaps {
     /// one map at a time, [`Error::InvalidPlan`] or [`Error::InvalidSplit`] if it holds a number that cannot be used,
     /// [`Error::InvalidFrameOption`]. Nothing has been written then.
     pub fn prepare(&mut self, queue: &wgpu::Queue, plan: &ShadowPlan, options: &FrameOptions) -> Result<()> {
-        let frame = uniforms::frame(plan, &self.options, &self.places, options)?;
-        let blends = |split: &umbrage::Split| split.blend_begin < split.far;
-        if self.options.storage == Storage::Reused
-            && options.transition != Transition::Hard
-            && let Some((_, inner)) = plan.splits.split_last()
-            && inner.iter().any(blends)
-        {
-            return Err(Error::ConflictingOptions {
-                first: "storage reused".to_owned(),
-                second: "a blend band between splits".to_owned(),
-                reason: "there is one map at a time and none to blend with; set umbrage::ShadowSettings::blend to 0, or use \
-                         Transition::Hard or storage array",
-            });
-        }
-        self.receivers.write(queue, 0, &frame);
-        if self.options.storage == Storage::Reused {
-            for split in 0..self.splits() {
-                self.receivers.write(queue, 1 + split, &layout::Frame { slice: split as u32, ..frame });
-            }
-        }
-        for (index, pass) in self.passes.iter().enumerate() {
-            let splits = pass.splits();
-            if pass.is_alone() {
-                self.casters.write(queue, index, &frame.splits[splits.start]);
-            } else {
-                let uniform = layout::CasterPass {
-                    first: splits.start as u32,
-                    end: splits.end as u32,
-                    views: pass.views() as u32,
-                    splits: frame.splits,
-                    ..layout::CasterPass::default()
-                };
-                self.casters.write(queue, index, &uniform);
-            }
-        }
-        Ok(())
+        self.prepare_lights(queue, &[plan], options)
     }
 
     /// The passes that draw the maps, in order: with [`Generation::PerSplit`] and [`Generation::Multipass`] one for each split.
@@ -171,7 +139,7 @@ impl ShadowMaps {
                 render.set_scissor_rect(0, 0, tile.layer_texels[0], tile.layer_texels[1]);
             }
             Generation::Auto | Generation::PerSplit | Generation::Multipass => {
-                let (size, edge) = (self.options.map_sizes[split], viewport.edge as f32);
+                let (size, edge) = (self.options.map_sizes[split % self.splits()], viewport.edge as f32);
                 let [left, top] = tile.corner.map(|texels| texels as f32 - viewport.guard as f32);
                 render.set_viewport(left, top, edge, edge, 0.0, 1.0);
                 render.set_scissor_rect(tile.corner[0], tile.corner[1], size, size);
@@ -180,7 +148,7 @@ impl ShadowMaps {
         render
     }
 
-    /// The number of splits.
+    /// The number of splits; of a point light, of each face.
     #[must_use]
     pub fn splits(&self) -> usize {
         self.options.map_sizes.len()
@@ -222,7 +190,12 @@ impl ShadowMaps {
             Storage::Cube => Bound::Cube,
             Storage::Auto | Storage::Array | Storage::Atlas | Storage::Reused => Bound::Array,
         };
-        let maps = Maps { bound, r32f: self.options.depth_format.is_colour(), without_loads: !self.depth_loads };
+        let maps = Maps {
+            bound,
+            r32f: self.options.depth_format.is_colour(),
+            without_loads: !self.depth_loads,
+            frames: lights::frame_count(&self.options) as u32,
+        };
         umbrage_shaders::receiver(group, maps)
     }
 
@@ -271,7 +244,7 @@ impl ShadowMaps {
     /// texels. The map is a square of `map_sizes[split]` texels.
     ///
     /// # Panics
-    /// If `split` is not less than [`ShadowMaps::splits`].
+    /// If `split` is not less than [`ShadowMaps::map_count`].
     #[must_use]
     pub fn map_place(&self, split: usize) -> (u32, [u32; 2]) {
         let tile = self.places[split].tile;

@@ -39,7 +39,7 @@ impl MapPass {
         }
     }
 
-    /// The splits whose maps it draws.
+    /// The splits whose maps it draws; with several lights the maps, see [`crate::ShadowMaps::first_map`].
     #[must_use]
     pub fn splits(&self) -> Range<usize> {
         self.splits.clone()
@@ -70,12 +70,14 @@ impl MapPass {
     /// caster that is an instance of the app's own gets one copy for each number of the range, with that number as its code.
     #[must_use]
     pub fn copies(&self, mask: u8) -> Range<u32> {
+        if self.alone {
+            // With several lights there are more maps than bits, and the app knows which plan and which split are drawn.
+            let here = self.splits.start >= 8 || mask & (1 << self.splits.start) != 0;
+            return 0..u32::from(here);
+        }
         let mask = self.splits().filter(|split| mask & (1 << split) != 0).fold(0u32, |mask, split| mask | 1 << split);
         if mask == 0 {
             return 0..0;
-        }
-        if self.alone {
-            return 0..1;
         }
         let (first, last) = (mask.trailing_zeros() as usize, mask.ilog2() as usize);
         let tile = |split: usize| ((split - self.splits.start) / self.views) as u32;
@@ -84,7 +86,7 @@ impl MapPass {
         code + tile(first) - u32::from(self.leads)..code + tile(last) + 1
     }
 
-    /// What to draw: the plan's casters, as indices into the list given to the planner, each with its instances.
+    /// What to draw, where there is one sun or spot light: the plan's casters, as indices into the list given to the planner, each with its instances.
     pub fn casters(&self, plan: &ShadowPlan) -> impl Iterator<Item = (u32, Range<u32>)> + use<> {
         let mut masks = vec![0u8; plan.split_range.len()];
         let mut order = Vec::new();
