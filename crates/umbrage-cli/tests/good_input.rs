@@ -250,7 +250,8 @@ fn reports_name_the_path_that_was_taken() {
     assert!(notes.contains("--blend 0"), "{notes}");
     assert!(!report("--storage reused --blend 0").1.contains("--blend"), "nothing was invented");
     assert!(!report("--storage reused --transition hard --blend 0.3").1.contains("--blend"), "nothing was invented");
-    for (generation, path) in [("layered", "layered array"), ("instanced", "instanced atlas"), ("mixed", "mixed array")] {
+    for (generation, path) in [("layered", "layered array"), ("instanced", "instanced atlas"), ("mixed", "mixed array")]
+    {
         let (taken, notes) = report(&format!("--generation {generation}"));
         assert!(taken == path || notes.contains(generation), "{generation} took {taken}: {notes}");
     }

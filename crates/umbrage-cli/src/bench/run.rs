@@ -60,7 +60,9 @@ pub fn run(args: &BenchArgs) -> Result<()> {
     let techniques = parsed(&args.techniques, &args.with, args)?;
     let crowd = parsed(&CROWD.map(str::to_owned), "stabilize=none", args)?;
     let pairs = match args.paths {
-        Switch::On => PAIRS.map(|pair| format!("pssm:4:512:generation={pair}:label={}", pair.replace(":storage=", ", "))).to_vec(),
+        Switch::On => {
+            PAIRS.map(|pair| format!("pssm:4:512:generation={pair}:label={}", pair.replace(":storage=", ", "))).to_vec()
+        }
         Switch::Off => Vec::new(),
     };
     // Without a blend, which a reused map cannot have: all of them draw the same picture.

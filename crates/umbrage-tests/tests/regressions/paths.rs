@@ -154,7 +154,12 @@ fn whatever_a_device_lacks_everything_renders() {
             assert_eq!(stats.splits.len(), rendered.maps.len());
             let taken = stats.generation == generation.name();
             let noted = stats.notes.iter().any(|note| note.contains(generation.name()) && note.contains("per-split"));
-            assert!(taken != noted, "{generation:?} without {withhold:?} became {}: {:?}", stats.generation, stats.notes);
+            assert!(
+                taken != noted,
+                "{generation:?} without {withhold:?} became {}: {:?}",
+                stats.generation,
+                stats.notes
+            );
             assert!(taken || stats.generation == "per-split");
             let mask = rendered.mask.expect("a mask");
             let expected = expected.get_or_insert_with(|| mask.clone());
