@@ -95,7 +95,9 @@ pub struct Renderer {
     samples: Samples,
     softness: Softness,
     transition: Transition,
-    planner: Planner,
+    pub(crate) planner: Planner,
+    /// While a step of the sun is faded: what plans for the sun that is faded to.
+    pub(crate) next_planner: Option<Planner>,
     maps: ShadowMaps,
     scene: Geometry,
     scene_meshes: SceneMeshes,
@@ -178,6 +180,7 @@ impl Renderer {
                 size: settings.size,
                 depth_format: settings.depth_format,
                 planner: Planner::new(shadows)?,
+                next_planner: None,
                 scene: Geometry::of_scene(gpu, scene)?,
                 scene_meshes: SceneMeshes::of_scene(scene),
                 skinned: SkinnedGeometry::empty(gpu)?,
@@ -212,6 +215,7 @@ impl Renderer {
     /// Never in practice: the settings were accepted before.
     pub fn restart(&mut self) -> Result<()> {
         self.planner = Planner::new(self.planner.settings().clone())?;
+        self.next_planner = None;
         Ok(())
     }
 
