@@ -47,6 +47,16 @@ pub enum TransitionKind {
     Hard = 2,
 }
 
+/// How a receiver is kept from shading itself, in [`Frame::bias_kind`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum BiasKind {
+    /// Every texel is compared with the receiver's plane at its centre.
+    Plane = 0,
+    /// All texels are compared with one depth, nearer by what the slope makes of the filter's reach.
+    Slope = 1,
+}
+
 /// One split: where its map lies and which view depths it serves.
 ///
 /// The rows take positions in metres relative to the frame's origin (with 1 as the fourth coordinate). In a warped map what the first
@@ -122,8 +132,14 @@ pub struct Frame {
     pub turn_per_pixel: f32,
     /// A [`TransitionKind`].
     pub transition: u32,
+    /// A [`BiasKind`].
+    pub bias_kind: u32,
     /// Up to the alignment of 16 bytes.
-    pub _padding: [u32; 3],
+    pub _padding: [u32; 2],
+    /// What the light of a place in full shadow is multiplied by: linear red, green and blue, 0 to 1.
+    pub shadow_colour: [f32; 3],
+    /// Up to the alignment of 16 bytes.
+    pub _padding_2: u32,
     /// The splits, nearest first; those past `split_count` are not read.
     pub splits: [Split; MAX_SPLITS],
 }

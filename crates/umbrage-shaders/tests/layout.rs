@@ -45,14 +45,17 @@ fn split_in_rust() -> (usize, Vec<Member>) {
 
 fn frame_in_rust() -> (usize, Vec<Member>) {
     in_rust!(Frame: view_depth_plane, to_light, strength, fade_begin, split_count, filter_kind, enabled, tint,
-        filter_width_m, sun_tangent, turn_per_pixel, transition, splits)
+        filter_width_m, sun_tangent, turn_per_pixel, transition, bias_kind,
+        shadow_colour, splits)
 }
 
 #[test]
 fn no_member_is_forgotten() {
     let named = |(_, members): (usize, Vec<Member>)| members.iter().map(|(_, _, size)| size).sum::<usize>();
     assert_eq!(named(split_in_rust()) + size_of_val(&Split::default()._padding), size_of::<Split>());
-    assert_eq!(named(frame_in_rust()) + size_of_val(&Frame::default()._padding), size_of::<Frame>());
+    let frame = Frame::default();
+    let padding = size_of_val(&frame._padding) + size_of_val(&frame._padding_2);
+    assert_eq!(named(frame_in_rust()) + padding, size_of::<Frame>());
 }
 
 #[test]
