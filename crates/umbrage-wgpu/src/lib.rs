@@ -37,6 +37,7 @@
 
 mod contact;
 mod error;
+mod local;
 mod maps;
 mod options;
 mod uniforms;
@@ -44,4 +45,7 @@ mod uniforms;
 pub use contact::{ContactFrame, ContactOptions, ContactShadows, contact_wgsl};
 pub use error::{Error, Result};
 pub use maps::{ShadowMaps, optional_features};
-pub use options::{DepthFormat, Filter, FrameOptions, Generation, ReceiverBias, ShadowMapsOptions, Softness, Storage, Transition};
+pub use options::{
+    DepthFormat, Filter, FrameOptions, Generation, LightSlot, ReceiverBias, ShadowMapsOptions, Softness, Storage,
+    Transition,
+};

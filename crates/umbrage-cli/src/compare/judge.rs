@@ -417,8 +417,7 @@ mod tests {
         let judged = chessboard_shot([160, 120]);
         let mut planner = umbrage::Planner::new(umbrage::ShadowSettings::default()).expect("a planner");
         let everything = [umbrage::Aabb::new(glam::DVec3::splat(-400.0), glam::DVec3::splat(400.0))];
-        let sun = umbrage::DirectionalLight::new(-judged.truth.to_light()).expect("a sun");
-        let plan = planner.plan(&judged.view, &sun, &everything, &everything).expect("a plan");
+        let plan = planner.plan(&judged.view, judged.truth.light(), &everything, &everything).expect("a plan");
         let pairs: Vec<(f64, f64)> =
             densities(&judged, plan).into_iter().filter_map(|(predicted, measured)| predicted.zip(measured)).collect();
         assert!(pairs.len() >= 2, "{pairs:?}");
