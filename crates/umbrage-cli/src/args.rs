@@ -278,12 +278,21 @@ pub struct ShadowArgs {
     /// Share of each split over which it blends into the next; 0 is off
     #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
     pub blend: f64,
-    /// Share of the shadowed range over which shadows fade out at its far end; 0 is off
+    /// Share of the shadowed range over which shadows fade out at its far end; 0 is off, as where nothing is seen beyond
     #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
     pub far_fade: f64,
     /// What a map stores
     #[arg(long, value_enum, default_value_t)]
     pub depth_format: DepthFormat,
+    /// How surfaces are kept from shading themselves; both go by texel, slope and filter width and need no number
+    #[arg(long, value_enum, default_value_t)]
+    pub bias: Bias,
+    /// How dark shadows are, 0 (not at all) to 1 (no sun)
+    #[arg(long, value_name = "SHARE", default_value = "1", value_parser = parse::share, allow_hyphen_values = true)]
+    pub shadow_strength: f64,
+    /// What the sun's light is multiplied by in full shadow: linear red, green, blue, 0 to 1 each
+    #[arg(long, value_name = "R,G,B", default_value = "0,0,0", value_parser = parse::colour, allow_hyphen_values = true)]
+    pub shadow_colour: DVec3,
     /// Colour the picture by split
     #[arg(long)]
     pub tint: bool,
@@ -412,6 +421,16 @@ pub enum Filter {
     Disc,
     /// As wide as the penumbra of a sun of --sun-angle
     Pcss,
+}
+
+/// `--bias`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Bias {
+    /// Every texel is compared with the surface's own plane
+    #[default]
+    Plane,
+    /// All texels with one depth, moved by the slope times the filter's reach: forgives inexact normals, loses contact
+    Slope,
 }
 
 /// `--transition`.

@@ -113,6 +113,12 @@ pub struct ShadowJob {
     pub filter_width: Option<f64>,
     /// `--transition`.
     pub transition: args::Transition,
+    /// `--bias`.
+    pub bias: args::Bias,
+    /// `--shadow-strength`.
+    pub shadow_strength: f64,
+    /// `--shadow-colour`.
+    pub shadow_colour: DVec3,
     /// `--depth-format`.
     pub depth_format: args::DepthFormat,
     /// `--tint`.
@@ -294,6 +300,9 @@ impl ShadowJob {
             filter: args.filter,
             filter_width: args.filter_width,
             transition: args.transition,
+            bias: args.bias,
+            shadow_strength: args.shadow_strength,
+            shadow_colour: args.shadow_colour,
             depth_format: args.depth_format,
             tint: args.tint,
             shadows_on: args.shadows == args::Switch::On,
@@ -310,6 +319,19 @@ impl ShadowJob {
             width_m: self.filter_width.map(|width| width as f32),
             sun_angle: sun_angle.map_or(umbrage_wgpu::Softness::SUN, |degrees| degrees.to_radians() as f32),
             turned: false,
+        }
+    }
+
+    /// How shadows look.
+    #[must_use]
+    pub fn look(&self) -> umbrage_render::Look {
+        umbrage_render::Look {
+            strength: self.shadow_strength as f32,
+            colour: self.shadow_colour.as_vec3().to_array(),
+            bias: match self.bias {
+                args::Bias::Plane => umbrage_wgpu::ReceiverBias::Plane,
+                args::Bias::Slope => umbrage_wgpu::ReceiverBias::Slope,
+            },
         }
     }
 
