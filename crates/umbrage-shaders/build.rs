@@ -18,6 +18,7 @@ fn texts() -> Vec<Text> {
         text("pass::casters", &["views"], "casters_views".into()),
         text("pass::casters", &["tiles"], "casters_tiles".into()),
         text("pass::casters", &["views", "tiles"], "casters_views_tiles".into()),
+        text("pass::contact", &[], "contact".into()),
         text("pass::receiver", &["depth_loads"], "receiver".into()),
         text("pass::receiver", &[], "receiver_without_loads".into()),
     ];

@@ -120,7 +120,7 @@ impl SurfacePipelines {
 
 /// What a pass over the scene is bound to.
 #[derive(Clone, Copy)]
-pub(crate) struct Look<'a> {
+pub(crate) struct Bindings<'a> {
     /// The frame, or a slice of it.
     pub frame: &'a wgpu::BindGroup,
     /// The shadow maps that it may ask.
@@ -227,18 +227,18 @@ impl Forward {
     pub fn draw_solid(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
-        look: Look<'_>,
+        bindings: Bindings<'_>,
         drawable: &Drawable<'_>,
         solid: &[Run],
     ) -> Drawn {
-        bind(pass, look);
+        bind(pass, bindings);
         let pick = |material: &GpuMaterial, mirrored| self.picture.of(material, mirrored);
         drawable.draw(pass, solid, |m, mirrored| (m.alpha != AlphaMode::Blend).then(|| pick(m, mirrored)))
     }
 
     /// Draws the sky where nothing else is.
-    pub fn draw_sky(&self, pass: &mut wgpu::RenderPass<'_>, look: Look<'_>) {
-        bind(pass, look);
+    pub fn draw_sky(&self, pass: &mut wgpu::RenderPass<'_>, bindings: Bindings<'_>) {
+        bind(pass, bindings);
         pass.set_pipeline(&self.sky);
         pass.draw(0..3, 0..1);
     }
@@ -247,11 +247,11 @@ impl Forward {
     pub fn draw_translucent(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
-        look: Look<'_>,
+        bindings: Bindings<'_>,
         drawable: &Drawable<'_>,
         translucent: &[Run],
     ) -> Drawn {
-        bind(pass, look);
+        bind(pass, bindings);
         let pick = |material: &GpuMaterial, mirrored| self.picture.of(material, mirrored);
         drawable.draw(pass, translucent, |m, mirrored| (m.alpha == AlphaMode::Blend).then(|| pick(m, mirrored)))
     }
@@ -260,18 +260,18 @@ impl Forward {
     pub fn draw_mask(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
-        look: Look<'_>,
+        bindings: Bindings<'_>,
         drawable: &Drawable<'_>,
         solid: &[Run],
     ) -> Drawn {
-        bind(pass, look);
+        bind(pass, bindings);
         drawable.draw(pass, solid, |m, mirrored| (m.alpha != AlphaMode::Blend).then(|| self.mask.of(m, mirrored)))
     }
 }
 
-fn bind(pass: &mut wgpu::RenderPass<'_>, look: Look<'_>) {
-    pass.set_bind_group(0, look.frame, &[]);
-    pass.set_bind_group(2, look.maps, &[]);
+fn bind(pass: &mut wgpu::RenderPass<'_>, bindings: Bindings<'_>) {
+    pass.set_bind_group(0, bindings.frame, &[]);
+    pass.set_bind_group(2, bindings.maps, &[]);
 }
 
 /// Where a pass stands among the passes that draw one target together.

@@ -8,7 +8,7 @@ use web_time::Instant;
 
 use crate::capture::Capture;
 use crate::draw_list::{Drawn, Run};
-use crate::forward::{Look, MaskTarget, PictureTarget, Turn};
+use crate::forward::{Bindings, MaskTarget, PictureTarget, Turn};
 use crate::renderer::{Outputs, Renderer};
 use crate::timing::Timer;
 use crate::{Gpu, Result};
@@ -70,12 +70,12 @@ impl Renderer {
                 self.record_map(&mut encoder, pass, prepared, outputs, &mut recorded)?;
             }
             encoder = clock.after_maps(encoder)?;
-            let look = Look { frame: self.forward.bind_group(0), maps: self.maps.receiver_bind_group() };
+            let bindings = Bindings { frame: self.forward.bind_group(0), maps: self.maps.receiver_bind_group() };
             if let Some(target) = mask {
                 let slot = self.timer.next(1);
                 let mut pass = target.begin(&mut encoder, Turn::ONLY, self.timer.timestamp_writes(slot));
                 recorded.view += self.timer.counted(&mut pass, slot, |pass| {
-                    self.forward.draw_mask(pass, look, &self.drawable(), &prepared.solid)
+                    self.forward.draw_mask(pass, bindings, &self.drawable(), &prepared.solid)
                 });
             }
             if let Some(target) = picture {
@@ -83,9 +83,9 @@ impl Renderer {
                 let mut pass = target.begin(&mut encoder, Turn::ONLY, self.timer.timestamp_writes(slot));
                 recorded.view += self.timer.counted(&mut pass, slot, |pass| {
                     let drawable = self.drawable();
-                    let mut drawn = self.forward.draw_solid(pass, look, &drawable, &prepared.solid);
-                    self.forward.draw_sky(pass, look);
-                    drawn += self.forward.draw_translucent(pass, look, &drawable, &prepared.translucent);
+                    let mut drawn = self.forward.draw_solid(pass, bindings, &drawable, &prepared.solid);
+                    self.forward.draw_sky(pass, bindings);
+                    drawn += self.forward.draw_translucent(pass, bindings, &drawable, &prepared.translucent);
                     drawn
                 });
             }
@@ -166,7 +166,7 @@ impl Renderer {
                 let mut pass = target.begin(&mut encoder, Turn { first, last }, self.timer.timestamp_writes(slot));
                 self.set_slice(&mut pass, &part.slice);
                 recorded.view += self.timer.counted(&mut pass, slot, |pass| {
-                    self.forward.draw_mask(pass, self.look(&part.slice), &self.drawable(), &part.solid)
+                    self.forward.draw_mask(pass, self.bindings(&part.slice), &self.drawable(), &part.solid)
                 });
             }
             if let Some(target) = picture {
@@ -175,11 +175,12 @@ impl Renderer {
                 let mut pass = target.begin(&mut encoder, turn, self.timer.timestamp_writes(slot));
                 self.set_slice(&mut pass, &part.slice);
                 recorded.view += self.timer.counted(&mut pass, slot, |pass| {
-                    let drawn = self.forward.draw_solid(pass, self.look(&part.slice), &self.drawable(), &part.solid);
+                    let drawn =
+                        self.forward.draw_solid(pass, self.bindings(&part.slice), &self.drawable(), &part.solid);
                     if last {
                         let [width, height] = self.size.map(|pixels| pixels as f32);
                         pass.set_viewport(0.0, 0.0, width, height, 0.0, 1.0);
-                        self.forward.draw_sky(pass, self.look(&part.slice));
+                        self.forward.draw_sky(pass, self.bindings(&part.slice));
                     }
                     drawn
                 });
@@ -198,7 +199,7 @@ impl Renderer {
             let mut pass = target.begin(&mut encoder, turn, self.timer.timestamp_writes(slot));
             self.set_slice(&mut pass, &part.slice);
             recorded.view += self.timer.counted(&mut pass, slot, |pass| {
-                self.forward.draw_translucent(pass, self.look(&part.slice), &self.drawable(), &part.translucent)
+                self.forward.draw_translucent(pass, self.bindings(&part.slice), &self.drawable(), &part.translucent)
             });
             drop(pass);
             encoder = clock.after_view(encoder)?;
@@ -212,8 +213,8 @@ impl Renderer {
         pass.set_viewport(0.0, 0.0, width, height, least, most);
     }
 
-    fn look(&self, slice: &Slice) -> Look<'_> {
-        Look { frame: self.forward.bind_group(1 + slice.split), maps: self.maps.slice_bind_group(slice.split) }
+    fn bindings(&self, slice: &Slice) -> Bindings<'_> {
+        Bindings { frame: self.forward.bind_group(1 + slice.split), maps: self.maps.slice_bind_group(slice.split) }
     }
 }
 

@@ -128,6 +128,14 @@ pub fn caster(group: u32, casters: Casters, members: &str) -> String {
     )
 }
 
+/// Text to put before a shader that asks for contact shadows:
+/// `fn umbrage_contact_visibility(position: vec3f, normal: vec3f, noise: f32) -> f32`. Binding 0 is its uniform, 1 the picture's depth as
+/// `texture_depth_2d`. It may stand beside [`receiver`] in one module.
+#[must_use]
+pub fn contact(group: u32) -> String {
+    format!("const UMBRAGE_CONTACT_GROUP = {group}u;\n{}\n", text!("contact"))
+}
+
 /// Text to put before a shader that asks what is lit: `fn umbrage_visibility(position: vec3f, normal: vec3f) -> f32`,
 /// `umbrage_shadow` and `umbrage_visibility_in_split`, and the same of one of several lights: `umbrage_visibility_of(light: u32, …)`.
 ///

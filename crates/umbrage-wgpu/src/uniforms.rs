@@ -131,6 +131,8 @@ fn frame(
         turn_per_pixel: if options.softness.turned { TAU } else { 0.0 },
         transition: options.transition.kind() as u32,
         slice: layout::EVERY_SLICE,
+        bias_kind: options.bias.kind() as u32,
+        shadow_colour: options.shadow_colour,
         ..layout::Frame::default()
     };
     local::place_light(&mut frame, plan, options.origin);
