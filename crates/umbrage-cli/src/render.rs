@@ -3,13 +3,14 @@
 use std::{io::Cursor, path::Path};
 
 use image::{DynamicImage, ImageFormat};
-use umbrage_render::{Frame, FrameStats, Gpu, GpuOptions, Outputs, RenderSettings, Renderer};
+use umbrage_render::{Frame, FrameStats, Gpu, GpuOptions, Outputs, RenderSettings, Renderer, SplitStats};
 
 use crate::{
     adapter,
     args::RenderArgs,
     failure::{Failure, Result},
     job::{SceneJob, ShadowJob, typed_name, wgpu_depth_format, wgpu_filter},
+    lights,
     output::{self, Staged, numbered_file, numbered_folder},
     progress,
     report::{Report, SplitReport, TimesMs, to_json},
@@ -81,6 +82,7 @@ impl<'a> Studio<'a> {
             transition: shadows.transition(),
             storage: umbrage_wgpu::Storage::default(),
             generation: umbrage_wgpu::Generation::default(),
+            lights: lights::slots(&stage.lights),
         };
         let renderer = Renderer::new(&gpu, &stage.scene, &settings)?;
         Ok(Self { renderer, shadows, adapter: adapter::description(&gpu) })
@@ -88,29 +90,20 @@ impl<'a> Studio<'a> {
 
     /// What the renderer is told about one shot.
     pub fn frame<'s>(&self, stage: &'s Stage, shot: &'s Shot) -> Frame<'s> {
-        Frame {
-            pose: &stage.pose,
-            view: &shot.view,
-            sun: stage.sun,
-            shadows_on: self.shadows.shadows_on,
-            tint: self.shadows.tint,
-        }
+        stage.frame(&shot.view, self.shadows.shadows_on, self.shadows.tint)
     }
 
     /// What was done and what it cost.
     pub fn report(&self, job: &SceneJob, stage: &Stage, shot: &Shot, stats: &FrameStats) -> Report {
-        let splits = stats.splits.iter().map(|split| SplitReport {
-            near: split.near,
-            far: split.far,
-            texel_m: split.texel_m,
-            warped: split.warped,
-            casters: split.casters as u64,
-            draws: u64::from(split.draws),
-            triangles: split.triangles,
-            bytes: split.bytes,
-        });
+        let splits = |splits: &[SplitStats]| splits.iter().map(split_report).collect::<Vec<_>>();
+        let mut shot = stage.report(job, shot);
+        let first = (&stats.plan, &stats.splits);
+        let others = stats.more_lights.iter().map(|light| (&light.plan, &light.splits));
+        for (light, (plan, of_light)) in shot.lights.iter_mut().zip([first].into_iter().chain(others)) {
+            (light.planes_m, light.splits) = (plan.planes.clone(), splits(of_light));
+        }
         Report {
-            shot: stage.report(job, shot),
+            shot,
             adapter: self.adapter.clone(),
             technique: typed_name(self.shadows.technique),
             generation: stats.generation.to_string(),
@@ -122,10 +115,23 @@ impl<'a> Studio<'a> {
             planes_m: stats.plan.planes.clone(),
             times_ms: TimesMs { plan: stats.plan_ms, shadow: stats.shadow_ms, frame: stats.frame_ms },
             bytes: stats.bytes,
-            splits: splits.collect(),
+            splits: splits(&stats.splits),
             probe: None,
             notes: stage.notes.iter().chain(&stats.notes).cloned().collect(),
         }
+    }
+}
+
+fn split_report(split: &SplitStats) -> SplitReport {
+    SplitReport {
+        near: split.near,
+        far: split.far,
+        texel_m: split.texel_m,
+        warped: split.warped,
+        casters: split.casters as u64,
+        draws: u64::from(split.draws),
+        triangles: split.triangles,
+        bytes: split.bytes,
     }
 }
 

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::lights::LightReport;
+
 /// The report of one frame of `render` or `probe`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
@@ -30,7 +32,7 @@ pub struct Report {
     pub times_ms: TimesMs,
     /// Bytes of all shadow maps.
     pub bytes: u64,
-    /// The splits, nearest first.
+    /// The splits of the first light, nearest first; the others' are in `lights`.
     pub splits: Vec<SplitReport>,
     /// The answers of `probe`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -65,8 +67,11 @@ pub struct ShotReport {
     pub size: [u32; 2],
     /// The eye.
     pub camera: CameraReport,
-    /// The way light travels, a unit vector.
-    pub sun: [f64; 3],
+    /// The way the first light travels, a unit vector, if it is a sun.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sun: Option<[f64; 3]>,
+    /// All lights, the first one first, with the splits of each where maps were made.
+    pub lights: Vec<LightReport>,
 }
 
 /// The eye: metres and degrees.

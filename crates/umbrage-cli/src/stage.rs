@@ -1,12 +1,13 @@
-//! The scene of a job, opened and posed, with its views and its sun: what `render`, `probe` and `truth` have in common.
+//! The scene of a job, opened and posed, with its views and its lights: what `render`, `probe` and `truth` have in common.
 
-use glam::DVec3;
-use umbrage::{DirectionalLight, Frustum, Projection, View};
-use umbrage_scene::{CameraPath, HeightMapOptions, LightKind, Pose, Scene};
+use umbrage::{Frustum, Light, Projection, View};
+use umbrage_render::{Frame, Lamp};
+use umbrage_scene::{CameraPath, HeightMapOptions, Pose, Scene};
 
 use crate::{
     failure::{Failure, Result},
-    job::{CameraChoice, DEFAULT_FAR, DEFAULT_FOV, DEFAULT_NEAR, SceneJob, SunChoice},
+    job::{CameraChoice, DEFAULT_FAR, DEFAULT_FOV, DEFAULT_NEAR, SceneJob},
+    lights::{self, NamedLight},
     report::{CameraReport, ShotReport},
 };
 
@@ -17,8 +18,10 @@ pub struct Stage {
     pub scene: Scene,
     /// Posed at `--time`.
     pub pose: Pose,
-    /// The light.
-    pub sun: DirectionalLight,
+    /// The lights, one at least; masks and probes are of the first.
+    pub lights: Vec<NamedLight>,
+    /// All but the first, as the renderer takes them.
+    pub more_lights: Vec<Lamp>,
     /// One, or one per frame of a path.
     pub shots: Vec<Shot>,
     /// What the loader left out, and which defaults were invented.
@@ -55,8 +58,27 @@ impl Stage {
         let pose = scene.pose(job.time_s)?;
         let mut notes = scene.notes.clone();
         let shots = shots(job, &scene, &pose, path.as_ref(), &mut notes)?;
-        let direction = sun(job, &scene, &pose, path.as_ref(), &mut notes)?;
-        Ok(Self { sun: DirectionalLight::new(direction)?, shots, scene, pose, notes })
+        let lights = lights::chosen(job, &scene, &pose, path.as_ref(), &mut notes)?;
+        Ok(Self::new(scene, pose, lights, shots, notes))
+    }
+
+    /// A stage from its parts; `lights` has one at least.
+    #[must_use]
+    pub fn new(scene: Scene, pose: Pose, lights: Vec<NamedLight>, shots: Vec<Shot>, notes: Vec<String>) -> Self {
+        let more_lights = lights.iter().skip(1).map(|light| light.lamp).collect();
+        Self { scene, pose, lights, more_lights, shots, notes }
+    }
+
+    /// The first light.
+    #[must_use]
+    pub fn light(&self) -> &Light {
+        &self.lights[0].lamp.light
+    }
+
+    /// What the renderer is told about one view.
+    #[must_use]
+    pub fn frame<'s>(&'s self, view: &'s View, shadows_on: bool, tint: bool) -> Frame<'s> {
+        Frame { pose: &self.pose, view, light: self.lights[0].lamp, more_lights: &self.more_lights, shadows_on, tint }
     }
 
     /// The part of a report that says what was looked at.
@@ -68,7 +90,11 @@ impl Stage {
             frame: shot.frame,
             size: job.size,
             camera: camera_report(&shot.camera, &shot.view),
-            sun: self.sun.direction().to_array(),
+            sun: match self.light() {
+                Light::Directional(sun) => Some(sun.direction().to_array()),
+                Light::Spot(_) | Light::Point(_) => None,
+            },
+            lights: self.lights.iter().map(NamedLight::report).collect(),
         }
     }
 }
@@ -148,45 +174,8 @@ fn scene_camera(job: &SceneJob, scene: &Scene, pose: &Pose, index: usize) -> Res
     Ok(view.with_frustum(Frustum::perspective(fov.to_radians(), job.aspect(), frustum.near, frustum.far)?)?)
 }
 
-/// The way light travels.
-pub(crate) fn sun(
-    job: &SceneJob,
-    scene: &Scene,
-    pose: &Pose,
-    path: Option<&CameraPath>,
-    notes: &mut Vec<String>,
-) -> Result<DVec3> {
-    if let SunChoice::Given(direction) = job.sun {
-        return Ok(direction);
-    }
-    if let SunChoice::Named(wanted) = &job.sun {
-        let names: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
-        let index = select("--light", "light", wanted, &names)?;
-        if scene.lights[index].kind != LightKind::Directional {
-            return Err(Failure::input(format!(
-                "--light {wanted}: only directional lights throw shadows here; choose one, or give --sun X,Y,Z"
-            )));
-        }
-        return Ok(umbrage_scene::light_direction(scene, pose, index)?);
-    }
-    if let Some(to_light) = path.and_then(|path| path.sun_direction_to_light) {
-        return Ok(-to_light);
-    }
-    match scene.lights.iter().position(|light| light.kind == LightKind::Directional) {
-        Some(index) => Ok(umbrage_scene::light_direction(scene, pose, index)?),
-        None => {
-            let direction = umbrage_scene::invented_sun();
-            notes.push(format!(
-                "the scene has no directional light and no --sun was given: invented one that travels {:.3},{:.3},{:.3}",
-                direction.x, direction.y, direction.z
-            ));
-            Ok(direction)
-        }
-    }
-}
-
 /// The index of the thing called `wanted`, or with that number.
-fn select(option: &str, kind: &str, wanted: &str, names: &[&str]) -> Result<usize> {
+pub(crate) fn select(option: &str, kind: &str, wanted: &str, names: &[&str]) -> Result<usize> {
     let by_name = names.iter().position(|name| *name == wanted);
     let by_index = || wanted.parse().ok().filter(|index| *index < names.len());
     by_name.or_else(by_index).ok_or_else(|| {
@@ -202,7 +191,7 @@ fn select(option: &str, kind: &str, wanted: &str, names: &[&str]) -> Result<usiz
 }
 
 /// A name for people, for things that may have none.
-fn named(name: &str, index: usize) -> String {
+pub(crate) fn named(name: &str, index: usize) -> String {
     if name.is_empty() { index.to_string() } else { name.to_owned() }
 }
 

@@ -18,6 +18,7 @@ use crate::{
     compare::techniques::{self, Technique},
     failure::{Failure, Result},
     job::SceneJob,
+    lights::NamedLight,
     output::{self, Staged},
     progress,
     report::to_json,
@@ -111,11 +112,9 @@ fn crowd_stage(args: &BenchArgs, objects: u32) -> Result<Stage> {
     let (scene, eye, target) = crowd(objects)?;
     let aspect = f64::from(args.size[0]) / f64::from(args.size[1]);
     let view = View::look_at_upright(eye, target, Frustum::perspective(60f64.to_radians(), aspect, 1.0, 800.0)?)?;
-    Ok(Stage {
-        pose: scene.pose(0.0)?,
-        scene,
-        sun: DirectionalLight::new(umbrage_scene::invented_sun())?,
-        shots: vec![Shot { frame: None, camera: "crowd".into(), view }],
-        notes: Vec::new(),
-    })
+    let sun = DirectionalLight::new(umbrage_scene::invented_sun())?;
+    let light = NamedLight { name: "invented".into(), lamp: sun.into() };
+    let shots = vec![Shot { frame: None, camera: "crowd".into(), view }];
+    let pose = scene.pose(0.0)?;
+    Ok(Stage::new(scene, pose, vec![light], shots, Vec::new()))
 }

@@ -104,7 +104,8 @@ pub struct CompareArgs {
     /// Move every other camera forward by this many metres a frame, for --frames
     #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Shots")]
     pub step: Option<f64>,
-    /// One of the scenes' directional lights as their own sun [default: the first]
+    /// One of the scenes' lights: a directional one as their own sun, or a spot or point light in its place
+    /// [default: the first directional one]
     #[arg(long, value_name = "NAME|INDEX", help_heading = "Shots")]
     pub light: Option<String>,
     /// The own sun: the way light travels; any length
