@@ -167,8 +167,8 @@ pub struct SceneArgs {
     /// Pixels
     #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = parse::size, allow_hyphen_values = true, help_heading = "Camera")]
     pub size: [u32; 2],
-    /// One of the scene's cameras
-    #[arg(long, value_name = "NAME|INDEX", help_heading = "Camera")]
+    /// One of the scene's cameras; several between commas are shown side by side by render and truth, each as large as --size
+    #[arg(long, value_name = "NAME|INDEX,…", help_heading = "Camera")]
     pub camera: Option<String>,
     /// Where the eye stands, in metres
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Camera")]

@@ -10,7 +10,7 @@ use crate::{
     failure::{Failure, Result},
     job::{SceneJob, SunChoice},
     report::SplitReport,
-    stage::{named, select},
+    stage::{named, several},
 };
 
 /// A light under the name that people know it by.
@@ -124,26 +124,13 @@ pub fn chosen(
 /// The lights that `--light` names: one by its name, whatever is in it; `all`; or several between commas.
 fn indices(wanted: &str, scene: &Scene) -> Result<Vec<usize>> {
     let names: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
-    if names.contains(&wanted) || (!wanted.contains(',') && wanted != "all") {
-        return Ok(vec![select("--light", "light", wanted, &names)?]);
+    if wanted != "all" || names.contains(&wanted) {
+        return several("--light", "light", wanted, &names);
     }
-    if wanted == "all" {
-        if names.is_empty() {
-            return Err(Failure::input("--light all: the scene has no light"));
-        }
-        return Ok((0..names.len()).collect());
+    if names.is_empty() {
+        return Err(Failure::input("--light all: the scene has no light"));
     }
-    let mut indices = Vec::new();
-    for part in wanted.split(',') {
-        let index = select("--light", "light", part, &names)?;
-        if indices.contains(&index) {
-            return Err(Failure::input(format!(
-                "--light {wanted}: {part} is in the list twice; leave one of them away"
-            )));
-        }
-        indices.push(index);
-    }
-    Ok(indices)
+    Ok((0..names.len()).collect())
 }
 
 fn of_scene(scene: &Scene, pose: &Pose, index: usize) -> Result<NamedLight> {

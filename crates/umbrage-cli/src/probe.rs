@@ -34,7 +34,7 @@ pub fn run(args: &ProbeArgs) -> Result<()> {
     let mut staged = Staged::default();
     let bar = progress::steps(stage.shots.len() as u64, "frames");
     for shot in &stage.shots {
-        let frame = studio.frame(&stage, shot);
+        let frame = studio.frame(&stage, &shot.view);
         let answers = studio.renderer.probe(&frame, &points)?;
         let visibility = answers.iter().flat_map(|answer| answer.visibility.to_le_bytes()).collect();
         staged.file(&numbered_file(&args.out, shot.frame), visibility)?;

@@ -34,11 +34,27 @@ pub struct Report {
     pub bytes: u64,
     /// The splits of the first light, nearest first; the others' are in `lights`.
     pub splits: Vec<SplitReport>,
+    /// The views beside the first one, from left to right.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub beside: Vec<BesideReport>,
     /// The answers of `probe`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub probe: Option<ProbeReport>,
     /// Fallbacks taken, defaults invented.
     pub notes: Vec<String>,
+}
+
+/// A view beside the first one.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BesideReport {
+    /// The eye.
+    pub camera: CameraReport,
+    /// `C_0 ..= C_m` of the first light: view depths in metres.
+    pub planes_m: Vec<f64>,
+    /// How long it took.
+    pub times_ms: TimesMs,
+    /// All lights with their splits.
+    pub lights: Vec<LightReport>,
 }
 
 /// The report of one frame of `truth`.

@@ -37,14 +37,40 @@ pub struct Shot {
     pub camera: String,
     /// The view.
     pub view: View,
+    /// Views beside it, of the same moment: the cameras that they come from, and they.
+    pub beside: Vec<(String, View)>,
+}
+
+impl Shot {
+    /// The view and those beside it, from left to right.
+    pub fn views(&self) -> impl Iterator<Item = (&str, &View)> {
+        let beside = self.beside.iter().map(|(camera, view)| (camera.as_str(), view));
+        [(self.camera.as_str(), &self.view)].into_iter().chain(beside)
+    }
 }
 
 impl Stage {
-    /// Reads the files that the job names.
+    /// Reads the files that the job names, for subcommands that look through one camera.
     ///
     /// # Errors
     /// [`Failure::Input`] naming the file or option at fault.
     pub fn open(job: &SceneJob) -> Result<Self> {
+        let stage = Self::open_views(job)?;
+        if let Some(shot) = stage.shots.iter().find(|shot| !shot.beside.is_empty()) {
+            let cameras: Vec<&str> = shot.views().map(|(camera, _)| camera).collect();
+            return Err(Failure::input(format!(
+                "--camera {}: only render and truth show several cameras beside each other; name one",
+                cameras.join(",")
+            )));
+        }
+        Ok(stage)
+    }
+
+    /// The same for those that show several cameras side by side.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] naming the file or option at fault.
+    pub fn open_views(job: &SceneJob) -> Result<Self> {
         let height_map = HeightMapOptions {
             metres_per_post: job.metres_per_post,
             metres_per_unit: job.metres_per_unit,
@@ -122,7 +148,7 @@ pub(crate) fn shots(
     path: Option<&CameraPath>,
     notes: &mut Vec<String>,
 ) -> Result<Vec<Shot>> {
-    let single = |camera: String, view: View| Ok(vec![Shot { frame: None, camera, view }]);
+    let single = |camera: String, view: View| Ok(vec![Shot { frame: None, camera, view, beside: Vec::new() }]);
     match (&job.camera, path) {
         (CameraChoice::LookAt { eye, target }, _) => {
             single("--eye, --target".into(), View::look_at_upright(*eye, *target, frustum(job)?)?)
@@ -136,14 +162,18 @@ pub(crate) fn shots(
                         frame: frames.map(|_| k),
                         camera: file.display().to_string(),
                         view: View::look_at_upright(eye, target, frustum(job)?)?,
+                        beside: Vec::new(),
                     })
                 })
                 .collect()
         }
         (CameraChoice::Named(wanted), _) => {
             let names: Vec<&str> = scene.cameras.iter().map(|camera| camera.name.as_str()).collect();
-            let index = select("--camera", "camera", wanted, &names)?;
-            single(named(names[index], index), scene_camera(job, scene, pose, index)?)
+            let views = several("--camera", "camera", wanted, &names)?.into_iter();
+            let views = views.map(|i| Ok((named(names[i], i), scene_camera(job, scene, pose, i)?)));
+            let mut views = views.collect::<Result<Vec<_>>>()?;
+            let (camera, view) = views.remove(0);
+            Ok(vec![Shot { frame: None, camera, view, beside: views }])
         }
         _ if scene.cameras.is_empty() => {
             notes.push("the scene has no camera and none was given: invented one that sees all of it".into());
@@ -172,6 +202,24 @@ fn scene_camera(job: &SceneJob, scene: &Scene, pose: &Pose, index: usize) -> Res
         return Err(Failure::input("--fov: the chosen camera is orthographic and has no angle; leave --fov away"));
     }
     Ok(view.with_frustum(Frustum::perspective(fov.to_radians(), job.aspect(), frustum.near, frustum.far)?)?)
+}
+
+/// The indices of one thing called `wanted`, whatever is in its name, or of several between commas; one at least.
+pub(crate) fn several(option: &str, kind: &str, wanted: &str, names: &[&str]) -> Result<Vec<usize>> {
+    if names.contains(&wanted) || !wanted.contains(',') {
+        return Ok(vec![select(option, kind, wanted, names)?]);
+    }
+    let mut indices = Vec::new();
+    for part in wanted.split(',') {
+        let index = select(option, kind, part, names)?;
+        if indices.contains(&index) {
+            return Err(Failure::input(format!(
+                "{option} {wanted}: {part} is in the list twice; leave one of them away"
+            )));
+        }
+        indices.push(index);
+    }
+    Ok(indices)
 }
 
 /// The index of the thing called `wanted`, or with that number.
@@ -209,5 +257,9 @@ mod tests {
         assert!(error.contains("--camera 3") && error.contains("front, 0, 2"), "{error}");
         assert!(select("--camera", "camera", "-1", &names).is_err());
         assert!(select("--light", "light", "0", &[]).is_err());
+        assert_eq!(several("--camera", "camera", "front,2", &names), Ok(vec![0, 2]));
+        assert_eq!(several("--camera", "camera", "a,b", &["b", "a,b"]), Ok(vec![1]), "a name may have a comma");
+        let error = several("--camera", "camera", "front,2,front", &names).expect_err("twice").to_string();
+        assert!(error.contains("front is in the list twice"), "{error}");
     }
 }

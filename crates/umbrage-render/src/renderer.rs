@@ -103,6 +103,8 @@ pub struct Renderer {
     transition: Transition,
     /// One for each light.
     planners: Vec<Planner>,
+    /// The same for each further view.
+    more_planners: Vec<Vec<Planner>>,
     maps: ShadowMaps,
     scene: Geometry,
     scene_meshes: SceneMeshes,
@@ -186,6 +188,7 @@ impl Renderer {
                 size: settings.size,
                 depth_format: settings.depth_format,
                 planners: settings.lights.iter().map(|_| Planner::new(shadows.clone())).collect::<Result<_, _>>()?,
+                more_planners: Vec::new(),
                 scene: Geometry::of_scene(gpu, scene)?,
                 scene_meshes: SceneMeshes::of_scene(scene),
                 skinned: SkinnedGeometry::empty(gpu)?,
@@ -219,6 +222,7 @@ impl Renderer {
     /// # Errors
     /// Never in practice: the settings were accepted before.
     pub fn restart(&mut self) -> Result<()> {
+        self.more_planners.clear();
         for planner in &mut self.planners {
             *planner = Planner::new(planner.settings().clone())?;
         }
@@ -240,6 +244,30 @@ impl Renderer {
     pub fn render(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
         gpu.guarded("drawing a frame", || self.render_unguarded(frame, outputs))
+    }
+
+    /// Draws several views, for a split screen: each as if it were drawn alone. The maps are one view's after the other's; what
+    /// stabilisation holds is kept for each, so a view keeps its place in the list from frame to frame.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn render_views(&mut self, frames: &[Frame<'_>], outputs: Outputs) -> Result<Vec<Rendered>> {
+        let mut views = Vec::with_capacity(frames.len());
+        for (view, frame) in frames.iter().enumerate() {
+            let Some(other) = view.checked_sub(1) else {
+                views.push(self.render(frame, outputs)?);
+                continue;
+            };
+            if self.more_planners.len() == other {
+                let fresh = self.planners.iter().map(|planner| Planner::new(planner.settings().clone()));
+                self.more_planners.push(fresh.collect::<Result<_, _>>()?);
+            }
+            std::mem::swap(&mut self.planners, &mut self.more_planners[other]);
+            let rendered = self.render(frame, outputs);
+            std::mem::swap(&mut self.planners, &mut self.more_planners[other]);
+            views.push(rendered?);
+        }
+        Ok(views)
     }
 
     /// Visibility of the first light at given points. A point that the view shows within the shadowed range gets what a pixel there would

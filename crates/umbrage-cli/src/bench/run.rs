@@ -114,7 +114,7 @@ fn crowd_stage(args: &BenchArgs, objects: u32) -> Result<Stage> {
     let view = View::look_at_upright(eye, target, Frustum::perspective(60f64.to_radians(), aspect, 1.0, 800.0)?)?;
     let sun = DirectionalLight::new(umbrage_scene::invented_sun())?;
     let light = NamedLight { name: "invented".into(), lamp: sun.into() };
-    let shots = vec![Shot { frame: None, camera: "crowd".into(), view }];
+    let shots = vec![Shot { frame: None, camera: "crowd".into(), view, beside: Vec::new() }];
     let pose = scene.pose(0.0)?;
     Ok(Stage::new(scene, pose, vec![light], shots, Vec::new()))
 }
