@@ -242,6 +242,9 @@ pub struct ShadowArgs {
     /// What each map is fitted to: the slice alone, or its receivers and casters too
     #[arg(long, value_enum, default_value_t)]
     pub fit: Fit,
+    /// Which map a pixel uses: that of its view depth, or the first (finest) that contains it
+    #[arg(long, value_enum, default_value_t)]
+    pub selection: Selection,
     /// Whether shadows stand still while the camera moves [default: exact, or none where a map is warped]
     #[arg(long, value_enum)]
     pub stabilize: Option<Stabilize>,
@@ -371,6 +374,16 @@ pub enum Fit {
     Dependent,
     /// The slice alone
     Independent,
+}
+
+/// `--selection`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Selection {
+    /// By view depth
+    #[default]
+    Depth,
+    /// The first map that contains it
+    Map,
 }
 
 /// `--stabilize`.

@@ -45,7 +45,7 @@ fn split_in_rust() -> (usize, Vec<Member>) {
 
 fn frame_in_rust() -> (usize, Vec<Member>) {
     in_rust!(Frame: view_depth_plane, to_light, strength, fade_begin, split_count, filter_kind, enabled, tint,
-        filter_width_m, sun_tangent, turn_per_pixel, transition, splits)
+        filter_width_m, sun_tangent, turn_per_pixel, transition, selection, map_blend, splits)
 }
 
 #[test]
