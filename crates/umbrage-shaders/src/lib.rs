@@ -14,7 +14,7 @@
 //!
 //! | binding of [`receiver`] | what |
 //! |---|---|
-//! | 0 | uniform [`layout::Frame`] |
+//! | 0 | uniform array of [`layout::Frame`]: one for each light, six for a point light |
 //! | 1 | `texture_depth_2d_array`, cleared to 1; [`layout::Split`] says where in it a map lies |
 //! | 2 | `sampler_comparison` with `LessEqual`, clamped to the edge; nearest for [`layout::FilterKind::Hard`], else linear |
 //!
@@ -34,10 +34,19 @@ const ARRAY: &str = include_str!(concat!(env!("OUT_DIR"), "/array.wgsl"));
 const ARRAY_WITHOUT_LOADS: &str = include_str!(concat!(env!("OUT_DIR"), "/array_without_loads.wgsl"));
 
 /// How a receiver reads its maps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Maps {
     /// Depth textures can be compared with but not loaded from (GL, WebGL2): [`layout::FilterKind::Pcss`] is an ordinary disc.
     pub without_loads: bool,
+    /// Length of the array of frames.
+    pub frames: u32,
+}
+
+impl Default for Maps {
+    /// One light, read with everything that a device can have.
+    fn default() -> Self {
+        Self { without_loads: false, frames: 1 }
+    }
 }
 
 /// Text to put before a vertex shader that draws casters: `fn umbrage_caster_position(position: vec3f) -> vec4f`.
@@ -47,10 +56,12 @@ pub fn caster(group: u32) -> String {
 }
 
 /// Text to put before a shader that asks what is lit: `fn umbrage_visibility(position: vec3f, normal: vec3f) -> f32`,
-/// `umbrage_shadow` and `umbrage_visibility_in_split`.
+/// `umbrage_shadow` and `umbrage_visibility_in_split`, and the same of one of several lights: `umbrage_visibility_of(light: u32, …)`.
 #[must_use]
 pub fn receiver(group: u32, maps: Maps) -> String {
+    let Maps { without_loads, frames } = maps;
     let (receiver, maps) =
-        if maps.without_loads { (RECEIVER_WITHOUT_LOADS, ARRAY_WITHOUT_LOADS) } else { (RECEIVER, ARRAY) };
-    format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\n{maps}\n{receiver}\n")
+        if without_loads { (RECEIVER_WITHOUT_LOADS, ARRAY_WITHOUT_LOADS) } else { (RECEIVER, ARRAY) };
+    let frames = frames.max(1);
+    format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\nconst UMBRAGE_FRAMES = {frames}u;\n{maps}\n{receiver}\n")
 }

@@ -4,7 +4,7 @@ use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use umbrage_shaders::Maps;
 
-const WITHOUT_LOADS: Maps = Maps { without_loads: true };
+const WITHOUT_LOADS: Maps = Maps { without_loads: true, frames: 7 };
 
 fn validated(source: &str) -> (naga::Module, ModuleInfo) {
     let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
@@ -44,7 +44,8 @@ fn fragment_shader_without_loads(group: u32) -> String {
 const FRAGMENT: &str = "@fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
                let shadow = umbrage_shadow(position, vec3f(0.0, 1.0, 0.0));
                let one = umbrage_visibility_in_split(position, vec3f(0.0, 1.0, 0.0), 1u);
-               return vec4f(shadow.tint * shadow.visibility, one * f32(shadow.split));
+               let other = umbrage_visibility_of(u32(position.x), position, vec3f(0.0, 1.0, 0.0));
+               return vec4f(shadow.tint * shadow.visibility, one * other * f32(shadow.split));
            }";
 
 #[test]

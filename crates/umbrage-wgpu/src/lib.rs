@@ -36,10 +36,13 @@
 //! both declare what they share.
 
 mod error;
+mod local;
 mod maps;
 mod options;
 mod uniforms;
 
 pub use error::{Error, Result};
 pub use maps::{ShadowMaps, optional_features};
-pub use options::{DepthFormat, Filter, FrameOptions, Generation, ShadowMapsOptions, Softness, Storage, Transition};
+pub use options::{
+    DepthFormat, Filter, FrameOptions, Generation, LightSlot, ShadowMapsOptions, Softness, Storage, Transition,
+};

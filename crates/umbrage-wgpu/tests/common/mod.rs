@@ -3,7 +3,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, DVec4, Vec3};
-use umbrage::{DirectionalLight, ShadowPlan, Split};
+use umbrage::{DirectionalLight, Selection, ShadowPlan, Split};
 use umbrage_wgpu::{FrameOptions, ShadowMaps, ShadowMapsOptions, optional_features};
 
 /// A device of its own for each test, and the queue.
@@ -231,11 +231,16 @@ impl World {
 
     /// Draws `triangles` (three corners each, relative to the options' origin) into every map.
     pub fn draw(&mut self, plan: &ShadowPlan, options: &FrameOptions, triangles: &[Vec3]) {
-        self.maps.prepare(&self.gpu.queue, plan, options).expect("a valid plan");
+        self.draw_all(&[plan], options, triangles);
+    }
+
+    /// The same for the plans of several lights.
+    pub fn draw_all(&mut self, plans: &[&ShadowPlan], options: &FrameOptions, triangles: &[Vec3]) {
+        self.maps.prepare_lights(&self.gpu.queue, plans, options).expect("valid plans");
         self.gpu.checked(|| {
             let vertices = self.gpu.buffer_with(bytemuck::cast_slice(triangles), wgpu::BufferUsages::VERTEX);
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-            for split in 0..self.maps.splits() {
+            for split in 0..self.maps.map_count() {
                 let mut pass = self.maps.begin_split(&mut encoder, split, None);
                 pass.set_pipeline(&self.pipeline);
                 pass.set_bind_group(0, self.maps.caster_bind_group(split), &[]);
@@ -350,6 +355,8 @@ pub fn plan(light: DVec3, center: DVec3, sizes: &[u32], planes: &[f64], widths: 
         light_direction: depth,
         light: None,
         fade_begin: planes[sizes.len()],
+        selection: Selection::Depth,
+        blend: 0.0,
         caster_indices: vec![0; sizes.len()],
         split_range: vec![Some((0, sizes.len() as u8 - 1))],
     }
