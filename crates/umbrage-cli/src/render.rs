@@ -7,7 +7,7 @@ use umbrage_render::{Frame, FrameStats, Gpu, GpuOptions, Outputs, RenderSettings
 
 use crate::{
     adapter,
-    args::RenderArgs,
+    args::{Filter, RenderArgs},
     failure::{Failure, Result},
     job::{SceneJob, ShadowJob, typed_name, wgpu_depth_format, wgpu_filter},
     output::{self, Staged, numbered_file, numbered_folder},
@@ -37,7 +37,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     let mut staged = Staged::default();
     let bar = progress::steps(stage.shots.len() as u64, "frames");
     for shot in &stage.shots {
-        let rendered = studio.renderer.render(&studio.frame(&stage, shot), outputs)?;
+        let rendered = studio.renderer.render_faded(&studio.frame(&stage, shot), &shot.shown, outputs)?;
         if let (Some(path), Some(picture)) = (&args.picture, rendered.picture) {
             staged.file(&numbered_file(path, shot.frame), png(&picture)?)?;
         }
@@ -79,6 +79,7 @@ impl<'a> Studio<'a> {
             samples: umbrage_render::Samples::default(),
             softness: shadows.softness(job.sun_angle),
             transition: shadows.transition(),
+            look: shadows.look(),
             storage: umbrage_wgpu::Storage::default(),
             generation: umbrage_wgpu::Generation::default(),
         };
@@ -91,7 +92,7 @@ impl<'a> Studio<'a> {
         Frame {
             pose: &stage.pose,
             view: &shot.view,
-            sun: stage.sun,
+            sun: shot.sun,
             shadows_on: self.shadows.shadows_on,
             tint: self.shadows.tint,
         }
@@ -116,6 +117,13 @@ impl<'a> Studio<'a> {
             generation: stats.generation.to_string(),
             storage: stats.storage.to_string(),
             filter: typed_name(self.shadows.filter),
+            filter_width: self.shadows.filter_width,
+            sun_angle: (self.shadows.filter == Filter::Pcss)
+                .then(|| f64::from(self.shadows.softness(job.sun_angle).sun_angle).to_degrees()),
+            transition: typed_name(self.shadows.transition),
+            bias: typed_name(self.shadows.bias),
+            shadow_strength: self.shadows.shadow_strength,
+            shadow_colour: self.shadows.shadow_colour.to_array(),
             fit: typed_name(self.shadows.fit),
             stabilize: typed_name(self.shadows.stabilize),
             warp: self.shadows.warps.iter().map(|&warp| typed_name(warp)).collect(),

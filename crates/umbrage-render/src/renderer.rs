@@ -14,6 +14,7 @@ use crate::casters::Casters;
 use crate::draw_list::{Drawable, Drawn, Instances, Run};
 use crate::forward::{Forward, FrameUniform, MaskTarget, PictureTarget, Samples};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry, check_object};
+use crate::look::Look;
 use crate::materials::Materials;
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint, Responder};
 use crate::stats::{FrameStats, SplitStats};
@@ -42,6 +43,8 @@ pub struct RenderSettings {
     pub softness: Softness,
     /// How splits meet.
     pub transition: Transition,
+    /// How shadows look.
+    pub look: Look,
     /// Where maps are kept.
     pub storage: Storage,
     /// How maps are drawn.
@@ -95,7 +98,10 @@ pub struct Renderer {
     samples: Samples,
     softness: Softness,
     transition: Transition,
-    planner: Planner,
+    look: Look,
+    pub(crate) planner: Planner,
+    /// While a step of the sun is faded: what plans for the sun that is faded to.
+    pub(crate) next_planner: Option<Planner>,
     maps: ShadowMaps,
     scene: Geometry,
     scene_meshes: SceneMeshes,
@@ -178,6 +184,7 @@ impl Renderer {
                 size: settings.size,
                 depth_format: settings.depth_format,
                 planner: Planner::new(shadows)?,
+                next_planner: None,
                 scene: Geometry::of_scene(gpu, scene)?,
                 scene_meshes: SceneMeshes::of_scene(scene),
                 skinned: SkinnedGeometry::empty(gpu)?,
@@ -187,6 +194,7 @@ impl Renderer {
                 samples: settings.samples,
                 softness: settings.softness,
                 transition: settings.transition,
+                look: settings.look,
                 probe: Probe::new(gpu, &maps),
                 timer,
                 picture: None,
@@ -212,6 +220,7 @@ impl Renderer {
     /// Never in practice: the settings were accepted before.
     pub fn restart(&mut self) -> Result<()> {
         self.planner = Planner::new(self.planner.settings().clone())?;
+        self.next_planner = None;
         Ok(())
     }
 
@@ -407,7 +416,9 @@ impl Renderer {
             origin,
             enabled: frame.shadows_on,
             tint: frame.tint,
-            strength: 1.0,
+            strength: self.look.strength,
+            shadow_colour: self.look.colour,
+            bias: self.look.bias,
             softness: self.softness,
             transition: self.transition,
         };

@@ -135,6 +135,8 @@ fn frame(
             Selection::Map => SelectionKind::Map,
         } as u32,
         map_blend: plan.blend as f32,
+        bias_kind: options.bias.kind() as u32,
+        shadow_colour: options.shadow_colour,
         ..layout::Frame::default()
     };
     local::place_light(&mut frame, plan, options.origin);

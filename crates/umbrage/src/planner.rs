@@ -203,9 +203,11 @@ impl Planner {
 
         let plan = &mut self.plan;
         plan.begin(view, (*light).into());
-        plan.fade_begin = far - self.settings.far_fade * (far - near);
         plan.selection = self.settings.selection;
         plan.blend = self.settings.blend;
+        // Behind the last receiver and beyond the camera's far plane there is nothing to fade into.
+        let fades = self.settings.range.is_some_and(|(_, end)| end < view.frustum().far);
+        plan.fade_begin = if fades { far - self.settings.far_fade * (far - near) } else { far };
         plan.split_range.resize(casters, None);
         self.volumes.clear();
         for i in 0..self.settings.splits() {
