@@ -3,8 +3,9 @@
 use wesl::{CompileOptions, Mangler, ModulePath, Wesl};
 
 /// The roots in `shaders`, whether depth textures can be loaded from, and the file that each becomes in `OUT_DIR`.
-const ROOTS: [(&str, bool, &str); 5] = [
+const ROOTS: [(&str, bool, &str); 6] = [
     ("pass::caster", true, "caster"),
+    ("pass::contact", true, "contact"),
     ("pass::receiver", true, "receiver"),
     ("pass::receiver", false, "receiver_without_loads"),
     ("maps::array", true, "array"),

@@ -188,7 +188,7 @@ pub struct SceneArgs {
     /// Move the camera along an author's path (JSON)
     #[arg(long, value_name = "FILE", help_heading = "Camera")]
     pub path: Option<PathBuf>,
-    /// With --path: this many frames; NAME.png becomes NAME.0000.png and so on
+    /// With --path or --sun-to: this many frames; NAME.png becomes NAME.0000.png and so on
     #[arg(long, value_name = "N", allow_hyphen_values = true, help_heading = "Camera")]
     pub frames: Option<u32>,
     /// With --path: metres from the path up to the eye
@@ -202,6 +202,15 @@ pub struct SceneArgs {
     /// The way light travels; any length
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Light")]
     pub sun: Option<DVec3>,
+    /// The way light travels in the last of --frames: the sun moves there at an even pace
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Light")]
+    pub sun_to: Option<DVec3>,
+    /// With --sun-to: shadows follow in steps of this many degrees and stand still in between [default: they move every frame]
+    #[arg(long, value_name = "DEGREES", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Light")]
+    pub sun_step: Option<f64>,
+    /// With --sun-step: frames over which a step is faded; 0 is sudden [default: 8]
+    #[arg(long, value_name = "FRAMES", allow_hyphen_values = true, help_heading = "Light")]
+    pub sun_fade: Option<u32>,
     /// Angle across the sun in degrees: what --filter pcss and the exact soft mask of `umbrage truth` go by
     /// [default: 0.53 for pcss; the exact mask is hard]
     #[arg(long, value_name = "DEGREES", value_parser = parse::sun_angle, allow_hyphen_values = true, help_heading = "Light")]
@@ -243,6 +252,9 @@ pub struct ShadowArgs {
     /// What each map is fitted to: the slice alone, or its receivers and casters too
     #[arg(long, value_enum, default_value_t)]
     pub fit: Fit,
+    /// Which map a pixel uses: that of its view depth, or the first (finest) that contains it
+    #[arg(long, value_enum, default_value_t)]
+    pub selection: Selection,
     /// Whether shadows stand still while the camera moves [default: exact, or none where a map is warped]
     #[arg(long, value_enum)]
     pub stabilize: Option<Stabilize>,
@@ -270,12 +282,21 @@ pub struct ShadowArgs {
     /// Share of each split over which it blends into the next; 0 is off
     #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
     pub blend: f64,
-    /// Share of the shadowed range over which shadows fade out at its far end; 0 is off
+    /// Share of the shadowed range over which shadows fade out at its far end; 0 is off, as where nothing is seen beyond
     #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
     pub far_fade: f64,
     /// What a map stores
     #[arg(long, value_enum, default_value_t)]
     pub depth_format: DepthFormat,
+    /// How surfaces are kept from shading themselves; both go by texel, slope and filter width and need no number
+    #[arg(long, value_enum, default_value_t)]
+    pub bias: Bias,
+    /// How dark shadows are, 0 (not at all) to 1 (no sun)
+    #[arg(long, value_name = "SHARE", default_value = "1", value_parser = parse::share, allow_hyphen_values = true)]
+    pub shadow_strength: f64,
+    /// What the sun's light is multiplied by in full shadow: linear red, green, blue, 0 to 1 each
+    #[arg(long, value_name = "R,G,B", default_value = "0,0,0", value_parser = parse::colour, allow_hyphen_values = true)]
+    pub shadow_colour: DVec3,
     /// Colour the picture by split
     #[arg(long)]
     pub tint: bool,
@@ -374,6 +395,16 @@ pub enum Fit {
     Independent,
 }
 
+/// `--selection`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Selection {
+    /// By view depth
+    #[default]
+    Depth,
+    /// The first map that contains it
+    Map,
+}
+
 /// `--stabilize`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Stabilize {
@@ -404,6 +435,16 @@ pub enum Filter {
     Disc,
     /// As wide as the penumbra of a sun of --sun-angle
     Pcss,
+}
+
+/// `--bias`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Bias {
+    /// Every texel is compared with the surface's own plane
+    #[default]
+    Plane,
+    /// All texels with one depth, moved by the slope times the filter's reach: forgives inexact normals, loses contact
+    Slope,
 }
 
 /// `--transition`.

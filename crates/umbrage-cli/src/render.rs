@@ -8,7 +8,7 @@ use umbrage_render::{Frame, FrameStats, Gpu, GpuOptions, Outputs, RenderSettings
 
 use crate::{
     adapter,
-    args::RenderArgs,
+    args::{Filter, RenderArgs},
     failure::{Failure, Result},
     job::{SceneJob, ShadowJob, typed_name, wgpu_depth_format, wgpu_filter},
     lights::{self, LightReport, NamedLight},
@@ -42,8 +42,8 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     let mut staged = Staged::default();
     let bar = progress::steps(stage.shots.len() as u64, "frames");
     for shot in &stage.shots {
-        let frames: Vec<Frame<'_>> = shot.views().map(|(_, view)| studio.frame(&stage, view)).collect();
-        let mut views = studio.renderer.render_views(&frames, outputs)?;
+        let frames: Vec<Frame<'_>> = shot.views().map(|(_, view)| studio.frame(&stage, shot, view)).collect();
+        let mut views = studio.renderer.render_views(&frames, shot.shown.as_ref(), outputs)?;
         let pictures: Vec<_> = views.iter_mut().filter_map(|view| view.picture.take()).collect();
         if let (Some(path), false) = (&args.picture, pictures.is_empty()) {
             staged.file(&numbered_file(path, shot.frame), png(&side_by_side(pictures))?)?;
@@ -89,6 +89,7 @@ impl<'a> Studio<'a> {
             samples: umbrage_render::Samples::default(),
             softness: shadows.softness(job.sun_angle),
             transition: shadows.transition(),
+            look: shadows.look(),
             storage: umbrage_wgpu::Storage::default(),
             generation: umbrage_wgpu::Generation::default(),
             lights: lights::slots(&stage.lights),
@@ -97,9 +98,9 @@ impl<'a> Studio<'a> {
         Ok(Self { renderer, shadows, adapter: adapter::description(&gpu) })
     }
 
-    /// What the renderer is told about one view.
-    pub fn frame<'s>(&self, stage: &'s Stage, view: &'s View) -> Frame<'s> {
-        stage.frame(view, self.shadows.shadows_on, self.shadows.tint)
+    /// What the renderer is told about one view of a shot.
+    pub fn frame<'s>(&self, stage: &'s Stage, shot: &Shot, view: &'s View) -> Frame<'s> {
+        stage.frame(shot, view, self.shadows.shadows_on, self.shadows.tint)
     }
 
     /// What was done and what it cost.
@@ -113,6 +114,13 @@ impl<'a> Studio<'a> {
             generation: stats.generation.to_string(),
             storage: stats.storage.to_string(),
             filter: typed_name(self.shadows.filter),
+            filter_width: self.shadows.filter_width,
+            sun_angle: (self.shadows.filter == Filter::Pcss)
+                .then(|| f64::from(self.shadows.softness(job.sun_angle).sun_angle).to_degrees()),
+            transition: typed_name(self.shadows.transition),
+            bias: typed_name(self.shadows.bias),
+            shadow_strength: self.shadows.shadow_strength,
+            shadow_colour: self.shadows.shadow_colour.to_array(),
             fit: typed_name(self.shadows.fit),
             stabilize: typed_name(self.shadows.stabilize),
             warp: self.shadows.warps.iter().map(|&warp| typed_name(warp)).collect(),

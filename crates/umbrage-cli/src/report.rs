@@ -18,8 +18,20 @@ pub struct Report {
     pub generation: String,
     /// How the maps are kept.
     pub storage: String,
-    /// `hard`, `pcf2`, `pcf3` or `pcf5`.
+    /// As `--filter` names it.
     pub filter: String,
+    /// Metres that the filter is wide in every split; none where its width is in texels.
+    pub filter_width: Option<f64>,
+    /// Degrees across the sun, of a filter that goes by it.
+    pub sun_angle: Option<f64>,
+    /// `blend`, `dither` or `hard`: how one split goes over into the next.
+    pub transition: String,
+    /// `plane` or `slope`: how surfaces are kept from shading themselves.
+    pub bias: String,
+    /// How dark shadows are, 0 to 1.
+    pub shadow_strength: f64,
+    /// What the sun's light is multiplied by in full shadow, linear red, green and blue.
+    pub shadow_colour: [f64; 3],
     /// `dependent` or `independent`.
     pub fit: String,
     /// `none`, `exact` or `approximate`.
@@ -88,6 +100,20 @@ pub struct ShotReport {
     pub sun: Option<[f64; 3]>,
     /// All lights, the first one first, with the splits of each where maps were made.
     pub lights: Vec<LightReport>,
+    /// With --sun-to: the suns whose shadows are shown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sun_shown: Option<SunShown>,
+}
+
+/// The suns whose shadows are shown, unit vectors along the light, and the share of the second.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SunShown {
+    /// The sun that is left.
+    pub from: [f64; 3],
+    /// The sun that is faded to.
+    pub to: [f64; 3],
+    /// Its share, 0 to 1.
+    pub weight: f64,
 }
 
 /// The eye: metres and degrees.

@@ -1,6 +1,7 @@
 //! The scene of a job, opened and posed, with its views and its lights: what `render`, `probe` and `truth` have in common.
 
-use umbrage::{Frustum, Light, Projection, View};
+use glam::DQuat;
+use umbrage::{DirectionalLight, Frustum, Light, Projection, SunFade, View};
 use umbrage_render::{Frame, Lamp};
 use umbrage_scene::{CameraPath, HeightMapOptions, Pose, Scene};
 
@@ -8,7 +9,7 @@ use crate::{
     failure::{Failure, Result},
     job::{CameraChoice, DEFAULT_FAR, DEFAULT_FOV, DEFAULT_NEAR, SceneJob},
     lights::{self, NamedLight},
-    report::{CameraReport, ShotReport},
+    report::{CameraReport, ShotReport, SunShown},
 };
 
 /// A scene at one moment, with everything that is to be looked at.
@@ -22,13 +23,26 @@ pub struct Stage {
     pub lights: Vec<NamedLight>,
     /// All but the first, as the renderer takes them.
     pub more_lights: Vec<Lamp>,
-    /// One, or one per frame of a path.
+    /// One, or one per frame.
     pub shots: Vec<Shot>,
     /// What the loader left out, and which defaults were invented.
     pub notes: Vec<String>,
 }
 
-/// One view of the scene.
+/// Where the eye is in a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Place {
+    /// The number that its files get.
+    pub frame: Option<u32>,
+    /// Where the view comes from.
+    pub camera: String,
+    /// The view.
+    pub view: View,
+    /// Views beside it, with their cameras.
+    pub beside: Vec<(String, View)>,
+}
+
+/// One view of the scene under its lights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shot {
     /// The number that its files get.
@@ -39,6 +53,10 @@ pub struct Shot {
     pub view: View,
     /// Views beside it, of the same moment: the cameras that they come from, and they.
     pub beside: Vec<(String, View)>,
+    /// The first light in this frame.
+    pub light: Light,
+    /// If it is a sun, the suns whose shadows are shown: the same, or one or two that follow it in steps.
+    pub shown: Option<SunFade>,
 }
 
 impl Shot {
@@ -46,6 +64,12 @@ impl Shot {
     pub fn views(&self) -> impl Iterator<Item = (&str, &View)> {
         let beside = self.beside.iter().map(|(camera, view)| (camera.as_str(), view));
         [(self.camera.as_str(), &self.view)].into_iter().chain(beside)
+    }
+
+    /// The light whose maps are made.
+    #[must_use]
+    pub fn shown_light(&self) -> Light {
+        self.shown.map_or(self.light, |fade| fade.to.into())
     }
 }
 
@@ -83,8 +107,9 @@ impl Stage {
         let scene = umbrage_scene::open(&job.scene, &height_map)?;
         let pose = scene.pose(job.time_s)?;
         let mut notes = scene.notes.clone();
-        let shots = shots(job, &scene, &pose, path.as_ref(), &mut notes)?;
+        let places = places(job, &scene, &pose, path.as_ref(), &mut notes)?;
         let lights = lights::chosen(job, &scene, &pose, path.as_ref(), &mut notes)?;
+        let shots = under_the_light(job, places, &lights)?;
         Ok(Self::new(scene, pose, lights, shots, notes))
     }
 
@@ -95,16 +120,11 @@ impl Stage {
         Self { scene, pose, lights, more_lights, shots, notes }
     }
 
-    /// The first light.
+    /// What the renderer is told about one view of a shot.
     #[must_use]
-    pub fn light(&self) -> &Light {
-        &self.lights[0].lamp.light
-    }
-
-    /// What the renderer is told about one view.
-    #[must_use]
-    pub fn frame<'s>(&'s self, view: &'s View, shadows_on: bool, tint: bool) -> Frame<'s> {
-        Frame { pose: &self.pose, view, light: self.lights[0].lamp, more_lights: &self.more_lights, shadows_on, tint }
+    pub fn frame<'s>(&'s self, shot: &Shot, view: &'s View, shadows_on: bool, tint: bool) -> Frame<'s> {
+        let light = Lamp { light: shot.light, ..self.lights[0].lamp };
+        Frame { pose: &self.pose, view, light, more_lights: &self.more_lights, shadows_on, tint }
     }
 
     /// The part of a report that says what was looked at.
@@ -116,13 +136,56 @@ impl Stage {
             frame: shot.frame,
             size: job.size,
             camera: camera_report(&shot.camera, &shot.view),
-            sun: match self.light() {
+            sun: match shot.light {
                 Light::Directional(sun) => Some(sun.direction().to_array()),
                 Light::Spot(_) | Light::Point(_) => None,
             },
             lights: self.lights.iter().map(NamedLight::report).collect(),
+            sun_shown: shot.shown.filter(|_| job.sun_travel.is_some()).map(|shown| SunShown {
+                from: shown.from.direction().to_array(),
+                to: shown.to.direction().to_array(),
+                weight: shown.weight,
+            }),
         }
     }
+}
+
+/// Every frame's views with their light. A moving sun takes a single view along over all frames.
+fn under_the_light(job: &SceneJob, mut places: Vec<Place>, lights: &[NamedLight]) -> Result<Vec<Shot>> {
+    let first = lights[0].lamp.light;
+    let shot = |Place { frame, camera, view, beside }, light, shown| Shot { frame, camera, view, beside, light, shown };
+    let (travel, sun) = match (&job.sun_travel, first) {
+        (Some(travel), Light::Directional(sun)) => (travel, sun),
+        (Some(_), Light::Spot(_) | Light::Point(_)) => {
+            return Err(Failure::input(format!(
+                "--sun-to moves a sun, but --light {} is a spot or point light; leave one of them away",
+                lights[0].name
+            )));
+        }
+        (None, Light::Directional(sun)) => {
+            let shown = Some(SunFade { from: sun, to: sun, weight: 1.0 });
+            return Ok(places.into_iter().map(|place| shot(place, first, shown)).collect());
+        }
+        (None, Light::Spot(_) | Light::Point(_)) => {
+            return Ok(places.into_iter().map(|place| shot(place, first, None)).collect());
+        }
+    };
+    if let [only] = &places[..] {
+        places = (0..travel.frames).map(|k| Place { frame: Some(k), ..only.clone() }).collect();
+    }
+    let turn = DQuat::from_rotation_arc(sun.direction(), travel.to.normalize());
+    let last = places.len().saturating_sub(1).max(1) as f64;
+    let mut steps = travel.steps;
+    let shots = (0..).zip(places).map(|(k, place)| {
+        let turned = DQuat::IDENTITY.slerp(turn, f64::from(k) / last) * sun.direction();
+        let sun = DirectionalLight::new(turned)?;
+        let shown = match &mut steps {
+            Some(steps) => steps.follow(&sun, 1.0)?,
+            None => SunFade { from: sun, to: sun, weight: 1.0 },
+        };
+        Ok(shot(place, sun.into(), Some(shown)))
+    });
+    shots.collect()
 }
 
 /// The eye, for a report.
@@ -141,14 +204,14 @@ pub(crate) fn camera_report(name: &str, view: &View) -> CameraReport {
 }
 
 /// The views that a job asks for.
-pub(crate) fn shots(
+pub(crate) fn places(
     job: &SceneJob,
     scene: &Scene,
     pose: &Pose,
     path: Option<&CameraPath>,
     notes: &mut Vec<String>,
-) -> Result<Vec<Shot>> {
-    let single = |camera: String, view: View| Ok(vec![Shot { frame: None, camera, view, beside: Vec::new() }]);
+) -> Result<Vec<Place>> {
+    let single = |camera: String, view: View| Ok(vec![Place { frame: None, camera, view, beside: Vec::new() }]);
     match (&job.camera, path) {
         (CameraChoice::LookAt { eye, target }, _) => {
             single("--eye, --target".into(), View::look_at_upright(*eye, *target, frustum(job)?)?)
@@ -158,7 +221,7 @@ pub(crate) fn shots(
             (0..count)
                 .map(|k| {
                     let (eye, target) = path.pose_at(k as usize, count as usize, *eye_height)?;
-                    Ok(Shot {
+                    Ok(Place {
                         frame: frames.map(|_| k),
                         camera: file.display().to_string(),
                         view: View::look_at_upright(eye, target, frustum(job)?)?,
@@ -173,7 +236,7 @@ pub(crate) fn shots(
             let views = views.map(|i| Ok((named(names[i], i), scene_camera(job, scene, pose, i)?)));
             let mut views = views.collect::<Result<Vec<_>>>()?;
             let (camera, view) = views.remove(0);
-            Ok(vec![Shot { frame: None, camera, view, beside: views }])
+            Ok(vec![Place { frame: None, camera, view, beside: views }])
         }
         _ if scene.cameras.is_empty() => {
             notes.push("the scene has no camera and none was given: invented one that sees all of it".into());

@@ -42,7 +42,7 @@ pub fn run(args: &TruthArgs) -> Result<()> {
         let mut images = Vec::new();
         for (_, view) in shot.views() {
             let progress = |share| progress::set_fraction(&bar, (done + share) / count);
-            let mask = truth.mask_under(view, stage.light(), job.size, &progress)?;
+            let mask = truth.mask_under(view, &shot.light, job.size, &progress)?;
             images.push(match job.sun_angle.and_then(sun_disc) {
                 Some(disc) => truth.soft(&mask, &disc, &progress)?.to_image(),
                 None => mask.to_image(),

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
-use umbrage::{Aabb, Planner, ShadowPlan, ShadowSettings, View};
+use umbrage::{Aabb, Planner, ShadowPlan, ShadowSettings, SunFade, View};
 use umbrage_scene::{AlphaMode, Pose, Scene};
 use umbrage_wgpu::{
     DepthFormat, Filter, FrameOptions, Generation, LightSlot, ShadowMaps, ShadowMapsOptions, Softness, Storage,
@@ -16,6 +16,7 @@ use crate::draw_list::{Drawable, Drawn, Instances, Run};
 use crate::forward::{Forward, FrameUniform, MaskTarget, PictureTarget, Samples};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry, check_object};
 use crate::lamps::Lamp;
+use crate::look::Look;
 use crate::materials::Materials;
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint, Responder};
 use crate::stats::{FrameStats, LightStats, SplitStats};
@@ -44,6 +45,8 @@ pub struct RenderSettings {
     pub softness: Softness,
     /// How splits meet.
     pub transition: Transition,
+    /// How shadows look.
+    pub look: Look,
     /// Where maps are kept.
     pub storage: Storage,
     /// How maps are drawn.
@@ -101,10 +104,10 @@ pub struct Renderer {
     samples: Samples,
     softness: Softness,
     transition: Transition,
-    /// One for each light.
-    planners: Vec<Planner>,
+    look: Look,
+    pub(crate) planners: Planners,
     /// The same for each further view.
-    more_planners: Vec<Vec<Planner>>,
+    more_views: Vec<Planners>,
     maps: ShadowMaps,
     scene: Geometry,
     scene_meshes: SceneMeshes,
@@ -118,6 +121,26 @@ pub struct Renderer {
     picture: Option<PictureTarget>,
     mask: Option<MaskTarget>,
     notes: Vec<String>,
+}
+
+/// What plans one view's maps.
+pub(crate) struct Planners {
+    /// One for each light.
+    pub now: Vec<Planner>,
+    /// While a step of the sun is faded: what plans for the sun that is faded to.
+    pub next: Option<Vec<Planner>>,
+}
+
+impl Planners {
+    fn new(settings: &ShadowSettings, lights: usize) -> Result<Self> {
+        let now = (0..lights).map(|_| Planner::new(settings.clone())).collect::<Result<_, _>>()?;
+        Ok(Self { now, next: None })
+    }
+
+    /// Others of the same settings, which remember nothing.
+    pub fn afresh(&self) -> Result<Self> {
+        Self::new(self.now[0].settings(), self.now.len())
+    }
 }
 
 /// A frame that is planned and uploaded, ready to be recorded.
@@ -187,8 +210,8 @@ impl Renderer {
             Ok(Self {
                 size: settings.size,
                 depth_format: settings.depth_format,
-                planners: settings.lights.iter().map(|_| Planner::new(shadows.clone())).collect::<Result<_, _>>()?,
-                more_planners: Vec::new(),
+                planners: Planners::new(&shadows, settings.lights.len())?,
+                more_views: Vec::new(),
                 scene: Geometry::of_scene(gpu, scene)?,
                 scene_meshes: SceneMeshes::of_scene(scene),
                 skinned: SkinnedGeometry::empty(gpu)?,
@@ -198,6 +221,7 @@ impl Renderer {
                 samples: settings.samples,
                 softness: settings.softness,
                 transition: settings.transition,
+                look: settings.look,
                 probe: Probe::new(gpu, &maps),
                 timer,
                 picture: None,
@@ -213,7 +237,7 @@ impl Renderer {
     /// The settings that shadows are planned with, including what the filter, the device and the size have decided.
     #[must_use]
     pub fn shadow_settings(&self) -> &ShadowSettings {
-        self.planners[0].settings()
+        self.planners.now[0].settings()
     }
 
     /// Forgets what earlier frames have left behind in the planner (sizes that stabilisation holds), as if nothing had been
@@ -222,10 +246,8 @@ impl Renderer {
     /// # Errors
     /// Never in practice: the settings were accepted before.
     pub fn restart(&mut self) -> Result<()> {
-        self.more_planners.clear();
-        for planner in &mut self.planners {
-            *planner = Planner::new(planner.settings().clone())?;
-        }
+        self.more_views.clear();
+        self.planners = self.planners.afresh()?;
         Ok(())
     }
 
@@ -246,28 +268,39 @@ impl Renderer {
         gpu.guarded("drawing a frame", || self.render_unguarded(frame, outputs))
     }
 
-    /// Draws several views, for a split screen: each as if it were drawn alone. The maps are one view's after the other's; what
-    /// stabilisation holds is kept for each, so a view keeps its place in the list from frame to frame.
+    /// Draws several views, for a split screen: each as if it were drawn alone, under the suns of `fade` if there is one. The maps are
+    /// one view's after the other's; what stabilisation holds is kept for each, so a view keeps its place in the list from frame to
+    /// frame.
     ///
     /// # Errors
     /// As [`Renderer::render`].
-    pub fn render_views(&mut self, frames: &[Frame<'_>], outputs: Outputs) -> Result<Vec<Rendered>> {
+    pub fn render_views(
+        &mut self,
+        frames: &[Frame<'_>],
+        fade: Option<&SunFade>,
+        outputs: Outputs,
+    ) -> Result<Vec<Rendered>> {
         let mut views = Vec::with_capacity(frames.len());
         for (view, frame) in frames.iter().enumerate() {
-            let Some(other) = view.checked_sub(1) else {
-                views.push(self.render(frame, outputs)?);
-                continue;
-            };
-            if self.more_planners.len() == other {
-                let fresh = self.planners.iter().map(|planner| Planner::new(planner.settings().clone()));
-                self.more_planners.push(fresh.collect::<Result<_, _>>()?);
+            if view > self.more_views.len() {
+                self.more_views.push(self.planners.afresh()?);
             }
-            std::mem::swap(&mut self.planners, &mut self.more_planners[other]);
-            let rendered = self.render(frame, outputs);
-            std::mem::swap(&mut self.planners, &mut self.more_planners[other]);
+            self.swap_planners(view);
+            let rendered = match fade {
+                Some(fade) => self.render_faded(frame, fade, outputs),
+                None => self.render(frame, outputs),
+            };
+            self.swap_planners(view);
             views.push(rendered?);
         }
         Ok(views)
+    }
+
+    /// Brings a further view's planners to the fore, or back.
+    fn swap_planners(&mut self, view: usize) {
+        if let Some(other) = view.checked_sub(1) {
+            std::mem::swap(&mut self.planners, &mut self.more_views[other]);
+        }
     }
 
     /// Visibility of the first light at given points. A point that the view shows within the shadowed range gets what a pixel there would
@@ -431,7 +464,7 @@ impl Renderer {
         if in_range && cull::may_be_seen(frame.view, &Aabb::new(point, point)) {
             return Responder::View;
         }
-        self.planners[0].covering_split(point).map_or(Responder::Nobody, Responder::Split)
+        self.planners.now[0].covering_split(point).map_or(Responder::Nobody, Responder::Split)
     }
 
     /// Plans, uploads what moves, and sorts what is to be drawn.
@@ -448,10 +481,11 @@ impl Renderer {
         let receivers: Vec<Aabb> = pose.objects.iter().map(|object| object.bounds).collect();
         let begun = Instant::now();
         let lamps: Vec<Lamp> = [frame.light].into_iter().chain(frame.more_lights.iter().copied()).collect();
-        if lamps.len() != self.planners.len() {
-            return Err(Error::LampSlots { frame: lamps.len(), renderer: self.planners.len() });
+        let planners = &mut self.planners.now;
+        if lamps.len() != planners.len() {
+            return Err(Error::LampSlots { frame: lamps.len(), renderer: planners.len() });
         }
-        let plans = self.planners.iter_mut().zip(&lamps);
+        let plans = planners.iter_mut().zip(&lamps);
         let plans = plans.map(|(planner, lamp)| Ok(planner.plan(view, &lamp.light, &casters, &receivers)?.clone()));
         let plans = plans.collect::<Result<Vec<ShadowPlan>>>()?;
         let plan_ms = begun.elapsed().as_secs_f64() * 1e3;
@@ -459,7 +493,9 @@ impl Renderer {
             origin,
             enabled: frame.shadows_on,
             tint: frame.tint,
-            strength: 1.0,
+            strength: self.look.strength,
+            shadow_colour: self.look.colour,
+            bias: self.look.bias,
             softness: self.softness,
             transition: self.transition,
         };

@@ -35,6 +35,16 @@ pub enum FilterKind {
     Msm = 11,
 }
 
+/// Which map answers for a point, in [`Frame::selection`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum SelectionKind {
+    /// That of the slice in which its view depth lies.
+    Depth = 0,
+    /// The first that contains it.
+    Map = 1,
+}
+
 /// How one split goes over into the next, in [`Frame::transition`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
@@ -45,6 +55,16 @@ pub enum TransitionKind {
     Dither = 1,
     /// No band.
     Hard = 2,
+}
+
+/// How a receiver is kept from shading itself, in [`Frame::bias_kind`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum BiasKind {
+    /// Every texel is compared with the receiver's plane at its centre.
+    Plane = 0,
+    /// All texels are compared with one depth, nearer by what the slope makes of the filter's reach.
+    Slope = 1,
 }
 
 /// One split: where its map lies and which view depths it serves.
@@ -137,6 +157,16 @@ pub struct Frame {
     pub first_frame: u32,
     /// How many frames this frame's light uses: 1, or 6 for a point light.
     pub face_count: u32,
+    /// What the light of a place in full shadow is multiplied by: linear red, green and blue, 0 to 1.
+    pub shadow_colour: [f32; 3],
+    /// A [`BiasKind`].
+    pub bias_kind: u32,
+    /// A [`SelectionKind`].
+    pub selection: u32,
+    /// With [`SelectionKind::Map`]: share of a map's half edge over which it blends into the next that contains the point.
+    pub map_blend: f32,
+    /// Up to the alignment of 16 bytes.
+    pub _padding: [u32; 2],
     /// The splits, nearest first; those past `split_count` are not read.
     pub splits: [Split; MAX_SPLITS],
 }

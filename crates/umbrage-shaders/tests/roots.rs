@@ -48,10 +48,24 @@ const FRAGMENT: &str = "@fragment fn fragment(@location(0) position: vec3f) -> @
                return vec4f(shadow.tint * shadow.visibility, one * other * f32(shadow.split));
            }";
 
+fn contact_shader(group: u32) -> String {
+    umbrage_shaders::contact(group)
+        + "@fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
+               return vec4f(umbrage_contact_visibility(position, vec3f(0.0, 1.0, 0.0), 0.5));
+           }"
+}
+
+#[test]
+fn contact_shadows_stand_beside_receivers() {
+    validated(&(umbrage_shaders::receiver(1, Maps::default()) + &contact_shader(2)));
+}
+
 #[test]
 fn roots_are_valid_wgsl_in_any_bind_group() {
     for group in [0, 1, 3] {
-        for source in [vertex_shader(group), fragment_shader(group), fragment_shader_without_loads(group)] {
+        for source in
+            [vertex_shader(group), fragment_shader(group), fragment_shader_without_loads(group), contact_shader(group)]
+        {
             let (module, _) = validated(&source);
             let groups: Vec<u32> =
                 module.global_variables.iter().filter_map(|(_, v)| v.binding.map(|b| b.group)).collect();
@@ -70,7 +84,9 @@ fn roots_export_to_webgl2() {
 #[test]
 fn every_name_is_in_our_namespace() {
     let receiver = |maps| umbrage_shaders::receiver(0, maps);
-    for source in [umbrage_shaders::caster(0), receiver(Maps::default()), receiver(WITHOUT_LOADS)] {
+    for source in
+        [umbrage_shaders::caster(0), umbrage_shaders::contact(0), receiver(Maps::default()), receiver(WITHOUT_LOADS)]
+    {
         let module = naga::front::wgsl::parse_str(&source).expect("a valid root");
         let names = (module.functions.iter().filter_map(|(_, f)| f.name.clone()))
             .chain(module.global_variables.iter().filter_map(|(_, v)| v.name.clone()))

@@ -149,6 +149,7 @@ impl Technique {
             samples: Samples::Four,
             softness: Softness::default(),
             transition: Transition::default(),
+            look: umbrage_render::Look::default(),
             storage: umbrage_wgpu::Storage::default(),
             generation: umbrage_wgpu::Generation::default(),
             lights: vec![umbrage_wgpu::LightSlot::Single],

@@ -134,7 +134,7 @@ fn views_beside_each_other_are_as_they_are_alone() {
             View::look_at_upright(eye, eye + view.forward(), *view.frustum()).expect("usable")
         });
         let frames = views.each_ref().map(|view| room.frame(view, light, &[]));
-        let beside = both.render_views(&frames, MASK).expect("two views");
+        let beside = both.render_views(&frames, None, MASK).expect("two views");
         assert_ne!(beside[0].mask, beside[1].mask, "two cameras see two pictures");
         for ((rendered, frame), alone) in beside.into_iter().zip(&frames).zip(&mut alone) {
             assert_eq!(rendered.mask, Some(mask(alone, frame)), "frame {step}");

@@ -28,21 +28,24 @@
 //! |---|---|
 //! | `umbrage_caster_position(position: vec3f) -> vec4f` | clip position in the split that is drawn |
 //! | `umbrage_visibility(position: vec3f, normal: vec3f) -> f32` | 1 lit, 0 in shadow or turned away |
-//! | `umbrage_shadow(position, normal) -> UmbrageShadow` | the same with `split: i32` (−1: none) and `tint: vec3f` |
+//! | `umbrage_shadow(position, normal) -> UmbrageShadow` | the same with `split: i32` (−1: none), `tint: vec3f` and `light: vec3f`, what to multiply the light by ([`FrameOptions::shadow_colour`]) |
 //! | `umbrage_shadow_at_pixel(position, normal, pixel: vec2f) -> UmbrageShadow` | the same for a fragment's `@builtin(position).xy`: for dithered borders and turned discs |
 //! | `umbrage_visibility_in_split(position, normal, split: u32) -> f32` | what one map alone says, for points off screen |
 //!
 //! They need no derivatives and work in any control flow and in every stage. The two texts belong into two shader modules:
 //! both declare what they share.
 
+mod contact;
 mod error;
 mod local;
 mod maps;
 mod options;
 mod uniforms;
 
+pub use contact::{ContactFrame, ContactOptions, ContactShadows, contact_wgsl};
 pub use error::{Error, Result};
 pub use maps::{ShadowMaps, optional_features};
 pub use options::{
-    DepthFormat, Filter, FrameOptions, Generation, LightSlot, ShadowMapsOptions, Softness, Storage, Transition,
+    DepthFormat, Filter, FrameOptions, Generation, LightSlot, ReceiverBias, ShadowMapsOptions, Softness, Storage,
+    Transition,
 };

@@ -48,13 +48,14 @@ pub fn measure(
             samples,
             softness: technique.job.softness(None),
             transition: technique.job.transition(),
+            look: technique.job.look(),
             storage: umbrage_wgpu::Storage::default(),
             generation: umbrage_wgpu::Generation::default(),
             lights: lights::slots(&stage.lights),
         };
         renderers.push(Renderer::new(gpu, &stage.scene, &settings)?);
     }
-    let frame = |shadows_on| stage.frame(&stage.shots[0].view, shadows_on, false);
+    let frame = |shadows_on| stage.frame(&stage.shots[0], &stage.shots[0].view, shadows_on, false);
     let outputs = Outputs { picture: true, ..Outputs::default() };
     let timed = |renderer: &mut Renderer, shadows_on| -> Result<(f64, FrameStats)> {
         let begin = Instant::now();

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use umbrage::{DirectionalLight, Frustum, View};
+use umbrage::{DirectionalLight, Frustum, SunFade, View};
 use umbrage_render::{Gpu, GpuOptions, Samples};
 use umbrage_scene::procedural::World;
 
@@ -111,10 +111,17 @@ fn open(args: &BenchArgs, scene: &str) -> Result<Stage> {
 fn crowd_stage(args: &BenchArgs, objects: u32) -> Result<Stage> {
     let (scene, eye, target) = crowd(objects)?;
     let aspect = f64::from(args.size[0]) / f64::from(args.size[1]);
-    let view = View::look_at_upright(eye, target, Frustum::perspective(60f64.to_radians(), aspect, 1.0, 800.0)?)?;
     let sun = DirectionalLight::new(umbrage_scene::invented_sun())?;
+    let view = View::look_at_upright(eye, target, Frustum::perspective(60f64.to_radians(), aspect, 1.0, 800.0)?)?;
     let light = NamedLight { name: "invented".into(), lamp: sun.into() };
-    let shots = vec![Shot { frame: None, camera: "crowd".into(), view, beside: Vec::new() }];
+    let shot = Shot {
+        frame: None,
+        camera: "crowd".into(),
+        view,
+        beside: Vec::new(),
+        light: sun.into(),
+        shown: Some(SunFade { from: sun, to: sun, weight: 1.0 }),
+    };
     let pose = scene.pose(0.0)?;
-    Ok(Stage::new(scene, pose, vec![light], shots, Vec::new()))
+    Ok(Stage::new(scene, pose, vec![light], vec![shot], Vec::new()))
 }

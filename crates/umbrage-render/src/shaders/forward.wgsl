@@ -124,7 +124,7 @@ fn shaded(in: Surface, front: bool, base: vec4f) -> vec3f {
         let to_light = towards(lamp, in.position);
         let shadow = umbrage_shadow_of_at_pixel(i, in.position, lookup_normal(geometric, to_light), in.clip.xy);
         let facing = max(dot(smooth_normal, to_light), 0.0) * falloff(lamp, in.position);
-        light += SUN * lamp.color * facing * shadow.visibility;
+        light += SUN * lamp.color * facing * shadow.light;
         tint = select(tint, shadow.tint, i == 0u);
     }
     // Brighter on the sun's side of the sky, so that corners can be told apart in the shade.
