@@ -88,6 +88,12 @@ pub fn blend(args: &ShadowArgs, map_sizes: &[u32]) -> Result<(f64, Option<String
     let alone = storage == umbrage_wgpu::Storage::Reused
         && map_sizes.len() > 1
         && args.transition != crate::args::Transition::Hard;
+    if storage == umbrage_wgpu::Storage::Reused && args.selection == crate::args::Selection::Map {
+        return Err(Failure::input(
+            "--selection map and --storage reused (--generation multipass) exclude each other: there is one map at a time and none to \
+             choose from; use --selection depth, or another storage",
+        ));
+    }
     match args.blend {
         Some(blend) if blend > 0.0 && alone => Err(Failure::input(format!(
             "--blend {blend} and --storage reused (--generation multipass) exclude each other: there is one map at a time and none to \

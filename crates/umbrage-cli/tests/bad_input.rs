@@ -157,6 +157,7 @@ fn shadow_options_that_say_nonsense() {
         ("--generation per-split --storage reused", &["--generation per-split", "--storage reused"]),
         ("--generation multipass --blend 0.1", &["--blend 0.1", "--generation multipass", "--storage reused"]),
         ("--storage reused --blend 0.2 --transition dither", &["--blend 0.2", "--storage reused"]),
+        ("--generation multipass --selection map", &["--selection map", "--generation multipass", "--storage reused"]),
         ("--storage cube --splits 7", &["--storage cube", "--map-size", "7 splits"]),
         ("--storage cube --map-size 512,256", &["--storage cube", "--map-size", "512, 256"]),
         ("--generation fast", &["--generation", "multipass", "per-split", "layered", "instanced", "mixed", "auto"]),

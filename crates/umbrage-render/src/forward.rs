@@ -3,13 +3,14 @@
 use std::borrow::Cow;
 
 use glam::{DVec3, Vec3};
-use umbrage::{DirectionalLight, Projection, View};
+use umbrage::{Light, Projection, View};
 use umbrage_scene::AlphaMode;
 use umbrage_wgpu::{ShadowMaps, Slice, Storage};
 
 use crate::draw_list::{Drawable, Drawn, Run, vertex_layouts};
+use crate::lamps::{Lamp, LampUniform, MOST_LAMPS};
 use crate::materials::{GpuMaterial, Materials};
-use crate::{Gpu, shaders};
+use crate::{Gpu, Result, shaders};
 
 /// What the picture is drawn in before it is resolved; the samples of a pixel share one shading.
 pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -66,18 +67,28 @@ pub(crate) struct FrameUniform {
     pub eye: [f32; 3],
     pub is_orthographic: f32,
     pub forward: [f32; 3],
+    pub lamp_count: u32,
+    pub to_sun: [f32; 3],
+    pub daylight: f32,
+    pub ray_center: [f32; 3],
     pub near: f32,
-    pub to_light: [f32; 3],
+    pub ray_right: [f32; 3],
     pub far: f32,
-    pub ray_center: PaddedVec3,
-    pub ray_right: PaddedVec3,
     pub ray_up: PaddedVec3,
+    pub lamps: [LampUniform; MOST_LAMPS],
 }
+
+/// How bright the sky is without a sun: enough to tell corners apart where no lamp shines.
+const NIGHT: f32 = 0.2;
 
 impl FrameUniform {
     /// `slice` is the part of the view that is drawn, if not all of it is.
-    pub fn new(view: &View, sun: &DirectionalLight, origin: DVec3, slice: Option<&Slice>) -> Self {
+    pub fn new(view: &View, lamps: &[Lamp], origin: DVec3, slice: Option<&Slice>) -> Result<Self> {
         let clip = view.clip_from_relative(view.eye());
+        let sun = lamps.iter().find_map(|lamp| match lamp.light {
+            Light::Directional(sun) => Some(sun.direction()),
+            Light::Spot(_) | Light::Point(_) => None,
+        });
         let frustum = view.frustum();
         let axes = view.world_from_view_rotation();
         let (center, half) = match frustum.projection {
@@ -89,18 +100,21 @@ impl FrameUniform {
             Projection::Orthographic => (view.forward(), [0.0; 2]),
         };
         let eye: Vec3 = (view.eye() - origin).as_vec3();
-        Self {
+        Ok(Self {
             clip_from_eye: slice.map_or(clip, |slice| slice.clip_from(clip)).as_mat4().to_cols_array_2d(),
             eye: eye.to_array(),
             is_orthographic: f32::from(u8::from(frustum.projection == Projection::Orthographic)),
             forward: view.forward().as_vec3().to_array(),
+            lamp_count: lamps.len() as u32,
+            to_sun: (-sun.unwrap_or(DVec3::ZERO)).as_vec3().to_array(),
+            daylight: if sun.is_some() { 1.0 } else { NIGHT },
+            ray_center: center.as_vec3().to_array(),
             near: frustum.near as f32,
-            to_light: (-sun.direction()).as_vec3().to_array(),
+            ray_right: (axes.x_axis * half[0]).as_vec3().to_array(),
             far: frustum.far as f32,
-            ray_center: center.into(),
-            ray_right: (axes.x_axis * half[0]).into(),
             ray_up: (axes.y_axis * half[1]).into(),
-        }
+            lamps: LampUniform::all(lamps, origin)?,
+        })
     }
 }
 

@@ -16,7 +16,8 @@ use crate::{Gpu, Result};
 /// A frame that is planned and uploaded, ready to be recorded.
 pub(crate) struct Prepared {
     pub origin: DVec3,
-    pub plan: ShadowPlan,
+    /// One for each light.
+    pub plans: Vec<ShadowPlan>,
     pub plan_ms: f64,
     /// What each pass over the maps draws; none where shadows are off.
     pub caster_runs: Vec<Vec<Run>>,
@@ -66,8 +67,11 @@ impl Renderer {
         let mask = kept_mask.as_ref().filter(|_| outputs.mask);
         let picture = kept_picture.as_ref().filter(|_| outputs.picture);
         if prepared.slices.is_empty() {
-            for pass in 0..prepared.caster_runs.len() {
-                self.record_map(&mut encoder, pass, prepared, outputs, &mut recorded)?;
+            self.draw_maps(&mut encoder, 0..prepared.caster_runs.len(), prepared, &mut recorded);
+            if outputs.maps && !prepared.caster_runs.is_empty() {
+                for split in 0..prepared.plans[0].splits.len() {
+                    recorded.maps.push(self.capture(&mut encoder, split)?);
+                }
             }
             encoder = clock.after_maps(encoder)?;
             let bindings = Bindings { frame: self.forward.bind_group(0), maps: self.maps.receiver_bind_group() };
@@ -96,52 +100,45 @@ impl Renderer {
         Ok((recorded, encoder))
     }
 
-    /// Records passes over the maps, and nothing else.
+    /// Records passes over the maps, but for maps of several lights or faces in which there is no caster: those are not read.
     pub(crate) fn draw_maps(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         passes: std::ops::Range<usize>,
         prepared: &Prepared,
-    ) -> Result<()> {
-        let mut recorded = Recorded::default();
-        passes
-            .into_iter()
-            .try_for_each(|pass| self.record_map(encoder, pass, prepared, Outputs::default(), &mut recorded))
+        recorded: &mut Recorded,
+    ) {
+        let all = self.maps.map_count() == self.maps.splits();
+        for pass in passes.filter(|&pass| all || !prepared.caster_runs[pass].is_empty()) {
+            self.record_map(encoder, pass, prepared, recorded);
+        }
     }
 
-    /// Records one pass over the maps, and the maps' way back if they are wanted.
+    /// Records one pass over the maps.
     fn record_map(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         index: usize,
         prepared: &Prepared,
-        outputs: Outputs,
         recorded: &mut Recorded,
-    ) -> Result<()> {
-        let map_pass = &self.maps.passes()[index];
-        let slot = self.timer.next(map_pass.views());
+    ) {
+        let slot = self.timer.next(self.maps.passes()[index].views());
         let mut pass = self.maps.begin_pass(encoder, index, self.timer.timestamp_writes(slot));
         let runs = &prepared.caster_runs[index];
         let drawn = self
             .timer
             .counted(&mut pass, slot, |pass| self.casters.draw(pass, &self.maps, index, &self.drawable(), runs));
-        drop(pass);
         recorded.map_passes.push((index, drawn, slot.pass as usize));
-        if !outputs.maps {
-            return Ok(());
-        }
-        for split in map_pass.splits() {
-            if recorded.maps.iter().any(|map| map.split == split) {
-                continue;
-            }
-            let texture = self.maps.map_texture(split);
-            // Depth is copied in whole layers only; a smaller map is cut out of its layer afterwards.
-            let texels = [texture.width(), texture.height()];
-            let (layer, corner) = self.maps.map_place(split);
-            let capture = Capture::record(&self.gpu, encoder, texture, layer, texels)?;
-            recorded.maps.push(MapCapture { split, row: texels[0], corner, capture });
-        }
-        Ok(())
+    }
+
+    /// Records a map's way back.
+    fn capture(&self, encoder: &mut wgpu::CommandEncoder, split: usize) -> Result<MapCapture> {
+        let texture = self.maps.map_texture(split);
+        // Depth is copied in whole layers only; a smaller map is cut out of its layer afterwards.
+        let texels = [texture.width(), texture.height()];
+        let (layer, corner) = self.maps.map_place(split);
+        let capture = Capture::record(&self.gpu, encoder, texture, layer, texels)?;
+        Ok(MapCapture { split, row: texels[0], corner, capture })
     }
 
     /// Multipass: each slice's map, then what of the view lies in that slice, front to back. What is translucent comes afterwards, back to
@@ -158,7 +155,10 @@ impl Renderer {
         let slices = &prepared.slices;
         let translucent = picture.is_some() && slices.iter().any(|slice| !slice.translucent.is_empty());
         for (i, part) in slices.iter().enumerate() {
-            self.record_map(&mut encoder, part.slice.split, prepared, outputs, recorded)?;
+            self.record_map(&mut encoder, part.slice.split, prepared, recorded);
+            if outputs.maps {
+                recorded.maps.push(self.capture(&mut encoder, part.slice.split)?);
+            }
             encoder = clock.after_maps(encoder)?;
             let (first, last) = (i == 0, i + 1 == slices.len());
             if let Some(target) = mask {
@@ -191,7 +191,7 @@ impl Renderer {
         for (i, part) in slices.iter().enumerate().rev() {
             // The farthest slice's map is still there.
             if i + 1 < slices.len() {
-                self.record_map(&mut encoder, part.slice.split, prepared, Outputs::default(), recorded)?;
+                self.record_map(&mut encoder, part.slice.split, prepared, recorded);
                 encoder = clock.after_maps(encoder)?;
             }
             let slot = self.timer.next(1);

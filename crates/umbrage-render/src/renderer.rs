@@ -1,24 +1,26 @@
-//! The demonstration renderer: a scene, a view and a sun in; a picture, a mask, maps and numbers out.
+//! The demonstration renderer: a scene, a view and lights in; a picture, a mask, maps and numbers out.
 
 use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
-use umbrage::{Aabb, DirectionalLight, Planner, ShadowPlan, ShadowSettings, View};
+use umbrage::{Aabb, Planner, Selection, ShadowPlan, ShadowSettings, SunFade, View};
 use umbrage_scene::{AlphaMode, Pose, Scene};
 use umbrage_wgpu::{
-    DepthFormat, Filter, FrameOptions, Generation, ShadowMaps, ShadowMapsOptions, Slice, Softness, Storage, Transition,
+    DepthFormat, Filter, FrameOptions, Generation, LightSlot, MapPass, ShadowMaps, ShadowMapsOptions, Slice, Softness,
+    Storage, Transition,
 };
 use web_time::Instant;
 
 use crate::capture::Capture;
 use crate::casters::Casters;
-use crate::draw_list::{Drawable, Instances, once};
+use crate::draw_list::{Drawable, Instances, Run, once};
 use crate::forward::{Forward, FrameUniform, MaskTarget, PictureTarget, Samples};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry, check_object};
+use crate::lamps::Lamp;
 use crate::look::Look;
 use crate::materials::Materials;
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint, Responder};
 use crate::record::{Clock, MapCapture, Prepared, Recorded, SliceRuns, new_encoder};
-use crate::stats::{FrameStats, SplitStats};
+use crate::stats::{FrameStats, LightStats, SplitStats};
 use crate::timing::{PassCounts, Timer};
 use crate::{Error, Gpu, Result, cull, maps};
 
@@ -50,6 +52,8 @@ pub struct RenderSettings {
     pub storage: Storage,
     /// How maps are drawn.
     pub generation: Generation,
+    /// What the lights of a frame may be, the first one first.
+    pub lights: Vec<LightSlot>,
 }
 
 /// What varies from frame to frame.
@@ -59,8 +63,10 @@ pub struct Frame<'a> {
     pub pose: &'a Pose,
     /// The eye.
     pub view: &'a View,
-    /// The light.
-    pub sun: DirectionalLight,
+    /// The first light: the one that masks and probes are of.
+    pub light: Lamp,
+    /// More lights, for the picture.
+    pub more_lights: &'a [Lamp],
     /// Whether anything throws shadows; if not, whatever faces the light is lit.
     pub shadows_on: bool,
     /// Whether the picture shows each split in its own colour.
@@ -100,9 +106,9 @@ pub struct Renderer {
     softness: Softness,
     transition: Transition,
     look: Look,
-    pub(crate) planner: Planner,
-    /// While a step of the sun is faded: what plans for the sun that is faded to.
-    pub(crate) next_planner: Option<Planner>,
+    pub(crate) planners: Planners,
+    /// The same for each further view.
+    more_views: Vec<Planners>,
     pub(crate) maps: ShadowMaps,
     scene: Geometry,
     scene_meshes: SceneMeshes,
@@ -116,6 +122,26 @@ pub struct Renderer {
     pub(crate) picture: Option<PictureTarget>,
     pub(crate) mask: Option<MaskTarget>,
     notes: Vec<String>,
+}
+
+/// What plans one view's maps.
+pub(crate) struct Planners {
+    /// One for each light.
+    pub now: Vec<Planner>,
+    /// While a step of the sun is faded: what plans for the sun that is faded to.
+    pub next: Option<Vec<Planner>>,
+}
+
+impl Planners {
+    fn new(settings: &ShadowSettings, lights: usize) -> Result<Self> {
+        let now = (0..lights).map(|_| Planner::new(settings.clone())).collect::<Result<_, _>>()?;
+        Ok(Self { now, next: None })
+    }
+
+    /// Others of the same settings, which remember nothing.
+    pub fn afresh(&self) -> Result<Self> {
+        Self::new(self.now[0].settings(), self.now.len())
+    }
 }
 
 impl Renderer {
@@ -149,6 +175,7 @@ impl Renderer {
                     filter: settings.filter,
                     storage: settings.storage,
                     generation: settings.generation,
+                    lights: settings.lights.clone(),
                     ..ShadowMapsOptions::default()
                 },
             )?;
@@ -161,11 +188,19 @@ impl Renderer {
                 }
                 .into());
             }
+            if maps.options().storage == Storage::Reused && shadows.selection == Selection::Map {
+                return Err(umbrage_wgpu::Error::ConflictingOptions {
+                    first: "storage reused".to_owned(),
+                    second: "selection map".to_owned(),
+                    reason: "there is one map at a time and none to choose from; use selection depth or storage array",
+                }
+                .into());
+            }
             // Floats hold the depth of a whole world; 16 bits want the shorter range that casters flattened onto the near plane
             // allow, and pay for it with maps that step along the light.
             shadows.depth_clamp = maps.depth_clamp() && settings.depth_format == DepthFormat::D16Unorm;
             let materials = Materials::new(gpu, scene)?;
-            let timer = Timer::new(gpu);
+            let timer = Timer::new(gpu, maps.map_count());
             let mut notes = maps.notes().to_vec();
             if settings.depth_format == DepthFormat::D16Unorm && !maps.depth_clamp() {
                 notes.push(
@@ -181,8 +216,8 @@ impl Renderer {
             Ok(Self {
                 size: settings.size,
                 depth_format: settings.depth_format,
-                planner: Planner::new(shadows)?,
-                next_planner: None,
+                planners: Planners::new(&shadows, settings.lights.len())?,
+                more_views: Vec::new(),
                 scene: Geometry::of_scene(gpu, scene)?,
                 scene_meshes: SceneMeshes::of_scene(scene),
                 skinned: SkinnedGeometry::empty(gpu)?,
@@ -208,7 +243,7 @@ impl Renderer {
     /// The settings that shadows are planned with, including what the filter, the device and the size have decided.
     #[must_use]
     pub fn shadow_settings(&self) -> &ShadowSettings {
-        self.planner.settings()
+        self.planners.now[0].settings()
     }
 
     /// Forgets what earlier frames have left behind in the planner (sizes that stabilisation holds), as if nothing had been
@@ -217,8 +252,8 @@ impl Renderer {
     /// # Errors
     /// Never in practice: the settings were accepted before.
     pub fn restart(&mut self) -> Result<()> {
-        self.planner = Planner::new(self.planner.settings().clone())?;
-        self.next_planner = None;
+        self.more_views.clear();
+        self.planners = self.planners.afresh()?;
         Ok(())
     }
 
@@ -238,13 +273,49 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Plan`] if camera, range or bounds are wrong, [`Error::Scene`] if the pose is not one of this scene,
+    /// [`Error::LampSlots`], [`Error::LampCount`] or [`Error::Shadows`] if the lights are not those that the renderer was made for,
     /// [`Error::OutOfMemory`] or [`Error::Device`] if the device fails.
     pub fn render(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
         gpu.guarded("drawing a frame", || self.render_unguarded(frame, outputs))
     }
 
-    /// Visibility at given points. A point that the view shows within the shadowed range gets what a pixel there would
+    /// Draws several views, for a split screen: each as if it were drawn alone, under the suns of `fade` if there is one. The maps are
+    /// one view's after the other's; what stabilisation holds is kept for each, so a view keeps its place in the list from frame to
+    /// frame.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn render_views(
+        &mut self,
+        frames: &[Frame<'_>],
+        fade: Option<&SunFade>,
+        outputs: Outputs,
+    ) -> Result<Vec<Rendered>> {
+        let mut views = Vec::with_capacity(frames.len());
+        for (view, frame) in frames.iter().enumerate() {
+            if view > self.more_views.len() {
+                self.more_views.push(self.planners.afresh()?);
+            }
+            self.swap_planners(view);
+            let rendered = match fade {
+                Some(fade) => self.render_faded(frame, fade, outputs),
+                None => self.render(frame, outputs),
+            };
+            self.swap_planners(view);
+            views.push(rendered?);
+        }
+        Ok(views)
+    }
+
+    /// Brings a further view's planners to the fore, or back.
+    fn swap_planners(&mut self, view: usize) {
+        if let Some(other) = view.checked_sub(1) {
+            std::mem::swap(&mut self.planners, &mut self.more_views[other]);
+        }
+    }
+
+    /// Visibility of the first light at given points. A point that the view shows within the shadowed range gets what a pixel there would
     /// get; any other is answered by the first split whose map covers it, or is lit where none does.
     ///
     /// # Errors
@@ -305,9 +376,17 @@ impl Renderer {
             plan_ms: prepared.plan_ms,
             shadow_ms,
             frame_ms,
-            splits: self.split_stats(frame, &prepared.plan, &recorded),
+            splits: self.split_stats(0, frame, &prepared.plans[0], &recorded),
             shadow_draws: recorded.map_passes.iter().map(|(_, drawn, _)| drawn.draws).sum(),
             shadow_triangles: recorded.map_passes.iter().map(|(_, drawn, _)| drawn.triangles).sum(),
+            more_lights: prepared.plans[1..]
+                .iter()
+                .enumerate()
+                .map(|(i, plan)| LightStats {
+                    splits: self.split_stats(i + 1, frame, plan, &recorded),
+                    plan: plan.clone(),
+                })
+                .collect(),
             objects_in_view: prepared.objects_in_view,
             view_draws: recorded.view.draws,
             view_triangles: recorded.view.triangles,
@@ -317,7 +396,7 @@ impl Renderer {
             generation: self.maps.options().generation.name(),
             storage: self.maps.options().storage.name(),
             notes: self.notes.clone(),
-            plan: prepared.plan,
+            plan: prepared.plans[0].clone(),
         };
         let [width, height] = self.size;
         const SIZED: &str = "a capture has as many bytes as its picture";
@@ -346,7 +425,7 @@ impl Renderer {
             let sliced = !prepared.slices.is_empty();
             let passes = if sliced { round..round + 1 } else { 0..prepared.caster_runs.len() };
             let mut encoder = new_encoder(&gpu);
-            self.draw_maps(&mut encoder, passes, &prepared)?;
+            self.draw_maps(&mut encoder, passes, &prepared, &mut Recorded::default());
             gpu.queue.submit([encoder.finish()]);
             let maps = if sliced { self.maps.slice_bind_group(round) } else { self.maps.receiver_bind_group() };
             for (batch, points) in points.chunks(probe::BATCH).enumerate() {
@@ -375,18 +454,18 @@ impl Renderer {
     ) -> Result<Vec<ProbeAnswer>> {
         let gpu = &self.gpu;
         let asked: Vec<(ProbePoint, Responder)> =
-            points.iter().map(|&point| (point, self.responder(frame, &prepared.plan, point.position))).collect();
+            points.iter().map(|&point| (point, self.responder(frame, &prepared.plans[0], point.position))).collect();
         let mut encoder = new_encoder(gpu);
         let pending = self.probe.record(gpu, &mut encoder, maps, prepared.origin, &asked)?;
         gpu.queue.submit([encoder.finish()]);
         let mut replies = pending.read(gpu)?;
         for (reply, (point, responder)) in replies.iter_mut().zip(&asked) {
-            let faces_light = point.normal.dot(frame.sun.direction()) < 0.0;
+            let faces_light = point.normal.dot(frame.light.light.to_light(point.position)) > 0.0;
             let unshaded = f32::from(u8::from(faces_light));
             match *responder {
                 Responder::Nobody => *reply = ProbeAnswer { visibility: unshaded, split: -1 },
                 // No caster reaches this split: whatever its map looks like, it is lit.
-                Responder::Split(split) if prepared.plan.casters(split).is_empty() || !frame.shadows_on => {
+                Responder::Split(split) if prepared.plans[0].casters(split).is_empty() || !frame.shadows_on => {
                     *reply = ProbeAnswer { visibility: unshaded, split: split as i32 };
                 }
                 Responder::Split(_) | Responder::View => {}
@@ -398,11 +477,14 @@ impl Renderer {
     /// Who answers for a point.
     fn responder(&self, frame: &Frame<'_>, plan: &ShadowPlan, point: DVec3) -> Responder {
         let depth = frame.view.view_depth(point);
+        if !frame.light.light.reaches(point) {
+            return Responder::Nobody;
+        }
         let in_range = plan.planes.last().is_some_and(|&far| depth < far);
         if in_range && cull::may_be_seen(frame.view, &Aabb::new(point, point)) {
             return Responder::View;
         }
-        self.planner.covering_split(point).map_or(Responder::Nobody, Responder::Split)
+        self.planners.now[0].covering_split(point).map_or(Responder::Nobody, Responder::Split)
     }
 
     /// Plans, uploads what moves, and sorts what is to be drawn.
@@ -418,9 +500,15 @@ impl Renderer {
         let casters: Vec<Aabb> = caster_objects.iter().map(|&i| pose.objects[i].bounds).collect();
         let receivers: Vec<Aabb> = pose.objects.iter().map(|object| object.bounds).collect();
         let begun = Instant::now();
-        let plan = self.planner.plan(view, &frame.sun, &casters, &receivers)?;
+        let lamps: Vec<Lamp> = [frame.light].into_iter().chain(frame.more_lights.iter().copied()).collect();
+        let planners = &mut self.planners.now;
+        if lamps.len() != planners.len() {
+            return Err(Error::LampSlots { frame: lamps.len(), renderer: planners.len() });
+        }
+        let plans = planners.iter_mut().zip(&lamps);
+        let plans = plans.map(|(planner, lamp)| Ok(planner.plan(view, &lamp.light, &casters, &receivers)?.clone()));
+        let plans = plans.collect::<Result<Vec<ShadowPlan>>>()?;
         let plan_ms = begun.elapsed().as_secs_f64() * 1e3;
-        let plan = plan.clone();
         let options = FrameOptions {
             origin,
             enabled: frame.shadows_on,
@@ -431,13 +519,13 @@ impl Renderer {
             softness: self.softness,
             transition: self.transition,
         };
-        self.maps.prepare(&self.gpu.queue, &plan, &options)?;
+        self.maps.prepare_lights(&self.gpu.queue, &plans.iter().collect::<Vec<_>>(), &options)?;
         self.skinned.update(&self.gpu, &self.scene_meshes, pose)?;
-        self.forward.prepare(&self.gpu, 0, &FrameUniform::new(view, &frame.sun, origin, None));
+        self.forward.prepare(&self.gpu, 0, &FrameUniform::new(view, &lamps, origin, None)?);
         let sliced = frame.shadows_on && self.maps.options().storage == Storage::Reused;
-        let slices = if sliced { Slice::all(&plan, view) } else { Vec::new() };
+        let slices = if sliced { Slice::all(&plans[0], view) } else { Vec::new() };
         for slice in &slices {
-            let uniform = FrameUniform::new(view, &frame.sun, origin, Some(slice));
+            let uniform = FrameUniform::new(view, &lamps, origin, Some(slice))?;
             self.forward.prepare(&self.gpu, 1 + slice.split, &uniform);
         }
         self.timer.restart();
@@ -450,22 +538,15 @@ impl Renderer {
         let visible: Vec<usize> = near_to_far.into_iter().map(|(_, i)| i).collect();
 
         self.instances.clear();
-        let passes = if frame.shadows_on { self.maps.passes() } else { &[] };
-        let caster_runs = passes
-            .iter()
-            .map(|pass| {
-                let copies = pass.casters(&plan).map(|(caster, codes)| (caster_objects[caster as usize], codes));
-                self.instances.grouped(pose, origin, pass.leads(), copies)
-            })
-            .collect();
+        let caster_runs = self.caster_runs(frame, origin, &caster_objects, &plans);
         let solid = self.instances.grouped(pose, origin, false, visible.iter().copied().map(once));
         let far_to_near = self.with_translucent_parts(pose, visible.iter().rev().copied());
         let translucent = self.instances.ordered(pose, origin, far_to_near.iter().copied());
-        let last = plan.splits.len() - 1;
+        let last = plans[0].splits.len() - 1;
         let slices = slices
             .into_iter()
             .map(|slice| {
-                let split = &plan.splits[slice.split];
+                let split = &plans[0].splits[slice.split];
                 // What is nearer than the first split or farther than the last one is drawn with them.
                 let near = if slice.split == 0 { f64::NEG_INFINITY } else { split.near };
                 let far = if slice.split == last { f64::INFINITY } else { split.far };
@@ -482,7 +563,7 @@ impl Renderer {
             })
             .collect();
         self.instances.upload(&self.gpu)?;
-        Ok(Prepared { origin, plan, plan_ms, caster_runs, solid, translucent, slices, objects_in_view: visible.len() })
+        Ok(Prepared { origin, plans, plan_ms, caster_runs, solid, translucent, slices, objects_in_view: visible.len() })
     }
 
     fn with_translucent_parts(&self, pose: &Pose, objects: impl Iterator<Item = usize>) -> Vec<usize> {
@@ -500,30 +581,78 @@ impl Renderer {
         }
     }
 
+    /// What each pass over the maps draws; nothing where shadows are off.
+    fn caster_runs(
+        &mut self,
+        frame: &Frame<'_>,
+        origin: DVec3,
+        objects: &[usize],
+        plans: &[ShadowPlan],
+    ) -> Vec<Vec<Run>> {
+        if !frame.shadows_on {
+            return Vec::new();
+        }
+        let pose = frame.pose;
+        let [plan] = plans else {
+            let mut runs = vec![Vec::new(); self.maps.map_count()];
+            for (light, plan) in plans.iter().enumerate() {
+                self.light_runs(frame, origin, objects, light, plan, &mut runs);
+            }
+            return runs;
+        };
+        if self.maps.map_count() > self.maps.splits() {
+            let mut runs = vec![Vec::new(); self.maps.map_count()];
+            self.light_runs(frame, origin, objects, 0, plan, &mut runs);
+            return runs;
+        }
+        let grouped = |pass: &MapPass| {
+            let copies = pass.casters(plan).map(|(caster, codes)| (objects[caster as usize], codes));
+            self.instances.grouped(pose, origin, pass.leads(), copies)
+        };
+        self.maps.passes().iter().map(grouped).collect()
+    }
+
+    /// What one of several lights draws into its maps.
+    fn light_runs(
+        &mut self,
+        frame: &Frame<'_>,
+        origin: DVec3,
+        objects: &[usize],
+        light: usize,
+        plan: &ShadowPlan,
+        runs: &mut [Vec<Run>],
+    ) {
+        for (i, runs) in runs[self.maps.first_map(light)..][..plan.splits.len()].iter_mut().enumerate() {
+            let casters = plan.casters(i).iter().map(|&caster| once(objects[caster as usize]));
+            *runs = self.instances.grouped(frame.pose, origin, false, casters);
+        }
+    }
+
     /// The splits' maps as pictures, nearest first.
     fn map_pictures(&self, mut maps: Vec<MapCapture>) -> Result<Vec<GrayImage>> {
         maps.sort_by_key(|map| map.split);
         let sizes = &self.maps.options().map_sizes;
         let picture = |map: MapCapture| {
             let depths = maps::depths_of(&map.capture.read(&self.gpu)?, self.depth_format);
-            Ok(maps::picture_of(&depths, map.row, map.corner, sizes[map.split]))
+            Ok(maps::picture_of(&depths, map.row, map.corner, sizes[map.split % sizes.len()]))
         };
         maps.into_iter().map(picture).collect()
     }
 
-    fn split_stats(&self, frame: &Frame<'_>, plan: &ShadowPlan, recorded: &Recorded) -> Vec<SplitStats> {
+    fn split_stats(&self, light: usize, frame: &Frame<'_>, plan: &ShadowPlan, recorded: &Recorded) -> Vec<SplitStats> {
+        let first = self.maps.first_map(light);
         let objects: Vec<&umbrage_scene::Object> = frame.pose.objects.iter().filter(|object| object.casts).collect();
         let drawable = self.drawable();
         let triangles =
             |caster: &u32| drawable.triangles(objects[*caster as usize], |material| material.alpha != AlphaMode::Blend);
         let stats = |(i, split): (usize, &umbrage::Split)| {
-            let draws =
-                recorded.map_passes.iter().filter(|&&(pass, ..)| self.maps.passes()[pass].splits().contains(&i));
+            let draws_it = |pass: usize| self.maps.passes()[pass].splits().contains(&(first + i));
+            let draws = recorded.map_passes.iter().filter(|&&(pass, ..)| draws_it(pass));
             SplitStats {
                 near: split.near,
                 far: split.far,
                 texel_m: split.texel_m.max_element(),
-                warped: split.warp.is_some(),
+                warped: split.warp.is_some() && split.light_position.is_none(),
                 casters: split.casters.len(),
                 draws: draws.map(|(_, drawn, _)| drawn.draws).sum(),
                 triangles: if frame.shadows_on { plan.casters(i).iter().map(triangles).sum() } else { 0 },

@@ -3,9 +3,11 @@
 use crate::capture::read_buffer;
 use crate::{Gpu, Result};
 
-/// Passes of a frame at most: slice by slice, there are for each a map, the mask, the picture, and once more the map and the picture for what
-/// is translucent; and the mask and the picture of a frame in one piece.
-const MOST_PASSES: u32 = 5 * umbrage::MAX_SPLITS as u32 + 2;
+/// Passes of a frame beside those of its maps: the mask and the picture.
+const VIEW_PASSES: u32 = 2;
+/// Passes for each map at most: drawn slice by slice, a map goes with the mask and the picture, and once more with the picture for what is
+/// translucent.
+const PASSES_OF_A_MAP: u32 = 5;
 /// Bytes between the answers of two passes: where a resolved query may be put.
 const STRIDE: u64 = wgpu::QUERY_RESOLVE_BUFFER_ALIGNMENT;
 
@@ -65,15 +67,16 @@ pub(crate) struct Slot {
 }
 
 impl Timer {
-    pub fn new(gpu: &Gpu) -> Self {
+    /// For frames of up to `maps` maps.
+    pub fn new(gpu: &Gpu, maps: usize) -> Self {
+        let most = PASSES_OF_A_MAP * maps as u32 + VIEW_PASSES;
         let has = |feature| gpu.device.features().contains(feature);
         let statistics = wgpu::QueryType::PipelineStatistics(STATISTICS);
         Self {
-            timestamps: has(wgpu::Features::TIMESTAMP_QUERY).then(|| {
-                Queries::new(gpu, wgpu::QueryType::Timestamp, 2 * MOST_PASSES, u64::from(2 * MOST_PASSES) * 8)
-            }),
+            timestamps: has(wgpu::Features::TIMESTAMP_QUERY)
+                .then(|| Queries::new(gpu, wgpu::QueryType::Timestamp, 2 * most, u64::from(2 * most) * 8)),
             statistics: has(wgpu::Features::PIPELINE_STATISTICS_QUERY)
-                .then(|| Queries::new(gpu, statistics, MOST_PASSES, u64::from(MOST_PASSES) * STRIDE)),
+                .then(|| Queries::new(gpu, statistics, most, u64::from(most) * STRIDE)),
             used: 0,
             slots: Vec::new(),
         }

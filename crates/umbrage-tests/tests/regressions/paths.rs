@@ -1,7 +1,7 @@
 //! Every pair of generation and storage draws every world alike, and whatever a device lacks, everything renders.
 
 use image::GrayAlphaImage;
-use umbrage_render::{Frame, Gpu, GpuOptions, Outputs, ProbePoint, Renderer};
+use umbrage_render::{Gpu, GpuOptions, Outputs, ProbePoint, Renderer};
 use umbrage_scene::procedural::World;
 use umbrage_tests::stage::{Stage, Technique, gpu};
 use umbrage_wgpu::{DepthFormat, Filter, Generation, Storage};
@@ -148,8 +148,7 @@ fn whatever_a_device_lacks_everything_renders() {
             technique.settings.shadows.range = Some(stage.world.near_far());
             let mut renderer = Renderer::new(&gpu, &stage.scene, &technique.settings).expect("a renderer");
             let outputs = Outputs { mask: true, picture: true, maps: true };
-            let frame = Frame { pose: &stage.pose, view: &view, sun: stage.sun, shadows_on: true, tint: false };
-            let rendered = renderer.render(&frame, outputs).expect("a frame");
+            let rendered = renderer.render(&stage.frame(&view, false), outputs).expect("a frame");
             let stats = rendered.stats;
             assert_eq!(stats.splits.len(), rendered.maps.len());
             let taken = stats.generation == generation.name();

@@ -1,6 +1,6 @@
 //! Several lights in one texture and one bind group.
 
-use umbrage::ShadowPlan;
+use umbrage::{Selection, ShadowPlan};
 use umbrage_shaders::layout;
 
 use super::ShadowMaps;
@@ -49,7 +49,7 @@ impl ShadowMaps {
     pub fn prepare_lights(&mut self, queue: &wgpu::Queue, plans: &[&ShadowPlan], options: &FrameOptions) -> Result<()> {
         let frames = uniforms::frames(plans, &self.options, &self.places, options)?;
         if self.options.storage == Storage::Reused {
-            self.check_blend(plans, options)?;
+            self.check_alone(plans, options)?;
         }
         self.receivers.write(queue, 0, &frames);
         if self.options.storage == Storage::Reused {
@@ -78,10 +78,17 @@ impl ShadowMaps {
         Ok(())
     }
 
-    /// One map at a time has nothing to blend with.
-    fn check_blend(&self, plans: &[&ShadowPlan], options: &FrameOptions) -> Result<()> {
+    /// One map at a time has nothing to blend with and nothing to choose from.
+    fn check_alone(&self, plans: &[&ShadowPlan], options: &FrameOptions) -> Result<()> {
         let blends = |split: &umbrage::Split| split.blend_begin < split.far;
         let inner = |plan: &ShadowPlan| plan.splits.split_last().is_some_and(|(_, inner)| inner.iter().any(blends));
+        if plans.iter().any(|plan| plan.selection == Selection::Map) {
+            return Err(Error::ConflictingOptions {
+                first: "storage reused".to_owned(),
+                second: "selection map".to_owned(),
+                reason: "there is one map at a time and none to choose from; use umbrage::Selection::Depth or storage array",
+            });
+        }
         if options.transition == Transition::Hard || !plans.iter().any(|plan| inner(plan)) {
             return Ok(());
         }
