@@ -233,6 +233,7 @@ mod tests {
             depth_far: depth_axis.dot(center) + 50.0,
             receiver_depths: (depth_axis.dot(center) - 50.0, depth_axis.dot(center) + 50.0),
             warp: None,
+            light_position: None,
             casters: 0..1,
         }
     }

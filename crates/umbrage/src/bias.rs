@@ -41,7 +41,8 @@ impl Split {
         bias(normal, self.depth_axis, self.u_axis * self.texel_m.x, self.v_axis * self.texel_m.y)
     }
 
-    /// The same for a receiver at a world point, in plain and warped maps: a warped map's texels differ from place to place.
+    /// The same for a receiver at a world point, in any map: the texels of warped maps and of local lights differ from place to
+    /// place.
     /// Depths are metres along the light, whatever the map stores.
     #[must_use]
     pub fn bias_at(&self, point: DVec3, normal: DVec3) -> Bias {
@@ -49,7 +50,7 @@ impl Split {
             return self.bias(normal);
         }
         let [u, v] = self.texel_steps(point);
-        bias(normal, self.depth_axis, u, v)
+        bias(normal, self.travel_at(point), u, v)
     }
 }
 

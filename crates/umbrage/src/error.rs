@@ -62,6 +62,10 @@ impl Error {
         Self::InvalidCamera { field, value, expected }
     }
 
+    pub(crate) fn light(field: &'static str, reason: impl Into<String>) -> Self {
+        Self::InvalidLight { field, reason: reason.into() }
+    }
+
     pub(crate) fn setting(field: &'static str, reason: impl Into<String>) -> Self {
         Self::InvalidSetting { field, reason: reason.into() }
     }

@@ -8,6 +8,7 @@
 //! | view | right-handed, +X right, +Y up, looks down −Z | *view depth* `d = −z`, positive in front |
 //! | camera clip, NDC | x, y in [−1,1], y up | z in [0,1], reversed (1 at near), infinite far allowed |
 //! | light | u right, v down, depth along the light's travel; fixed to the light, never to the camera | metres |
+//! | local light | the same around a spot light's axis or a face of a point light, in the light's post-perspective space: `u/w`, `v/w`, depth `A − B/w` | tangents |
 //! | shadow NDC | x, y in [−1,1], y up | z in [0,1], 0 nearest to the light |
 //! | shadow texture | u right, v **down** | texels, [0, size]² per split |
 //!
@@ -20,6 +21,7 @@ mod bounds;
 mod camera;
 mod error;
 mod light;
+mod local;
 mod plan;
 mod planner;
 mod region;
@@ -34,7 +36,7 @@ pub use bias::{Bias, STEEPEST};
 pub use bounds::Aabb;
 pub use camera::{DepthConvention, Frustum, Projection, View};
 pub use error::{Error, Result};
-pub use light::DirectionalLight;
+pub use light::{DirectionalLight, Light, PointLight, SpotLight};
 pub use plan::{ShadowPlan, Split};
 pub use planner::Planner;
 pub use settings::{Fit, MAX_SPLITS, ShadowSettings, SplitScheme, Stabilize};

@@ -4,6 +4,13 @@ use glam::DVec3;
 
 use crate::{Error, Result};
 
+/// Share of a local light's range within which nothing casts, unless a light is told otherwise: a lamp's own glass.
+const NEAR_SHARE: f64 = 1.0 / 256.0;
+
+/// The widest angle, in radians, between a spot light's axis and the rim of its cone: 85°. Ours: a map of the whole cone then
+/// covers 2 tan 85° = 23 times the distance, and wider is what a point light is for.
+const WIDEST_CONE: f64 = 85.0 * std::f64::consts::PI / 180.0;
+
 /// A sun: light that travels in one direction everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionalLight {
@@ -16,16 +23,7 @@ impl DirectionalLight {
     /// # Errors
     /// [`Error::InvalidLight`] if the vector is zero or not finite.
     pub fn new(direction: DVec3) -> Result<Self> {
-        let length = direction.length();
-        if length == 0.0 || !length.is_finite() {
-            return Err(Error::InvalidLight {
-                field: "direction",
-                reason: format!(
-                    "{direction} has no direction; give the way the light travels as three finite numbers, not all zero"
-                ),
-            });
-        }
-        Ok(Self { direction: direction / length })
+        Ok(Self { direction: unit_direction(direction)? })
     }
 
     /// The way the light travels, a unit vector in the world.
@@ -38,9 +36,270 @@ impl DirectionalLight {
     /// v (down). Together with [`DirectionalLight::direction`] (depth) they are a right-handed frame (u, v, depth).
     #[must_use]
     pub fn map_axes(&self) -> (DVec3, DVec3) {
-        // −Z is "up" for a light that comes straight down, so a map then has north on top.
-        let up = if self.direction.y.abs() > 1.0 - 1e-6 { DVec3::NEG_Z } else { DVec3::Y };
-        let u = self.direction.cross(up).normalize();
-        (u, self.direction.cross(u))
+        map_axes(self.direction)
     }
+}
+
+/// Light from a point into a cone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpotLight {
+    position: DVec3,
+    direction: DVec3,
+    outer_angle: f64,
+    range: f64,
+    near: f64,
+}
+
+impl SpotLight {
+    /// A light at `position` (world, metres) that shines along `direction` (any length) as far as `range` metres, up to
+    /// `outer_angle` radians from its axis: half of the cone's opening.
+    ///
+    /// # Errors
+    /// [`Error::InvalidLight`] naming the parameter: a position or direction that is not finite, no direction, an angle that is not
+    /// in (0, 85°], a range that is not finite and greater than 0.
+    pub fn new(position: DVec3, direction: DVec3, outer_angle: f64, range: f64) -> Result<Self> {
+        if !(outer_angle > 0.0 && outer_angle <= WIDEST_CONE) {
+            return Err(Error::light(
+                "outer_angle",
+                format!(
+                    "{:.3}° from the axis; give more than 0° and at most 85°, or use a point light",
+                    outer_angle.to_degrees()
+                ),
+            ));
+        }
+        let (position, range) = (place(position)?, reach(range)?);
+        Ok(Self { position, direction: unit_direction(direction)?, outer_angle, range, near: range * NEAR_SHARE })
+    }
+
+    /// The same light with another distance, in metres, within which nothing casts (its own lamp). The default is 1/256 of the
+    /// range; a map's precision grows with it.
+    ///
+    /// # Errors
+    /// [`Error::InvalidLight`] unless 0 < `near` < range.
+    pub fn with_near(self, near: f64) -> Result<Self> {
+        Ok(Self { near: distance_within(near, self.range)?, ..self })
+    }
+
+    /// Where it shines from, metres.
+    #[must_use]
+    pub fn position(&self) -> DVec3 {
+        self.position
+    }
+
+    /// Its axis, a unit vector.
+    #[must_use]
+    pub fn direction(&self) -> DVec3 {
+        self.direction
+    }
+
+    /// Radians between the axis and the rim of the cone.
+    #[must_use]
+    pub fn outer_angle(&self) -> f64 {
+        self.outer_angle
+    }
+
+    /// How far it shines, metres.
+    #[must_use]
+    pub fn range(&self) -> f64 {
+        self.range
+    }
+
+    /// Distance along the axis, in metres, within which nothing casts.
+    #[must_use]
+    pub fn near(&self) -> f64 {
+        self.near
+    }
+}
+
+/// Light from a point to all sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointLight {
+    position: DVec3,
+    range: f64,
+    near: f64,
+}
+
+impl PointLight {
+    /// A light at `position` (world, metres) that shines as far as `range` metres.
+    ///
+    /// # Errors
+    /// [`Error::InvalidLight`] naming the parameter: a position that is not finite, a range that is not finite and greater than 0.
+    pub fn new(position: DVec3, range: f64) -> Result<Self> {
+        let (position, range) = (place(position)?, reach(range)?);
+        Ok(Self { position, range, near: range * NEAR_SHARE })
+    }
+
+    /// As [`SpotLight::with_near`], along the axis of the face in question.
+    ///
+    /// # Errors
+    /// [`Error::InvalidLight`] unless 0 < `near` < range.
+    pub fn with_near(self, near: f64) -> Result<Self> {
+        Ok(Self { near: distance_within(near, self.range)?, ..self })
+    }
+
+    /// Where it shines from, metres.
+    #[must_use]
+    pub fn position(&self) -> DVec3 {
+        self.position
+    }
+
+    /// How far it shines, metres.
+    #[must_use]
+    pub fn range(&self) -> f64 {
+        self.range
+    }
+
+    /// Distance along a face's axis, in metres, within which nothing casts.
+    #[must_use]
+    pub fn near(&self) -> f64 {
+        self.near
+    }
+}
+
+/// Any light that throws shadows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Light {
+    /// A sun.
+    Directional(DirectionalLight),
+    /// Light from a point into a cone.
+    Spot(SpotLight),
+    /// Light from a point to all sides.
+    Point(PointLight),
+}
+
+impl Light {
+    /// The axes of a point light's six faces, in the order of its faces: +X, −X, +Y, −Y, +Z, −Z.
+    pub const FACE_AXES: [DVec3; 6] = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
+
+    /// Where it shines from, metres; `None` for a sun.
+    #[must_use]
+    pub fn position(&self) -> Option<DVec3> {
+        match self {
+            Self::Directional(_) => None,
+            Self::Spot(light) => Some(light.position),
+            Self::Point(light) => Some(light.position),
+        }
+    }
+
+    /// How far it shines, metres; infinite for a sun.
+    #[must_use]
+    pub fn range(&self) -> f64 {
+        match self {
+            Self::Directional(_) => f64::INFINITY,
+            Self::Spot(light) => light.range,
+            Self::Point(light) => light.range,
+        }
+    }
+
+    /// How many maps show its surroundings once: 6 for a point light, one for each face of a cube, else 1. A plan has this many times as
+    /// many splits as its settings.
+    #[must_use]
+    pub fn faces(&self) -> usize {
+        match self {
+            Self::Directional(_) | Self::Spot(_) => 1,
+            Self::Point(_) => 6,
+        }
+    }
+
+    /// The unit vector from a world point towards the light. At the very place of a local light it has no direction and is 0.
+    #[must_use]
+    pub fn to_light(&self, point: DVec3) -> DVec3 {
+        match self {
+            Self::Directional(sun) => -sun.direction,
+            Self::Spot(SpotLight { position, .. }) | Self::Point(PointLight { position, .. }) => {
+                (*position - point).normalize_or_zero()
+            }
+        }
+    }
+
+    /// Whether a world point lies within the light's range and cone. Outside nothing is asked of its maps.
+    #[must_use]
+    pub fn reaches(&self, point: DVec3) -> bool {
+        match self {
+            Self::Directional(_) => true,
+            Self::Spot(light) => {
+                let from_light = point - light.position;
+                let distance = from_light.length();
+                distance <= light.range && light.direction.dot(from_light) >= light.outer_angle.cos() * distance
+            }
+            Self::Point(light) => point.distance(light.position) <= light.range,
+        }
+    }
+
+    /// The face of a point light in whose frustum a world point lies (see [`Light::FACE_AXES`]); 0 for other lights. Where two
+    /// meet, x goes before y and y before z, as in the WGSL.
+    #[must_use]
+    pub fn face_of(&self, point: DVec3) -> usize {
+        let Self::Point(light) = self else { return 0 };
+        let from_light = point - light.position;
+        let size = from_light.abs();
+        let axis = if size.x >= size.y && size.x >= size.z {
+            0
+        } else if size.y >= size.z {
+            1
+        } else {
+            2
+        };
+        2 * axis + usize::from(from_light[axis] < 0.0)
+    }
+}
+
+impl From<DirectionalLight> for Light {
+    fn from(light: DirectionalLight) -> Self {
+        Self::Directional(light)
+    }
+}
+
+impl From<SpotLight> for Light {
+    fn from(light: SpotLight) -> Self {
+        Self::Spot(light)
+    }
+}
+
+impl From<PointLight> for Light {
+    fn from(light: PointLight) -> Self {
+        Self::Point(light)
+    }
+}
+
+/// Unit vectors along u (right) and v (down) of a map whose depth runs along `direction`.
+pub(crate) fn map_axes(direction: DVec3) -> (DVec3, DVec3) {
+    // −Z is "up" for a light that comes straight down, so a map then has north on top.
+    let up = if direction.y.abs() > 1.0 - 1e-6 { DVec3::NEG_Z } else { DVec3::Y };
+    let u = direction.cross(up).normalize();
+    (u, direction.cross(u))
+}
+
+fn unit_direction(direction: DVec3) -> Result<DVec3> {
+    let length = direction.length();
+    if length == 0.0 || !length.is_finite() {
+        return Err(Error::light(
+            "direction",
+            format!(
+                "{direction} has no direction; give the way the light travels as three finite numbers, not all zero"
+            ),
+        ));
+    }
+    Ok(direction / length)
+}
+
+fn place(position: DVec3) -> Result<DVec3> {
+    if position.is_finite() {
+        return Ok(position);
+    }
+    Err(Error::light("position", format!("{position} is not a place; give three finite numbers in metres")))
+}
+
+fn reach(range: f64) -> Result<f64> {
+    if range > 0.0 && range.is_finite() {
+        return Ok(range);
+    }
+    Err(Error::light("range", format!("{range} m; give a finite distance greater than 0, as far as the light shines")))
+}
+
+fn distance_within(near: f64, range: f64) -> Result<f64> {
+    if near > 0.0 && near < range {
+        return Ok(near);
+    }
+    Err(Error::light("near", format!("{near} m; give a distance greater than 0 and less than the range, {range} m")))
 }

@@ -2,19 +2,23 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-/// The shadow maps of one directional light for one view.
+use crate::{Light, View};
+
+/// The shadow maps of one light for one view.
 ///
 /// All positions are `f64` world metres; a renderer subtracts its own origin before it goes to `f32`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShadowPlan {
-    /// The splits, nearest first.
+    /// The splits, nearest first; of a point light those of its first face, then those of the next.
     pub splits: Vec<Split>,
     /// `C_0 ..= C_m`: view depths in metres.
     pub planes: Vec<f64>,
     /// The plane that measures view depth: `xyz · point + w`, in metres.
     pub view_depth_plane: DVec4,
-    /// The way light travels, a unit vector.
+    /// The way light travels, a unit vector; the axis of a spot light. A point light has none and the value is straight down.
     pub light_direction: DVec3,
+    /// The light that was planned for; `None` stands for a sun along `light_direction`.
+    pub light: Option<Light>,
     /// View depth at which the fade to lit begins; `C_m` if there is none.
     pub fade_begin: f64,
     /// Indices into the planner's caster list, split after split; see [`ShadowPlan::casters`].
@@ -25,6 +29,26 @@ pub struct ShadowPlan {
 }
 
 impl ShadowPlan {
+    /// Empties the plan for a frame.
+    pub(crate) fn begin(&mut self, view: &View, light: Light) {
+        self.view_depth_plane = view.forward().extend(-view.forward().dot(view.eye()));
+        self.light_direction = match light {
+            Light::Directional(sun) => sun.direction(),
+            Light::Spot(spot) => spot.direction(),
+            Light::Point(_) => DVec3::NEG_Y,
+        };
+        self.light = Some(light);
+        self.caster_indices.clear();
+        self.split_range.clear();
+        self.splits.clear();
+    }
+
+    /// How many times the settings' splits there are; see [`Light::faces`].
+    #[must_use]
+    pub fn faces(&self) -> usize {
+        self.light.map_or(1, |light| light.faces())
+    }
+
     /// The casters of split `index`, as indices into the list given to the planner.
     #[must_use]
     pub fn casters(&self, index: usize) -> &[u32] {
@@ -40,6 +64,10 @@ impl ShadowPlan {
 ///
 /// A warped map is the picture that [`Split::warp`] takes. The axes, `min_texel` and the depths are then those of the plain map
 /// that it replaces; [`Split::map_from_world`] and its neighbours answer for either kind.
+///
+/// The map of a local light is a perspective picture taken from [`Split::light_position`] along [`Split::depth_axis`], which
+/// [`Split::warp`] takes, too: w is the depth along that axis in metres, and the stored depth is `A − B/w`, 0 at `depth_near` and 1 at
+/// `depth_far`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Split {
     /// Where the slice begins, `C_i`: a view depth in metres.
@@ -56,12 +84,13 @@ pub struct Split {
     pub u_axis: DVec3,
     /// World direction of the map's v (down), a unit vector.
     pub v_axis: DVec3,
-    /// World direction of depth: the way light travels, a unit vector.
+    /// World direction of depth, a unit vector: the way light travels, or the axis of a local light's picture.
     pub depth_axis: DVec3,
-    /// Metres per texel along u and v. A warped map has this size of texel in the middle of its receivers only, see
-    /// [`Split::texel_edges`].
+    /// Metres per texel along u and v. A warped map and that of a local light have this size of texel in the middle of their
+    /// receivers only, see [`Split::texel_edges`].
     pub texel_m: DVec2,
-    /// The map's upper left corner in texels of the light's plane; whole numbers when the split is stabilised.
+    /// The map's upper left corner in texels of the light's plane (of a local light: from the axis); whole numbers when the split is
+    /// stabilised.
     pub min_texel: DVec2,
     /// Metres along `depth_axis` at depth 0.
     pub depth_near: f64,
@@ -71,8 +100,10 @@ pub struct Split {
     /// depth's moments spread their numbers over. A caster may lie before it.
     pub receiver_depths: (f64, f64),
     /// Shadow NDC (x, y in [−1,1], y up, z in [0,1]) from world, to be divided by w; `None` for a plain map. w is positive at every
-    /// receiver, and does not change along the light.
+    /// receiver, and does not change along parallel light.
     pub warp: Option<DMat4>,
+    /// Where the light stands, metres; `None` for parallel light.
+    pub light_position: Option<DVec3>,
     /// This split's part of [`ShadowPlan::caster_indices`]. Empty: nothing throws a shadow here and the split is lit.
     pub casters: std::ops::Range<usize>,
 }
@@ -93,6 +124,12 @@ impl Split {
         }
         let texel = DVec2::new(self.u_axis.dot(point), self.v_axis.dot(point)) / self.texel_m - self.min_texel;
         texel.extend((self.depth_axis.dot(point) - self.depth_near) / (self.depth_far - self.depth_near))
+    }
+
+    /// The way light travels at a world point, a unit vector.
+    #[must_use]
+    pub fn travel_at(&self, point: DVec3) -> DVec3 {
+        self.light_position.map_or(self.depth_axis, |light| (point - light).try_normalize().unwrap_or(self.depth_axis))
     }
 
     /// The same as a matrix to NDC (x right, y up, both in [−1,1], z in [0,1]); to be divided by w, which is 1 in a plain map.
@@ -123,7 +160,7 @@ impl Split {
         inside.contains(&at.x) && inside.contains(&at.y) && (0.0..=1.0).contains(&at.z)
     }
 
-    /// How u and v change with the world around a point, in texels per metre. Both vectors lie in the light's plane. The same
+    /// How u and v change with the world around a point, in texels per metre. Both vectors lie across the light. The same
     /// everywhere in a plain map.
     #[must_use]
     pub fn texel_gradients(&self, point: DVec3) -> [DVec3; 2] {
@@ -136,12 +173,13 @@ impl Split {
         [texels * (x - w * (at.x / at.w)), -texels * (y - w * (at.y / at.w))]
     }
 
-    /// A texel's edges along u and v at a world point, as vectors of the light's plane in metres: the steps that change u alone
+    /// A texel's edges along u and v at a world point, as vectors across the light in metres: the steps that change u alone
     /// and v alone, by one.
     #[must_use]
     pub fn texel_steps(&self, point: DVec3) -> [DVec3; 2] {
         let [u, v] = self.texel_gradients(point);
-        let (along_u, along_v) = (v.cross(self.depth_axis), self.depth_axis.cross(u));
+        let travel = self.travel_at(point);
+        let (along_u, along_v) = (v.cross(travel), travel.cross(u));
         [along_u / u.dot(along_u), along_v / v.dot(along_v)]
     }
 

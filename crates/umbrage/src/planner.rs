@@ -2,13 +2,15 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::local::{Given, LightFrustum, LocalPlanner};
 use crate::region::{Fan, Region};
 use crate::split::{blend_begin, coverage, split_planes};
 use crate::stable::{HeldSize, slice_sphere, stable_texel};
 use crate::volume::{Lies, Slice, SweptVolume};
 use crate::warped::WarpPoints;
 use crate::{
-    Aabb, DirectionalLight, Error, Fit, MAX_SPLITS, Result, ShadowPlan, ShadowSettings, Split, Stabilize, View, Warp,
+    Aabb, DirectionalLight, Error, Fit, Light, MAX_SPLITS, Result, ShadowPlan, ShadowSettings, Split, Stabilize, View,
+    Warp,
 };
 
 /// Texels that a map keeps free around what it serves, besides the filter's reach: half for the texel that a sample's
@@ -17,7 +19,7 @@ const EDGE_TEXELS: f64 = 1.5;
 
 /// Share of a scene's extent by which a caster may rise above the lowest receiver and still count as lying below all of
 /// them: rounding in the bounds, not a length that could be seen (1.2 mm in 1.2 km).
-const BELOW_ALL: f64 = 1e-6;
+pub(crate) const BELOW_ALL: f64 = 1e-6;
 
 /// Plans shadow maps frame after frame. Keeps its buffers, so that only the first frame allocates, and the sizes that
 /// stabilised maps hold on to.
@@ -36,6 +38,7 @@ pub struct Planner {
     visible: Vec<u32>,
     across: Vec<u32>,
     warp_points: WarpPoints,
+    local: LocalPlanner,
 }
 
 /// A box as centre and half extent.
@@ -80,6 +83,7 @@ impl Planner {
             visible: Vec::new(),
             across: Vec::new(),
             warp_points: WarpPoints::default(),
+            local: LocalPlanner::default(),
         })
     }
 
@@ -89,23 +93,59 @@ impl Planner {
         &self.settings
     }
 
-    /// Plans the maps of one frame.
+    /// Plans the maps of one frame for one light: a [`DirectionalLight`], a [`crate::SpotLight`], a [`crate::PointLight`] or any
+    /// [`Light`].
     ///
     /// `casters` throw shadows, `receivers` show them; most objects are in both lists. The plan's caster indices refer to
-    /// `casters`.
+    /// `casters`. A point light's plan has six times as many splits as the settings: those of its first face, then those of the
+    /// next ([`Light::FACE_AXES`]). Splits that the light does not reach have no casters.
+    ///
+    /// A local light's default range is narrowed to where it reaches. Its stabilised maps stand on whole texels, of a size that
+    /// changes in steps: between two steps a shadow's texels stay where they are.
     ///
     /// # Errors
     /// [`Error::InvalidBounds`] naming a box that is inverted or not finite; [`Error::InvalidSetting`] if the range or the
-    /// planes do not fit this camera.
+    /// planes do not fit this camera; [`Error::ConflictingSettings`] for a warp with a local light.
     pub fn plan(
         &mut self,
         view: &View,
-        light: &DirectionalLight,
+        light: &(impl Copy + Into<Light>),
         casters: &[Aabb],
         receivers: &[Aabb],
     ) -> Result<&ShadowPlan> {
         place(casters, "casters", &mut self.casters)?;
         place(receivers, "receivers", &mut self.receivers)?;
+        let light = (*light).into();
+        match &light {
+            Light::Directional(sun) => self.plan_sun(view, sun)?,
+            Light::Spot(spot) => {
+                self.plan_local(view, &light, spot.position(), &[LightFrustum::of_spot(spot)])?;
+            }
+            Light::Point(point) => {
+                let frusta = Light::FACE_AXES.map(|axis| LightFrustum::of_face(point, axis));
+                self.plan_local(view, &light, point.position(), &frusta)?;
+            }
+        }
+        Ok(&self.plan)
+    }
+
+    fn plan_local(&mut self, view: &View, light: &Light, position: DVec3, frusta: &[LightFrustum]) -> Result<()> {
+        let given = Given {
+            settings: &self.settings,
+            view,
+            position,
+            range: light.range(),
+            casters: &self.casters,
+            receivers: &self.receivers,
+            margin: self.settings.filter_radius + EDGE_TEXELS,
+        };
+        self.fan = None;
+        self.plan.begin(view, *light);
+        self.local.plan(&given, frusta, &mut self.plan)
+    }
+
+    fn plan_sun(&mut self, view: &View, light: &DirectionalLight) -> Result<()> {
+        let casters = self.casters.len();
         let (near, far) = self.range(view);
         let mut planes = std::mem::take(&mut self.plan.planes);
         let rising = split_planes(&self.settings.scheme, near, far, self.settings.splits(), &mut planes);
@@ -123,24 +163,23 @@ impl Planner {
         }
 
         let plan = &mut self.plan;
-        plan.view_depth_plane = view.forward().extend(-view.forward().dot(view.eye()));
-        plan.light_direction = direction;
+        plan.begin(view, (*light).into());
         plan.fade_begin = far - self.settings.far_fade * (far - near);
-        plan.caster_indices.clear();
-        plan.split_range.clear();
-        plan.split_range.resize(casters.len(), None);
-        plan.splits.clear();
+        plan.split_range.resize(casters, None);
         self.volumes.clear();
         for i in 0..self.settings.splits() {
             self.plan_split(i, view, light, &fan);
         }
-        Ok(&self.plan)
+        Ok(())
     }
 
     /// The first split whose map holds every caster that can shade `point`, for points that the view does not show (points
     /// that it shows use the split of their view depth). `None`: no map answers for it. Refers to the last plan.
     #[must_use]
     pub fn covering_split(&self, point: DVec3) -> Option<usize> {
+        if let Some(light) = self.plan.light.filter(|light| light.position().is_some()) {
+            return self.local.covering_split(&self.plan, &light, point, self.settings.filter_radius);
+        }
         let fan = self.fan.as_ref()?;
         self.plan.splits.iter().zip(&self.volumes).position(|(split, volume)| {
             let complete = volume.swept.contains(point)
@@ -285,6 +324,7 @@ impl Planner {
             depth_far: target.depth.1,
             receiver_depths: target.depth,
             warp: None,
+            light_position: None,
             casters,
         };
         let split = match self.settings.stabilize {

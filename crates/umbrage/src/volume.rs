@@ -74,11 +74,15 @@ pub(crate) enum Lies {
 
 impl Slice {
     pub fn new(view: &View, from: f64, to: f64) -> Self {
-        let corners = view.slice_corners(from, to);
+        Self::from_corners(view.slice_corners(from, to), view.forward())
+    }
+
+    /// A frustum from its corners, in the order of [`View::slice_corners`], and the way it opens.
+    pub fn from_corners(corners: [DVec3; 8], forward: DVec3) -> Self {
         let center = corners.iter().sum::<DVec3>() / 8.0;
         let planes = std::array::from_fn(|i| match i {
-            0 => Plane::facing_away(view.forward(), corners[0], center),
-            1 => Plane::facing_away(view.forward(), corners[4], center),
+            0 => Plane::facing_away(forward, corners[0], center),
+            1 => Plane::facing_away(forward, corners[4], center),
             // Sides pass through the far edge and, unless the near face is a point, the near one.
             _ => {
                 let [a, b, c, d] = FACES[i].map(|corner| corners[corner]);
@@ -121,17 +125,58 @@ impl Slice {
         any
     }
 
+    /// Calls `each` with points whose convex hull is the part of the slice inside another one.
+    pub fn clip_slice(&self, other: &Self, mut each: impl FnMut(DVec3)) {
+        for (one, by) in [(self, other), (other, self)] {
+            for face in FACES {
+                let part = Polygon::new(face.map(|i| one.corners[i])).clipped(&by.planes, 0.0);
+                part.points[..part.len].iter().for_each(|&point| each(point));
+            }
+        }
+    }
+
+    /// Calls `each` with points whose convex hull is the part of `bounds` inside both this slice and another one.
+    pub fn clip_box_with(&self, other: &Self, bounds: &Aabb, mut each: impl FnMut(DVec3)) {
+        let corners = bounds.corners();
+        let box_planes = box_planes(bounds);
+        let mut emit = |polygon: Polygon, by: [&[Plane]; 2]| {
+            let part = polygon.clipped(by[0], 0.0).clipped(by[1], 0.0);
+            part.points[..part.len].iter().for_each(|&point| each(point));
+        };
+        for face in BOX_FACES {
+            emit(Polygon::new(face.map(|i| corners[i])), [&self.planes, &other.planes]);
+        }
+        for (one, by) in [(self, other), (other, self)] {
+            for face in FACES {
+                emit(Polygon::new(face.map(|i| one.corners[i])), [&box_planes, &by.planes]);
+            }
+        }
+    }
+
     /// The slice pushed to infinity towards the light that travels along `direction`.
     pub fn swept_towards_light(&self, direction: DVec3) -> SweptVolume {
+        self.swept(self.planes.map(|plane| plane.normal.dot(direction) >= 0.0), |_| direction)
+    }
+
+    /// Everything between the slice and a light at `position`: their common convex hull. The planes through the light need no
+    /// divide, so nothing happens to a slice that straddles the light's plane, or that has the light inside.
+    pub fn swept_towards_point(&self, position: DVec3) -> SweptVolume {
+        self.swept(self.planes.map(|plane| plane.distance(position) <= 0.0), |corner| {
+            (corner - position).normalize_or_zero()
+        })
+    }
+
+    /// The faces that are turned `away` from the light, and the planes through its outline along the light, whose way of travel at
+    /// a corner is `travel`.
+    fn swept(&self, away: [bool; 6], travel: impl Fn(DVec3) -> DVec3) -> SweptVolume {
         let mut swept = SweptVolume::default();
-        let away = self.planes.map(|plane| plane.normal.dot(direction) >= 0.0);
         for (plane, away) in self.planes.iter().zip(away) {
             if away {
                 swept.push(*plane);
             }
         }
         for (a, b, f, g) in EDGES {
-            let normal = (self.corners[b] - self.corners[a]).cross(direction);
+            let normal = (self.corners[b] - self.corners[a]).cross(travel(self.corners[a]));
             // An edge along the light is a point of the outline: its neighbours bound it.
             if away[f] != away[g] && normal.length() > 1e-9 * self.corners[b].distance(self.corners[a]) {
                 swept.push(Plane::facing_away(normal, self.corners[a], self.center));

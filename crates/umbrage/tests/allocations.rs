@@ -1,7 +1,9 @@
 //! After the first frame the planner allocates nothing.
 
 use glam::DVec3;
-use umbrage::{Aabb, DirectionalLight, Fit, Frustum, Planner, ShadowSettings, Stabilize, View, Warp};
+use umbrage::{
+    Aabb, DirectionalLight, Fit, Frustum, Light, Planner, PointLight, ShadowSettings, SpotLight, Stabilize, View, Warp,
+};
 
 #[test]
 fn only_the_first_frame_allocates() {
@@ -19,11 +21,16 @@ fn only_the_first_frame_allocates() {
             let settings = ShadowSettings { fit, stabilize, ..ShadowSettings::default() };
             let mut planner = Planner::new(settings).expect("valid");
             let view = view(0.3).expect("valid");
-            planner.plan(&view, &light, &world, &world).expect("valid");
-            let again = allocation_counter::measure(|| {
+            let at = DVec3::new(60.0, 20.0, 10.0);
+            let lamp = PointLight::new(at, 80.0).expect("valid");
+            let spot = SpotLight::new(at, DVec3::new(0.3, -1.0, 0.0), 0.8, 90.0).expect("valid");
+            for light in [Light::from(light), lamp.into(), spot.into()] {
                 planner.plan(&view, &light, &world, &world).expect("valid");
-            });
-            assert_eq!(again.count_total, 0, "{fit:?} {stabilize:?} allocated {again:?}");
+                let again = allocation_counter::measure(|| {
+                    planner.plan(&view, &light, &world, &world).expect("valid");
+                });
+                assert_eq!(again.count_total, 0, "{fit:?} {stabilize:?} {light:?} allocated {again:?}");
+            }
         }
         for warp in [Warp::Psm, Warp::Lispsm, Warp::Tsm { focus: 0.2 }] {
             let settings =

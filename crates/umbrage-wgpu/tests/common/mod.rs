@@ -314,6 +314,7 @@ pub fn plan(light: DVec3, center: DVec3, sizes: &[u32], planes: &[f64], widths: 
                 depth_far: depth.dot(center) + 100.0,
                 receiver_depths: (depth.dot(center) - 100.0, depth.dot(center) + 100.0),
                 warp: None,
+                light_position: None,
                 casters: i..i + 1,
             }
         })
@@ -323,6 +324,7 @@ pub fn plan(light: DVec3, center: DVec3, sizes: &[u32], planes: &[f64], widths: 
         planes: planes.to_vec(),
         view_depth_plane: DVec4::new(1.0, 0.0, 0.0, 0.0),
         light_direction: depth,
+        light: None,
         fade_begin: planes[sizes.len()],
         caster_indices: vec![0; sizes.len()],
         split_range: vec![Some((0, sizes.len() as u8 - 1))],
