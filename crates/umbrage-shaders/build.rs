@@ -2,9 +2,14 @@
 
 use wesl::{CompileOptions, Mangler, ModulePath, Wesl};
 
-/// The roots in `shaders/pass`, whether depth textures can be loaded from, and the file that each becomes in `OUT_DIR`.
-const ROOTS: [(&str, bool, &str); 3] =
-    [("caster", true, "caster"), ("receiver", true, "receiver"), ("receiver", false, "receiver_without_loads")];
+/// The roots in `shaders`, whether depth textures can be loaded from, and the file that each becomes in `OUT_DIR`.
+const ROOTS: [(&str, bool, &str); 5] = [
+    ("pass::caster", true, "caster"),
+    ("pass::receiver", true, "receiver"),
+    ("pass::receiver", false, "receiver_without_loads"),
+    ("maps::array", true, "array"),
+    ("maps::array", false, "array_without_loads"),
+];
 
 fn main() {
     let mut compiler = Wesl::new("shaders");
@@ -12,14 +17,15 @@ fn main() {
     compiler.set_options(CompileOptions {
         // A root has no entry point of its own (the app has it): all of it is kept, and what it uses of `lib`.
         keep_root: true,
-        // The constant of the bind group's index is declared at run time, by `umbrage_shaders::receiver`, and unknown here.
-        // Undeclared names are found by naga instead, which validates every root in this crate's tests.
+        // The constant of the bind group's index is declared at run time, by `umbrage_shaders::receiver`, and the two functions
+        // that read maps by the text of `shaders/maps` that it adds: unknown here. Undeclared names are found by naga instead,
+        // which validates every text in this crate's tests.
         validate: false,
         ..CompileOptions::default()
     });
     for (root, depth_loads, file) in ROOTS {
         compiler.set_feature("depth_loads", depth_loads);
-        let path: ModulePath = format!("package::pass::{root}").parse().expect("a root's name is a module path");
+        let path: ModulePath = format!("package::{root}").parse().expect("a root's name is a module path");
         compiler.build_artifact(&path, file);
     }
     println!("cargo::rerun-if-changed=shaders");

@@ -79,6 +79,8 @@ impl<'a> Studio<'a> {
             samples: umbrage_render::Samples::default(),
             softness: shadows.softness(job.sun_angle),
             transition: shadows.transition(),
+            storage: umbrage_wgpu::Storage::default(),
+            generation: umbrage_wgpu::Generation::default(),
         };
         let renderer = Renderer::new(&gpu, &stage.scene, &settings)?;
         Ok(Self { renderer, shadows, adapter: adapter::description(&gpu) })

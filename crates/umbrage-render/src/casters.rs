@@ -19,7 +19,7 @@ impl Casters {
     pub fn new(gpu: &Gpu, maps: &ShadowMaps, materials: &Materials) -> Self {
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("Casters::shader"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::casters())),
+            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::casters(&maps.caster_wgsl(0)))),
         });
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("Casters::layout"),

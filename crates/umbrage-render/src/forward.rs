@@ -126,7 +126,7 @@ impl Forward {
         let device = &gpu.device;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("Forward::shader"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::forward(gpu.depth_loads()))),
+            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::forward(&maps.receiver_wgsl(2)))),
         });
         let frame_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("Forward::frame_layout"),

@@ -62,7 +62,7 @@ impl Probe {
         let device = &gpu.device;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("Probe::shader"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::probe(gpu.depth_loads()))),
+            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::probe(&maps.receiver_wgsl(1)))),
         });
         let entry = |binding| wgpu::BindGroupLayoutEntry {
             binding,

@@ -4,7 +4,9 @@ use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
 use umbrage::{Aabb, DirectionalLight, Planner, ShadowPlan, ShadowSettings, View};
 use umbrage_scene::{AlphaMode, Pose, Scene};
-use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMaps, ShadowMapsOptions, Softness, Transition};
+use umbrage_wgpu::{
+    DepthFormat, Filter, FrameOptions, Generation, ShadowMaps, ShadowMapsOptions, Softness, Storage, Transition,
+};
 use web_time::Instant;
 
 use crate::capture::Capture;
@@ -40,6 +42,10 @@ pub struct RenderSettings {
     pub softness: Softness,
     /// How splits meet.
     pub transition: Transition,
+    /// Where maps are kept.
+    pub storage: Storage,
+    /// How maps are drawn.
+    pub generation: Generation,
 }
 
 /// What varies from frame to frame.
@@ -146,6 +152,8 @@ impl Renderer {
                     map_sizes: shadows.map_sizes.clone(),
                     depth_format: settings.depth_format,
                     filter: settings.filter,
+                    storage: settings.storage,
+                    generation: settings.generation,
                 },
             )?;
             // Floats hold the depth of a whole world; 16 bits want the shorter range that casters flattened onto the near plane
@@ -270,9 +278,10 @@ impl Renderer {
                 .map(|(i, split)| {
                     let texture = self.maps.depth_texture();
                     // Depth is copied in whole layers only; a smaller map is cut out of its layer afterwards.
-                    let layer = [texture.width(), texture.height()];
-                    let capture = Capture::record(&gpu, &mut encoder, texture, i as u32, layer)?;
-                    Ok((layer[0], split.size, capture))
+                    let texels = [texture.width(), texture.height()];
+                    let (layer, corner) = self.maps.map_place(i);
+                    let capture = Capture::record(&gpu, &mut encoder, texture, layer, texels)?;
+                    Ok((texels[0], corner, split.size, capture))
                 })
                 .collect::<Result<Vec<_>>>()?
         } else {
@@ -309,8 +318,8 @@ impl Renderer {
             shadow_counts: counts(0..map_passes.min(passes)),
             view_counts: counts(map_passes.min(passes)..passes),
             bytes: self.maps.bytes(),
-            generation: "per-split",
-            storage: "array",
+            generation: self.maps.options().generation.name(),
+            storage: self.maps.options().storage.name(),
             notes: self.notes.clone(),
             plan: prepared.plan,
         };
@@ -328,8 +337,8 @@ impl Renderer {
                 .transpose()?,
             maps: depth_maps
                 .into_iter()
-                .map(|(row, size, capture)| {
-                    Ok(maps::picture_of(&maps::depths_of(&capture.read(&gpu)?, self.depth_format), row, size))
+                .map(|(row, corner, size, capture)| {
+                    Ok(maps::picture_of(&maps::depths_of(&capture.read(&gpu)?, self.depth_format), row, corner, size))
                 })
                 .collect::<Result<_>>()?,
             stats,

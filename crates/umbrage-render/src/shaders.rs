@@ -1,28 +1,25 @@
 //! The WGSL of every pass: the library's text, what all passes share, and the pass's own.
 
-/// Bind group 0 is the split, 1 the material.
-pub(crate) fn casters() -> String {
-    [&umbrage_wgpu::caster_wgsl(0), include_str!("shaders/scene.wgsl"), include_str!("shaders/caster.wgsl")].join("\n")
+/// Bind group 0 is what [`umbrage_wgpu::ShadowMaps::caster_wgsl`] declares, 1 the material.
+pub(crate) fn casters(library: &str) -> String {
+    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster.wgsl")].join("\n")
 }
 
-/// Bind group 0 is the frame, 1 the material, 2 the shadow maps.
-pub(crate) fn forward(depth_loads: bool) -> String {
-    [&receiver(2, depth_loads), include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl")].join("\n")
+/// Bind group 0 is the frame, 1 the material, 2 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares.
+pub(crate) fn forward(library: &str) -> String {
+    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl")].join("\n")
 }
 
-/// Bind group 0 is the points, 1 the shadow maps.
-pub(crate) fn probe(depth_loads: bool) -> String {
-    [&receiver(1, depth_loads), include_str!("shaders/probe.wgsl")].join("\n")
-}
-
-/// The library's text for devices that can, or cannot, load from depth textures.
-fn receiver(group: u32, depth_loads: bool) -> String {
-    if depth_loads { umbrage_wgpu::receiver_wgsl(group) } else { umbrage_wgpu::receiver_wgsl_without_loads(group) }
+/// Bind group 0 is the points, 1 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares.
+pub(crate) fn probe(library: &str) -> String {
+    [library, include_str!("shaders/probe.wgsl")].join("\n")
 }
 
 #[cfg(test)]
 mod tests {
     use std::mem::offset_of;
+
+    use umbrage_shaders::{Maps, receiver};
 
     use super::*;
     use crate::forward::FrameUniform;
@@ -53,14 +50,17 @@ mod tests {
 
     #[test]
     fn every_pass_is_valid_wgsl() {
-        for source in [casters(), forward(true), probe(true), forward(false), probe(false)] {
-            assert!(!parsed(&source).entry_points.is_empty());
+        assert!(!parsed(&casters(&umbrage_shaders::caster(0))).entry_points.is_empty());
+        for maps in [Maps::default(), Maps { without_loads: true }] {
+            for source in [forward(&receiver(2, maps)), probe(&receiver(1, maps))] {
+                assert!(!parsed(&source).entry_points.is_empty());
+            }
         }
     }
 
     #[test]
     fn both_sides_lay_out_their_structs_alike() {
-        let module = parsed(&forward(true));
+        let module = parsed(&forward(&receiver(2, Maps::default())));
         let frame = offsets!(
             FrameUniform: clip_from_eye, eye, is_orthographic, forward, to_light, ray_center, ray_right, ray_up
         );
@@ -70,7 +70,9 @@ mod tests {
 
     #[test]
     fn a_moved_member_is_noticed() {
-        let module = parsed(&forward(true).replace("base_color: vec4f,", "base_color: vec4f, more: f32,"));
+        let module = parsed(
+            &forward(&receiver(2, Maps::default())).replace("base_color: vec4f,", "base_color: vec4f, more: f32,"),
+        );
         assert_ne!(layout(&module, "Material"), offsets!(MaterialUniform: base_color, emissive, alpha_cutoff));
     }
 }

@@ -66,7 +66,7 @@ pub struct Split {
     pub texel_offset: [f32; 2],
     /// Metres per texel along u and v; in a warped map in the middle of its receivers.
     pub texel_m: [f32; 2],
-    /// Edge of the map in texels; it lies in the upper left corner of its layer.
+    /// Edge of the map in texels.
     pub size: f32,
     /// Where the slice ends: view depth in metres.
     pub far: f32,
@@ -84,6 +84,14 @@ pub struct Split {
     pub viewport_texels: f32,
     /// Texels from the left and upper edge of that square to the map's.
     pub guard_texels: f32,
+    /// Upper left corner of the map in its layer, in texels; 0 unless the layer holds several maps as tiles.
+    pub corner: [f32; 2],
+    /// Width and height of its layer in texels.
+    pub layer_texels: [f32; 2],
+    /// The layer of the texture, the face of the cube or the number of the texture that holds the map.
+    pub layer: u32,
+    /// Up to the alignment of 16 bytes.
+    pub _padding: [u32; 3],
 }
 
 /// All that a receiver needs for one light and one view.
@@ -98,8 +106,6 @@ pub struct Frame {
     pub strength: f32,
     /// View depth in metres at which the fade to lit begins; the last split's `far` if there is none.
     pub fade_begin: f32,
-    /// Edge of the texture's layers in texels.
-    pub map_edge: f32,
     /// Splits in use.
     pub split_count: u32,
     /// A [`FilterKind`].
@@ -117,7 +123,7 @@ pub struct Frame {
     /// A [`TransitionKind`].
     pub transition: u32,
     /// Up to the alignment of 16 bytes.
-    pub _padding: [u32; 2],
+    pub _padding: [u32; 3],
     /// The splits, nearest first; those past `split_count` are not read.
     pub splits: [Split; MAX_SPLITS],
 }

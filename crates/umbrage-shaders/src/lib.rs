@@ -3,8 +3,9 @@
 //! This crate knows no GPU interface: any renderer that takes WGSL can use it, given a depth texture array, a comparison
 //! sampler and a uniform buffer. `umbrage-wgpu` is that renderer's half for wgpu.
 //!
-//! * `shaders/lib` has functions without bindings, `shaders/pass` the roots with bindings. `wesl` joins them when this
-//!   crate is built; what comes out is ordinary WGSL, and every name in it begins with `umbrage`, in one case or another.
+//! * `shaders/lib` has functions without bindings, `shaders/pass` the roots with bindings, `shaders/maps` the maps' own bindings
+//!   and the two functions that read them. `wesl` joins them when this crate is built; what comes out is ordinary WGSL, and
+//!   every name in it begins with `umbrage`, in one case or another.
 //! * A root is text to put before one's own shader. It declares no entry point and no override, so it adds nothing to a
 //!   pipeline's constants. What varies (filter, number of splits, strength) is a value in the [`layout::Frame`] uniform:
 //!   an override would become a constant of the *app's* pipeline, to be repeated wherever it makes one, and one text per
@@ -14,15 +15,12 @@
 //! | binding of [`receiver`] | what |
 //! |---|---|
 //! | 0 | uniform [`layout::Frame`] |
-//! | 1 | `texture_depth_2d_array`, a layer for each split, cleared to 1 |
+//! | 1 | `texture_depth_2d_array`, cleared to 1; [`layout::Split`] says where in it a map lies |
 //! | 2 | `sampler_comparison` with `LessEqual`, clamped to the edge; nearest for [`layout::FilterKind::Hard`], else linear |
 //!
 //! | binding of [`caster`] | what |
 //! |---|---|
 //! | 0 | uniform [`layout::Split`] |
-
-//!
-//! GL and WebGL2 can compare with a depth texture but not load from it: [`receiver_without_loads`] is for them.
 
 pub mod layout;
 pub mod twin;
@@ -30,11 +28,17 @@ pub mod twin;
 /// The root `shaders/pass/caster.wesl`, all but the constant `UMBRAGE_CASTER_GROUP`.
 pub const CASTER: &str = include_str!(concat!(env!("OUT_DIR"), "/caster.wgsl"));
 
-/// The root `shaders/pass/receiver.wesl`, all but the constant `UMBRAGE_RECEIVER_GROUP`.
-pub const RECEIVER: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver.wgsl"));
+const RECEIVER: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver.wgsl"));
+const RECEIVER_WITHOUT_LOADS: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver_without_loads.wgsl"));
+const ARRAY: &str = include_str!(concat!(env!("OUT_DIR"), "/array.wgsl"));
+const ARRAY_WITHOUT_LOADS: &str = include_str!(concat!(env!("OUT_DIR"), "/array_without_loads.wgsl"));
 
-/// The same root for devices that cannot load from depth textures: PCSS is an ordinary disc.
-pub const RECEIVER_WITHOUT_LOADS: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver_without_loads.wgsl"));
+/// How a receiver reads its maps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Maps {
+    /// Depth textures can be compared with but not loaded from (GL, WebGL2): [`layout::FilterKind::Pcss`] is an ordinary disc.
+    pub without_loads: bool,
+}
 
 /// Text to put before a vertex shader that draws casters: `fn umbrage_caster_position(position: vec3f) -> vec4f`.
 #[must_use]
@@ -45,12 +49,8 @@ pub fn caster(group: u32) -> String {
 /// Text to put before a shader that asks what is lit: `fn umbrage_visibility(position: vec3f, normal: vec3f) -> f32`,
 /// `umbrage_shadow` and `umbrage_visibility_in_split`.
 #[must_use]
-pub fn receiver(group: u32) -> String {
-    format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\n{RECEIVER}\n")
-}
-
-/// [`receiver`] for GL and WebGL2, where depth textures cannot be loaded from.
-#[must_use]
-pub fn receiver_without_loads(group: u32) -> String {
-    format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\n{RECEIVER_WITHOUT_LOADS}\n")
+pub fn receiver(group: u32, maps: Maps) -> String {
+    let (receiver, maps) =
+        if maps.without_loads { (RECEIVER_WITHOUT_LOADS, ARRAY_WITHOUT_LOADS) } else { (RECEIVER, ARRAY) };
+    format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\n{maps}\n{receiver}\n")
 }

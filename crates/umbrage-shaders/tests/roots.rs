@@ -2,6 +2,9 @@
 
 use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use umbrage_shaders::Maps;
+
+const WITHOUT_LOADS: Maps = Maps { without_loads: true };
 
 fn validated(source: &str) -> (naga::Module, ModuleInfo) {
     let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
@@ -31,11 +34,11 @@ fn vertex_shader(group: u32) -> String {
 }
 
 fn fragment_shader(group: u32) -> String {
-    umbrage_shaders::receiver(group) + FRAGMENT
+    umbrage_shaders::receiver(group, Maps::default()) + FRAGMENT
 }
 
 fn fragment_shader_without_loads(group: u32) -> String {
-    umbrage_shaders::receiver_without_loads(group) + FRAGMENT
+    umbrage_shaders::receiver(group, WITHOUT_LOADS) + FRAGMENT
 }
 
 const FRAGMENT: &str = "@fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
@@ -65,8 +68,8 @@ fn roots_export_to_webgl2() {
 
 #[test]
 fn every_name_is_in_our_namespace() {
-    for source in [umbrage_shaders::caster(0), umbrage_shaders::receiver(0), umbrage_shaders::receiver_without_loads(0)]
-    {
+    let receiver = |maps| umbrage_shaders::receiver(0, maps);
+    for source in [umbrage_shaders::caster(0), receiver(Maps::default()), receiver(WITHOUT_LOADS)] {
         let module = naga::front::wgsl::parse_str(&source).expect("a valid root");
         let names = (module.functions.iter().filter_map(|(_, f)| f.name.clone()))
             .chain(module.global_variables.iter().filter_map(|(_, v)| v.name.clone()))

@@ -149,6 +149,8 @@ impl Technique {
             samples: Samples::Four,
             softness: Softness::default(),
             transition: Transition::default(),
+            storage: umbrage_wgpu::Storage::default(),
+            generation: umbrage_wgpu::Generation::default(),
         };
         Self { name: format!("pssm{splits}"), settings }
     }

@@ -2,7 +2,7 @@
 //! The lines marked ◐ are all that shadows add. `cargo run -p umbrage-wgpu --example empty_app -- picture.png`
 use glam::{DVec3, Vec3};
 use umbrage::{Aabb, DirectionalLight, Frustum, Planner, ShadowSettings, View};
-use umbrage_wgpu::{FrameOptions, ShadowMaps, ShadowMapsOptions, caster_wgsl, optional_features, receiver_wgsl};
+use umbrage_wgpu::{FrameOptions, ShadowMaps, ShadowMapsOptions, optional_features};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 const SIZE: u32 = 768;
@@ -98,11 +98,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut maps = ShadowMaps::new(&device, &ShadowMapsOptions::default())?;
     let mut planner = Planner::new(ShadowSettings { image_size: [SIZE, SIZE], ..maps.matching_settings() })?;
     let (layout, primitive, depth_state) = (maps.caster_layout(), maps.caster_primitive(), maps.caster_depth_stencil());
-    let casters = pipeline(caster_wgsl(0) + CASTER, layout, primitive, depth_state.clone(), None);
+    let casters = pipeline(maps.caster_wgsl(0) + CASTER, layout, primitive, depth_state.clone(), None);
 
     // The app's pipeline, with the shadows' text before its own and their layout in group 0.
     let depth_state = wgpu::DepthStencilState { depth_compare: Some(wgpu::CompareFunction::Greater), ..depth_state };
-    let source = receiver_wgsl(0) + &camera + SHADER;
+    let source = maps.receiver_wgsl(0) + &camera + SHADER;
     let boxes = pipeline(source, maps.receiver_layout(), Default::default(), depth_state, Some(COLOUR));
 
     // ◐ A frame: plan, prepare, draw each split's casters.

@@ -85,6 +85,17 @@ pub enum Error {
         /// The filter.
         filter: crate::Filter,
     },
+    /// The device has no texture that holds all maps side by side.
+    #[error(
+        "storage atlas needs one texture that holds maps of {sizes:?} texels side by side, but this device's textures are at most \
+         {limit} texels wide (max_texture_dimension_2d); use smaller map_sizes, or storage array"
+    )]
+    AtlasTooLarge {
+        /// The sizes asked for, nearest split first.
+        sizes: Vec<u32>,
+        /// The device's limit, in texels.
+        limit: u32,
+    },
     /// The plan was made for other maps.
     #[error(
         "the plan has maps of {plan:?} texels, but these ShadowMaps were created with {maps:?}; \

@@ -8,10 +8,10 @@
 //! 1. Request the device with `adapter.features() & umbrage_wgpu::optional_features()`, then make the maps once:
 //!    `ShadowMaps::new(&device, &ShadowMapsOptions::default())`, and a planner that knows them:
 //!    `Planner::new(ShadowSettings { image_size, ..maps.matching_settings() })`.
-//! 2. **Cast.** Put [`caster_wgsl`] before your vertex shader and return `umbrage_caster_position(position)` from it. The
+//! 2. **Cast.** Put [`ShadowMaps::caster_wgsl`] before your vertex shader and return `umbrage_caster_position(position)` from it. The
 //!    pipeline has [`ShadowMaps::caster_layout`] in that group, [`ShadowMaps::caster_depth_stencil`],
 //!    [`ShadowMaps::caster_primitive`] and no colour target (a fragment shader only if it discards).
-//! 3. **Receive.** Put [`receiver_wgsl`] before your shading and multiply the sun's light by
+//! 3. **Receive.** Put [`ShadowMaps::receiver_wgsl`] before your shading and multiply the sun's light by
 //!    `umbrage_visibility(position, normal)`. The pipeline has [`ShadowMaps::receiver_layout`] in that group.
 //! 4. **Each frame:** `planner.plan(…)`, [`ShadowMaps::prepare`], and for every split with casters a pass from
 //!    [`ShadowMaps::begin_split`], in which you bind [`ShadowMaps::caster_bind_group`] and draw `plan.casters(split)`.
@@ -39,9 +39,7 @@ mod error;
 mod maps;
 mod options;
 mod uniforms;
-mod wgsl;
 
 pub use error::{Error, Result};
 pub use maps::{ShadowMaps, optional_features};
-pub use options::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions, Softness, Transition};
-pub use wgsl::{caster_wgsl, receiver_wgsl, receiver_wgsl_without_loads};
+pub use options::{DepthFormat, Filter, FrameOptions, Generation, ShadowMapsOptions, Softness, Storage, Transition};

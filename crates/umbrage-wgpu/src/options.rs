@@ -255,11 +255,55 @@ pub enum Derivatives {
     Quad,
 }
 
+/// Where maps are kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Storage {
+    /// What suits the device: [`Storage::Array`].
+    #[default]
+    Auto,
+    /// Layers of one texture as wide as the largest map: memory is that of the largest times the number of maps.
+    Array,
+    /// Tiles of one texture: memory is that of the rectangle into which the maps were packed.
+    Atlas,
+}
+
+impl Storage {
+    /// Its name, as reports have it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Array => "array",
+            Self::Atlas => "atlas",
+        }
+    }
+}
+
+/// How maps are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Generation {
+    /// What suits the device: [`Generation::PerSplit`].
+    #[default]
+    Auto,
+    /// One pass for each split.
+    PerSplit,
+}
+
+impl Generation {
+    /// Its name, as reports have it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::PerSplit => "per-split",
+        }
+    }
+}
+
 /// What is fixed when [`crate::ShadowMaps`] are made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShadowMapsOptions {
     /// Edge of each split's map in texels, nearest split first: the same list as `umbrage::ShadowSettings::map_sizes`.
-    /// Memory is that of the largest times the number of maps, because they are layers of one texture.
     pub map_sizes: Vec<u32>,
     /// How maps store depth.
     pub depth_format: DepthFormat,
@@ -270,6 +314,10 @@ pub struct ShadowMapsOptions {
     pub samples: u32,
     /// Whether a filter of moments may fall back to what the device has ([`crate::MomentStorage`]); if not, it is an error.
     pub fallbacks: bool,
+    /// Where maps are kept.
+    pub storage: Storage,
+    /// How maps are drawn.
+    pub generation: Generation,
 }
 
 impl Default for ShadowMapsOptions {
@@ -280,6 +328,8 @@ impl Default for ShadowMapsOptions {
             filter: Filter::default(),
             samples: 1,
             fallbacks: true,
+            storage: Storage::default(),
+            generation: Generation::default(),
         }
     }
 }

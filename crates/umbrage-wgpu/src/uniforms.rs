@@ -6,6 +6,7 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 use umbrage::ShadowPlan;
 use umbrage_shaders::layout;
 
+use crate::maps::storage::Tile;
 use crate::{Error, FrameOptions, Result, ShadowMapsOptions};
 
 /// The square of texels that clip space covers when a split is drawn: the map and a guard band around it.
@@ -34,13 +35,33 @@ impl Viewport {
     }
 }
 
-/// The uniform that receivers read; its splits are what casters read. `map_edge` is the edge of a layer in texels, `viewports`
-/// are those of the splits.
+/// Where a split's map lies, and the viewport that it is drawn with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Place {
+    pub tile: Tile,
+    pub viewport: Viewport,
+}
+
+impl Place {
+    /// The members of the uniform that say so.
+    fn into_split(self) -> layout::Split {
+        let Tile { layer, corner, layer_texels } = self.tile;
+        layout::Split {
+            viewport_texels: self.viewport.edge as f32,
+            guard_texels: self.viewport.guard as f32,
+            corner: corner.map(|texels| texels as f32),
+            layer_texels: layer_texels.map(|texels| texels as f32),
+            layer,
+            ..layout::Split::default()
+        }
+    }
+}
+
+/// The uniform that receivers read; its splits are what casters read. `places` are those of the splits.
 pub(crate) fn frame(
     plan: &ShadowPlan,
     maps: &ShadowMapsOptions,
-    map_edge: u32,
-    viewports: &[Viewport],
+    places: &[Place],
     options: &FrameOptions,
 ) -> Result<layout::Frame> {
     options.validate()?;
@@ -67,7 +88,6 @@ pub(crate) fn frame(
         to_light: (-plan.light_direction).as_vec3().to_array(),
         strength: options.strength,
         fade_begin: plan.fade_begin as f32,
-        map_edge: map_edge as f32,
         split_count: plan.splits.len() as u32,
         filter_kind: maps.filter.kind() as u32,
         enabled: options.enabled.into(),
@@ -78,23 +98,17 @@ pub(crate) fn frame(
         transition: options.transition.kind() as u32,
         ..layout::Frame::default()
     };
-    for (index, ((uniform, split), viewport)) in frame.splits.iter_mut().zip(&plan.splits).zip(viewports).enumerate() {
-        *uniform = self::split(index, split, maps.depth_format.step(), *viewport, options.origin)?;
+    for (index, ((uniform, split), place)) in frame.splits.iter_mut().zip(&plan.splits).zip(places).enumerate() {
+        *uniform = self::split(index, split, maps.depth_format.step(), *place, options.origin)?;
     }
     Ok(frame)
 }
 
 /// One split. `depth_step` is the format's step as a share of the depth range.
-fn split(
-    index: usize,
-    split: &umbrage::Split,
-    depth_step: f64,
-    viewport: Viewport,
-    origin: DVec3,
-) -> Result<layout::Split> {
+fn split(index: usize, split: &umbrage::Split, depth_step: f64, place: Place, origin: DVec3) -> Result<layout::Split> {
     check(index, split)?;
     if let Some(shadow_from_world) = split.warp {
-        return warped(index, split, shadow_from_world, depth_step, viewport, origin);
+        return warped(index, split, shadow_from_world, depth_step, place, origin);
     }
     // The light's plane in texels. What the origin adds (less the fraction of a map that is not stabilised) is split into a fraction,
     // which stays with the row, and whole texels, which join the map's offset: a place before the offset then depends on the
@@ -117,9 +131,7 @@ fn split(
         depth_range_m: range as f32,
         depth_step_m: (range * depth_step) as f32,
         is_empty: split.casters.is_empty().into(),
-        viewport_texels: viewport.edge as f32,
-        guard_texels: viewport.guard as f32,
-        ..layout::Split::default()
+        ..place.into_split()
     };
     Ok(uniform)
 }
@@ -130,7 +142,7 @@ fn warped(
     split: &umbrage::Split,
     shadow_from_world: DMat4,
     depth_step: f64,
-    viewport: Viewport,
+    place: Place,
     origin: DVec3,
 ) -> Result<layout::Split> {
     let bad = |value, expected| Err(Error::InvalidSplit { split: index, field: "warp", value, expected });
@@ -161,9 +173,7 @@ fn warped(
         depth_range_m: range as f32,
         depth_step_m: (range * depth_step) as f32,
         is_empty: split.casters.is_empty().into(),
-        viewport_texels: viewport.edge as f32,
-        guard_texels: viewport.guard as f32,
-        ..layout::Split::default()
+        ..place.into_split()
     })
 }
 
@@ -210,7 +220,13 @@ mod tests {
     use umbrage::{DirectionalLight, Frustum, View, Warp, WarpTarget};
     use umbrage_shaders::twin;
 
-    use super::{Viewport, split};
+    use super::{Place, Viewport, split};
+    use crate::maps::storage::Tile;
+
+    fn alone(size: u32) -> Place {
+        let tile = Tile { layer: 0, corner: [0; 2], layer_texels: [size; 2] };
+        Place { tile, viewport: Viewport::around(size, 8192) }
+    }
 
     /// A stabilised split of a light and a point near which its map lies.
     fn split_near(direction: DVec3, center: DVec3, texel: f64, size: u32) -> umbrage::Split {
@@ -266,7 +282,7 @@ mod tests {
             if !stabilised {
                 planned.min_texel += DVec2::new(0.37, -0.81);
             }
-            let uniform = split(0, &planned, 0.0, Viewport::around(1024, 8192), origin).expect("a valid split");
+            let uniform = split(0, &planned, 0.0, alone(1024), origin).expect("a valid split");
             prop_assert_eq!(uniform.texel_offset.map(f32::fract), [0.0; 2], "whole texels stay whole");
             prop_assert!((0.0..=1.0).contains(&uniform.u_row[3]) && (0.0..=1.0).contains(&uniform.v_row[3]));
             let point = center + 300.0 * texel * place;
@@ -302,7 +318,7 @@ mod tests {
             });
             prop_assert!(planned.warp.is_some());
             let origin = center + 500.0 * offset;
-            let uniform = split(0, &planned, 0.0, Viewport::around(1024, 8192), origin).expect("a valid split");
+            let uniform = split(0, &planned, 0.0, alone(1024), origin).expect("a valid split");
             let depth = 1.0 + 199.0 * at.2;
             let corners = view.slice_corners(depth, depth + 1.0);
             let point = corners[0] + (corners[1] - corners[0]) * at.0 + (corners[2] - corners[0]) * at.1;
@@ -325,7 +341,7 @@ mod tests {
             let planned = split_near(direction, center, 0.1, 512);
             let mut moved = planned.clone();
             moved.min_texel += DVec2::new(x.into(), y.into());
-            let uniform = |it| split(0, it, 0.0, Viewport::around(512, 8192), center.round()).expect("a valid split");
+            let uniform = |it| split(0, it, 0.0, alone(512), center.round()).expect("a valid split");
             let (before, mut after) = (uniform(&planned), uniform(&moved));
             prop_assert_eq!(after.texel_offset, [before.texel_offset[0] - x as f32, before.texel_offset[1] - y as f32]);
             after.texel_offset = before.texel_offset;

@@ -12,7 +12,12 @@ fn soft(softness: Softness) -> FrameOptions {
 }
 
 fn options(map_sizes: &[u32], filter: Filter) -> ShadowMapsOptions {
-    ShadowMapsOptions { map_sizes: map_sizes.to_vec(), depth_format: DepthFormat::D32Float, filter }
+    ShadowMapsOptions {
+        map_sizes: map_sizes.to_vec(),
+        depth_format: DepthFormat::D32Float,
+        filter,
+        ..Default::default()
+    }
 }
 
 #[test]

@@ -29,7 +29,12 @@ fn softness_of(values: impl Iterator<Item = f64>, step: f64) -> f64 {
 
 /// Full widths of the edge in splits 0 and 1, in metres, if it has the form `share`.
 fn widths(filter: Filter, softness: Softness, maps: [f64; 2], share: fn(f64) -> f64) -> Option<[f64; 2]> {
-    let options = ShadowMapsOptions { map_sizes: vec![512, 512], depth_format: DepthFormat::D32Float, filter };
+    let options = ShadowMapsOptions {
+        map_sizes: vec![512, 512],
+        depth_format: DepthFormat::D32Float,
+        filter,
+        ..Default::default()
+    };
     let mut world = World::new(Gpu::new()?, &options);
     let plan = plan(DVec3::NEG_Y, DVec3::new(f64::from(EDGE), 0.0, 0.0), &[512, 512], &[1.0, 20.0, 60.0], &maps);
     // The edge runs askew so that it meets texels everywhere.

@@ -12,7 +12,7 @@ const DOWN: DVec3 = DVec3::new(0.0, -1.0, 0.0);
 const SLANTED: DVec3 = DVec3::new(1.0, -1.0, 0.0);
 
 fn options(map_sizes: &[u32], filter: Filter, depth_format: DepthFormat) -> ShadowMapsOptions {
-    ShadowMapsOptions { map_sizes: map_sizes.to_vec(), depth_format, filter }
+    ShadowMapsOptions { map_sizes: map_sizes.to_vec(), depth_format, filter, ..Default::default() }
 }
 
 /// The ground, and a box of 4 × 2 × 6 m standing on it around x = 20.

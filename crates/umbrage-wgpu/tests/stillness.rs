@@ -78,8 +78,12 @@ fn compared(a: &[f32], b: &[f32], shift: (i32, i32)) -> (usize, usize, usize) {
 #[test]
 fn whole_texels_change_nothing() {
     let Some(gpu) = Gpu::new() else { return };
-    let options =
-        ShadowMapsOptions { map_sizes: vec![SIZE], depth_format: DepthFormat::D32Float, filter: Filter::Hard };
+    let options = ShadowMapsOptions {
+        map_sizes: vec![SIZE],
+        depth_format: DepthFormat::D32Float,
+        filter: Filter::Hard,
+        ..Default::default()
+    };
     let mut world = World::new(gpu, &options);
     for light in [DVec3::new(0.3, -1.0, 0.2), DVec3::new(0.0, -1.0, 0.0), DVec3::new(-1.0, -0.2, 0.5)] {
         let triangles = without_slivers(&soup(3000), light);
@@ -106,7 +110,12 @@ fn whole_texels_change_no_answer() {
         [(Filter::Hard, 0.0), (Filter::Pcf2, 1.0 / 64.0), (Filter::Pcf3, 1.0 / 64.0), (Filter::Pcf5, 1.0 / 64.0)]
     {
         let Some(gpu) = Gpu::new() else { return };
-        let options = ShadowMapsOptions { map_sizes: vec![SIZE], depth_format: DepthFormat::D32Float, filter };
+        let options = ShadowMapsOptions {
+            map_sizes: vec![SIZE],
+            depth_format: DepthFormat::D32Float,
+            filter,
+            ..Default::default()
+        };
         let mut world = World::new(gpu, &options);
         let light = DVec3::new(0.3, -1.0, 0.2);
         let triangles = without_slivers(&soup(3000), light);
@@ -145,8 +154,12 @@ fn whole_texels_change_no_answer() {
 #[test]
 fn half_a_texel_is_seen() {
     let Some(gpu) = Gpu::new() else { return };
-    let options =
-        ShadowMapsOptions { map_sizes: vec![SIZE], depth_format: DepthFormat::D32Float, filter: Filter::Hard };
+    let options = ShadowMapsOptions {
+        map_sizes: vec![SIZE],
+        depth_format: DepthFormat::D32Float,
+        filter: Filter::Hard,
+        ..Default::default()
+    };
     let mut world = World::new(gpu, &options);
     let triangles = soup(3000);
     let light = DVec3::new(0.3, -1.0, 0.2);

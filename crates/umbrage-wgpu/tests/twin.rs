@@ -5,7 +5,7 @@ mod common;
 use common::{Gpu, World, ask, plan};
 use glam::{DVec3, Vec3};
 use umbrage_shaders::{layout, twin};
-use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions, receiver_wgsl, receiver_wgsl_without_loads};
+use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions};
 
 /// Numbers in [0, 1) from a linear congruential generator (Knuth's constants).
 fn random() -> impl FnMut() -> f32 {
@@ -19,7 +19,7 @@ fn random() -> impl FnMut() -> f32 {
 #[test]
 fn tent_taps_agree() {
     let Some(gpu) = Gpu::new() else { return };
-    let source = umbrage_shaders::receiver(1)
+    let source = umbrage_shaders::receiver(1, Default::default())
         + "@group(0) @binding(0) var<storage, read> input: array<vec4f>;
            @group(0) @binding(1) var<storage, read_write> output: array<vec4f>;
            @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -52,7 +52,7 @@ fn tent_taps_agree() {
 #[test]
 fn filters_reach_as_far_as_they_say() {
     let Some(gpu) = Gpu::new() else { return };
-    let source = umbrage_shaders::receiver(1)
+    let source = umbrage_shaders::receiver(1, Default::default())
         + "@group(0) @binding(0) var<storage, read> input: array<u32>;
            @group(0) @binding(1) var<storage, read_write> output: array<f32>;
            @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -76,7 +76,7 @@ fn filters_reach_as_far_as_they_say() {
 #[test]
 fn discs_widths_and_noise_agree() {
     let Some(gpu) = Gpu::new() else { return };
-    let source = umbrage_shaders::receiver(1)
+    let source = umbrage_shaders::receiver(1, Default::default())
         + "@group(0) @binding(0) var<storage, read> input: array<vec4f>;
            @group(0) @binding(1) var<storage, read_write> output: array<vec4f>;
            @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -104,8 +104,12 @@ fn discs_widths_and_noise_agree() {
 fn selection_agrees_at_and_around_every_border() {
     let Some(gpu) = Gpu::new() else { return };
     let sizes = [64; 8];
-    let options =
-        ShadowMapsOptions { map_sizes: sizes.to_vec(), depth_format: DepthFormat::D32Float, filter: Filter::Hard };
+    let options = ShadowMapsOptions {
+        map_sizes: sizes.to_vec(),
+        depth_format: DepthFormat::D32Float,
+        filter: Filter::Hard,
+        ..Default::default()
+    };
     let mut world = World::new(gpu, &options);
     let planes = [1.0, 2.5, 6.0, 14.0, 30.0, 65.0, 140.0, 300.0, 640.0];
     let mut plan = plan(DVec3::NEG_Y, DVec3::ZERO, &sizes, &planes, &[2000.0; 8]);
@@ -130,11 +134,4 @@ fn selection_agrees_at_and_around_every_border() {
         assert_eq!(answer.split, expected, "at view depth {depth}");
         assert_eq!(answer.visibility, 1.0, "at view depth {depth}");
     }
-}
-
-#[test]
-fn texts_for_the_app_are_the_shaders_crate_s() {
-    assert_eq!(receiver_wgsl(3), umbrage_shaders::receiver(3));
-    assert_eq!(receiver_wgsl_without_loads(3), umbrage_shaders::receiver_without_loads(3));
-    assert_eq!(umbrage_wgpu::caster_wgsl(1), umbrage_shaders::caster(1));
 }

@@ -47,6 +47,8 @@ pub fn measure(
             samples,
             softness: technique.job.softness(None),
             transition: technique.job.transition(),
+            storage: umbrage_wgpu::Storage::default(),
+            generation: umbrage_wgpu::Generation::default(),
         };
         renderers.push(Renderer::new(gpu, &stage.scene, &settings)?);
     }

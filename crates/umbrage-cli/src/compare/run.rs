@@ -108,6 +108,8 @@ impl Bench<'_> {
                 samples: umbrage_render::Samples::default(),
                 softness: technique.job.softness(self.args.sun_angle),
                 transition: technique.job.transition(),
+                storage: umbrage_wgpu::Storage::default(),
+                generation: umbrage_wgpu::Generation::default(),
             };
             let renderer = Renderer::new(self.gpu, &set.scene, &settings);
             renderers.push(renderer.map_err(|error| in_technique(technique, error))?);

@@ -8,7 +8,7 @@ use image::GrayAlphaImage;
 use umbrage::{DirectionalLight, Frustum, ShadowSettings, Stabilize, View};
 use umbrage_render::{Frame, Gpu, GpuOptions, Outputs, RenderSettings, Rendered, Renderer, Samples};
 use umbrage_scene::{Material, Mesh, Node, Pose, Primitive, Scene, Trs};
-use umbrage_wgpu::{DepthFormat, Filter, Softness, Transition};
+use umbrage_wgpu::{DepthFormat, Filter, Generation, Softness, Storage, Transition};
 
 /// The device, or `None` (said loudly) where there is no adapter. `UMBRAGE_REQUIRE_GPU=1` turns that into a failure.
 pub fn gpu() -> Option<Gpu> {
@@ -43,6 +43,8 @@ pub fn settings() -> RenderSettings {
         samples: Samples::Four,
         softness: Softness::default(),
         transition: Transition::default(),
+        storage: Storage::default(),
+        generation: Generation::default(),
     }
 }
 

@@ -4,7 +4,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, DVec4, Vec3};
 use umbrage::{DirectionalLight, ShadowPlan, Split};
-use umbrage_wgpu::{FrameOptions, ShadowMaps, ShadowMapsOptions, caster_wgsl, optional_features, receiver_wgsl};
+use umbrage_wgpu::{FrameOptions, ShadowMaps, ShadowMapsOptions, optional_features};
 
 /// A device of its own for each test, and the queue.
 pub struct Gpu {
@@ -192,7 +192,7 @@ impl World {
     pub fn new(gpu: Gpu, options: &ShadowMapsOptions) -> Self {
         let (maps, pipeline) = gpu.checked(|| {
             let maps = ShadowMaps::new(&gpu.device, options).expect("valid options");
-            let source = caster_wgsl(0)
+            let source = maps.caster_wgsl(0)
                 + "@vertex fn vertex(@location(0) position: vec3f) -> @builtin(position) vec4f {
                        return umbrage_caster_position(position);
                    }";
@@ -247,7 +247,7 @@ impl World {
     }
 
     pub fn ask(&self, asks: &[Ask]) -> Vec<Answer> {
-        self.gpu.compute(&(receiver_wgsl(1) + ASK), asks, Some(&self.maps))
+        self.gpu.compute(&(self.maps.receiver_wgsl(1) + ASK), asks, Some(&self.maps))
     }
 
     /// The texels of a D32Float map, row after row.

@@ -1,10 +1,14 @@
-//! The maps: one depth texture array, one pass per split, two kinds of bind group.
+//! The maps: their texture, the passes that draw them, two kinds of bind group.
+
+pub(crate) mod storage;
 
 use umbrage::{MAX_SPLITS, ShadowPlan, ShadowSettings};
-use umbrage_shaders::layout;
+use umbrage_shaders::{Maps, layout};
 
-use crate::uniforms::{self, Viewport};
-use crate::{Error, FrameOptions, Result, ShadowMapsOptions};
+use storage::{Arrangement, Tile};
+
+use crate::uniforms::{self, Place, Viewport};
+use crate::{Error, FrameOptions, Generation, Result, ShadowMapsOptions, Storage};
 
 /// Features that make shadows better where an adapter has them: request `adapter.features() & optional_features()`.
 ///
@@ -16,14 +20,13 @@ pub fn optional_features() -> wgpu::Features {
 
 /// The shadow maps of one light for one view, on the GPU.
 ///
-/// Each split is a layer of one depth texture array whose edge is that of the largest map; a smaller map lies in the upper
-/// left corner of its layer. Each frame: [`ShadowMaps::prepare`], one pass per split from [`ShadowMaps::begin_split`], then any
+/// [`Storage`] says where maps are kept, [`Generation`] how they are drawn. Each frame: [`ShadowMaps::prepare`], one pass per split from [`ShadowMaps::begin_split`], then any
 /// pass of the app with [`ShadowMaps::receiver_bind_group`].
 #[derive(Debug)]
 pub struct ShadowMaps {
     options: ShadowMapsOptions,
-    edge: u32,
-    viewports: Vec<Viewport>,
+    places: Vec<Place>,
+    depth_loads: bool,
     depth_clamp: bool,
     texture: wgpu::Texture,
     layers: Vec<wgpu::TextureView>,
@@ -43,8 +46,12 @@ impl ShadowMaps {
     /// # Errors
     /// [`Error::SplitCount`], [`Error::MapTooSmall`], [`Error::MapTooLarge`], [`Error::TooManyLayers`].
     pub fn new(device: &wgpu::Device, options: &ShadowMapsOptions) -> Result<Self> {
-        let edge = checked_edge(options, &device.limits())?;
-        let layer_count = layer_count(options.map_sizes.len() as u32, device.adapter_info().backend);
+        check_sizes(options, &device.limits())?;
+        let backend = device.adapter_info().backend;
+        let storage = if options.storage == Storage::Auto { Storage::Array } else { options.storage };
+        let Arrangement { tiles, layers, layer_texels } =
+            Arrangement::new(storage, &options.map_sizes, device.limits().max_texture_dimension_2d)?;
+        let layer_count = layer_count(layers, layer_texels, backend);
         let limit = device.limits().max_texture_array_layers;
         if layer_count > limit {
             return Err(Error::TooManyLayers { count: layer_count, limit });
@@ -52,7 +59,11 @@ impl ShadowMaps {
 
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("ShadowMaps::depth"),
-            size: wgpu::Extent3d { width: edge, height: edge, depth_or_array_layers: layer_count },
+            size: wgpu::Extent3d {
+                width: layer_texels[0],
+                height: layer_texels[1],
+                depth_or_array_layers: layer_count,
+            },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -62,7 +73,7 @@ impl ShadowMaps {
                 | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
-        let layers = (0..options.map_sizes.len() as u32)
+        let layers = (0..layers)
             .map(|layer| {
                 texture.create_view(&wgpu::TextureViewDescriptor {
                     label: Some("ShadowMaps::layer"),
@@ -128,9 +139,9 @@ impl ShadowMaps {
         });
 
         Ok(Self {
-            options: options.clone(),
-            edge,
-            viewports: viewports(device, &options.map_sizes),
+            options: ShadowMapsOptions { storage, generation: Generation::PerSplit, ..options.clone() },
+            places: places(device, &options.map_sizes, &tiles),
+            depth_loads: backend != wgpu::Backend::Gl,
             depth_clamp: device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL),
             texture,
             layers,
@@ -150,7 +161,7 @@ impl ShadowMaps {
     /// [`Error::PlanMismatch`] if the plan was made for other maps, [`Error::InvalidPlan`] or [`Error::InvalidSplit`] if it
     /// holds a number that cannot be used, [`Error::InvalidFrameOption`]. Nothing has been written then.
     pub fn prepare(&mut self, queue: &wgpu::Queue, plan: &ShadowPlan, options: &FrameOptions) -> Result<()> {
-        let frame = uniforms::frame(plan, &self.options, self.edge, &self.viewports, options)?;
+        let frame = uniforms::frame(plan, &self.options, &self.places, options)?;
         queue.write_buffer(&self.frame_buffer, 0, bytemuck::bytes_of(&frame));
         for (split, offset) in frame.splits[..self.splits()].iter().zip((0..).step_by(self.caster_stride as usize)) {
             queue.write_buffer(&self.caster_buffer, offset, bytemuck::bytes_of(split));
@@ -159,8 +170,8 @@ impl ShadowMaps {
     }
 
     /// Begins the pass that draws split `split`: its map is cleared, viewport and scissor are set and have to stay. Bind
-    /// [`ShadowMaps::caster_bind_group`] of the same split and draw its casters in any order. A split without casters needs no
-    /// pass; its map is not read.
+    /// [`ShadowMaps::caster_bind_group`] of the same split and draw its casters in any order. Begin every split's pass, the first one
+    /// first: it clears what the others share.
     ///
     /// # Panics
     /// If `split` is not less than [`ShadowMaps::splits`].
@@ -170,22 +181,25 @@ impl ShadowMaps {
         split: usize,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'e> {
+        let Place { tile, viewport } = self.places[split];
+        let shared = self.options.storage == Storage::Atlas && split > 0;
+        let load = if shared { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(1.0) };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("ShadowMaps::split"),
             color_attachments: &[],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.layers[split],
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+                view: &self.layers[tile.layer as usize],
+                depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),
             timestamp_writes,
             occlusion_query_set: None,
             multiview_mask: None,
         });
-        let (size, viewport) = (self.options.map_sizes[split], self.viewports[split]);
-        let (corner, edge) = (-(viewport.guard as f32), viewport.edge as f32);
-        pass.set_viewport(corner, corner, edge, edge, 0.0, 1.0);
-        pass.set_scissor_rect(0, 0, size, size);
+        let (size, edge) = (self.options.map_sizes[split], viewport.edge as f32);
+        let [left, top] = tile.corner.map(|texels| texels as f32 - viewport.guard as f32);
+        pass.set_viewport(left, top, edge, edge, 0.0, 1.0);
+        pass.set_scissor_rect(tile.corner[0], tile.corner[1], size, size);
         pass
     }
 
@@ -195,7 +209,22 @@ impl ShadowMaps {
         self.options.map_sizes.len()
     }
 
-    /// What the maps were made with.
+    /// What a vertex shader needs to draw casters; `group` is the index at which the app binds
+    /// [`ShadowMaps::caster_bind_group`].
+    #[must_use]
+    pub fn caster_wgsl(&self, group: u32) -> String {
+        umbrage_shaders::caster(group)
+    }
+
+    /// What any shader needs to ask for visibility; `group` is the index at which the app binds
+    /// [`ShadowMaps::receiver_bind_group`]. On GL and WebGL2, where depth textures cannot be loaded from, [`crate::Filter::Pcss`] is
+    /// then [`crate::Filter::Disc`].
+    #[must_use]
+    pub fn receiver_wgsl(&self, group: u32) -> String {
+        umbrage_shaders::receiver(group, Maps { without_loads: !self.depth_loads })
+    }
+
+    /// What the maps were made with; where the options left a choice, what was chosen.
     #[must_use]
     pub fn options(&self) -> &ShadowMapsOptions {
         &self.options
@@ -230,13 +259,24 @@ impl ShadowMaps {
         self.depth_clamp
     }
 
-    /// The maps themselves: split `i` is the upper left `map_sizes[i]` texels of layer `i`. Can be copied from.
+    /// The layer of [`ShadowMaps::depth_texture`] that holds the map of split `split`, and the map's upper left corner there in
+    /// texels. The map is a square of `map_sizes[split]` texels.
+    ///
+    /// # Panics
+    /// If `split` is not less than [`ShadowMaps::splits`].
+    #[must_use]
+    pub fn map_place(&self, split: usize) -> (u32, [u32; 2]) {
+        let tile = self.places[split].tile;
+        (tile.layer, tile.corner)
+    }
+
+    /// The maps themselves, each where [`ShadowMaps::map_place`] says. Can be copied from.
     #[must_use]
     pub fn depth_texture(&self) -> &wgpu::Texture {
         &self.texture
     }
 
-    /// Layout of the group that [`crate::caster_wgsl`] declares.
+    /// Layout of the group that [`ShadowMaps::caster_wgsl`] declares.
     #[must_use]
     pub fn caster_layout(&self) -> &wgpu::BindGroupLayout {
         &self.caster_layout
@@ -269,7 +309,7 @@ impl ShadowMaps {
         wgpu::PrimitiveState { cull_mode: None, unclipped_depth: self.depth_clamp, ..Default::default() }
     }
 
-    /// Layout of the group that [`crate::receiver_wgsl`] declares, visible to vertex, fragment and compute shaders.
+    /// Layout of the group that [`ShadowMaps::receiver_wgsl`] declares, visible to vertex, fragment and compute shaders.
     #[must_use]
     pub fn receiver_layout(&self) -> &wgpu::BindGroupLayout {
         &self.receiver_layout
@@ -282,8 +322,8 @@ impl ShadowMaps {
     }
 }
 
-/// The edge of a layer, once every size is known to fit the filter and the device.
-fn checked_edge(options: &ShadowMapsOptions, limits: &wgpu::Limits) -> Result<u32> {
+/// Every size has to fit the filter and the device.
+fn check_sizes(options: &ShadowMapsOptions, limits: &wgpu::Limits) -> Result<()> {
     let sizes = &options.map_sizes;
     let least = options.filter.least_size();
     let limit = limits.max_texture_dimension_2d;
@@ -295,23 +335,25 @@ fn checked_edge(options: &ShadowMapsOptions, limits: &wgpu::Limits) -> Result<u3
             return Err(Error::MapTooLarge { split, size, limit });
         }
     }
-    match sizes.iter().max() {
-        Some(&edge) if sizes.len() <= MAX_SPLITS => Ok(edge),
-        _ => Err(Error::SplitCount { count: sizes.len(), most: MAX_SPLITS }),
+    match sizes.len() {
+        1..=MAX_SPLITS => Ok(()),
+        count => Err(Error::SplitCount { count, most: MAX_SPLITS }),
     }
 }
 
-/// wgpu guesses a GL texture's kind from its number of square layers: one is no array, and a multiple of six is a cube. A spare
+/// wgpu guesses a GL texture's kind from its number of layers: one is no array, and a multiple of six squares is a cube. A spare
 /// layer makes it an array.
-fn layer_count(splits: u32, backend: wgpu::Backend) -> u32 {
-    if backend == wgpu::Backend::Gl && (splits == 1 || splits.is_multiple_of(6)) { splits + 1 } else { splits }
+fn layer_count(layers: u32, [width, height]: [u32; 2], backend: wgpu::Backend) -> u32 {
+    let mistaken = layers == 1 || (layers.is_multiple_of(6) && width == height);
+    if backend == wgpu::Backend::Gl && mistaken { layers + 1 } else { layers }
 }
 
 /// A guard band around every map, except in browsers: those that are older than the rule reject a viewport that leaves its target.
-fn viewports(device: &wgpu::Device, sizes: &[u32]) -> Vec<Viewport> {
+fn places(device: &wgpu::Device, sizes: &[u32], tiles: &[Tile]) -> Vec<Place> {
     let in_browser = device.adapter_info().backend == wgpu::Backend::BrowserWebGpu;
     let largest = if in_browser { 0 } else { device.limits().max_texture_dimension_2d };
-    sizes.iter().map(|&size| Viewport::around(size, largest)).collect()
+    let place = |(&size, &tile)| Place { tile, viewport: Viewport::around(size, largest) };
+    sizes.iter().zip(tiles).map(place).collect()
 }
 
 fn sampler(device: &wgpu::Device, options: &ShadowMapsOptions) -> wgpu::Sampler {
