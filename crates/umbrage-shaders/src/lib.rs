@@ -30,14 +30,36 @@ pub const CASTER: &str = include_str!(concat!(env!("OUT_DIR"), "/caster.wgsl"));
 
 const RECEIVER: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver.wgsl"));
 const RECEIVER_WITHOUT_LOADS: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver_without_loads.wgsl"));
+const RECEIVER_OF_MOMENTS: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver_of_moments.wgsl"));
 const ARRAY: &str = include_str!(concat!(env!("OUT_DIR"), "/array.wgsl"));
 const ARRAY_WITHOUT_LOADS: &str = include_str!(concat!(env!("OUT_DIR"), "/array_without_loads.wgsl"));
+
+const MOMENTS: &str = include_str!(concat!(env!("OUT_DIR"), "/moments.wgsl"));
+const MOMENTS_BY_HAND: &str = include_str!(concat!(env!("OUT_DIR"), "/moments_by_hand.wgsl"));
+
+/// The passes from depth to moments, `shaders/pass/moments.wesl`: entry points `vs_all`, `fs_convert`, `fs_blur_u`, `fs_blur_v` and
+/// `fs_halve`, constants `KIND`, `POSITIVE_EXPONENT` and `NEGATIVE_EXPONENT`.
+pub const MOMENT_PASSES: &str = include_str!(concat!(env!("OUT_DIR"), "/moment_passes.wgsl"));
+
+/// The same from depth with four samples a texel.
+pub const MOMENT_PASSES_OF_SAMPLES: &str = include_str!(concat!(env!("OUT_DIR"), "/moment_passes_of_samples.wgsl"));
 
 /// How a receiver reads its maps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Maps {
     /// Depth textures can be compared with but not loaded from (GL, WebGL2): [`layout::FilterKind::Pcss`] is an ordinary disc.
     pub without_loads: bool,
+    /// Maps hold moments of depth.
+    pub moments: Option<MomentMaps>,
+}
+
+/// How moments are read: through a sampler, or filtered by the shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MomentMaps {
+    /// Bindings 1: `texture_2d_array<f32>`, 2: a linear sampler, 3: uniform [`layout::Moments`].
+    Sampled,
+    /// The same without the sampler.
+    ByHand,
 }
 
 /// Text to put before a vertex shader that draws casters: `fn umbrage_caster_position(position: vec3f) -> vec4f`.
@@ -50,7 +72,11 @@ pub fn caster(group: u32) -> String {
 /// `umbrage_shadow` and `umbrage_visibility_in_split`.
 #[must_use]
 pub fn receiver(group: u32, maps: Maps) -> String {
-    let (receiver, maps) =
-        if maps.without_loads { (RECEIVER_WITHOUT_LOADS, ARRAY_WITHOUT_LOADS) } else { (RECEIVER, ARRAY) };
+    let (receiver, maps) = match (maps.moments, maps.without_loads) {
+        (Some(MomentMaps::Sampled), _) => (RECEIVER_OF_MOMENTS, MOMENTS),
+        (Some(MomentMaps::ByHand), _) => (RECEIVER_OF_MOMENTS, MOMENTS_BY_HAND),
+        (None, true) => (RECEIVER_WITHOUT_LOADS, ARRAY_WITHOUT_LOADS),
+        (None, false) => (RECEIVER, ARRAY),
+    };
     format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\n{maps}\n{receiver}\n")
 }

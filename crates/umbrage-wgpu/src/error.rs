@@ -66,8 +66,18 @@ pub enum Error {
         /// The filter.
         filter: crate::Filter,
     },
+    /// Moments are layers of an array.
+    #[error("storage {} and filter {filter:?} exclude each other: moments are kept as an array; use storage array, or a filter that compares depth", storage.name())]
+    MomentsNeedArray {
+        /// The storage.
+        storage: crate::Storage,
+        /// The filter.
+        filter: crate::Filter,
+    },
     /// Maps cannot have so many samples.
-    #[error("samples is {samples} with filter {filter:?}; give 1, or 4 for a filter of moments (Esm, Vsm, Evsm2, Evsm4, Msm)")]
+    #[error(
+        "samples is {samples} with filter {filter:?}; give 1, or 4 for a filter of moments (Esm, Vsm, Evsm2, Evsm4, Msm)"
+    )]
     Samples {
         /// What was asked for.
         samples: u32,

@@ -4,7 +4,7 @@ use umbrage::{MAX_SPLITS, ShadowPlan};
 use umbrage_shaders::layout::{self, FilterKind};
 use umbrage_shaders::{MOMENT_PASSES, MOMENT_PASSES_OF_SAMPLES, twin::moments::of_depth};
 
-use crate::{Error, Filter, FrameOptions, Result};
+use crate::{Error, Filter, FrameOptions, Result, ShadowMapsOptions};
 
 /// What a device keeps moments in. Chosen when the maps are made, the first that it can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -99,15 +99,14 @@ struct SplitTargets {
 }
 
 impl Moments {
-    /// `depths` has one view for each split, with as many samples as `samples`; `edge` is that of a layer, of which there are `layers`.
+    /// `depths` has one view for each split; `edge` is that of a layer, of which there are `layers`.
     pub fn new(
         device: &wgpu::Device,
-        filter: Filter,
-        fallbacks: bool,
-        samples: u32,
+        options: &ShadowMapsOptions,
         [edge, layers]: [u32; 2],
         depths: &[wgpu::TextureView],
     ) -> Result<Self> {
+        let ShadowMapsOptions { filter, fallbacks, samples, .. } = *options;
         if device.adapter_info().backend == wgpu::Backend::Gl {
             return Err(Error::NoDepthLoads { filter });
         }
@@ -160,7 +159,11 @@ impl Moments {
             });
             let texture = wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
             let entries: Vec<_> = buffer.into_iter().chain([texture]).collect();
-            device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("Moments::pass"), layout, entries: &entries })
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("Moments::pass"),
+                layout,
+                entries: &entries,
+            })
         };
         let splits = (depths.iter().enumerate())
             .map(|(split, depth)| {
@@ -169,7 +172,11 @@ impl Moments {
                     from_depth: group(&from_depth_layout, Some(split), 1, depth),
                     from_level_0: group(&blur_layout, Some(split), 2, &levels[0]),
                     from_between: group(&blur_layout, Some(split), 2, &between_view),
-                    halves: levels[1..].iter().zip(&levels).map(|(_, from)| group(&halve_layout, None, 2, from)).collect(),
+                    halves: levels[1..]
+                        .iter()
+                        .zip(&levels)
+                        .map(|(_, from)| group(&halve_layout, None, 2, from))
+                        .collect(),
                     levels,
                 }
             })
@@ -237,8 +244,13 @@ impl Moments {
         if by_hand { vec![texture, uniform] } else { vec![texture, sampler, uniform] }
     }
 
-    /// The view of all maps, and the sampler where one reads them.
-    pub fn receiver_resources(&self, device: &wgpu::Device) -> (wgpu::TextureView, Option<wgpu::Sampler>, &wgpu::Buffer) {
+    /// What to bind there.
+    pub fn receiver_bind_group(
+        &self,
+        device: &wgpu::Device,
+        layout: &wgpu::BindGroupLayout,
+        frame: &wgpu::Buffer,
+    ) -> wgpu::BindGroup {
         let view = self.texture.create_view(&wgpu::TextureViewDescriptor {
             label: Some("Moments::all"),
             dimension: Some(wgpu::TextureViewDimension::D2Array),
@@ -254,11 +266,27 @@ impl Moments {
                 ..Default::default()
             })
         });
-        (view, sampler, &self.frame_buffer)
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        let texture = entry(1, wgpu::BindingResource::TextureView(&view));
+        let sampler = sampler.as_ref().map(|sampler| entry(2, wgpu::BindingResource::Sampler(sampler)));
+        let uniforms = [entry(0, frame.as_entire_binding()), entry(3, self.frame_buffer.as_entire_binding())];
+        let entries: Vec<_> = uniforms.into_iter().chain([texture]).chain(sampler).collect();
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("ShadowMaps::receiver"),
+            layout,
+            entries: &entries,
+        })
     }
 
-    /// What a plan asks for, checked; nothing is written yet.
-    pub fn plan(&self, plan: &ShadowPlan, options: &FrameOptions) -> Result<Vec<Option<layout::MomentPass>>> {
+    /// Takes a plan; nothing is written if it cannot be used.
+    pub fn prepare(&mut self, queue: &wgpu::Queue, plan: &ShadowPlan, options: &FrameOptions) -> Result<()> {
+        let wanted = self.wanted(plan, options)?;
+        self.write(queue, wanted, options);
+        Ok(())
+    }
+
+    /// What a plan asks for, checked.
+    fn wanted(&self, plan: &ShadowPlan, options: &FrameOptions) -> Result<Vec<Option<layout::MomentPass>>> {
         let finest = plan.splits.iter().map(|split| split.texel_m.max_element()).fold(f64::INFINITY, f64::min);
         let width = options.softness.width_m.map_or(DEFAULT_TEXELS * finest, f64::from);
         (plan.splits.iter().enumerate())
@@ -287,8 +315,7 @@ impl Moments {
             .collect()
     }
 
-    /// Takes what [`Moments::plan`] found.
-    pub fn write(&mut self, queue: &wgpu::Queue, wanted: Vec<Option<layout::MomentPass>>, options: &FrameOptions) {
+    fn write(&mut self, queue: &wgpu::Queue, wanted: Vec<Option<layout::MomentPass>>, options: &FrameOptions) {
         let mut frame = layout::Moments {
             exponents: self.storage.exponents(self.filter),
             bleeding: options.softness.bleeding,
@@ -361,7 +388,8 @@ fn level_view(texture: &wgpu::Texture, layer: u32, level: u32) -> wgpu::TextureV
 /// Bytes of all levels of a colour texture.
 fn texture_bytes(texture: &wgpu::Texture) -> u64 {
     let texel = u64::from(texture.format().block_copy_size(None).unwrap_or(0));
-    let level = |level: u32| u64::from((texture.width() >> level).max(1)) * u64::from((texture.height() >> level).max(1));
+    let level =
+        |level: u32| u64::from((texture.width() >> level).max(1)) * u64::from((texture.height() >> level).max(1));
     (0..texture.mip_level_count()).map(level).sum::<u64>() * u64::from(texture.depth_or_array_layers()) * texel
 }
 
@@ -372,7 +400,8 @@ fn pass_layout(
     sample_type: wgpu::TextureSampleType,
     multisampled: bool,
 ) -> wgpu::BindGroupLayout {
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
+    let entry =
+        |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
     let uniform = uniform.then(|| {
         let min_binding_size = wgpu::BufferSize::new(size_of::<layout::MomentPass>() as u64);
         let ty = wgpu::BufferBindingType::Uniform;
