@@ -241,6 +241,12 @@ pub struct ShadowArgs {
     /// Whether shadows stand still while the camera moves [default: exact, or none where a map is warped]
     #[arg(long, value_enum)]
     pub stabilize: Option<Stabilize>,
+    /// With --stabilize approximate: steps to a doubling of a map's extent, 4 to 64; 8 are steps of 9 % [default: 8]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub extent_steps: Option<u32>,
+    /// With --stabilize approximate: instead, equal steps of so many to the whole shadowed range, 8 to 4096 (Practical Cascaded Shadow Maps has 64)
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub extent_levels: Option<u32>,
     /// How each split's map spreads its texels: none, psm, lispsm or tsm; one, or one per split [default: none]
     #[arg(long, value_name = "WARP,…", value_parser = parse::warp_list)]
     pub warp: Option<Warps>,
@@ -359,6 +365,8 @@ pub enum Stabilize {
     /// A sphere around the slice, moved in whole texels
     #[default]
     Exact,
+    /// A tight map on the light's own axes that changes its extent in steps, moved in whole texels
+    Approximate,
     /// The tightest map for every frame
     None,
 }

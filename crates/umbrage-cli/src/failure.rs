@@ -64,6 +64,7 @@ impl From<umbrage::Error> for Failure {
                 "far_fade" => "--far-fade",
                 "filter_radius" => "--filter",
                 "image_size" => "--size",
+                "stabilize" => "--extent-steps, --extent-levels",
                 "warps" => "--warp, --tsm-focus",
                 _ => "",
             },

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use glam::DVec3;
-use umbrage::{MAX_SPLITS, ShadowSettings, SplitScheme, Warp};
+use umbrage::{ExtentSteps, MAX_SPLITS, ShadowSettings, SplitScheme, Warp};
 
 use crate::{
     args::{self, SceneArgs, Scheme, ShadowArgs, Technique},
@@ -218,6 +218,7 @@ impl ShadowJob {
             },
             stabilize: match stabilize {
                 args::Stabilize::Exact => umbrage::Stabilize::Exact,
+                args::Stabilize::Approximate => umbrage::Stabilize::Approximate(extent_steps(args)),
                 args::Stabilize::None => umbrage::Stabilize::None,
             },
             warps: warps.iter().map(|&warp| planner_warp(warp, args.tsm_focus)).collect(),
@@ -362,19 +363,39 @@ fn warps(args: &ShadowArgs, splits: usize) -> Result<Vec<args::Warp>> {
 
 /// What was typed, or what goes with the maps: a warp follows the camera and cannot stand still.
 fn stabilize(args: &ShadowArgs, warps: &[args::Warp]) -> Result<args::Stabilize> {
+    for (option, typed) in [("--extent-steps", args.extent_steps), ("--extent-levels", args.extent_levels)] {
+        if typed.is_some() && args.stabilize != Some(args::Stabilize::Approximate) {
+            return Err(Failure::input(format!("{option} belongs to --stabilize approximate; leave one of them away")));
+        }
+    }
+    if args.extent_steps.is_some() && args.extent_levels.is_some() {
+        return Err(Failure::input("--extent-steps and --extent-levels both choose the steps; give one of them"));
+    }
     let Some(warp) = warps.iter().find(|warp| **warp != args::Warp::None) else {
         return Ok(args.stabilize.unwrap_or_default());
     };
-    if args.stabilize == Some(args::Stabilize::Exact) {
+    if let Some(typed) = args.stabilize
+        && typed != args::Stabilize::None
+    {
         let culprit = match args.technique.single_map() {
             Some(_) => format!("--technique {}", typed_name(args.technique)),
             None => format!("--warp {}", typed_name(*warp)),
         };
         return Err(Failure::input(format!(
-            "{culprit} and --stabilize exact exclude each other: a warped map follows the camera; leave one of them away"
+            "{culprit} and --stabilize {} exclude each other: a warped map follows the camera; leave one of them away",
+            typed_name(typed)
         )));
     }
     Ok(args::Stabilize::None)
+}
+
+/// `--extent-steps` or `--extent-levels`; checked with all other settings.
+fn extent_steps(args: &ShadowArgs) -> ExtentSteps {
+    match (args.extent_steps, args.extent_levels) {
+        (_, Some(levels)) => ExtentSteps::Levels(levels),
+        (Some(steps), None) => ExtentSteps::PerDoubling(steps),
+        (None, None) => ExtentSteps::default(),
+    }
 }
 
 fn planner_warp(warp: args::Warp, focus: Option<f64>) -> Warp {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::{DMat4, DVec4};
 use serde::Serialize;
-use umbrage::{Aabb, Planner, ShadowPlan, Split};
+use umbrage::{Aabb, ExtentSteps, Planner, ShadowPlan, Split, Stabilize};
 
 use crate::{
     args::{DepthConvention, PlanArgs},
@@ -25,6 +25,9 @@ struct PlanReport {
     technique: String,
     fit: String,
     stabilize: String,
+    /// Approximately stabilised: in which steps maps change their extent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    extent_steps: Option<ExtentStepsReport>,
     /// One for all splits, or one for each.
     warp: Vec<String>,
     /// Of the matrices.
@@ -40,6 +43,14 @@ struct PlanReport {
     casters: Vec<Caster>,
     /// Defaults invented, parts of the scene left out.
     notes: Vec<String>,
+}
+
+/// `{"per_doubling": 8}` or `{"levels": 64}`.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum ExtentStepsReport {
+    PerDoubling(u32),
+    Levels(u32),
 }
 
 /// One split.
@@ -119,6 +130,11 @@ fn report(
         technique: typed_name(shadows.technique),
         fit: typed_name(shadows.fit),
         stabilize: typed_name(shadows.stabilize),
+        extent_steps: match shadows.settings.stabilize {
+            Stabilize::Approximate(ExtentSteps::PerDoubling(count)) => Some(ExtentStepsReport::PerDoubling(count)),
+            Stabilize::Approximate(ExtentSteps::Levels(count)) => Some(ExtentStepsReport::Levels(count)),
+            Stabilize::None | Stabilize::Exact => None,
+        },
         warp: shadows.warps.iter().map(|&warp| typed_name(warp)).collect(),
         depth_convention: typed_name(convention),
         planes_m: plan.planes.clone(),

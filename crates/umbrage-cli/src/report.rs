@@ -20,7 +20,7 @@ pub struct Report {
     pub filter: String,
     /// `dependent` or `independent`.
     pub fit: String,
-    /// `none` or `exact`.
+    /// `none`, `exact` or `approximate`.
     pub stabilize: String,
     /// `none`, `psm`, `lispsm` or `tsm`: one for all splits, or one for each.
     pub warp: Vec<String>,

@@ -211,6 +211,8 @@ fn techniques_schemes_and_formats() {
         ("--fit independent --stabilize exact --filter pcf2 --map-size 128", 4),
         ("--tint --shadows off --map-size 64", 4),
         ("--technique psm --map-size 128", 1),
+        ("--stabilize approximate --map-size 128", 4),
+        ("--stabilize approximate --extent-levels 64 --fit independent --map-size 128", 4),
         ("--technique lispsm --map-size 128 --stabilize none --filter hard", 1),
         ("--technique tsm --map-size 128 --tsm-focus 0.4 --fit independent", 1),
         ("--splits 3 --map-size 64 --warp tsm,lispsm,none --depth-format d16", 3),

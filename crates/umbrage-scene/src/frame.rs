@@ -1,7 +1,7 @@
 //! From where and by which sun a scene is seen: its own cameras and lights, or invented ones.
 
 use glam::DVec3;
-use umbrage::{Frustum, View};
+use umbrage::{DirectionalLight, Frustum, Light, PointLight, SpotLight, View};
 
 use crate::error::element;
 use crate::{Error, Lens, LightKind, Pose, Result, Scene};
@@ -61,6 +61,33 @@ pub fn light_direction(scene: &Scene, pose: &Pose, index: usize) -> Result<DVec3
     (-axis / axis.abs().max_element())
         .try_normalize()
         .ok_or_else(|| unusable("stands on a node without a direction (its scale is 0)"))
+}
+
+/// A light of the scene as the planner knows it, in the world, at the moment of the pose: a directional light along its node's −Z,
+/// a spot light with its outer cone, or a point light. glTF's lights keep their range whatever their node's scale is. One of unlimited
+/// range gets the distance to the farthest corner of what the pose shows.
+///
+/// # Errors
+/// [`Error::NoSuchElement`]; [`Error::Light`] if its node has no direction, or naming what makes it none that can throw shadows (a
+/// cone wider than the planner takes).
+pub fn scene_light(scene: &Scene, pose: &Pose, index: usize) -> Result<Light> {
+    let count = scene.lights.len();
+    let missing = || Error::NoSuchElement { kind: "light", index, count };
+    let light = scene.lights.get(index).ok_or_else(missing)?;
+    let position = pose.world_from_node.get(light.node).ok_or_else(missing)?.translation;
+    let farthest = || {
+        let corners = pose.bounds.map(|bounds| bounds.corners()).into_iter().flatten();
+        corners.map(|corner| corner.distance(position)).fold(1.0, f64::max)
+    };
+    let range = light.range.unwrap_or_else(farthest);
+    let made = match light.kind {
+        LightKind::Directional => DirectionalLight::new(light_direction(scene, pose, index)?).map(Light::from),
+        LightKind::Point => PointLight::new(position, range).map(Light::from),
+        LightKind::Spot { outer, .. } => {
+            SpotLight::new(position, light_direction(scene, pose, index)?, outer, range).map(Light::from)
+        }
+    };
+    made.map_err(|error| Error::Light { light: element("lights", index, &light.name), reason: error.to_string() })
 }
 
 /// A sun for scenes without one: from the south-west, 45° up. The way its light travels, a unit vector.

@@ -38,7 +38,7 @@ mod validate;
 pub use camera_path::CameraPath;
 pub use error::{Error, Result};
 pub use export::export_glb;
-pub use frame::{camera_view, invented_sun, invented_view, light_direction};
+pub use frame::{camera_view, invented_sun, invented_view, light_direction, scene_light};
 pub use gltf::{load_gltf, load_gltf_slice};
 pub use height_map::{HeightMapOptions, load_height_map};
 pub use model::*;

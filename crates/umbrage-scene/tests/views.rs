@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use glam::{DAffine3, DQuat, DVec3, dvec3};
 use proptest::prelude::*;
-use umbrage::{Aabb, Projection};
+use umbrage::{Aabb, Light, Projection};
 use umbrage_scene::{
-    CameraPath, Error, Lens, LightKind, Node, Pose, Scene, SceneCamera, SceneLight, Trs, camera_view, invented_sun,
-    invented_view, light_direction,
+    Animation, CameraPath, Channel, Error, Interpolation, Keys, Lens, LightKind, Node, Pose, Scene, SceneCamera,
+    SceneLight, Trs, camera_view, invented_sun, invented_view, light_direction, scene_light,
 };
 
 fn pose_of(bounds: Option<Aabb>) -> Pose {
@@ -51,6 +51,42 @@ fn a_scenes_own_camera_and_light() {
     let frustum = view.frustum();
     assert_eq!(frustum.projection, Projection::Orthographic);
     assert_eq!((frustum.top, frustum.right, frustum.near, frustum.far), (3.0, 4.5, 0.0, 9.0));
+}
+
+#[test]
+fn spot_and_point_lights_go_with_their_nodes() {
+    let local = Trs { scale: DVec3::splat(50.0), ..Trs::IDENTITY };
+    let mut scene = placed(LENS, LightKind::Spot { inner: 0.1, outer: 0.6 }, local);
+    scene.lights[0].range = Some(7.0);
+    scene.animations.push(Animation {
+        name: String::new(),
+        channels: vec![Channel {
+            node: 0,
+            times: vec![0.0, 2.0],
+            values: Keys::Translation(vec![[0.0; 3], [4.0, 0.0, 0.0]]),
+            interpolation: Interpolation::Linear,
+        }],
+        duration: 2.0,
+    });
+    let pose = scene.pose(1.0).unwrap_or_else(|error| panic!("{error}"));
+    let light = scene_light(&scene, &pose, 0).unwrap_or_else(|error| panic!("{error}"));
+    let Light::Spot(spot) = light else { panic!("{light:?} is no spot light") };
+    assert_eq!((spot.position(), spot.direction()), (dvec3(2.0, 0.0, 0.0), DVec3::NEG_Z));
+    assert_eq!((spot.outer_angle(), spot.range()), (0.6, 7.0), "a scale changes neither");
+
+    // Without a range it shines as far as there is something.
+    let scene = placed(LENS, LightKind::Point, Trs::IDENTITY);
+    let pose = Pose {
+        world_from_node: vec![DAffine3::from_translation(DVec3::X)],
+        ..pose_of(Some(Aabb::new(DVec3::ZERO, dvec3(4.0, 4.0, 0.0))))
+    };
+    let light = scene_light(&scene, &pose, 0).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((light.position(), light.range()), (Some(DVec3::X), 5.0));
+
+    let wide = placed(LENS, LightKind::Spot { inner: 0.0, outer: std::f64::consts::FRAC_PI_2 }, Trs::IDENTITY);
+    let error = scene_light(&wide, &wide.pose(0.0).unwrap_or_else(|error| panic!("{error}")), 0).expect_err("too wide");
+    assert!(matches!(&error, Error::Light { .. }) && error.to_string().contains("outer_angle"), "{error}");
+    assert!(matches!(scene_light(&wide, &pose, 1), Err(Error::NoSuchElement { kind: "light", .. })));
 }
 
 #[test]

@@ -42,6 +42,8 @@
 //! triangle; alpha-tested triangles count where alpha ≥ cutoff (level 0, bilinear on 8-bit alpha, times base colour and
 //! vertex alpha); translucent ones never; objects that do not cast are seen but stop no light. A surface with `n_g·l ≤ 0` is dark.
 //!
+//! Under a light that stands somewhere `l` points to it, rays end at it, and what its range and cone do not reach is not shadowed.
+//!
 //! The own triangle is skipped by its number and nothing is offset: a normal offset of a thousandth already moves 1 to 4 % of
 //! all decisions. Every triangle test is in `f64` and closed along shared edges; the tree's `f32` boxes err to the safe side.
 //!

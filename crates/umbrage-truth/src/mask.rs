@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::DVec3;
 use image::{GrayAlphaImage, LumaA};
 use rayon::prelude::*;
-use umbrage::View;
+use umbrage::{Light, View};
 
-use crate::truth::to_light;
+use crate::truth::sun;
 use crate::{Error, Hit, Result, Truth};
 
 /// Pixels of a block that is traced together, along each side, so that neighbouring rays find the tree in the cache.
@@ -18,7 +18,7 @@ const BLOCK: usize = 8;
 #[derive(Clone, Debug)]
 pub struct TruthMask {
     size: [usize; 2],
-    to_light: DVec3,
+    light: Light,
     hits: Vec<Option<Hit>>,
 }
 
@@ -36,7 +36,21 @@ impl Truth {
         size: [u32; 2],
         progress: &(dyn Fn(f32) + Sync),
     ) -> Result<TruthMask> {
-        let to_light = to_light(light_travel)?;
+        self.mask_under(view, &sun(light_travel)?, size, progress)
+    }
+
+    /// The same under any light. Rays to a local light end there; what its range and cone do not reach is not shadowed (and not
+    /// scored: see [`crate::Domain`]).
+    ///
+    /// # Errors
+    /// [`Error::InvalidSetting`] if the image has no pixels.
+    pub fn mask_under(
+        &self,
+        view: &View,
+        light: &Light,
+        size: [u32; 2],
+        progress: &(dyn Fn(f32) + Sync),
+    ) -> Result<TruthMask> {
         if size.contains(&0) {
             return Err(Error::setting("size", format!("{} x {} pixels; give 1 or more each", size[0], size[1])));
         }
@@ -47,20 +61,20 @@ impl Truth {
             for (x, y) in in_blocks(width, pixels.len() / width) {
                 let at_x = (x as f64 + 0.5) / width as f64;
                 let at_y = ((band * BLOCK + y) as f64 + 0.5) / height as f64;
-                pixels[y * width + x] = self.look(view, to_light, (at_x, at_y), stack);
+                pixels[y * width + x] = self.look(view, light, (at_x, at_y), stack);
             }
             let done = rows.fetch_add(pixels.len() / width, Ordering::Relaxed) + pixels.len() / width;
             progress(done as f32 / height as f32);
         });
-        Ok(TruthMask { size: [width, height], to_light, hits })
+        Ok(TruthMask { size: [width, height], light: *light, hits })
     }
 
     /// What the view sees at one point of its image, both coordinates in `[0, 1]` from the upper left corner.
-    fn look(&self, view: &View, to_light: DVec3, (x, y): (f64, f64), stack: &mut Vec<u32>) -> Option<Hit> {
+    fn look(&self, view: &View, light: &Light, (x, y): (f64, f64), stack: &mut Vec<u32>) -> Option<Hit> {
         let (origin, direction) = view.ray_through(x, y);
         let frustum = view.frustum();
         let mut hit = self.first_hit(origin, direction, (frustum.near, frustum.far), stack)?;
-        hit.lit = hit.normal.dot(to_light) > 0.0 && self.sees_light(hit.position, to_light, Some(hit.triangle), stack);
+        hit.lit = self.is_lit((hit.position, hit.normal), light, Some(hit.triangle), stack);
         Some(hit)
     }
 }
@@ -70,7 +84,8 @@ impl TruthMask {
     #[cfg(test)]
     pub(crate) fn from_hits(size: [usize; 2], to_light: DVec3, hits: Vec<Option<Hit>>) -> Self {
         assert_eq!(hits.len(), size[0] * size[1]);
-        Self { size, to_light, hits }
+        let light = sun(-to_light).expect("a direction");
+        Self { size, light, hits }
     }
 
     /// Width and height in pixels.
@@ -79,10 +94,10 @@ impl TruthMask {
         self.size
     }
 
-    /// The unit vector towards the light, l.
+    /// The light.
     #[must_use]
-    pub fn to_light(&self) -> DVec3 {
-        self.to_light
+    pub fn light(&self) -> &Light {
+        &self.light
     }
 
     /// One entry per pixel, row by row from the upper left; `None` where the ray meets nothing.

@@ -86,9 +86,13 @@ impl Truth {
     /// (n·l' ≤ 0) count as shadow. `progress` as in [`Truth::mask`].
     ///
     /// # Errors
-    /// [`Error::InvalidSetting`] naming the field of the disc that is out of range.
+    /// [`Error::InvalidSetting`] naming the field of the disc that is out of range, or that the mask's light is no sun.
     pub fn soft(&self, mask: &TruthMask, disc: &SunDisc, progress: &(dyn Fn(f32) + Sync)) -> Result<SoftTruth> {
-        let directions = disc.directions(mask.to_light())?;
+        if mask.light().position().is_some() {
+            let reason = "a lamp has no angle across; give it with a directional light";
+            return Err(Error::setting("angular_diameter", reason));
+        }
+        let directions = disc.directions(mask.light().to_light(DVec3::ZERO))?;
         let [width, height] = mask.size();
         let mut visibility = vec![None; width * height];
         let rows = AtomicUsize::new(0);
@@ -135,7 +139,9 @@ impl Truth {
     ) -> f32 {
         let seen = directions
             .iter()
-            .filter(|&&to_light| normal.dot(to_light) > 0.0 && self.sees_light(position, to_light, own, stack))
+            .filter(|&&to_light| {
+                normal.dot(to_light) > 0.0 && self.sees_light(position, to_light, f64::INFINITY, own, stack)
+            })
             .count();
         seen as f32 / directions.len() as f32
     }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
+use umbrage::{DirectionalLight, Light};
 use umbrage_scene::{Pose, Scene};
 
 use crate::bvh::Tree;
@@ -75,7 +76,15 @@ impl Truth {
     /// # Errors
     /// [`Error::InvalidSetting`] if the light has no direction or a point is not finite.
     pub fn visibility_at(&self, points: &[(DVec3, DVec3)], light_travel: DVec3) -> Result<Vec<f32>> {
-        let to_light = to_light(light_travel)?;
+        self.visibility_under(points, &sun(light_travel)?)
+    }
+
+    /// The same under any light. Occluders of a local light count up to the light itself; what its range and cone do not reach is
+    /// not shadowed.
+    ///
+    /// # Errors
+    /// [`Error::InvalidSetting`] if a point is not finite.
+    pub fn visibility_under(&self, points: &[(DVec3, DVec3)], light: &Light) -> Result<Vec<f32>> {
         if let Some(bad) = points.iter().position(|(point, normal)| !(point.is_finite() && normal.is_finite())) {
             return Err(Error::setting("points", format!("point {bad} is not finite; give numbers in metres")));
         }
@@ -83,8 +92,7 @@ impl Truth {
             .par_iter()
             .with_min_len(64)
             .map_init(Vec::new, |stack, &(point, normal)| {
-                let lit = normal.dot(to_light) > 0.0 && self.sees_light(point, to_light, None, stack);
-                f32::from(u8::from(lit))
+                f32::from(u8::from(self.is_lit((point, normal), light, None, stack)))
             })
             .collect())
     }
@@ -114,14 +122,34 @@ impl Truth {
         best.map(|(crossing, triangle)| self.hit(origin, direction, &crossing, triangle))
     }
 
-    /// Whether nothing but triangle `own` stands between a world point and the light beyond τ.
-    pub(crate) fn sees_light(&self, point: DVec3, to_light: DVec3, own: Option<u32>, stack: &mut Vec<u32>) -> bool {
-        let ray = shadow_ray(point, self.triangles.origin, to_light);
+    /// Whether a surface faces the light and nothing stands between.
+    pub(crate) fn is_lit(
+        &self,
+        (point, normal): (DVec3, DVec3),
+        light: &Light,
+        own: Option<u32>,
+        stack: &mut Vec<u32>,
+    ) -> bool {
+        let to_light = light.to_light(point);
+        let distance = light.position().map_or(f64::INFINITY, |position| position.distance(point));
+        normal.dot(to_light) > 0.0 && (!light.reaches(point) || self.sees_light(point, to_light, distance, own, stack))
+    }
+
+    /// Whether nothing but triangle `own` stands between a world point and a light `distance` metres away, beyond τ.
+    pub(crate) fn sees_light(
+        &self,
+        point: DVec3,
+        to_light: DVec3,
+        distance: f64,
+        own: Option<u32>,
+        stack: &mut Vec<u32>,
+    ) -> bool {
+        let ray = shadow_ray(point, self.triangles.origin, to_light, distance);
         let mut free = true;
         self.tree.walk(&ray.boxes, ray.t_max, stack, |range, _| {
             free = !self.leaves[range].iter().any(|triangle| {
                 Some(triangle.number) != own
-                    && ray.meets(&triangle.corners, f64::INFINITY).is_some_and(|at| self.blocks(triangle, &at))
+                    && ray.meets(&triangle.corners, ray.t_max).is_some_and(|at| self.blocks(triangle, &at))
             });
             free
         });
@@ -187,11 +215,17 @@ impl Truth {
 
     /// The same visibility without the tree.
     #[cfg(test)]
-    pub(crate) fn sees_light_by_brute_force(&self, point: DVec3, to_light: DVec3, own: Option<u32>) -> bool {
-        let ray = shadow_ray(point, self.triangles.origin, to_light);
+    pub(crate) fn sees_light_by_brute_force(
+        &self,
+        point: DVec3,
+        to_light: DVec3,
+        distance: f64,
+        own: Option<u32>,
+    ) -> bool {
+        let ray = shadow_ray(point, self.triangles.origin, to_light, distance);
         !self.leaves.iter().any(|triangle| {
             Some(triangle.number) != own
-                && ray.meets(&triangle.corners, f64::INFINITY).is_some_and(|at| self.blocks(triangle, &at))
+                && ray.meets(&triangle.corners, ray.t_max).is_some_and(|at| self.blocks(triangle, &at))
         })
     }
 }
@@ -202,8 +236,8 @@ impl std::fmt::Debug for Truth {
     }
 }
 
-fn shadow_ray(point: DVec3, origin: DVec3, to_light: DVec3) -> Ray {
-    Ray::new(point - origin, to_light, least_occluder_distance(point).next_up(), f64::INFINITY)
+fn shadow_ray(point: DVec3, origin: DVec3, to_light: DVec3, distance: f64) -> Ray {
+    Ray::new(point - origin, to_light, least_occluder_distance(point).next_up(), distance)
 }
 
 /// Twice the triangle's area along its normal, by the right-hand rule.
@@ -218,9 +252,9 @@ pub(crate) fn least_occluder_distance(point: DVec3) -> f64 {
     LEAST_OCCLUDER_DISTANCE.max(4.0 * f64::from(length.next_up() - length))
 }
 
-/// The unit vector towards a light that travels along `light_travel`.
-pub(crate) fn to_light(light_travel: DVec3) -> Result<DVec3> {
-    light_travel.try_normalize().map(|travel| -travel).ok_or_else(|| {
+/// A sun whose light travels along `light_travel`.
+pub(crate) fn sun(light_travel: DVec3) -> Result<Light> {
+    DirectionalLight::new(light_travel).map(Light::from).map_err(|_| {
         Error::setting("sun", format!("{light_travel} is no direction; give the way the light travels, not all zero"))
     })
 }

@@ -152,6 +152,19 @@ impl Split {
         )
     }
 
+    /// By how many texels (u, v) this map has moved since `earlier`, a map of the same split: what was at texel `t` then is at `t` less the
+    /// shift now, with the same depth. `None` if the two do not share a grid: a step was taken in between, the map is not
+    /// stabilised, or not a sun's.
+    #[must_use]
+    pub fn texels_moved_since(&self, earlier: &Self) -> Option<DVec2> {
+        let grid = |s: &Self| {
+            (s.size, s.u_axis, s.v_axis, s.depth_axis, s.texel_m, s.depth_near, s.depth_far, s.warp.is_some())
+        };
+        let shift = self.min_texel - earlier.min_texel;
+        let shared = grid(self) == grid(earlier) && self.warp.is_none() && shift.fract() == DVec2::ZERO;
+        shared.then_some(shift)
+    }
+
     /// Whether a world point lies inside the map, `margin` texels away from its edge.
     #[must_use]
     pub fn contains(&self, point: DVec3, margin: f64) -> bool {

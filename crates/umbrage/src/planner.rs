@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::local::{Given, LightFrustum, LocalPlanner};
+use crate::rectangle::{HeldRectangle, Rectangle, longest_edge};
 use crate::region::{Fan, Region};
 use crate::split::{blend_begin, coverage, split_planes};
 use crate::stable::{HeldSize, slice_sphere, stable_texel};
@@ -29,6 +30,10 @@ pub struct Planner {
     plan: ShadowPlan,
     held_range: HeldSize,
     held_radius: [HeldSize; MAX_SPLITS],
+    held_whole: HeldSize,
+    /// Stabilised: across the sphere around everything that is shadowed, metres. 0 otherwise.
+    whole_width: f64,
+    held_rectangle: [HeldRectangle; MAX_SPLITS],
     fan: Option<Fan>,
     volumes: Vec<CoverageVolume>,
     world_depths: (f64, f64),
@@ -74,6 +79,9 @@ impl Planner {
             plan: ShadowPlan::default(),
             held_range: HeldSize::default(),
             held_radius: [HeldSize::default(); MAX_SPLITS],
+            held_whole: HeldSize::default(),
+            whole_width: 0.0,
+            held_rectangle: [HeldRectangle::default(); MAX_SPLITS],
             fan: None,
             volumes: Vec::new(),
             world_depths: (0.0, 0.0),
@@ -154,11 +162,23 @@ impl Planner {
 
         let direction = light.direction();
         let (map_u, _) = light.map_axes();
-        let ahead = (view.forward() - view.forward().dot(direction) * direction).try_normalize().unwrap_or(map_u);
-        let fan = Fan::new(ahead, direction);
+        let first = match self.settings.stabilize {
+            Stabilize::Approximate(_) => map_u,
+            Stabilize::None | Stabilize::Exact => {
+                (view.forward() - view.forward().dot(direction) * direction).try_normalize().unwrap_or(map_u)
+            }
+        };
+        if self.plan.light_direction != direction {
+            self.held_rectangle = [HeldRectangle::default(); MAX_SPLITS];
+        }
+        let fan = Fan::new(first, direction);
         self.fan = Some(fan);
+        if self.settings.stabilize != Stabilize::None {
+            let sphere = slice_sphere(view.frustum(), view.frustum().near, far);
+            self.whole_width = 2.0 * self.held_whole.hold(sphere.radius);
+        }
         self.cull_to_view(view, direction);
-        if self.settings.stabilize == Stabilize::Exact && !self.settings.depth_clamp {
+        if self.settings.stabilize != Stabilize::None && !self.settings.depth_clamp {
             self.world_depths = self.measure_world_depths(direction);
         }
 
@@ -211,7 +231,7 @@ impl Planner {
         let deepest = if deepest > near { deepest } else { 2.0 * near.abs() + 1.0 };
         let far = match self.settings.stabilize {
             Stabilize::None => deepest,
-            Stabilize::Exact => self.held_range.hold(deepest),
+            Stabilize::Exact | Stabilize::Approximate(_) => self.held_range.hold(deepest),
         };
         (near, far.min(camera_far))
     }
@@ -231,8 +251,8 @@ impl Planner {
         }
         let swept = whole.swept_towards_light(direction);
         // The margin around a split is a few of its texels: at most this share of its width.
-        let margin = self.margin_share()
-            * whole.corners[4].distance(whole.corners[7]).max(whole.corners[0].distance(whole.corners[7]));
+        let across = whole.corners[4].distance(whole.corners[7]).max(whole.corners[0].distance(whole.corners[7]));
+        let margin = self.margin_share() * across.max(self.whole_width);
         self.candidates.clear();
         for (i, caster) in self.casters.iter().enumerate() {
             if swept.meets(caster.center, caster.half, margin) {
@@ -267,7 +287,7 @@ impl Planner {
 
         let sphere = slice_sphere(view.frustum(), from, to);
         let radius = match settings.stabilize {
-            Stabilize::Exact => self.held_radius[i].hold(sphere.radius),
+            Stabilize::Exact | Stabilize::Approximate(_) => self.held_radius[i].hold(sphere.radius),
             Stabilize::None => sphere.radius,
         };
         let stable_texel = stable_texel(radius, size, margin);
@@ -276,12 +296,13 @@ impl Planner {
             Fit::Independent => None,
             Fit::Dependent => Some(self.receivers_in(&slice, fan)),
         };
+        let widest = served.as_ref().map_or(&slice_region, |(region, _)| region).widest().max(0.0);
         let margin_m = match self.settings.stabilize {
             Stabilize::Exact => margin * stable_texel,
-            Stabilize::None => {
-                let widest = served.as_ref().map_or(&slice_region, |(region, _)| region).widest().max(0.0);
-                widest * margin / (f64::from(size) - 2.0 * margin).max(1.0)
+            Stabilize::Approximate(steps) => {
+                margin * longest_edge(steps, widest, self.whole_width) / (f64::from(size) - 2.0 * margin - 1.0)
             }
+            Stabilize::None => widest * margin / (f64::from(size) - 2.0 * margin).max(1.0),
         };
         let casters =
             if visible { self.list_casters(i, &swept, served.as_ref(), fan, margin_m) } else { self.empty_list() };
@@ -333,6 +354,14 @@ impl Planner {
                 let center = view.world_from_view_point(sphere.center);
                 snapped(split, light, center, radius, stable_texel)
             }
+            Stabilize::Approximate(steps) => {
+                // A split without casters is lit, whatever its rectangle; it changes nothing that is held.
+                let mut unheld = HeldRectangle::default();
+                let held = if split.casters.is_empty() { &mut unheld } else { &mut self.held_rectangle[i] };
+                let rectangle = held.hold(&target, steps, self.whole_width);
+                let depth = direction.dot(view.world_from_view_point(sphere.center));
+                stepped(split, &target, fan, margin, rectangle, (depth - radius, depth + radius))
+            }
         };
         let mut split = self.with_depth_range(split, caster_near, radius);
         let warp = self.settings.warp(i);
@@ -359,8 +388,8 @@ impl Planner {
         let (near, far, step) = match (self.settings.stabilize, clamped) {
             (Stabilize::None, true) => (split.depth_near, split.depth_far, None),
             (Stabilize::None, false) => (split.depth_near.min(caster_near), split.depth_far, None),
-            (Stabilize::Exact, true) => (split.depth_near, split.depth_far, Some(0.5 * radius)),
-            (Stabilize::Exact, false) => {
+            (_, true) => (split.depth_near, split.depth_far, Some(0.5 * radius)),
+            (_, false) => {
                 let (near, far) = self.world_depths;
                 let known = near.is_finite() && far > near;
                 let (near, far) = if known { (near, far) } else { (split.depth_near, split.depth_far) };
@@ -495,6 +524,16 @@ fn fitted(mut split: Split, target: &Region, fan: &Fan, margin: f64) -> Split {
     let extent = (hi - lo).max(DVec2::splat(1e-3 * longest.max(1e-3)));
     split.texel_m = extent / texels;
     split.min_texel = 0.5 * (lo + hi) / split.texel_m - 0.5 * f64::from(split.size);
+    split
+}
+
+/// A rectangle that is held, moved to whole texels of a grid that is fixed to the light.
+fn stepped(mut split: Split, target: &Region, fan: &Fan, margin: f64, held: Rectangle, depth: (f64, f64)) -> Split {
+    (split.u_axis, split.v_axis) = fan.axes(held.direction);
+    let size = f64::from(split.size);
+    split.texel_m = held.extent / (size - 2.0 * margin - 1.0);
+    split.min_texel = (held.center(target) / split.texel_m - 0.5 * size).round();
+    (split.depth_near, split.depth_far) = depth;
     split
 }
 

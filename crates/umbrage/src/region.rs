@@ -23,6 +23,11 @@ impl Fan {
         });
         Self { directions, depth }
     }
+
+    /// Direction `u` (of the first half) and the one a quarter turn further: with depth a right-handed frame (u, v, depth).
+    pub fn axes(&self, u: usize) -> (DVec3, DVec3) {
+        (self.directions[u], self.directions[u + DIRECTIONS / 2])
+    }
 }
 
 /// Bounds along every direction of a fan and along depth.
@@ -103,6 +108,12 @@ impl Region {
             })
     }
 
+    /// Bounds along direction `u` of the fan (of its first half) and along the one a quarter turn further.
+    pub fn bounds(&self, u: usize) -> (DVec2, DVec2) {
+        let v = u + DIRECTIONS / 2;
+        (DVec2::new(self.lo[u], self.lo[v]), DVec2::new(self.hi[u], self.hi[v]))
+    }
+
     /// Largest extent in any direction, in metres.
     pub fn widest(&self) -> f64 {
         self.lo.iter().zip(&self.hi).map(|(lo, hi)| hi - lo).fold(0.0, f64::max)
@@ -114,8 +125,8 @@ impl Region {
         const QUARTER: usize = DIRECTIONS / 2;
         let area = |k: usize| (self.hi[k] - self.lo[k]) * (self.hi[k + QUARTER] - self.lo[k + QUARTER]);
         let best = (1..QUARTER).fold(0, |best, k| if area(k) < area(best) { k } else { best });
-        let (u, v) = (fan.directions[best], fan.directions[best + QUARTER]);
-        let corner = |side: &[f64; DIRECTIONS]| DVec2::new(side[best], side[best + QUARTER]);
-        (u, v, corner(&self.lo), corner(&self.hi))
+        let (lo, hi) = self.bounds(best);
+        let (u, v) = fan.axes(best);
+        (u, v, lo, hi)
     }
 }

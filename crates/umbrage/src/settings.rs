@@ -48,6 +48,39 @@ pub enum Stabilize {
     /// A sphere around the slice, moved in whole texels: static shadows do not change at all.
     #[default]
     Exact,
+    /// The tight rectangle on axes that are fixed to the light, its extent rounded up to steps, moved in whole texels: tighter than
+    /// [`Stabilize::Exact`], and as still but for the frames in which a step is taken. Source: *Practical Cascaded Shadow
+    /// Maps* (seed 003), "Approximated solution".
+    Approximate(ExtentSteps),
+}
+
+impl Stabilize {
+    /// The name of the kind, for messages.
+    fn name(self) -> &'static str {
+        match self {
+            Self::None => "None",
+            Self::Exact => "Exact",
+            Self::Approximate(_) => "Approximate",
+        }
+    }
+}
+
+/// The steps in which an approximately stabilised map changes its extent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExtentSteps {
+    /// Geometric steps of the extent in metres, so many to a doubling, 4 to 64: 8 are steps of 2^(1/8), 9 %. One step of hysteresis, and
+    /// the rectangle may stand on any of 16 directions that are fixed to the light. Ours.
+    PerDoubling(u32),
+    /// So many equal steps of the unsplit light frustum, 8 to 4096: `s_q = 64 / ceil(64 / s)` for 64 of them, as in seed 003, Listing
+    /// 4.1.2, to compare with. A near split of a long range falls to the first levels. The unsplit frustum has to stand
+    /// still itself; the source does not say how, ours is the sphere around the whole range.
+    Levels(u32),
+}
+
+impl Default for ExtentSteps {
+    fn default() -> Self {
+        Self::PerDoubling(8)
+    }
 }
 
 /// Everything that is settled before the first frame. Checked once, by [`crate::Planner::new`].
@@ -65,7 +98,7 @@ pub struct ShadowSettings {
     /// Whether shadows stand still.
     pub stabilize: Stabilize,
     /// How each map spreads its texels: none for plain maps, one for all, or one for each split. A warp follows the camera, so it
-    /// cannot be combined with [`Stabilize::Exact`]. Where a warp has nothing to gain (the light along the view, an orthographic
+    /// cannot be combined with any stabilisation. Where a warp has nothing to gain (the light along the view, an orthographic
     /// camera) the split gets its plain map.
     pub warps: Vec<Warp>,
     /// How far the filter reaches from the sample, in texels (0.5 for one nearest texel, 1 for a bilinear comparison,
@@ -126,7 +159,8 @@ impl ShadowSettings {
         if !(1..=MAX_SPLITS).contains(&m) {
             return Err(Error::setting("map_sizes", format!("{m} splits; there may be 1 to {MAX_SPLITS}")));
         }
-        let least = 2.0 * self.filter_radius + 3.0;
+        // One texel besides the margins (`EDGE_TEXELS` and the filter's), and one for moving in whole texels.
+        let least = 2.0 * self.filter_radius + if self.stabilize == Stabilize::None { 4.0 } else { 5.0 };
         for (i, &size) in self.map_sizes.iter().enumerate() {
             if size == 0 || size > 1 << 16 {
                 return Err(Error::setting("map_sizes", format!("map {i} is {size} texels wide; give 1 to 65536")));
@@ -155,6 +189,16 @@ impl ShadowSettings {
                 "image_size",
                 "the image has no pixels; give a width and a height of 1 or more",
             ));
+        }
+        let steps = match self.stabilize {
+            Stabilize::Approximate(ExtentSteps::PerDoubling(count)) => Some((count, 4, 64, "steps to a doubling")),
+            Stabilize::Approximate(ExtentSteps::Levels(count)) => Some((count, 8, 4096, "levels")),
+            Stabilize::None | Stabilize::Exact => None,
+        };
+        if let Some((count, fewest, most, what)) = steps
+            && !(fewest..=most).contains(&count)
+        {
+            return Err(Error::setting("stabilize", format!("{count} {what}; give {fewest} to {most}")));
         }
         if let Some((near, far)) = self.range {
             check_range(near, far)?;
@@ -204,15 +248,16 @@ impl ShadowSettings {
                 return Err(Error::setting("warps", format!("the focus {focus} is not between 0 and 1")));
             }
         }
-        if self.stabilize == Stabilize::Exact
+        if self.stabilize != Stabilize::None
             && let Some(warp) = self.warps.iter().find(|warp| **warp != Warp::None)
         {
             return Err(Error::ConflictingSettings {
                 first: "warps",
                 second: "stabilize",
                 reason: format!(
-                    "a {warp:?} map follows the camera and cannot stand still as Exact promises; \
-                     set stabilize to None, or leave the warp away"
+                    "a {warp:?} map follows the camera and cannot stand still as {} promises; \
+                     set stabilize to None, or leave the warp away",
+                    self.stabilize.name()
                 ),
             });
         }

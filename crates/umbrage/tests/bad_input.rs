@@ -1,7 +1,9 @@
 //! Settings, lights and bounds that must be refused, by name.
 
 use glam::DVec3;
-use umbrage::{Aabb, DirectionalLight, Error, Frustum, Planner, ShadowSettings, SplitScheme, View};
+use umbrage::{
+    Aabb, DirectionalLight, Error, ExtentSteps, Frustum, Planner, ShadowSettings, SplitScheme, Stabilize, View, Warp,
+};
 
 fn refused(change: impl FnOnce(&mut ShadowSettings)) -> &'static str {
     let mut settings = ShadowSettings::default();
@@ -29,6 +31,12 @@ fn settings() {
     assert_eq!(refused(|s| s.range = Some((f64::NAN, 5.0))), "range");
     assert_eq!(refused(|s| s.range = Some((0.0, 5.0))), "range");
     assert_eq!(refused(|s| s.range = Some((1.0, f64::INFINITY))), "range");
+    let approximate = |steps| Stabilize::Approximate(steps);
+    assert_eq!(refused(|s| s.stabilize = approximate(ExtentSteps::PerDoubling(0))), "stabilize");
+    assert_eq!(refused(|s| s.stabilize = approximate(ExtentSteps::PerDoubling(65))), "stabilize");
+    assert_eq!(refused(|s| s.stabilize = approximate(ExtentSteps::Levels(1 << 20))), "stabilize");
+    // A texel to move by is needed besides the margins: 2 · 1.5 + 5.
+    assert_eq!(refused(|s| s.map_sizes = vec![7]), "map_sizes");
     let practical = |lambda, delta| SplitScheme::Practical { lambda, delta };
     assert_eq!(refused(|s| s.scheme = practical(1.1, vec![])), "lambda");
     assert_eq!(refused(|s| s.scheme = practical(f64::NAN, vec![])), "lambda");
@@ -36,6 +44,32 @@ fn settings() {
     assert_eq!(refused(|s| s.scheme = practical(0.5, vec![f64::INFINITY])), "delta");
     assert_eq!(refused(|s| s.scheme = SplitScheme::Manual(vec![1.0])), "planes");
     assert_eq!(refused(|s| s.scheme = SplitScheme::Manual(vec![10.0, 9.0, 20.0])), "planes");
+}
+
+#[test]
+fn warps_do_not_stand_still() {
+    for stabilize in [Stabilize::Exact, Stabilize::Approximate(ExtentSteps::default())] {
+        let settings = ShadowSettings { stabilize, warps: vec![Warp::Lispsm], ..ShadowSettings::default() };
+        let error = Planner::new(settings).expect_err("a warp follows the camera");
+        assert!(matches!(error, Error::ConflictingSettings { first: "warps", second: "stabilize", .. }), "{error}");
+    }
+}
+
+/// The smallest maps that are allowed do have texels.
+#[test]
+fn small_maps() {
+    let view = View::look_at_upright(DVec3::Y, DVec3::X, Frustum::perspective(1.0, 1.0, 1.0, 100.0).expect("valid"))
+        .expect("valid");
+    let light = DirectionalLight::new(DVec3::new(0.2, -1.0, 0.1)).expect("valid");
+    let boxes = [Aabb::new(DVec3::splat(-60.0), DVec3::splat(60.0))];
+    for (stabilize, size) in
+        [(Stabilize::None, 7), (Stabilize::Exact, 8), (Stabilize::Approximate(ExtentSteps::default()), 8)]
+    {
+        let settings = ShadowSettings { stabilize, map_sizes: vec![size; 2], ..ShadowSettings::default() };
+        let mut planner = Planner::new(settings).expect("valid");
+        let plan = planner.plan(&view, &light, &boxes, &boxes).expect("a plan");
+        assert!(plan.splits.iter().all(|split| split.texel_m.min_element() > 0.0 && split.texel_m.is_finite()));
+    }
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use glam::{DQuat, DVec3, EulerRot};
 use proptest::prelude::*;
 use umbrage::{
-    Aabb, DirectionalLight, Fit, Frustum, Planner, Projection, ShadowPlan, ShadowSettings, SplitScheme, Stabilize,
-    View, Warp,
+    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, Projection, ShadowPlan, ShadowSettings, SplitScheme,
+    Stabilize, View, Warp,
 };
 
 /// A world of boxes on and around a ground, a view and a sun, biased to the awkward: a sun straight down or level, a view into
@@ -43,24 +43,30 @@ fn settings() -> impl Strategy<Value = ShadowSettings> {
         Just(Warp::Lispsm),
         (0.01..0.99f64).prop_map(|focus| Warp::Tsm { focus })
     ];
+    let stabilize = prop_oneof![
+        2 => Just(Stabilize::None),
+        2 => Just(Stabilize::Exact),
+        1 => Just(Stabilize::Approximate(ExtentSteps::default())),
+        1 => Just(Stabilize::Approximate(ExtentSteps::PerDoubling(4))),
+        1 => Just(Stabilize::Approximate(ExtentSteps::Levels(64)))
+    ];
     let warps = prop_oneof![Just(vec![]), prop::collection::vec(warp.clone(), 1), prop::collection::vec(warp, 8)];
-    (1usize..=8, scheme, range, any::<[bool; 3]>(), prop_oneof![Just(0.0), 0.0..0.5f64], 0.5..3.0f64, warps).prop_map(
-        |(m, scheme, range, [dependent, exact, clamp], blend, filter_radius, mut warps)| ShadowSettings {
+    (1usize..=8, scheme, range, any::<[bool; 2]>(), stabilize, prop_oneof![Just(0.0), 0.0..0.5f64], 0.5..3.0f64, warps)
+        .prop_map(|(m, scheme, range, [dependent, clamp], stabilize, blend, filter_radius, mut warps)| ShadowSettings {
             map_sizes: vec![256; m],
             scheme,
             range,
             fit: if dependent { Fit::Dependent } else { Fit::Independent },
-            stabilize: if exact { Stabilize::Exact } else { Stabilize::None },
+            stabilize,
             filter_radius,
             blend,
             depth_clamp: clamp,
             warps: {
-                warps.truncate(if exact { 0 } else { m });
+                warps.truncate(if stabilize == Stabilize::None { m } else { 0 });
                 warps
             },
             ..ShadowSettings::default()
-        },
-    )
+        })
 }
 
 fn cases() -> impl Strategy<Value = Case> {

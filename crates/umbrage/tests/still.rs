@@ -2,7 +2,10 @@
 
 use glam::{DQuat, DVec2, DVec3, EulerRot};
 use proptest::prelude::*;
-use umbrage::{Aabb, DirectionalLight, Frustum, Planner, Projection, ShadowSettings, Stabilize, View, slice_sphere};
+use umbrage::{
+    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, Projection, ShadowPlan, ShadowSettings, Split,
+    Stabilize, View, slice_sphere,
+};
 
 proptest! {
     #[test]
@@ -25,54 +28,194 @@ proptest! {
         }
     }
 
+    /// Any two poses, 0, 10 and 100 km from the world's origin, with any rotation.
     #[test]
     fn maps_move_in_whole_texels(
-        distance in prop_oneof![Just(0.0), Just(1e4), Just(1e5)],
-        eye in prop::array::uniform3(-50.0..50.0f64), turn in prop::array::uniform3(-3.0..3.0f64), step in prop::array::uniform3(-2.0..2.0f64),
-        sun in prop_oneof![Just([0.0, -1.0, 0.0]), (-1.0..1.0f64, -1.0..1.0f64).prop_map(|(x, z)| [x, -0.5, z])],
+        place in place(), eye in prop::array::uniform3(-50.0..50.0f64), turns in prop::array::uniform2(prop::array::uniform3(-3.0..3.0f64)),
+        step in prop::array::uniform3(-2.0..2.0f64), sun in sun(), fit in fit(),
     ) {
-        let settings = ShadowSettings { range: Some((1.0, 300.0)), stabilize: Stabilize::Exact, ..ShadowSettings::default() };
+        let settings = ShadowSettings { range: Some((1.0, 300.0)), fit, stabilize: Stabilize::Exact, ..ShadowSettings::default() };
         let mut planner = Planner::new(settings)?;
-        let light = DirectionalLight::new(DVec3::from(sun))?;
-        let frustum = Frustum::perspective(1.0, 4.0 / 3.0, 0.1, 1000.0)?;
-        let place = DVec3::new(distance, 0.0, -distance);
         let world = [Aabb::new(place - 400.0, place + 400.0)];
-        let view = |eye: DVec3, turn: [f64; 3]| {
-            let rotation = DQuat::from_euler(EulerRot::YXZ, turn[0], turn[1], turn[2]);
-            View::look_at(eye, eye + rotation * DVec3::NEG_Z, rotation * DVec3::Y, frustum)
-        };
         let eye = place + DVec3::from(eye);
-        let first = planner.plan(&view(eye, [0.1, 0.2, 0.0])?, &light, &world, &world)?.clone();
-        let second = planner.plan(&view(eye + DVec3::from(step), turn)?, &light, &world, &world)?;
+        let first = planner.plan(&turned_view(eye, turns[0])?, &sun, &world, &world)?.clone();
+        let second = planner.plan(&turned_view(eye + DVec3::from(step), turns[1])?, &sun, &world, &world)?;
         for (a, b) in first.splits.iter().zip(&second.splits) {
-            prop_assert_eq!((a.u_axis, a.v_axis, a.texel_m), (b.u_axis, b.v_axis, b.texel_m));
-            prop_assert_eq!((a.depth_near, a.depth_far), (b.depth_near, b.depth_far));
-            prop_assert_eq!(a.min_texel.fract(), DVec2::ZERO);
-            prop_assert_eq!(b.min_texel.fract(), DVec2::ZERO);
+            let shift = b.texels_moved_since(a);
+            prop_assert!(shift.is_some(), "{a:?} {b:?}");
+            prop_assert_eq!((a.min_texel.fract(), b.min_texel.fract()), (DVec2::ZERO, DVec2::ZERO));
+            // The matrices say the same: one linear part, apart by whole texels.
+            let (a, b) = (a.shadow_from_world(), b.shadow_from_world());
+            prop_assert_eq!([a.x_axis, a.y_axis, a.z_axis], [b.x_axis, b.y_axis, b.z_axis]);
         }
     }
 
+    /// The approximate kind, too, has no other places than whole texels of a grid that is the light's and the step's alone.
     #[test]
-    fn a_zoom_changes_the_texel_in_steps(fovs in prop::collection::vec(0.3..1.2f64, 2..40)) {
-        let settings = ShadowSettings { range: Some((1.0, 300.0)), stabilize: Stabilize::Exact, ..ShadowSettings::default() };
-        let mut planner = Planner::new(settings.clone())?;
-        let light = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2))?;
-        let (mut held, mut changes) = (0.0, 0);
-        for fov in &fovs {
-            let view = View::look_at_upright(DVec3::ZERO, DVec3::NEG_Z, Frustum::perspective(*fov, 1.5, 0.1, 1000.0)?)?;
-            let texel = planner.plan(&view, &light, &[], &[])?.splits[3].texel_m.x;
-            let tight = Planner::new(settings.clone())?.plan(&view, &light, &[], &[])?.splits[3].texel_m.x;
-            prop_assert!(texel >= tight * (1.0 - 1e-12), "the map no longer holds the slice");
-            prop_assert!(texel <= tight * 2f64.powf(2.0 / 8.0) * (1.0 + 1e-9), "{texel} is much larger than {tight}");
-            if texel != held {
-                changes += 1;
-                held = texel;
+    fn approximate_maps_move_in_whole_texels_and_seldom_take_a_step(
+        place in place(), eye in prop::array::uniform3(-50.0..50.0f64), turn in prop::array::uniform3(-3.0..3.0f64),
+        walk in prop::array::uniform3(-0.2..0.2f64), sun in sun(), fit in fit(),
+        steps in prop_oneof![Just(ExtentSteps::default()), (4u32..64).prop_map(ExtentSteps::PerDoubling), Just(ExtentSteps::Levels(64))],
+    ) {
+        let stabilize = Stabilize::Approximate(steps);
+        let settings = ShadowSettings { range: Some((1.0, 300.0)), fit, stabilize, ..ShadowSettings::default() };
+        let mut planner = Planner::new(settings)?;
+        let world = [Aabb::new(place - 400.0, place + 400.0)];
+        let mut before: Option<ShadowPlan> = None;
+        for k in 0..30 {
+            let eye = place + DVec3::from(eye) + f64::from(k) * DVec3::from(walk);
+            let plan = planner.plan(&turned_view(eye, turn)?, &sun, &world, &world)?;
+            for (i, split) in plan.splits.iter().enumerate() {
+                prop_assert_eq!(split.min_texel.fract(), DVec2::ZERO);
+                if let Some(before) = &before
+                    && fit == Fit::Independent
+                {
+                    // What a slice measures does not change while the eye walks, so no step is taken at all.
+                    prop_assert!(split.texels_moved_since(&before.splits[i]).is_some(), "frame {k}, split {i}");
+                }
+            }
+            before = Some(plan.clone());
+        }
+    }
+
+    /// Between the tightest map and 2^(2/8) of it, always inside the exact one's.
+    #[test]
+    fn approximate_maps_are_nearly_tight(
+        place in place(), turns in prop::collection::vec(prop::array::uniform3(-3.0..3.0f64), 1..6), sun in sun(), fit in fit(),
+    ) {
+        let of = |stabilize| {
+            let settings = ShadowSettings { range: Some((1.0, 300.0)), fit, stabilize, ..ShadowSettings::default() };
+            Planner::new(settings)
+        };
+        let (mut held, mut exact) = (of(Stabilize::Approximate(ExtentSteps::default()))?, of(Stabilize::Exact)?);
+        let world = [Aabb::new(place - 400.0, place + 400.0)];
+        for turn in turns {
+            let view = turned_view(place, turn)?;
+            let plan = held.plan(&view, &sun, &world, &world)?;
+            // The tightest map turns with the view, so its rectangle can be smaller by what 2.8 degrees are worth.
+            let mut tight = of(Stabilize::None)?;
+            let tight = tight.plan(&view, &sun, &world, &world)?;
+            let sphere = exact.plan(&view, &sun, &world, &world)?;
+            for ((a, t), s) in plan.splits.iter().zip(&tight.splits).zip(&sphere.splits) {
+                let area = |split: &Split| split.texel_m.x * split.texel_m.y;
+                prop_assert!(area(a) >= 0.9 * area(t), "{} below {}", area(a), area(t));
+                prop_assert!(area(a) <= 2f64.powf(4.0 / 8.0) * 1.25 * area(t), "{} above {}", area(a), area(t));
+                prop_assert!(area(a) <= area(s), "{} above the sphere's {}", area(a), area(s));
             }
         }
-        // Between 0.3 and 1.2 rad the radius changes by less than a factor of 4: 16 steps; a zoom back and forth by less
-        // than a step changes nothing.
-        prop_assert!(changes <= fovs.len());
     }
+
+    /// Zooming, turning and walking back and forth by less than a step settles: what comes round again changes nothing any more.
+    #[test]
+    fn back_and_forth_settles(
+        place in place(), first in 0.3..1.2f64, base in 0.3..1.2f64, pose in prop::array::uniform3(-3.0..3.0f64),
+        waves in prop::collection::vec([0.0..1.0f64, -1.0..1.0, -1.0..1.0], 2..12), sun in sun(),
+        stabilize in prop_oneof![Just(Stabilize::Exact), Just(Stabilize::Approximate(ExtentSteps::default()))],
+    ) {
+        let settings = ShadowSettings { range: Some((1.0, 300.0)), fit: Fit::Independent, stabilize, ..ShadowSettings::default() };
+        let mut planner = Planner::new(settings)?;
+        let world = [Aabb::new(place - 400.0, place + 400.0)];
+        let mut splits = |fov: f64, turn: f64, walk: f64| -> Result<Vec<Split>, TestCaseError> {
+            let lens = Frustum::perspective(fov, 1.5, 0.1, 1000.0)?;
+            let eye = place + DVec3::X * walk;
+            let view = turned_view(eye, [pose[0] + turn, pose[1], pose[2]])?.with_frustum(lens)?;
+            Ok(planner.plan(&view, &sun, &world, &world)?.splits.clone())
+        };
+        let mut before = splits(first, 0.0, 0.0)?;
+        for round in 0..4 {
+            for [zoom, turn, walk] in &waves {
+                // Half a degree and 2 % of the angle of view are worth less than a step.
+                let now = splits(base * (1.0 + 0.02 * zoom), 0.009 * turn, 3.0 * walk)?;
+                for (i, (a, b)) in before.iter().zip(&now).enumerate() {
+                    prop_assert!(round < 2 || b.texels_moved_since(a).is_some(), "round {round}, split {i}");
+                }
+                before = now;
+            }
+        }
+    }
+
+    /// A long zoom takes one change for each step between the narrowest and the widest lens, and the map always holds the slice.
+    #[test]
+    fn a_long_zoom_changes_the_texel_in_steps(place in place(), from in 0.3..1.2f64, to in 0.3..1.2f64) {
+        let settings = ShadowSettings { range: Some((1.0, 300.0)), stabilize: Stabilize::Exact, ..ShadowSettings::default() };
+        let mut planner = Planner::new(settings.clone())?;
+        let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2))?;
+        let (mut changes, mut sizes, mut held) = (0, (f64::INFINITY, 0.0f64), None);
+        for k in 0..120 {
+            let fov = from + (to - from) * f64::from(k) / 119.0;
+            let view = View::look_at_upright(place, place + DVec3::NEG_Z, Frustum::perspective(fov, 1.5, 0.1, 1000.0)?)?;
+            let texel = planner.plan(&view, &sun, &[], &[])?.splits[3].texel_m.x;
+            let tight = Planner::new(settings.clone())?.plan(&view, &sun, &[], &[])?.splits[3].texel_m.x;
+            prop_assert!(texel >= tight * (1.0 - 1e-12), "the map no longer holds the slice");
+            prop_assert!(texel <= tight * 2f64.powf(2.0 / 8.0) * (1.0 + 1e-9), "{texel} is much larger than {tight}");
+            sizes = (sizes.0.min(tight), sizes.1.max(tight));
+            changes += i32::from(held.is_some_and(|held| held != texel));
+            held = Some(texel);
+        }
+        let steps = ((sizes.1 / sizes.0).log2() * 8.0).ceil();
+        prop_assert!(f64::from(changes) <= steps + 1.0, "{changes} changes over {steps} steps");
+    }
+
+    /// The far end of the range is the scene's; it is held in steps, too, while the eye walks to and fro.
+    #[test]
+    fn the_range_is_held(
+        place in place(), yaw in -3.0..3.0f64, walks in prop::collection::vec(0.0..1.0f64, 4..40), approximate in any::<bool>(),
+    ) {
+        let stabilize = if approximate { Stabilize::Approximate(ExtentSteps::default()) } else { Stabilize::Exact };
+        let mut planner = Planner::new(ShadowSettings { stabilize, ..ShadowSettings::default() })?;
+        let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2))?;
+        let world = [Aabb::new(place - DVec3::new(200.0, 1.0, 200.0), place + DVec3::new(200.0, 9.0, 200.0))];
+        let (mut far, mut changes) = (0.0, -1);
+        for walk in walks {
+            // 10 m of 200 m or more: less than a step.
+            let view = turned_view(place + DQuat::from_rotation_y(yaw) * DVec3::Z * (10.0 * walk - 5.0), [yaw, -0.1, 0.0])?;
+            let plan = planner.plan(&view, &sun, &world, &world)?;
+            let deepest = world[0].corners().map(|corner| view.view_depth(corner)).into_iter().fold(0.0, f64::max);
+            let spare = plan.planes[4] / deepest;
+            prop_assert!((1.0 - 1e-9..=2f64.powf(2.0 / 8.0) + 1e-9).contains(&spare), "{spare} times as deep");
+            changes += i32::from(plan.planes[4] != far);
+            far = plan.planes[4];
+        }
+        prop_assert!(changes <= 2, "{changes}");
+    }
+}
+
+/// 0, 10 and 100 km from the world's origin.
+fn place() -> impl Strategy<Value = DVec3> {
+    prop_oneof![Just(0.0), Just(1e4), Just(1e5)].prop_map(|distance| DVec3::new(distance, 0.0, -distance))
+}
+
+fn sun() -> impl Strategy<Value = DirectionalLight> {
+    let direction =
+        prop_oneof![Just(DVec3::NEG_Y), (-1.0..1.0f64, -1.0..1.0f64).prop_map(|(x, z)| DVec3::new(x, -0.5, z))];
+    direction.prop_map(|direction| DirectionalLight::new(direction).expect("a direction"))
+}
+
+fn fit() -> impl Strategy<Value = Fit> {
+    prop_oneof![Just(Fit::Independent), Just(Fit::Dependent)]
+}
+
+/// Yaw, pitch, roll.
+fn turned_view(eye: DVec3, [yaw, pitch, roll]: [f64; 3]) -> Result<View, umbrage::Error> {
+    let rotation = DQuat::from_euler(EulerRot::YXZ, yaw, pitch, roll);
+    let frustum = Frustum::perspective(1.0, 4.0 / 3.0, 0.1, 1000.0)?;
+    View::look_at(eye, eye + rotation * DVec3::NEG_Z, rotation * DVec3::Y, frustum)
+}
+
+/// The comparison can say no: tight maps share no grid.
+#[test]
+fn tight_maps_do_not_stand_still() {
+    let settings =
+        ShadowSettings { range: Some((1.0, 300.0)), stabilize: Stabilize::None, ..ShadowSettings::default() };
+    let mut planner = Planner::new(settings).expect("valid");
+    let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).expect("valid");
+    let world = [Aabb::new(DVec3::splat(-400.0), DVec3::splat(400.0))];
+    let mut plan = |x| {
+        let view = turned_view(DVec3::new(x, 2.0, 0.0), [0.0; 3]).expect("valid");
+        planner.plan(&view, &sun, &world, &world).expect("valid").clone()
+    };
+    let (a, b) = (plan(0.0), plan(0.15));
+    assert!(a.splits.iter().zip(&b.splits).all(|(a, b)| b.texels_moved_since(a).is_none()));
 }
 
 #[test]

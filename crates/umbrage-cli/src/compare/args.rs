@@ -32,7 +32,8 @@ Presets, each reproduced by one command such as `umbrage compare --preset ladder
   ladder   SSM and PSSM at 1 and 4 Mtexel, tight and still, over the worlds under the suns `metrics`, with flicker
   figure8  the rows and worlds of the paper's Figure 8, columns (a) to (d)
   dueling  its column (e): looking into the light, larger maps
-  table    PSSM(2, 3, 4; 512) beside SSM(1024) over all cameras of all worlds";
+  table    PSSM(2, 3, 4; 512) beside SSM(1024) over all cameras of all worlds
+  suns     the defaults over all cameras of all worlds, suns 80, 43, 20, 11 and 5 degrees up: acne and leaks";
 
 /// `umbrage compare`.
 #[derive(Debug, clap::Args)]
@@ -154,6 +155,8 @@ pub enum Preset {
     Dueling,
     /// What stands in the first table of measurements
     Table,
+    /// The defaults under suns from 80° to 5° above the horizon
+    Suns,
 }
 
 impl CompareArgs {

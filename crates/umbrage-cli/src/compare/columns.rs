@@ -84,14 +84,14 @@ pub fn columns(judged: &Judged, answers: &[Answer], plain: &Plain, cell: [u32; 2
 /// there, and if none does, without sun. Surfaces that hardly face the sun or turn away are as the best technique has them: how
 /// they are shaded is no matter of shadows.
 fn true_picture(judged: &Judged, answers: &[Answer], plain: &Plain) -> RgbImage {
-    let to_light = judged.truth.to_light();
+    let light = judged.truth.light();
     let errors = answers.iter().map(|answer| answer.scores.e.unwrap_or(1.0));
     let best = errors.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(number, _)| &answers[number].picture);
     let width = plain.lit.width();
     RgbImage::from_fn(width, plain.lit.height(), |x, y| {
         let hit = judged.truth.hits()[(y * width + x) as usize];
         let source = match hit {
-            Some(hit) if hit.normal.dot(to_light) <= LEAST_FACING => best.unwrap_or(&plain.lit),
+            Some(hit) if hit.normal.dot(light.to_light(hit.position)) <= LEAST_FACING => best.unwrap_or(&plain.lit),
             Some(hit) if !hit.lit => {
                 let visibility = |answer: &&Answer| answer.mask.get_pixel(x, y).0[0];
                 let darkest = answers.iter().min_by_key(visibility).filter(|answer| visibility(answer) < 128);

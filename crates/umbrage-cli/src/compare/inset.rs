@@ -28,12 +28,13 @@ pub struct Rect {
 pub fn find(judged: &Judged, wrong: &[Vec<bool>]) -> Option<Rect> {
     let [width, height] = judged.domain.size();
     let window = [width.div_ceil(PARTS), height.div_ceil(PARTS)];
-    let to_light = judged.truth.to_light();
+    let light = judged.truth.light();
+    let facing = |hit: umbrage_truth::Hit| hit.normal.dot(light.to_light(hit.position));
     let brightness: Vec<u64> = judged
         .truth
         .hits()
         .iter()
-        .map(|hit| hit.map_or(0, |hit| (BRIGHTNESS * hit.normal.dot(to_light)).clamp(0.0, BRIGHTNESS).ceil() as u64))
+        .map(|hit| hit.map_or(0, |hit| (BRIGHTNESS * facing(hit)).clamp(0.0, BRIGHTNESS).ceil() as u64))
         .collect();
     let count = |pixel: usize| wrong.iter().filter(|of| of[pixel]).count();
     let differ = |pixel: usize| (count(pixel) * (wrong.len() - count(pixel))) as u64 * brightness[pixel];

@@ -1,6 +1,6 @@
 //! What one technique scores in one view.
 
-use glam::{DMat2, DVec2};
+use glam::{DMat2, DVec2, DVec3};
 use image::{GrayAlphaImage, Rgb, RgbImage};
 use serde::Serialize;
 use umbrage::{ShadowPlan, Split, View};
@@ -9,8 +9,8 @@ use umbrage_scene::Pose;
 use umbrage_truth::{
     Hit, SoftTruth, Truth, TruthMask,
     scores::{
-        Answers, ByDepth, Domain, Footprint, Seams, TexelGradient, by_depth, edge_distance, mis_shadowed, seams,
-        similarity, soft_error, texel_footprint,
+        Answers, ByDepth, Domain, Footprint, Seams, TexelGradient, acne_and_leak, by_depth, edge_distance,
+        mis_shadowed, seams, similarity, soft_error, texel_footprint,
     },
 };
 
@@ -91,6 +91,12 @@ pub struct Scores {
     pub e_false_shadow: Option<f64>,
     /// E_fl: lit where shadow should be (leaks).
     pub e_false_light: Option<f64>,
+    /// Falsely dark farther than 2 + 1.5 m pixels from true edges, of all scored pixels.
+    pub acne: Option<f64>,
+    /// Falsely lit farther than that, of all scored pixels.
+    pub leak: Option<f64>,
+    /// Share of the scored pixels that lies as far from true edges.
+    pub beyond_edges: Option<f64>,
     /// Pixels without an answer, wrong all of them.
     pub missing_pixels: usize,
     /// E_log, fair to every depth.
@@ -203,6 +209,13 @@ pub struct Cost {
 pub fn score(judged: &Judged, mask: &GrayAlphaImage, stats: &FrameStats, image_metrics: bool) -> Result<Scores> {
     let answers = Answers::from_mask(mask);
     let mut scores = decisions(judged, &answers)?;
+    if !judged.domain.pixels().is_empty() {
+        let gradient = |point, depth| texel_gradient(&stats.plan, point, depth);
+        let far = acne_and_leak(&judged.view, &judged.truth, &judged.domain, &answers, gradient)?;
+        scores.acne = Some(far.acne_rate());
+        scores.leak = Some(far.leak_rate());
+        scores.beyond_edges = Some(far.beyond_rate());
+    }
     scores.seams = seam_scores(&judged.domain, &answers, &stats.plan)?;
     scores.texel_px = footprint(judged, &stats.plan)?;
     for (bin, (predicted, measured)) in scores.by_depth.iter_mut().zip(densities(judged, &stats.plan)) {
@@ -287,13 +300,15 @@ fn split_at(plan: &ShadowPlan, depth: f64) -> Option<&Split> {
     (!split.casters.is_empty()).then_some(split)
 }
 
+/// How the map that serves a point lies there.
+fn texel_gradient(plan: &ShadowPlan, point: DVec3, depth: f64) -> Option<TexelGradient> {
+    let split = split_at(plan, depth)?;
+    let [u, v] = split.texel_gradients(point);
+    Some(TexelGradient { u, v, width: split.texel_edges(point).max_element() })
+}
+
 fn footprint(judged: &Judged, plan: &ShadowPlan) -> Result<Option<TexelPixels>> {
-    let gradient = |point, depth| {
-        split_at(plan, depth).map(|split| {
-            let [u, v] = split.texel_gradients(point);
-            TexelGradient { u, v, width: split.texel_edges(point).max_element() }
-        })
-    };
+    let gradient = |point, depth| texel_gradient(plan, point, depth);
     let footprint = texel_footprint(&judged.view, &judged.truth, &judged.domain, gradient)?;
     Ok(footprint.map(|Footprint { median, p99, perspective_median, perspective_p99, .. }| TexelPixels {
         m_p50: median,
@@ -402,8 +417,7 @@ mod tests {
         let judged = chessboard_shot([160, 120]);
         let mut planner = umbrage::Planner::new(umbrage::ShadowSettings::default()).expect("a planner");
         let everything = [umbrage::Aabb::new(glam::DVec3::splat(-400.0), glam::DVec3::splat(400.0))];
-        let sun = umbrage::DirectionalLight::new(-judged.truth.to_light()).expect("a sun");
-        let plan = planner.plan(&judged.view, &sun, &everything, &everything).expect("a plan");
+        let plan = planner.plan(&judged.view, judged.truth.light(), &everything, &everything).expect("a plan");
         let pairs: Vec<(f64, f64)> =
             densities(&judged, plan).into_iter().filter_map(|(predicted, measured)| predicted.zip(measured)).collect();
         assert!(pairs.len() >= 2, "{pairs:?}");

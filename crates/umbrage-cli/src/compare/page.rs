@@ -102,6 +102,8 @@ fn table(comparison: &Comparison) -> Section {
         least("E %"),
         least("E_fs %"),
         least("E_fl %"),
+        least("acne %"),
+        least("leak %"),
         least("E_log %"),
         least("D px"),
         least("D p95 px"),
@@ -121,8 +123,8 @@ fn table(comparison: &Comparison) -> Section {
     if soft {
         columns.extend([least("E_soft %"), least("E_pen %")]);
     }
-    let caption = "Means over the views that count; the best of a column in bold. Seam: E within 2 px of a split's border over the larger E of \
-         its sides, pooled over all views; 1 is none, 1.1 the most.";
+    let caption = "Means over the views that count; the best of a column in bold. Acne and leak: wrong farther than 2 + 1.5 m pixels from \
+         true edges. Seam: E within 2 px of a split's border over the larger E of its sides, pooled over all views; 1 is none, 1.1 the most.";
     let mut table = Table::new(caption, columns);
     for TechniqueReport { label, texels, bytes, mean, .. } in &comparison.techniques {
         let texel = mean.texel_px;
@@ -133,6 +135,8 @@ fn table(comparison: &Comparison) -> Section {
             percent(mean.e, 2),
             percent(mean.e_false_shadow, 2),
             percent(mean.e_false_light, 2),
+            percent(mean.acne, 3),
+            percent(mean.leak, 3),
             percent(mean.e_log, 2),
             number(mean.edge_distance_px, 2),
             number(mean.edge_distance_p95_px, 1),

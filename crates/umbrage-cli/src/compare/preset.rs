@@ -84,6 +84,18 @@ const TABLE: Content = Content {
     ..FIGURE_8
 };
 
+/// umbrage's defaults under suns from overhead to the horizon, to look for acne and leaks.
+const SUNS: Content = Content {
+    techniques: &["pssm:4:1024:label=defaults"],
+    with: "",
+    scenes: &["robot-war", "chessboard", "knights", "mining-terrain"],
+    cameras: &[],
+    suns: &["80", "43", "20", "11", "5"],
+    near: None,
+    far: None,
+    steps: None,
+};
+
 /// What a preset says.
 #[must_use]
 pub fn content(preset: Preset) -> &'static Content {
@@ -92,5 +104,6 @@ pub fn content(preset: Preset) -> &'static Content {
         Preset::Figure8 => &FIGURE_8,
         Preset::Dueling => &DUELING,
         Preset::Table => &TABLE,
+        Preset::Suns => &SUNS,
     }
 }

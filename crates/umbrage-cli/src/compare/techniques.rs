@@ -295,7 +295,10 @@ impl Draft {
             let text = match key.as_str() {
                 "lambda" => format!("λ {value}"),
                 "stabilize" if value == "exact" => "still".into(),
+                "stabilize" if value == "approximate" => "almost still".into(),
                 "stabilize" => "tight".into(),
+                "extent-steps" => format!("2^(1/{value})"),
+                "extent-levels" => format!("{value}/⌈{value}/s⌉"),
                 "fit" | "filter" | "depth-format" => value.clone(),
                 _ => format!("{key} {value}"),
             };

@@ -25,7 +25,8 @@ pub struct Domain {
 }
 
 impl Domain {
-    /// Ω_f of a mask for a shadowed range `[n, f]` in metres of view depth.
+    /// Ω_f of a mask for a shadowed range `[n, f]` in metres of view depth. What a local light's range and cone do not reach does
+    /// not belong to it.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] unless 0 < n < f < ∞.
@@ -45,7 +46,8 @@ impl Domain {
         };
         for (pixel, hit) in mask.hits().iter().enumerate() {
             let Some(hit) = hit else { continue };
-            if hit.normal.dot(mask.to_light()) > LEAST_FACING && (near..=far).contains(&hit.depth) {
+            let facing = hit.normal.dot(mask.light().to_light(hit.position));
+            if facing > LEAST_FACING && mask.light().reaches(hit.position) && (near..=far).contains(&hit.depth) {
                 domain.depth[pixel] = hit.depth;
                 domain.lit[pixel] = hit.lit;
                 domain.pixels.push(pixel);

@@ -125,8 +125,8 @@ pub fn flicker_along<E: From<Error>>(
             .filter_map(|pixel| now.mask.hits()[pixel].map(|hit| (hit.position, hit.normal)))
             .collect();
         if let (Some(truth_now), Some(truth_next)) = (now.truth, next.truth) {
-            let before = truth_now.visibility_at(&points, -now.mask.to_light())?;
-            let after = truth_next.visibility_at(&points, -next.mask.to_light())?;
+            let before = truth_now.visibility_under(&points, now.mask.light())?;
+            let after = truth_next.visibility_under(&points, next.mask.light())?;
             let mut same = before.iter().zip(&after).map(|(a, b)| a == b);
             points.retain(|_| same.next().unwrap_or(false));
         }

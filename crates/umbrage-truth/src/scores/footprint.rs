@@ -6,7 +6,7 @@ use umbrage::{Projection, View};
 use super::Domain;
 use super::domain::check_size;
 use super::stats::percentile;
-use crate::{Result, TruthMask};
+use crate::{Hit, Result, TruthMask};
 
 /// How a map's texel coordinates change with the world at one point: the rows of `∂(texel)/∂(world)`, in texels per metre.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,10 +58,7 @@ pub fn texel_footprint(
     for &pixel in domain.pixels() {
         let Some(hit) = mask.hits()[pixel] else { continue };
         let Some(map) = gradient(hit.position, hit.depth) else { continue };
-        let [dx, dy] = world_from_pixel(view, domain.size(), pixel, hit.normal, hit.depth);
-        let texel_from_pixel =
-            DMat2::from_cols(DVec2::new(map.u.dot(dx), map.v.dot(dx)), DVec2::new(map.u.dot(dy), map.v.dot(dy)));
-        whole.push(1.0 / least_singular_value(texel_from_pixel));
+        whole.push(pixels_per_texel(view, domain.size(), pixel, &hit, &map));
         let frustum = view.frustum();
         let image_height_m = (frustum.top - frustum.bottom) * frustum.scale_at(hit.depth);
         perspective.push(map.width * domain.size()[1] as f64 / image_height_m);
@@ -76,6 +73,14 @@ pub fn texel_footprint(
             pixels,
         })
     })())
+}
+
+/// m of one pixel, whose ray met `hit` where the map lies as `map` says.
+pub(super) fn pixels_per_texel(view: &View, size: [usize; 2], pixel: usize, hit: &Hit, map: &TexelGradient) -> f64 {
+    let [dx, dy] = world_from_pixel(view, size, pixel, hit.normal, hit.depth);
+    let texel_from_pixel =
+        DMat2::from_cols(DVec2::new(map.u.dot(dx), map.v.dot(dx)), DVec2::new(map.u.dot(dy), map.v.dot(dy)));
+    1.0 / least_singular_value(texel_from_pixel)
 }
 
 /// `∂(world)/∂(pixel)` along x and y, through the plane of the receiver that a pixel shows.

@@ -11,6 +11,7 @@
 //! | name | formula | here |
 //! |---|---|---|
 //! | E | `(1/│Ω_f│) Σ │[V̂ ≥ ½] − V*│`, split into `E_fs` (false shadow: acne) and `E_fl` (false light: leaks) | [`mis_shadowed`] |
+//! | acne, leak | E_fs and E_fl without the pixels that lie up to `2 + 1.5 m` pixels from B*: shadow where no edge is, and light where none is | [`acne_and_leak`] |
 //! | E_log | mean over 8 equal bins of ln z in `[n, f]`, those with at least 200 pixels of Ω_f, of E in the bin | [`by_depth`] |
 //! | B(V) | pixels with a right or lower neighbour, both in Ω_f, `│Δz│` < 5 % of the nearer z, V different | [`Domain::edges`] |
 //! | D | `(Σ_{B*} min(d(x, B̂), 64) + Σ_{B̂} min(d(x, B*), 64)) / (│B*│ + │B̂│)` pixels, d exact; 95th percentile | [`edge_distance`] |
@@ -28,6 +29,7 @@
 //! The measures and their limits are this project's own. m follows Lloyd et al., "Warping and Partitioning for Low Error
 //! Shadow Maps" (2006).
 
+mod acne;
 mod answers;
 mod compare;
 mod depth;
@@ -42,6 +44,7 @@ mod similarity;
 mod soft;
 mod stats;
 
+pub use acne::{AcneAndLeak, EDGE_PIXELS, EDGE_TEXELS, acne_and_leak};
 pub use answers::Answers;
 pub use compare::{MemoryAt, Paired, memory_at, paired};
 pub use depth::{ByDepth, DepthBin, LEAST_PIXELS_IN_BIN, by_depth};

@@ -125,8 +125,11 @@ proptest! {
             }
             let own = (aim.2 % 7) as u32;
             for own in [None, Some(own)] {
-                let by_tree = truth.sees_light(from, direction, own, &mut stack);
-                prop_assert_eq!(by_tree, truth.sees_light_by_brute_force(from, direction, own), "from {} along {}", from, direction);
+                for distance in [f64::INFINITY, 3.0] {
+                    let by_tree = truth.sees_light(from, direction, distance, own, &mut stack);
+                    let by_all = truth.sees_light_by_brute_force(from, direction, distance, own);
+                    prop_assert_eq!(by_tree, by_all, "from {} along {}", from, direction);
+                }
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Shadows whose outline is known.
 
 use glam::{DAffine3, DVec2, DVec3};
+use umbrage::{Light, PointLight, SpotLight};
 
 use super::scenes::{Shape, Stage, view};
 use crate::TruthMask;
@@ -204,4 +205,40 @@ fn points_are_answered_as_pixels_are() {
     assert!(truth.visibility_at(&[], DVec3::ZERO).is_err());
     assert!(truth.mask(&view, sun, [0, 60], &|_| {}).is_err());
     assert!(truth.mask(&view, DVec3::new(0.0, f64::NAN, 0.0), [8, 6], &|_| {}).is_err());
+}
+
+#[test]
+fn a_lamp_throws_shadows_as_large_as_similar_triangles_say() {
+    // A plate of 1 m half way between a lamp and the ground, one above the lamp, and one out of its reach.
+    let mut stage = Stage::default();
+    stage.add(Shape::floor(30.0, 0.0), DAffine3::IDENTITY);
+    stage.add(Shape::floor(0.5, 2.0), DAffine3::IDENTITY);
+    stage.add(Shape::floor(0.5, 5.0), DAffine3::IDENTITY);
+    let view = view(DVec3::new(6.0, 9.0, 7.0), DVec3::ZERO);
+    let truth = stage.truth(view.eye());
+    let at = DVec3::new(0.0, 4.0, 0.0);
+    let lamp = Light::from(PointLight::new(at, 6.0).unwrap());
+    let spot = Light::from(SpotLight::new(at, DVec3::NEG_Y, 0.6, 6.0).unwrap());
+    for light in [lamp, spot] {
+        let mask = truth.mask_under(&view, &light, [160, 120], &|_| {}).unwrap();
+        let mut seen = [0; 3];
+        for hit in mask.hits().iter().flatten().filter(|hit| hit.position.y.abs() < 1e-6) {
+            let p = hit.position;
+            let shaded = p.x.abs().max(p.z.abs()) < 1.0;
+            let reached = light.reaches(p);
+            // Where it does not reach nothing is shadowed, the plate's shadow included.
+            assert_eq!(hit.lit, !shaded || !reached, "{p}");
+            seen[usize::from(shaded) + usize::from(!reached)] += 1;
+        }
+        assert!(seen[0] > 100 && seen[1] > 100, "lit, shaded or out of reach: {seen:?}");
+        let domain = crate::scores::Domain::new(&mask, (0.1, 100.0)).unwrap();
+        let scored = domain.points(&mask).unwrap();
+        assert!(scored.iter().all(|(p, n)| light.reaches(*p) && n.dot(light.to_light(*p)) > 0.02));
+        // The plate over the lamp is lit from below only.
+        let above = [(DVec3::new(0.2, 5.0, 0.1), DVec3::Y), (DVec3::new(0.2, 5.0, 0.1), DVec3::NEG_Y)];
+        assert_eq!(truth.visibility_under(&above, &light).unwrap(), [0.0, 1.0]);
+    }
+    let mask = truth.mask_under(&view, &lamp, [16, 12], &|_| {}).unwrap();
+    let soft = truth.soft(&mask, &crate::SunDisc::new(0.01, 16), &|_| {});
+    assert!(soft.is_err_and(|error| error.to_string().contains("directional")), "a lamp is no disc in the sky");
 }

@@ -66,7 +66,7 @@ fn the_jacobian_is_that_of_the_rays() {
     for &pixel in domain.pixels().iter().step_by(97) {
         let mut alone = vec![None; mask.hits().len()];
         alone[pixel] = mask.hits()[pixel];
-        let alone = TruthMask::from_hits(mask.size(), mask.to_light(), alone);
+        let alone = TruthMask::from_hits(mask.size(), mask.light().to_light(DVec3::ZERO), alone);
         let only = Domain::new(&alone, (0.1, 1e4)).unwrap();
         let ours = texel_footprint(&view, &alone, &only, |_, _| Some(texels)).unwrap().unwrap().median;
         let texel = |dx: f64, dy: f64| {

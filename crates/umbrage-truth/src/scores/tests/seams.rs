@@ -38,7 +38,9 @@ fn rows_are_counted_where_they_belong() {
 
 #[test]
 fn even_errors_are_no_seam() {
-    for wrong in [|x: usize, y: usize| (x + 3 * y).is_multiple_of(10), |x: usize, y: usize| y >= 29 && x.is_multiple_of(7)] {
+    for wrong in
+        [|x: usize, y: usize| (x + 3 * y).is_multiple_of(10), |x: usize, y: usize| y >= 29 && x.is_multiple_of(7)]
+    {
         let found = score(wrong);
         assert_eq!(found.are_hidden(), Some(true), "{found:?}");
     }
