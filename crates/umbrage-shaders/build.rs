@@ -3,7 +3,7 @@
 use wesl::{CompileOptions, Mangler, ModulePath, Wesl};
 
 /// The roots in `shaders`, the features that they are built with, and the file that each becomes in `OUT_DIR`.
-const ROOTS: [(&str, &[&str], &str); 10] = [
+const ROOTS: [(&str, &[&str], &str); 11] = [
     ("pass::caster", &[], "caster"),
     ("pass::receiver", &["depth_loads"], "receiver"),
     ("pass::receiver", &[], "receiver_without_loads"),
@@ -13,12 +13,13 @@ const ROOTS: [(&str, &[&str], &str); 10] = [
     ("maps::array", &["depth_loads"], "array"),
     ("maps::array", &[], "array_without_loads"),
     ("maps::moments", &[], "moments"),
-    ("maps::moments", &["by_hand"], "moments_by_hand"),
+    ("maps::moments", &["own_taps"], "moments_by_taps"),
+    ("maps::moments", &["own_taps", "by_hand"], "moments_by_hand"),
 ];
 
 /// `depth_loads`: depth textures can be loaded from. `moments`: maps hold moments of depth. `multisampled`: depth has four samples a
-/// texel. `by_hand`: no sampler filters moments.
-const FEATURES: [&str; 4] = ["depth_loads", "moments", "multisampled", "by_hand"];
+/// texel. `own_taps`: the shader takes an anisotropic sample's taps. `by_hand`: and no sampler filters moments.
+const FEATURES: [&str; 5] = ["depth_loads", "moments", "multisampled", "own_taps", "by_hand"];
 
 fn main() {
     let mut compiler = Wesl::new("shaders");

@@ -134,7 +134,7 @@ pub struct Frame {
 pub struct MomentSplit {
     /// From stored depth to the z of moments, -1 at the first and 1 at the last place that is seen: `z = depth[0] · stored + depth[1]`.
     pub depth: [f32; 2],
-    /// Half width of the blur in texels along u and v, 1 or more: the tent that blur and linear sampling make together.
+    /// Half width in texels along u and v, 1 or more, of the tent that blur and linear sampling make of an edge.
     pub radius: [f32; 2],
 }
 

@@ -35,6 +35,7 @@ const ARRAY: &str = include_str!(concat!(env!("OUT_DIR"), "/array.wgsl"));
 const ARRAY_WITHOUT_LOADS: &str = include_str!(concat!(env!("OUT_DIR"), "/array_without_loads.wgsl"));
 
 const MOMENTS: &str = include_str!(concat!(env!("OUT_DIR"), "/moments.wgsl"));
+const MOMENTS_BY_TAPS: &str = include_str!(concat!(env!("OUT_DIR"), "/moments_by_taps.wgsl"));
 const MOMENTS_BY_HAND: &str = include_str!(concat!(env!("OUT_DIR"), "/moments_by_hand.wgsl"));
 
 /// The passes from depth to moments, `shaders/pass/moments.wesl`: entry points `vs_all`, `fs_convert`, `fs_blur_u`, `fs_blur_v` and
@@ -53,12 +54,14 @@ pub struct Maps {
     pub moments: Option<MomentMaps>,
 }
 
-/// How moments are read: through a sampler, or filtered by the shader.
+/// How moments are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MomentMaps {
-    /// Bindings 1: `texture_2d_array<f32>`, 2: a linear sampler, 3: uniform [`layout::Moments`].
+    /// Bindings 1: `texture_2d_array<f32>`, 2: a linear and anisotropic sampler, 3: uniform [`layout::Moments`].
     Sampled,
-    /// The same without the sampler.
+    /// The same with a sampler that is linear only; the shader takes up to 16 samples where an anisotropic one would.
+    Taps,
+    /// The same without a sampler.
     ByHand,
 }
 
@@ -74,6 +77,7 @@ pub fn caster(group: u32) -> String {
 pub fn receiver(group: u32, maps: Maps) -> String {
     let (receiver, maps) = match (maps.moments, maps.without_loads) {
         (Some(MomentMaps::Sampled), _) => (RECEIVER_OF_MOMENTS, MOMENTS),
+        (Some(MomentMaps::Taps), _) => (RECEIVER_OF_MOMENTS, MOMENTS_BY_TAPS),
         (Some(MomentMaps::ByHand), _) => (RECEIVER_OF_MOMENTS, MOMENTS_BY_HAND),
         (None, true) => (RECEIVER_WITHOUT_LOADS, ARRAY_WITHOUT_LOADS),
         (None, false) => (RECEIVER, ARRAY),

@@ -6,6 +6,7 @@ use umbrage_shaders::{Maps, MomentMaps};
 
 const WITHOUT_LOADS: Maps = Maps { without_loads: true, moments: None };
 const MOMENTS: Maps = Maps { without_loads: false, moments: Some(MomentMaps::Sampled) };
+const MOMENTS_BY_TAPS: Maps = Maps { without_loads: false, moments: Some(MomentMaps::Taps) };
 const MOMENTS_BY_HAND: Maps = Maps { without_loads: false, moments: Some(MomentMaps::ByHand) };
 
 fn validated(source: &str) -> (naga::Module, ModuleInfo) {
@@ -43,12 +44,8 @@ fn fragment_shader_without_loads(group: u32) -> String {
     umbrage_shaders::receiver(group, WITHOUT_LOADS) + FRAGMENT
 }
 
-fn fragment_shader_of_moments(group: u32) -> String {
-    umbrage_shaders::receiver(group, MOMENTS) + FRAGMENT
-}
-
-fn fragment_shader_of_moments_by_hand(group: u32) -> String {
-    umbrage_shaders::receiver(group, MOMENTS_BY_HAND) + FRAGMENT
+fn fragment_shader_of_moments(group: u32, maps: Maps) -> String {
+    umbrage_shaders::receiver(group, maps) + FRAGMENT
 }
 
 /// A compute shader knows no derivatives and compiles all the same.
@@ -75,8 +72,9 @@ fn roots_are_valid_wgsl_in_any_bind_group() {
             vertex_shader(group),
             fragment_shader(group),
             fragment_shader_without_loads(group),
-            fragment_shader_of_moments(group),
-            fragment_shader_of_moments_by_hand(group),
+            fragment_shader_of_moments(group, MOMENTS),
+            fragment_shader_of_moments(group, MOMENTS_BY_TAPS),
+            fragment_shader_of_moments(group, MOMENTS_BY_HAND),
             compute_shader_of_moments(group),
         ];
         for source in texts {
@@ -107,7 +105,7 @@ fn moment_passes_are_valid_wgsl() {
 #[test]
 fn every_name_is_in_our_namespace() {
     let receiver = |maps| umbrage_shaders::receiver(0, maps);
-    let texts = [Maps::default(), WITHOUT_LOADS, MOMENTS, MOMENTS_BY_HAND].map(receiver);
+    let texts = [Maps::default(), WITHOUT_LOADS, MOMENTS, MOMENTS_BY_TAPS, MOMENTS_BY_HAND].map(receiver);
     for source in texts.into_iter().chain([umbrage_shaders::caster(0)]) {
         let module = naga::front::wgsl::parse_str(&source).expect("a valid root");
         let names = (module.functions.iter().filter_map(|(_, f)| f.name.clone()))

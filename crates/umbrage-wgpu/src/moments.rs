@@ -2,7 +2,7 @@
 
 use umbrage::{MAX_SPLITS, ShadowPlan};
 use umbrage_shaders::layout::{self, FilterKind};
-use umbrage_shaders::{MOMENT_PASSES, MOMENT_PASSES_OF_SAMPLES, twin::moments::of_depth};
+use umbrage_shaders::{MOMENT_PASSES, MOMENT_PASSES_OF_SAMPLES, MomentMaps, twin::moments::of_depth};
 
 use crate::{Error, Filter, FrameOptions, Result, ShadowMapsOptions};
 
@@ -70,6 +70,7 @@ impl MomentStorage {
 pub(crate) struct Moments {
     filter: Filter,
     storage: MomentStorage,
+    own_taps: bool,
     texture: wgpu::Texture,
     between: wgpu::Texture,
     between_view: wgpu::TextureView,
@@ -111,6 +112,9 @@ impl Moments {
             return Err(Error::NoDepthLoads { filter });
         }
         let storage = MomentStorage::choose(filter, device.features(), fallbacks)?;
+        // Mesa's software driver (seen with 22.3) gives an anisotropic sample the differences between neighbouring pixels' places, whatever
+        // derivatives or level it was told: wrong on every border of splits, and outside fragment shaders.
+        let own_taps = device.adapter_info().device_type == wgpu::DeviceType::Cpu;
         let format = storage.format(filter);
         let level_count = edge.max(LEAST_LEVEL).ilog2() - LEAST_LEVEL.ilog2() + 1;
         let texture_of = |label, layers, levels| {
@@ -148,7 +152,7 @@ impl Moments {
         let unfiltered = wgpu::TextureSampleType::Float { filterable: false };
         let blur_layout = pass_layout(device, true, unfiltered, false);
         let halve_layout = pass_layout(device, false, unfiltered, false);
-        let group = |layout, split: Option<usize>, binding, view| {
+        let group = |layout: &wgpu::BindGroupLayout, split: Option<usize>, binding: u32, view: &wgpu::TextureView| {
             let buffer = split.map(|split| wgpu::BindGroupEntry {
                 binding: 0,
                 resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
@@ -194,6 +198,7 @@ impl Moments {
         Ok(Self {
             filter,
             storage,
+            own_taps,
             convert: pipeline(&from_depth_layout, "fs_convert"),
             blur_u: pipeline(&blur_layout, "fs_blur_u"),
             blur_v: pipeline(&blur_layout, "fs_blur_v"),
@@ -213,6 +218,15 @@ impl Moments {
     /// What was chosen.
     pub fn storage(&self) -> MomentStorage {
         self.storage
+    }
+
+    /// The text that reads them.
+    pub fn maps(&self) -> MomentMaps {
+        match (self.storage, self.own_taps) {
+            (MomentStorage::FloatsByHand, _) => MomentMaps::ByHand,
+            (_, true) => MomentMaps::Taps,
+            (_, false) => MomentMaps::Sampled,
+        }
     }
 
     /// Bytes of all levels and of the texture between the blurs.
@@ -262,7 +276,7 @@ impl Moments {
                 mag_filter: wgpu::FilterMode::Linear,
                 min_filter: wgpu::FilterMode::Linear,
                 mipmap_filter: wgpu::MipmapFilterMode::Linear,
-                anisotropy_clamp: ANISOTROPY,
+                anisotropy_clamp: if self.own_taps { 1 } else { ANISOTROPY },
                 ..Default::default()
             })
         });
@@ -361,10 +375,8 @@ impl Moments {
             // What lies outside the map is the last place, in this level and so in all.
             let cleared = wgpu::LoadOp::Clear(self.far);
             draw("Moments::convert", level_0, cleared, size, &self.convert, &targets.from_depth);
-            if pass.split.radius != [1.0; 2] {
-                draw("Moments::blur_u", &self.between_view, cleared, size, &self.blur_u, &targets.from_level_0);
-                draw("Moments::blur_v", level_0, wgpu::LoadOp::Load, size, &self.blur_v, &targets.from_between);
-            }
+            draw("Moments::blur_u", &self.between_view, cleared, size, &self.blur_u, &targets.from_level_0);
+            draw("Moments::blur_v", level_0, wgpu::LoadOp::Load, size, &self.blur_v, &targets.from_between);
             for (level, group) in smaller.iter().zip(&targets.halves) {
                 draw("Moments::halve", level, cleared, None, &self.halve, group);
             }

@@ -3,7 +3,7 @@
 pub(crate) mod storage;
 
 use umbrage::{MAX_SPLITS, ShadowPlan, ShadowSettings};
-use umbrage_shaders::{Maps, MomentMaps, layout};
+use umbrage_shaders::{Maps, layout};
 
 use storage::{Arrangement, Tile};
 
@@ -225,10 +225,7 @@ impl ShadowMaps {
     /// then [`crate::Filter::Disc`].
     #[must_use]
     pub fn receiver_wgsl(&self, group: u32) -> String {
-        let moments = self.moment_storage().map(|storage| match storage {
-            MomentStorage::FloatsByHand => MomentMaps::ByHand,
-            MomentStorage::Floats | MomentStorage::Halves => MomentMaps::Sampled,
-        });
+        let moments = self.moments.as_ref().map(Moments::maps);
         umbrage_shaders::receiver(group, Maps { without_loads: !self.depth_loads, moments })
     }
 

@@ -219,7 +219,7 @@ impl World {
                 },
                 primitive: maps.caster_primitive(),
                 depth_stencil: Some(maps.caster_depth_stencil()),
-                multisample: Default::default(),
+                multisample: maps.caster_multisample(),
                 fragment: None,
                 multiview_mask: None,
                 cache: None,
@@ -242,6 +242,7 @@ impl World {
                 pass.set_vertex_buffer(0, vertices.slice(..));
                 pass.draw(0..triangles.len() as u32, 0..1);
             }
+            self.maps.filter(&mut encoder);
             self.gpu.queue.submit([encoder.finish()]);
         });
     }
