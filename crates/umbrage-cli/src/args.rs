@@ -235,6 +235,10 @@ pub struct ShadowArgs {
     /// View depths in metres that shadows cover [default: the camera's near and far, far capped by the scene]
     #[arg(long, value_name = "N..F", value_parser = parse::range, allow_hyphen_values = true)]
     pub shadow_range: Option<(f64, f64)>,
+    /// What the shadowed range is fitted to where --shadow-range does not say it: the camera's near and far, or the visible
+    /// objects
+    #[arg(long, value_enum, default_value_t)]
+    pub range_fit: RangeFit,
     /// What each map is fitted to: the slice alone, or its receivers and casters too
     #[arg(long, value_enum, default_value_t)]
     pub fit: Fit,
@@ -347,6 +351,16 @@ pub enum Scheme {
     Practical,
     /// By --planes
     Manual,
+}
+
+/// `--range-fit`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum RangeFit {
+    /// The camera's near and far, far capped by the scene
+    #[default]
+    Camera,
+    /// The nearest and the farthest thing in view
+    Visible,
 }
 
 /// `--fit`.

@@ -205,6 +205,11 @@ impl ShadowJob {
     /// # Errors
     /// [`Failure::Input`] naming the options that do not go together.
     pub fn new(args: &ShadowArgs, image_size: [u32; 2]) -> Result<Self> {
+        if args.shadow_range.is_some() && args.range_fit == args::RangeFit::Visible {
+            return Err(Failure::input(
+                "--shadow-range and --range-fit visible both choose the shadowed range; give one of them",
+            ));
+        }
         let map_sizes = map_sizes(args)?;
         let warps = warps(args, map_sizes.len())?;
         let stabilize = stabilize(args, &warps)?;
@@ -212,6 +217,10 @@ impl ShadowJob {
             scheme: scheme(args, map_sizes.len())?,
             map_sizes,
             range: args.shadow_range,
+            range_fit: match args.range_fit {
+                args::RangeFit::Camera => umbrage::RangeFit::Camera,
+                args::RangeFit::Visible => umbrage::RangeFit::Visible,
+            },
             fit: match args.fit {
                 args::Fit::Dependent => umbrage::Fit::Dependent,
                 args::Fit::Independent => umbrage::Fit::Independent,

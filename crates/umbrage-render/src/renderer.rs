@@ -154,6 +154,7 @@ impl Renderer {
                     filter: settings.filter,
                     storage: settings.storage,
                     generation: settings.generation,
+                    ..ShadowMapsOptions::default()
                 },
             )?;
             // Floats hold the depth of a whole world; 16 bits want the shorter range that casters flattened onto the near plane

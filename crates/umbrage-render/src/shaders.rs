@@ -51,7 +51,7 @@ mod tests {
     #[test]
     fn every_pass_is_valid_wgsl() {
         assert!(!parsed(&casters(&umbrage_shaders::caster(0))).entry_points.is_empty());
-        for maps in [Maps::default(), Maps { without_loads: true }] {
+        for maps in [Maps::default(), Maps { without_loads: true, ..Maps::default() }] {
             for source in [forward(&receiver(2, maps)), probe(&receiver(1, maps))] {
                 assert!(!parsed(&source).entry_points.is_empty());
             }

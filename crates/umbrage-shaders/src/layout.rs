@@ -49,8 +49,9 @@ pub enum TransitionKind {
 
 /// One split: where its map lies and which view depths it serves.
 ///
-/// The rows take positions in metres relative to the frame's origin (with 1 as the fourth coordinate). In a warped map what the first
-/// three give is to be divided by what the fourth gives, which is positive at every receiver.
+/// The rows take positions in metres relative to the frame's origin (with 1 as the fourth coordinate). In a warped map and in that of a
+/// local light what the first three give is to be divided by what the fourth gives, which is positive at every receiver. A local
+/// light's depth is `depth_offset − B/w`: its depth row is `(0, 0, 0, −B)` and w the metres along the axis.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Split {
@@ -60,7 +61,7 @@ pub struct Split {
     pub v_row: [f32; 4],
     /// Depth in the map: `xyz` per metre, `w` without unit; 0 nearest the light, 1 farthest.
     pub depth_row: [f32; 4],
-    /// What a warped map divides by; all 0 in a plain map.
+    /// What a warped map, or a local light's, divides by; all 0 in a plain map.
     pub w_row: [f32; 4],
     /// Added to the two places above it gives texels of the map, `[0, size]²`. Whole numbers.
     pub texel_offset: [f32; 2],
@@ -72,7 +73,8 @@ pub struct Split {
     pub far: f32,
     /// Where its blend into the next split begins: view depth in metres, `far` if there is none.
     pub blend_begin: f32,
-    /// Metres between depth 0 and depth 1; in a warped map where `w_row` gives 1, elsewhere as many times as many.
+    /// Metres between depth 0 and depth 1; in a warped map where `w_row` gives 1, elsewhere as many times as many. 1 for local lights,
+    /// where no one number says it.
     pub depth_range_m: f32,
     /// The step in metres by which the texture's format rounds depth, 0 if it is no coarser than `f32`. Scales as
     /// `depth_range_m` does.
@@ -90,20 +92,27 @@ pub struct Split {
     pub layer_texels: [f32; 2],
     /// The layer of the texture, the face of the cube or the number of the texture that holds the map.
     pub layer: u32,
+    /// Added to the depth that the rows give: 0, but for a local light's A, which is greater than 0.
+    pub depth_offset: f32,
     /// Up to the alignment of 16 bytes.
-    pub _padding: [u32; 3],
+    pub _padding: [u32; 2],
 }
 
-/// All that a receiver needs for one light and one view.
+/// All that a receiver needs for one light and one view; for a point light, for one face of its cube. What receivers bind is an array of
+/// frames: of every light's, six for a point light.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Frame {
     /// View depth in metres of a position relative to the frame's origin.
     pub view_depth_plane: [f32; 4],
-    /// Unit vector in the world from anywhere towards the light.
+    /// Unit vector in the world from anywhere towards a sun; of a spot light that against its axis.
     pub to_light: [f32; 3],
     /// How dark a shadow is: 0 not at all, 1 black.
     pub strength: f32,
+    /// Where a local light stands, relative to the frame's origin, metres.
+    pub light_position: [f32; 3],
+    /// How far a local light shines, metres; 0 for a sun.
+    pub light_range_m: f32,
     /// View depth in metres at which the fade to lit begins; the last split's `far` if there is none.
     pub fade_begin: f32,
     /// Splits in use.
@@ -122,8 +131,12 @@ pub struct Frame {
     pub turn_per_pixel: f32,
     /// A [`TransitionKind`].
     pub transition: u32,
-    /// Up to the alignment of 16 bytes.
-    pub _padding: [u32; 3],
+    /// Cosine of a spot light's outer angle; −2 for lights without a cone.
+    pub cone_cosine: f32,
+    /// Of the light that has this frame's number: its first frame.
+    pub first_frame: u32,
+    /// How many frames this frame's light uses: 1, or 6 for a point light.
+    pub face_count: u32,
     /// The splits, nearest first; those past `split_count` are not read.
     pub splits: [Split; MAX_SPLITS],
 }

@@ -14,7 +14,7 @@
 //!
 //! | binding of [`receiver`] | what |
 //! |---|---|
-//! | 0 | uniform [`layout::Frame`] |
+//! | 0 | uniform array of [`layout::Frame`]: one for each light, six for a point light |
 //! | 1 | `texture_depth_2d_array`, cleared to 1; [`layout::Split`] says where in it a map lies |
 //! | 2 | `sampler_comparison` with `LessEqual`, clamped to the edge; nearest for [`layout::FilterKind::Hard`], else linear |
 //!
@@ -46,12 +46,21 @@ pub const MOMENT_PASSES: &str = include_str!(concat!(env!("OUT_DIR"), "/moment_p
 pub const MOMENT_PASSES_OF_SAMPLES: &str = include_str!(concat!(env!("OUT_DIR"), "/moment_passes_of_samples.wgsl"));
 
 /// How a receiver reads its maps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Maps {
     /// Depth textures can be compared with but not loaded from (GL, WebGL2): [`layout::FilterKind::Pcss`] is an ordinary disc.
     pub without_loads: bool,
-    /// Maps hold moments of depth.
+    /// Length of the array of frames.
+    pub frames: u32,
+    /// Maps hold moments of depth, of one light.
     pub moments: Option<MomentMaps>,
+}
+
+impl Default for Maps {
+    /// One light, read with everything that a device can have.
+    fn default() -> Self {
+        Self { without_loads: false, frames: 1, moments: None }
+    }
 }
 
 /// How moments are read.
@@ -72,9 +81,10 @@ pub fn caster(group: u32) -> String {
 }
 
 /// Text to put before a shader that asks what is lit: `fn umbrage_visibility(position: vec3f, normal: vec3f) -> f32`,
-/// `umbrage_shadow` and `umbrage_visibility_in_split`.
+/// `umbrage_shadow` and `umbrage_visibility_in_split`, and the same of one of several lights: `umbrage_visibility_of(light: u32, …)`.
 #[must_use]
 pub fn receiver(group: u32, maps: Maps) -> String {
+    let frames = maps.frames.max(1);
     let (receiver, maps) = match (maps.moments, maps.without_loads) {
         (Some(MomentMaps::Sampled), _) => (RECEIVER_OF_MOMENTS, MOMENTS),
         (Some(MomentMaps::Taps), _) => (RECEIVER_OF_MOMENTS, MOMENTS_BY_TAPS),
@@ -82,5 +92,5 @@ pub fn receiver(group: u32, maps: Maps) -> String {
         (None, true) => (RECEIVER_WITHOUT_LOADS, ARRAY_WITHOUT_LOADS),
         (None, false) => (RECEIVER, ARRAY),
     };
-    format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\n{maps}\n{receiver}\n")
+    format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\nconst UMBRAGE_FRAMES = {frames}u;\n{maps}\n{receiver}\n")
 }

@@ -49,7 +49,8 @@ pub fn map_from_world(split: &Split, position: [f32; 3]) -> [f32; 3] {
         if w <= 0.0 {
             return [-1.0, -1.0, 1.0];
         }
-        return [split.u_row, split.v_row, split.depth_row].map(|row| along(row, position) / w);
+        let [u, v, depth] = [split.u_row, split.v_row, split.depth_row].map(|row| along(row, position) / w);
+        return [u, v, depth + split.depth_offset];
     }
     [
         along(split.u_row, position) + split.texel_offset[0],
@@ -62,6 +63,23 @@ pub fn map_from_world(split: &Split, position: [f32; 3]) -> [f32; 3] {
 #[must_use]
 pub fn split_at(frame: &Frame, view_depth: f32) -> Option<usize> {
     frame.splits[..frame.split_count as usize].iter().position(|split| view_depth < split.far)
+}
+
+/// `umbrage_frame_at`: the frame of light `light` that answers for a position.
+#[must_use]
+pub fn frame_at(frames: &[Frame], light: usize, position: [f32; 3]) -> usize {
+    let first = frames[light].first_frame as usize;
+    let from: [f32; 3] = std::array::from_fn(|axis| position[axis] - frames[first].light_position[axis]);
+    let size = from.map(f32::abs);
+    let axis = if size[0] >= size[1] && size[0] >= size[2] {
+        0
+    } else if size[1] >= size[2] {
+        1
+    } else {
+        2
+    };
+    let face = 2 * axis + usize::from(from[axis] < 0.0);
+    first + face.min(frames[first].face_count.max(1) as usize - 1)
 }
 
 fn along(row: [f32; 4], position: [f32; 3]) -> f32 {

@@ -4,10 +4,10 @@ use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use umbrage_shaders::{Maps, MomentMaps};
 
-const WITHOUT_LOADS: Maps = Maps { without_loads: true, moments: None };
-const MOMENTS: Maps = Maps { without_loads: false, moments: Some(MomentMaps::Sampled) };
-const MOMENTS_BY_TAPS: Maps = Maps { without_loads: false, moments: Some(MomentMaps::Taps) };
-const MOMENTS_BY_HAND: Maps = Maps { without_loads: false, moments: Some(MomentMaps::ByHand) };
+const WITHOUT_LOADS: Maps = Maps { without_loads: true, frames: 7, moments: None };
+const MOMENTS: Maps = Maps { without_loads: false, frames: 1, moments: Some(MomentMaps::Sampled) };
+const MOMENTS_BY_TAPS: Maps = Maps { moments: Some(MomentMaps::Taps), ..MOMENTS };
+const MOMENTS_BY_HAND: Maps = Maps { moments: Some(MomentMaps::ByHand), ..MOMENTS };
 
 fn validated(source: &str) -> (naga::Module, ModuleInfo) {
     let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
@@ -62,7 +62,8 @@ const FRAGMENT: &str =
                }
                let shadow = umbrage_shadow(position, vec3f(0.0, 1.0, 0.0));
                let one = umbrage_visibility_in_split(position, vec3f(0.0, 1.0, 0.0), 1u);
-               return vec4f(shadow.tint * shadow.visibility, one * f32(shadow.split));
+               let other = umbrage_visibility_of(u32(position.x), position, vec3f(0.0, 1.0, 0.0));
+               return vec4f(shadow.tint * shadow.visibility, one * other * f32(shadow.split));
            }";
 
 #[test]

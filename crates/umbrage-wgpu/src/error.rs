@@ -42,7 +42,7 @@ pub enum Error {
     },
     /// The device has no texture array as long as the list of maps.
     #[error(
-        "map_sizes has {count} entries, but this device's texture arrays have at most {limit} layers \
+        "lights and map_sizes ask for {count} layers, but this device's texture arrays have at most {limit} layers \
          (max_texture_array_layers); use fewer splits"
     )]
     TooManyLayers {
@@ -71,6 +71,16 @@ pub enum Error {
     MomentsNeedArray {
         /// The storage.
         storage: crate::Storage,
+        /// The filter.
+        filter: crate::Filter,
+    },
+    /// Moments are kept for one light.
+    #[error(
+        "lights asks for {lights:?}, but filter {filter:?} serves one sun; use one light, or a filter that compares depth"
+    )]
+    MomentsNeedOneSun {
+        /// The lights.
+        lights: Vec<crate::LightSlot>,
         /// The filter.
         filter: crate::Filter,
     },
@@ -148,5 +158,62 @@ pub enum Error {
         value: f64,
         /// What it may be.
         expected: &'static str,
+    },
+    /// More or fewer plans than lights.
+    #[error("{plans} plans, but these ShadowMaps were created for {lights} lights; give one plan for each of `lights`")]
+    LightCount {
+        /// How many plans there were.
+        plans: usize,
+        /// Length of [`crate::ShadowMapsOptions::lights`].
+        lights: usize,
+    },
+    /// The plan has more faces than its light's slot.
+    #[error(
+        "lights[{light}] is {slot:?}, but its plan has {faces} faces; create the ShadowMaps with LightSlot::Cube there"
+    )]
+    LightSlot {
+        /// Index into [`crate::ShadowMapsOptions::lights`].
+        light: usize,
+        /// Faces of the plan.
+        faces: usize,
+        /// What was made for it.
+        slot: crate::LightSlot,
+    },
+    /// The filter knows suns only.
+    #[error(
+        "the filter {filter:?} goes by depths of parallel light, but lights[{light}] is a spot or point light; \
+         use another filter, such as Pcf5"
+    )]
+    FilterNeedsSun {
+        /// The filter.
+        filter: crate::Filter,
+        /// Index into [`crate::ShadowMapsOptions::lights`].
+        light: usize,
+    },
+    /// The storage holds one light's maps only.
+    #[error(
+        "lights asks for {maps} maps ({splits} of map_sizes for each), but the storage {storage:?} holds those of one sun or \
+         spot light; use Storage::Array, or one light"
+    )]
+    LightsNeedArray {
+        /// Maps of all lights together.
+        maps: usize,
+        /// Length of `map_sizes`.
+        splits: usize,
+        /// The storage that was asked for.
+        storage: crate::Storage,
+    },
+    /// The frames of all lights are more than a uniform buffer holds.
+    #[error(
+        "lights asks for {frames} frames (one for each light, 6 for a point light) of {bytes} bytes together, but this device's \
+         uniform buffers hold {limit} (max_uniform_buffer_binding_size); use fewer lights"
+    )]
+    TooManyLights {
+        /// Frames needed; 0 if there is no light at all.
+        frames: usize,
+        /// Their bytes.
+        bytes: u64,
+        /// The device's limit in bytes.
+        limit: u64,
     },
 }

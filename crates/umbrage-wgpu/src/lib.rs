@@ -39,6 +39,7 @@
 //! both declare what they share.
 
 mod error;
+mod local;
 mod maps;
 mod moments;
 mod options;
@@ -48,5 +49,6 @@ pub use error::{Error, Result};
 pub use maps::{ShadowMaps, optional_features};
 pub use moments::MomentStorage;
 pub use options::{
-    DepthFormat, Derivatives, Filter, FrameOptions, Generation, ShadowMapsOptions, Softness, Storage, Transition,
+    DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, ShadowMapsOptions, Softness, Storage,
+    Transition,
 };

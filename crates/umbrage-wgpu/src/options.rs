@@ -300,6 +300,33 @@ impl Generation {
     }
 }
 
+/// What kind of light a place among [`ShadowMapsOptions::lights`] is for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum LightSlot {
+    /// A sun or a spot light: one map for each split.
+    #[default]
+    Single,
+    /// A point light: six maps for each split, one for each face of a cube. Takes a sun or a spot light, too.
+    Cube,
+}
+
+impl LightSlot {
+    /// How many times the maps of `map_sizes` it has.
+    #[must_use]
+    pub const fn faces(self) -> usize {
+        match self {
+            Self::Single => 1,
+            Self::Cube => 6,
+        }
+    }
+}
+
+impl From<umbrage::Light> for LightSlot {
+    fn from(light: umbrage::Light) -> Self {
+        if light.faces() == 1 { Self::Single } else { Self::Cube }
+    }
+}
+
 /// What is fixed when [`crate::ShadowMaps`] are made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShadowMapsOptions {
@@ -318,6 +345,9 @@ pub struct ShadowMapsOptions {
     pub storage: Storage,
     /// How maps are drawn.
     pub generation: Generation,
+    /// The lights that throw shadows at once: one sun or spot light by default. Each has maps of its own, of the same sizes, in the same
+    /// texture. Several lights and point lights need [`Storage::Array`] and [`Generation::PerSplit`].
+    pub lights: Vec<LightSlot>,
 }
 
 impl Default for ShadowMapsOptions {
@@ -330,6 +360,7 @@ impl Default for ShadowMapsOptions {
             fallbacks: true,
             storage: Storage::default(),
             generation: Generation::default(),
+            lights: vec![LightSlot::Single],
         }
     }
 }

@@ -7,7 +7,7 @@ use umbrage::ShadowPlan;
 use umbrage_shaders::layout;
 
 use crate::maps::storage::Tile;
-use crate::{Error, FrameOptions, Result, ShadowMapsOptions};
+use crate::{Error, Filter, FrameOptions, Result, ShadowMapsOptions, local};
 
 /// The square of texels that clip space covers when a split is drawn: the map and a guard band around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +44,7 @@ pub(crate) struct Place {
 
 impl Place {
     /// The members of the uniform that say so.
-    fn into_split(self) -> layout::Split {
+    pub fn into_split(self) -> layout::Split {
         let Tile { layer, corner, layer_texels } = self.tile;
         layout::Split {
             viewport_texels: self.viewport.edge as f32,
@@ -57,15 +57,50 @@ impl Place {
     }
 }
 
-/// The uniform that receivers read; its splits are what casters read. `places` are those of the splits.
-pub(crate) fn frame(
+/// The uniform that receivers read: the frames of each light's slot. Their splits are what casters read. `places` are those of all maps.
+pub(crate) fn frames(
+    plans: &[&ShadowPlan],
+    maps: &ShadowMapsOptions,
+    places: &[Place],
+    options: &FrameOptions,
+) -> Result<Vec<layout::Frame>> {
+    options.validate()?;
+    if plans.len() != maps.lights.len() {
+        return Err(Error::LightCount { plans: plans.len(), lights: maps.lights.len() });
+    }
+    let mut frames = Vec::new();
+    for (light, (plan, slot)) in plans.iter().zip(&maps.lights).enumerate() {
+        if plan.faces() > slot.faces() {
+            return Err(Error::LightSlot { light, faces: plan.faces(), slot: *slot });
+        }
+        let for_suns = maps.filter == Filter::Pcss || maps.filter.is_prefiltered();
+        if for_suns && plan.light.is_some_and(|light| light.position().is_some()) {
+            return Err(Error::FilterNeedsSun { filter: maps.filter, light });
+        }
+        let splits = maps.map_sizes.len();
+        for face in 0..slot.faces() {
+            let first = frames.len() * splits;
+            frames.push(match face < plan.faces() {
+                true => frame(plan, face, maps, &places[first..first + splits], options)?,
+                // A sun in a point light's slot leaves five faces over, which nobody asks.
+                false => layout::Frame::default(),
+            });
+        }
+    }
+    local::number(&mut frames, &maps.lights, plans);
+    Ok(frames)
+}
+
+/// One face of one light. `places` are those of its splits.
+fn frame(
     plan: &ShadowPlan,
+    face: usize,
     maps: &ShadowMapsOptions,
     places: &[Place],
     options: &FrameOptions,
 ) -> Result<layout::Frame> {
-    options.validate()?;
-    if !plan.splits.iter().map(|split| &split.size).eq(&maps.map_sizes) {
+    let all_faces = (0..plan.faces()).flat_map(|_| &maps.map_sizes);
+    if !plan.splits.iter().map(|split| &split.size).eq(all_faces) {
         return Err(Error::PlanMismatch {
             plan: plan.splits.iter().map(|split| split.size).collect(),
             maps: maps.map_sizes.clone(),
@@ -88,7 +123,7 @@ pub(crate) fn frame(
         to_light: (-plan.light_direction).as_vec3().to_array(),
         strength: options.strength,
         fade_begin: plan.fade_begin as f32,
-        split_count: plan.splits.len() as u32,
+        split_count: maps.map_sizes.len() as u32,
         filter_kind: maps.filter.kind() as u32,
         enabled: options.enabled.into(),
         tint: options.tint.into(),
@@ -98,7 +133,10 @@ pub(crate) fn frame(
         transition: options.transition.kind() as u32,
         ..layout::Frame::default()
     };
-    for (index, ((uniform, split), place)) in frame.splits.iter_mut().zip(&plan.splits).zip(places).enumerate() {
+    local::place_light(&mut frame, plan, options.origin);
+    let first = face * maps.map_sizes.len();
+    let splits = plan.splits.iter().enumerate().skip(first);
+    for ((uniform, (index, split)), place) in frame.splits.iter_mut().zip(splits).zip(places) {
         *uniform = self::split(index, split, maps.depth_format.step(), *place, options.origin)?;
     }
     Ok(frame)
@@ -107,6 +145,9 @@ pub(crate) fn frame(
 /// One split. `depth_step` is the format's step as a share of the depth range.
 fn split(index: usize, split: &umbrage::Split, depth_step: f64, place: Place, origin: DVec3) -> Result<layout::Split> {
     check(index, split)?;
+    if let Some(at) = split.warp.zip(split.light_position) {
+        return local::split(index, split, at, depth_step, place, origin);
+    }
     if let Some(shadow_from_world) = split.warp {
         return warped(index, split, shadow_from_world, depth_step, place, origin);
     }

@@ -5,7 +5,9 @@ mod common;
 use common::{Ask, Gpu, World, ask, cuboid, ground, plan, quad};
 use glam::{DVec3, Vec3};
 use umbrage::ShadowPlan;
-use umbrage_wgpu::{Error, Filter, FrameOptions, MomentStorage, ShadowMaps, ShadowMapsOptions, Softness, Storage};
+use umbrage_wgpu::{
+    Error, Filter, FrameOptions, LightSlot, MomentStorage, ShadowMaps, ShadowMapsOptions, Softness, Storage,
+};
 
 const ALL: [Filter; 5] = [Filter::Esm, Filter::Vsm, Filter::Evsm2, Filter::Evsm4, Filter::Msm];
 const SLANTED: DVec3 = DVec3::new(0.3, -0.8, 0.2);
@@ -241,6 +243,9 @@ fn what_cannot_be_is_an_error_that_says_so() {
         assert_eq!(found, Error::MapTooSmall { split: 0, size: 32, filter, least: 33 }, "a blur wider than the map");
         let found = error(ShadowMapsOptions { storage: Storage::Atlas, ..options(&[256], filter) });
         assert_eq!(found, Error::MomentsNeedArray { storage: Storage::Atlas, filter });
+        let lights = vec![LightSlot::Single, LightSlot::Cube];
+        let found = error(ShadowMapsOptions { lights: lights.clone(), ..options(&[256], filter) });
+        assert_eq!(found, Error::MomentsNeedOneSun { lights, filter });
     }
 }
 

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::local::{Given, LightFrustum, LocalPlanner};
+use crate::range::{HeldRange, visible_range};
 use crate::rectangle::{HeldRectangle, Rectangle, longest_edge};
 use crate::region::{Fan, Region};
 use crate::split::{blend_begin, coverage, split_planes};
@@ -10,8 +11,8 @@ use crate::stable::{HeldSize, slice_sphere, stable_texel};
 use crate::volume::{Lies, Slice, SweptVolume};
 use crate::warped::WarpPoints;
 use crate::{
-    Aabb, DirectionalLight, Error, Fit, Light, MAX_SPLITS, Result, ShadowPlan, ShadowSettings, Split, Stabilize, View,
-    Warp,
+    Aabb, DirectionalLight, Error, Fit, Light, MAX_SPLITS, RangeFit, Result, ShadowPlan, ShadowSettings, Split,
+    Stabilize, View, Warp,
 };
 
 /// Texels that a map keeps free around what it serves, besides the filter's reach: half for the texel that a sample's
@@ -22,6 +23,9 @@ const EDGE_TEXELS: f64 = 1.5;
 /// them: rounding in the bounds, not a length that could be seen (1.2 mm in 1.2 km).
 pub(crate) const BELOW_ALL: f64 = 1e-6;
 
+/// The least length of a range that is fitted to what is visible, as a share of its far end.
+const LEAST_RANGE: f64 = 0.01;
+
 /// Plans shadow maps frame after frame. Keeps its buffers, so that only the first frame allocates, and the sizes that
 /// stabilised maps hold on to.
 #[derive(Clone, Debug)]
@@ -29,6 +33,7 @@ pub struct Planner {
     settings: ShadowSettings,
     plan: ShadowPlan,
     held_range: HeldSize,
+    held_visible_range: HeldRange,
     held_radius: [HeldSize; MAX_SPLITS],
     held_whole: HeldSize,
     /// Stabilised: across the sphere around everything that is shadowed, metres. 0 otherwise.
@@ -78,6 +83,7 @@ impl Planner {
             settings,
             plan: ShadowPlan::default(),
             held_range: HeldSize::default(),
+            held_visible_range: HeldRange::default(),
             held_radius: [HeldSize::default(); MAX_SPLITS],
             held_whole: HeldSize::default(),
             whole_width: 0.0,
@@ -215,7 +221,8 @@ impl Planner {
         })
     }
 
-    /// `C_0` and `C_m`: the setting, or the camera's near and far, far capped by the receivers.
+    /// `C_0` and `C_m`: the setting; the view depths of the visible receivers; or the camera's near and far, far capped by the
+    /// receivers.
     fn range(&mut self, view: &View) -> (f64, f64) {
         if let Some(range) = self.settings.range {
             return range;
@@ -229,11 +236,27 @@ impl Planner {
             .fold(f64::NEG_INFINITY, f64::max);
         // Nothing before the eye: any short range will do.
         let deepest = if deepest > near { deepest } else { 2.0 * near.abs() + 1.0 };
+        if self.settings.range_fit == RangeFit::Visible
+            && let Some((first, last)) = visible_range(view, near, deepest.min(camera_far), &self.receivers)
+        {
+            return self.held_within(first, last, near, camera_far);
+        }
         let far = match self.settings.stabilize {
             Stabilize::None => deepest,
             Stabilize::Exact | Stabilize::Approximate(_) => self.held_range.hold(deepest),
         };
         (near, far.min(camera_far))
+    }
+
+    /// A range around the visible receivers: as it is, or in steps where maps have to stand still.
+    fn held_within(&mut self, first: f64, last: f64, camera_near: f64, camera_far: f64) -> (f64, f64) {
+        let (first, last) = match self.settings.stabilize {
+            Stabilize::Exact | Stabilize::Approximate(_) if first > 0.0 => self.held_visible_range.hold(first, last),
+            _ => (first, last),
+        };
+        // A single wall that faces the camera still gets slices of some depth.
+        let first = first.max(camera_near).min(last * (1.0 - LEAST_RANGE));
+        (first, last.min(camera_far))
     }
 
     /// Receivers that some slice can contain and casters that some slice's sweep can meet.
@@ -277,6 +300,9 @@ impl Planner {
         let (from, to) = coverage(view, planes, i, settings.blend, settings.image_size);
         let blend_begin = blend_begin(planes, i, settings.blend);
         let (near, far) = (planes[i], planes[i + 1]);
+        // Where the range holds all that is visible, nothing before it asks.
+        let fitted_begin = i == 0 && settings.range_fit == RangeFit::Visible;
+        let from = if fitted_begin { from.max(near) } else { from };
         let visible = to > from;
         // A slice beyond the camera's far plane serves nothing; it still gets a valid matrix.
         let (from, to) = if visible { (from, to) } else { (near, far) };
@@ -471,7 +497,8 @@ impl Planner {
             let Placed { center, half } = self.casters[index as usize];
             let listed = swept.meets(center, half, margin)
                 && served.is_none_or(|(region, bounds)| {
-                    !lies_below(center, half, bounds, fan.depth) && region.can_be_shadowed_by(fan, center, half, margin)
+                    !lies_below(center, half, bounds, fan.depth, margin)
+                        && region.can_be_shadowed_by(fan, center, half, margin)
                 });
             if listed {
                 self.plan.caster_indices.push(index);
@@ -493,13 +520,18 @@ fn with_room(near: f64, far: f64, texel: f64, step: Option<f64>) -> (f64, f64) {
 }
 
 /// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers` as the light sees it: it then
-/// has nothing behind it to throw a shadow on. A flat ground under everything is the case that matters.
-fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3) -> bool {
+/// has nothing behind it to throw a shadow on. A flat ground under everything is the case that matters, and touches what
+/// stands on it. Anything that is not flat has to lie `margin` metres beyond: a filter asks beside its receiver, too.
+fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3, margin: f64) -> bool {
     let slack = BELOW_ALL * (receivers.max - receivers.min).max_element();
-    (0..3).any(|axis| match direction[axis] {
-        along if along < -1e-9 => center[axis] + half[axis] <= receivers.min[axis] + slack,
-        along if along > 1e-9 => center[axis] - half[axis] >= receivers.max[axis] - slack,
-        _ => false,
+    (0..3).any(|axis| {
+        let beyond = match direction[axis] {
+            along if along < -1e-9 => receivers.min[axis] - (center[axis] + half[axis]),
+            along if along > 1e-9 => (center[axis] - half[axis]) - receivers.max[axis],
+            _ => f64::NEG_INFINITY,
+        };
+        let is_flat = 2.0 * half[axis] <= slack;
+        beyond >= if is_flat { -slack } else { margin }
     })
 }
 

@@ -30,6 +30,18 @@ impl Default for SplitScheme {
     }
 }
 
+/// What the shadowed range is fitted to where [`ShadowSettings::range`] does not say it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RangeFit {
+    /// The camera's near and far, far capped by the receivers.
+    #[default]
+    Camera,
+    /// The view depths between which the view shows receivers: their boxes clipped to the frustum, as an empty foreground or a lens
+    /// with a tiny near plane would spend splits on air. With [`Stabilize::Exact`] both ends move in geometric steps of 19 %, with
+    /// hysteresis, and maps stand still in between. A logarithmic scheme goes best with it (`docs/measurements.md`).
+    Visible,
+}
+
 /// What a map's rectangle is fitted to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Fit {
@@ -93,6 +105,8 @@ pub struct ShadowSettings {
     /// View depths in metres that shadows cover, `C_0` and `C_m`. `None`: the camera's near and far, far capped by the
     /// receivers. Receivers nearer than the first use split 0; farther than the second they are lit.
     pub range: Option<(f64, f64)>,
+    /// Where the range comes from if `range` is `None`; excludes a `range`.
+    pub range_fit: RangeFit,
     /// What the rectangle is fitted to.
     pub fit: Fit,
     /// Whether shadows stand still.
@@ -121,6 +135,7 @@ impl Default for ShadowSettings {
             map_sizes: vec![1024; 4],
             scheme: SplitScheme::default(),
             range: None,
+            range_fit: RangeFit::default(),
             fit: Fit::default(),
             stabilize: Stabilize::default(),
             warps: Vec::new(),
@@ -202,6 +217,13 @@ impl ShadowSettings {
         }
         if let Some((near, far)) = self.range {
             check_range(near, far)?;
+            if self.range_fit != RangeFit::Camera {
+                return Err(Error::ConflictingSettings {
+                    first: "range",
+                    second: "range_fit",
+                    reason: format!("a range of {near}..{far} m leaves nothing to fit; leave one of them away"),
+                });
+            }
         }
         self.check_warps()?;
         match &self.scheme {

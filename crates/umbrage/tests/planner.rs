@@ -3,8 +3,8 @@
 use glam::{DQuat, DVec3, EulerRot};
 use proptest::prelude::*;
 use umbrage::{
-    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, Projection, ShadowPlan, ShadowSettings, SplitScheme,
-    Stabilize, View, Warp,
+    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, Projection, RangeFit, ShadowPlan, ShadowSettings,
+    SplitScheme, Stabilize, View, Warp,
 };
 
 /// A world of boxes on and around a ground, a view and a sun, biased to the awkward: a sun straight down or level, a view into
@@ -51,21 +51,24 @@ fn settings() -> impl Strategy<Value = ShadowSettings> {
         1 => Just(Stabilize::Approximate(ExtentSteps::Levels(64)))
     ];
     let warps = prop_oneof![Just(vec![]), prop::collection::vec(warp.clone(), 1), prop::collection::vec(warp, 8)];
-    (1usize..=8, scheme, range, any::<[bool; 2]>(), stabilize, prop_oneof![Just(0.0), 0.0..0.5f64], 0.5..3.0f64, warps)
-        .prop_map(|(m, scheme, range, [dependent, clamp], stabilize, blend, filter_radius, mut warps)| ShadowSettings {
-            map_sizes: vec![256; m],
-            scheme,
-            range,
-            fit: if dependent { Fit::Dependent } else { Fit::Independent },
-            stabilize,
-            filter_radius,
-            blend,
-            depth_clamp: clamp,
-            warps: {
-                warps.truncate(if stabilize == Stabilize::None { m } else { 0 });
-                warps
-            },
-            ..ShadowSettings::default()
+    (1usize..=8, scheme, range, any::<[bool; 3]>(), stabilize, prop_oneof![Just(0.0), 0.0..0.5f64], 0.5..3.0f64, warps)
+        .prop_map(|(m, scheme, range, [dependent, clamp, visible], stabilize, blend, filter_radius, mut warps)| {
+            ShadowSettings {
+                map_sizes: vec![256; m],
+                scheme,
+                range,
+                range_fit: if visible && range.is_none() { RangeFit::Visible } else { RangeFit::Camera },
+                fit: if dependent { Fit::Dependent } else { Fit::Independent },
+                stabilize,
+                filter_radius,
+                blend,
+                depth_clamp: clamp,
+                warps: {
+                    warps.truncate(if stabilize == Stabilize::None { m } else { 0 });
+                    warps
+                },
+                ..ShadowSettings::default()
+            }
         })
 }
 
@@ -108,9 +111,9 @@ fn cases() -> impl Strategy<Value = Case> {
 }
 
 /// Points of the boxes' surfaces that the view shows, as the renderer would find them.
-fn visible_points(case: &Case, plan: &ShadowPlan) -> Vec<(usize, DVec3, f64)> {
+fn visible_points(case: &Case, far: f64) -> Vec<(usize, DVec3, f64)> {
     let frustum = case.view.frustum();
-    let far = plan.planes.last().copied().expect("a plan has planes").min(frustum.far);
+    let far = far.min(frustum.far);
     let mut points = Vec::new();
     for (owner, bounds) in case.boxes.iter().enumerate() {
         for i in 0..5 {
@@ -182,7 +185,7 @@ proptest! {
             Err(other) => return Err(TestCaseError::fail(other.to_string())),
         };
         let direction = case.light.direction();
-        for (owner, point, depth) in visible_points(&case, &plan) {
+        for (owner, point, depth) in visible_points(&case, plan.planes[plan.splits.len()]) {
             for split in splits_of(&plan, depth) {
                 let s = &plan.splits[split];
                 if let Some(warp) = s.warp {
@@ -244,6 +247,18 @@ proptest! {
                 prop_assert_eq!(splits[splits.len() - 1] - splits[0] + 1, splits.len(), "{:?}", splits);
             }
         }
+    }
+
+    #[test]
+    fn a_range_fitted_to_what_is_visible_holds_all_of_it(case in cases()) {
+        let settings = ShadowSettings { range: None, range_fit: RangeFit::Visible, ..case.settings.clone() };
+        let mut planner = Planner::new(settings)?;
+        let Ok(plan) = planner.plan(&case.view, &case.light, &case.boxes, &case.boxes) else { return Ok(()) };
+        let (first, last) = (plan.planes[0], plan.planes[plan.splits.len()]);
+        let frustum = case.view.frustum();
+        prop_assert!(frustum.near * (1.0 - 0.01) <= first && last <= frustum.far, "{first}..{last}");
+        let depths: Vec<f64> = visible_points(&case, f64::INFINITY).iter().map(|&(_, _, depth)| depth).collect();
+        prop_assert!(depths.iter().all(|depth| (first..=last).contains(depth)), "{first}..{last} leaves out one of {depths:?}");
     }
 
     #[test]
@@ -314,6 +329,36 @@ fn a_dependent_fit_is_never_larger() {
     for (dependent, independent) in areas(Fit::Dependent).iter().zip(areas(Fit::Independent)) {
         assert!(*dependent <= independent * (1.0 + 1e-9), "{dependent} > {independent}");
     }
+}
+
+#[test]
+fn a_visible_range_is_as_tight_as_the_boxes_and_steps_where_maps_stand_still() {
+    let frustum = Frustum::perspective(1.0, 1.5, 0.1, 1000.0).expect("valid");
+    let view =
+        |z: f64| View::look_at_upright(DVec3::new(0.0, 1.0, z), DVec3::new(0.0, 1.0, z - 1.0), frustum).expect("valid");
+    let light = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.1)).expect("valid");
+    // One at 20 to 22 m, one at 60 to 64 m, one beside and one behind the view.
+    let boxed = |x: f64, from: f64, to: f64| Aabb::new(DVec3::new(x, 0.0, -to), DVec3::new(x + 2.0, 2.0, -from));
+    let world = [boxed(0.0, 20.0, 22.0), boxed(-1.0, 60.0, 64.0), boxed(40.0, 5.0, 9.0), boxed(0.0, -30.0, -8.0)];
+    let settings =
+        ShadowSettings { range_fit: RangeFit::Visible, stabilize: Stabilize::None, ..ShadowSettings::default() };
+    let mut tight = Planner::new(settings.clone()).expect("valid");
+    let ends = |plan: &ShadowPlan| (plan.planes[0], plan.planes[4]);
+    let (first, last) = ends(tight.plan(&view(0.0), &light, &world, &world).expect("valid"));
+    assert!((19.99..20.0).contains(&first) && (64.0..64.02).contains(&last), "{first}..{last}");
+
+    let mut still = Planner::new(ShadowSettings { stabilize: Stabilize::Exact, ..settings.clone() }).expect("valid");
+    let mut ranges: Vec<(f64, f64)> = (0..100)
+        .map(|i| ends(still.plan(&view(-0.05 * f64::from(i)), &light, &world, &world).expect("valid")))
+        .collect();
+    ranges.dedup();
+    assert!(ranges.len() <= 3, "five metres of walking move the range in steps: {ranges:?}");
+
+    let both = ShadowSettings { range: Some((1.0, 50.0)), ..settings };
+    let message = Planner::new(both).expect_err("two ranges").to_string();
+    assert!(message.contains("range and range_fit"), "{message}");
+    let nothing = tight.plan(&view(-500.0), &light, &world, &world).expect("an empty view");
+    assert!(nothing.planes[4] > nothing.planes[0]);
 }
 
 #[test]

@@ -71,7 +71,7 @@ pub(super) fn mining_terrain() -> Scene {
         .enumerate()
         .map(|(i, &place)| Pad { place, radius: if i < 15 { 15.0 } else { 13.0 }, height: natural_height(place) })
         .collect();
-    let terrain = Terrain::new(EDGE_M, 10, 50, |place| {
+    let terrain = Terrain::new(EDGE_M, 25, 20, |place| {
         pads.iter().fold(natural_height(place), |height, pad| {
             mix(pad.height, height, smoothstep(pad.radius, pad.radius + 16.0, place.distance(pad.place)))
         })

@@ -1,5 +1,6 @@
 //! The maps: their texture, the passes that draw them, two kinds of bind group.
 
+mod lights;
 pub(crate) mod storage;
 
 use umbrage::{MAX_SPLITS, ShadowPlan, ShadowSettings};
@@ -8,7 +9,7 @@ use umbrage_shaders::{Maps, layout};
 use storage::{Arrangement, Tile};
 
 use crate::moments::{MomentStorage, Moments};
-use crate::uniforms::{self, Place, Viewport};
+use crate::uniforms::{Place, Viewport};
 use crate::{Error, FrameOptions, Generation, Result, ShadowMapsOptions, Storage};
 
 /// Features that make shadows better where an adapter has them: request `adapter.features() & optional_features()`.
@@ -20,10 +21,11 @@ pub fn optional_features() -> wgpu::Features {
     wgpu::Features::DEPTH_CLIP_CONTROL | wgpu::Features::FLOAT32_FILTERABLE
 }
 
-/// The shadow maps of one light for one view, on the GPU.
+/// The shadow maps of one light for one view, or of several lights ([`ShadowMaps::prepare_lights`]), on the GPU.
 ///
-/// [`Storage`] says where maps are kept, [`Generation`] how they are drawn. Each frame: [`ShadowMaps::prepare`], one pass per split from [`ShadowMaps::begin_split`], then any
-/// pass of the app with [`ShadowMaps::receiver_bind_group`].
+/// [`Storage`] says where maps are kept, [`Generation`] how they are drawn. Each frame: [`ShadowMaps::prepare`], one pass per split from
+/// [`ShadowMaps::begin_split`], then any pass of the app with [`ShadowMaps::receiver_bind_group`]. Several views of one scene are as
+/// many `ShadowMaps`, each planned for its view.
 #[derive(Debug)]
 pub struct ShadowMaps {
     options: ShadowMapsOptions,
@@ -49,15 +51,17 @@ impl ShadowMaps {
     /// answer is 0.
     ///
     /// # Errors
-    /// [`Error::SplitCount`], [`Error::MapTooSmall`], [`Error::MapTooLarge`], [`Error::TooManyLayers`]; for filters of moments also
-    /// [`Error::Samples`], [`Error::NoFilterableFloats`], [`Error::NoDepthLoads`] and [`Error::MomentsNeedArray`].
+    /// [`Error::SplitCount`], [`Error::MapTooSmall`], [`Error::MapTooLarge`], [`Error::TooManyLayers`], [`Error::TooManyLights`],
+    /// [`Error::LightsNeedArray`]; for filters of moments also [`Error::Samples`], [`Error::NoFilterableFloats`],
+    /// [`Error::NoDepthLoads`], [`Error::MomentsNeedArray`] and [`Error::MomentsNeedOneSun`].
     pub fn new(device: &wgpu::Device, options: &ShadowMapsOptions) -> Result<Self> {
         check_sizes(options, &device.limits())?;
         check_samples(options)?;
+        let map_sizes = lights::map_sizes(options, &device.limits())?;
         let backend = device.adapter_info().backend;
         let storage = if options.storage == Storage::Auto { Storage::Array } else { options.storage };
         let Arrangement { tiles, layers, layer_texels } =
-            Arrangement::new(storage, &options.map_sizes, device.limits().max_texture_dimension_2d)?;
+            Arrangement::new(storage, &map_sizes, device.limits().max_texture_dimension_2d)?;
         let layer_count = layer_count(layers, layer_texels, backend);
         let limit = device.limits().max_texture_array_layers;
         if layer_count > limit {
@@ -66,6 +70,9 @@ impl ShadowMaps {
 
         if options.filter.is_prefiltered() && storage != Storage::Array {
             return Err(Error::MomentsNeedArray { storage, filter: options.filter });
+        }
+        if options.filter.is_prefiltered() && map_sizes.len() > options.map_sizes.len() {
+            return Err(Error::MomentsNeedOneSun { lights: options.lights.clone(), filter: options.filter });
         }
         // Several samples and several layers do not go together in one texture.
         let textures: Vec<wgpu::Texture> = if options.samples > 1 {
@@ -95,11 +102,11 @@ impl ShadowMaps {
         let split_bytes = size_of::<layout::Split>() as u64;
         let caster_stride =
             split_bytes.next_multiple_of(u64::from(device.limits().min_uniform_buffer_offset_alignment));
-        let frame_buffer = uniform("ShadowMaps::frame", size_of::<layout::Frame>() as u64);
-        let caster_buffer = uniform("ShadowMaps::casters", caster_stride * options.map_sizes.len() as u64);
+        let frame_buffer = uniform("ShadowMaps::frame", lights::frame_bytes(options));
+        let caster_buffer = uniform("ShadowMaps::casters", caster_stride * map_sizes.len() as u64);
 
         let caster_layout = caster_layout(device);
-        let caster_bind_groups = (0..options.map_sizes.len() as u64)
+        let caster_bind_groups = (0..map_sizes.len() as u64)
             .map(|split| {
                 device.create_bind_group(&wgpu::BindGroupDescriptor {
                     label: Some("ShadowMaps::caster"),
@@ -116,7 +123,7 @@ impl ShadowMaps {
             })
             .collect();
 
-        let receiver_layout = receiver_layout(device, moments.as_ref());
+        let receiver_layout = receiver_layout(device, lights::frame_bytes(options), moments.as_ref());
         let receiver_bind_group = match &moments {
             Some(moments) => moments.receiver_bind_group(device, &receiver_layout, &frame_buffer),
             None => {
@@ -126,7 +133,7 @@ impl ShadowMaps {
 
         Ok(Self {
             options: ShadowMapsOptions { storage, generation: Generation::PerSplit, ..options.clone() },
-            places: places(device, &options.map_sizes, &tiles),
+            places: places(device, &map_sizes, &tiles),
             depth_loads: backend != wgpu::Backend::Gl,
             depth_clamp: device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL),
             textures,
@@ -148,15 +155,7 @@ impl ShadowMaps {
     /// [`Error::PlanMismatch`] if the plan was made for other maps, [`Error::InvalidPlan`] or [`Error::InvalidSplit`] if it
     /// holds a number that cannot be used, [`Error::InvalidFrameOption`]. Nothing has been written then.
     pub fn prepare(&mut self, queue: &wgpu::Queue, plan: &ShadowPlan, options: &FrameOptions) -> Result<()> {
-        let frame = uniforms::frame(plan, &self.options, &self.places, options)?;
-        if let Some(moments) = &mut self.moments {
-            moments.prepare(queue, plan, options)?;
-        }
-        queue.write_buffer(&self.frame_buffer, 0, bytemuck::bytes_of(&frame));
-        for (split, offset) in frame.splits[..self.splits()].iter().zip((0..).step_by(self.caster_stride as usize)) {
-            queue.write_buffer(&self.caster_buffer, offset, bytemuck::bytes_of(split));
-        }
-        Ok(())
+        self.prepare_lights(queue, &[plan], options)
     }
 
     /// Begins the pass that draws split `split`: its map is cleared, viewport and scissor are set and have to stay. Bind
@@ -164,7 +163,7 @@ impl ShadowMaps {
     /// first: it clears what the others share.
     ///
     /// # Panics
-    /// If `split` is not less than [`ShadowMaps::splits`].
+    /// If `split` is not less than [`ShadowMaps::map_count`].
     pub fn begin_split<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
@@ -186,7 +185,7 @@ impl ShadowMaps {
             occlusion_query_set: None,
             multiview_mask: None,
         });
-        let (size, edge) = (self.options.map_sizes[split], viewport.edge as f32);
+        let (size, edge) = (self.options.map_sizes[split % self.splits()], viewport.edge as f32);
         let [left, top] = tile.corner.map(|texels| texels as f32 - viewport.guard as f32);
         pass.set_viewport(left, top, edge, edge, 0.0, 1.0);
         pass.set_scissor_rect(tile.corner[0], tile.corner[1], size, size);
@@ -207,7 +206,7 @@ impl ShadowMaps {
         self.moments.as_ref().map(Moments::storage)
     }
 
-    /// The number of splits.
+    /// The number of splits; of a point light, of each face.
     #[must_use]
     pub fn splits(&self) -> usize {
         self.options.map_sizes.len()
@@ -225,8 +224,12 @@ impl ShadowMaps {
     /// then [`crate::Filter::Disc`].
     #[must_use]
     pub fn receiver_wgsl(&self, group: u32) -> String {
-        let moments = self.moments.as_ref().map(Moments::maps);
-        umbrage_shaders::receiver(group, Maps { without_loads: !self.depth_loads, moments })
+        let maps = Maps {
+            without_loads: !self.depth_loads,
+            frames: lights::frame_count(&self.options) as u32,
+            moments: self.moments.as_ref().map(Moments::maps),
+        };
+        umbrage_shaders::receiver(group, maps)
     }
 
     /// What the maps were made with; where the options left a choice, what was chosen.
@@ -269,7 +272,7 @@ impl ShadowMaps {
     /// texels. The map is a square of `map_sizes[split]` texels.
     ///
     /// # Panics
-    /// If `split` is not less than [`ShadowMaps::splits`].
+    /// If `split` is not less than [`ShadowMaps::map_count`].
     #[must_use]
     pub fn map_place(&self, split: usize) -> (u32, [u32; 2]) {
         let tile = self.places[split].tile;
@@ -292,7 +295,7 @@ impl ShadowMaps {
     /// The group to bind while drawing the casters of split `split`.
     ///
     /// # Panics
-    /// If `split` is not less than [`ShadowMaps::splits`].
+    /// If `split` is not less than [`ShadowMaps::map_count`].
     #[must_use]
     pub fn caster_bind_group(&self, split: usize) -> &wgpu::BindGroup {
         &self.caster_bind_groups[split]
@@ -423,12 +426,12 @@ fn sampler(device: &wgpu::Device, options: &ShadowMapsOptions) -> wgpu::Sampler 
 fn caster_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("ShadowMaps::caster"),
-        entries: &[uniform_entry::<layout::Split>(wgpu::ShaderStages::VERTEX)],
+        entries: &[uniform_entry(wgpu::ShaderStages::VERTEX, size_of::<layout::Split>() as u64)],
     })
 }
 
 /// The frame's uniform, then depths and the sampler that compares with them, or what moments need.
-fn receiver_layout(device: &wgpu::Device, moments: Option<&Moments>) -> wgpu::BindGroupLayout {
+fn receiver_layout(device: &wgpu::Device, frame_bytes: u64, moments: Option<&Moments>) -> wgpu::BindGroupLayout {
     let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
     let of_depth = || {
@@ -445,7 +448,7 @@ fn receiver_layout(device: &wgpu::Device, moments: Option<&Moments>) -> wgpu::Bi
         ]
     };
     let of_maps = moments.map_or_else(of_depth, |moments| moments.receiver_entries(visibility));
-    let entries: Vec<_> = [uniform_entry::<layout::Frame>(visibility)].into_iter().chain(of_maps).collect();
+    let entries: Vec<_> = [uniform_entry(visibility, frame_bytes)].into_iter().chain(of_maps).collect();
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("ShadowMaps::receiver"),
         entries: &entries,
@@ -475,15 +478,15 @@ fn receiver_bind_group(
     })
 }
 
-/// A uniform of type `T` at binding 0.
-fn uniform_entry<T>(visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+/// A uniform of so many bytes at binding 0.
+fn uniform_entry(visibility: wgpu::ShaderStages, bytes: u64) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding: 0,
         visibility,
         ty: wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
             has_dynamic_offset: false,
-            min_binding_size: wgpu::BufferSize::new(size_of::<T>() as u64),
+            min_binding_size: wgpu::BufferSize::new(bytes),
         },
         count: None,
     }

@@ -231,16 +231,45 @@ impl World {
 
     /// Draws `triangles` (three corners each, relative to the options' origin) into every map.
     pub fn draw(&mut self, plan: &ShadowPlan, options: &FrameOptions, triangles: &[Vec3]) {
-        self.maps.prepare(&self.gpu.queue, plan, options).expect("a valid plan");
+        self.draw_all(&[plan], options, triangles);
+    }
+
+    /// The same for the plans of several lights.
+    pub fn draw_all(&mut self, plans: &[&ShadowPlan], options: &FrameOptions, triangles: &[Vec3]) {
+        self.maps.prepare_lights(&self.gpu.queue, plans, options).expect("valid plans");
         self.gpu.checked(|| {
             let vertices = self.gpu.buffer_with(bytemuck::cast_slice(triangles), wgpu::BufferUsages::VERTEX);
+            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+            for split in 0..self.maps.map_count() {
+                let mut pass = self.maps.begin_split(&mut encoder, split, None);
+                pass.set_pipeline(&self.pipeline);
+                pass.set_bind_group(0, self.maps.caster_bind_group(split), &[]);
+                pass.set_vertex_buffer(0, vertices.slice(..));
+                pass.draw(0..triangles.len() as u32, 0..1);
+            }
+            self.gpu.queue.submit([encoder.finish()]);
+        });
+    }
+
+    /// Draws each split's casters alone: `casters[i]` are the triangles of the plan's caster `i`.
+    pub fn draw_listed(&mut self, plan: &ShadowPlan, options: &FrameOptions, casters: &[Vec<Vec3>]) {
+        self.maps.prepare(&self.gpu.queue, plan, options).expect("a valid plan");
+        let mut begins = vec![0u32];
+        begins.extend(casters.iter().scan(0, |end, triangles| {
+            *end += triangles.len() as u32;
+            Some(*end)
+        }));
+        self.gpu.checked(|| {
+            let vertices = self.gpu.buffer_with(bytemuck::cast_slice(&casters.concat()), wgpu::BufferUsages::VERTEX);
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
             for split in 0..self.maps.splits() {
                 let mut pass = self.maps.begin_split(&mut encoder, split, None);
                 pass.set_pipeline(&self.pipeline);
                 pass.set_bind_group(0, self.maps.caster_bind_group(split), &[]);
                 pass.set_vertex_buffer(0, vertices.slice(..));
-                pass.draw(0..triangles.len() as u32, 0..1);
+                for &caster in plan.casters(split) {
+                    pass.draw(begins[caster as usize]..begins[caster as usize + 1], 0..1);
+                }
             }
             self.maps.filter(&mut encoder);
             self.gpu.queue.submit([encoder.finish()]);

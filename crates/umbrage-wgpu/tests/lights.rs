@@ -1,0 +1,219 @@
+//! Several lights in one bind group, spot and point lights: against closed forms, each other, and what must be refused.
+
+mod common;
+
+use bytemuck::{Pod, Zeroable};
+use common::{Ask, Gpu, World, ask, cuboid, ground, quad};
+use glam::{DVec3, Vec3};
+use umbrage::{
+    Aabb, DirectionalLight, Frustum, Light, Planner, PointLight, ShadowPlan, ShadowSettings, SpotLight, View,
+};
+use umbrage_wgpu::{Error, Filter, FrameOptions, LightSlot, ShadowMaps, ShadowMapsOptions, Storage};
+
+const LAMP: DVec3 = DVec3::new(0.0, 4.0, 0.0);
+
+fn options(lights: &[LightSlot], filter: Filter) -> ShadowMapsOptions {
+    ShadowMapsOptions { map_sizes: vec![256; 2], filter, lights: lights.to_vec(), ..Default::default() }
+}
+
+/// A plate of 1 × 1 m, 2 m over the ground, and a wall beside it.
+fn triangles() -> Vec<Vec3> {
+    let plate = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)].map(|(x, z)| Vec3::new(x, 2.0, z));
+    [ground(12.0), quad(plate), cuboid(Vec3::new(5.0, 0.0, -4.0), Vec3::new(5.2, 6.0, 4.0))].concat()
+}
+
+fn boxes() -> [Aabb; 3] {
+    [
+        Aabb::new(DVec3::new(-12.0, 0.0, -12.0), DVec3::new(12.0, 0.0, 12.0)),
+        Aabb::new(DVec3::new(-0.5, 2.0, -0.5), DVec3::new(0.5, 2.0, 0.5)),
+        Aabb::new(DVec3::new(5.0, 0.0, -4.0), DVec3::new(5.2, 6.0, 4.0)),
+    ]
+}
+
+fn view() -> View {
+    let lens = Frustum::perspective(1.4, 1.0, 0.3, 60.0).expect("valid");
+    View::look_at_upright(DVec3::new(-6.0, 9.0, 6.0), DVec3::new(0.5, 0.0, 0.0), lens).expect("valid")
+}
+
+fn planned(maps: &ShadowMaps, light: Light) -> ShadowPlan {
+    let mut planner = Planner::new(maps.matching_settings()).expect("valid");
+    planner.plan(&view(), &light, &boxes(), &boxes()).expect("valid").clone()
+}
+
+fn lights() -> [Light; 4] {
+    [
+        DirectionalLight::new(DVec3::new(0.4, -1.0, 0.1)).expect("valid").into(),
+        PointLight::new(LAMP, 9.0).expect("valid").into(),
+        SpotLight::new(LAMP, DVec3::new(0.1, -1.0, 0.0), 0.9, 9.0).expect("valid").into(),
+        SpotLight::new(DVec3::new(4.9, 5.5, 0.0), DVec3::new(0.0, -1.0, 0.05), 0.9, 12.0).expect("valid").into(),
+    ]
+}
+
+/// What `umbrage_visibility_of` and `umbrage_shadow_of` said of four lights.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+struct Answers {
+    visibility: [f32; 4],
+    split: [i32; 4],
+}
+
+const ASK_ALL: &str = "
+struct Ask { position: vec4f, normal: vec4f }
+struct Answers { visibility: vec4f, split: vec4i }
+@group(0) @binding(0) var<storage, read> asks: array<Ask>;
+@group(0) @binding(1) var<storage, read_write> answers: array<Answers>;
+@compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
+    if id.x >= arrayLength(&asks) { return; }
+    let p = asks[id.x].position.xyz;
+    let n = asks[id.x].normal.xyz;
+    var it: Answers;
+    for (var light = 0u; light < 4u; light++) {
+        it.visibility[light] = umbrage_visibility_of(light, p, n);
+        it.split[light] = umbrage_shadow_of(light, p, n).split;
+    }
+    answers[id.x] = it;
+}";
+
+fn ground_asks() -> Vec<Ask> {
+    let steps = || (-60..60).map(|i| 0.1137 * i as f32);
+    steps().flat_map(|x| steps().map(move |z| ask(Vec3::new(x, 0.0, z), Vec3::Y))).collect()
+}
+
+/// Whether the ground is lit by a lamp at `LAMP` within its range; abstains near edges.
+fn lit_by_lamp(p: Vec3, unsure: f32) -> Option<bool> {
+    let plate = p.x.abs().max(p.z.abs());
+    // Where the ray passes the wall's near and far face.
+    let rim = [5.0, 5.2].map(|wall| p.z.abs() * wall / p.x.abs().max(1.0));
+    let behind = p.x > 5.0;
+    if (plate - 1.0).abs() < unsure || (p.x - 5.1).abs() < 0.3 || (behind && rim.iter().any(|z| (z - 4.0).abs() < 0.3))
+    {
+        return None;
+    }
+    Some(plate > 1.0 && !(behind && rim[0] < 4.0))
+}
+
+#[test]
+fn a_lamp_throws_shadows_as_large_as_similar_triangles_say() {
+    for (filter, reach, index) in
+        [(Filter::Hard, 1.0, 1), (Filter::Pcf3, 3.0, 1), (Filter::Pcf5, 4.0, 2), (Filter::Disc, 5.0, 2)]
+    {
+        let Some(gpu) = Gpu::new() else { return };
+        let light = lights()[index];
+        let mut world = World::new(gpu, &options(&[light.into()], filter));
+        let plan = planned(&world.maps, light);
+        world.draw(&plan, &FrameOptions::default(), &triangles());
+        let asks = ground_asks();
+        let texel = plan.splits.iter().map(|s| s.texel_edges(DVec3::ZERO).max_element()).filter(|t| t.is_finite());
+        let unsure = reach * texel.fold(0.0, f64::max) as f32;
+        assert!(unsure < 0.5, "{unsure} m leave nothing to look at");
+        let mut counted = [0; 2];
+        for (it, answer) in asks.iter().zip(world.ask(&asks)) {
+            let point = it.position();
+            let reached = light.reaches(point.as_dvec3());
+            let near_rim = [0.97, 1.03].iter().any(|&s| light.reaches((point * s).as_dvec3()) != reached);
+            let Some(lit) = lit_by_lamp(point, unsure).filter(|_| !near_rim) else { continue };
+            let lit = lit || !reached;
+            let wrong = (answer.visibility - f32::from(u8::from(lit))).abs();
+            assert!(wrong < 1e-5, "{filter:?} {light:?} says {} at {point}", answer.visibility);
+            assert!(reached || answer.split == -1, "out of reach no split answers, but {} did", answer.split);
+            counted[usize::from(lit)] += 1;
+        }
+        assert!(counted[0] > 100 && counted[1] > 1000, "{counted:?}");
+    }
+}
+
+#[test]
+fn several_lights_answer_as_each_does_alone() {
+    let Some(gpu) = Gpu::new() else { return };
+    let slots = lights().map(LightSlot::from);
+    let mut world = World::new(gpu, &options(&slots, Filter::Pcf3));
+    assert_eq!(world.maps.map_count(), 2 * (1 + 6 + 1 + 1));
+    assert_eq!([0, 1, 2, 3].map(|light| world.maps.first_map(light)), [0, 2, 14, 16]);
+    let plans = lights().map(|light| planned(&world.maps, light));
+    world.draw_all(&plans.each_ref(), &FrameOptions::default(), &triangles());
+    let asks = ground_asks();
+    let source = world.maps.receiver_wgsl(1) + ASK_ALL;
+    let together: Vec<Answers> = world.gpu.compute(&source, &asks, Some(&world.maps));
+    for (index, light) in lights().into_iter().enumerate() {
+        let Some(gpu) = Gpu::new() else { return };
+        let mut alone = World::new(gpu, &options(&[light.into()], Filter::Pcf3));
+        alone.draw(&plans[index], &FrameOptions::default(), &triangles());
+        let answers = alone.ask(&asks);
+        let dark = answers.iter().filter(|answer| answer.visibility < 0.5).count();
+        assert!(dark > 50 && dark < answers.len() - 50, "light {index}: {dark} of {} points are dark", answers.len());
+        for ((one, all), it) in answers.iter().zip(&together).zip(&asks) {
+            let point = it.position();
+            assert_eq!(
+                (one.visibility, one.split),
+                (all.visibility[index], all.split[index]),
+                "light {index} at {point}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_light_that_grazes_a_wall_makes_no_stripes() {
+    // 10 cm from a wall 6 m high: over most of it light and wall meet at less than 5°.
+    let light = lights()[3];
+    for filter in [Filter::Hard, Filter::Pcf5] {
+        let Some(gpu) = Gpu::new() else { return };
+        let mut world = World::new(gpu, &options(&[light.into()], filter));
+        let plan = planned(&world.maps, light);
+        world.draw(&plan, &FrameOptions::default(), &triangles());
+        let steps = |from: f32, to: f32, n: i32| (0..n).map(move |i| from + (to - from) * (i as f32 + 0.5) / n as f32);
+        let asks: Vec<_> = steps(0.3, 4.7, 60)
+            .flat_map(|y| steps(-1.5, 1.5, 60).map(move |z| ask(Vec3::new(5.0, y, z), Vec3::NEG_X)))
+            .collect();
+        let reached = |it: &Ask| light.reaches(it.position().as_dvec3());
+        let answers = world.ask(&asks);
+        let (all, wrong) = asks
+            .iter()
+            .zip(&answers)
+            .filter(|(it, _)| reached(it))
+            .fold((0, 0), |(all, wrong), (_, a)| (all + 1, wrong + usize::from(a.visibility < 0.5)));
+        assert!(all > 1000 && wrong * 200 <= all, "{filter:?}: {wrong} of {all} points of a lit wall are dark");
+    }
+}
+
+#[test]
+fn what_the_device_or_the_options_cannot_hold_is_refused() {
+    let Some(gpu) = Gpu::new() else { return };
+    let new = |options: &ShadowMapsOptions| ShadowMaps::new(&gpu.device, options);
+    // Three lights of eight maps each, kept apart: an array would do.
+    let three = ShadowMapsOptions {
+        map_sizes: vec![64; 8],
+        lights: vec![LightSlot::Single; 3],
+        storage: Storage::Atlas,
+        ..Default::default()
+    };
+    let error = new(&three).expect_err("an atlas is one light's");
+    assert!(matches!(error, Error::LightsNeedArray { maps: 24, splits: 8, storage: Storage::Atlas }), "{error}");
+    assert!(error.to_string().contains("lights") && error.to_string().contains("map_sizes"), "{error}");
+    assert!(new(&ShadowMapsOptions { storage: Storage::Array, ..three.clone() }).is_ok());
+
+    let none = ShadowMapsOptions { lights: vec![], ..Default::default() };
+    assert!(matches!(new(&none), Err(Error::TooManyLights { frames: 0, .. })));
+    let many = ShadowMapsOptions { map_sizes: vec![16], lights: vec![LightSlot::Cube; 100], ..Default::default() };
+    let error = new(&many).expect_err("600 frames");
+    assert!(matches!(error, Error::TooManyLights { frames: 600, .. }), "{error}");
+
+    let mut maps = new(&options(&[LightSlot::Single; 2], Filter::Pcf3)).expect("valid");
+    let lamp = planned(&maps, lights()[1]);
+    let sun = planned(&maps, lights()[0]);
+    let frame = FrameOptions::default();
+    let error = maps.prepare_lights(&gpu.queue, &[&sun, &lamp], &frame).expect_err("no cube");
+    assert!(matches!(error, Error::LightSlot { light: 1, faces: 6, slot: LightSlot::Single }), "{error}");
+    let error = maps.prepare(&gpu.queue, &sun, &frame).expect_err("one of two");
+    assert!(matches!(error, Error::LightCount { plans: 1, lights: 2 }), "{error}");
+    let mut soft = new(&options(&[LightSlot::Cube], Filter::Pcss)).expect("valid");
+    let error = soft.prepare(&gpu.queue, &lamp, &frame).expect_err("a lamp is no sun");
+    assert!(matches!(error, Error::FilterNeedsSun { filter: Filter::Pcss, light: 0 }), "{error}");
+    // A sun in a point light's place is drawn there; the other five faces are nobody's.
+    let mut cube = new(&options(&[LightSlot::Cube], Filter::Pcf3)).expect("valid");
+    assert!(cube.prepare(&gpu.queue, &sun, &frame).is_ok() && cube.prepare(&gpu.queue, &lamp, &frame).is_ok());
+    let other = ShadowSettings { map_sizes: vec![128; 2], ..maps.matching_settings() };
+    let mut planner = Planner::new(other).expect("valid");
+    let plan = planner.plan(&view(), &lights()[1], &boxes(), &boxes()).expect("valid");
+    assert!(matches!(cube.prepare(&gpu.queue, plan, &frame), Err(Error::PlanMismatch { .. })));
+}

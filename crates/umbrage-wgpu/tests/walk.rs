@@ -1,0 +1,219 @@
+//! 600 frames of walking, turning and zooming past things that stand still, at 0, 10 and 100 km from the world's origin: exactly
+//! stabilised maps show every static texel that a visible point can ask for as the frame before showed it. Equal means: the
+//! same texels are empty, and the depths of the others lie no farther apart than the rasteriser's own rounding (see
+//! `stillness.rs`): 2^-19 of the range, which is 0.2 mm here.
+
+mod common;
+
+use common::{Gpu, World, cuboid};
+use glam::{DQuat, DVec2, DVec3, IVec2, Vec3};
+use umbrage::{
+    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, ShadowPlan, ShadowSettings, Split, Stabilize, View,
+};
+use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions};
+
+const FRAMES: u32 = 600;
+const SIZE: u32 = 128;
+const SPLITS: usize = 4;
+
+/// Depths may differ by this share of the range: 32 steps of an f32 just below 1.
+const ROUNDING: f32 = 1.907_348_6e-6;
+
+/// A frame's origin moves in steps of this many metres.
+const ORIGIN_STEP: f64 = 1024.0;
+
+/// Boxes on a flat ground around `center`, and points of both.
+struct Town {
+    center: DVec3,
+    boxes: Vec<Aabb>,
+    points: Vec<DVec3>,
+}
+
+impl Town {
+    fn new(center: DVec3) -> Self {
+        // A regular scatter that no test tunes: the golden ratio's sequence over the plane.
+        let boxes: Vec<Aabb> = (0..70)
+            .map(|i| {
+                let i = f64::from(i);
+                let (x, z) = ((i * 0.754_877_666_2).fract(), (i * 0.569_840_290_998).fract());
+                let size = DVec3::new(
+                    1.0 + (i * 0.31).fract() * 4.0,
+                    1.0 + (i * 0.47).fract() * 9.0,
+                    1.0 + (i * 0.23).fract() * 4.0,
+                );
+                let at = center + DVec3::new(220.0 * x - 110.0, 0.0, 220.0 * z - 110.0);
+                Aabb::new(at, at + size)
+            })
+            .collect();
+        let ground = (0..80 * 80).map(|i| {
+            let (x, z) = (f64::from(i % 80), f64::from(i / 80));
+            center + DVec3::new(3.1 * x - 124.0, 0.0, 3.1 * z - 124.0)
+        });
+        let points = ground.chain(boxes.iter().flat_map(|b| b.corners())).collect();
+        Self { center, boxes, points }
+    }
+
+    fn triangles(&self, origin: DVec3) -> Vec<Vec<Vec3>> {
+        let relative = |point: DVec3| (point - origin).as_vec3();
+        self.boxes.iter().map(|b| cuboid(relative(b.min), relative(b.max))).collect()
+    }
+
+    /// Walks 0.15 m and turns 0.003 rad a frame, zooms in by a third and out again.
+    fn view(&self, frame: u32) -> View {
+        let k = f64::from(frame);
+        let zoom = 1.0 - 0.25 * (std::f64::consts::PI * k / f64::from(FRAMES)).sin().powi(2);
+        let lens = Frustum::perspective(zoom, 4.0 / 3.0, 0.5, 500.0).expect("a lens");
+        let ahead = DQuat::from_rotation_y(0.003 * k) * DVec3::new(0.0, -0.1, -1.0);
+        let eye = self.center + DVec3::new(0.0, 1.7, 45.0) + 0.15 * k * DVec3::new(0.4, 0.0, -1.0).normalize();
+        View::look_at_upright(eye, eye + ahead, lens).expect("a view")
+    }
+}
+
+struct Frame {
+    plan: ShadowPlan,
+    origin: DVec3,
+    view: View,
+    maps: Vec<Vec<f32>>,
+}
+
+/// What a walk came to.
+#[derive(Debug, Default)]
+struct Tally {
+    /// Pairs of frames of one split whose texels were compared.
+    still: usize,
+    /// Pairs of frames of one split between which a step was taken or the origin moved.
+    stepped: usize,
+    /// Texels that only one of the maps covers. A tight one covers no more than its casters can shade.
+    outside: usize,
+    /// Texels compared, those with something in them, and those that differ.
+    texels: usize,
+    filled: usize,
+    different: usize,
+    /// Texels that differ at all, and by how much of the depth range at most.
+    rounded: usize,
+    widest: f32,
+}
+
+fn walk(world: &mut World, town: &Town, settings: &ShadowSettings, frames: u32) -> Tally {
+    let mut planner = Planner::new(settings.clone()).expect("valid");
+    let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).expect("a direction");
+    let mut receivers = town.boxes.clone();
+    receivers.push(Aabb::new(town.center - DVec3::new(130.0, 0.0, 130.0), town.center + DVec3::new(130.0, 0.0, 130.0)));
+    let (mut tally, mut before): (Tally, Option<Frame>) = Default::default();
+    for k in 0..frames {
+        let view = town.view(k);
+        let plan = planner.plan(&view, &sun, &town.boxes, &receivers).expect("a plan").clone();
+        let origin = (view.eye() / ORIGIN_STEP).round() * ORIGIN_STEP;
+        let options = FrameOptions { origin, ..FrameOptions::default() };
+        world.draw_listed(&plan, &options, &town.triangles(origin));
+        let maps = (0..SPLITS).map(|split| world.texels(split)).collect();
+        let now = Frame { plan, origin, view, maps };
+        if let Some(before) = &before {
+            for split in 0..SPLITS {
+                compare(&mut tally, before, &now, split, &town.points);
+            }
+        }
+        before = Some(now);
+    }
+    tally
+}
+
+/// The texels around every point that both frames show through this split: its own and its eight neighbours, as the filters see them.
+fn compare(tally: &mut Tally, before: &Frame, now: &Frame, split: usize, points: &[DVec3]) {
+    let (old, new) = (&before.plan.splits[split], &now.plan.splits[split]);
+    let shift = new.texels_moved_since(old).filter(|_| before.origin == now.origin);
+    let Some(shift) = shift else {
+        tally.stepped += 1;
+        return;
+    };
+    tally.still += 1;
+    let mut seen = vec![false; (SIZE * SIZE) as usize];
+    for &point in points.iter().filter(|point| shows(before, old, **point) && shows(now, new, **point)) {
+        let at = new.map_from_world(point).truncate().floor();
+        for offset in (-1..=1).flat_map(|y| (-1..=1).map(move |x| DVec2::new(f64::from(x), f64::from(y)))) {
+            let (here, there) = (index(at + offset), index(at + offset + shift));
+            let (Some(here), Some(there)) = (here, there) else {
+                tally.outside += 1;
+                continue;
+            };
+            if !std::mem::replace(&mut seen[here], true) {
+                let (a, b) = (before.maps[split][there], now.maps[split][here]);
+                tally.texels += 1;
+                tally.filled += usize::from(b < 1.0);
+                tally.rounded += usize::from(a != b);
+                tally.widest = tally.widest.max(if (a < 1.0) == (b < 1.0) { (a - b).abs() } else { 1.0 });
+                tally.different += usize::from((a < 1.0) != (b < 1.0) || (a - b).abs() > ROUNDING);
+            }
+        }
+    }
+}
+
+fn shows(frame: &Frame, split: &Split, point: DVec3) -> bool {
+    let (depth, lens) = (frame.view.view_depth(point), frame.view.frustum());
+    let at = frame.view.view_from_world_point(point);
+    let scale = lens.scale_at(depth);
+    (split.coverage.0..=split.coverage.1).contains(&depth)
+        && (lens.left * scale..=lens.right * scale).contains(&at.x)
+        && (lens.bottom * scale..=lens.top * scale).contains(&at.y)
+}
+
+fn index(texel: DVec2) -> Option<usize> {
+    let (at, size) = (texel.as_ivec2(), SIZE as i32);
+    (at.cmpge(IVec2::ZERO).all() && at.cmplt(IVec2::splat(size)).all()).then(|| (at.y * size + at.x) as usize)
+}
+
+fn world() -> Option<World> {
+    let options = ShadowMapsOptions {
+        map_sizes: vec![SIZE; SPLITS],
+        depth_format: DepthFormat::D32Float,
+        filter: Filter::Pcf3,
+        ..ShadowMapsOptions::default()
+    };
+    Some(World::new(Gpu::new()?, &options))
+}
+
+fn settings(stabilize: Stabilize) -> ShadowSettings {
+    ShadowSettings {
+        map_sizes: vec![SIZE; SPLITS],
+        range: Some((1.0, 110.0)),
+        fit: Fit::Dependent,
+        stabilize,
+        ..ShadowSettings::default()
+    }
+}
+
+#[test]
+fn no_static_texel_changes_while_step_and_origin_stand() {
+    let Some(mut world) = world() else { return };
+    // At 100 km the path crosses a kilometre's border, so that the origin moves once.
+    for place in [DVec3::ZERO, DVec3::new(7_071.3, 12.7, -7_071.1), DVec3::new(99_840.0, -31.4, 470.0)] {
+        let town = Town::new(place);
+        let tally = walk(&mut world, &town, &settings(Stabilize::Exact), FRAMES);
+        eprintln!("exact at {place}: {tally:?}");
+        assert_eq!((tally.different, tally.outside), (0, 0), "{tally:?} at {place}");
+        assert!(tally.filled > 50_000 && tally.texels > 2_000_000, "{tally:?}");
+        // A third of zoom is 4 steps of each radius, in and out again; and the origin.
+        assert!(tally.stepped <= SPLITS * 10, "{tally:?}");
+    }
+}
+
+#[test]
+fn nor_does_one_of_an_approximate_map_between_its_steps() {
+    let Some(mut world) = world() else { return };
+    let town = Town::new(DVec3::new(7_071.3, 12.7, -7_071.1));
+    let tally = walk(&mut world, &town, &settings(Stabilize::Approximate(ExtentSteps::default())), FRAMES);
+    eprintln!("approximate: {tally:?}");
+    assert_eq!(tally.different, 0, "{tally:?}");
+    assert!(tally.filled > 50_000 && tally.texels > 2_000_000, "{tally:?}");
+    // While it turns and zooms a map takes a step every tenth frame at most.
+    assert!(10 * tally.stepped <= tally.still + tally.stepped, "{tally:?}");
+}
+
+/// The tally can say no.
+#[test]
+fn unstabilised_texels_change_all_the_time() {
+    let Some(mut world) = world() else { return };
+    let town = Town::new(DVec3::ZERO);
+    let tally = walk(&mut world, &town, &settings(Stabilize::None), 20);
+    assert_eq!((tally.still, tally.stepped), (0, 19 * SPLITS), "{tally:?}");
+}

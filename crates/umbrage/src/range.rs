@@ -1,0 +1,102 @@
+//! The shadowed range fitted to what the view shows: `C_0` and `C_m` as tight as the receivers allow.
+
+use crate::View;
+use crate::planner::Placed;
+use crate::volume::{Lies, Slice};
+
+/// Share of a depth by which the range exceeds the receivers, so that rounding to `f32` on the way to a shader leaves none
+/// outside.
+const ROOM: f64 = 1e-4;
+
+/// Steps per doubling of a held end of the range: one step is 2^(1/4), 19 %.
+const STEPS_PER_OCTAVE: f64 = 4.0;
+
+/// Steps that an end may fall short of what it holds before it follows.
+const HYSTERESIS: f64 = 2.0;
+
+/// The view depths between which the view shows any of `receivers`, with a little room; `None` if it shows none. Boxes are clipped to
+/// the frustum between `near` and `far`, the range to `near`.
+///
+/// Source: *Parallel-Split Shadow Maps on Programmable GPUs* (seed 001) section 10.2.1, which only says that near and far might be
+/// adjusted "so that the view frustum contains the visible objects as tightly as possible". What stands behind something
+/// else counts as visible: boxes hide nothing.
+pub(crate) fn visible_range(view: &View, near: f64, far: f64, receivers: &[Placed]) -> Option<(f64, f64)> {
+    let room = |depth: f64| ROOM * depth.abs();
+    let whole = Slice::new(view, near - 0.5 * room(near), far + room(far));
+    let forward = view.forward();
+    let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut include = |depth: f64| (first, last) = (first.min(depth), last.max(depth));
+    for receiver in receivers {
+        match whole.classify(receiver.center, receiver.half) {
+            Lies::Outside => {}
+            Lies::Inside => {
+                let (depth, reach) = (view.view_depth(receiver.center), forward.abs().dot(receiver.half));
+                include(depth - reach);
+                include(depth + reach);
+            }
+            Lies::Across => {
+                whole.clip_box(&receiver.bounds(), |point| include(view.view_depth(point)));
+            }
+        }
+    }
+    if first > last {
+        return None;
+    }
+    Some(((first - room(first)).max(near), last + room(last)))
+}
+
+/// An end of the range on a ladder of geometric steps, so that a moving camera changes it rarely: rounded up to the next step, and
+/// held until it is outgrown or undercut by [`HYSTERESIS`] steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct HeldStep {
+    held: Option<f64>,
+}
+
+impl HeldStep {
+    fn hold(&mut self, size: f64) -> f64 {
+        let steps = size.log2() * STEPS_PER_OCTAVE;
+        let step = match self.held {
+            Some(held) if steps <= held && steps > held - HYSTERESIS => held,
+            _ => steps.ceil(),
+        };
+        self.held = Some(step);
+        2f64.powf(step / STEPS_PER_OCTAVE).max(size)
+    }
+}
+
+/// Both ends of a range that is held: the far one is rounded up, the near one down.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct HeldRange {
+    inverse_near: HeldStep,
+    far: HeldStep,
+}
+
+impl HeldRange {
+    /// The held range around `near..far`, both greater than 0.
+    pub fn hold(&mut self, near: f64, far: f64) -> (f64, f64) {
+        (1.0 / self.inverse_near.hold(1.0 / near), self.far.hold(far))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::HeldRange;
+
+    #[test]
+    fn a_held_range_contains_what_it_is_asked_for_and_rarely_moves() {
+        let mut held = HeldRange::default();
+        let mut changes = 0;
+        let mut before = held.hold(10.0, 400.0);
+        for i in 0..1000 {
+            // Ten per cent to and fro, as ground that rolls under a walking camera.
+            let wave = 1.0 + 0.1 * (f64::from(i) * 0.37).sin();
+            let now = held.hold(10.0 * wave, 400.0 / wave);
+            assert!(now.0 <= 10.0 * wave && now.1 >= 400.0 / wave, "{now:?}");
+            changes += usize::from(now != before);
+            before = now;
+        }
+        assert!(changes <= 2, "{changes} changes");
+        let (near, far) = held.hold(100.0, 4000.0);
+        assert!(near > 80.0 && near <= 100.0 && (4000.0..5000.0).contains(&far), "{near}..{far}");
+    }
+}
