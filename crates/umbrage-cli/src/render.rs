@@ -79,6 +79,7 @@ impl<'a> Studio<'a> {
             samples: umbrage_render::Samples::default(),
             softness: shadows.softness(job.sun_angle),
             transition: shadows.transition(),
+            moments: shadows.moments(),
             storage: umbrage_wgpu::Storage::default(),
             generation: umbrage_wgpu::Generation::default(),
         };

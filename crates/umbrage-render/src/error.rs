@@ -44,6 +44,12 @@ pub enum Error {
         /// The device's largest texture.
         limit: u32,
     },
+    /// Maps of several samples a texel have no picture.
+    #[error("maps have {samples} samples a texel and cannot be written; use one sample, or leave the maps away")]
+    MapsOfSamples {
+        /// Samples of depth in a texel.
+        samples: u32,
+    },
     /// A texture of the scene is larger than the device allows.
     #[error("texture {index} is {width}x{height} pixels, more than the {limit} this device allows; scale it down")]
     TextureSize {

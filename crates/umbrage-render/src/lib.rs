@@ -25,6 +25,6 @@ pub use error::{Error, Result};
 pub use forward::Samples;
 pub use gpu::{Gpu, GpuOptions};
 pub use probe::{ProbeAnswer, ProbePoint};
-pub use renderer::{Frame, Outputs, RenderSettings, Rendered, Renderer};
+pub use renderer::{Frame, MomentSettings, Outputs, RenderSettings, Rendered, Renderer};
 pub use stats::{FrameStats, SplitStats};
 pub use timing::PassCounts;

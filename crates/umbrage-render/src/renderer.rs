@@ -5,7 +5,8 @@ use image::{GrayAlphaImage, GrayImage, RgbaImage};
 use umbrage::{Aabb, DirectionalLight, Planner, ShadowPlan, ShadowSettings, View};
 use umbrage_scene::{AlphaMode, Pose, Scene};
 use umbrage_wgpu::{
-    DepthFormat, Filter, FrameOptions, Generation, ShadowMaps, ShadowMapsOptions, Softness, Storage, Transition,
+    DepthFormat, Derivatives, Filter, FrameOptions, Generation, MomentStorage, ShadowMaps, ShadowMapsOptions, Softness,
+    Storage, Transition,
 };
 use web_time::Instant;
 
@@ -46,6 +47,25 @@ pub struct RenderSettings {
     pub storage: Storage,
     /// How maps are drawn.
     pub generation: Generation,
+    /// What filters of moments leave to choose.
+    pub moments: MomentSettings,
+}
+
+/// What filters of moments leave to choose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MomentSettings {
+    /// Samples of depth in a texel: 1 or 4.
+    pub samples: u32,
+    /// Whether they may fall back to what the device has.
+    pub fallbacks: bool,
+    /// How they know what a pixel covers.
+    pub derivatives: Derivatives,
+}
+
+impl Default for MomentSettings {
+    fn default() -> Self {
+        Self { samples: 1, fallbacks: true, derivatives: Derivatives::default() }
+    }
 }
 
 /// What varies from frame to frame.
@@ -95,6 +115,7 @@ pub struct Renderer {
     samples: Samples,
     softness: Softness,
     transition: Transition,
+    derivatives: Derivatives,
     planner: Planner,
     maps: ShadowMaps,
     scene: Geometry,
@@ -152,6 +173,8 @@ impl Renderer {
                     map_sizes: shadows.map_sizes.clone(),
                     depth_format: settings.depth_format,
                     filter: settings.filter,
+                    samples: settings.moments.samples,
+                    fallbacks: settings.moments.fallbacks,
                     storage: settings.storage,
                     generation: settings.generation,
                     ..ShadowMapsOptions::default()
@@ -171,6 +194,7 @@ impl Renderer {
             if settings.filter == Filter::Pcss && !gpu.depth_loads() {
                 notes.push("no loads from depth textures on GL: pcss is a disc of fixed width".to_owned());
             }
+            notes.extend(maps.moment_storage().and_then(|storage| moment_note(storage, settings.filter)));
             if !timer.has_timestamps() {
                 notes.push("no timestamp queries: times of the GPU are measured by the CPU's clock".to_owned());
             }
@@ -187,6 +211,7 @@ impl Renderer {
                 samples: settings.samples,
                 softness: settings.softness,
                 transition: settings.transition,
+                derivatives: settings.moments.derivatives,
                 probe: Probe::new(gpu, &maps),
                 timer,
                 picture: None,
@@ -254,6 +279,7 @@ impl Renderer {
         let mut clock = Clock::start(&gpu, &self.timer);
         let mut encoder = new_encoder(&gpu);
         let split_drawn = self.record_maps(&mut encoder, frame, &prepared);
+        let is_prefiltered = self.maps.options().filter.is_prefiltered();
         let map_passes = split_drawn.len();
         let mut encoder = clock.after_maps(encoder)?;
         let mut view_drawn = Drawn::default();
@@ -273,6 +299,9 @@ impl Renderer {
             }
             _ => None,
         };
+        if outputs.maps && self.maps.options().samples > 1 {
+            return Err(Error::MapsOfSamples { samples: self.maps.options().samples });
+        }
         let depth_maps = if outputs.maps && frame.shadows_on {
             let splits = prepared.plan.splits.iter().enumerate();
             splits
@@ -301,7 +330,11 @@ impl Renderer {
         };
         let (shadow_ms, frame_ms) = match (&measured.spans_ms, wall) {
             (Some(spans), _) if !spans.is_empty() => (
-                spans[..map_passes].last().map_or(0.0, |span| span[1]),
+                // What turns depths into moments is no pass of ours; it is over when the next one begins.
+                match spans.get(map_passes) {
+                    Some(view) if is_prefiltered && map_passes > 0 => view[0],
+                    _ => spans[..map_passes].last().map_or(0.0, |span| span[1]),
+                },
                 spans.iter().map(|span| span[1]).fold(0.0, f64::max),
             ),
             (_, Some(wall)) => wall,
@@ -410,6 +443,7 @@ impl Renderer {
             strength: 1.0,
             softness: self.softness,
             transition: self.transition,
+            derivatives: self.derivatives,
         };
         self.maps.prepare(&self.gpu.queue, &plan, &options)?;
         self.skinned.update(&self.gpu, &self.scene_meshes, pose)?;
@@ -472,6 +506,7 @@ impl Renderer {
                 }),
             );
         }
+        self.maps.filter(encoder);
         drawn
     }
 
@@ -521,6 +556,19 @@ impl Renderer {
             }
         };
         plan.splits.iter().enumerate().map(stats).collect()
+    }
+}
+
+/// What to say of a device that keeps moments otherwise than in 32-bit floats with the hardware's filter.
+fn moment_note(storage: MomentStorage, filter: Filter) -> Option<String> {
+    match storage {
+        MomentStorage::Floats => None,
+        MomentStorage::Halves => Some(format!(
+            "no filterable 32-bit floats: {filter:?} is kept in 16-bit floats, with smaller exponents, and leaks more"
+        )),
+        MomentStorage::FloatsByHand => {
+            Some(format!("no filterable 32-bit floats: the shader filters the moments of {filter:?} itself"))
+        }
     }
 }
 

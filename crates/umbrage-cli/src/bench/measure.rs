@@ -47,6 +47,7 @@ pub fn measure(
             samples,
             softness: technique.job.softness(None),
             transition: technique.job.transition(),
+            moments: technique.job.moments(),
             storage: umbrage_wgpu::Storage::default(),
             generation: umbrage_wgpu::Generation::default(),
         };

@@ -47,25 +47,31 @@ fn geometric_normal(from_eye: vec3f) -> vec3f {
 }
 
 // Red: visibility of the sun at the pixel's centre. Green: 1, a surface is here.
+// What the pixel covers. Call in uniform control flow.
+fn footprint_of(in: Surface) -> UmbrageFootprint {
+    return umbrage_footprint(in.position, dpdx(in.from_eye), dpdy(in.from_eye), in.clip.xy);
+}
+
 @fragment
 fn fs_mask_opaque(in: Surface) -> @location(0) vec2f {
-    return mask_at(in, geometric_normal(in.from_eye));
+    return mask_at(in, geometric_normal(in.from_eye), footprint_of(in));
 }
 
 @fragment
 fn fs_mask_masked(in: Surface) -> @location(0) vec2f {
     let normal = geometric_normal(in.from_eye);
+    let footprint = footprint_of(in);
     if tested_alpha(in.uv, in.color.a) < material.alpha_cutoff {
         discard;
     }
-    return mask_at(in, normal);
+    return mask_at(in, normal, footprint);
 }
 
-fn mask_at(in: Surface, normal: vec3f) -> vec2f {
+fn mask_at(in: Surface, normal: vec3f, footprint: UmbrageFootprint) -> vec2f {
     if dot(normal, frame.to_light) <= 0.0 {
         return vec2f(0.0, 1.0);
     }
-    return vec2f(umbrage_shadow_at_pixel(in.position, normal, in.clip.xy).visibility, 1.0);
+    return vec2f(umbrage_shadow_with(in.position, normal, footprint).visibility, 1.0);
 }
 
 @fragment
@@ -101,7 +107,7 @@ fn base_color(in: Surface) -> vec4f {
 fn shaded(in: Surface, front: bool, base: vec4f) -> vec3f {
     let geometric = geometric_normal(in.from_eye);
     let smooth_normal = normalize(select(-in.normal, in.normal, front));
-    let shadow = umbrage_shadow_at_pixel(in.position, lookup_normal(geometric), in.clip.xy);
+    let shadow = umbrage_shadow_with(in.position, lookup_normal(geometric), footprint_of(in));
     let sun = SUN * max(dot(smooth_normal, frame.to_light), 0.0) * shadow.visibility;
     // Brighter on the sun's side of the sky, so that corners can be told apart in the shade.
     let side = 1.0 + 0.15 * dot(smooth_normal, frame.to_light);

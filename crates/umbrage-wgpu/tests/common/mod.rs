@@ -247,6 +247,7 @@ impl World {
                 pass.set_vertex_buffer(0, vertices.slice(..));
                 pass.draw(0..triangles.len() as u32, 0..1);
             }
+            self.maps.filter(&mut encoder);
             self.gpu.queue.submit([encoder.finish()]);
         });
     }
