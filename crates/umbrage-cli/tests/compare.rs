@@ -134,6 +134,11 @@ fn walks_give_flicker_and_still_techniques_have_less() {
     let rate = |number_of: usize| number(&walk["flicker"][number_of]["rate"]);
     assert!(rate(0) > rate(1), "tight maps flicker more than still ones: {walk}");
     assert!(number(&walk["flicker"][0]["per_edge"]) > rate(0));
+    assert_eq!(number(&walk["flicker"][1]["kept_per_edge"]), 0.0, "points that keep a still split do not flip");
+    assert_eq!(number(&walk["flicker"][1]["standing_per_edge"]), 0.0, "{walk}");
+    let standing = |number_of: usize| number(&walk["flicker"][number_of]["standing_points"]);
+    assert!(standing(0) < 0.01 * standing(1), "no tight map stands, only points that no split decides on: {walk}");
+    assert_eq!((&walk["flicker"][0]["steps"], &walk["flicker"][1]["steps"]), (&6.into(), &0.into()), "{walk}");
     assert_eq!(scores["techniques"][0]["mean"]["flicker"], walk["flicker"][0]["rate"]);
     assert!(scores["techniques"][0]["mean"]["ssim"].is_null(), "image metrics are off");
 

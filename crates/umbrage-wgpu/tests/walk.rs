@@ -8,7 +8,8 @@ mod common;
 use common::{Gpu, World, cuboid};
 use glam::{DQuat, DVec2, DVec3, IVec2, Vec3};
 use umbrage::{
-    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, ShadowPlan, ShadowSettings, Split, Stabilize, View,
+    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, ShadowPlan, ShadowSettings, Split, Stabilize,
+    SteppedSun, SunFade, View,
 };
 use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions};
 
@@ -97,17 +98,9 @@ struct Tally {
 fn walk(world: &mut World, town: &Town, settings: &ShadowSettings, frames: u32) -> Tally {
     let mut planner = Planner::new(settings.clone()).expect("valid");
     let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).expect("a direction");
-    let mut receivers = town.boxes.clone();
-    receivers.push(Aabb::new(town.center - DVec3::new(130.0, 0.0, 130.0), town.center + DVec3::new(130.0, 0.0, 130.0)));
     let (mut tally, mut before): (Tally, Option<Frame>) = Default::default();
     for k in 0..frames {
-        let view = town.view(k);
-        let plan = planner.plan(&view, &sun, &town.boxes, &receivers).expect("a plan").clone();
-        let origin = (view.eye() / ORIGIN_STEP).round() * ORIGIN_STEP;
-        let options = FrameOptions { origin, ..FrameOptions::default() };
-        world.draw_listed(&plan, &options, &town.triangles(origin));
-        let maps = (0..SPLITS).map(|split| world.texels(split)).collect();
-        let now = Frame { plan, origin, view, maps };
+        let now = drawn(world, &mut planner, town, &sun, k);
         if let Some(before) = &before {
             for split in 0..SPLITS {
                 compare(&mut tally, before, &now, split, &town.points);
@@ -116,6 +109,18 @@ fn walk(world: &mut World, town: &Town, settings: &ShadowSettings, frames: u32) 
         before = Some(now);
     }
     tally
+}
+
+fn drawn(world: &mut World, planner: &mut Planner, town: &Town, sun: &DirectionalLight, frame: u32) -> Frame {
+    let ground = DVec3::new(130.0, 0.0, 130.0);
+    let receivers = [&town.boxes[..], &[Aabb::new(town.center - ground, town.center + ground)]].concat();
+    let view = town.view(frame);
+    let plan = planner.plan(&view, sun, &town.boxes, &receivers).expect("a plan").clone();
+    let origin = (view.eye() / ORIGIN_STEP).round() * ORIGIN_STEP;
+    let options = FrameOptions { origin, ..FrameOptions::default() };
+    world.draw_listed(&plan, &options, &town.triangles(origin));
+    let maps = (0..SPLITS).map(|split| world.texels(split)).collect();
+    Frame { plan, origin, view, maps }
 }
 
 /// The texels around every point that both frames show through this split: its own and its eight neighbours, as the filters see them.
@@ -207,6 +212,38 @@ fn nor_does_one_of_an_approximate_map_between_its_steps() {
     assert!(tally.filled > 50_000 && tally.texels > 2_000_000, "{tally:?}");
     // While it turns and zooms a map takes a step every tenth frame at most.
     assert!(10 * tally.stepped <= tally.still + tally.stepped, "{tally:?}");
+}
+
+/// A sun that moves in steps leaves every map alone between two of them, and there are as many steps as its way is long.
+#[test]
+fn between_steps_of_the_sun_no_static_texel_changes() {
+    let Some(mut world) = world() else { return };
+    let town = Town::new(DVec3::new(7_071.3, 12.7, -7_071.1));
+    let settings = settings(Stabilize::Exact);
+    let mut planner = Planner::new(settings).expect("valid");
+    let mut stepped = SteppedSun::new(0.01, 8.0).expect("valid");
+    let (mut tally, mut steps, mut before): (Tally, usize, Option<(Frame, SunFade)>) = Default::default();
+    // As many frames as go by before the zoom takes a step of its own.
+    for k in 0..150 {
+        let sun = DQuat::from_rotation_z(0.0004 * f64::from(k)) * DVec3::new(0.3, -1.0, 0.2);
+        let fade = stepped.follow(&DirectionalLight::new(sun).expect("a direction"), 1.0).expect("a time");
+        // The maps of the sun that is left are drawn as they were before the fade, so those of the other are looked at.
+        let now = drawn(&mut world, &mut planner, &town, &fade.to, k);
+        if let Some((before, old)) = &before {
+            let taken = old.to != fade.to;
+            steps += usize::from(taken);
+            let mut of_pair = Tally::default();
+            for split in 0..SPLITS {
+                compare(&mut of_pair, before, &now, split, &town.points);
+            }
+            assert_eq!(of_pair.stepped, if taken { SPLITS } else { 0 }, "frame {k}: {of_pair:?}");
+            (tally.texels, tally.different) = (tally.texels + of_pair.texels, tally.different + of_pair.different);
+        }
+        before = Some((now, fade));
+    }
+    assert_eq!(tally.different, 0, "{tally:?}");
+    // 0.06 rad in steps of 0.01, each taken up to a frame late.
+    assert!((4..=6).contains(&steps) && tally.texels > 500_000, "{steps} steps, {tally:?}");
 }
 
 /// The tally can say no.

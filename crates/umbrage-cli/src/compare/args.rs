@@ -32,6 +32,7 @@ Presets, each reproduced by one command such as `umbrage compare --preset ladder
   ladder   SSM and PSSM at 1 and 4 Mtexel, tight and still, over the worlds under the suns `metrics`, with flicker
   figure8  the rows and worlds of the paper's Figure 8, columns (a) to (d)
   dueling  its column (e): looking into the light, larger maps
+  stillness  unstabilised, exact, approximate and the source's 64 levels along a walk with turns, with flicker
   table    PSSM(2, 3, 4; 512) beside SSM(1024) over all cameras of all worlds
   suns     the defaults over all cameras of all worlds, suns 80, 43, 20, 11 and 5 degrees up: acne and leaks";
 
@@ -104,6 +105,12 @@ pub struct CompareArgs {
     /// Move every other camera forward by this many metres a frame, for --frames
     #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Shots")]
     pub step: Option<f64>,
+    /// Turn every other camera to the left by this many degrees a frame, about the world's vertical, for --frames
+    #[arg(long, value_name = "DEGREES", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Shots")]
+    pub turn: Option<f64>,
+    /// Magnify what every other camera sees by this factor a frame, for --frames
+    #[arg(long, value_name = "FACTOR", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Shots")]
+    pub zoom: Option<f64>,
     /// One of the scenes' directional lights as their own sun [default: the first]
     #[arg(long, value_name = "NAME|INDEX", help_heading = "Shots")]
     pub light: Option<String>,
@@ -155,6 +162,8 @@ pub enum Preset {
     Dueling,
     /// What stands in the first table of measurements
     Table,
+    /// The kinds of stabilisation along a walk
+    Stillness,
     /// The defaults under suns from 80° to 5° above the horizon
     Suns,
 }

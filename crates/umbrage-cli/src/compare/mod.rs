@@ -1,7 +1,7 @@
 //! `umbrage compare`: any techniques on any shots, judged by rays.
 //!
 //! [`techniques`] reads what is compared, [`shots`] where; [`run()`] draws every mask by the same path as `umbrage render
-//! --visibility`, scores it ([`judge`]) and keeps the numbers ([`report`]) and the pictures (`columns`, [`sheet`]); `page`
+//! --visibility`, scores it ([`judge`], and along walks [`stillness`]) and keeps the numbers ([`report`]) and the pictures (`columns`, [`sheet`]); `page`
 //! makes one HTML page of both.
 
 pub mod args;
@@ -15,6 +15,7 @@ pub mod report;
 mod run;
 pub mod sheet;
 pub mod shots;
+pub mod stillness;
 pub mod techniques;
 mod text;
 

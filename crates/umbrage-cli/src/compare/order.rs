@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::{
     args::CompareArgs,
     preset::{self, Content},
-    shots::{Set, SunSpec, Wish, sun_spec},
+    shots::{Set, Stride, SunSpec, Wish, sun_spec},
     techniques::{self, Rejected, Technique},
 };
 use crate::{
@@ -140,21 +140,7 @@ fn wish_of<'a>(args: &'a CompareArgs, content: Option<&Content>, scenes: usize) 
     if args.frames == Some(0) {
         return Err(Failure::input("--frames 0 asks for no frame; give 1 or more"));
     }
-    let steps = match (args.step, args.frames) {
-        (Some(metres), frames) => {
-            let frames = frames.unwrap_or(2);
-            if frames < 2 {
-                return Err(Failure::input("--step with --frames 1 goes nowhere; give --frames 2 or more"));
-            }
-            Some((metres, frames))
-        }
-        (None, Some(frames)) if args.path.is_none() => match content.and_then(|content| content.steps) {
-            Some((metres, _)) if frames > 1 => Some((metres, frames)),
-            Some(_) => None,
-            None => return Err(Failure::input("--frames needs a way to go: give --path FILE or --step M")),
-        },
-        _ => content.and_then(|content| content.steps),
-    };
+    let stride = stride_of(args, content.and_then(|content| content.stride))?;
     let own_cameras = !args.camera.is_empty() || args.eye.is_some() || args.path.is_some();
     let cameras = match content {
         Some(content) if !own_cameras => content.cameras.iter().map(|&camera| camera.to_owned()).collect(),
@@ -171,10 +157,35 @@ fn wish_of<'a>(args: &'a CompareArgs, content: Option<&Content>, scenes: usize) 
         args,
         cameras,
         suns,
-        steps,
+        stride,
         near: args.near.or(content.and_then(|content| content.near)),
         far: args.far.or(content.and_then(|content| content.far)),
     })
+}
+
+/// `--step`, `--turn`, `--zoom` and `--frames`, what is not said taken from the preset.
+fn stride_of(args: &CompareArgs, preset: Option<Stride>) -> Result<Option<Stride>> {
+    let typed = [("--step", args.step), ("--turn", args.turn), ("--zoom", args.zoom)];
+    if let Some((option, _)) = typed.iter().find(|(_, value)| value.is_some()) {
+        let frames = args.frames.or(preset.map(|preset| preset.frames)).unwrap_or(2);
+        if frames < 2 {
+            return Err(Failure::input(format!("{option} with --frames 1 goes nowhere; give --frames 2 or more")));
+        }
+        let still = Stride { metres: 0.0, turn: 0.0, zoom: 1.0, frames };
+        return Ok(Some(Stride {
+            metres: args.step.unwrap_or(still.metres),
+            turn: args.turn.unwrap_or(still.turn),
+            zoom: args.zoom.unwrap_or(still.zoom),
+            frames,
+        }));
+    }
+    match (args.frames, preset) {
+        (Some(frames), Some(preset)) if args.path.is_none() => Ok((frames > 1).then_some(Stride { frames, ..preset })),
+        (Some(_), None) if args.path.is_none() => Err(Failure::input(
+            "--frames needs a way to go: give --path FILE, --step M, --turn DEGREES or --zoom FACTOR",
+        )),
+        _ => Ok(preset),
+    }
 }
 
 #[cfg(test)]
@@ -230,12 +241,20 @@ mod tests {
             ("a --frames 0 -o x", "--frames 0"),
             ("a --frames 5 -o x", "--step"),
             ("a --step 1 --frames 1 -o x", "--step"),
+            ("a --zoom 2 --frames 1 -o x", "--zoom"),
         ] {
             let message = wish_of(&args(words), None, 1).expect_err(words).to_string();
             assert!(message.contains(culprit), "{words}: {message}");
         }
         assert!(wish_of(&args("a b --path p.json -o x"), None, 2).is_err());
-        assert_eq!(wish_of(&args("a --step 0.5 -o x"), None, 1).expect("steps").steps, Some((0.5, 2)));
-        assert_eq!(wish_of(&args("a --path p --frames 5 -o x"), None, 1).expect("a path").steps, None);
+        assert_eq!(
+            wish_of(&args("a --step 0.5 -o x"), None, 1).expect("steps").stride,
+            Some(Stride { metres: 0.5, turn: 0.0, zoom: 1.0, frames: 2 })
+        );
+        assert_eq!(
+            wish_of(&args("a --turn -1 --zoom 1.1 --frames 9 -o x"), None, 1).expect("turns").stride,
+            Some(Stride { metres: 0.0, turn: -1.0, zoom: 1.1, frames: 9 })
+        );
+        assert_eq!(wish_of(&args("a --path p --frames 5 -o x"), None, 1).expect("a path").stride, None);
     }
 }

@@ -293,15 +293,21 @@ fn name(view: &ViewReport) -> String {
 
 fn walks(comparison: &Comparison) -> Section {
     let mut columns = vec![Column::text("walk"), Column::number("frames"), Column::text("counts")];
-    columns.extend(comparison.techniques.iter().map(|technique| Column::number(technique.label.as_str())));
-    let mut table = Table::new("F_edge in %: decisions that flip between frames, per pixel of true edge.", columns);
+    columns.extend(comparison.techniques.iter().map(|technique| Column::text(technique.label.as_str())));
+    let caption = "F_edge in %: decisions that flip between frames, per pixel of true edge; then over points that keep their split, over those \
+         whose map takes no step, and how often a map took one instead of moving by whole texels.";
+    let mut table = Table::new(caption, columns);
     for walk in &comparison.walks {
         let mut row = vec![
             Cell::Text(format!("{} · {} · {}", walk.scene, walk.camera, walk.sun_name)),
             Cell::Number(walk.frames as f64, 0),
             if walk.counts { "yes" } else { "no" }.into(),
         ];
-        row.extend(walk.flicker.iter().map(|flicker| percent(flicker.per_edge, 2)));
+        row.extend(walk.flicker.iter().map(|flicker| {
+            let rate = |value: Option<f64>| value.map_or("–".into(), |value| format!("{:.2}", 100.0 * value));
+            let [all, kept, standing] = [flicker.per_edge, flicker.kept_per_edge, flicker.standing_per_edge].map(rate);
+            Cell::Text(format!("{all} · {kept} · {standing} · {}", flicker.steps))
+        }));
         table = table.row(row);
     }
     Section::new("Flicker").table(&table)

@@ -1,6 +1,6 @@
 //! Known sets of techniques and shots, so that published numbers come out of one command.
 
-use super::args::Preset;
+use super::{args::Preset, shots::Stride};
 
 /// What a preset says where the command line says nothing.
 #[derive(Debug)]
@@ -19,8 +19,8 @@ pub struct Content {
     pub near: Option<f64>,
     /// Far plane in metres.
     pub far: Option<f64>,
-    /// Metres a frame and frames, for flicker.
-    pub steps: Option<(f64, u32)>,
+    /// How cameras go on, for flicker.
+    pub stride: Option<Stride>,
 }
 
 /// One map or slice, one nearest texel, one comparison, no blend, no fade, fitted to the slice alone: what the papers measured, and
@@ -47,7 +47,7 @@ const LADDER: Content = Content {
     suns: &["metrics"],
     near: Some(0.5),
     far: Some(500.0),
-    steps: Some((0.5, 2)),
+    stride: Some(Stride { metres: 0.5, turn: 0.0, zoom: 1.0, frames: 2 }),
 };
 
 /// *Parallel-Split Shadow Maps*, Figure 8: SSM, PSM, LiSPSM, TSM (1024²), PSSM(2, 3, 4; 512²); columns (a) to (d).
@@ -59,7 +59,7 @@ const FIGURE_8: Content = Content {
     suns: &["own"],
     near: None,
     far: None,
-    steps: None,
+    stride: None,
 };
 
 /// The same figure, column (e): light and eye nearly opposite; single maps of 2048², splits of 1024².
@@ -93,7 +93,20 @@ const SUNS: Content = Content {
     suns: &["80", "43", "20", "11", "5"],
     near: None,
     far: None,
-    steps: None,
+    stride: None,
+};
+
+/// *Practical Cascaded Shadow Maps*, Figures 4.1.2 to 4.1.6: what flickers when the observer goes on. A frame is 0.15 m and 0.003 rad.
+const STILLNESS: Content = Content {
+    techniques: &[
+        "pssm:4:512:stabilize=none",
+        "pssm:4:512:stabilize=exact",
+        "pssm:4:512:stabilize=approximate",
+        "pssm:4:512:stabilize=approximate:extent-levels=64",
+    ],
+    cameras: &["near", "middle"],
+    stride: Some(Stride { metres: 0.15, turn: 0.171_887_338_539_246_97, zoom: 1.0, frames: 60 }),
+    ..FIGURE_8
 };
 
 /// What a preset says.
@@ -103,6 +116,7 @@ pub fn content(preset: Preset) -> &'static Content {
         Preset::Ladder => &LADDER,
         Preset::Figure8 => &FIGURE_8,
         Preset::Dueling => &DUELING,
+        Preset::Stillness => &STILLNESS,
         Preset::Table => &TABLE,
         Preset::Suns => &SUNS,
     }

@@ -81,6 +81,10 @@ pub struct Means {
     pub flicker: Option<f64>,
     /// F_edge, over the walks that count.
     pub flicker_per_edge: Option<f64>,
+    /// The same over points that keep their split.
+    pub kept_flicker_per_edge: Option<f64>,
+    /// The same over points that keep their split while its map takes no step.
+    pub standing_flicker_per_edge: Option<f64>,
     pub flip: Option<f64>,
     pub ssim: Option<f64>,
     pub caster_split_pairs: Option<f64>,
@@ -151,6 +155,15 @@ pub struct FlickerReport {
     pub rate: Option<f64>,
     /// F_edge; may exceed 1.
     pub per_edge: Option<f64>,
+    /// F_edge over points that the same split decides on in both frames.
+    pub kept_per_edge: Option<f64>,
+    /// Those of them whose map took no step, over all pairs of frames.
+    pub standing_points: usize,
+    /// F_edge over them.
+    pub standing_per_edge: Option<f64>,
+    /// How often a map took a step: changed its texel, axes or depth range instead of moving by whole texels. Of a map that is not
+    /// stabilised, how often it moved.
+    pub steps: usize,
 }
 
 /// Two techniques over the same views.
@@ -229,6 +242,8 @@ pub fn means(number: usize, views: &[ViewReport], walks: &[WalkReport]) -> Means
         seam_ratio: seam_ratio(number, views),
         flicker: flicker(|f| f.rate),
         flicker_per_edge: flicker(|f| f.per_edge),
+        kept_flicker_per_edge: flicker(|f| f.kept_per_edge),
+        standing_flicker_per_edge: flicker(|f| f.standing_per_edge),
         flip: over(&|scores| scores.flip),
         ssim: over(&|scores| scores.ssim),
         caster_split_pairs: cost(|cost| cost.caster_split_pairs),

@@ -2,10 +2,7 @@
 
 use indicatif::ProgressBar;
 use umbrage_render::{Frame, Gpu, GpuOptions, Outputs, ProbePoint, RenderSettings, Renderer};
-use umbrage_truth::{
-    Truth,
-    scores::{Flicker, FramePair, shared_points},
-};
+use umbrage_truth::{Truth, scores::shared_points};
 
 use super::{
     args::CompareArgs,
@@ -13,9 +10,10 @@ use super::{
     judge::{Judged, score},
     order::Order,
     page,
-    report::{self, Comparison, FlickerReport, TechniqueReport, ViewReport, WalkReport},
+    report::{self, Comparison, TechniqueReport, ViewReport, WalkReport},
     sheet::{self, Column, Label},
     shots::{Series, Set},
+    stillness::{Answered, Stillness},
     techniques::Technique,
 };
 use crate::{
@@ -90,8 +88,6 @@ struct Before {
     judged: Judged,
     /// P_k.
     points: Vec<ProbePoint>,
-    /// What each technique answered there.
-    answers: Vec<Vec<f32>>,
 }
 
 impl Bench<'_> {
@@ -133,7 +129,8 @@ impl Bench<'_> {
             renderer.restart()?;
         }
         let first_view = self.views.len();
-        let mut flicker = vec![Flicker::default(); self.techniques.len()];
+        let mut walks: Vec<Stillness> =
+            self.techniques.iter().map(|technique| Stillness::new(technique.job.transition)).collect();
         let mut before: Option<Before> = None;
         for (k, view) in series.views.iter().enumerate() {
             let range = self.args.shadow_range;
@@ -148,7 +145,7 @@ impl Bench<'_> {
             };
             let old_points = before.as_ref().map_or(&[][..], |before| &before.points);
             let both: Vec<ProbePoint> = old_points.iter().chain(&points).copied().collect();
-            let (mut scores, mut shown, mut now) = (Vec::new(), Vec::new(), Vec::new());
+            let (mut scores, mut shown) = (Vec::new(), Vec::new());
             for (number, (technique, renderer)) in self.techniques.iter().zip(renderers.iter_mut()).enumerate() {
                 let wanted = Outputs { picture: is_shown, mask: true, maps: false };
                 let rendered = renderer.render(&frame, wanted).map_err(|error| in_technique(technique, error))?;
@@ -162,12 +159,9 @@ impl Bench<'_> {
                 if !both.is_empty() {
                     let answers = renderer.probe(&frame, &both).map_err(|error| in_technique(technique, error))?;
                     let answers: Vec<f32> = answers.iter().map(|answer| answer.visibility).collect();
-                    let (next, of_now) = answers.split_at(old_points.len());
-                    if let Some(before) = &before {
-                        let pair = FramePair { domain: &before.judged.domain, now: &before.answers[number], next };
-                        flicker[number].add(pair)?;
-                    }
-                    now.push(of_now.to_vec());
+                    let (shared, next) = answers.split_at(old_points.len());
+                    let old = before.as_ref().map(|before| (&before.judged.domain, &before.points[..]));
+                    walks[number].add(Answered { plan: rendered.stats.plan, shared, next }, old)?;
                 }
                 self.bar.inc(1);
             }
@@ -187,18 +181,16 @@ impl Bench<'_> {
             if is_shown {
                 self.show(&judged, &shown, &frame, &mut renderers[0], series)?;
             }
-            now.resize(self.techniques.len(), Vec::new());
-            before = Some(Before { judged, points, answers: now });
+            before = Some(Before { judged, points });
         }
         if series.views.len() > 1 {
-            let report = |flicker: &Flicker| FlickerReport { rate: flicker.rate(), per_edge: flicker.per_edge() };
             self.walks.push(WalkReport {
                 scene: set.name.clone(),
                 camera: series.camera.clone(),
                 sun_name: series.sun_name.clone(),
                 frames: series.views.len(),
                 counts: self.views[first_view..].iter().all(|view| view.counts),
-                flicker: flicker.iter().map(report).collect(),
+                flicker: walks.iter().map(Stillness::report).collect(),
             });
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! Which views are compared: cameras × suns, along paths or a few steps, scene by scene.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use umbrage::{DirectionalLight, Projection, View};
 use umbrage_scene::{CameraPath, HeightMapOptions, Pose, Scene};
 
@@ -93,6 +93,33 @@ struct Walk {
     options: Vec<Vec<String>>,
 }
 
+/// How a camera without a path goes on from frame to frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stride {
+    /// Metres forward.
+    pub metres: f64,
+    /// Degrees to the left, about the world's vertical.
+    pub turn: f64,
+    /// Factor by which it magnifies.
+    pub zoom: f64,
+    /// How many frames there are.
+    pub frames: u32,
+}
+
+impl Stride {
+    /// Frame `k`, of which `before` is the one before.
+    fn onwards(&self, before: &View) -> Result<View> {
+        let eye = before.eye() + before.forward() * self.metres;
+        let turn = DQuat::from_rotation_y(self.turn.to_radians());
+        let mut lens = *before.frustum();
+        for edge in [&mut lens.left, &mut lens.right, &mut lens.bottom, &mut lens.top] {
+            *edge /= self.zoom;
+        }
+        let up = turn * before.world_from_view_rotation().y_axis;
+        Ok(View::look_at(eye, eye + turn * before.forward(), up, lens)?)
+    }
+}
+
 /// What decides on the views of a scene, the preset's defaults filled in.
 #[derive(Debug)]
 pub struct Wish<'a> {
@@ -102,8 +129,8 @@ pub struct Wish<'a> {
     pub cameras: Vec<String>,
     /// `--suns`.
     pub suns: Vec<SunSpec>,
-    /// `--step` and `--frames` without a path.
-    pub steps: Option<(f64, u32)>,
+    /// `--step`, `--turn`, `--zoom` and `--frames` without a path.
+    pub stride: Option<Stride>,
     /// `--near`.
     pub near: Option<f64>,
     /// `--far`.
@@ -206,10 +233,11 @@ impl Wish<'_> {
             CameraChoice::Named(name) => name.clone(),
             _ => shots[0].camera.clone(),
         };
+        let is_path = matches!(choice, CameraChoice::Path { .. });
         let mut common = vec![name.to_owned(), format!("--size={}x{}", job.size[0], job.size[1])];
         let numbers = [
             ("time", (job.time_s != 0.0).then_some(job.time_s)),
-            ("fov", job.fov),
+            ("fov", job.fov.filter(|_| is_path || self.stride.is_none())),
             ("near", job.near),
             ("far", job.far),
             ("metres-per-post", job.metres_per_post),
@@ -229,7 +257,7 @@ impl Wish<'_> {
             return Ok(Walk { camera, views: shots.into_iter().map(|shot| shot.view).collect(), options });
         }
         let first = shots[0].view;
-        let Some((metres, frames)) = self.steps else {
+        let Some(stride) = self.stride else {
             let options = match choice {
                 CameraChoice::Named(name) => vec![format!("--camera={name}")],
                 CameraChoice::LookAt { eye, target } => vec![vector("eye", *eye), vector("target", *target)],
@@ -237,12 +265,14 @@ impl Wish<'_> {
             };
             return Ok(Walk { camera, views: vec![first], options: vec![with(options)] });
         };
-        let views: Vec<View> =
-            (0..frames).map(|k| moved_forward(&first, metres * f64::from(k))).collect::<Result<_>>()?;
+        let mut views = vec![first];
+        for _ in 1..stride.frames {
+            views.push(stride.onwards(&views[views.len() - 1])?);
+        }
         let options = views.iter().map(|view| {
             let frustum = view.frustum();
             let mut own = vec![vector("eye", view.eye()), vector("target", view.eye() + view.forward())];
-            if frustum.projection == Projection::Perspective && job.fov.is_none() {
+            if frustum.projection == Projection::Perspective {
                 own.push(format!("--fov={}", (frustum.top.atan() - frustum.bottom.atan()).to_degrees()));
             }
             // A camera of the scene has its own lens, which has to be said of another eye.
@@ -301,13 +331,6 @@ fn sun_at(elevation: f64, towards: DVec3) -> DVec3 {
     across * cosine + DVec3::Y * sine
 }
 
-/// The same view from `metres` further on.
-fn moved_forward(view: &View, metres: f64) -> Result<View> {
-    let eye = view.eye() + view.forward() * metres;
-    let up = view.world_from_view_rotation().y_axis;
-    Ok(View::look_at(eye, eye + view.forward(), up, *view.frustum())?)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -335,14 +358,21 @@ mod tests {
     }
 
     #[test]
-    fn steps_keep_the_direction() {
+    fn strides_walk_turn_and_zoom() {
         let lens = umbrage::Frustum::perspective(1.0, 1.5, 0.5, 90.0).expect("a lens");
         let view =
             View::look_at(DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 1.0, -7.0), DVec3::new(0.2, 1.0, 0.0), lens)
                 .expect("a view");
-        let moved = moved_forward(&view, 2.5).expect("moved");
+        let stride = Stride { metres: 2.5, turn: 0.0, zoom: 1.0, frames: 2 };
+        let moved = stride.onwards(&view).expect("moved");
         assert!((moved.eye() - view.eye() - 2.5 * view.forward()).length() < 1e-12);
         assert!((moved.world_from_view_rotation().y_axis - view.world_from_view_rotation().y_axis).length() < 1e-12);
-        assert_eq!(moved_forward(&view, 0.0).expect("not moved").eye(), view.eye());
+        assert_eq!(moved.frustum(), view.frustum());
+        let turned = Stride { metres: 0.0, turn: 30.0, zoom: 2.0, frames: 2 }.onwards(&view).expect("turned");
+        assert_eq!(turned.eye(), view.eye());
+        assert!((turned.forward().y - view.forward().y).abs() < 1e-12, "the pitch stays");
+        let bearing = |view: &View| (-view.forward().x).atan2(-view.forward().z).to_degrees();
+        assert!((bearing(&turned) - bearing(&view) - 30.0).abs() < 1e-9, "to the left");
+        assert!((turned.frustum().top - 0.5 * lens.top).abs() < 1e-12);
     }
 }

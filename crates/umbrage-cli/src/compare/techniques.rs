@@ -298,7 +298,7 @@ impl Draft {
                 "stabilize" if value == "approximate" => "almost still".into(),
                 "stabilize" => "tight".into(),
                 "extent-steps" => format!("2^(1/{value})"),
-                "extent-levels" => format!("{value}/⌈{value}/s⌉"),
+                "extent-levels" => format!("1/{value} levels"),
                 "fit" | "filter" | "depth-format" => value.clone(),
                 _ => format!("{key} {value}"),
             };
