@@ -320,9 +320,10 @@ impl Moments {
                     split: layout::MomentSplit {
                         depth: [2.0 * range / span, 2.0 * (split.depth_near - first) / span - 1.0].map(|x| x as f32),
                         radius: radius.as_vec2().to_array(),
+                        ..layout::MomentSplit::default()
                     },
                     size: split.size as f32,
-                    _padding: 0.0,
+                    ..layout::MomentPass::default()
                 };
                 Ok((!split.casters.is_empty()).then_some(pass))
             })
@@ -330,15 +331,16 @@ impl Moments {
     }
 
     fn write(&mut self, queue: &wgpu::Queue, wanted: Vec<Option<layout::MomentPass>>, options: &FrameOptions) {
+        let quads = (options.derivatives == crate::Derivatives::Quad).into();
         let mut frame = layout::Moments {
             exponents: self.storage.exponents(self.filter),
             bleeding: options.softness.bleeding,
-            quads: (options.derivatives == crate::Derivatives::Quad).into(),
-            splits: [layout::MomentSplit::default(); MAX_SPLITS],
+            splits: [layout::MomentSplit { quads, ..layout::MomentSplit::default() }; MAX_SPLITS],
+            ..layout::Moments::default()
         };
         for (index, pass) in wanted.iter().enumerate() {
             let Some(pass) = pass else { continue };
-            frame.splits[index] = pass.split;
+            frame.splits[index] = layout::MomentSplit { quads, ..pass.split };
             queue.write_buffer(&self.pass_buffer, index as u64 * self.pass_stride, bytemuck::bytes_of(pass));
         }
         queue.write_buffer(&self.frame_buffer, 0, bytemuck::bytes_of(&frame));
