@@ -3,8 +3,9 @@
 use wesl::{CompileOptions, Mangler, ModulePath, Wesl};
 
 /// The roots in `shaders`, the features that they are built with, and the file that each becomes in `OUT_DIR`.
-const ROOTS: [(&str, &[&str], &str); 11] = [
+const ROOTS: [(&str, &[&str], &str); 12] = [
     ("pass::caster", &[], "caster"),
+    ("pass::contact", &[], "contact"),
     ("pass::receiver", &["depth_loads"], "receiver"),
     ("pass::receiver", &[], "receiver_without_loads"),
     ("pass::receiver", &["moments"], "receiver_of_moments"),

@@ -261,7 +261,7 @@ pub struct ShadowArgs {
     #[arg(long, value_enum, default_value_t)]
     pub filter: Filter,
     /// Full width of the filter in metres, the same in every split: for pcf3, pcf5, pcf7, disc and the filters of moments
-    /// [default: in texels; for esm to msm 4 texels of the finest map]
+    /// [default: in texels; for esm to msm 8 texels of the finest map]
     #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true)]
     pub filter_width: Option<f64>,
     /// Samples of depth in a texel, for esm to msm: 1 or 4 [default: 1]
@@ -282,12 +282,21 @@ pub struct ShadowArgs {
     /// Share of each split over which it blends into the next; 0 is off
     #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
     pub blend: f64,
-    /// Share of the shadowed range over which shadows fade out at its far end; 0 is off
+    /// Share of the shadowed range over which shadows fade out at its far end; 0 is off, as where nothing is seen beyond
     #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
     pub far_fade: f64,
     /// What a map stores
     #[arg(long, value_enum, default_value_t)]
     pub depth_format: DepthFormat,
+    /// How surfaces are kept from shading themselves; both go by texel, slope and filter width and need no number
+    #[arg(long, value_enum, default_value_t)]
+    pub bias: Bias,
+    /// How dark shadows are, 0 (not at all) to 1 (no sun)
+    #[arg(long, value_name = "SHARE", default_value = "1", value_parser = parse::share, allow_hyphen_values = true)]
+    pub shadow_strength: f64,
+    /// What the sun's light is multiplied by in full shadow: linear red, green, blue, 0 to 1 each
+    #[arg(long, value_name = "R,G,B", default_value = "0,0,0", value_parser = parse::colour, allow_hyphen_values = true)]
+    pub shadow_colour: DVec3,
     /// Colour the picture by split
     #[arg(long)]
     pub tint: bool,
@@ -446,6 +455,16 @@ pub enum Fallbacks {
     Allow,
     /// It is an error
     Forbid,
+}
+
+/// `--bias`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Bias {
+    /// Every texel is compared with the surface's own plane
+    #[default]
+    Plane,
+    /// All texels with one depth, moved by the slope times the filter's reach: forgives inexact normals, loses contact
+    Slope,
 }
 
 /// `--transition`.

@@ -106,6 +106,12 @@ pub struct ShadowJob {
     pub fallbacks: args::Fallbacks,
     /// `--transition`.
     pub transition: args::Transition,
+    /// `--bias`.
+    pub bias: args::Bias,
+    /// `--shadow-strength`.
+    pub shadow_strength: f64,
+    /// `--shadow-colour`.
+    pub shadow_colour: DVec3,
     /// `--depth-format`.
     pub depth_format: args::DepthFormat,
     /// `--tint`.
@@ -263,6 +269,9 @@ impl ShadowJob {
             derivatives: args.derivatives.unwrap_or_default(),
             fallbacks: args.fallbacks,
             transition: args.transition,
+            bias: args.bias,
+            shadow_strength: args.shadow_strength,
+            shadow_colour: args.shadow_colour,
             depth_format: args.depth_format,
             tint: args.tint,
             shadows_on: args.shadows == args::Switch::On,
@@ -292,6 +301,19 @@ impl ShadowJob {
             derivatives: match self.derivatives {
                 args::Derivatives::Analytic => umbrage_wgpu::Derivatives::Analytic,
                 args::Derivatives::Quad => umbrage_wgpu::Derivatives::Quad,
+            },
+        }
+    }
+
+    /// How shadows look.
+    #[must_use]
+    pub fn look(&self) -> umbrage_render::Look {
+        umbrage_render::Look {
+            strength: self.shadow_strength as f32,
+            colour: self.shadow_colour.as_vec3().to_array(),
+            bias: match self.bias {
+                args::Bias::Plane => umbrage_wgpu::ReceiverBias::Plane,
+                args::Bias::Slope => umbrage_wgpu::ReceiverBias::Slope,
             },
         }
     }

@@ -68,6 +68,13 @@ pub fn direction(text: &str) -> Result<DVec3, String> {
     if length > 0.0 && length.is_finite() { Ok(v) } else { Err("a vector of that length has no direction".into()) }
 }
 
+/// `r,g,b`, each from 0 to 1.
+pub fn colour(text: &str) -> Result<DVec3, String> {
+    let colour = vector(text)?;
+    let inside = colour.cmpge(DVec3::ZERO).all() && colour.cmple(DVec3::ONE).all();
+    if inside { Ok(colour) } else { Err(format!("{colour} is no colour; give red, green and blue from 0 to 1")) }
+}
+
 /// `a,b,…`, one finite number at least.
 pub fn numbers(text: &str) -> Result<Vec<f64>, String> {
     text.split(',').map(number).collect()
@@ -159,6 +166,14 @@ mod tests {
         }
         assert!(direction("0,0,0").is_err());
         assert!(direction("1e200,1e200,1e200").is_err(), "its length overflows");
+    }
+
+    #[test]
+    fn colours_are_three_shares() {
+        assert_eq!(colour("0,0.5,1"), Ok(DVec3::new(0.0, 0.5, 1.0)));
+        for bad in ["", "0.5", "0,0,1.01", "-0.1,0,0", "nan,0,0", "red"] {
+            assert!(colour(bad).is_err(), "{bad}");
+        }
     }
 
     #[test]

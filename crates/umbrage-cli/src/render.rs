@@ -7,7 +7,7 @@ use umbrage_render::{Frame, FrameStats, Gpu, GpuOptions, Outputs, RenderSettings
 
 use crate::{
     adapter,
-    args::RenderArgs,
+    args::{Filter, RenderArgs},
     failure::{Failure, Result},
     job::{SceneJob, ShadowJob, typed_name, wgpu_depth_format, wgpu_filter},
     output::{self, Staged, numbered_file, numbered_folder},
@@ -80,6 +80,7 @@ impl<'a> Studio<'a> {
             softness: shadows.softness(job.sun_angle),
             transition: shadows.transition(),
             moments: shadows.moments(),
+            look: shadows.look(),
             storage: umbrage_wgpu::Storage::default(),
             generation: umbrage_wgpu::Generation::default(),
         };
@@ -117,6 +118,13 @@ impl<'a> Studio<'a> {
             generation: stats.generation.to_string(),
             storage: stats.storage.to_string(),
             filter: typed_name(self.shadows.filter),
+            filter_width: self.shadows.filter_width,
+            sun_angle: (self.shadows.filter == Filter::Pcss)
+                .then(|| f64::from(self.shadows.softness(job.sun_angle).sun_angle).to_degrees()),
+            transition: typed_name(self.shadows.transition),
+            bias: typed_name(self.shadows.bias),
+            shadow_strength: self.shadows.shadow_strength,
+            shadow_colour: self.shadows.shadow_colour.to_array(),
             fit: typed_name(self.shadows.fit),
             stabilize: typed_name(self.shadows.stabilize),
             warp: self.shadows.warps.iter().map(|&warp| typed_name(warp)).collect(),

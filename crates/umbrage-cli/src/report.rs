@@ -16,8 +16,20 @@ pub struct Report {
     pub generation: String,
     /// How the maps are kept.
     pub storage: String,
-    /// `hard`, `pcf2`, `pcf3` or `pcf5`.
+    /// As `--filter` names it.
     pub filter: String,
+    /// Metres that the filter is wide in every split; none where its width is in texels.
+    pub filter_width: Option<f64>,
+    /// Degrees across the sun, of a filter that goes by it.
+    pub sun_angle: Option<f64>,
+    /// `blend`, `dither` or `hard`: how one split goes over into the next.
+    pub transition: String,
+    /// `plane` or `slope`: how surfaces are kept from shading themselves.
+    pub bias: String,
+    /// How dark shadows are, 0 to 1.
+    pub shadow_strength: f64,
+    /// What the sun's light is multiplied by in full shadow, linear red, green and blue.
+    pub shadow_colour: [f64; 3],
     /// `dependent` or `independent`.
     pub fit: String,
     /// `none`, `exact` or `approximate`.

@@ -15,6 +15,7 @@ use crate::casters::Casters;
 use crate::draw_list::{Drawable, Drawn, Instances, Run};
 use crate::forward::{Forward, FrameUniform, MaskTarget, PictureTarget, Samples};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry, check_object};
+use crate::look::Look;
 use crate::materials::Materials;
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint, Responder};
 use crate::stats::{FrameStats, SplitStats};
@@ -43,6 +44,8 @@ pub struct RenderSettings {
     pub softness: Softness,
     /// How splits meet.
     pub transition: Transition,
+    /// How shadows look.
+    pub look: Look,
     /// Where maps are kept.
     pub storage: Storage,
     /// How maps are drawn.
@@ -116,6 +119,7 @@ pub struct Renderer {
     softness: Softness,
     transition: Transition,
     derivatives: Derivatives,
+    look: Look,
     planner: Planner,
     maps: ShadowMaps,
     scene: Geometry,
@@ -212,6 +216,7 @@ impl Renderer {
                 softness: settings.softness,
                 transition: settings.transition,
                 derivatives: settings.moments.derivatives,
+                look: settings.look,
                 probe: Probe::new(gpu, &maps),
                 timer,
                 picture: None,
@@ -440,7 +445,9 @@ impl Renderer {
             origin,
             enabled: frame.shadows_on,
             tint: frame.tint,
-            strength: 1.0,
+            strength: self.look.strength,
+            shadow_colour: self.look.colour,
+            bias: self.look.bias,
             softness: self.softness,
             transition: self.transition,
             derivatives: self.derivatives,

@@ -47,6 +47,16 @@ pub enum TransitionKind {
     Hard = 2,
 }
 
+/// How a receiver is kept from shading itself, in [`Frame::bias_kind`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum BiasKind {
+    /// Every texel is compared with the receiver's plane at its centre.
+    Plane = 0,
+    /// All texels are compared with one depth, nearer by what the slope makes of the filter's reach.
+    Slope = 1,
+}
+
 /// One split: where its map lies and which view depths it serves.
 ///
 /// The rows take positions in metres relative to the frame's origin (with 1 as the fourth coordinate). In a warped map and in that of a
@@ -137,6 +147,10 @@ pub struct Frame {
     pub first_frame: u32,
     /// How many frames this frame's light uses: 1, or 6 for a point light.
     pub face_count: u32,
+    /// What the light of a place in full shadow is multiplied by: linear red, green and blue, 0 to 1.
+    pub shadow_colour: [f32; 3],
+    /// A [`BiasKind`].
+    pub bias_kind: u32,
     /// The splits, nearest first; those past `split_count` are not read.
     pub splits: [Split; MAX_SPLITS],
 }

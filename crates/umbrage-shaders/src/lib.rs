@@ -28,6 +28,7 @@ pub mod twin;
 /// The root `shaders/pass/caster.wesl`, all but the constant `UMBRAGE_CASTER_GROUP`.
 pub const CASTER: &str = include_str!(concat!(env!("OUT_DIR"), "/caster.wgsl"));
 
+const CONTACT: &str = include_str!(concat!(env!("OUT_DIR"), "/contact.wgsl"));
 const RECEIVER: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver.wgsl"));
 const RECEIVER_WITHOUT_LOADS: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver_without_loads.wgsl"));
 const RECEIVER_OF_MOMENTS: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver_of_moments.wgsl"));
@@ -78,6 +79,14 @@ pub enum MomentMaps {
 #[must_use]
 pub fn caster(group: u32) -> String {
     format!("const UMBRAGE_CASTER_GROUP = {group}u;\n{CASTER}\n")
+}
+
+/// Text to put before a shader that asks for contact shadows:
+/// `fn umbrage_contact_visibility(position: vec3f, normal: vec3f, noise: f32) -> f32`. Binding 0 is its uniform, 1 the picture's depth as
+/// `texture_depth_2d`. It may stand beside [`receiver`] in one module.
+#[must_use]
+pub fn contact(group: u32) -> String {
+    format!("const UMBRAGE_CONTACT_GROUP = {group}u;\n{CONTACT}\n")
 }
 
 /// Text to put before a shader that asks what is lit: `fn umbrage_visibility(position: vec3f, normal: vec3f) -> f32`,

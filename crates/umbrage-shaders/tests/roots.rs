@@ -66,6 +66,18 @@ const FRAGMENT: &str =
                return vec4f(shadow.tint * shadow.visibility, one * other * f32(shadow.split));
            }";
 
+fn contact_shader(group: u32) -> String {
+    umbrage_shaders::contact(group)
+        + "@fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
+               return vec4f(umbrage_contact_visibility(position, vec3f(0.0, 1.0, 0.0), 0.5));
+           }"
+}
+
+#[test]
+fn contact_shadows_stand_beside_receivers() {
+    validated(&(umbrage_shaders::receiver(1, Maps::default()) + &contact_shader(2)));
+}
+
 #[test]
 fn roots_are_valid_wgsl_in_any_bind_group() {
     for group in [0, 1, 3] {
@@ -77,6 +89,7 @@ fn roots_are_valid_wgsl_in_any_bind_group() {
             fragment_shader_of_moments(group, MOMENTS_BY_TAPS),
             fragment_shader_of_moments(group, MOMENTS_BY_HAND),
             compute_shader_of_moments(group),
+            contact_shader(group),
         ];
         for source in texts {
             let (module, _) = validated(&source);
@@ -107,7 +120,7 @@ fn moment_passes_are_valid_wgsl() {
 fn every_name_is_in_our_namespace() {
     let receiver = |maps| umbrage_shaders::receiver(0, maps);
     let texts = [Maps::default(), WITHOUT_LOADS, MOMENTS, MOMENTS_BY_TAPS, MOMENTS_BY_HAND].map(receiver);
-    for source in texts.into_iter().chain([umbrage_shaders::caster(0)]) {
+    for source in texts.into_iter().chain([umbrage_shaders::caster(0), umbrage_shaders::contact(0)]) {
         let module = naga::front::wgsl::parse_str(&source).expect("a valid root");
         let names = (module.functions.iter().filter_map(|(_, f)| f.name.clone()))
             .chain(module.global_variables.iter().filter_map(|(_, v)| v.name.clone()))

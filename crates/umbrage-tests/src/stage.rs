@@ -150,6 +150,7 @@ impl Technique {
             softness: Softness::default(),
             transition: Transition::default(),
             moments: Default::default(),
+            look: umbrage_render::Look::default(),
             storage: umbrage_wgpu::Storage::default(),
             generation: umbrage_wgpu::Generation::default(),
         };

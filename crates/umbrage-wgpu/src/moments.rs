@@ -22,7 +22,7 @@ const MOST_RADIUS: f64 = 15.0;
 
 /// Width of a kernel that was given none, in texels of the finest map; the same in metres in all others, where it is no less than
 /// linear sampling itself.
-const DEFAULT_TEXELS: f64 = 4.0;
+const DEFAULT_TEXELS: f64 = 8.0;
 
 /// Levels end at maps of 4 texels: no pixel sees more of a map than that.
 const LEAST_LEVEL: u32 = 4;

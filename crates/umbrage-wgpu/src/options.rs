@@ -1,7 +1,7 @@
 //! What is settled when the maps are made, and what may change with every frame.
 
 use glam::DVec3;
-use umbrage_shaders::layout::{FilterKind, TransitionKind};
+use umbrage_shaders::layout::{BiasKind, FilterKind, TransitionKind};
 
 use crate::{Error, Result};
 
@@ -171,7 +171,7 @@ impl Filter {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Softness {
     /// Full width of the filter across the light in metres, the same in every split, so that an edge is as soft on both sides of a
-    /// border; `None`: as many texels as the filter's name says, and for filters of moments 4 texels of the finest map. Where it asks for less than two texels it gets two, and for more
+    /// border; `None`: as many texels as the filter's name says, and for filters of moments 8 texels of the finest map. Where it asks for less than two texels it gets two, and for more
     /// than the filter reaches ([`Filter::radius_texels`]) that. For the filters that [`Filter::has_width`] names.
     pub width_m: Option<f32>,
     /// Angle in radians across the sun, for [`Filter::Pcss`]: 0 to a right angle. The real one is 0.0093 (0.53°) wide.
@@ -300,6 +300,28 @@ impl Generation {
     }
 }
 
+/// How a receiver is kept from shading itself. Both follow from the texel (from its Jacobian in a warped map), the slope and the filter's
+/// width, in metres; neither has a number to choose, neither needs screen derivatives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ReceiverBias {
+    /// Every texel is compared with the plane of the receiver at its own centre. Wants the surface's true normal.
+    #[default]
+    Plane,
+    /// All texels are compared with one depth: the receiver's, nearer to the light by the slope times the filter's reach. Forgives
+    /// normals that point a few degrees aside (interpolated ones), at the price of shadows that begin as far from what throws them as
+    /// the filter is wide, more on steep surfaces.
+    Slope,
+}
+
+impl ReceiverBias {
+    pub(crate) fn kind(self) -> BiasKind {
+        match self {
+            Self::Plane => BiasKind::Plane,
+            Self::Slope => BiasKind::Slope,
+        }
+    }
+}
+
 /// What kind of light a place among [`ShadowMapsOptions::lights`] is for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LightSlot {
@@ -377,6 +399,11 @@ pub struct FrameOptions {
     pub tint: bool,
     /// How dark a shadow is, 0 (not at all) to 1 (no light).
     pub strength: f32,
+    /// What the light of a place in full shadow is multiplied by: linear red, green and blue, 0 to 1. In the WGSL it is in
+    /// `UmbrageShadow.light`; `visibility` knows nothing of it.
+    pub shadow_colour: [f32; 3],
+    /// How receivers are kept from shading themselves.
+    pub bias: ReceiverBias,
     /// How soft edges are.
     pub softness: Softness,
     /// How splits meet.
@@ -392,6 +419,8 @@ impl Default for FrameOptions {
             enabled: true,
             tint: false,
             strength: 1.0,
+            shadow_colour: [0.0; 3],
+            bias: ReceiverBias::default(),
             softness: Softness::default(),
             transition: Transition::default(),
             derivatives: Derivatives::default(),
@@ -413,6 +442,13 @@ impl FrameOptions {
                 field: "strength",
                 value: f64::from(self.strength),
                 expected: "in 0..=1",
+            });
+        }
+        if let Some(value) = self.shadow_colour.into_iter().find(|part| !(0.0..=1.0).contains(part)) {
+            return Err(Error::InvalidFrameOption {
+                field: "shadow_colour",
+                value: f64::from(value),
+                expected: "three parts in 0..=1",
             });
         }
         self.softness.validate()

@@ -131,6 +131,8 @@ fn frame(
         sun_tangent: (0.5 * options.softness.sun_angle).tan(),
         turn_per_pixel: if options.softness.turned { TAU } else { 0.0 },
         transition: options.transition.kind() as u32,
+        bias_kind: options.bias.kind() as u32,
+        shadow_colour: options.shadow_colour,
         ..layout::Frame::default()
     };
     local::place_light(&mut frame, plan, options.origin);

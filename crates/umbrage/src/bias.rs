@@ -26,8 +26,18 @@ pub const STEEPEST: f64 = 50.0;
 /// [`Bias::constant_m`] in texels, [`Bias::corner_per_texel`] in texels per texel at least and at most, and the angle in radians by
 /// which ground may bend within the filter's reach: as in umbrage's WGSL, where each says what breaks otherwise.
 const CONSTANT: f64 = 0.25;
-const CORNER: (f64, f64) = (0.5, 1.0);
-const FOLD: f64 = 0.045;
+const CORNER: (f64, f64) = (0.5, 8.0);
+const FOLD: f64 = 0.03;
+
+impl Bias {
+    /// The same without the plane: one depth for all taps up to `reach` texels from the sample along u and v, nearer by what the slope
+    /// makes of that reach, whichever way it points. For normals that say how steep a surface is, but not which way it faces.
+    #[must_use]
+    pub fn without_plane(self, reach: DVec2) -> Self {
+        let aside = self.depth_per_texel.abs().dot(reach);
+        Self { depth_per_texel: DVec2::ZERO, corner_per_texel: 0.0, constant_m: self.constant_m + aside }
+    }
+}
 
 impl Split {
     /// The bias of a receiver with unit `normal`, turned towards the light.

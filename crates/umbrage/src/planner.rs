@@ -190,7 +190,9 @@ impl Planner {
 
         let plan = &mut self.plan;
         plan.begin(view, (*light).into());
-        plan.fade_begin = far - self.settings.far_fade * (far - near);
+        // Behind the last receiver and beyond the camera's far plane there is nothing to fade into.
+        let fades = self.settings.range.is_some_and(|(_, end)| end < view.frustum().far);
+        plan.fade_begin = if fades { far - self.settings.far_fade * (far - near) } else { far };
         plan.split_range.resize(casters, None);
         self.volumes.clear();
         for i in 0..self.settings.splits() {

@@ -120,7 +120,9 @@ pub struct ShadowSettings {
     pub filter_radius: f64,
     /// Share of each split's depth range over which it blends into the next; 0 is a hard border, at most 1.
     pub blend: f64,
-    /// Share of the shadowed range over which shadows fade to lit at its far end; 0 to 1.
+    /// Share of the shadowed range over which shadows fade to lit at its far end; 0 to 1. They fade where there is something to fade
+    /// into: where `range` ends before the camera's far plane. A range that the camera and the receivers decide has nothing
+    /// visible behind it, and its shadows stay dark to the end.
     pub far_fade: f64,
     /// Whether depth is not clipped (`DEPTH_CLIP_CONTROL`): casters before the near plane are then flattened onto it by the
     /// hardware and the near plane may lie at the receivers. Otherwise near stands before the first caster.

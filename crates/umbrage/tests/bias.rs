@@ -28,6 +28,11 @@ proptest! {
             let on_plane = across - split.depth_axis * (normal.dot(across) / normal.dot(split.depth_axis));
             let deeper = split.depth_axis.dot(on_plane);
             prop_assert!((bias.depth_per_texel.dot(step) - deeper).abs() <= 1e-9 * (1.0 + deeper.abs()));
+            // Without the plane no place within reach is compared as if it were deeper than the plane is there, and less is not enough.
+            let flat = bias.without_plane(step.abs());
+            prop_assert!(-flat.constant_m <= deeper - bias.constant_m + 1e-9 * (1.0 + deeper.abs()));
+            prop_assert!(flat.constant_m <= bias.constant_m + bias.depth_per_texel.abs().dot(step.abs()) + 1e-9);
+            prop_assert_eq!((flat.depth_per_texel, flat.corner_per_texel), (DVec2::ZERO, 0.0));
         }
     }
 }

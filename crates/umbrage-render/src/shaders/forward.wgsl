@@ -108,7 +108,7 @@ fn shaded(in: Surface, front: bool, base: vec4f) -> vec3f {
     let geometric = geometric_normal(in.from_eye);
     let smooth_normal = normalize(select(-in.normal, in.normal, front));
     let shadow = umbrage_shadow_with(in.position, lookup_normal(geometric), footprint_of(in));
-    let sun = SUN * max(dot(smooth_normal, frame.to_light), 0.0) * shadow.visibility;
+    let sun = SUN * max(dot(smooth_normal, frame.to_light), 0.0) * shadow.light;
     // Brighter on the sun's side of the sky, so that corners can be told apart in the shade.
     let side = 1.0 + 0.15 * dot(smooth_normal, frame.to_light);
     let ambient = side * mix(GROUND_AMBIENT, SKY_AMBIENT, 0.5 * smooth_normal.y + 0.5);

@@ -44,6 +44,7 @@ pub fn settings() -> RenderSettings {
         softness: Softness::default(),
         transition: Transition::default(),
         moments: Default::default(),
+        look: umbrage_render::Look::default(),
         storage: Storage::default(),
         generation: Generation::default(),
     }

@@ -1,0 +1,105 @@
+//! No acne and no leak to speak of at the defaults: wrong decisions farther from true edges than the maps' resolution explains.
+
+use glam::DVec3;
+use image::GrayAlphaImage;
+use umbrage::{DirectionalLight, ShadowPlan};
+use umbrage_render::{Frame, Outputs, Renderer};
+use umbrage_scene::procedural::World;
+use umbrage_tests::stage::{Stage, Technique, gpu};
+use umbrage_truth::Truth;
+use umbrage_truth::scores::{AcneAndLeak, Answers, Domain, TexelGradient, acne_and_leak};
+
+const SIZE: [u32; 2] = [200, 150];
+const CAMERAS: [&str; 2] = ["near", "dueling"];
+/// Degrees above the horizon, at the bearing of the world's own sun.
+const ELEVATIONS: [f64; 3] = [80.0, 20.0, 5.0];
+/// The most of either, of the scored pixels of a world's views.
+const MOST: f64 = 0.001;
+
+/// Acne and leak, pooled over a world's views, of masks and of the same masks moved aside.
+fn measure(world: World) -> Option<[AcneAndLeak; 2]> {
+    let gpu = gpu()?;
+    let stage = Stage::of(world);
+    let truth = Truth::build(&stage.scene, &stage.pose, stage.view("near", SIZE).eye()).expect("rays can meet a world");
+    let settings = Technique::default_of_the_command().settings;
+    let settings = umbrage_render::RenderSettings {
+        size: SIZE,
+        shadows: umbrage::ShadowSettings { range: None, far_fade: 0.1, ..settings.shadows.clone() },
+        ..settings
+    };
+    let mut renderer = Renderer::new(gpu, &stage.scene, &settings).expect("a renderer");
+    let own = -stage.sun.direction();
+    let bearing = DVec3::new(own.x, 0.0, own.z).normalize();
+    let mut sums = [AcneAndLeak::default(), AcneAndLeak::default()];
+    for camera in CAMERAS {
+        let view = stage.view(camera, SIZE);
+        for elevation in ELEVATIONS {
+            let (sine, cosine) = elevation.to_radians().sin_cos();
+            let sun = DirectionalLight::new(-(bearing * cosine + DVec3::Y * sine)).expect("a sun");
+            let frame = Frame { sun, ..stage.frame(&view, false) };
+            let outputs = Outputs { mask: true, ..Outputs::default() };
+            let rendered = renderer.render(&frame, outputs).expect("a frame");
+            let mask = rendered.mask.expect("a mask");
+            let judged = truth.mask(&view, sun.direction(), SIZE, &|_| {}).expect("a truth");
+            let domain = Domain::new(&judged, stage.world.near_far()).expect("a range");
+            let score = |mask: &GrayAlphaImage| {
+                let gradient = |point, depth| texel_gradient(&rendered.stats.plan, point, depth);
+                acne_and_leak(&view, &judged, &domain, &Answers::from_mask(mask), gradient).expect("a score")
+            };
+            let scores = [score(&mask), score(&moved_aside(&mask))];
+            eprintln!(
+                "{} {camera} {elevation}°: acne {:.5}, leak {:.5} of {}",
+                world.name(),
+                scores[0].acne_rate(),
+                scores[0].leak_rate(),
+                scores[0].pixels
+            );
+            for (sum, score) in sums.iter_mut().zip(scores) {
+                sum.pixels += score.pixels;
+                sum.beyond += score.beyond;
+                sum.acne += score.acne;
+                sum.leak += score.leak;
+            }
+        }
+    }
+    Some(sums)
+}
+
+fn texel_gradient(plan: &ShadowPlan, point: DVec3, depth: f64) -> Option<TexelGradient> {
+    let split = plan.splits.iter().find(|split| depth <= split.far).filter(|split| !split.casters.is_empty())?;
+    let [u, v] = split.texel_gradients(point);
+    Some(TexelGradient { u, v, width: split.texel_edges(point).max_element() })
+}
+
+fn moved_aside(mask: &GrayAlphaImage) -> GrayAlphaImage {
+    GrayAlphaImage::from_fn(mask.width(), mask.height(), |x, y| *mask.get_pixel(x.saturating_sub(12), y))
+}
+
+fn check(world: World) {
+    let Some([ours, moved]) = measure(world) else { return };
+    assert!(ours.beyond_rate() > 0.3, "{}: most pixels lie near edges, and nothing is judged", world.name());
+    assert!(ours.acne_rate() <= MOST, "{}: acne {}", world.name(), ours.acne_rate());
+    assert!(ours.leak_rate() <= MOST, "{}: leak {}", world.name(), ours.leak_rate());
+    let worse = moved.acne_rate().max(moved.leak_rate());
+    assert!(worse > MOST, "{}: shadows that lie twelve pixels aside pass, {worse}", world.name());
+}
+
+#[test]
+fn robot_war_has_neither_acne_nor_leaks() {
+    check(World::RobotWar);
+}
+
+#[test]
+fn chessboard_has_neither_acne_nor_leaks() {
+    check(World::Chessboard);
+}
+
+#[test]
+fn knights_have_neither_acne_nor_leaks() {
+    check(World::Knights);
+}
+
+#[test]
+fn mining_terrain_has_neither_acne_nor_leaks() {
+    check(World::MiningTerrain);
+}
