@@ -188,7 +188,7 @@ pub struct SceneArgs {
     /// Move the camera along an author's path (JSON)
     #[arg(long, value_name = "FILE", help_heading = "Camera")]
     pub path: Option<PathBuf>,
-    /// With --path: this many frames; NAME.png becomes NAME.0000.png and so on
+    /// With --path or --sun-to: this many frames; NAME.png becomes NAME.0000.png and so on
     #[arg(long, value_name = "N", allow_hyphen_values = true, help_heading = "Camera")]
     pub frames: Option<u32>,
     /// With --path: metres from the path up to the eye
@@ -201,6 +201,15 @@ pub struct SceneArgs {
     /// The way light travels; any length
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Light")]
     pub sun: Option<DVec3>,
+    /// The way light travels in the last of --frames: the sun moves there at an even pace
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Light")]
+    pub sun_to: Option<DVec3>,
+    /// With --sun-to: shadows follow in steps of this many degrees and stand still in between [default: they move every frame]
+    #[arg(long, value_name = "DEGREES", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Light")]
+    pub sun_step: Option<f64>,
+    /// With --sun-step: frames over which a step is faded; 0 is sudden [default: 8]
+    #[arg(long, value_name = "FRAMES", allow_hyphen_values = true, help_heading = "Light")]
+    pub sun_fade: Option<u32>,
     /// Angle across the sun in degrees: what --filter pcss and the exact soft mask of `umbrage truth` go by
     /// [default: 0.53 for pcss; the exact mask is hard]
     #[arg(long, value_name = "DEGREES", value_parser = parse::sun_angle, allow_hyphen_values = true, help_heading = "Light")]
@@ -242,6 +251,9 @@ pub struct ShadowArgs {
     /// What each map is fitted to: the slice alone, or its receivers and casters too
     #[arg(long, value_enum, default_value_t)]
     pub fit: Fit,
+    /// Which map a pixel uses: that of its view depth, or the first (finest) that contains it
+    #[arg(long, value_enum, default_value_t)]
+    pub selection: Selection,
     /// Whether shadows stand still while the camera moves [default: exact, or none where a map is warped]
     #[arg(long, value_enum)]
     pub stabilize: Option<Stabilize>,
@@ -393,6 +405,16 @@ pub enum Fit {
     Dependent,
     /// The slice alone
     Independent,
+}
+
+/// `--selection`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Selection {
+    /// By view depth
+    #[default]
+    Depth,
+    /// The first map that contains it
+    Map,
 }
 
 /// `--stabilize`.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use glam::DVec3;
-use umbrage::{ExtentSteps, MAX_SPLITS, ShadowSettings, SplitScheme, Warp};
+use umbrage::{ExtentSteps, MAX_SPLITS, ShadowSettings, SplitScheme, SteppedSun, Warp};
 
 use crate::{
     args::{self, SceneArgs, Scheme, ShadowArgs, Technique},
@@ -17,6 +17,8 @@ pub const DEFAULT_FOV: f64 = 60.0;
 pub const DEFAULT_NEAR: f64 = 1.0;
 /// `--far` where nothing else says one, metres.
 pub const DEFAULT_FAR: f64 = 800.0;
+/// `--sun-fade` where nothing else says one, frames.
+pub const DEFAULT_SUN_FADE: u32 = 8;
 /// `--tsm-focus` where nothing else says one.
 pub const DEFAULT_TSM_FOCUS: f64 = 0.3;
 
@@ -45,6 +47,8 @@ pub struct SceneJob {
     pub far: Option<f64>,
     /// The light.
     pub sun: SunChoice,
+    /// `--sun-to` and what goes with it.
+    pub sun_travel: Option<SunTravel>,
     /// `--sun-angle`, degrees across the sun.
     pub sun_angle: Option<f64>,
 }
@@ -83,6 +87,17 @@ pub enum SunChoice {
     Named(String),
     /// `--sun`: the way light travels.
     Given(DVec3),
+}
+
+/// How the sun moves over the frames.
+#[derive(Debug, PartialEq)]
+pub struct SunTravel {
+    /// The way light travels in the last frame.
+    pub to: DVec3,
+    /// How many frames there are.
+    pub frames: u32,
+    /// Shadows follow in steps; every frame without.
+    pub steps: Option<SteppedSun>,
 }
 
 /// How shadows are made: [`ShadowArgs`], checked.
@@ -161,6 +176,7 @@ impl SceneJob {
             near,
             far,
             sun,
+            sun_travel: sun_travel(args)?,
             sun_angle: args.sun_angle,
         })
     }
@@ -182,6 +198,34 @@ impl SceneJob {
     }
 }
 
+fn sun_travel(args: &SceneArgs) -> Result<Option<SunTravel>> {
+    let Some(to) = args.sun_to else {
+        return match (args.sun_step, args.sun_fade) {
+            (Some(_), _) => Err(Failure::input("--sun-step needs a sun that moves; give --sun-to X,Y,Z")),
+            (None, Some(_)) => {
+                Err(Failure::input("--sun-fade needs steps to fade; give --sun-to X,Y,Z and --sun-step DEGREES"))
+            }
+            (None, None) => Ok(None),
+        };
+    };
+    let frames = args.frames.unwrap_or(1);
+    if frames < 2 {
+        return Err(Failure::input("--sun-to moves the sun over frames; give --frames 2 or more"));
+    }
+    let steps = match (args.sun_step, args.sun_fade) {
+        (Some(step), fade) => {
+            let fade = f64::from(fade.unwrap_or(DEFAULT_SUN_FADE));
+            Some(
+                SteppedSun::new(step.to_radians(), fade)
+                    .map_err(|error| Failure::input(format!("--sun-step: {error}")))?,
+            )
+        }
+        (None, Some(_)) => return Err(Failure::input("--sun-fade needs steps to fade; give --sun-step DEGREES")),
+        (None, None) => None,
+    };
+    Ok(Some(SunTravel { to, frames, steps }))
+}
+
 fn camera_choice(args: &SceneArgs) -> Result<CameraChoice> {
     let looks = args.eye.is_some() || args.target.is_some();
     let clash = |a: &str, b: &str| Err(Failure::input(format!("{a} and {b} both choose the camera; give one of them")));
@@ -191,8 +235,8 @@ fn camera_choice(args: &SceneArgs) -> Result<CameraChoice> {
         (None, Some(_)) if looks => return clash("--path", "--eye/--target"),
         _ => {}
     }
-    if args.path.is_none() && args.frames.is_some() {
-        return Err(Failure::input("--frames goes along a path; give one with --path FILE"));
+    if args.path.is_none() && args.sun_to.is_none() && args.frames.is_some() {
+        return Err(Failure::input("--frames goes along a path or a moving sun; give --path FILE or --sun-to X,Y,Z"));
     }
     if args.frames == Some(0) {
         return Err(Failure::input("--frames 0 asks for no frame; give 1 or more"));
@@ -227,6 +271,15 @@ impl ShadowJob {
         let map_sizes = map_sizes(args)?;
         let warps = warps(args, map_sizes.len())?;
         let stabilize = stabilize(args, &warps)?;
+        if args.selection == args::Selection::Map
+            && let Some(warp) = warps.iter().find(|warp| **warp != args::Warp::None)
+        {
+            return Err(Failure::input(format!(
+                "--selection map and a {} map exclude each other: the first map that contains a point need not be the finest \
+                 there; leave one of them away",
+                typed_name(*warp)
+            )));
+        }
         let settings = ShadowSettings {
             scheme: scheme(args, map_sizes.len())?,
             map_sizes,
@@ -238,6 +291,10 @@ impl ShadowJob {
             fit: match args.fit {
                 args::Fit::Dependent => umbrage::Fit::Dependent,
                 args::Fit::Independent => umbrage::Fit::Independent,
+            },
+            selection: match args.selection {
+                args::Selection::Depth => umbrage::Selection::Depth,
+                args::Selection::Map => umbrage::Selection::Map,
             },
             stabilize: match stabilize {
                 args::Stabilize::Exact => umbrage::Stabilize::Exact,

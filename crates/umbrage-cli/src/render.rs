@@ -37,7 +37,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     let mut staged = Staged::default();
     let bar = progress::steps(stage.shots.len() as u64, "frames");
     for shot in &stage.shots {
-        let rendered = studio.renderer.render(&studio.frame(&stage, shot), outputs)?;
+        let rendered = studio.renderer.render_faded(&studio.frame(&stage, shot), &shot.shown, outputs)?;
         if let (Some(path), Some(picture)) = (&args.picture, rendered.picture) {
             staged.file(&numbered_file(path, shot.frame), png(&picture)?)?;
         }
@@ -93,7 +93,7 @@ impl<'a> Studio<'a> {
         Frame {
             pose: &stage.pose,
             view: &shot.view,
-            sun: stage.sun,
+            sun: shot.sun,
             shadows_on: self.shadows.shadows_on,
             tint: self.shadows.tint,
         }

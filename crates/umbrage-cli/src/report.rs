@@ -79,6 +79,20 @@ pub struct ShotReport {
     pub camera: CameraReport,
     /// The way light travels, a unit vector.
     pub sun: [f64; 3],
+    /// With --sun-to: the suns whose shadows are shown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sun_shown: Option<SunShown>,
+}
+
+/// The suns whose shadows are shown, unit vectors along the light, and the share of the second.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SunShown {
+    /// The sun that is left.
+    pub from: [f64; 3],
+    /// The sun that is faded to.
+    pub to: [f64; 3],
+    /// Its share, 0 to 1.
+    pub weight: f64,
 }
 
 /// The eye: metres and degrees.

@@ -1,13 +1,13 @@
 //! The scene of a job, opened and posed, with its views and its sun: what `render`, `probe` and `truth` have in common.
 
-use glam::DVec3;
-use umbrage::{DirectionalLight, Frustum, Projection, View};
+use glam::{DQuat, DVec3};
+use umbrage::{DirectionalLight, Frustum, Projection, SunFade, View};
 use umbrage_scene::{CameraPath, HeightMapOptions, LightKind, Pose, Scene};
 
 use crate::{
     failure::{Failure, Result},
     job::{CameraChoice, DEFAULT_FAR, DEFAULT_FOV, DEFAULT_NEAR, SceneJob, SunChoice},
-    report::{CameraReport, ShotReport},
+    report::{CameraReport, ShotReport, SunShown},
 };
 
 /// A scene at one moment, with everything that is to be looked at.
@@ -17,15 +17,24 @@ pub struct Stage {
     pub scene: Scene,
     /// Posed at `--time`.
     pub pose: Pose,
-    /// The light.
-    pub sun: DirectionalLight,
-    /// One, or one per frame of a path.
+    /// One, or one per frame.
     pub shots: Vec<Shot>,
     /// What the loader left out, and which defaults were invented.
     pub notes: Vec<String>,
 }
 
-/// One view of the scene.
+/// Where the eye is in a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Place {
+    /// The number that its files get.
+    pub frame: Option<u32>,
+    /// Where the view comes from.
+    pub camera: String,
+    /// The view.
+    pub view: View,
+}
+
+/// One view of the scene under its sun.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shot {
     /// The number that its files get.
@@ -34,6 +43,10 @@ pub struct Shot {
     pub camera: String,
     /// The view.
     pub view: View,
+    /// Where the sun stands.
+    pub sun: DirectionalLight,
+    /// The suns whose shadows are shown: the same, or one or two that follow it in steps.
+    pub shown: SunFade,
 }
 
 impl Stage {
@@ -54,9 +67,9 @@ impl Stage {
         let scene = umbrage_scene::open(&job.scene, &height_map)?;
         let pose = scene.pose(job.time_s)?;
         let mut notes = scene.notes.clone();
-        let shots = shots(job, &scene, &pose, path.as_ref(), &mut notes)?;
+        let places = places(job, &scene, &pose, path.as_ref(), &mut notes)?;
         let direction = sun(job, &scene, &pose, path.as_ref(), &mut notes)?;
-        Ok(Self { sun: DirectionalLight::new(direction)?, shots, scene, pose, notes })
+        Ok(Self { shots: under_the_sun(job, places, direction)?, scene, pose, notes })
     }
 
     /// The part of a report that says what was looked at.
@@ -68,9 +81,40 @@ impl Stage {
             frame: shot.frame,
             size: job.size,
             camera: camera_report(&shot.camera, &shot.view),
-            sun: self.sun.direction().to_array(),
+            sun: shot.sun.direction().to_array(),
+            sun_shown: job.sun_travel.is_some().then(|| SunShown {
+                from: shot.shown.from.direction().to_array(),
+                to: shot.shown.to.direction().to_array(),
+                weight: shot.shown.weight,
+            }),
         }
     }
+}
+
+/// Every frame's view with its sun. A moving sun takes a single view along over all frames.
+fn under_the_sun(job: &SceneJob, mut places: Vec<Place>, direction: DVec3) -> Result<Vec<Shot>> {
+    let first = DirectionalLight::new(direction)?;
+    let Some(travel) = &job.sun_travel else {
+        let shown = SunFade { from: first, to: first, weight: 1.0 };
+        let shot = |Place { frame, camera, view }| Shot { frame, camera, view, sun: first, shown };
+        return Ok(places.into_iter().map(shot).collect());
+    };
+    if let [only] = &places[..] {
+        places = (0..travel.frames).map(|k| Place { frame: Some(k), ..only.clone() }).collect();
+    }
+    let turn = DQuat::from_rotation_arc(first.direction(), travel.to.normalize());
+    let last = places.len().saturating_sub(1).max(1) as f64;
+    let mut steps = travel.steps;
+    let shots = (0..).zip(places).map(|(k, Place { frame, camera, view })| {
+        let turned = DQuat::IDENTITY.slerp(turn, f64::from(k) / last) * first.direction();
+        let sun = DirectionalLight::new(turned)?;
+        let shown = match &mut steps {
+            Some(steps) => steps.follow(&sun, 1.0)?,
+            None => SunFade { from: sun, to: sun, weight: 1.0 },
+        };
+        Ok(Shot { frame, camera, view, sun, shown })
+    });
+    shots.collect()
 }
 
 /// The eye, for a report.
@@ -89,14 +133,14 @@ pub(crate) fn camera_report(name: &str, view: &View) -> CameraReport {
 }
 
 /// The views that a job asks for.
-pub(crate) fn shots(
+pub(crate) fn places(
     job: &SceneJob,
     scene: &Scene,
     pose: &Pose,
     path: Option<&CameraPath>,
     notes: &mut Vec<String>,
-) -> Result<Vec<Shot>> {
-    let single = |camera: String, view: View| Ok(vec![Shot { frame: None, camera, view }]);
+) -> Result<Vec<Place>> {
+    let single = |camera: String, view: View| Ok(vec![Place { frame: None, camera, view }]);
     match (&job.camera, path) {
         (CameraChoice::LookAt { eye, target }, _) => {
             single("--eye, --target".into(), View::look_at_upright(*eye, *target, frustum(job)?)?)
@@ -106,7 +150,7 @@ pub(crate) fn shots(
             (0..count)
                 .map(|k| {
                     let (eye, target) = path.pose_at(k as usize, count as usize, *eye_height)?;
-                    Ok(Shot {
+                    Ok(Place {
                         frame: frames.map(|_| k),
                         camera: file.display().to_string(),
                         view: View::look_at_upright(eye, target, frustum(job)?)?,

@@ -38,7 +38,7 @@ pub fn run(args: &TruthArgs) -> Result<()> {
     let bar = progress::fraction("rays");
     for (k, shot) in stage.shots.iter().enumerate() {
         let began = Instant::now();
-        let mask = truth.mask(&shot.view, stage.sun.direction(), job.size, &|share| {
+        let mask = truth.mask(&shot.view, shot.sun.direction(), job.size, &|share| {
             progress::set_fraction(&bar, (k as f32 + share) / count);
         })?;
         let image = match job.sun_angle.and_then(sun_disc) {

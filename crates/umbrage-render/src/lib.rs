@@ -9,6 +9,7 @@ mod casters;
 mod cull;
 mod draw_list;
 mod error;
+mod fade;
 mod forward;
 mod geometry;
 mod gpu;

@@ -120,7 +120,9 @@ pub struct Renderer {
     transition: Transition,
     derivatives: Derivatives,
     look: Look,
-    planner: Planner,
+    pub(crate) planner: Planner,
+    /// While a step of the sun is faded: what plans for the sun that is faded to.
+    pub(crate) next_planner: Option<Planner>,
     maps: ShadowMaps,
     scene: Geometry,
     scene_meshes: SceneMeshes,
@@ -206,6 +208,7 @@ impl Renderer {
                 size: settings.size,
                 depth_format: settings.depth_format,
                 planner: Planner::new(shadows)?,
+                next_planner: None,
                 scene: Geometry::of_scene(gpu, scene)?,
                 scene_meshes: SceneMeshes::of_scene(scene),
                 skinned: SkinnedGeometry::empty(gpu)?,
@@ -242,6 +245,7 @@ impl Renderer {
     /// Never in practice: the settings were accepted before.
     pub fn restart(&mut self) -> Result<()> {
         self.planner = Planner::new(self.planner.settings().clone())?;
+        self.next_planner = None;
         Ok(())
     }
 

@@ -74,6 +74,9 @@ impl BenchArgs {
             eye_height: 2.0,
             light: None,
             sun: self.sun,
+            sun_to: None,
+            sun_step: None,
+            sun_fade: None,
             sun_angle: None,
         }
     }

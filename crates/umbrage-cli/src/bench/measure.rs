@@ -54,8 +54,13 @@ pub fn measure(
         };
         renderers.push(Renderer::new(gpu, &stage.scene, &settings)?);
     }
-    let frame =
-        |shadows_on| Frame { pose: &stage.pose, view: &stage.shots[0].view, sun: stage.sun, shadows_on, tint: false };
+    let frame = |shadows_on| Frame {
+        pose: &stage.pose,
+        view: &stage.shots[0].view,
+        sun: stage.shots[0].sun,
+        shadows_on,
+        tint: false,
+    };
     let outputs = Outputs { picture: true, ..Outputs::default() };
     let timed = |renderer: &mut Renderer, shadows_on| -> Result<(f64, FrameStats)> {
         let begin = Instant::now();

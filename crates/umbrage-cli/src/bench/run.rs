@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use umbrage::{DirectionalLight, Frustum, View};
+use umbrage::{DirectionalLight, Frustum, SunFade, View};
 use umbrage_render::{Gpu, GpuOptions, Samples};
 use umbrage_scene::procedural::World;
 
@@ -110,12 +110,18 @@ fn open(args: &BenchArgs, scene: &str) -> Result<Stage> {
 fn crowd_stage(args: &BenchArgs, objects: u32) -> Result<Stage> {
     let (scene, eye, target) = crowd(objects)?;
     let aspect = f64::from(args.size[0]) / f64::from(args.size[1]);
+    let sun = DirectionalLight::new(umbrage_scene::invented_sun())?;
     let view = View::look_at_upright(eye, target, Frustum::perspective(60f64.to_radians(), aspect, 1.0, 800.0)?)?;
     Ok(Stage {
         pose: scene.pose(0.0)?,
         scene,
-        sun: DirectionalLight::new(umbrage_scene::invented_sun())?,
-        shots: vec![Shot { frame: None, camera: "crowd".into(), view }],
+        shots: vec![Shot {
+            frame: None,
+            camera: "crowd".into(),
+            view,
+            sun,
+            shown: SunFade { from: sun, to: sun, weight: 1.0 },
+        }],
         notes: Vec::new(),
     })
 }

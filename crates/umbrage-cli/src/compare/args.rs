@@ -190,6 +190,9 @@ impl CompareArgs {
             eye_height: self.eye_height,
             light: self.light.clone(),
             sun: self.sun,
+            sun_to: None,
+            sun_step: None,
+            sun_fade: None,
             sun_angle: self.sun_angle,
         }
     }

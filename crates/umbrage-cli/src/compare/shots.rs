@@ -227,7 +227,7 @@ impl Wish<'_> {
         notes: &mut Vec<String>,
     ) -> Result<Walk> {
         let job = self.job(name, choice)?;
-        let shots = stage::shots(&job, scene, pose, path, notes)?;
+        let shots = stage::places(&job, scene, pose, path, notes)?;
         let camera = match choice {
             CameraChoice::Path { .. } => "path".to_owned(),
             CameraChoice::Named(name) => name.clone(),
