@@ -5,9 +5,6 @@ use wesl::{CompileOptions, Mangler, ModulePath, Wesl};
 /// The root in `shaders` of a text, the features that it is built with, and the file that it becomes in `OUT_DIR`.
 type Text = (&'static str, Vec<String>, String);
 
-/// Every feature that the roots ask for, but for `maps_2` to `maps_8`.
-const FEATURES: [&str; 4] = ["depth_loads", "r32f", "views", "tiles"];
-
 /// The most maps that are textures of their own: `layout::MAX_SPLITS`.
 const MOST_MAPS: usize = 8;
 
@@ -21,6 +18,12 @@ fn texts() -> Vec<Text> {
         text("pass::contact", &[], "contact".into()),
         text("pass::receiver", &["depth_loads"], "receiver".into()),
         text("pass::receiver", &[], "receiver_without_loads".into()),
+        text("pass::receiver", &["moments"], "receiver_of_moments".into()),
+        text("pass::moments", &[], "moment_passes".into()),
+        text("pass::moments", &["multisampled"], "moment_passes_of_samples".into()),
+        text("maps::moments", &[], "moments".into()),
+        text("maps::moments", &["own_taps"], "moments_by_taps".into()),
+        text("maps::moments", &["own_taps", "by_hand"], "moments_by_hand".into()),
     ];
     // How maps can be read, and what that is called.
     for (feature, name) in [("depth_loads", ""), ("none", "_without_loads"), ("r32f", "_r32f")] {
@@ -34,6 +37,11 @@ fn texts() -> Vec<Text> {
     }
     texts
 }
+
+/// `depth_loads`: depth textures can be loaded from. `r32f`: maps are colours. `views`, `tiles`: casters are drawn into several layers or tiles.
+/// `moments`: maps hold moments of depth. `multisampled`: depth has four samples a texel. `own_taps`: the shader takes an anisotropic
+/// sample's taps. `by_hand`: and no sampler filters moments. `maps_2` to `maps_8` come beside these.
+const FEATURES: [&str; 8] = ["depth_loads", "r32f", "views", "tiles", "moments", "multisampled", "own_taps", "by_hand"];
 
 fn main() {
     let mut compiler = Wesl::new("shaders");

@@ -43,7 +43,7 @@ impl Casters {
                 },
                 primitive: maps.caster_primitive(),
                 depth_stencil: Some(maps.caster_depth_stencil()),
-                multisample: Default::default(),
+                multisample: maps.caster_multisample(),
                 fragment: fragment.then_some(wgpu::FragmentState {
                     module,
                     entry_point: Some(entry_points[1]),

@@ -112,6 +112,9 @@ impl Renderer {
         for pass in passes.filter(|&pass| all || !prepared.caster_runs[pass].is_empty()) {
             self.record_map(encoder, pass, prepared, recorded);
         }
+        if !prepared.caster_runs.is_empty() {
+            self.maps.filter(encoder);
+        }
     }
 
     /// Records one pass over the maps.

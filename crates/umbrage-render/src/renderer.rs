@@ -5,8 +5,8 @@ use image::{GrayAlphaImage, GrayImage, RgbaImage};
 use umbrage::{Aabb, Planner, Selection, ShadowPlan, ShadowSettings, SunFade, View};
 use umbrage_scene::{AlphaMode, Pose, Scene};
 use umbrage_wgpu::{
-    DepthFormat, Filter, FrameOptions, Generation, LightSlot, MapPass, ShadowMaps, ShadowMapsOptions, Slice, Softness,
-    Storage, Transition,
+    DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, MapPass, ShadowMaps, ShadowMapsOptions,
+    Slice, Softness, Storage, Transition,
 };
 use web_time::Instant;
 
@@ -22,7 +22,7 @@ use crate::probe::{self, Probe, ProbeAnswer, ProbePoint, Responder};
 use crate::record::{Clock, MapCapture, Prepared, Recorded, SliceRuns, new_encoder};
 use crate::stats::{FrameStats, LightStats, SplitStats};
 use crate::timing::{PassCounts, Timer};
-use crate::{Error, Gpu, Result, cull, maps};
+use crate::{Error, Gpu, MomentSettings, Result, cull, maps, moments};
 
 /// The frame's origin moves in steps of this many metres, so that positions near the eye are exact to a tenth of a
 /// millimetre in `f32` and yet stay the same from frame to frame, which is what keeps stabilised maps still.
@@ -52,6 +52,8 @@ pub struct RenderSettings {
     pub storage: Storage,
     /// How maps are drawn.
     pub generation: Generation,
+    /// What filters of moments leave to choose.
+    pub moments: MomentSettings,
     /// What the lights of a frame may be, the first one first.
     pub lights: Vec<LightSlot>,
 }
@@ -105,6 +107,7 @@ pub struct Renderer {
     samples: Samples,
     softness: Softness,
     transition: Transition,
+    derivatives: Derivatives,
     look: Look,
     pub(crate) planners: Planners,
     /// The same for each further view.
@@ -173,6 +176,8 @@ impl Renderer {
                     map_sizes: shadows.map_sizes.clone(),
                     depth_format: settings.depth_format,
                     filter: settings.filter,
+                    samples: settings.moments.samples,
+                    fallbacks: settings.moments.fallbacks,
                     storage: settings.storage,
                     generation: settings.generation,
                     lights: settings.lights.clone(),
@@ -210,6 +215,7 @@ impl Renderer {
             if settings.filter == Filter::Pcss && !gpu.depth_loads() && !settings.depth_format.is_colour() {
                 notes.push("no loads from depth textures on GL: pcss is a disc of fixed width".to_owned());
             }
+            notes.extend(maps.moment_storage().and_then(|storage| moments::note(storage, settings.filter)));
             if !timer.has_timestamps() {
                 notes.push("no timestamp queries: times of the GPU are measured by the CPU's clock".to_owned());
             }
@@ -227,6 +233,7 @@ impl Renderer {
                 samples: settings.samples,
                 softness: settings.softness,
                 transition: settings.transition,
+                derivatives: settings.moments.derivatives,
                 look: settings.look,
                 probe: Probe::new(gpu, &maps),
                 timer,
@@ -336,6 +343,9 @@ impl Renderer {
         }
         let prepared = self.prepare(frame)?;
         let mut clock = Clock::start(&gpu, &self.timer);
+        if outputs.maps && self.maps.options().samples > 1 {
+            return Err(Error::MapsOfSamples { samples: self.maps.options().samples });
+        }
         let (recorded, mut encoder) = self.record(new_encoder(&gpu), &mut clock, &prepared, outputs)?;
         let mask = match &self.mask {
             Some(target) if outputs.mask => Some(Capture::record(&gpu, &mut encoder, &target.texture, 0, self.size)?),
@@ -359,10 +369,14 @@ impl Renderer {
                 sum
             })
         };
+        let is_prefiltered = self.maps.options().filter.is_prefiltered();
         let (shadow_ms, frame_ms) = match (&measured.spans_ms, wall) {
             (Some(spans), _) if !spans.is_empty() => {
                 let maps = || spans.iter().enumerate().filter(|&(i, _)| over_maps(i)).map(|(_, span)| span);
+                let last = recorded.map_passes.last().map_or(0, |&(_, _, slot)| slot);
                 let shadow_ms = match prepared.slices.is_empty() {
+                    // What turns depths into moments is no pass of ours; it is over when the next one begins.
+                    true if is_prefiltered && maps().next().is_some() && last + 1 < spans.len() => spans[last + 1][0],
                     true => maps().map(|span| span[1]).fold(0.0, f64::max),
                     // Between the maps there is the view.
                     false => maps().map(|span| span[1] - span[0]).sum(),
@@ -518,6 +532,7 @@ impl Renderer {
             bias: self.look.bias,
             softness: self.softness,
             transition: self.transition,
+            derivatives: self.derivatives,
         };
         self.maps.prepare_lights(&self.gpu.queue, &plans.iter().collect::<Vec<_>>(), &options)?;
         self.skinned.update(&self.gpu, &self.scene_meshes, pose)?;

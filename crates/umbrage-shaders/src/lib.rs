@@ -77,6 +77,13 @@ pub enum Bound {
     Separate(usize),
 }
 
+/// The passes from depth to moments, `shaders/pass/moments.wesl`: entry points `vs_all`, `fs_convert`, `fs_blur_u`, `fs_blur_v` and
+/// `fs_halve`, constants `KIND`, `POSITIVE_EXPONENT` and `NEGATIVE_EXPONENT`.
+pub const MOMENT_PASSES: &str = text!("moment_passes");
+
+/// The same from depth with four samples a texel.
+pub const MOMENT_PASSES_OF_SAMPLES: &str = text!("moment_passes_of_samples");
+
 /// How a receiver reads its maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Maps {
@@ -88,13 +95,26 @@ pub struct Maps {
     pub without_loads: bool,
     /// Length of the array of frames.
     pub frames: u32,
+    /// Maps hold moments of depth, of one light.
+    pub moments: Option<MomentMaps>,
 }
 
 impl Default for Maps {
     /// One light, read with everything that a device can have.
     fn default() -> Self {
-        Self { bound: Bound::Array, r32f: false, without_loads: false, frames: 1 }
+        Self { bound: Bound::Array, r32f: false, without_loads: false, frames: 1, moments: None }
     }
+}
+
+/// How moments are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MomentMaps {
+    /// Bindings 1: `texture_2d_array<f32>`, 2: a linear and anisotropic sampler, 3: uniform [`layout::Moments`].
+    Sampled,
+    /// The same with a sampler that is linear only; the shader takes up to 16 samples where an anisotropic one would.
+    Taps,
+    /// The same without a sampler.
+    ByHand,
 }
 
 /// How casters are copied into the maps of several splits in one pass; neither: each pass draws one split.
@@ -145,17 +165,24 @@ pub fn contact(group: u32) -> String {
 pub fn receiver(group: u32, maps: Maps) -> String {
     let frames = maps.frames.max(1);
     let loads = maps.r32f || !maps.without_loads;
-    let receiver = if loads { text!("receiver") } else { text!("receiver_without_loads") };
-    let maps = match (maps.bound, maps.r32f, loads) {
-        (Bound::Array, true, _) => text!("array_r32f"),
-        (Bound::Array, false, true) => text!("array"),
-        (Bound::Array, false, false) => text!("array_without_loads"),
-        (Bound::Cube, true, _) => text!("cube_r32f"),
-        (Bound::Cube, false, true) => text!("cube"),
-        (Bound::Cube, false, false) => text!("cube_without_loads"),
-        (Bound::Separate(count), true, _) => SEPARATE_R32F[count - 1],
-        (Bound::Separate(count), false, true) => SEPARATE[count - 1],
-        (Bound::Separate(count), false, false) => SEPARATE_WITHOUT_LOADS[count - 1],
+    let receiver = match (maps.moments, loads) {
+        (Some(_), _) => text!("receiver_of_moments"),
+        (None, true) => text!("receiver"),
+        (None, false) => text!("receiver_without_loads"),
+    };
+    let maps = match (maps.moments, maps.bound, maps.r32f, loads) {
+        (Some(MomentMaps::Sampled), ..) => text!("moments"),
+        (Some(MomentMaps::Taps), ..) => text!("moments_by_taps"),
+        (Some(MomentMaps::ByHand), ..) => text!("moments_by_hand"),
+        (None, Bound::Array, true, _) => text!("array_r32f"),
+        (None, Bound::Array, false, true) => text!("array"),
+        (None, Bound::Array, false, false) => text!("array_without_loads"),
+        (None, Bound::Cube, true, _) => text!("cube_r32f"),
+        (None, Bound::Cube, false, true) => text!("cube"),
+        (None, Bound::Cube, false, false) => text!("cube_without_loads"),
+        (None, Bound::Separate(count), true, _) => SEPARATE_R32F[count - 1],
+        (None, Bound::Separate(count), false, true) => SEPARATE[count - 1],
+        (None, Bound::Separate(count), false, false) => SEPARATE_WITHOUT_LOADS[count - 1],
     };
     format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\nconst UMBRAGE_FRAMES = {frames}u;\n{maps}\n{receiver}\n")
 }

@@ -3,8 +3,8 @@
 use std::mem::offset_of;
 
 use naga::proc::Layouter;
-use umbrage_shaders::layout::{CasterPass, Frame, Split};
-use umbrage_shaders::{Casters, Maps};
+use umbrage_shaders::layout::{CasterPass, Frame, MomentPass, MomentSplit, Moments, Split};
+use umbrage_shaders::{Casters, Maps, MomentMaps};
 
 /// A member as one side sees it: name, offset and size in bytes.
 type Member = (String, usize, usize);
@@ -69,6 +69,15 @@ fn members_agree() {
     assert_eq!(frame_in_rust(), in_wgsl(&receiver, "UmbrageFrame"));
     let casters = umbrage_shaders::caster(0, Casters { views: true, tiles: true }, "");
     assert_eq!(pass_in_rust(), in_wgsl(&casters, "UmbrageCasterPass"));
+}
+
+#[test]
+fn members_of_moments_agree() {
+    let maps = Maps { moments: Some(MomentMaps::Sampled), ..Maps::default() };
+    let (receiver, passes) = (umbrage_shaders::receiver(0, maps), umbrage_shaders::MOMENT_PASSES);
+    assert_eq!(in_rust!(MomentSplit: depth, radius, quads), in_wgsl(passes, "UmbrageMomentSplit"));
+    assert_eq!(in_rust!(MomentPass: split, size), in_wgsl(passes, "UmbrageMomentPass"));
+    assert_eq!(in_rust!(Moments: exponents, bleeding, splits), in_wgsl(&receiver, "UmbrageMoments"));
 }
 
 /// The comparison above must be able to say no: one member moved, one renamed, one resized.

@@ -2,9 +2,9 @@
 
 use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use umbrage_shaders::{Bound, Casters, Maps};
+use umbrage_shaders::{Bound, Casters, Maps, MomentMaps};
 
-const WITHOUT_LOADS: Maps = Maps { bound: Bound::Array, r32f: false, without_loads: true, frames: 7 };
+const WITHOUT_LOADS: Maps = Maps { bound: Bound::Array, r32f: false, without_loads: true, frames: 7, moments: None };
 
 /// Every way to bind maps and to read them.
 fn all_maps() -> Vec<Maps> {
@@ -15,11 +15,19 @@ fn all_maps() -> Vec<Maps> {
                 bound,
                 r32f,
                 without_loads,
-                frames: 1,
+                ..Maps::default()
             })
         })
+        .chain(
+            [MomentMaps::Sampled, MomentMaps::Taps, MomentMaps::ByHand]
+                .map(|moments| Maps { moments: Some(moments), ..Maps::default() }),
+        )
         .collect()
 }
+const MOMENTS: Maps =
+    Maps { bound: Bound::Array, r32f: false, without_loads: false, frames: 1, moments: Some(MomentMaps::Sampled) };
+const MOMENTS_BY_TAPS: Maps = Maps { moments: Some(MomentMaps::Taps), ..MOMENTS };
+const MOMENTS_BY_HAND: Maps = Maps { moments: Some(MomentMaps::ByHand), ..MOMENTS };
 
 fn validated(source: &str) -> (naga::Module, ModuleInfo) {
     let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
@@ -70,7 +78,22 @@ fn fragment_shader_without_loads(group: u32) -> String {
     umbrage_shaders::receiver(group, WITHOUT_LOADS) + FRAGMENT
 }
 
-const FRAGMENT: &str = "@fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
+fn fragment_shader_of_moments(group: u32, maps: Maps) -> String {
+    umbrage_shaders::receiver(group, maps) + FRAGMENT
+}
+
+/// A compute shader knows no derivatives and compiles all the same.
+fn compute_shader_of_moments(group: u32) -> String {
+    umbrage_shaders::receiver(group, MOMENTS)
+        + "@compute @workgroup_size(1) fn compute() { _ = umbrage_visibility(vec3f(0.0), vec3f(0.0, 1.0, 0.0)); }"
+}
+
+const FRAGMENT: &str =
+    "@fragment fn fragment(@location(0) position: vec3f, @builtin(position) pixel: vec4f) -> @location(0) vec4f {
+               let footprint = umbrage_footprint(position, dpdx(position), dpdy(position), pixel.xy);
+               if pixel.x > 100.0 {
+                   return vec4f(umbrage_shadow_with(position, vec3f(0.0, 1.0, 0.0), footprint).visibility);
+               }
                let shadow = umbrage_shadow(position, vec3f(0.0, 1.0, 0.0));
                let one = umbrage_visibility_in_split(position, vec3f(0.0, 1.0, 0.0), 1u);
                let other = umbrage_visibility_of(u32(position.x), position, vec3f(0.0, 1.0, 0.0));
@@ -92,9 +115,17 @@ fn contact_shadows_stand_beside_receivers() {
 #[test]
 fn roots_are_valid_wgsl_in_any_bind_group() {
     for group in [0, 1, 3] {
-        for source in
-            [vertex_shader(group), fragment_shader(group), fragment_shader_without_loads(group), contact_shader(group)]
-        {
+        let texts = [
+            vertex_shader(group),
+            fragment_shader(group),
+            fragment_shader_without_loads(group),
+            fragment_shader_of_moments(group, MOMENTS),
+            fragment_shader_of_moments(group, MOMENTS_BY_TAPS),
+            fragment_shader_of_moments(group, MOMENTS_BY_HAND),
+            compute_shader_of_moments(group),
+            contact_shader(group),
+        ];
+        for source in texts {
             let (module, _) = validated(&source);
             let groups: Vec<u32> =
                 module.global_variables.iter().filter_map(|(_, v)| v.binding.map(|b| b.group)).collect();
@@ -130,6 +161,15 @@ fn roots_export_to_webgl2() {
     }
     let text = to_webgl2(&fragment_shader_without_loads(1), naga::ShaderStage::Fragment, "fragment");
     assert!(text.contains("sampler2DArrayShadow"), "depth maps become shadow samplers");
+}
+
+#[test]
+fn moment_passes_are_valid_wgsl() {
+    for source in [umbrage_shaders::MOMENT_PASSES, umbrage_shaders::MOMENT_PASSES_OF_SAMPLES] {
+        let (module, _) = validated(source);
+        let names: Vec<&str> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
+        assert_eq!(names, ["vs_all", "fs_convert", "fs_blur_u", "fs_blur_v", "fs_halve"]);
+    }
 }
 
 #[test]

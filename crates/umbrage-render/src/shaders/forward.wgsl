@@ -55,40 +55,48 @@ fn is_drawn(in: Surface) -> bool {
     return !SLICED || (umbrage_in_slice(in.position) && depth >= frame.near && depth <= frame.far);
 }
 
+// What the pixel covers. Call in uniform control flow.
+fn footprint_of(in: Surface) -> UmbrageFootprint {
+    return umbrage_footprint(in.position, dpdx(in.from_eye), dpdy(in.from_eye), in.clip.xy);
+}
+
 // Red: visibility of the first light at the pixel's centre. Green: 1, a surface is here.
 @fragment
 fn fs_mask_opaque(in: Surface) -> @location(0) vec2f {
     let normal = geometric_normal(in.from_eye);
+    let footprint = footprint_of(in);
     if !is_drawn(in) {
         discard;
     }
-    return mask_at(in, normal);
+    return mask_at(in, normal, footprint);
 }
 
 @fragment
 fn fs_mask_masked(in: Surface) -> @location(0) vec2f {
     let normal = geometric_normal(in.from_eye);
+    let footprint = footprint_of(in);
     if tested_alpha(in.uv, in.color.a) < material.alpha_cutoff || !is_drawn(in) {
         discard;
     }
-    return mask_at(in, normal);
+    return mask_at(in, normal, footprint);
 }
 
-fn mask_at(in: Surface, normal: vec3f) -> vec2f {
+fn mask_at(in: Surface, normal: vec3f, footprint: UmbrageFootprint) -> vec2f {
     if dot(normal, towards(frame.lamps[0], in.position)) <= 0.0 {
         return vec2f(0.0, 1.0);
     }
-    return vec2f(umbrage_shadow_at_pixel(in.position, normal, in.clip.xy).visibility, 1.0);
+    return vec2f(umbrage_shadow_with(in.position, normal, footprint).visibility, 1.0);
 }
 
 @fragment
 fn fs_picture_opaque(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let base = base_color(in);
     let geometric = geometric_normal(in.from_eye);
+    let footprint = footprint_of(in);
     if !is_drawn(in) {
         discard;
     }
-    return vec4f(shaded(in, front, base, geometric), 1.0);
+    return vec4f(shaded(in, front, base, geometric, footprint), 1.0);
 }
 
 // Alpha becomes coverage: a step one pixel wide around the cutoff. With one sample a pixel it is all or nothing: 0.5.
@@ -99,20 +107,22 @@ fn fs_picture_masked(in: Surface, @builtin(front_facing) front: bool) -> @locati
     let color = base_color(in);
     let coverage = (color.a - material.alpha_cutoff) / max(fwidth(color.a), 1e-4) + 0.5;
     let geometric = geometric_normal(in.from_eye);
+    let footprint = footprint_of(in);
     if coverage <= LEAST_COVERAGE || !is_drawn(in) {
         discard;
     }
-    return vec4f(shaded(in, front, color, geometric), min(coverage, 1.0));
+    return vec4f(shaded(in, front, color, geometric, footprint), min(coverage, 1.0));
 }
 
 @fragment
 fn fs_picture_blend(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let color = base_color(in);
     let geometric = geometric_normal(in.from_eye);
+    let footprint = footprint_of(in);
     if !is_drawn(in) {
         discard;
     }
-    return vec4f(shaded(in, front, color, geometric), clamp(color.a, 0.0, 1.0));
+    return vec4f(shaded(in, front, color, geometric, footprint), clamp(color.a, 0.0, 1.0));
 }
 
 fn base_color(in: Surface) -> vec4f {
@@ -136,14 +146,14 @@ fn falloff(lamp: Lamp, position: vec3f) -> f32 {
 }
 
 // Lambert's law for each light, a sky from above and light from the ground below. Display light, tone mapped.
-fn shaded(in: Surface, front: bool, base: vec4f, geometric: vec3f) -> vec3f {
+fn shaded(in: Surface, front: bool, base: vec4f, geometric: vec3f, footprint: UmbrageFootprint) -> vec3f {
     let smooth_normal = normalize(select(-in.normal, in.normal, front));
     var light = vec3f(0.0);
     var tint = vec3f(1.0);
     for (var i = 0u; i < frame.lamp_count + umbrage_zero(in.position.x); i++) {
         let lamp = frame.lamps[i];
         let to_light = towards(lamp, in.position);
-        let shadow = umbrage_shadow_of_at_pixel(i, in.position, lookup_normal(geometric, to_light), in.clip.xy);
+        let shadow = umbrage_shadow_of_with(i, in.position, lookup_normal(geometric, to_light), footprint);
         let facing = max(dot(smooth_normal, to_light), 0.0) * falloff(lamp, in.position);
         light += SUN * lamp.color * facing * shadow.light;
         tint = select(tint, shadow.tint, i == 0u);

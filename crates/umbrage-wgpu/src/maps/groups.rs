@@ -4,6 +4,7 @@ use umbrage_shaders::layout;
 
 use super::passes::MapPass;
 use super::targets::Targets;
+use crate::moments::Moments;
 use crate::{ShadowMapsOptions, Storage};
 
 /// Uniforms of one kind in one buffer, each with a bind group.
@@ -28,10 +29,19 @@ impl Uniforms {
     }
 
     /// What receivers are told: the frames, once for all splits, and where one map is reused, once more for each; and the maps.
-    pub fn of_receivers(device: &wgpu::Device, options: &ShadowMapsOptions, targets: &Targets, loads: bool) -> Self {
+    pub fn of_receivers(
+        device: &wgpu::Device,
+        options: &ShadowMapsOptions,
+        targets: &Targets,
+        loads: bool,
+        moments: Option<&Moments>,
+    ) -> Self {
         let count = if options.storage == Storage::Reused { 1 + options.map_sizes.len() } else { 1 };
         let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
         let bytes = super::lights::frame_bytes(options);
+        if let Some(moments) = moments {
+            return Self::of_moments(device, moments, visibility, bytes);
+        }
         let bindings = MapBindings::new(device, options, targets, loads);
         let mut entries = vec![uniform_entry(bytes, visibility)];
         let types = bindings.list.iter().map(|(binding, ty, _)| (*binding, *ty));
@@ -50,6 +60,19 @@ impl Uniforms {
         Self::new(device, "ShadowMaps::receiver", layout, bytes, count, resources.collect())
     }
 
+    /// The same for maps of moments.
+    fn of_moments(device: &wgpu::Device, moments: &Moments, visibility: wgpu::ShaderStages, bytes: u64) -> Self {
+        let mut entries = vec![uniform_entry(bytes, visibility)];
+        entries.extend(moments.receiver_entries(visibility));
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("ShadowMaps::receiver"),
+            entries: &entries,
+        });
+        let buffer = uniform_buffer(device, "ShadowMaps::receiver", bytes);
+        let groups = vec![moments.receiver_bind_group(device, &layout, &buffer)];
+        Self { buffer, stride: bytes, layout, groups }
+    }
+
     fn new(
         device: &wgpu::Device,
         label: &str,
@@ -59,12 +82,7 @@ impl Uniforms {
         resources: Vec<wgpu::BindGroupEntry<'_>>,
     ) -> Self {
         let stride = bytes.next_multiple_of(u64::from(device.limits().min_uniform_buffer_offset_alignment));
-        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size: stride * count as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let buffer = uniform_buffer(device, label, stride * count as u64);
         let groups = (0..count as u64)
             .map(|index| {
                 let uniform = wgpu::BindGroupEntry {
@@ -145,6 +163,15 @@ fn sampler(device: &wgpu::Device, options: &ShadowMapsOptions, kind: wgpu::Sampl
         min_filter: filter,
         compare: compares.then_some(wgpu::CompareFunction::LessEqual),
         ..Default::default()
+    })
+}
+
+fn uniform_buffer(device: &wgpu::Device, label: &str, size: u64) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
     })
 }
 

@@ -51,6 +51,9 @@ impl ShadowMaps {
         if self.options.storage == Storage::Reused {
             self.check_alone(plans, options)?;
         }
+        if let (Some(moments), [plan]) = (&mut self.moments, plans) {
+            moments.prepare(queue, plan, options)?;
+        }
         self.receivers.write(queue, 0, &frames);
         if self.options.storage == Storage::Reused {
             for split in 0..self.splits() {

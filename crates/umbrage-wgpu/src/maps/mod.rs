@@ -20,6 +20,7 @@ pub use slices::Slice;
 use storage::{Arrangement, Tile};
 use targets::Targets;
 
+use crate::moments::{MomentStorage, Moments};
 use crate::uniforms::{Place, Viewport};
 use crate::{Error, FrameOptions, Generation, Result, ShadowMapsOptions, Storage};
 
@@ -27,10 +28,14 @@ use crate::{Error, FrameOptions, Generation, Result, ShadowMapsOptions, Storage}
 ///
 /// `DEPTH_CLIP_CONTROL` lets the near plane lie at the receivers ([`ShadowMaps::depth_clamp`]), `MULTIVIEW` (with a
 /// `max_multiview_view_count` of 2 or more in the limits) draws the layers of [`Generation::Layered`] and [`Generation::Mixed`] at
-/// once, `CLIP_DISTANCES` keeps the tiles of [`Generation::Instanced`] and [`Generation::Mixed`] apart.
+/// once, `CLIP_DISTANCES` keeps the tiles of [`Generation::Instanced`] and [`Generation::Mixed`] apart,
+/// `FLOAT32_FILTERABLE` lets the hardware filter moments in full precision ([`MomentStorage`]).
 #[must_use]
 pub fn optional_features() -> wgpu::Features {
-    wgpu::Features::DEPTH_CLIP_CONTROL | wgpu::Features::MULTIVIEW | wgpu::Features::CLIP_DISTANCES
+    wgpu::Features::DEPTH_CLIP_CONTROL
+        | wgpu::Features::MULTIVIEW
+        | wgpu::Features::CLIP_DISTANCES
+        | wgpu::Features::FLOAT32_FILTERABLE
 }
 
 /// The shadow maps of one light for one view, or of several lights ([`ShadowMaps::prepare_lights`]), on the GPU.
@@ -52,6 +57,7 @@ pub struct ShadowMaps {
     depth_clamp: bool,
     colour_target: Option<wgpu::ColorTargetState>,
     targets: Targets,
+    moments: Option<Moments>,
     casters: Uniforms,
     receivers: Uniforms,
 }
@@ -63,10 +69,12 @@ impl ShadowMaps {
     /// # Errors
     /// [`Error::SplitCount`], [`Error::MapTooSmall`], [`Error::MapTooLarge`], [`Error::TooManyLayers`], [`Error::AtlasTooLarge`],
     /// [`Error::TooManyTextures`], [`Error::TooManyLights`], [`Error::LightsNeedArray`], [`Error::ConflictingOptions`],
-    /// [`Error::MissingFeature`].
+    /// [`Error::MissingFeature`]; for filters of moments also [`Error::Samples`], [`Error::NoFilterableFloats`],
+    /// [`Error::NoDepthLoads`], [`Error::MomentsNeedArray`] and [`Error::MomentsNeedOneSun`].
     pub fn new(device: &wgpu::Device, options: &ShadowMapsOptions) -> Result<Self> {
         let limits = device.limits();
         check_sizes(options, &limits)?;
+        check_samples(options)?;
         let abilities = Abilities::of(device);
         let Chosen { storage, generation, notes } = choose::choose(options, abilities)?;
         let options = ShadowMapsOptions { storage, generation, ..options.clone() };
@@ -74,6 +82,8 @@ impl ShadowMaps {
         let passes = MapPass::all(generation, sizes.len(), abilities);
         let arrangement = Arrangement::new(storage, generation, &passes, sizes, limits.max_texture_dimension_2d)?;
         check_limits(device, storage, &arrangement)?;
+
+        check_moments(&options, sizes.len())?;
 
         let targets = Targets::new(device, &options, &arrangement, &passes);
         let backend = device.adapter_info().backend;
@@ -83,6 +93,13 @@ impl ShadowMaps {
         if generation == Generation::Layered {
             places.iter_mut().for_each(|place| place.viewport = viewport);
         }
+        let moments = (options.filter.is_prefiltered())
+            .then(|| {
+                let layers = targets::layers_needed(device, storage, &arrangement);
+                let depths = targets.splits(&arrangement);
+                Moments::new(device, &options, [arrangement.layer_texels[0], layers], &depths)
+            })
+            .transpose()?;
         Ok(Self {
             notes,
             places,
@@ -92,8 +109,9 @@ impl ShadowMaps {
             depth_clamp: device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL),
             colour_target: options.depth_format.is_colour().then(|| options.depth_format.texture_format().into()),
             casters: Uniforms::of_casters(device, &passes),
-            receivers: Uniforms::of_receivers(device, &options, &targets, depth_loads),
+            receivers: Uniforms::of_receivers(device, &options, &targets, depth_loads, moments.as_ref()),
             targets,
+            moments,
             passes,
             options,
         })
@@ -148,6 +166,20 @@ impl ShadowMaps {
         render
     }
 
+    /// Turns the depths that were drawn into what receivers read: for filters of moments conversion, blur and mip levels
+    /// ([`crate::Filter::is_prefiltered`]), for all others nothing. Call it after the casters and before any receiver.
+    pub fn filter(&self, encoder: &mut wgpu::CommandEncoder) {
+        if let Some(moments) = &self.moments {
+            moments.record(encoder);
+        }
+    }
+
+    /// What moments are kept in on this device; `None` for filters that compare depth.
+    #[must_use]
+    pub fn moment_storage(&self) -> Option<MomentStorage> {
+        self.moments.as_ref().map(Moments::storage)
+    }
+
     /// The number of splits; of a point light, of each face.
     #[must_use]
     pub fn splits(&self) -> usize {
@@ -195,6 +227,7 @@ impl ShadowMaps {
             r32f: self.options.depth_format.is_colour(),
             without_loads: !self.depth_loads,
             frames: lights::frame_count(&self.options) as u32,
+            moments: self.moments.as_ref().map(Moments::maps),
         };
         umbrage_shaders::receiver(group, maps)
     }
@@ -227,10 +260,11 @@ impl ShadowMaps {
         settings
     }
 
-    /// Bytes of all textures.
+    /// Bytes of all maps, of depth buffers beside maps that are colours, and for filters of moments of these with their levels and of the
+    /// texture between two blurs.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        self.targets.bytes()
+        self.targets.bytes() + self.moments.as_ref().map_or(0, Moments::bytes)
     }
 
     /// Whether depth is not clipped: what `umbrage::ShadowSettings::depth_clamp` wants. True if the device was requested with
@@ -248,17 +282,17 @@ impl ShadowMaps {
     #[must_use]
     pub fn map_place(&self, split: usize) -> (u32, [u32; 2]) {
         let tile = self.places[split].tile;
-        (if self.options.storage == Storage::Separate { 0 } else { tile.layer }, tile.corner)
+        (self.targets.layer(tile.layer), tile.corner)
     }
 
-    /// The texture that holds the map of split `split`, where [`ShadowMaps::map_place`] says. Can be copied from.
+    /// The texture that holds the map of split `split`, where [`ShadowMaps::map_place`] says. Can be copied from, but not with several
+    /// samples a texel.
     ///
     /// # Panics
     /// If `split` is not less than [`ShadowMaps::splits`].
     #[must_use]
     pub fn map_texture(&self, split: usize) -> &wgpu::Texture {
-        let separate = self.options.storage == Storage::Separate;
-        &self.targets.maps[if separate { self.places[split].tile.layer as usize } else { 0 }]
+        self.targets.map(self.places[split].tile.layer)
     }
 
     /// Layout of the group that [`ShadowMaps::caster_wgsl`] declares.
@@ -288,6 +322,12 @@ impl ShadowMaps {
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }
+    }
+
+    /// Multisample state for a pipeline that draws casters: as many samples as [`crate::ShadowMapsOptions::samples`].
+    #[must_use]
+    pub fn caster_multisample(&self) -> wgpu::MultisampleState {
+        wgpu::MultisampleState { count: self.options.samples, ..Default::default() }
     }
 
     /// Primitive state for a pipeline that draws casters: triangle lists, both faces (single-sided walls cast, too).
@@ -370,6 +410,42 @@ fn check_sizes(options: &ShadowMapsOptions, limits: &wgpu::Limits) -> Result<()>
         1..=MAX_SPLITS => Ok(()),
         count => Err(Error::SplitCount { count, most: MAX_SPLITS }),
     }
+}
+
+/// 1, or 4 where the mean of samples means something. WebGPU has these two everywhere.
+fn check_samples(&ShadowMapsOptions { samples, filter, .. }: &ShadowMapsOptions) -> Result<()> {
+    match samples {
+        1 => Ok(()),
+        4 if filter.is_prefiltered() => Ok(()),
+        _ => Err(Error::Samples { samples, filter }),
+    }
+}
+
+/// Moments are made of depth, a layer for each split of one sun.
+fn check_moments(options: &ShadowMapsOptions, maps: usize) -> Result<()> {
+    let &ShadowMapsOptions { filter, storage, generation, samples, .. } = options;
+    if !filter.is_prefiltered() {
+        return Ok(());
+    }
+    let conflict =
+        |second: String, reason| Err(Error::ConflictingOptions { first: format!("filter {filter:?}"), second, reason });
+    if storage != Storage::Array {
+        return Err(Error::MomentsNeedArray { storage, filter });
+    }
+    if maps > options.map_sizes.len() {
+        return Err(Error::MomentsNeedOneSun { lights: options.lights.clone(), filter });
+    }
+    if options.depth_format.is_colour() {
+        return conflict("depth format R32Float".to_owned(), "moments are made of depth; use D32Float or D16Unorm");
+    }
+    if generation != Generation::PerSplit && (generation != Generation::Layered || samples > 1) {
+        let second = format!("generation {}", generation.name());
+        return conflict(
+            second,
+            "moments need a layer for each split; use generation per-split, or layered with one sample a texel",
+        );
+    }
+    Ok(())
 }
 
 /// A guard band around every map, except in browsers: those that are older than the rule reject a viewport that leaves its target.

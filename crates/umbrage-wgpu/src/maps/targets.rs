@@ -7,8 +7,9 @@ use crate::{DepthFormat, Generation, ShadowMapsOptions, Storage};
 /// The textures of all maps.
 #[derive(Debug)]
 pub(super) struct Targets {
-    /// One, but for separate maps.
+    /// One; where maps are separate, or have several samples a texel, one for each split.
     pub maps: Vec<wgpu::Texture>,
+    separate: bool,
     /// Depth buffers beside maps that are colours.
     depths: Vec<wgpu::Texture>,
     attachments: Vec<Attachments>,
@@ -30,9 +31,16 @@ impl Targets {
         let backend = device.adapter_info().backend;
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
         let read = usage | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
-        let map = |texels, layers| texture(device, "ShadowMaps::maps", format.texture_format(), texels, layers, read);
-        let maps = match options.storage {
-            Storage::Separate => options.map_sizes.iter().map(|&size| map([size; 2], 1)).collect(),
+        // What has several samples cannot be copied.
+        let read = if options.samples > 1 { read.difference(wgpu::TextureUsages::COPY_SRC) } else { read };
+        let map = |texels, layers| {
+            let format = format.texture_format();
+            texture(device, "ShadowMaps::maps", format, texels, [layers, options.samples], read)
+        };
+        // Several samples and several layers do not go together in one texture.
+        let separate = options.storage == Storage::Separate || options.samples > 1;
+        let maps: Vec<wgpu::Texture> = match options.storage {
+            _ if separate => options.map_sizes.iter().map(|&size| map([size; 2], 1)).collect(),
             Storage::Cube => vec![map(it.layer_texels, it.layers)],
             _ => vec![map(it.layer_texels, array_layers(it.layers, it.layer_texels, backend))],
         };
@@ -42,8 +50,8 @@ impl Targets {
             .iter()
             .map(|pass| {
                 let tile = it.tiles[pass.splits().start];
-                let map = if options.storage == Storage::Separate { &maps[tile.layer as usize] } else { &maps[0] };
-                let first = if options.storage == Storage::Separate { 0 } else { tile.layer };
+                let map = if separate { &maps[tile.layer as usize] } else { &maps[0] };
+                let first = if separate { 0 } else { tile.layer };
                 let views = pass.views() as u32;
                 let keeps = options.storage == Storage::Atlas && pass.is_alone() && pass.splits().start > 0;
                 if !format.is_colour() {
@@ -53,13 +61,28 @@ impl Targets {
                 let index = depths.iter().position(same_size).unwrap_or_else(|| {
                     let format = DepthFormat::D32Float.texture_format();
                     let texels = [map.width(), map.height()];
-                    depths.push(texture(device, "ShadowMaps::depth", format, texels, views, usage));
+                    depths.push(texture(device, "ShadowMaps::depth", format, texels, [views, 1], usage));
                     depths.len() - 1
                 });
                 Attachments { colour: Some(view(map, first, views)), depth: view(&depths[index], 0, views), keeps }
             })
             .collect();
-        Self { maps, depths, attachments }
+        Self { maps, separate, depths, attachments }
+    }
+
+    /// The texture that holds what a tile calls its layer.
+    pub fn map(&self, layer: u32) -> &wgpu::Texture {
+        &self.maps[if self.separate { layer as usize } else { 0 }]
+    }
+
+    /// Which layer of that texture it is.
+    pub fn layer(&self, layer: u32) -> u32 {
+        if self.separate { 0 } else { layer }
+    }
+
+    /// Each split's layer alone.
+    pub fn splits(&self, it: &Arrangement) -> Vec<wgpu::TextureView> {
+        it.tiles.iter().map(|tile| view(self.map(tile.layer), self.layer(tile.layer), 1)).collect()
     }
 
     /// Bytes of all textures.
@@ -67,7 +90,10 @@ impl Targets {
         let bytes = |texture: &wgpu::Texture| {
             let size = texture.size();
             let texel = texture.format().block_copy_size(Some(aspect(texture))).unwrap_or(4);
-            u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers) * u64::from(texel)
+            u64::from(size.width)
+                * u64::from(size.height)
+                * u64::from(size.depth_or_array_layers)
+                * u64::from(texel * texture.sample_count())
         };
         self.maps.iter().chain(&self.depths).map(bytes).sum()
     }
@@ -116,14 +142,14 @@ fn texture(
     label: &str,
     format: wgpu::TextureFormat,
     [width, height]: [u32; 2],
-    layers: u32,
+    [layers, samples]: [u32; 2],
     usage: wgpu::TextureUsages,
 ) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: layers },
         mip_level_count: 1,
-        sample_count: 1,
+        sample_count: samples,
         dimension: wgpu::TextureDimension::D2,
         format,
         usage,
