@@ -40,7 +40,7 @@ pub fn run(args: &CompareArgs) -> Result<()> {
         args,
         gpu: &gpu,
         techniques: &techniques,
-        cell: sheet::cell_size(shown.len(), args.size),
+        cell: sheet::cell_size(shown.len(), args.size()),
         shown,
         bar: progress::steps((views * (techniques.len() + 1)) as u64, "views × techniques"),
         views: Vec::new(),
@@ -56,8 +56,8 @@ pub fn run(args: &CompareArgs) -> Result<()> {
     let (comparison, columns) = bench.finish(all_notes)?;
 
     let labels = labels(&comparison, &techniques);
-    let cell = sheet::cell_size(columns[0].len(), args.size);
-    let title = |what: &str| format!("{what}, {} × {} pixels", args.size[0], args.size[1]);
+    let cell = sheet::cell_size(columns[0].len(), args.size());
+    let title = |what: &str| format!("{what}, {} × {} pixels", args.size()[0], args.size()[1]);
     let [pictures, errors] = &columns;
     let contents = [
         png(&sheet::assemble(&title("Shadows; insets: where techniques differ most"), &labels, pictures, cell))?,
@@ -97,7 +97,7 @@ impl Bench<'_> {
         let mut renderers = Vec::new();
         for technique in self.techniques {
             let settings = RenderSettings {
-                size: self.args.size,
+                size: self.args.size(),
                 shadows: technique.job.settings.clone(),
                 filter: wgpu_filter(technique.job.filter),
                 depth_format: wgpu_depth_format(technique.job.depth_format),
@@ -134,11 +134,11 @@ impl Bench<'_> {
         let mut before: Option<Before> = None;
         for (k, view) in series.views.iter().enumerate() {
             let range = self.args.shadow_range;
-            let mut judged = Judged::new(truth, &set.pose, view, series.sun, self.args.size, range)?;
+            let mut judged = Judged::new(truth, &set.pose, view, series.sun, self.args.size(), range)?;
             judged.soften(truth, self.args.sun_angle)?;
             self.bar.inc(1);
             let is_shown = self.shown.contains(&[scene, of, k]);
-            let frame = Frame { pose: &set.pose, view, sun: series.sun, shadows_on: true, tint: false };
+            let frame = Frame { pose: &set.pose, view, sun: series.sun, shadows_on: true, tint: self.args.tinted() };
             let points = match series.views.get(k + 1) {
                 Some(next) => points_shared_with(&judged, next),
                 None => Vec::new(),
@@ -255,7 +255,7 @@ impl Bench<'_> {
             command: ["umbrage".to_owned()].into_iter().chain(std::env::args().skip(1)).collect(),
             reproduce: REPRODUCE,
             adapter: adapter::description(self.gpu),
-            size: self.args.size,
+            size: self.args.size(),
             least_edges: self.args.least_edges,
             pairs: report::pairs(&labels, &self.views)?,
             memory_at_half_percent: report::families(&techniques)?,
