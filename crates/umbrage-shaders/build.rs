@@ -3,9 +3,11 @@
 use wesl::{CompileOptions, Mangler, ModulePath, Wesl};
 
 /// The roots in `shaders`, the features that they are built with, and the file that each becomes in `OUT_DIR`.
-const ROOTS: [(&str, &[&str], &str); 12] = [
+const ROOTS: [(&str, &[&str], &str); 14] = [
     ("pass::caster", &[], "caster"),
     ("pass::contact", &[], "contact"),
+    ("pass::mask", &[], "mask"),
+    ("pass::mask", &["normals"], "mask_with_normals"),
     ("pass::receiver", &["depth_loads"], "receiver"),
     ("pass::receiver", &[], "receiver_without_loads"),
     ("pass::receiver", &["moments"], "receiver_of_moments"),
@@ -19,8 +21,8 @@ const ROOTS: [(&str, &[&str], &str); 12] = [
 ];
 
 /// `depth_loads`: depth textures can be loaded from. `moments`: maps hold moments of depth. `multisampled`: depth has four samples a
-/// texel. `own_taps`: the shader takes an anisotropic sample's taps. `by_hand`: and no sampler filters moments.
-const FEATURES: [&str; 5] = ["depth_loads", "moments", "multisampled", "own_taps", "by_hand"];
+/// texel. `normals`: a mask has a buffer of normals. `own_taps`: the shader takes an anisotropic sample's taps. `by_hand`: and no sampler filters moments.
+const FEATURES: [&str; 6] = ["normals", "depth_loads", "moments", "multisampled", "own_taps", "by_hand"];
 
 fn main() {
     let mut compiler = Wesl::new("shaders");

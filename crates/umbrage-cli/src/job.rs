@@ -127,6 +127,8 @@ pub struct ShadowJob {
     pub shadow_strength: f64,
     /// `--shadow-colour`.
     pub shadow_colour: DVec3,
+    /// Whether `--coordinates` are `deferred`.
+    pub deferred: bool,
     /// `--depth-format`.
     pub depth_format: args::DepthFormat,
     /// `--tint`.
@@ -329,6 +331,7 @@ impl ShadowJob {
             bias: args.bias,
             shadow_strength: args.shadow_strength,
             shadow_colour: args.shadow_colour,
+            deferred: args.coordinates == args::Coordinates::Deferred,
             depth_format: args.depth_format,
             tint: args.tint,
             shadows_on: args.shadows == args::Switch::On,

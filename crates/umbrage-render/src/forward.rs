@@ -266,7 +266,8 @@ impl PictureTarget {
             Some(samples) => (samples, Some(&self.resolved)),
             None => (&self.resolved, None),
         };
-        begin("PictureTarget::pass", encoder, color, resolve_target, &self.depth, timestamp_writes)
+        let depth = (&self.depth, wgpu::StoreOp::Discard);
+        begin("PictureTarget::pass", encoder, color, resolve_target, depth, timestamp_writes)
     }
 }
 
@@ -274,8 +275,10 @@ impl PictureTarget {
 pub(crate) struct MaskTarget {
     /// The mask.
     pub texture: wgpu::Texture,
-    color: wgpu::TextureView,
-    depth: wgpu::TextureView,
+    /// What draws it.
+    pub color: wgpu::TextureView,
+    /// Kept, for passes that come after.
+    pub depth: wgpu::TextureView,
 }
 
 impl MaskTarget {
@@ -291,7 +294,7 @@ impl MaskTarget {
         encoder: &'e mut wgpu::CommandEncoder,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'e> {
-        begin("MaskTarget::pass", encoder, &self.color, None, &self.depth, timestamp_writes)
+        begin("MaskTarget::pass", encoder, &self.color, None, (&self.depth, wgpu::StoreOp::Store), timestamp_writes)
     }
 }
 
@@ -311,7 +314,11 @@ fn target_texture(
         sample_count,
         dimension: wgpu::TextureDimension::D2,
         format,
-        usage: if read_back { usage | wgpu::TextureUsages::COPY_SRC } else { usage },
+        usage: match (read_back, format) {
+            (true, _) => usage | wgpu::TextureUsages::COPY_SRC,
+            (false, DEPTH_FORMAT) if sample_count == 1 => usage | wgpu::TextureUsages::TEXTURE_BINDING,
+            (false, _) => usage,
+        },
         view_formats: &[],
     })
 }
@@ -321,7 +328,7 @@ fn begin<'e>(
     encoder: &'e mut wgpu::CommandEncoder,
     color: &wgpu::TextureView,
     resolve_target: Option<&wgpu::TextureView>,
-    depth: &wgpu::TextureView,
+    (depth, keep_depth): (&wgpu::TextureView, wgpu::StoreOp),
     timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
 ) -> wgpu::RenderPass<'e> {
     let keep_samples = if resolve_target.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
@@ -335,7 +342,7 @@ fn begin<'e>(
         })],
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: depth,
-            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: keep_depth }),
             stencil_ops: None,
         }),
         timestamp_writes,

@@ -28,6 +28,8 @@ pub mod twin;
 /// The root `shaders/pass/caster.wesl`, all but the constant `UMBRAGE_CASTER_GROUP`.
 pub const CASTER: &str = include_str!(concat!(env!("OUT_DIR"), "/caster.wgsl"));
 
+const MASK: &str = include_str!(concat!(env!("OUT_DIR"), "/mask.wgsl"));
+const MASK_WITH_NORMALS: &str = include_str!(concat!(env!("OUT_DIR"), "/mask_with_normals.wgsl"));
 const CONTACT: &str = include_str!(concat!(env!("OUT_DIR"), "/contact.wgsl"));
 const RECEIVER: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver.wgsl"));
 const RECEIVER_WITHOUT_LOADS: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver_without_loads.wgsl"));
@@ -79,6 +81,14 @@ pub enum MomentMaps {
 #[must_use]
 pub fn caster(group: u32) -> String {
     format!("const UMBRAGE_CASTER_GROUP = {group}u;\n{CASTER}\n")
+}
+
+/// A whole pass to put behind a [`receiver`]: the entry points `umbrage_mask_vertex` and `umbrage_mask_fragment` turn a picture's depth
+/// (and its normals, if there is a texture of them) into a mask of what is lit.
+#[must_use]
+pub fn mask(group: u32, normals: bool) -> String {
+    let text = if normals { MASK_WITH_NORMALS } else { MASK };
+    format!("const UMBRAGE_MASK_GROUP = {group}u;\n{text}\n")
 }
 
 /// Text to put before a shader that asks for contact shadows:

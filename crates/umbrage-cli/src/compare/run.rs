@@ -157,7 +157,7 @@ impl Bench<'_> {
             let both: Vec<ProbePoint> = old_points.iter().chain(&points).copied().collect();
             let (mut scores, mut shown) = (Vec::new(), Vec::new());
             for (number, (technique, renderer)) in self.techniques.iter().zip(renderers.iter_mut()).enumerate() {
-                let wanted = Outputs { picture: is_shown, mask: true, maps: false };
+                let wanted = Outputs { picture: is_shown, mask: true, maps: false, deferred: technique.job.deferred };
                 let rendered = renderer.render(&frame, wanted).map_err(|error| in_technique(technique, error))?;
                 let mask = rendered.mask.ok_or_else(|| Failure::other("the renderer gave no mask"))?;
                 let image_metrics = is_shown && self.args.image_metrics == Switch::On;
@@ -225,7 +225,7 @@ impl Bench<'_> {
         };
         let mut plain = |light| -> Result<_> {
             let frame = Frame { light, shadows_on: false, ..*frame };
-            let wanted = Outputs { picture: true, mask: false, maps: false };
+            let wanted = Outputs { picture: true, mask: false, maps: false, deferred: false };
             renderer.render(&frame, wanted)?.picture.ok_or_else(|| Failure::other("the renderer gave no picture"))
         };
         let plain = Plain { lit: plain(frame.light)?, dark: plain(against)? };
