@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, DVec3};
 
-use crate::{Error, Result, ShadowMaps};
+use crate::{Error, Result, ShadowMaps, Storage};
 
 /// Where the mask's pass takes its normals from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -84,7 +84,8 @@ impl ShadowMask {
     /// For masks of `format` (`R8Unorm` holds what is lit, `Rg8Unorm` also where something is).
     ///
     /// # Errors
-    /// [`Error::MaskNeedsDepthLoads`] where depth textures cannot be loaded from.
+    /// [`Error::MaskNeedsDepthLoads`] where depth textures cannot be loaded from, [`Error::ConflictingOptions`] with
+    /// [`Storage::Reused`], whose maps are gone when the picture's depth is complete.
     pub fn new(
         device: &wgpu::Device,
         maps: &ShadowMaps,
@@ -93,6 +94,13 @@ impl ShadowMask {
     ) -> Result<Self> {
         if device.adapter_info().backend == wgpu::Backend::Gl {
             return Err(Error::MaskNeedsDepthLoads);
+        }
+        if maps.options().storage == Storage::Reused {
+            return Err(Error::ConflictingOptions {
+                first: "storage reused".to_owned(),
+                second: "deferred mask".to_owned(),
+                reason: "there is one map at a time, and the picture's depth is complete after the last; use storage array",
+            });
         }
         let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
             binding,

@@ -141,10 +141,10 @@ const SELECTION: Content = Content {
     ..FIGURE_8
 };
 
-/// *Parallel-Split Shadow Maps on Programmable GPUs*, Figure 10-8: a single map of 2048² beside three splits of 1024², with the book's
-/// own fit, λ = 0.5 and filter.
+/// *Parallel-Split Shadow Maps on Programmable GPUs*, Figure 10-8: a single map of 2048² beside three splits of 1024² by the
+/// multipass method, with the book's own fit, λ = 0.5 and filter.
 const GEMS_FIGURE: Content = Content {
-    techniques: &["ssm:2048", "pssm:3:1024"],
+    techniques: &["ssm:2048", "pssm:3:1024:generation=multipass"],
     with: "filter=pcf2:blend=0:far-fade=0:fit=independent:stabilize=none",
     scenes: &["robot-war", "knights"],
     cameras: &["near"],
