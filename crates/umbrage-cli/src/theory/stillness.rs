@@ -56,7 +56,7 @@ pub(super) fn plans(setting: &Setting, stabilize: Stabilize, frames: u32) -> Res
     (0..frames).map(plan).collect()
 }
 
-/// How many texels change their place in the world from each plan to the next, as the share of maps that do.
+/// How often a map changes its texels from one plan to the next.
 fn steps(plans: &[ShadowPlan]) -> usize {
     let pairs = plans.windows(2).flat_map(|pair| pair[0].splits.iter().zip(&pair[1].splits));
     pairs.filter(|(before, now)| now.texels_moved_since(before).is_none()).count()
@@ -74,7 +74,7 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
     let mut grids = Vec::new();
     for (walk, (name, _, colour)) in walks.iter().zip(KINDS).take(3) {
         grids.push(Figure::svg(
-            texels_around(&format!("Texels around a point, {name}"), &walk[0], &walk[1], colour)?,
+            texels_around(&format!("Texels, {}", name.split(',').next().unwrap_or(name)), &walk[0], &walk[1], colour)?,
             match grids.len() {
                 0 => "Two frames, 0.15 m and 0.003 rad apart: scale, place and direction of the texels change, and the point of interest \
                       with the texel that it lies in (003 Figure 4.1.3, bottom row).",
@@ -137,14 +137,17 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
 fn texels_around(title: &str, first: &ShadowPlan, second: &ShadowPlan, colour: Colour) -> Result<String> {
     let (first, second) = (&first.splits[SHOWN], &second.splits[SHOWN]);
     let plane = Plane { right: first.u_axis, up: -first.v_axis };
-    let point = 0.5 * (map_corners(first)[0] + map_corners(first)[3]);
+    let corners = map_corners(first);
+    // Near the map's middle, and no texel's corner.
+    let point =
+        0.5 * (corners[0] + corners[3]) + 0.3 * (first.u_axis * first.texel_m.x + first.v_axis * first.texel_m.y);
     let mut diagram = Diagram::new(title);
     diagram.width = 330.0;
     diagram.unit = Some("m".into());
     let (x, y) = plane.point(point);
     let room = REACH * first.texel_m.max_element();
     diagram.frame = Some(((x - room, y - room), (x + room, y + room)));
-    diagram.legend = vec![("this frame".into(), Colour::Quiet, None), ("the next".into(), colour, None)];
+    diagram.legend = vec![("this frame".into(), Colour::Quiet, Some(0.25)), ("the next".into(), colour, Some(0.25))];
     let grid = |split: &Split, stroke: fn(Colour, f64) -> Stroke, colour: Colour, width: f64| {
         let at = split.map_from_world(point).truncate().floor();
         let corner = |texel: DVec2| {
