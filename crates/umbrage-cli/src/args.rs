@@ -167,8 +167,8 @@ pub struct SceneArgs {
     /// Pixels
     #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = parse::size, allow_hyphen_values = true, help_heading = "Camera")]
     pub size: [u32; 2],
-    /// One of the scene's cameras
-    #[arg(long, value_name = "NAME|INDEX", help_heading = "Camera")]
+    /// One of the scene's cameras; several between commas are shown side by side by render and truth, each as large as --size
+    #[arg(long, value_name = "NAME|INDEX,…", help_heading = "Camera")]
     pub camera: Option<String>,
     /// Where the eye stands, in metres
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Camera")]
@@ -195,8 +195,9 @@ pub struct SceneArgs {
     #[arg(long, value_name = "M", default_value = "2", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Camera")]
     pub eye_height: f64,
 
-    /// One of the scene's directional lights [default: the first]
-    #[arg(long, value_name = "NAME|INDEX", help_heading = "Light")]
+    /// Lights of the scene, directional, spot or point: one, several between commas, or all (at most 8). Pictures show all of
+    /// them with their shadows; masks, probes, truth and plans are of the first [default: the first directional one]
+    #[arg(long, value_name = "NAME|INDEX,…", help_heading = "Light")]
     pub light: Option<String>,
     /// The way light travels; any length
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Light")]
@@ -251,6 +252,9 @@ pub struct ShadowArgs {
     /// What each map is fitted to: the slice alone, or its receivers and casters too
     #[arg(long, value_enum, default_value_t)]
     pub fit: Fit,
+    /// Which map a pixel uses: that of its view depth, or the first (finest) that contains it
+    #[arg(long, value_enum, default_value_t)]
+    pub selection: Selection,
     /// Whether shadows stand still while the camera moves [default: exact, or none where a map is warped]
     #[arg(long, value_enum)]
     pub stabilize: Option<Stabilize>,
@@ -389,6 +393,16 @@ pub enum Fit {
     Dependent,
     /// The slice alone
     Independent,
+}
+
+/// `--selection`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Selection {
+    /// By view depth
+    #[default]
+    Depth,
+    /// The first map that contains it
+    Map,
 }
 
 /// `--stabilize`.

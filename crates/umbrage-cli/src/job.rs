@@ -263,6 +263,15 @@ impl ShadowJob {
         let map_sizes = map_sizes(args)?;
         let warps = warps(args, map_sizes.len())?;
         let stabilize = stabilize(args, &warps)?;
+        if args.selection == args::Selection::Map
+            && let Some(warp) = warps.iter().find(|warp| **warp != args::Warp::None)
+        {
+            return Err(Failure::input(format!(
+                "--selection map and a {} map exclude each other: the first map that contains a point need not be the finest \
+                 there; leave one of them away",
+                typed_name(*warp)
+            )));
+        }
         let settings = ShadowSettings {
             scheme: scheme(args, map_sizes.len())?,
             map_sizes,
@@ -274,6 +283,10 @@ impl ShadowJob {
             fit: match args.fit {
                 args::Fit::Dependent => umbrage::Fit::Dependent,
                 args::Fit::Independent => umbrage::Fit::Independent,
+            },
+            selection: match args.selection {
+                args::Selection::Depth => umbrage::Selection::Depth,
+                args::Selection::Map => umbrage::Selection::Map,
             },
             stabilize: match stabilize {
                 args::Stabilize::Exact => umbrage::Stabilize::Exact,

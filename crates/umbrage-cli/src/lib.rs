@@ -11,6 +11,7 @@ pub mod compare;
 pub mod failure;
 pub mod html;
 pub mod job;
+mod lights;
 pub mod output;
 pub mod parse;
 mod plan;

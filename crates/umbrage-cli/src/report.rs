@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::lights::LightReport;
+
 /// The report of one frame of `render` or `probe`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
@@ -42,13 +44,29 @@ pub struct Report {
     pub times_ms: TimesMs,
     /// Bytes of all shadow maps.
     pub bytes: u64,
-    /// The splits, nearest first.
+    /// The splits of the first light, nearest first; the others' are in `lights`.
     pub splits: Vec<SplitReport>,
+    /// The views beside the first one, from left to right.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub beside: Vec<BesideReport>,
     /// The answers of `probe`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub probe: Option<ProbeReport>,
     /// Fallbacks taken, defaults invented.
     pub notes: Vec<String>,
+}
+
+/// A view beside the first one.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BesideReport {
+    /// The eye.
+    pub camera: CameraReport,
+    /// `C_0 ..= C_m` of the first light: view depths in metres.
+    pub planes_m: Vec<f64>,
+    /// How long it took.
+    pub times_ms: TimesMs,
+    /// All lights with their splits.
+    pub lights: Vec<LightReport>,
 }
 
 /// The report of one frame of `truth`.
@@ -77,8 +95,11 @@ pub struct ShotReport {
     pub size: [u32; 2],
     /// The eye.
     pub camera: CameraReport,
-    /// The way light travels, a unit vector.
-    pub sun: [f64; 3],
+    /// The way the first light travels, a unit vector, if it is a sun.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sun: Option<[f64; 3]>,
+    /// All lights, the first one first, with the splits of each where maps were made.
+    pub lights: Vec<LightReport>,
     /// With --sun-to: the suns whose shadows are shown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sun_shown: Option<SunShown>,

@@ -4,9 +4,9 @@
 //! `umbrage_visibility_faded` says.
 
 use image::{GrayAlphaImage, RgbaImage};
-use umbrage::{Planner, SunFade};
+use umbrage::{DirectionalLight, SunFade};
 
-use crate::{Frame, Outputs, ProbeAnswer, ProbePoint, Rendered, Renderer, Result};
+use crate::{Frame, Lamp, Outputs, ProbeAnswer, ProbePoint, Rendered, Renderer, Result};
 
 impl Renderer {
     /// As [`Renderer::render`], under the suns of `fade` in place of the frame's. While two suns are shown, pictures are mixed in linear
@@ -19,10 +19,10 @@ impl Renderer {
     pub fn render_faded(&mut self, frame: &Frame<'_>, fade: &SunFade, outputs: Outputs) -> Result<Rendered> {
         if !fade.is_fading() {
             self.end_fade();
-            return self.render(&Frame { sun: fade.to, ..*frame }, outputs);
+            return self.render(&under(frame, fade.to), outputs);
         }
-        let from = self.render(&Frame { sun: fade.from, ..*frame }, Outputs { maps: false, ..outputs })?;
-        let to = self.as_faded_to(|this| this.render(&Frame { sun: fade.to, ..*frame }, outputs))?;
+        let from = self.render(&under(frame, fade.from), Outputs { maps: false, ..outputs })?;
+        let to = self.as_faded_to(|this| this.render(&under(frame, fade.to), outputs))?;
         let mut stats = to.stats;
         stats.plan_ms += from.stats.plan_ms;
         stats.shadow_ms += from.stats.shadow_ms;
@@ -48,10 +48,10 @@ impl Renderer {
     ) -> Result<Vec<ProbeAnswer>> {
         if !fade.is_fading() {
             self.end_fade();
-            return self.probe(&Frame { sun: fade.to, ..*frame }, points);
+            return self.probe(&under(frame, fade.to), points);
         }
-        let from = self.probe(&Frame { sun: fade.from, ..*frame }, points)?;
-        let mut answers = self.as_faded_to(|this| this.probe(&Frame { sun: fade.to, ..*frame }, points))?;
+        let from = self.probe(&under(frame, fade.from), points)?;
+        let mut answers = self.as_faded_to(|this| this.probe(&under(frame, fade.to), points))?;
         for (to, from) in answers.iter_mut().zip(from) {
             to.visibility = fade.mix(f64::from(from.visibility), f64::from(to.visibility)) as f32;
         }
@@ -60,22 +60,27 @@ impl Renderer {
 
     /// Runs `body` with the planner of the sun that is faded to.
     fn as_faded_to<T>(&mut self, body: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
-        let next = match self.next_planner.take() {
-            Some(planner) => planner,
-            None => Planner::new(self.planner.settings().clone())?,
+        let next = match self.planners.next.take() {
+            Some(planners) => planners,
+            None => self.planners.afresh()?.now,
         };
-        let left = std::mem::replace(&mut self.planner, next);
+        let left = std::mem::replace(&mut self.planners.now, next);
         let result = body(self);
-        self.next_planner = Some(std::mem::replace(&mut self.planner, left));
+        self.planners.next = Some(std::mem::replace(&mut self.planners.now, left));
         result
     }
 
     /// The sun that was faded to is the only one now.
     fn end_fade(&mut self) {
-        if let Some(planner) = self.next_planner.take() {
-            self.planner = planner;
+        if let Some(planners) = self.planners.next.take() {
+            self.planners.now = planners;
         }
     }
+}
+
+/// The frame with another sun for its first light.
+fn under<'a>(frame: &Frame<'a>, sun: DirectionalLight) -> Frame<'a> {
+    Frame { light: Lamp { light: sun.into(), ..frame.light }, ..*frame }
 }
 
 fn mixed_masks(mut from: GrayAlphaImage, to: &GrayAlphaImage, fade: &SunFade) -> GrayAlphaImage {

@@ -3,13 +3,14 @@
 use std::borrow::Cow;
 
 use glam::{DVec3, Vec3};
-use umbrage::{DirectionalLight, Projection, View};
+use umbrage::{Light, Projection, View};
 use umbrage_scene::AlphaMode;
 use umbrage_wgpu::ShadowMaps;
 
 use crate::draw_list::{Drawable, Drawn, Run, vertex_layouts};
+use crate::lamps::{Lamp, LampUniform, MOST_LAMPS};
 use crate::materials::{GpuMaterial, Materials};
-use crate::{Gpu, shaders};
+use crate::{Gpu, Result, shaders};
 
 /// What the picture is drawn in before it is resolved; the samples of a pixel share one shading.
 pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -65,15 +66,25 @@ pub(crate) struct FrameUniform {
     pub clip_from_eye: [[f32; 4]; 4],
     pub eye: [f32; 3],
     pub is_orthographic: f32,
-    pub forward: PaddedVec3,
-    pub to_light: PaddedVec3,
+    pub forward: [f32; 3],
+    pub lamp_count: u32,
+    pub to_sun: [f32; 3],
+    pub daylight: f32,
     pub ray_center: PaddedVec3,
     pub ray_right: PaddedVec3,
     pub ray_up: PaddedVec3,
+    pub lamps: [LampUniform; MOST_LAMPS],
 }
 
+/// How bright the sky is without a sun: enough to tell corners apart where no lamp shines.
+const NIGHT: f32 = 0.2;
+
 impl FrameUniform {
-    pub fn new(view: &View, sun: &DirectionalLight, origin: DVec3) -> Self {
+    pub fn new(view: &View, lamps: &[Lamp], origin: DVec3) -> Result<Self> {
+        let sun = lamps.iter().find_map(|lamp| match lamp.light {
+            Light::Directional(sun) => Some(sun.direction()),
+            Light::Spot(_) | Light::Point(_) => None,
+        });
         let frustum = view.frustum();
         let axes = view.world_from_view_rotation();
         let (center, half) = match frustum.projection {
@@ -85,16 +96,19 @@ impl FrameUniform {
             Projection::Orthographic => (view.forward(), [0.0; 2]),
         };
         let eye: Vec3 = (view.eye() - origin).as_vec3();
-        Self {
+        Ok(Self {
             clip_from_eye: view.clip_from_relative(view.eye()).as_mat4().to_cols_array_2d(),
             eye: eye.to_array(),
             is_orthographic: f32::from(u8::from(frustum.projection == Projection::Orthographic)),
-            forward: view.forward().into(),
-            to_light: (-sun.direction()).into(),
+            forward: view.forward().as_vec3().to_array(),
+            lamp_count: lamps.len() as u32,
+            to_sun: (-sun.unwrap_or(DVec3::ZERO)).as_vec3().to_array(),
+            daylight: if sun.is_some() { 1.0 } else { NIGHT },
             ray_center: center.into(),
             ray_right: (axes.x_axis * half[0]).into(),
             ray_up: (axes.y_axis * half[1]).into(),
-        }
+            lamps: LampUniform::all(lamps, origin)?,
+        })
     }
 }
 

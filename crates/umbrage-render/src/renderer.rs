@@ -1,11 +1,12 @@
-//! The demonstration renderer: a scene, a view and a sun in; a picture, a mask, maps and numbers out.
+//! The demonstration renderer: a scene, a view and lights in; a picture, a mask, maps and numbers out.
 
 use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
-use umbrage::{Aabb, DirectionalLight, Planner, ShadowPlan, ShadowSettings, View};
+use umbrage::{Aabb, Planner, ShadowPlan, ShadowSettings, SunFade, View};
 use umbrage_scene::{AlphaMode, Pose, Scene};
 use umbrage_wgpu::{
-    DepthFormat, Filter, FrameOptions, Generation, ShadowMaps, ShadowMapsOptions, Softness, Storage, Transition,
+    DepthFormat, Filter, FrameOptions, Generation, LightSlot, ShadowMaps, ShadowMapsOptions, Softness, Storage,
+    Transition,
 };
 use web_time::Instant;
 
@@ -14,10 +15,11 @@ use crate::casters::Casters;
 use crate::draw_list::{Drawable, Drawn, Instances, Run};
 use crate::forward::{Forward, FrameUniform, MaskTarget, PictureTarget, Samples};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry, check_object};
+use crate::lamps::Lamp;
 use crate::look::Look;
 use crate::materials::Materials;
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint, Responder};
-use crate::stats::{FrameStats, SplitStats};
+use crate::stats::{FrameStats, LightStats, SplitStats};
 use crate::timing::{PassCounts, Slot, Timer};
 use crate::{Error, Gpu, Result, cull, maps};
 
@@ -49,6 +51,8 @@ pub struct RenderSettings {
     pub storage: Storage,
     /// How maps are drawn.
     pub generation: Generation,
+    /// What the lights of a frame may be, the first one first.
+    pub lights: Vec<LightSlot>,
 }
 
 /// What varies from frame to frame.
@@ -58,8 +62,10 @@ pub struct Frame<'a> {
     pub pose: &'a Pose,
     /// The eye.
     pub view: &'a View,
-    /// The light.
-    pub sun: DirectionalLight,
+    /// The first light: the one that masks and probes are of.
+    pub light: Lamp,
+    /// More lights, for the picture.
+    pub more_lights: &'a [Lamp],
     /// Whether anything throws shadows; if not, whatever faces the light is lit.
     pub shadows_on: bool,
     /// Whether the picture shows each split in its own colour.
@@ -99,9 +105,9 @@ pub struct Renderer {
     softness: Softness,
     transition: Transition,
     look: Look,
-    pub(crate) planner: Planner,
-    /// While a step of the sun is faded: what plans for the sun that is faded to.
-    pub(crate) next_planner: Option<Planner>,
+    pub(crate) planners: Planners,
+    /// The same for each further view.
+    more_views: Vec<Planners>,
     maps: ShadowMaps,
     scene: Geometry,
     scene_meshes: SceneMeshes,
@@ -117,12 +123,33 @@ pub struct Renderer {
     notes: Vec<String>,
 }
 
+/// What plans one view's maps.
+pub(crate) struct Planners {
+    /// One for each light.
+    pub now: Vec<Planner>,
+    /// While a step of the sun is faded: what plans for the sun that is faded to.
+    pub next: Option<Vec<Planner>>,
+}
+
+impl Planners {
+    fn new(settings: &ShadowSettings, lights: usize) -> Result<Self> {
+        let now = (0..lights).map(|_| Planner::new(settings.clone())).collect::<Result<_, _>>()?;
+        Ok(Self { now, next: None })
+    }
+
+    /// Others of the same settings, which remember nothing.
+    pub fn afresh(&self) -> Result<Self> {
+        Self::new(self.now[0].settings(), self.now.len())
+    }
+}
+
 /// A frame that is planned and uploaded, ready to be recorded.
 struct Prepared {
     origin: DVec3,
-    plan: ShadowPlan,
+    /// One for each light.
+    plans: Vec<ShadowPlan>,
     plan_ms: f64,
-    /// Per split.
+    /// Per map.
     caster_runs: Vec<Vec<Run>>,
     solid: Vec<Run>,
     translucent: Vec<Run>,
@@ -160,14 +187,14 @@ impl Renderer {
                     filter: settings.filter,
                     storage: settings.storage,
                     generation: settings.generation,
-                    ..ShadowMapsOptions::default()
+                    lights: settings.lights.clone(),
                 },
             )?;
             // Floats hold the depth of a whole world; 16 bits want the shorter range that casters flattened onto the near plane
             // allow, and pay for it with maps that step along the light.
             shadows.depth_clamp = maps.depth_clamp() && settings.depth_format == DepthFormat::D16Unorm;
             let materials = Materials::new(gpu, scene)?;
-            let timer = Timer::new(gpu);
+            let timer = Timer::new(gpu, maps.map_count());
             let mut notes = Vec::new();
             if settings.depth_format == DepthFormat::D16Unorm && !maps.depth_clamp() {
                 notes.push(
@@ -183,8 +210,8 @@ impl Renderer {
             Ok(Self {
                 size: settings.size,
                 depth_format: settings.depth_format,
-                planner: Planner::new(shadows)?,
-                next_planner: None,
+                planners: Planners::new(&shadows, settings.lights.len())?,
+                more_views: Vec::new(),
                 scene: Geometry::of_scene(gpu, scene)?,
                 scene_meshes: SceneMeshes::of_scene(scene),
                 skinned: SkinnedGeometry::empty(gpu)?,
@@ -210,7 +237,7 @@ impl Renderer {
     /// The settings that shadows are planned with, including what the filter, the device and the size have decided.
     #[must_use]
     pub fn shadow_settings(&self) -> &ShadowSettings {
-        self.planner.settings()
+        self.planners.now[0].settings()
     }
 
     /// Forgets what earlier frames have left behind in the planner (sizes that stabilisation holds), as if nothing had been
@@ -219,8 +246,8 @@ impl Renderer {
     /// # Errors
     /// Never in practice: the settings were accepted before.
     pub fn restart(&mut self) -> Result<()> {
-        self.planner = Planner::new(self.planner.settings().clone())?;
-        self.next_planner = None;
+        self.more_views.clear();
+        self.planners = self.planners.afresh()?;
         Ok(())
     }
 
@@ -234,13 +261,49 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Plan`] if camera, range or bounds are wrong, [`Error::Scene`] if the pose is not one of this scene,
+    /// [`Error::LampSlots`], [`Error::LampCount`] or [`Error::Shadows`] if the lights are not those that the renderer was made for,
     /// [`Error::OutOfMemory`] or [`Error::Device`] if the device fails.
     pub fn render(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
         gpu.guarded("drawing a frame", || self.render_unguarded(frame, outputs))
     }
 
-    /// Visibility at given points. A point that the view shows within the shadowed range gets what a pixel there would
+    /// Draws several views, for a split screen: each as if it were drawn alone, under the suns of `fade` if there is one. The maps are
+    /// one view's after the other's; what stabilisation holds is kept for each, so a view keeps its place in the list from frame to
+    /// frame.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn render_views(
+        &mut self,
+        frames: &[Frame<'_>],
+        fade: Option<&SunFade>,
+        outputs: Outputs,
+    ) -> Result<Vec<Rendered>> {
+        let mut views = Vec::with_capacity(frames.len());
+        for (view, frame) in frames.iter().enumerate() {
+            if view > self.more_views.len() {
+                self.more_views.push(self.planners.afresh()?);
+            }
+            self.swap_planners(view);
+            let rendered = match fade {
+                Some(fade) => self.render_faded(frame, fade, outputs),
+                None => self.render(frame, outputs),
+            };
+            self.swap_planners(view);
+            views.push(rendered?);
+        }
+        Ok(views)
+    }
+
+    /// Brings a further view's planners to the fore, or back.
+    fn swap_planners(&mut self, view: usize) {
+        if let Some(other) = view.checked_sub(1) {
+            std::mem::swap(&mut self.planners, &mut self.more_views[other]);
+        }
+    }
+
+    /// Visibility of the first light at given points. A point that the view shows within the shadowed range gets what a pixel there would
     /// get; any other is answered by the first split whose map covers it, or is lit where none does.
     ///
     /// # Errors
@@ -263,7 +326,7 @@ impl Renderer {
         let mut clock = Clock::start(&gpu, &self.timer);
         let mut encoder = new_encoder(&gpu);
         let split_drawn = self.record_maps(&mut encoder, frame, &prepared);
-        let map_passes = split_drawn.len();
+        let map_passes = split_drawn.iter().flatten().count();
         let mut encoder = clock.after_maps(encoder)?;
         let mut view_drawn = Drawn::default();
         let mask = match &self.mask {
@@ -283,7 +346,7 @@ impl Renderer {
             _ => None,
         };
         let depth_maps = if outputs.maps && frame.shadows_on {
-            let splits = prepared.plan.splits.iter().enumerate();
+            let splits = prepared.plans[0].splits.iter().enumerate();
             splits
                 .map(|(i, split)| {
                     let texture = self.maps.depth_texture();
@@ -321,7 +384,12 @@ impl Renderer {
             plan_ms: prepared.plan_ms,
             shadow_ms,
             frame_ms,
-            splits: self.split_stats(&prepared.plan, &split_drawn),
+            splits: self.split_stats(0, &prepared.plans[0], &split_drawn),
+            more_lights: prepared.plans[1..]
+                .iter()
+                .enumerate()
+                .map(|(i, plan)| LightStats { splits: self.split_stats(i + 1, plan, &split_drawn), plan: plan.clone() })
+                .collect(),
             objects_in_view: prepared.objects_in_view,
             view_draws: view_drawn.draws,
             view_triangles: view_drawn.triangles,
@@ -331,7 +399,7 @@ impl Renderer {
             generation: self.maps.options().generation.name(),
             storage: self.maps.options().storage.name(),
             notes: self.notes.clone(),
-            plan: prepared.plan,
+            plan: prepared.plans[0].clone(),
         };
         let [width, height] = self.size;
         const SIZED: &str = "a capture has as many bytes as its picture";
@@ -364,18 +432,18 @@ impl Renderer {
         let mut answers = Vec::with_capacity(points.len());
         for batch in points.chunks(probe::BATCH) {
             let asked: Vec<(ProbePoint, Responder)> =
-                batch.iter().map(|&point| (point, self.responder(frame, &prepared.plan, point.position))).collect();
+                batch.iter().map(|&point| (point, self.responder(frame, &prepared.plans[0], point.position))).collect();
             let mut encoder = new_encoder(&gpu);
             let pending = self.probe.record(&gpu, &mut encoder, &self.maps, prepared.origin, &asked)?;
             gpu.queue.submit([encoder.finish()]);
             let mut replies = pending.read(&gpu)?;
             for (reply, (point, responder)) in replies.iter_mut().zip(&asked) {
-                let faces_light = point.normal.dot(frame.sun.direction()) < 0.0;
+                let faces_light = point.normal.dot(frame.light.light.to_light(point.position)) > 0.0;
                 let unshaded = f32::from(u8::from(faces_light));
                 match *responder {
                     Responder::Nobody => *reply = ProbeAnswer { visibility: unshaded, split: -1 },
                     // No caster reaches this split: whatever its map looks like, it is lit.
-                    Responder::Split(split) if prepared.plan.casters(split).is_empty() || !frame.shadows_on => {
+                    Responder::Split(split) if prepared.plans[0].casters(split).is_empty() || !frame.shadows_on => {
                         *reply = ProbeAnswer { visibility: unshaded, split: split as i32 };
                     }
                     Responder::Split(_) | Responder::View => {}
@@ -389,11 +457,14 @@ impl Renderer {
     /// Who answers for a point.
     fn responder(&self, frame: &Frame<'_>, plan: &ShadowPlan, point: DVec3) -> Responder {
         let depth = frame.view.view_depth(point);
+        if !frame.light.light.reaches(point) {
+            return Responder::Nobody;
+        }
         let in_range = plan.planes.last().is_some_and(|&far| depth < far);
         if in_range && cull::may_be_seen(frame.view, &Aabb::new(point, point)) {
             return Responder::View;
         }
-        self.planner.covering_split(point).map_or(Responder::Nobody, Responder::Split)
+        self.planners.now[0].covering_split(point).map_or(Responder::Nobody, Responder::Split)
     }
 
     /// Plans, uploads what moves, and sorts what is to be drawn.
@@ -409,9 +480,15 @@ impl Renderer {
         let casters: Vec<Aabb> = caster_objects.iter().map(|&i| pose.objects[i].bounds).collect();
         let receivers: Vec<Aabb> = pose.objects.iter().map(|object| object.bounds).collect();
         let begun = Instant::now();
-        let plan = self.planner.plan(view, &frame.sun, &casters, &receivers)?;
+        let lamps: Vec<Lamp> = [frame.light].into_iter().chain(frame.more_lights.iter().copied()).collect();
+        let planners = &mut self.planners.now;
+        if lamps.len() != planners.len() {
+            return Err(Error::LampSlots { frame: lamps.len(), renderer: planners.len() });
+        }
+        let plans = planners.iter_mut().zip(&lamps);
+        let plans = plans.map(|(planner, lamp)| Ok(planner.plan(view, &lamp.light, &casters, &receivers)?.clone()));
+        let plans = plans.collect::<Result<Vec<ShadowPlan>>>()?;
         let plan_ms = begun.elapsed().as_secs_f64() * 1e3;
-        let plan = plan.clone();
         let options = FrameOptions {
             origin,
             enabled: frame.shadows_on,
@@ -422,9 +499,9 @@ impl Renderer {
             softness: self.softness,
             transition: self.transition,
         };
-        self.maps.prepare(&self.gpu.queue, &plan, &options)?;
+        self.maps.prepare_lights(&self.gpu.queue, &plans.iter().collect::<Vec<_>>(), &options)?;
         self.skinned.update(&self.gpu, &self.scene_meshes, pose)?;
-        self.forward.prepare(&self.gpu, &FrameUniform::new(view, &frame.sun, origin));
+        self.forward.prepare(&self.gpu, &FrameUniform::new(view, &lamps, origin)?);
         self.timer.restart();
 
         let mut near_to_far: Vec<(f64, usize)> = (0..pose.objects.len())
@@ -435,17 +512,18 @@ impl Renderer {
         let visible: Vec<usize> = near_to_far.into_iter().map(|(_, i)| i).collect();
 
         self.instances.clear();
-        let caster_runs = (0..plan.splits.len())
-            .map(|i| {
+        let mut caster_runs = vec![Vec::new(); self.maps.map_count()];
+        for (light, plan) in plans.iter().enumerate() {
+            for (i, runs) in caster_runs[self.maps.first_map(light)..][..plan.splits.len()].iter_mut().enumerate() {
                 let objects = plan.casters(i).iter().map(|&caster| caster_objects[caster as usize]);
-                self.instances.grouped(pose, origin, objects)
-            })
-            .collect();
+                *runs = self.instances.grouped(pose, origin, objects);
+            }
+        }
         let solid = self.instances.grouped(pose, origin, visible.iter().copied());
         let far_to_near = self.with_translucent_parts(pose, visible.iter().rev().copied());
         let translucent = self.instances.ordered(pose, origin, far_to_near.into_iter());
         self.instances.upload(&self.gpu)?;
-        Ok(Prepared { origin, plan, plan_ms, caster_runs, solid, translucent, objects_in_view: visible.len() })
+        Ok(Prepared { origin, plans, plan_ms, caster_runs, solid, translucent, objects_in_view: visible.len() })
     }
 
     fn with_translucent_parts(&self, pose: &Pose, objects: impl Iterator<Item = usize>) -> Vec<usize> {
@@ -463,25 +541,31 @@ impl Renderer {
         }
     }
 
-    /// One pass per split; nothing where shadows are off.
+    /// One pass per map, but for maps of several lights or faces in which there is no caster: those are not read. Nothing where shadows
+    /// are off.
     fn record_maps(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         frame: &Frame<'_>,
         prepared: &Prepared,
-    ) -> Vec<Drawn> {
+    ) -> Vec<Option<Drawn>> {
         if !frame.shadows_on {
             return Vec::new();
         }
         let mut drawn = Vec::with_capacity(prepared.caster_runs.len());
+        let all = self.maps.map_count() == self.maps.splits();
         for (split, runs) in prepared.caster_runs.iter().enumerate() {
+            if runs.is_empty() && !all {
+                drawn.push(None);
+                continue;
+            }
             let slot = self.timer.next();
             let mut pass = self.maps.begin_split(encoder, split, self.timer.timestamp_writes(slot));
-            drawn.push(
+            drawn.push(Some(
                 self.timer.counted(&mut pass, slot, |pass| {
                     self.casters.draw(pass, &self.maps, split, &self.drawable(), runs)
                 }),
-            );
+            ));
         }
         drawn
     }
@@ -513,18 +597,19 @@ impl Renderer {
         })
     }
 
-    fn split_stats(&self, plan: &ShadowPlan, drawn: &[Drawn]) -> Vec<SplitStats> {
+    fn split_stats(&self, light: usize, plan: &ShadowPlan, drawn: &[Option<Drawn>]) -> Vec<SplitStats> {
+        let first = self.maps.first_map(light);
         let texel_bytes = match self.depth_format {
             DepthFormat::D32Float => 4,
             DepthFormat::D16Unorm => 2,
         };
         let stats = |(i, split): (usize, &umbrage::Split)| {
-            let Drawn { draws, triangles } = drawn.get(i).copied().unwrap_or_default();
+            let Drawn { draws, triangles } = drawn.get(first + i).copied().flatten().unwrap_or_default();
             SplitStats {
                 near: split.near,
                 far: split.far,
                 texel_m: split.texel_m.max_element(),
-                warped: split.warp.is_some(),
+                warped: split.warp.is_some() && split.light_position.is_none(),
                 casters: split.casters.len(),
                 draws,
                 triangles,

@@ -23,6 +23,7 @@ mod tests {
 
     use super::*;
     use crate::forward::FrameUniform;
+    use crate::lamps::LampUniform;
     use crate::materials::MaterialUniform;
 
     fn parsed(source: &str) -> naga::Module {
@@ -62,9 +63,11 @@ mod tests {
     fn both_sides_lay_out_their_structs_alike() {
         let module = parsed(&forward(&receiver(2, Maps::default())));
         let frame = offsets!(
-            FrameUniform: clip_from_eye, eye, is_orthographic, forward, to_light, ray_center, ray_right, ray_up
+            FrameUniform: clip_from_eye, eye, is_orthographic, forward, lamp_count, to_sun, daylight, ray_center, ray_right, ray_up, lamps
         );
         assert_eq!(layout(&module, "Frame"), frame);
+        let lamp = offsets!(LampUniform: position, range, to_light, outer_cosine, color, inner_cosine);
+        assert_eq!(layout(&module, "Lamp"), lamp);
         assert_eq!(layout(&module, "Material"), offsets!(MaterialUniform: base_color, emissive, alpha_cutoff));
     }
 

@@ -25,10 +25,19 @@ pub struct SplitStats {
     pub bytes: u64,
 }
 
+/// One light of a frame beside the first.
+#[derive(Clone, Debug)]
+pub struct LightStats {
+    /// The plan that its maps were drawn by.
+    pub plan: ShadowPlan,
+    /// Nearest first; of a point light those of its first face, then those of the next.
+    pub splits: Vec<SplitStats>,
+}
+
 /// What a frame was made of and what it cost.
 #[derive(Clone, Debug)]
 pub struct FrameStats {
-    /// The plan that the maps were drawn by.
+    /// The plan that the first light's maps were drawn by.
     pub plan: ShadowPlan,
     /// Milliseconds of the planner on the CPU.
     pub plan_ms: f64,
@@ -36,8 +45,10 @@ pub struct FrameStats {
     pub shadow_ms: f64,
     /// Milliseconds from the beginning of the first pass to the end of the last, on the GPU.
     pub frame_ms: f64,
-    /// Nearest first.
+    /// Of the first light, nearest first; of a point light those of its first face, then those of the next.
     pub splits: Vec<SplitStats>,
+    /// The other lights.
+    pub more_lights: Vec<LightStats>,
     /// Objects that the view may show.
     pub objects_in_view: usize,
     /// Draw calls of picture and mask together.

@@ -3,8 +3,8 @@
 use crate::capture::read_buffer;
 use crate::{Gpu, Result};
 
-/// Passes of a frame: one per split, the mask and the picture.
-const MOST_PASSES: u32 = umbrage::MAX_SPLITS as u32 + 2;
+/// Passes of a frame beside those of its maps: the mask and the picture.
+const VIEW_PASSES: u32 = 2;
 
 const STATISTICS: wgpu::PipelineStatisticsTypes = wgpu::PipelineStatisticsTypes::VERTEX_SHADER_INVOCATIONS
     .union(wgpu::PipelineStatisticsTypes::CLIPPER_PRIMITIVES_OUT)
@@ -56,14 +56,15 @@ struct Queries {
 pub(crate) struct Slot(u32);
 
 impl Timer {
-    pub fn new(gpu: &Gpu) -> Self {
+    /// For frames of up to `maps` maps.
+    pub fn new(gpu: &Gpu, maps: usize) -> Self {
+        let most = maps as u32 + VIEW_PASSES;
         let has = |feature| gpu.device.features().contains(feature);
         let statistics = wgpu::QueryType::PipelineStatistics(STATISTICS);
         Self {
             timestamps: has(wgpu::Features::TIMESTAMP_QUERY)
-                .then(|| Queries::new(gpu, wgpu::QueryType::Timestamp, 2 * MOST_PASSES, 1)),
-            statistics: has(wgpu::Features::PIPELINE_STATISTICS_QUERY)
-                .then(|| Queries::new(gpu, statistics, MOST_PASSES, 3)),
+                .then(|| Queries::new(gpu, wgpu::QueryType::Timestamp, 2 * most, 1)),
+            statistics: has(wgpu::Features::PIPELINE_STATISTICS_QUERY).then(|| Queries::new(gpu, statistics, most, 3)),
             used: 0,
         }
     }

@@ -35,6 +35,16 @@ pub enum FilterKind {
     Msm = 11,
 }
 
+/// Which map answers for a point, in [`Frame::selection`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum SelectionKind {
+    /// That of the slice in which its view depth lies.
+    Depth = 0,
+    /// The first that contains it.
+    Map = 1,
+}
+
 /// How one split goes over into the next, in [`Frame::transition`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
@@ -151,6 +161,12 @@ pub struct Frame {
     pub shadow_colour: [f32; 3],
     /// A [`BiasKind`].
     pub bias_kind: u32,
+    /// A [`SelectionKind`].
+    pub selection: u32,
+    /// With [`SelectionKind::Map`]: share of a map's half edge over which it blends into the next that contains the point.
+    pub map_blend: f32,
+    /// Up to the alignment of 16 bytes.
+    pub _padding: [u32; 2],
     /// The splits, nearest first; those past `split_count` are not read.
     pub splits: [Split; MAX_SPLITS],
 }

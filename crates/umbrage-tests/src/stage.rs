@@ -74,7 +74,7 @@ impl Stage {
     /// A view as a renderer takes it.
     #[must_use]
     pub fn frame<'a>(&'a self, view: &'a View, tint: bool) -> Frame<'a> {
-        Frame { pose: &self.pose, view, sun: self.sun, shadows_on: true, tint }
+        Frame { pose: &self.pose, view, light: self.sun.into(), more_lights: &[], shadows_on: true, tint }
     }
 
     /// A technique, ready to draw this world at a size.
@@ -152,6 +152,7 @@ impl Technique {
             look: umbrage_render::Look::default(),
             storage: umbrage_wgpu::Storage::default(),
             generation: umbrage_wgpu::Generation::default(),
+            lights: vec![umbrage_wgpu::LightSlot::Single],
         };
         Self { name: format!("pssm{splits}"), settings }
     }

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use indicatif::ProgressBar;
-use umbrage_render::{Frame, FrameStats, Gpu, Outputs, RenderSettings, Renderer, Samples};
+use umbrage_render::{FrameStats, Gpu, Outputs, RenderSettings, Renderer, Samples};
 
 use super::{
     report::{Counts, Row},
@@ -13,6 +13,7 @@ use crate::{
     compare::techniques::Technique,
     failure::Result,
     job::{wgpu_depth_format, wgpu_filter},
+    lights,
     stage::Stage,
 };
 
@@ -50,16 +51,11 @@ pub fn measure(
             look: technique.job.look(),
             storage: umbrage_wgpu::Storage::default(),
             generation: umbrage_wgpu::Generation::default(),
+            lights: lights::slots(&stage.lights),
         };
         renderers.push(Renderer::new(gpu, &stage.scene, &settings)?);
     }
-    let frame = |shadows_on| Frame {
-        pose: &stage.pose,
-        view: &stage.shots[0].view,
-        sun: stage.shots[0].sun,
-        shadows_on,
-        tint: false,
-    };
+    let frame = |shadows_on| stage.frame(&stage.shots[0], &stage.shots[0].view, shadows_on, false);
     let outputs = Outputs { picture: true, ..Outputs::default() };
     let timed = |renderer: &mut Renderer, shadows_on| -> Result<(f64, FrameStats)> {
         let begin = Instant::now();

@@ -18,6 +18,7 @@ use crate::{
     compare::techniques::{self, Technique},
     failure::{Failure, Result},
     job::SceneJob,
+    lights::NamedLight,
     output::{self, Staged},
     progress,
     report::to_json,
@@ -112,16 +113,15 @@ fn crowd_stage(args: &BenchArgs, objects: u32) -> Result<Stage> {
     let aspect = f64::from(args.size[0]) / f64::from(args.size[1]);
     let sun = DirectionalLight::new(umbrage_scene::invented_sun())?;
     let view = View::look_at_upright(eye, target, Frustum::perspective(60f64.to_radians(), aspect, 1.0, 800.0)?)?;
-    Ok(Stage {
-        pose: scene.pose(0.0)?,
-        scene,
-        shots: vec![Shot {
-            frame: None,
-            camera: "crowd".into(),
-            view,
-            sun,
-            shown: SunFade { from: sun, to: sun, weight: 1.0 },
-        }],
-        notes: Vec::new(),
-    })
+    let light = NamedLight { name: "invented".into(), lamp: sun.into() };
+    let shot = Shot {
+        frame: None,
+        camera: "crowd".into(),
+        view,
+        beside: Vec::new(),
+        light: sun.into(),
+        shown: Some(SunFade { from: sun, to: sun, weight: 1.0 }),
+    };
+    let pose = scene.pose(0.0)?;
+    Ok(Stage::new(scene, pose, vec![light], vec![shot], Vec::new()))
 }

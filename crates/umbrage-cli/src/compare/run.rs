@@ -1,7 +1,8 @@
 //! Draws, asks, scores, writes.
 
 use indicatif::ProgressBar;
-use umbrage_render::{Frame, Gpu, GpuOptions, Outputs, ProbePoint, RenderSettings, Renderer};
+use umbrage::Light;
+use umbrage_render::{Frame, Gpu, GpuOptions, Lamp, Outputs, ProbePoint, RenderSettings, Renderer};
 use umbrage_truth::{Truth, scores::shared_points};
 
 use super::{
@@ -112,6 +113,7 @@ impl Bench<'_> {
                 look: technique.job.look(),
                 storage: umbrage_wgpu::Storage::default(),
                 generation: umbrage_wgpu::Generation::default(),
+                lights: vec![first.light.light.into()],
             };
             let renderer = Renderer::new(self.gpu, &set.scene, &settings);
             renderers.push(renderer.map_err(|error| in_technique(technique, error))?);
@@ -139,11 +141,12 @@ impl Bench<'_> {
         let mut before: Option<Before> = None;
         for (k, view) in series.views.iter().enumerate() {
             let range = self.args.shadow_range;
-            let mut judged = Judged::new(truth, &set.pose, view, series.sun, self.args.size, range)?;
+            let mut judged = Judged::new(truth, &set.pose, view, &series.light.light, self.args.size, range)?;
             judged.soften(truth, self.args.sun_angle)?;
             self.bar.inc(1);
             let is_shown = self.shown.contains(&[scene, of, k]);
-            let frame = Frame { pose: &set.pose, view, sun: series.sun, shadows_on: true, tint: false };
+            let frame =
+                Frame { pose: &set.pose, view, light: series.light, more_lights: &[], shadows_on: true, tint: false };
             let points = match series.views.get(k + 1) {
                 Some(next) => points_shared_with(&judged, next),
                 None => Vec::new(),
@@ -178,7 +181,10 @@ impl Bench<'_> {
                 camera: stage::camera_report(&series.camera, view),
                 frame: (series.views.len() > 1).then_some(k as u32),
                 sun_name: series.sun_name.clone(),
-                sun: series.sun.direction().to_array(),
+                sun: match series.light.light {
+                    Light::Directional(sun) => Some(sun.direction().to_array()),
+                    Light::Spot(_) | Light::Point(_) => None,
+                },
                 options: series.options[k].clone(),
                 range_m: [judged.domain.range().0, judged.domain.range().1],
                 scored_pixels: judged.domain.pixels().len(),
@@ -213,13 +219,17 @@ impl Bench<'_> {
         renderer: &mut Renderer,
         series: &Series,
     ) -> Result<()> {
-        let against = umbrage::DirectionalLight::new(-frame.sun.direction())?;
-        let mut plain = |sun| -> Result<_> {
-            let frame = Frame { sun, shadows_on: false, ..*frame };
+        let against = match frame.light.light {
+            Light::Directional(sun) => umbrage::DirectionalLight::new(-sun.direction())?.into(),
+            // Turned off: a lamp has no other side.
+            Light::Spot(_) | Light::Point(_) => Lamp { color: glam::Vec3::ZERO, ..frame.light },
+        };
+        let mut plain = |light| -> Result<_> {
+            let frame = Frame { light, shadows_on: false, ..*frame };
             let wanted = Outputs { picture: true, mask: false, maps: false };
             renderer.render(&frame, wanted)?.picture.ok_or_else(|| Failure::other("the renderer gave no picture"))
         };
-        let plain = Plain { lit: plain(frame.sun)?, dark: plain(against)? };
+        let plain = Plain { lit: plain(frame.light)?, dark: plain(against)? };
         let view = self.views.last();
         let title = view.map_or(String::new(), |view| format!("{} · {}", short(&view.scene), series.camera));
         let mut lines = vec![series.sun_name.clone()];

@@ -46,7 +46,7 @@ fn geometric_normal(from_eye: vec3f) -> vec3f {
     return normalize(turned / largest);
 }
 
-// Red: visibility of the sun at the pixel's centre. Green: 1, a surface is here.
+// Red: visibility of the first light at the pixel's centre. Green: 1, a surface is here.
 @fragment
 fn fs_mask_opaque(in: Surface) -> @location(0) vec2f {
     return mask_at(in, geometric_normal(in.from_eye));
@@ -62,7 +62,7 @@ fn fs_mask_masked(in: Surface) -> @location(0) vec2f {
 }
 
 fn mask_at(in: Surface, normal: vec3f) -> vec2f {
-    if dot(normal, frame.to_light) <= 0.0 {
+    if dot(normal, towards(frame.lamps[0], in.position)) <= 0.0 {
         return vec2f(0.0, 1.0);
     }
     return vec2f(umbrage_shadow_at_pixel(in.position, normal, in.clip.xy).visibility, 1.0);
@@ -97,26 +97,50 @@ fn base_color(in: Surface) -> vec4f {
     return material.base_color * in.color * textureSample(base_color_texture, smooth_sampler, in.uv);
 }
 
-// Lambert's sun, a sky from above and light from the ground below. Display light, tone mapped.
+// The unit vector from a position towards a light.
+fn towards(lamp: Lamp, position: vec3f) -> vec3f {
+    let way = lamp.position - position;
+    return select(lamp.to_light, way / max(length(way), 1e-20), lamp.range > 0.0);
+}
+
+// What a local light has lost on its way (see lamps.rs): 1 at the lamp, 0 at its range and at the rim of its cone.
+fn falloff(lamp: Lamp, position: vec3f) -> f32 {
+    let way = position - lamp.position;
+    let share = length(way) / max(lamp.range, 1e-20);
+    let window = max(1.0 - share * share, 0.0);
+    let cosine = -dot(lamp.to_light, way) / max(length(way), 1e-20);
+    let cone = select(smoothstep(lamp.outer_cosine, lamp.inner_cosine, cosine), 1.0, lamp.outer_cosine < -1.0);
+    return select(1.0, cone * window * window / (1.0 + share * share / 0.09), lamp.range > 0.0);
+}
+
+// Lambert's law for each light, a sky from above and light from the ground below. Display light, tone mapped.
 fn shaded(in: Surface, front: bool, base: vec4f) -> vec3f {
     let geometric = geometric_normal(in.from_eye);
     let smooth_normal = normalize(select(-in.normal, in.normal, front));
-    let shadow = umbrage_shadow_at_pixel(in.position, lookup_normal(geometric), in.clip.xy);
-    let sun = SUN * max(dot(smooth_normal, frame.to_light), 0.0) * shadow.light;
+    var light = vec3f(0.0);
+    var tint = vec3f(1.0);
+    for (var i = 0u; i < frame.lamp_count + umbrage_zero(in.position.x); i++) {
+        let lamp = frame.lamps[i];
+        let to_light = towards(lamp, in.position);
+        let shadow = umbrage_shadow_of_at_pixel(i, in.position, lookup_normal(geometric, to_light), in.clip.xy);
+        let facing = max(dot(smooth_normal, to_light), 0.0) * falloff(lamp, in.position);
+        light += SUN * lamp.color * facing * shadow.light;
+        tint = select(tint, shadow.tint, i == 0u);
+    }
     // Brighter on the sun's side of the sky, so that corners can be told apart in the shade.
-    let side = 1.0 + 0.15 * dot(smooth_normal, frame.to_light);
-    let ambient = side * mix(GROUND_AMBIENT, SKY_AMBIENT, 0.5 * smooth_normal.y + 0.5);
-    return tone_mapped((base.rgb * (sun + ambient) + material.emissive) * shadow.tint);
+    let side = 1.0 + 0.15 * dot(smooth_normal, frame.to_sun);
+    let ambient = frame.daylight * side * mix(GROUND_AMBIENT, SKY_AMBIENT, 0.5 * smooth_normal.y + 0.5);
+    return tone_mapped((base.rgb * (light + ambient) + material.emissive) * tint);
 }
 
 // Facets of a smooth surface turn away from the light one by one, which would cut its terminator into jags. For the picture
 // a facet that turns away is looked up as if it were grazed: its neighbours shade it or do not, and the smooth normal
 // darkens it. Surfaces whose two normals agree are not concerned. The mask knows nothing of this.
-fn lookup_normal(geometric: vec3f) -> vec3f {
+fn lookup_normal(geometric: vec3f, to_light: vec3f) -> vec3f {
     // Cosine of about 84 degrees. Lower: jags come back. Higher: light leaks past terminators.
     const LEAST_FACING: f32 = 0.1;
-    let facing = dot(geometric, frame.to_light);
-    return normalize(geometric + max(LEAST_FACING - facing, 0.0) * frame.to_light);
+    let facing = dot(geometric, to_light);
+    return normalize(geometric + max(LEAST_FACING - facing, 0.0) * to_light);
 }
 
 struct SkyPixel {
@@ -140,9 +164,9 @@ fn fs_sky(in: SkyPixel) -> @location(0) vec4f {
     let up = mix(horizon, zenith, smoothstep(0.0, 0.9, pow(max(ray.y, 0.0), 0.6)));
     let sky = mix(up, below, smoothstep(0.0, 0.12, -ray.y));
     // The sun is half a degree wide; its glow is for the eye only.
-    let towards_sun = dot(ray, frame.to_light);
+    let towards_sun = dot(ray, frame.to_sun);
     let glow = 0.25 * pow(max(towards_sun, 0.0), 64.0) + 4.0 * smoothstep(0.99996, 0.99998, towards_sun);
-    return vec4f(tone_mapped(sky + vec3f(1.0, 0.93, 0.8) * glow), 1.0);
+    return vec4f(tone_mapped(frame.daylight * sky + vec3f(1.0, 0.93, 0.8) * glow), 1.0);
 }
 
 // Narkowicz's fit of the ACES film curve (2015), at the exposure that suits SUN.

@@ -10,12 +10,29 @@ struct Frame {
     is_orthographic: f32,
     // Where the camera looks, a unit vector.
     forward: vec3f,
-    // Towards the sun, a unit vector.
-    to_light: vec3f,
+    lamp_count: u32,
+    // Towards the first sun, a unit vector; 0 if there is none.
+    to_sun: vec3f,
+    // How bright the sky is: 1 by day, less without a sun.
+    daylight: f32,
     // The ray through the middle of the image is `ray_center`; a step of 1 in NDC x and y adds the other two.
     ray_center: vec3f,
     ray_right: vec3f,
     ray_up: vec3f,
+    lamps: array<Lamp, 8>,
+}
+
+// A light; range is 0 for a sun.
+struct Lamp {
+    // Relative to the origin.
+    position: vec3f,
+    range: f32,
+    // Towards a sun; against a spot light's axis.
+    to_light: vec3f,
+    outer_cosine: f32,
+    // Linear RGB.
+    color: vec3f,
+    inner_cosine: f32,
 }
 
 struct Material {

@@ -3,7 +3,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, DVec4, Vec3};
-use umbrage::{DirectionalLight, ShadowPlan, Split};
+use umbrage::{DirectionalLight, Selection, ShadowPlan, Split};
 use umbrage_wgpu::{FrameOptions, ShadowMaps, ShadowMapsOptions, optional_features};
 
 /// A device of its own for each test, and the queue.
@@ -355,6 +355,8 @@ pub fn plan(light: DVec3, center: DVec3, sizes: &[u32], planes: &[f64], widths: 
         light_direction: depth,
         light: None,
         fade_begin: planes[sizes.len()],
+        selection: Selection::Depth,
+        blend: 0.0,
         caster_indices: vec![0; sizes.len()],
         split_range: vec![Some((0, sizes.len() as u8 - 1))],
     }
