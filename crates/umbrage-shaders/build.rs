@@ -2,15 +2,25 @@
 
 use wesl::{CompileOptions, Mangler, ModulePath, Wesl};
 
-/// The roots in `shaders`, whether depth textures can be loaded from, and the file that each becomes in `OUT_DIR`.
-const ROOTS: [(&str, bool, &str); 6] = [
-    ("pass::caster", true, "caster"),
-    ("pass::contact", true, "contact"),
-    ("pass::receiver", true, "receiver"),
-    ("pass::receiver", false, "receiver_without_loads"),
-    ("maps::array", true, "array"),
-    ("maps::array", false, "array_without_loads"),
+/// The roots in `shaders`, the features that they are built with, and the file that each becomes in `OUT_DIR`.
+const ROOTS: [(&str, &[&str], &str); 12] = [
+    ("pass::caster", &[], "caster"),
+    ("pass::contact", &[], "contact"),
+    ("pass::receiver", &["depth_loads"], "receiver"),
+    ("pass::receiver", &[], "receiver_without_loads"),
+    ("pass::receiver", &["moments"], "receiver_of_moments"),
+    ("pass::moments", &[], "moment_passes"),
+    ("pass::moments", &["multisampled"], "moment_passes_of_samples"),
+    ("maps::array", &["depth_loads"], "array"),
+    ("maps::array", &[], "array_without_loads"),
+    ("maps::moments", &[], "moments"),
+    ("maps::moments", &["own_taps"], "moments_by_taps"),
+    ("maps::moments", &["own_taps", "by_hand"], "moments_by_hand"),
 ];
+
+/// `depth_loads`: depth textures can be loaded from. `moments`: maps hold moments of depth. `multisampled`: depth has four samples a
+/// texel. `own_taps`: the shader takes an anisotropic sample's taps. `by_hand`: and no sampler filters moments.
+const FEATURES: [&str; 5] = ["depth_loads", "moments", "multisampled", "own_taps", "by_hand"];
 
 fn main() {
     let mut compiler = Wesl::new("shaders");
@@ -24,8 +34,10 @@ fn main() {
         validate: false,
         ..CompileOptions::default()
     });
-    for (root, depth_loads, file) in ROOTS {
-        compiler.set_feature("depth_loads", depth_loads);
+    for (root, features, file) in ROOTS {
+        FEATURES.iter().for_each(|feature| {
+            compiler.set_feature(feature, features.contains(feature));
+        });
         let path: ModulePath = format!("package::{root}").parse().expect("a root's name is a module path");
         compiler.build_artifact(&path, file);
     }

@@ -273,9 +273,22 @@ pub struct ShadowArgs {
     /// How a map is looked up
     #[arg(long, value_enum, default_value_t)]
     pub filter: Filter,
-    /// Full width of the filter in metres, the same in every split: for pcf3, pcf5, pcf7 and disc [default: in texels]
+    /// Full width of the filter in metres, the same in every split: for pcf3, pcf5, pcf7, disc and the filters of moments
+    /// [default: in texels; for esm to msm 8 texels of the finest map]
     #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true)]
     pub filter_width: Option<f64>,
+    /// Samples of depth in a texel, for esm to msm: 1 or 4 [default: 1]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub msaa: Option<u32>,
+    /// Share of light that esm to msm take for a leak, 0 to 0.9 [default: 0.2]
+    #[arg(long, value_name = "SHARE", value_parser = parse::share, allow_hyphen_values = true)]
+    pub bleeding: Option<f64>,
+    /// How esm to msm know what a pixel covers where splits meet [default: analytic]
+    #[arg(long, value_enum)]
+    pub derivatives: Option<Derivatives>,
+    /// Whether esm to msm may use what the device has instead of filterable 32-bit floats
+    #[arg(long, value_enum, default_value_t)]
+    pub fallbacks: Fallbacks,
     /// How one split goes over into the next
     #[arg(long, value_enum, default_value_t)]
     pub transition: Transition,
@@ -435,6 +448,36 @@ pub enum Filter {
     Disc,
     /// As wide as the penumbra of a sun of --sun-angle
     Pcss,
+    /// An exponential of depth, blurred
+    Esm,
+    /// Two moments of depth, blurred
+    Vsm,
+    /// Two moments of an exponential
+    Evsm2,
+    /// Four moments of two exponentials
+    Evsm4,
+    /// Four moments of depth
+    Msm,
+}
+
+/// `--derivatives`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Derivatives {
+    /// Those of the position, which no border interrupts
+    #[default]
+    Analytic,
+    /// One split for all four pixels of a quad
+    Quad,
+}
+
+/// `--fallbacks`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Fallbacks {
+    /// They may, and the report says so
+    #[default]
+    Allow,
+    /// It is an error
+    Forbid,
 }
 
 /// `--bias`.

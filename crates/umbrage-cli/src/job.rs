@@ -111,6 +111,14 @@ pub struct ShadowJob {
     pub filter: args::Filter,
     /// `--filter-width`, metres.
     pub filter_width: Option<f64>,
+    /// `--bleeding`.
+    pub bleeding: Option<f64>,
+    /// `--msaa`.
+    pub msaa: u32,
+    /// `--derivatives`.
+    pub derivatives: args::Derivatives,
+    /// `--fallbacks`.
+    pub fallbacks: args::Fallbacks,
     /// `--transition`.
     pub transition: args::Transition,
     /// `--bias`.
@@ -301,9 +309,10 @@ impl ShadowJob {
             image_size,
         };
         settings.validate()?;
+        check_moments(args, &warps)?;
         if args.filter_width.is_some() && !wgpu_filter(args.filter).has_width() {
             return Err(Failure::input(format!(
-                "--filter-width: --filter {} has no width to choose; leave it away, or use pcf3, pcf5, pcf7 or disc",
+                "--filter-width: --filter {} has no width to choose; leave it away, or use pcf3, pcf5, pcf7, disc, esm, vsm, evsm2, evsm4 or msm",
                 typed_name(args.filter)
             )));
         }
@@ -312,6 +321,10 @@ impl ShadowJob {
             settings,
             filter: args.filter,
             filter_width: args.filter_width,
+            bleeding: args.bleeding,
+            msaa: args.msaa.unwrap_or(1),
+            derivatives: args.derivatives.unwrap_or_default(),
+            fallbacks: args.fallbacks,
             transition: args.transition,
             bias: args.bias,
             shadow_strength: args.shadow_strength,
@@ -332,6 +345,20 @@ impl ShadowJob {
             width_m: self.filter_width.map(|width| width as f32),
             sun_angle: sun_angle.map_or(umbrage_wgpu::Softness::SUN, |degrees| degrees.to_radians() as f32),
             turned: false,
+            bleeding: self.bleeding.map_or(umbrage_wgpu::Softness::default().bleeding, |share| share as f32),
+        }
+    }
+
+    /// What filters of moments leave to choose.
+    #[must_use]
+    pub fn moments(&self) -> umbrage_render::MomentSettings {
+        umbrage_render::MomentSettings {
+            samples: self.msaa,
+            fallbacks: self.fallbacks == args::Fallbacks::Allow,
+            derivatives: match self.derivatives {
+                args::Derivatives::Analytic => umbrage_wgpu::Derivatives::Analytic,
+                args::Derivatives::Quad => umbrage_wgpu::Derivatives::Quad,
+            },
         }
     }
 
@@ -370,6 +397,11 @@ pub fn wgpu_filter(filter: args::Filter) -> umbrage_wgpu::Filter {
         args::Filter::Pcf7 => umbrage_wgpu::Filter::Pcf7,
         args::Filter::Disc => umbrage_wgpu::Filter::Disc,
         args::Filter::Pcss => umbrage_wgpu::Filter::Pcss,
+        args::Filter::Esm => umbrage_wgpu::Filter::Esm,
+        args::Filter::Vsm => umbrage_wgpu::Filter::Vsm,
+        args::Filter::Evsm2 => umbrage_wgpu::Filter::Evsm2,
+        args::Filter::Evsm4 => umbrage_wgpu::Filter::Evsm4,
+        args::Filter::Msm => umbrage_wgpu::Filter::Msm,
     }
 }
 
@@ -419,6 +451,36 @@ fn map_sizes(args: &ShadowArgs) -> Result<Vec<u32>> {
             typed.len(),
             if splits == 1 { "is 1 split".into() } else { format!("are {splits} splits") },
         ))),
+    }
+}
+
+/// What only filters of moments take, and what they do not.
+fn check_moments(args: &ShadowArgs, warps: &[args::Warp]) -> Result<()> {
+    let name = typed_name(args.filter);
+    if wgpu_filter(args.filter).is_prefiltered() {
+        return match warps.iter().find(|warp| **warp != args::Warp::None) {
+            Some(warp) => Err(Failure::input(format!(
+                "--filter {name} needs depth that is linear along the light, which a map warped by {} has not; use a filter that \
+                 compares depth, such as pcf5, or no warp",
+                typed_name(*warp)
+            ))),
+            None if !matches!(args.msaa, None | Some(1 | 4)) => Err(Failure::input(format!(
+                "--msaa {}: a texel has 1 sample or 4, as on every device; give one of these",
+                args.msaa.unwrap_or_default()
+            ))),
+            None => Ok(()),
+        };
+    }
+    let given = [
+        ("--msaa", args.msaa.is_some()),
+        ("--bleeding", args.bleeding.is_some()),
+        ("--derivatives", args.derivatives.is_some()),
+    ];
+    match given.iter().find(|(_, given)| *given) {
+        Some((option, _)) => Err(Failure::input(format!(
+            "{option} belongs to the filters of moments, but --filter is {name}; leave it away, or use esm, vsm, evsm2, evsm4 or msm"
+        ))),
+        None => Ok(()),
     }
 }
 

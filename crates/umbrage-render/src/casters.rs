@@ -39,7 +39,7 @@ impl Casters {
                 },
                 primitive: maps.caster_primitive(),
                 depth_stencil: Some(maps.caster_depth_stencil()),
-                multisample: Default::default(),
+                multisample: maps.caster_multisample(),
                 fragment,
                 multiview_mask: None,
                 cache: None,

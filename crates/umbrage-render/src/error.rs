@@ -44,6 +44,12 @@ pub enum Error {
         /// The device's largest texture.
         limit: u32,
     },
+    /// Maps of several samples a texel have no picture.
+    #[error("maps have {samples} samples a texel and cannot be written; use one sample, or leave the maps away")]
+    MapsOfSamples {
+        /// Samples of depth in a texel.
+        samples: u32,
+    },
     /// More lights than a picture is shaded by.
     #[error("{count} lights; a frame has at most {most}")]
     LampCount {

@@ -5,8 +5,8 @@ use image::{GrayAlphaImage, GrayImage, RgbaImage};
 use umbrage::{Aabb, Planner, ShadowPlan, ShadowSettings, SunFade, View};
 use umbrage_scene::{AlphaMode, Pose, Scene};
 use umbrage_wgpu::{
-    DepthFormat, Filter, FrameOptions, Generation, LightSlot, ShadowMaps, ShadowMapsOptions, Softness, Storage,
-    Transition,
+    DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, ShadowMaps, ShadowMapsOptions, Softness,
+    Storage, Transition,
 };
 use web_time::Instant;
 
@@ -21,7 +21,7 @@ use crate::materials::Materials;
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint, Responder};
 use crate::stats::{FrameStats, LightStats, SplitStats};
 use crate::timing::{PassCounts, Slot, Timer};
-use crate::{Error, Gpu, Result, cull, maps};
+use crate::{Error, Gpu, MomentSettings, Result, cull, maps, moments};
 
 /// The frame's origin moves in steps of this many metres, so that positions near the eye are exact to a tenth of a
 /// millimetre in `f32` and yet stay the same from frame to frame, which is what keeps stabilised maps still.
@@ -51,6 +51,8 @@ pub struct RenderSettings {
     pub storage: Storage,
     /// How maps are drawn.
     pub generation: Generation,
+    /// What filters of moments leave to choose.
+    pub moments: MomentSettings,
     /// What the lights of a frame may be, the first one first.
     pub lights: Vec<LightSlot>,
 }
@@ -104,6 +106,7 @@ pub struct Renderer {
     samples: Samples,
     softness: Softness,
     transition: Transition,
+    derivatives: Derivatives,
     look: Look,
     pub(crate) planners: Planners,
     /// The same for each further view.
@@ -185,6 +188,8 @@ impl Renderer {
                     map_sizes: shadows.map_sizes.clone(),
                     depth_format: settings.depth_format,
                     filter: settings.filter,
+                    samples: settings.moments.samples,
+                    fallbacks: settings.moments.fallbacks,
                     storage: settings.storage,
                     generation: settings.generation,
                     lights: settings.lights.clone(),
@@ -204,6 +209,7 @@ impl Renderer {
             if settings.filter == Filter::Pcss && !gpu.depth_loads() {
                 notes.push("no loads from depth textures on GL: pcss is a disc of fixed width".to_owned());
             }
+            notes.extend(maps.moment_storage().and_then(|storage| moments::note(storage, settings.filter)));
             if !timer.has_timestamps() {
                 notes.push("no timestamp queries: times of the GPU are measured by the CPU's clock".to_owned());
             }
@@ -221,6 +227,7 @@ impl Renderer {
                 samples: settings.samples,
                 softness: settings.softness,
                 transition: settings.transition,
+                derivatives: settings.moments.derivatives,
                 look: settings.look,
                 probe: Probe::new(gpu, &maps),
                 timer,
@@ -326,6 +333,7 @@ impl Renderer {
         let mut clock = Clock::start(&gpu, &self.timer);
         let mut encoder = new_encoder(&gpu);
         let split_drawn = self.record_maps(&mut encoder, frame, &prepared);
+        let is_prefiltered = self.maps.options().filter.is_prefiltered();
         let map_passes = split_drawn.iter().flatten().count();
         let mut encoder = clock.after_maps(encoder)?;
         let mut view_drawn = Drawn::default();
@@ -345,6 +353,9 @@ impl Renderer {
             }
             _ => None,
         };
+        if outputs.maps && self.maps.options().samples > 1 {
+            return Err(Error::MapsOfSamples { samples: self.maps.options().samples });
+        }
         let depth_maps = if outputs.maps && frame.shadows_on {
             let splits = prepared.plans[0].splits.iter().enumerate();
             splits
@@ -373,7 +384,11 @@ impl Renderer {
         };
         let (shadow_ms, frame_ms) = match (&measured.spans_ms, wall) {
             (Some(spans), _) if !spans.is_empty() => (
-                spans[..map_passes].last().map_or(0.0, |span| span[1]),
+                // What turns depths into moments is no pass of ours; it is over when the next one begins.
+                match spans.get(map_passes) {
+                    Some(view) if is_prefiltered && map_passes > 0 => view[0],
+                    _ => spans[..map_passes].last().map_or(0.0, |span| span[1]),
+                },
                 spans.iter().map(|span| span[1]).fold(0.0, f64::max),
             ),
             (_, Some(wall)) => wall,
@@ -498,6 +513,7 @@ impl Renderer {
             bias: self.look.bias,
             softness: self.softness,
             transition: self.transition,
+            derivatives: self.derivatives,
         };
         self.maps.prepare_lights(&self.gpu.queue, &plans.iter().collect::<Vec<_>>(), &options)?;
         self.skinned.update(&self.gpu, &self.scene_meshes, pose)?;
@@ -567,6 +583,7 @@ impl Renderer {
                 }),
             ));
         }
+        self.maps.filter(encoder);
         drawn
     }
 

@@ -177,8 +177,13 @@ pub struct Frame {
 pub struct MomentSplit {
     /// From stored depth to the z of moments, -1 at the first and 1 at the last place that is seen: `z = depth[0] · stored + depth[1]`.
     pub depth: [f32; 2],
-    /// Half width of the blur in texels along u and v, 1 or more: the tent that blur and linear sampling make together.
+    /// Half width in texels along u and v, 1 or more, of the tent that blur and linear sampling make of an edge.
     pub radius: [f32; 2],
+    /// 1: all pixels of a quad use one split. The same in all splits; here and not beside them because Mesa's software driver (22.3) crashes
+    /// over control flow that hangs on a constant place in a second uniform buffer.
+    pub quads: u32,
+    /// Up to the alignment of 16 bytes.
+    pub _padding: [u32; 3],
 }
 
 /// What the passes that make a split's moments need.
@@ -190,7 +195,7 @@ pub struct MomentPass {
     /// Edge of its map in texels.
     pub size: f32,
     /// Up to the alignment of 8 bytes.
-    pub _padding: f32,
+    pub _padding: u32,
 }
 
 /// What a receiver needs of moments beside its [`Frame`].
@@ -201,8 +206,8 @@ pub struct Moments {
     pub exponents: [f32; 2],
     /// Share of light that is taken for a leak: 0 none, less than 1.
     pub bleeding: f32,
-    /// 1: all pixels of a quad use one split.
-    pub quads: u32,
+    /// Up to the alignment of 16 bytes.
+    pub _padding: u32,
     /// The splits, nearest first.
     pub splits: [MomentSplit; MAX_SPLITS],
 }

@@ -31,8 +31,20 @@ pub const CASTER: &str = include_str!(concat!(env!("OUT_DIR"), "/caster.wgsl"));
 const CONTACT: &str = include_str!(concat!(env!("OUT_DIR"), "/contact.wgsl"));
 const RECEIVER: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver.wgsl"));
 const RECEIVER_WITHOUT_LOADS: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver_without_loads.wgsl"));
+const RECEIVER_OF_MOMENTS: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver_of_moments.wgsl"));
 const ARRAY: &str = include_str!(concat!(env!("OUT_DIR"), "/array.wgsl"));
 const ARRAY_WITHOUT_LOADS: &str = include_str!(concat!(env!("OUT_DIR"), "/array_without_loads.wgsl"));
+
+const MOMENTS: &str = include_str!(concat!(env!("OUT_DIR"), "/moments.wgsl"));
+const MOMENTS_BY_TAPS: &str = include_str!(concat!(env!("OUT_DIR"), "/moments_by_taps.wgsl"));
+const MOMENTS_BY_HAND: &str = include_str!(concat!(env!("OUT_DIR"), "/moments_by_hand.wgsl"));
+
+/// The passes from depth to moments, `shaders/pass/moments.wesl`: entry points `vs_all`, `fs_convert`, `fs_blur_u`, `fs_blur_v` and
+/// `fs_halve`, constants `KIND`, `POSITIVE_EXPONENT` and `NEGATIVE_EXPONENT`.
+pub const MOMENT_PASSES: &str = include_str!(concat!(env!("OUT_DIR"), "/moment_passes.wgsl"));
+
+/// The same from depth with four samples a texel.
+pub const MOMENT_PASSES_OF_SAMPLES: &str = include_str!(concat!(env!("OUT_DIR"), "/moment_passes_of_samples.wgsl"));
 
 /// How a receiver reads its maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -41,13 +53,26 @@ pub struct Maps {
     pub without_loads: bool,
     /// Length of the array of frames.
     pub frames: u32,
+    /// Maps hold moments of depth, of one light.
+    pub moments: Option<MomentMaps>,
 }
 
 impl Default for Maps {
     /// One light, read with everything that a device can have.
     fn default() -> Self {
-        Self { without_loads: false, frames: 1 }
+        Self { without_loads: false, frames: 1, moments: None }
     }
+}
+
+/// How moments are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MomentMaps {
+    /// Bindings 1: `texture_2d_array<f32>`, 2: a linear and anisotropic sampler, 3: uniform [`layout::Moments`].
+    Sampled,
+    /// The same with a sampler that is linear only; the shader takes up to 16 samples where an anisotropic one would.
+    Taps,
+    /// The same without a sampler.
+    ByHand,
 }
 
 /// Text to put before a vertex shader that draws casters: `fn umbrage_caster_position(position: vec3f) -> vec4f`.
@@ -68,9 +93,13 @@ pub fn contact(group: u32) -> String {
 /// `umbrage_shadow` and `umbrage_visibility_in_split`, and the same of one of several lights: `umbrage_visibility_of(light: u32, …)`.
 #[must_use]
 pub fn receiver(group: u32, maps: Maps) -> String {
-    let Maps { without_loads, frames } = maps;
-    let (receiver, maps) =
-        if without_loads { (RECEIVER_WITHOUT_LOADS, ARRAY_WITHOUT_LOADS) } else { (RECEIVER, ARRAY) };
-    let frames = frames.max(1);
+    let frames = maps.frames.max(1);
+    let (receiver, maps) = match (maps.moments, maps.without_loads) {
+        (Some(MomentMaps::Sampled), _) => (RECEIVER_OF_MOMENTS, MOMENTS),
+        (Some(MomentMaps::Taps), _) => (RECEIVER_OF_MOMENTS, MOMENTS_BY_TAPS),
+        (Some(MomentMaps::ByHand), _) => (RECEIVER_OF_MOMENTS, MOMENTS_BY_HAND),
+        (None, true) => (RECEIVER_WITHOUT_LOADS, ARRAY_WITHOUT_LOADS),
+        (None, false) => (RECEIVER, ARRAY),
+    };
     format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\nconst UMBRAGE_FRAMES = {frames}u;\n{maps}\n{receiver}\n")
 }

@@ -3,8 +3,8 @@
 use std::mem::offset_of;
 
 use naga::proc::Layouter;
-use umbrage_shaders::Maps;
-use umbrage_shaders::layout::{Frame, Split};
+use umbrage_shaders::layout::{Frame, MomentPass, MomentSplit, Moments, Split};
+use umbrage_shaders::{Maps, MomentMaps};
 
 /// A member as one side sees it: name, offset and size in bytes.
 type Member = (String, usize, usize);
@@ -62,6 +62,15 @@ fn members_agree() {
     assert_eq!(split_in_rust(), in_wgsl(&caster, "UmbrageSplit"));
     assert_eq!(split_in_rust(), in_wgsl(&receiver, "UmbrageSplit"));
     assert_eq!(frame_in_rust(), in_wgsl(&receiver, "UmbrageFrame"));
+}
+
+#[test]
+fn members_of_moments_agree() {
+    let maps = Maps { moments: Some(MomentMaps::Sampled), ..Maps::default() };
+    let (receiver, passes) = (umbrage_shaders::receiver(0, maps), umbrage_shaders::MOMENT_PASSES);
+    assert_eq!(in_rust!(MomentSplit: depth, radius, quads), in_wgsl(passes, "UmbrageMomentSplit"));
+    assert_eq!(in_rust!(MomentPass: split, size), in_wgsl(passes, "UmbrageMomentPass"));
+    assert_eq!(in_rust!(Moments: exponents, bleeding, splits), in_wgsl(&receiver, "UmbrageMoments"));
 }
 
 /// The comparison above must be able to say no: one member moved, one renamed, one resized.

@@ -2,9 +2,12 @@
 
 use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use umbrage_shaders::Maps;
+use umbrage_shaders::{Maps, MomentMaps};
 
-const WITHOUT_LOADS: Maps = Maps { without_loads: true, frames: 7 };
+const WITHOUT_LOADS: Maps = Maps { without_loads: true, frames: 7, moments: None };
+const MOMENTS: Maps = Maps { without_loads: false, frames: 1, moments: Some(MomentMaps::Sampled) };
+const MOMENTS_BY_TAPS: Maps = Maps { moments: Some(MomentMaps::Taps), ..MOMENTS };
+const MOMENTS_BY_HAND: Maps = Maps { moments: Some(MomentMaps::ByHand), ..MOMENTS };
 
 fn validated(source: &str) -> (naga::Module, ModuleInfo) {
     let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
@@ -41,7 +44,22 @@ fn fragment_shader_without_loads(group: u32) -> String {
     umbrage_shaders::receiver(group, WITHOUT_LOADS) + FRAGMENT
 }
 
-const FRAGMENT: &str = "@fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
+fn fragment_shader_of_moments(group: u32, maps: Maps) -> String {
+    umbrage_shaders::receiver(group, maps) + FRAGMENT
+}
+
+/// A compute shader knows no derivatives and compiles all the same.
+fn compute_shader_of_moments(group: u32) -> String {
+    umbrage_shaders::receiver(group, MOMENTS)
+        + "@compute @workgroup_size(1) fn compute() { _ = umbrage_visibility(vec3f(0.0), vec3f(0.0, 1.0, 0.0)); }"
+}
+
+const FRAGMENT: &str =
+    "@fragment fn fragment(@location(0) position: vec3f, @builtin(position) pixel: vec4f) -> @location(0) vec4f {
+               let footprint = umbrage_footprint(position, dpdx(position), dpdy(position), pixel.xy);
+               if pixel.x > 100.0 {
+                   return vec4f(umbrage_shadow_with(position, vec3f(0.0, 1.0, 0.0), footprint).visibility);
+               }
                let shadow = umbrage_shadow(position, vec3f(0.0, 1.0, 0.0));
                let one = umbrage_visibility_in_split(position, vec3f(0.0, 1.0, 0.0), 1u);
                let other = umbrage_visibility_of(u32(position.x), position, vec3f(0.0, 1.0, 0.0));
@@ -63,9 +81,17 @@ fn contact_shadows_stand_beside_receivers() {
 #[test]
 fn roots_are_valid_wgsl_in_any_bind_group() {
     for group in [0, 1, 3] {
-        for source in
-            [vertex_shader(group), fragment_shader(group), fragment_shader_without_loads(group), contact_shader(group)]
-        {
+        let texts = [
+            vertex_shader(group),
+            fragment_shader(group),
+            fragment_shader_without_loads(group),
+            fragment_shader_of_moments(group, MOMENTS),
+            fragment_shader_of_moments(group, MOMENTS_BY_TAPS),
+            fragment_shader_of_moments(group, MOMENTS_BY_HAND),
+            compute_shader_of_moments(group),
+            contact_shader(group),
+        ];
+        for source in texts {
             let (module, _) = validated(&source);
             let groups: Vec<u32> =
                 module.global_variables.iter().filter_map(|(_, v)| v.binding.map(|b| b.group)).collect();
@@ -82,11 +108,19 @@ fn roots_export_to_webgl2() {
 }
 
 #[test]
+fn moment_passes_are_valid_wgsl() {
+    for source in [umbrage_shaders::MOMENT_PASSES, umbrage_shaders::MOMENT_PASSES_OF_SAMPLES] {
+        let (module, _) = validated(source);
+        let names: Vec<&str> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
+        assert_eq!(names, ["vs_all", "fs_convert", "fs_blur_u", "fs_blur_v", "fs_halve"]);
+    }
+}
+
+#[test]
 fn every_name_is_in_our_namespace() {
     let receiver = |maps| umbrage_shaders::receiver(0, maps);
-    for source in
-        [umbrage_shaders::caster(0), umbrage_shaders::contact(0), receiver(Maps::default()), receiver(WITHOUT_LOADS)]
-    {
+    let texts = [Maps::default(), WITHOUT_LOADS, MOMENTS, MOMENTS_BY_TAPS, MOMENTS_BY_HAND].map(receiver);
+    for source in texts.into_iter().chain([umbrage_shaders::caster(0), umbrage_shaders::contact(0)]) {
         let module = naga::front::wgsl::parse_str(&source).expect("a valid root");
         let names = (module.functions.iter().filter_map(|(_, f)| f.name.clone()))
             .chain(module.global_variables.iter().filter_map(|(_, v)| v.name.clone()))

@@ -149,6 +149,7 @@ impl Technique {
             samples: Samples::Four,
             softness: Softness::default(),
             transition: Transition::default(),
+            moments: Default::default(),
             look: umbrage_render::Look::default(),
             storage: umbrage_wgpu::Storage::default(),
             generation: umbrage_wgpu::Generation::default(),
@@ -184,6 +185,11 @@ impl Technique {
             Filter::Pcf7 => "pcf7",
             Filter::Disc => "disc",
             Filter::Pcss => "pcss",
+            Filter::Esm => "esm",
+            Filter::Vsm => "vsm",
+            Filter::Evsm2 => "evsm2",
+            Filter::Evsm4 => "evsm4",
+            Filter::Msm => "msm",
         })
     }
 

@@ -63,6 +63,17 @@ pub enum Filter {
     /// cannot be loaded, it is [`Filter::Disc`]. Where casters are flattened onto the near plane
     /// (`umbrage::ShadowSettings::depth_clamp`) they seem nearer than they are and penumbrae come out too narrow.
     Pcss,
+    /// Exponential: one moment. The cheapest of the maps that are blurred before they are asked ([`crate::ShadowMaps::filter`]); lit where
+    /// a caster stands close to what it shades.
+    Esm,
+    /// Variance: two moments. Light leaks where casters stand behind each other.
+    Vsm,
+    /// Variance of an exponential: two moments, and far fewer leaks.
+    Evsm2,
+    /// Variance of two exponentials: four moments, and fewer leaks still.
+    Evsm4,
+    /// Four moments of depth itself: few leaks, close to casters too. On a device without filterable 32-bit floats the slowest.
+    Msm,
 }
 
 impl Filter {
@@ -77,13 +88,46 @@ impl Filter {
             Self::Pcf7 => 3.5,
             // The widest disc, 15 texels, and the reach of a tap on its rim.
             Self::Disc | Self::Pcss => 16.0,
+            // The widest blur, 15 texels, and the reach of a linear sample.
+            Self::Esm | Self::Vsm | Self::Evsm2 | Self::Evsm4 | Self::Msm => 16.0,
         }
     }
 
     /// Whether [`Softness::width_m`] changes it: what is one texel, one tap, or as wide as a penumbra, has no width of its own.
     #[must_use]
     pub const fn has_width(self) -> bool {
-        matches!(self, Self::Pcf3 | Self::Pcf5 | Self::Pcf7 | Self::Disc)
+        matches!(self, Self::Pcf3 | Self::Pcf5 | Self::Pcf7 | Self::Disc) || self.is_prefiltered()
+    }
+
+    /// Numbers that a texel stores instead of depth, for filters that blur before they compare; 0 for those that compare first.
+    #[must_use]
+    pub const fn moments(self) -> u32 {
+        match self {
+            Self::Hard | Self::Pcf2 | Self::Pcf3 | Self::Pcf5 | Self::Pcf7 | Self::Disc | Self::Pcss => 0,
+            Self::Esm => 1,
+            Self::Vsm | Self::Evsm2 => 2,
+            Self::Evsm4 | Self::Msm => 4,
+        }
+    }
+
+    /// Whether it needs [`crate::ShadowMaps::filter`] between the casters and the receivers.
+    #[must_use]
+    pub const fn is_prefiltered(self) -> bool {
+        self.moments() > 0
+    }
+
+    /// Looks at the map for one answer of one split: hardware comparisons, loads, or one sample of moments (of up to 16 trilinear taps
+    /// where a pixel sees the map at an angle). A pixel in a blend band asks two splits.
+    #[must_use]
+    pub const fn samples_per_answer(self) -> u32 {
+        match self {
+            Self::Hard | Self::Pcf2 | Self::Esm | Self::Vsm | Self::Evsm2 | Self::Evsm4 | Self::Msm => 1,
+            Self::Pcf3 => 4,
+            Self::Pcf5 => 9,
+            Self::Pcf7 => 16,
+            Self::Disc => 32,
+            Self::Pcss => 64,
+        }
     }
 
     /// The smallest map that holds the filter once, in texels.
@@ -94,7 +138,7 @@ impl Filter {
             Self::Pcf3 => 4,
             Self::Pcf5 => 6,
             Self::Pcf7 => 8,
-            Self::Disc | Self::Pcss => 33,
+            Self::Disc | Self::Pcss | Self::Esm | Self::Vsm | Self::Evsm2 | Self::Evsm4 | Self::Msm => 33,
         }
     }
 
@@ -107,6 +151,11 @@ impl Filter {
             Self::Pcf7 => FilterKind::Pcf7,
             Self::Disc => FilterKind::Disc,
             Self::Pcss => FilterKind::Pcss,
+            Self::Esm => FilterKind::Esm,
+            Self::Vsm => FilterKind::Vsm,
+            Self::Evsm2 => FilterKind::Evsm2,
+            Self::Evsm4 => FilterKind::Evsm4,
+            Self::Msm => FilterKind::Msm,
         }
     }
 
@@ -122,7 +171,7 @@ impl Filter {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Softness {
     /// Full width of the filter across the light in metres, the same in every split, so that an edge is as soft on both sides of a
-    /// border; `None`: as many texels as the filter's name says. Where it asks for less than two texels it gets two, and for more
+    /// border; `None`: as many texels as the filter's name says, and for filters of moments 8 texels of the finest map. Where it asks for less than two texels it gets two, and for more
     /// than the filter reaches ([`Filter::radius_texels`]) that. For the filters that [`Filter::has_width`] names.
     pub width_m: Option<f32>,
     /// Angle in radians across the sun, for [`Filter::Pcss`]: 0 to a right angle. The real one is 0.0093 (0.53°) wide.
@@ -130,6 +179,8 @@ pub struct Softness {
     /// Whether the pattern of a disc turns from pixel to pixel, which makes noise out of bands. Needs
     /// `umbrage_shadow_at_pixel`.
     pub turned: bool,
+    /// Share of light that filters of moments take for a leak, 0 to 0.9: what is less is shadow. More hides leaks and widens shadows.
+    pub bleeding: f32,
 }
 
 impl Softness {
@@ -139,7 +190,7 @@ impl Softness {
 
 impl Default for Softness {
     fn default() -> Self {
-        Self { width_m: None, sun_angle: Self::SUN, turned: false }
+        Self { width_m: None, sun_angle: Self::SUN, turned: false, bleeding: 0.2 }
     }
 }
 
@@ -161,6 +212,10 @@ impl Softness {
                 value: f64::from(self.sun_angle),
                 expected: "radians from 0 to a right angle",
             });
+        }
+        if !(0.0..=0.9).contains(&self.bleeding) {
+            let value = f64::from(self.bleeding);
+            return Err(Error::InvalidFrameOption { field: "bleeding", value, expected: "in 0..=0.9" });
         }
         Ok(())
     }
@@ -186,6 +241,18 @@ impl Transition {
             Self::Hard => TransitionKind::Hard,
         }
     }
+}
+
+/// How much of a map of moments a pixel covers, where neighbouring pixels may use different splits. Depth maps are compared with at level 0
+/// and need to know none of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Derivatives {
+    /// From how the position changes from pixel to pixel, which no split's border interrupts, by each pixel's own split.
+    #[default]
+    Analytic,
+    /// All four pixels of a quad use the split of the farthest, so that differences between them mean something (source 002's way,
+    /// right for any four splits).
+    Quad,
 }
 
 /// Where maps are kept.
@@ -291,6 +358,11 @@ pub struct ShadowMapsOptions {
     pub depth_format: DepthFormat,
     /// How maps are read.
     pub filter: Filter,
+    /// Samples of depth in a texel, 1 or 4: with 4 the edges of casters are smooth before anything is blurred. For filters of moments; the
+    /// pipelines that draw casters take [`crate::ShadowMaps::caster_multisample`].
+    pub samples: u32,
+    /// Whether a filter of moments may fall back to what the device has ([`crate::MomentStorage`]); if not, it is an error.
+    pub fallbacks: bool,
     /// Where maps are kept.
     pub storage: Storage,
     /// How maps are drawn.
@@ -306,6 +378,8 @@ impl Default for ShadowMapsOptions {
             map_sizes: vec![1024; 4],
             depth_format: DepthFormat::default(),
             filter: Filter::default(),
+            samples: 1,
+            fallbacks: true,
             storage: Storage::default(),
             generation: Generation::default(),
             lights: vec![LightSlot::Single],
@@ -334,6 +408,8 @@ pub struct FrameOptions {
     pub softness: Softness,
     /// How splits meet.
     pub transition: Transition,
+    /// How filters of moments know what a pixel covers.
+    pub derivatives: Derivatives,
 }
 
 impl Default for FrameOptions {
@@ -347,6 +423,7 @@ impl Default for FrameOptions {
             bias: ReceiverBias::default(),
             softness: Softness::default(),
             transition: Transition::default(),
+            derivatives: Derivatives::default(),
         }
     }
 }

@@ -73,7 +73,8 @@ pub(crate) fn frames(
         if plan.faces() > slot.faces() {
             return Err(Error::LightSlot { light, faces: plan.faces(), slot: *slot });
         }
-        if maps.filter == Filter::Pcss && plan.light.is_some_and(|light| light.position().is_some()) {
+        let for_suns = maps.filter == Filter::Pcss || maps.filter.is_prefiltered();
+        if for_suns && plan.light.is_some_and(|light| light.position().is_some()) {
             return Err(Error::FilterNeedsSun { filter: maps.filter, light });
         }
         let splits = maps.map_sizes.len();

@@ -48,6 +48,7 @@ pub fn measure(
             samples,
             softness: technique.job.softness(None),
             transition: technique.job.transition(),
+            moments: technique.job.moments(),
             look: technique.job.look(),
             storage: umbrage_wgpu::Storage::default(),
             generation: umbrage_wgpu::Generation::default(),

@@ -110,6 +110,7 @@ impl Bench<'_> {
                 samples: umbrage_render::Samples::default(),
                 softness: technique.job.softness(self.args.sun_angle),
                 transition: technique.job.transition(),
+                moments: technique.job.moments(),
                 look: technique.job.look(),
                 storage: umbrage_wgpu::Storage::default(),
                 generation: umbrage_wgpu::Generation::default(),

@@ -46,26 +46,32 @@ fn geometric_normal(from_eye: vec3f) -> vec3f {
     return normalize(turned / largest);
 }
 
+// What the pixel covers. Call in uniform control flow.
+fn footprint_of(in: Surface) -> UmbrageFootprint {
+    return umbrage_footprint(in.position, dpdx(in.from_eye), dpdy(in.from_eye), in.clip.xy);
+}
+
 // Red: visibility of the first light at the pixel's centre. Green: 1, a surface is here.
 @fragment
 fn fs_mask_opaque(in: Surface) -> @location(0) vec2f {
-    return mask_at(in, geometric_normal(in.from_eye));
+    return mask_at(in, geometric_normal(in.from_eye), footprint_of(in));
 }
 
 @fragment
 fn fs_mask_masked(in: Surface) -> @location(0) vec2f {
     let normal = geometric_normal(in.from_eye);
+    let footprint = footprint_of(in);
     if tested_alpha(in.uv, in.color.a) < material.alpha_cutoff {
         discard;
     }
-    return mask_at(in, normal);
+    return mask_at(in, normal, footprint);
 }
 
-fn mask_at(in: Surface, normal: vec3f) -> vec2f {
+fn mask_at(in: Surface, normal: vec3f, footprint: UmbrageFootprint) -> vec2f {
     if dot(normal, towards(frame.lamps[0], in.position)) <= 0.0 {
         return vec2f(0.0, 1.0);
     }
-    return vec2f(umbrage_shadow_at_pixel(in.position, normal, in.clip.xy).visibility, 1.0);
+    return vec2f(umbrage_shadow_with(in.position, normal, footprint).visibility, 1.0);
 }
 
 @fragment
@@ -117,12 +123,13 @@ fn falloff(lamp: Lamp, position: vec3f) -> f32 {
 fn shaded(in: Surface, front: bool, base: vec4f) -> vec3f {
     let geometric = geometric_normal(in.from_eye);
     let smooth_normal = normalize(select(-in.normal, in.normal, front));
+    let footprint = footprint_of(in);
     var light = vec3f(0.0);
     var tint = vec3f(1.0);
     for (var i = 0u; i < frame.lamp_count + umbrage_zero(in.position.x); i++) {
         let lamp = frame.lamps[i];
         let to_light = towards(lamp, in.position);
-        let shadow = umbrage_shadow_of_at_pixel(i, in.position, lookup_normal(geometric, to_light), in.clip.xy);
+        let shadow = umbrage_shadow_of_with(i, in.position, lookup_normal(geometric, to_light), footprint);
         let facing = max(dot(smooth_normal, to_light), 0.0) * falloff(lamp, in.position);
         light += SUN * lamp.color * facing * shadow.light;
         tint = select(tint, shadow.tint, i == 0u);

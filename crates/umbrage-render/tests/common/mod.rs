@@ -43,6 +43,7 @@ pub fn settings() -> RenderSettings {
         samples: Samples::Four,
         softness: Softness::default(),
         transition: Transition::default(),
+        moments: Default::default(),
         look: umbrage_render::Look::default(),
         storage: Storage::default(),
         generation: Generation::default(),

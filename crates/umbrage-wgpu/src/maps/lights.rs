@@ -41,6 +41,9 @@ impl ShadowMaps {
     /// point light's plan is in the place of another kind, [`Error::FilterNeedsSun`]. Nothing has been written then.
     pub fn prepare_lights(&mut self, queue: &wgpu::Queue, plans: &[&ShadowPlan], options: &FrameOptions) -> Result<()> {
         let frames = uniforms::frames(plans, &self.options, &self.places, options)?;
+        if let (Some(moments), [plan]) = (&mut self.moments, plans) {
+            moments.prepare(queue, plan, options)?;
+        }
         queue.write_buffer(&self.frame_buffer, 0, bytemuck::cast_slice(&frames));
         let splits = frames.iter().flat_map(|frame| &frame.splits[..self.splits()]);
         for (split, offset) in splits.zip((0..).step_by(self.caster_stride as usize)) {

@@ -8,15 +8,17 @@ use umbrage_shaders::{Maps, layout};
 
 use storage::{Arrangement, Tile};
 
+use crate::moments::{MomentStorage, Moments};
 use crate::uniforms::{Place, Viewport};
 use crate::{Error, FrameOptions, Generation, Result, ShadowMapsOptions, Storage};
 
 /// Features that make shadows better where an adapter has them: request `adapter.features() & optional_features()`.
 ///
-/// `DEPTH_CLIP_CONTROL` lets the near plane lie at the receivers ([`ShadowMaps::depth_clamp`]).
+/// `DEPTH_CLIP_CONTROL` lets the near plane lie at the receivers ([`ShadowMaps::depth_clamp`]), `FLOAT32_FILTERABLE` lets the hardware
+/// filter moments in full precision ([`MomentStorage`]).
 #[must_use]
 pub fn optional_features() -> wgpu::Features {
-    wgpu::Features::DEPTH_CLIP_CONTROL
+    wgpu::Features::DEPTH_CLIP_CONTROL | wgpu::Features::FLOAT32_FILTERABLE
 }
 
 /// The shadow maps of one light for one view, or of several lights ([`ShadowMaps::prepare_lights`]), on the GPU.
@@ -30,8 +32,11 @@ pub struct ShadowMaps {
     places: Vec<Place>,
     depth_loads: bool,
     depth_clamp: bool,
-    texture: wgpu::Texture,
+    /// One; with several samples a texel one for each split.
+    textures: Vec<wgpu::Texture>,
+    /// One for each layer; one for each texture if there are several.
     layers: Vec<wgpu::TextureView>,
+    moments: Option<Moments>,
     frame_buffer: wgpu::Buffer,
     caster_buffer: wgpu::Buffer,
     caster_stride: u64,
@@ -47,9 +52,11 @@ impl ShadowMaps {
     ///
     /// # Errors
     /// [`Error::SplitCount`], [`Error::MapTooSmall`], [`Error::MapTooLarge`], [`Error::TooManyLayers`], [`Error::TooManyLights`],
-    /// [`Error::LightsNeedArray`].
+    /// [`Error::LightsNeedArray`]; for filters of moments also [`Error::Samples`], [`Error::NoFilterableFloats`],
+    /// [`Error::NoDepthLoads`], [`Error::MomentsNeedArray`] and [`Error::MomentsNeedOneSun`].
     pub fn new(device: &wgpu::Device, options: &ShadowMapsOptions) -> Result<Self> {
         check_sizes(options, &device.limits())?;
+        check_samples(options)?;
         let map_sizes = lights::map_sizes(options, &device.limits())?;
         let backend = device.adapter_info().backend;
         let storage = if options.storage == Storage::Auto { Storage::Array } else { options.storage };
@@ -61,33 +68,28 @@ impl ShadowMaps {
             return Err(Error::TooManyLayers { count: layer_count, limit });
         }
 
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("ShadowMaps::depth"),
-            size: wgpu::Extent3d {
-                width: layer_texels[0],
-                height: layer_texels[1],
-                depth_or_array_layers: layer_count,
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: options.depth_format.texture_format(),
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
-        let layers = (0..layers)
-            .map(|layer| {
-                texture.create_view(&wgpu::TextureViewDescriptor {
-                    label: Some("ShadowMaps::layer"),
-                    dimension: Some(wgpu::TextureViewDimension::D2),
-                    base_array_layer: layer,
-                    array_layer_count: Some(1),
-                    ..Default::default()
-                })
-            })
-            .collect();
+        if options.filter.is_prefiltered() && storage != Storage::Array {
+            return Err(Error::MomentsNeedArray { storage, filter: options.filter });
+        }
+        if options.filter.is_prefiltered() && map_sizes.len() > options.map_sizes.len() {
+            return Err(Error::MomentsNeedOneSun { lights: options.lights.clone(), filter: options.filter });
+        }
+        // Several samples and several layers do not go together in one texture.
+        let textures: Vec<wgpu::Texture> = if options.samples > 1 {
+            options.map_sizes.iter().map(|&size| depth_texture(device, options, [size; 2], 1)).collect()
+        } else {
+            vec![depth_texture(device, options, layer_texels, layer_count)]
+        };
+        let layers: Vec<wgpu::TextureView> = if options.samples > 1 {
+            textures.iter().map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default())).collect()
+        } else {
+            (0..layers).map(|layer| layer_view(&textures[0], layer)).collect()
+        };
+        let moments = options
+            .filter
+            .is_prefiltered()
+            .then(|| Moments::new(device, options, [layer_texels[0], layer_count], &layers))
+            .transpose()?;
 
         let uniform = |label, size| {
             device.create_buffer(&wgpu::BufferDescriptor {
@@ -121,34 +123,22 @@ impl ShadowMaps {
             })
             .collect();
 
-        let receiver_layout = receiver_layout(device, lights::frame_bytes(options));
-        let receiver_bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("ShadowMaps::receiver"),
-            layout: &receiver_layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: frame_buffer.as_entire_binding() },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::TextureView(&texture.create_view(&wgpu::TextureViewDescriptor {
-                        label: Some("ShadowMaps::maps"),
-                        dimension: Some(wgpu::TextureViewDimension::D2Array),
-                        ..Default::default()
-                    })),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 2,
-                    resource: wgpu::BindingResource::Sampler(&sampler(device, options)),
-                },
-            ],
-        });
+        let receiver_layout = receiver_layout(device, lights::frame_bytes(options), moments.as_ref());
+        let receiver_bind_group = match &moments {
+            Some(moments) => moments.receiver_bind_group(device, &receiver_layout, &frame_buffer),
+            None => {
+                receiver_bind_group(device, &receiver_layout, &frame_buffer, &textures[0], &sampler(device, options))
+            }
+        };
 
         Ok(Self {
             options: ShadowMapsOptions { storage, generation: Generation::PerSplit, ..options.clone() },
             places: places(device, &map_sizes, &tiles),
             depth_loads: backend != wgpu::Backend::Gl,
             depth_clamp: device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL),
-            texture,
+            textures,
             layers,
+            moments,
             frame_buffer,
             caster_buffer,
             caster_stride,
@@ -202,6 +192,20 @@ impl ShadowMaps {
         pass
     }
 
+    /// Turns the depths that were drawn into what receivers read: for filters of moments conversion, blur and mip levels
+    /// ([`crate::Filter::is_prefiltered`]), for all others nothing. Call it after the casters and before any receiver.
+    pub fn filter(&self, encoder: &mut wgpu::CommandEncoder) {
+        if let Some(moments) = &self.moments {
+            moments.record(encoder);
+        }
+    }
+
+    /// What moments are kept in on this device; `None` for filters that compare depth.
+    #[must_use]
+    pub fn moment_storage(&self) -> Option<MomentStorage> {
+        self.moments.as_ref().map(Moments::storage)
+    }
+
     /// The number of splits; of a point light, of each face.
     #[must_use]
     pub fn splits(&self) -> usize {
@@ -220,10 +224,12 @@ impl ShadowMaps {
     /// then [`crate::Filter::Disc`].
     #[must_use]
     pub fn receiver_wgsl(&self, group: u32) -> String {
-        umbrage_shaders::receiver(
-            group,
-            Maps { without_loads: !self.depth_loads, frames: lights::frame_count(&self.options) as u32 },
-        )
+        let maps = Maps {
+            without_loads: !self.depth_loads,
+            frames: lights::frame_count(&self.options) as u32,
+            moments: self.moments.as_ref().map(Moments::maps),
+        };
+        umbrage_shaders::receiver(group, maps)
     }
 
     /// What the maps were made with; where the options left a choice, what was chosen.
@@ -244,14 +250,15 @@ impl ShadowMaps {
         }
     }
 
-    /// Bytes of the depth texture.
+    /// Bytes of all depths and, for filters of moments, of these with their levels and of the texture between two blurs.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        let size = self.texture.size();
-        u64::from(size.width)
-            * u64::from(size.height)
-            * u64::from(size.depth_or_array_layers)
-            * self.options.depth_format.texel_bytes()
+        let texels = |texture: &wgpu::Texture| {
+            let size = texture.size();
+            u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
+        };
+        let samples = self.textures.iter().map(texels).sum::<u64>() * u64::from(self.options.samples);
+        samples * self.options.depth_format.texel_bytes() + self.moments.as_ref().map_or(0, Moments::bytes)
     }
 
     /// Whether depth is not clipped: what `umbrage::ShadowSettings::depth_clamp` wants. True if the device was requested with
@@ -272,10 +279,11 @@ impl ShadowMaps {
         (tile.layer, tile.corner)
     }
 
-    /// The maps themselves, each where [`ShadowMaps::map_place`] says. Can be copied from.
+    /// The depth maps themselves, each where [`ShadowMaps::map_place`] says. Can be copied from. With several samples a texel this is the
+    /// texture of split 0, and cannot.
     #[must_use]
     pub fn depth_texture(&self) -> &wgpu::Texture {
-        &self.texture
+        &self.textures[0]
     }
 
     /// Layout of the group that [`ShadowMaps::caster_wgsl`] declares.
@@ -303,6 +311,12 @@ impl ShadowMaps {
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }
+    }
+
+    /// Multisample state for a pipeline that draws casters: as many samples as [`crate::ShadowMapsOptions::samples`].
+    #[must_use]
+    pub fn caster_multisample(&self) -> wgpu::MultisampleState {
+        wgpu::MultisampleState { count: self.options.samples, ..Default::default() }
     }
 
     /// Primitive state for a pipeline that draws casters: triangle lists, both faces (single-sided walls cast, too).
@@ -343,6 +357,45 @@ fn check_sizes(options: &ShadowMapsOptions, limits: &wgpu::Limits) -> Result<()>
     }
 }
 
+/// 1, or 4 where the mean of samples means something. WebGPU has these two everywhere.
+fn check_samples(&ShadowMapsOptions { samples, filter, .. }: &ShadowMapsOptions) -> Result<()> {
+    match samples {
+        1 => Ok(()),
+        4 if filter.is_prefiltered() => Ok(()),
+        _ => Err(Error::Samples { samples, filter }),
+    }
+}
+
+fn depth_texture(
+    device: &wgpu::Device,
+    options: &ShadowMapsOptions,
+    [width, height]: [u32; 2],
+    layers: u32,
+) -> wgpu::Texture {
+    // What has several samples cannot be copied.
+    let copies = if options.samples > 1 { wgpu::TextureUsages::empty() } else { wgpu::TextureUsages::COPY_SRC };
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("ShadowMaps::depth"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: layers },
+        mip_level_count: 1,
+        sample_count: options.samples,
+        dimension: wgpu::TextureDimension::D2,
+        format: options.depth_format.texture_format(),
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING | copies,
+        view_formats: &[],
+    })
+}
+
+fn layer_view(texture: &wgpu::Texture, layer: u32) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        label: Some("ShadowMaps::layer"),
+        dimension: Some(wgpu::TextureViewDimension::D2),
+        base_array_layer: layer,
+        array_layer_count: Some(1),
+        ..Default::default()
+    })
+}
+
 /// wgpu guesses a GL texture's kind from its number of layers: one is no array, and a multiple of six squares is a cube. A spare
 /// layer makes it an array.
 fn layer_count(layers: u32, [width, height]: [u32; 2], backend: wgpu::Backend) -> u32 {
@@ -377,13 +430,12 @@ fn caster_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     })
 }
 
-fn receiver_layout(device: &wgpu::Device, frame_bytes: u64) -> wgpu::BindGroupLayout {
+/// The frame's uniform, then depths and the sampler that compares with them, or what moments need.
+fn receiver_layout(device: &wgpu::Device, frame_bytes: u64, moments: Option<&Moments>) -> wgpu::BindGroupLayout {
     let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("ShadowMaps::receiver"),
-        entries: &[
-            uniform_entry(visibility, frame_bytes),
+    let of_depth = || {
+        vec![
             entry(
                 1,
                 wgpu::BindingType::Texture {
@@ -393,6 +445,35 @@ fn receiver_layout(device: &wgpu::Device, frame_bytes: u64) -> wgpu::BindGroupLa
                 },
             ),
             entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
+        ]
+    };
+    let of_maps = moments.map_or_else(of_depth, |moments| moments.receiver_entries(visibility));
+    let entries: Vec<_> = [uniform_entry(visibility, frame_bytes)].into_iter().chain(of_maps).collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("ShadowMaps::receiver"),
+        entries: &entries,
+    })
+}
+
+fn receiver_bind_group(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    frame: &wgpu::Buffer,
+    depths: &wgpu::Texture,
+    compare: &wgpu::Sampler,
+) -> wgpu::BindGroup {
+    let view = depths.create_view(&wgpu::TextureViewDescriptor {
+        label: Some("ShadowMaps::maps"),
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..Default::default()
+    });
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("ShadowMaps::receiver"),
+        layout,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&view) },
+            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(compare) },
         ],
     })
 }

@@ -138,6 +138,117 @@ impl Gpu {
     }
 }
 
+impl Gpu {
+    /// Draws three vertices with entry points `vs` and `fs` over a square of `size` floating-point pixels, `maps` in group 2 after two
+    /// uniforms, as an app may have them.
+    pub fn fragments(&self, source: &str, size: u32, maps: &ShadowMaps) -> Vec<[f32; 4]> {
+        assert_eq!(16 * size % wgpu::COPY_BYTES_PER_ROW_ALIGNMENT, 0, "rows without gaps");
+        self.checked(|| {
+            let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("Test::fragments"),
+                source: wgpu::ShaderSource::Wgsl(source.into()),
+            });
+            let format = wgpu::TextureFormat::Rgba32Float;
+            let uniform_layout = self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("Test::uniform"),
+                entries: &[wgpu::BindGroupLayoutEntry {
+                    binding: 0,
+                    visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                    ty: wgpu::BindingType::Buffer {
+                        ty: wgpu::BufferBindingType::Uniform,
+                        has_dynamic_offset: false,
+                        min_binding_size: None,
+                    },
+                    count: None,
+                }],
+            });
+            let buffer = self.buffer_with(&[0; 16], wgpu::BufferUsages::UNIFORM);
+            let uniform = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("Test::uniform"),
+                layout: &uniform_layout,
+                entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+            });
+            let pipeline = self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("Test::fragments"),
+                layout: Some(&self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                    label: Some("Test::fragments"),
+                    bind_group_layouts: &[Some(&uniform_layout), Some(&uniform_layout), Some(maps.receiver_layout())],
+                    immediate_size: 0,
+                })),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some("vs"),
+                    compilation_options: Default::default(),
+                    buffers: &[],
+                },
+                primitive: Default::default(),
+                depth_stencil: None,
+                multisample: Default::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some("fs"),
+                    compilation_options: Default::default(),
+                    targets: &[Some(format.into())],
+                }),
+                multiview_mask: None,
+                cache: None,
+            });
+            let extent = wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 };
+            let target = self.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("Test::target"),
+                size: extent,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            });
+            let back = self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("Test::back"),
+                size: u64::from(16 * size * size),
+                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            let mut encoder = self.device.create_command_encoder(&Default::default());
+            {
+                let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                    label: Some("Test::fragments"),
+                    color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                        view: &target.create_view(&Default::default()),
+                        depth_slice: None,
+                        resolve_target: None,
+                        ops: wgpu::Operations {
+                            load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                            store: wgpu::StoreOp::Store,
+                        },
+                    })],
+                    ..Default::default()
+                });
+                pass.set_pipeline(&pipeline);
+                pass.set_bind_group(0, &uniform, &[]);
+                pass.set_bind_group(1, &uniform, &[]);
+                pass.set_bind_group(2, maps.receiver_bind_group(), &[]);
+                pass.draw(0..3, 0..1);
+            }
+            encoder.copy_texture_to_buffer(
+                target.as_image_copy(),
+                wgpu::TexelCopyBufferInfo {
+                    buffer: &back,
+                    layout: wgpu::TexelCopyBufferLayout {
+                        offset: 0,
+                        bytes_per_row: Some(16 * size),
+                        rows_per_image: Some(size),
+                    },
+                },
+                extent,
+            );
+            self.queue.submit([encoder.finish()]);
+            bytemuck::cast_slice(&self.read(&back)).to_vec()
+        })
+    }
+}
+
 /// A point that is asked: position relative to the frame's origin and normal.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -219,7 +330,7 @@ impl World {
                 },
                 primitive: maps.caster_primitive(),
                 depth_stencil: Some(maps.caster_depth_stencil()),
-                multisample: Default::default(),
+                multisample: maps.caster_multisample(),
                 fragment: None,
                 multiview_mask: None,
                 cache: None,
@@ -247,6 +358,7 @@ impl World {
                 pass.set_vertex_buffer(0, vertices.slice(..));
                 pass.draw(0..triangles.len() as u32, 0..1);
             }
+            self.maps.filter(&mut encoder);
             self.gpu.queue.submit([encoder.finish()]);
         });
     }
@@ -271,6 +383,7 @@ impl World {
                     pass.draw(begins[caster as usize]..begins[caster as usize + 1], 0..1);
                 }
             }
+            self.maps.filter(&mut encoder);
             self.gpu.queue.submit([encoder.finish()]);
         });
     }
