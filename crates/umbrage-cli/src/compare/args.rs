@@ -138,7 +138,7 @@ pub struct CompareArgs {
     /// Write the contact sheet here (PNG)
     #[arg(long, value_name = "PNG", help_heading = "Output")]
     pub sheet: Option<PathBuf>,
-    /// Write the sheet of errors here (PNG): leaks red, acne blue, on the truth in grey
+    /// Write the sheet of errors here (PNG): leaks red, acne blue, on the truth in grey; along a walk, flips yellow
     #[arg(long, value_name = "PNG", help_heading = "Output")]
     pub errors: Option<PathBuf>,
     /// Write all scores here (JSON)

@@ -62,7 +62,12 @@ pub fn run(args: &CompareArgs) -> Result<()> {
     let [pictures, errors] = &columns;
     let contents = [
         png(&sheet::assemble(&title("Shadows; insets: where techniques differ most"), &labels, pictures, cell))?,
-        png(&sheet::assemble(&title("Errors on the truth in grey: leaks red, acne blue"), &labels, errors, cell))?,
+        png(&sheet::assemble(
+            &title("Errors on the truth in grey: leaks red, acne blue, flips yellow"),
+            &labels,
+            errors,
+            cell,
+        ))?,
         to_json(&comparison)?,
         page::page(&comparison, &labels, &columns)?.into_bytes(),
     ];
@@ -163,15 +168,18 @@ impl Bench<'_> {
                 let image_metrics = is_shown && self.args.image_metrics == Switch::On;
                 let of_view = score(&judged, &mask, &rendered.stats, image_metrics)?;
                 scores.push(of_view.clone());
-                if let Some(picture) = rendered.picture {
-                    shown.push(Answer { mask, picture, scores: of_view });
-                }
+                let mut flipped = Vec::new();
                 if !both.is_empty() {
                     let answers = renderer.probe(&frame, &both).map_err(|error| in_technique(technique, error))?;
                     let answers: Vec<f32> = answers.iter().map(|answer| answer.visibility).collect();
                     let (shared, next) = answers.split_at(old_points.len());
                     let old = before.as_ref().map(|before| (&before.judged.domain, &before.points[..]));
-                    walks[number].add(Answered { plan: rendered.stats.plan, shared, next }, old)?;
+                    let indices = walks[number].add(Answered { plan: rendered.stats.plan, shared, next }, old)?;
+                    flipped
+                        .extend(indices.iter().filter_map(|&i| pixel_of(view, self.args.size, old_points[i].position)));
+                }
+                if let Some(picture) = rendered.picture {
+                    shown.push(Answer { mask, picture, scores: of_view, flipped });
                 }
                 self.bar.inc(1);
             }
@@ -283,6 +291,17 @@ impl Bench<'_> {
         };
         Ok((comparison, self.columns))
     }
+}
+
+/// Where a point is in the picture.
+fn pixel_of(view: &umbrage::View, size: [u32; 2], point: glam::DVec3) -> Option<[u32; 2]> {
+    let (at, lens) = (view.view_from_world_point(point), view.frustum());
+    let scale = lens.scale_at(-at.z);
+    let across = (at.x / scale - lens.left) / (lens.right - lens.left);
+    let down = (lens.top - at.y / scale) / (lens.top - lens.bottom);
+    let pixel = [across * f64::from(size[0]), down * f64::from(size[1])];
+    let inside = pixel.iter().zip(size).all(|(&at, size)| at >= 0.0 && at < f64::from(size));
+    inside.then_some(pixel.map(|at| at as u32))
 }
 
 /// P_k, as the renderer is asked about it.
