@@ -176,7 +176,7 @@ impl Bench<'_> {
                     let old = before.as_ref().map(|before| (&before.judged.domain, &before.points[..]));
                     let indices = walks[number].add(Answered { plan: rendered.stats.plan, shared, next }, old)?;
                     flipped
-                        .extend(indices.iter().filter_map(|&i| pixel_of(view, self.args.size, old_points[i].position)));
+                        .extend(indices.iter().filter_map(|&i| pixel_of(view, self.args.size(), old_points[i].position)));
                 }
                 if let Some(picture) = rendered.picture {
                     shown.push(Answer { mask, picture, scores: of_view, flipped });
