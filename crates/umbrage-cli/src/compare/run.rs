@@ -152,7 +152,8 @@ impl Bench<'_> {
             let (mut scores, mut shown) = (Vec::new(), Vec::new());
             for (number, (technique, renderer)) in self.techniques.iter().zip(renderers.iter_mut()).enumerate() {
                 let wanted = Outputs { picture: is_shown, mask: true, maps: false };
-                let rendered = renderer.render(&frame, wanted).map_err(|error| in_technique(technique, error))?;
+                let coloured = Frame { tint: technique.job.tint, ..frame };
+                let rendered = renderer.render(&coloured, wanted).map_err(|error| in_technique(technique, error))?;
                 let mask = rendered.mask.ok_or_else(|| Failure::other("the renderer gave no mask"))?;
                 let image_metrics = is_shown && self.args.image_metrics == Switch::On;
                 let of_view = score(&judged, &mask, &rendered.stats, image_metrics)?;
