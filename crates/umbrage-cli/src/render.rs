@@ -37,8 +37,12 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         return Err(Failure::input("--maps and several cameras: maps are of one view; name one --camera"));
     }
     let mut studio = Studio::open(&job, &shadows, &stage)?;
-    let outputs =
-        Outputs { picture: args.picture.is_some(), mask: args.visibility.is_some(), maps: args.maps.is_some() };
+    let outputs = Outputs {
+        picture: args.picture.is_some(),
+        mask: args.visibility.is_some(),
+        maps: args.maps.is_some(),
+        deferred: shadows.deferred,
+    };
     let mut staged = Staged::default();
     let bar = progress::steps(stage.shots.len() as u64, "frames");
     for shot in &stage.shots {
@@ -91,8 +95,8 @@ impl<'a> Studio<'a> {
             transition: shadows.transition(),
             moments: shadows.moments(),
             look: shadows.look(),
-            storage: umbrage_wgpu::Storage::default(),
-            generation: umbrage_wgpu::Generation::default(),
+            storage: shadows.storage,
+            generation: shadows.generation,
             lights: lights::slots(&stage.lights),
         };
         let renderer = Renderer::new(&gpu, &stage.scene, &settings)?;
@@ -128,10 +132,12 @@ impl<'a> Studio<'a> {
             planes_m: stats.plan.planes.clone(),
             times_ms: TimesMs { plan: stats.plan_ms, shadow: stats.shadow_ms, frame: stats.frame_ms },
             bytes: stats.bytes,
+            draws: u64::from(stats.shadow_draws),
+            triangles: stats.shadow_triangles,
             splits: stats.splits.iter().map(split_report).collect(),
             beside: Vec::new(),
             probe: None,
-            notes: stage.notes.iter().chain(&stats.notes).cloned().collect(),
+            notes: stage.notes.iter().chain(&self.shadows.notes).chain(&stats.notes).cloned().collect(),
         }
     }
 }
@@ -211,6 +217,7 @@ impl From<umbrage_render::Error> for Failure {
             E::Plan(error) => error.into(),
             E::ImageSize { .. } => Self::input(format!("--size: {error}")),
             E::MapSize { .. } => Self::input(format!("--map-size: {error}")),
+            E::Shadows(error) => Self::input(crate::paths::in_options(&error)),
             E::Probe { .. } => Self::input(format!("--points: {error}")),
             _ => Self::input(error.to_string()),
         }

@@ -7,6 +7,19 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// A pass that loads from depth textures, on a device that cannot.
+    #[error(
+        "depth textures cannot be loaded from on GL and WebGL2; ask for visibility where surfaces are drawn instead of in a mask"
+    )]
+    MaskNeedsDepthLoads,
+    /// A mask was given normals that it did not ask for, or none where it did.
+    #[error("a mask with normals {normals:?} was {}; give a texture of normals with MaskNormals::Texture and with nothing else", if *.given { "given a texture of them" } else { "given none" })]
+    MaskNormals {
+        /// As the mask was made.
+        normals: crate::MaskNormals,
+        /// Whether a texture was given.
+        given: bool,
+    },
     /// `map_sizes` is empty or too long.
     #[error("map_sizes has {count} entries; give one for each split, 1 to {most}")]
     SplitCount {
@@ -114,6 +127,38 @@ pub enum Error {
         /// The sizes asked for, nearest split first.
         sizes: Vec<u32>,
         /// The device's limit, in texels.
+        limit: u32,
+    },
+    /// Two options that exclude each other.
+    #[error("{first} and {second} exclude each other: {reason}")]
+    ConflictingOptions {
+        /// One of them, by name and value.
+        first: String,
+        /// The other.
+        second: String,
+        /// Why, and what to do.
+        reason: &'static str,
+    },
+    /// The device lacks a feature that was asked for by name, and fallbacks are forbidden.
+    #[error(
+        "generation {generation} needs {feature}, which this device was not requested with, and fallbacks is false; request the \
+         feature (optional_features), allow fallbacks, or use generation per-split"
+    )]
+    MissingFeature {
+        /// The generation that was asked for.
+        generation: &'static str,
+        /// What it needs.
+        feature: &'static str,
+    },
+    /// More maps than textures that a shader can sample.
+    #[error(
+        "storage separate needs a sampled texture for each of the {count} maps in map_sizes, but a shader of this device samples {limit} \
+         at most (max_sampled_textures_per_shader_stage); use fewer splits, or storage array"
+    )]
+    TooManyTextures {
+        /// Textures needed.
+        count: usize,
+        /// The device's limit.
         limit: u32,
     },
     /// The plan was made for other maps.
