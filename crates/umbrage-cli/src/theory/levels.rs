@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use image::{Rgb, RgbImage};
-use umbrage::{DirectionalLight, Fit, Planner, ShadowPlan, ShadowSettings, Split, Stabilize, View};
+use umbrage::{DirectionalLight, Fit, Frustum, Planner, ShadowPlan, ShadowSettings, Split, Stabilize, View};
 
 use super::{Error, Result, setting::Setting};
 use crate::{
@@ -14,6 +14,8 @@ use crate::{
 const SIZE: [u32; 2] = [96, 72];
 /// The plane lies this far below the eye, metres.
 const DOWN: f64 = 3.0;
+/// The end of the last split, metres.
+const FAR: f64 = 60.0;
 /// Splits.
 const SPLITS: usize = 4;
 /// The last level of a map of 512 texels that umbrage makes.
@@ -40,10 +42,13 @@ pub(super) struct Ground {
 
 impl Ground {
     pub fn new(setting: &Setting) -> Result<Self> {
-        let view = setting.view()?;
+        let aspect = f64::from(SIZE[0]) / f64::from(SIZE[1]);
+        let frustum = Frustum::perspective(setting.fov.to_radians(), aspect, setting.near, FAR)?;
+        // Tilted, so that borders run askew through quads.
+        let view = View::look_at(DVec3::ZERO, DVec3::new(0.0, -0.4, -1.0), DVec3::new(0.3, 1.0, 0.0), frustum)?;
         let settings = ShadowSettings {
             map_sizes: vec![setting.map_size; SPLITS],
-            range: Some((setting.near, setting.far)),
+            range: Some((setting.near, FAR)),
             fit: Fit::Independent,
             stabilize: Stabilize::Exact,
             image_size: SIZE,
@@ -158,7 +163,7 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
     Ok(Section::new("The mip level across a border of splits")
         .text(
             "Hardware chooses a level by how far a place in the map moves from pixel to pixel (003 Figure 4.1.10), which it finds by \
-             subtracting neighbours in a quad of four. A plane 3 m below the eye, 96 × 72 pixels, four splits; blue is level 0, red \
+             subtracting neighbours in a quad of four. A plane 3 m below a tilted eye, 96 × 72 pixels, four splits up to 60 m; blue is level 0, red \
              level 7.",
         )
         .figures(&pictures)
