@@ -332,7 +332,7 @@ impl Renderer {
         let prepared = self.prepare(frame)?;
         let mut clock = Clock::start(&gpu, &self.timer);
         let mut encoder = new_encoder(&gpu);
-        let split_drawn = self.record_maps(&mut encoder, frame, &prepared);
+        let split_drawn = self.record_maps(&mut encoder, frame, &prepared, outputs.maps);
         let is_prefiltered = self.maps.options().filter.is_prefiltered();
         let map_passes = split_drawn.iter().flatten().count();
         let mut encoder = clock.after_maps(encoder)?;
@@ -442,7 +442,7 @@ impl Renderer {
         let gpu = self.gpu.clone();
         let prepared = self.prepare(frame)?;
         let mut encoder = new_encoder(&gpu);
-        self.record_maps(&mut encoder, frame, &prepared);
+        self.record_maps(&mut encoder, frame, &prepared, false);
         gpu.queue.submit([encoder.finish()]);
         let mut answers = Vec::with_capacity(points.len());
         for batch in points.chunks(probe::BATCH) {
@@ -557,19 +557,20 @@ impl Renderer {
         }
     }
 
-    /// One pass per map, but for maps of several lights or faces in which there is no caster: those are not read. Nothing where shadows
-    /// are off.
+    /// One pass per map, but for maps of several lights or faces in which there is no caster: those are not read, and cleared only if
+    /// `every` map is wanted. Nothing where shadows are off.
     fn record_maps(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         frame: &Frame<'_>,
         prepared: &Prepared,
+        every: bool,
     ) -> Vec<Option<Drawn>> {
         if !frame.shadows_on {
             return Vec::new();
         }
         let mut drawn = Vec::with_capacity(prepared.caster_runs.len());
-        let all = self.maps.map_count() == self.maps.splits();
+        let all = every || self.maps.map_count() == self.maps.splits();
         for (split, runs) in prepared.caster_runs.iter().enumerate() {
             if runs.is_empty() && !all {
                 drawn.push(None);
