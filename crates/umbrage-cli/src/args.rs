@@ -292,15 +292,21 @@ pub struct ShadowArgs {
     /// How one split goes over into the next
     #[arg(long, value_enum, default_value_t)]
     pub transition: Transition,
-    /// Share of each split over which it blends into the next; 0 is off
-    #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
-    pub blend: f64,
+    /// Share of each split over which it blends into the next; 0 is off [default: 0.1, or 0 where one map is reused]
+    #[arg(long, value_name = "SHARE", value_parser = parse::share, allow_hyphen_values = true)]
+    pub blend: Option<f64>,
     /// Share of the shadowed range over which shadows fade out at its far end; 0 is off, as where nothing is seen beyond
     #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
     pub far_fade: f64,
     /// What a map stores
     #[arg(long, value_enum, default_value_t)]
     pub depth_format: DepthFormat,
+    /// How maps are drawn; multipass goes with reused, layered with array or cube, instanced with atlas, mixed with array
+    #[arg(long, value_enum, default_value_t)]
+    pub generation: crate::paths::Generation,
+    /// Where maps are kept
+    #[arg(long, value_enum, default_value_t)]
+    pub storage: crate::paths::Storage,
     /// How surfaces are kept from shading themselves; both go by texel, slope and filter width and need no number
     #[arg(long, value_enum, default_value_t)]
     pub bias: Bias,
@@ -510,6 +516,8 @@ pub enum DepthFormat {
     D32f,
     /// 16-bit
     D16,
+    /// 32-bit float in a colour texture, compared by hand
+    R32f,
 }
 
 /// `--depth-convention`.

@@ -9,6 +9,7 @@ use umbrage::{ExtentSteps, MAX_SPLITS, ShadowSettings, SplitScheme, SteppedSun, 
 use crate::{
     args::{self, SceneArgs, Scheme, ShadowArgs, Technique},
     failure::{Failure, Result},
+    paths,
 };
 
 /// `--fov` where nothing else says one, degrees.
@@ -129,6 +130,12 @@ pub struct ShadowJob {
     pub shadow_colour: DVec3,
     /// `--depth-format`.
     pub depth_format: args::DepthFormat,
+    /// `--generation`.
+    pub generation: umbrage_wgpu::Generation,
+    /// `--storage`.
+    pub storage: umbrage_wgpu::Storage,
+    /// Defaults invented.
+    pub notes: Vec<String>,
     /// `--tint`.
     pub tint: bool,
     /// `--shadows`.
@@ -280,6 +287,7 @@ impl ShadowJob {
                 typed_name(*warp)
             )));
         }
+        let (blend, note) = paths::blend(args, &map_sizes)?;
         let settings = ShadowSettings {
             scheme: scheme(args, map_sizes.len())?,
             map_sizes,
@@ -303,7 +311,7 @@ impl ShadowJob {
             },
             warps: warps.iter().map(|&warp| planner_warp(warp, args.tsm_focus)).collect(),
             filter_radius: wgpu_filter(args.filter).radius_texels(),
-            blend: args.blend,
+            blend,
             far_fade: args.far_fade,
             depth_clamp: false,
             image_size,
@@ -330,6 +338,9 @@ impl ShadowJob {
             shadow_strength: args.shadow_strength,
             shadow_colour: args.shadow_colour,
             depth_format: args.depth_format,
+            generation: args.generation.into(),
+            storage: args.storage.into(),
+            notes: note.into_iter().collect(),
             tint: args.tint,
             shadows_on: args.shadows == args::Switch::On,
             fit: args.fit,
@@ -411,6 +422,7 @@ pub fn wgpu_depth_format(format: args::DepthFormat) -> umbrage_wgpu::DepthFormat
     match format {
         args::DepthFormat::D32f => umbrage_wgpu::DepthFormat::D32Float,
         args::DepthFormat::D16 => umbrage_wgpu::DepthFormat::D16Unorm,
+        args::DepthFormat::R32f => umbrage_wgpu::DepthFormat::R32Float,
     }
 }
 

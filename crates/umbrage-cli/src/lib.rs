@@ -14,6 +14,7 @@ pub mod job;
 mod lights;
 pub mod output;
 pub mod parse;
+mod paths;
 mod plan;
 pub mod plot;
 mod probe;

@@ -92,8 +92,8 @@ impl<'a> Studio<'a> {
             transition: shadows.transition(),
             moments: shadows.moments(),
             look: shadows.look(),
-            storage: umbrage_wgpu::Storage::default(),
-            generation: umbrage_wgpu::Generation::default(),
+            storage: shadows.storage,
+            generation: shadows.generation,
             lights: lights::slots(&stage.lights),
         };
         let renderer = Renderer::new(&gpu, &stage.scene, &settings)?;
@@ -129,10 +129,12 @@ impl<'a> Studio<'a> {
             planes_m: stats.plan.planes.clone(),
             times_ms: TimesMs { plan: stats.plan_ms, shadow: stats.shadow_ms, frame: stats.frame_ms },
             bytes: stats.bytes,
+            draws: u64::from(stats.shadow_draws),
+            triangles: stats.shadow_triangles,
             splits: stats.splits.iter().map(split_report).collect(),
             beside: Vec::new(),
             probe: None,
-            notes: stage.notes.iter().chain(&stats.notes).cloned().collect(),
+            notes: stage.notes.iter().chain(&self.shadows.notes).chain(&stats.notes).cloned().collect(),
         }
     }
 }
@@ -212,6 +214,7 @@ impl From<umbrage_render::Error> for Failure {
             E::Plan(error) => error.into(),
             E::ImageSize { .. } => Self::input(format!("--size: {error}")),
             E::MapSize { .. } => Self::input(format!("--map-size: {error}")),
+            E::Shadows(error) => Self::input(crate::paths::in_options(&error)),
             E::Probe { .. } => Self::input(format!("--points: {error}")),
             _ => Self::input(error.to_string()),
         }

@@ -14,9 +14,9 @@ pub struct Report {
     pub adapter: String,
     /// `pssm`, or a single map: `ssm`, `psm`, `lispsm` or `tsm`.
     pub technique: String,
-    /// How the maps were drawn.
+    /// How the maps were drawn: `multipass`, `per-split`, `layered`, `instanced` or `mixed`.
     pub generation: String,
-    /// How the maps are kept.
+    /// How the maps are kept: `array`, `atlas`, `separate`, `cube` or `reused`.
     pub storage: String,
     /// As `--filter` names it.
     pub filter: String,
@@ -44,6 +44,10 @@ pub struct Report {
     pub times_ms: TimesMs,
     /// Bytes of all shadow maps.
     pub bytes: u64,
+    /// Draw calls into all maps; a call may draw into several.
+    pub draws: u64,
+    /// Triangles submitted to all maps, every instance counted once.
+    pub triangles: u64,
     /// The splits of the first light, nearest first; the others' are in `lights`.
     pub splits: Vec<SplitReport>,
     /// The views beside the first one, from left to right.
@@ -168,9 +172,9 @@ pub struct SplitReport {
     pub warped: bool,
     /// glTF mesh nodes, or instances of them, in the split's list.
     pub casters: u64,
-    /// Draw calls.
+    /// Draw calls that draw into its map.
     pub draws: u64,
-    /// Triangles drawn.
+    /// Triangles of its casters.
     pub triangles: u64,
     /// Bytes of its map.
     pub bytes: u64,

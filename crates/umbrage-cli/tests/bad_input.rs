@@ -151,6 +151,19 @@ fn shadow_options_that_say_nonsense() {
         ("--stabilize maybe", &["--stabilize", "exact", "none"]),
         ("--depth-format d24", &["--depth-format", "d32f", "d16"]),
         ("--shadows maybe", &["--shadows", "on", "off"]),
+        // Pairs of which there is no path.
+        ("--generation layered --storage atlas", &["--generation layered", "--storage atlas"]),
+        ("--generation instanced --storage array", &["--generation instanced", "--storage array"]),
+        ("--generation mixed --storage separate", &["--generation mixed", "--storage separate"]),
+        ("--generation multipass --storage cube", &["--generation multipass", "--storage cube"]),
+        ("--generation per-split --storage reused", &["--generation per-split", "--storage reused"]),
+        ("--generation multipass --blend 0.1", &["--blend 0.1", "--generation multipass", "--storage reused"]),
+        ("--storage reused --blend 0.2 --transition dither", &["--blend 0.2", "--storage reused"]),
+        ("--generation multipass --selection map", &["--selection map", "--generation multipass", "--storage reused"]),
+        ("--storage cube --splits 7", &["--storage cube", "--map-size", "7 splits"]),
+        ("--storage cube --map-size 512,256", &["--storage cube", "--map-size", "512, 256"]),
+        ("--generation fast", &["--generation", "multipass", "per-split", "layered", "instanced", "mixed", "auto"]),
+        ("--storage disk", &["--storage", "array", "atlas", "separate", "cube", "reused", "auto"]),
     ] {
         let planned_late = options.starts_with("--delta 100000") || options.starts_with("--planes 5,10,200");
         if planned_late && !has_adapter() {
@@ -172,8 +185,8 @@ fn lights_and_views_that_do_not_go_together() {
     folder.refuse("plan tiny.glb --light lamp --stabilize none --warp lispsm", &["--warp", "--light"]);
     folder.refuse("plan tiny.glb --camera front,front", &["--camera front,front", "twice"]);
     folder.refuse("render tiny.glb --light lamp --filter pcss -o out.png", &["--filter pcss", "--light lamp"]);
-    folder.refuse("compare tiny.glb --techniques pssm --light sun,lamp -o out", &["--light sun,lamp", "one"]);
-    folder.refuse("compare tiny.glb --techniques pssm --light lamp --suns 40 -o out", &["--suns", "--light lamp"]);
+    folder.refuse("compare tiny.glb --techniques pssm:1:64 --light sun,lamp -o out", &["--light sun,lamp", "one"]);
+    folder.refuse("compare tiny.glb --techniques pssm:1:64 --light lamp --suns 40 -o out", &["--suns", "--light lamp"]);
 }
 
 #[test]

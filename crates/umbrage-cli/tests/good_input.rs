@@ -291,6 +291,33 @@ fn techniques_schemes_and_formats() {
 }
 
 #[test]
+fn reports_name_the_path_that_was_taken() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = Folder::new();
+    let shot = "tiny.glb --size 64x48 --map-size 128 --report out.json --maps maps";
+    let report = |options: &str| {
+        folder.succeed(&format!("render {shot} {options}"));
+        let report = folder.json("out.json");
+        let text = |field: &str| report[field].as_str().unwrap_or_default().to_owned();
+        (format!("{} {}", text("generation"), text("storage")), report["notes"].to_string())
+    };
+    assert_eq!(report("").0, "per-split array");
+    assert_eq!(report("--storage separate --depth-format r32f").0, "per-split separate");
+    let (path, notes) = report("--generation multipass");
+    assert_eq!(path, "multipass reused");
+    assert!(notes.contains("--blend 0"), "{notes}");
+    assert!(!report("--storage reused --blend 0").1.contains("--blend"), "nothing was invented");
+    assert!(!report("--storage reused --transition hard --blend 0.3").1.contains("--blend"), "nothing was invented");
+    for (generation, path) in [("layered", "layered array"), ("instanced", "instanced atlas"), ("mixed", "mixed array")]
+    {
+        let (taken, notes) = report(&format!("--generation {generation}"));
+        assert!(taken == path || notes.contains(generation), "{generation} took {taken}: {notes}");
+    }
+}
+
+#[test]
 fn a_plan_needs_no_gpu_and_says_it_in_both_conventions() {
     let folder = Folder::new();
     let options = "--splits 2 --map-size 256,128 --warp lispsm,none --shadow-range 1..60 --fit independent";

@@ -20,6 +20,7 @@ mod materials;
 mod mipmaps;
 mod moments;
 mod probe;
+mod record;
 mod renderer;
 mod shaders;
 mod stats;

@@ -2,25 +2,26 @@
 
 use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
-use umbrage::{Aabb, Planner, ShadowPlan, ShadowSettings, SunFade, View};
+use umbrage::{Aabb, Planner, Selection, ShadowPlan, ShadowSettings, SunFade, View};
 use umbrage_scene::{AlphaMode, Pose, Scene};
 use umbrage_wgpu::{
-    DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, ShadowMaps, ShadowMapsOptions, Softness,
-    Storage, Transition,
+    DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, MapPass, ShadowMaps, ShadowMapsOptions,
+    Slice, Softness, Storage, Transition,
 };
 use web_time::Instant;
 
 use crate::capture::Capture;
 use crate::casters::Casters;
-use crate::draw_list::{Drawable, Drawn, Instances, Run};
+use crate::draw_list::{Drawable, Instances, Run, once};
 use crate::forward::{Forward, FrameUniform, MaskTarget, PictureTarget, Samples};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry, check_object};
 use crate::lamps::Lamp;
 use crate::look::Look;
 use crate::materials::Materials;
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint, Responder};
+use crate::record::{Clock, MapCapture, Prepared, Recorded, SliceRuns, new_encoder};
 use crate::stats::{FrameStats, LightStats, SplitStats};
-use crate::timing::{PassCounts, Slot, Timer};
+use crate::timing::{PassCounts, Timer};
 use crate::{Error, Gpu, MomentSettings, Result, cull, maps, moments};
 
 /// The frame's origin moves in steps of this many metres, so that positions near the eye are exact to a tenth of a
@@ -100,8 +101,8 @@ pub struct Rendered {
 
 /// Draws one scene at one size. Everything that does not change from frame to frame is on the GPU already.
 pub struct Renderer {
-    gpu: Gpu,
-    size: [u32; 2],
+    pub(crate) gpu: Gpu,
+    pub(crate) size: [u32; 2],
     depth_format: DepthFormat,
     samples: Samples,
     softness: Softness,
@@ -111,18 +112,18 @@ pub struct Renderer {
     pub(crate) planners: Planners,
     /// The same for each further view.
     more_views: Vec<Planners>,
-    maps: ShadowMaps,
+    pub(crate) maps: ShadowMaps,
     scene: Geometry,
     scene_meshes: SceneMeshes,
     skinned: SkinnedGeometry,
     materials: Materials,
     instances: Instances,
-    casters: Casters,
-    forward: Forward,
+    pub(crate) casters: Casters,
+    pub(crate) forward: Forward,
     probe: Probe,
-    timer: Timer,
-    picture: Option<PictureTarget>,
-    mask: Option<MaskTarget>,
+    pub(crate) timer: Timer,
+    pub(crate) picture: Option<PictureTarget>,
+    pub(crate) mask: Option<MaskTarget>,
     notes: Vec<String>,
 }
 
@@ -144,19 +145,6 @@ impl Planners {
     pub fn afresh(&self) -> Result<Self> {
         Self::new(self.now[0].settings(), self.now.len())
     }
-}
-
-/// A frame that is planned and uploaded, ready to be recorded.
-struct Prepared {
-    origin: DVec3,
-    /// One for each light.
-    plans: Vec<ShadowPlan>,
-    plan_ms: f64,
-    /// Per map.
-    caster_runs: Vec<Vec<Run>>,
-    solid: Vec<Run>,
-    translucent: Vec<Run>,
-    objects_in_view: usize,
 }
 
 impl Renderer {
@@ -193,20 +181,38 @@ impl Renderer {
                     storage: settings.storage,
                     generation: settings.generation,
                     lights: settings.lights.clone(),
+                    ..ShadowMapsOptions::default()
                 },
             )?;
+            let blends = shadows.blend > 0.0 && settings.transition != Transition::Hard;
+            if maps.options().storage == Storage::Reused && blends && maps.splits() > 1 {
+                return Err(umbrage_wgpu::Error::ConflictingOptions {
+                    first: "storage reused".to_owned(),
+                    second: format!("blend {}", shadows.blend),
+                    reason: "there is one map at a time and none to blend with; use blend 0, the hard transition or storage array",
+                }
+                .into());
+            }
+            if maps.options().storage == Storage::Reused && shadows.selection == Selection::Map {
+                return Err(umbrage_wgpu::Error::ConflictingOptions {
+                    first: "storage reused".to_owned(),
+                    second: "selection map".to_owned(),
+                    reason: "there is one map at a time and none to choose from; use selection depth or storage array",
+                }
+                .into());
+            }
             // Floats hold the depth of a whole world; 16 bits want the shorter range that casters flattened onto the near plane
             // allow, and pay for it with maps that step along the light.
             shadows.depth_clamp = maps.depth_clamp() && settings.depth_format == DepthFormat::D16Unorm;
             let materials = Materials::new(gpu, scene)?;
             let timer = Timer::new(gpu, maps.map_count());
-            let mut notes = Vec::new();
+            let mut notes = maps.notes().to_vec();
             if settings.depth_format == DepthFormat::D16Unorm && !maps.depth_clamp() {
                 notes.push(
                     "no depth clip control: near planes of 16-bit maps stand before their first caster".to_owned(),
                 );
             }
-            if settings.filter == Filter::Pcss && !gpu.depth_loads() {
+            if settings.filter == Filter::Pcss && !gpu.depth_loads() && !settings.depth_format.is_colour() {
                 notes.push("no loads from depth textures on GL: pcss is a disc of fixed width".to_owned());
             }
             notes.extend(maps.moment_storage().and_then(|storage| moments::note(storage, settings.filter)));
@@ -262,6 +268,12 @@ impl Renderer {
     #[must_use]
     pub fn scene_bytes(&self) -> u64 {
         self.scene.bytes + self.skinned.geometry.bytes + self.materials.bytes
+    }
+
+    /// How maps are kept and drawn, with what the options left open decided.
+    #[must_use]
+    pub fn map_options(&self) -> &ShadowMapsOptions {
+        self.maps.options()
     }
 
     /// Draws a frame and waits for what was asked for.
@@ -329,87 +341,71 @@ impl Renderer {
         if outputs.mask && self.mask.is_none() {
             self.mask = Some(MaskTarget::new(&gpu, self.size));
         }
-        let prepared = self.prepare(frame)?;
+        let prepared = Prepared { every_map: outputs.maps, ..self.prepare(frame)? };
         let mut clock = Clock::start(&gpu, &self.timer);
-        let mut encoder = new_encoder(&gpu);
-        let split_drawn = self.record_maps(&mut encoder, frame, &prepared, outputs.maps);
-        let is_prefiltered = self.maps.options().filter.is_prefiltered();
-        let map_passes = split_drawn.iter().flatten().count();
-        let mut encoder = clock.after_maps(encoder)?;
-        let mut view_drawn = Drawn::default();
+        if outputs.maps && self.maps.options().samples > 1 {
+            return Err(Error::MapsOfSamples { samples: self.maps.options().samples });
+        }
+        let (recorded, mut encoder) = self.record(new_encoder(&gpu), &mut clock, &prepared, outputs)?;
         let mask = match &self.mask {
-            Some(target) if outputs.mask => {
-                let slot = self.timer.next();
-                view_drawn += self.record_mask(&mut encoder, target, slot, &prepared);
-                Some(Capture::record(&gpu, &mut encoder, &target.texture, 0, self.size)?)
-            }
+            Some(target) if outputs.mask => Some(Capture::record(&gpu, &mut encoder, &target.texture, 0, self.size)?),
             _ => None,
         };
         let picture = match &self.picture {
             Some(target) if outputs.picture => {
-                let slot = self.timer.next();
-                view_drawn += self.record_picture(&mut encoder, target, slot, &prepared);
                 Some(Capture::record(&gpu, &mut encoder, &target.texture, 0, self.size)?)
             }
             _ => None,
-        };
-        if outputs.maps && self.maps.options().samples > 1 {
-            return Err(Error::MapsOfSamples { samples: self.maps.options().samples });
-        }
-        let depth_maps = if outputs.maps && frame.shadows_on {
-            let splits = prepared.plans[0].splits.iter().enumerate();
-            splits
-                .map(|(i, split)| {
-                    let texture = self.maps.depth_texture();
-                    // Depth is copied in whole layers only; a smaller map is cut out of its layer afterwards.
-                    let texels = [texture.width(), texture.height()];
-                    let (layer, corner) = self.maps.map_place(i);
-                    let capture = Capture::record(&gpu, &mut encoder, texture, layer, texels)?;
-                    Ok((texels[0], corner, split.size, capture))
-                })
-                .collect::<Result<Vec<_>>>()?
-        } else {
-            Vec::new()
         };
         self.timer.record(&mut encoder);
         let wall = clock.after_all(encoder)?;
 
         let measured = self.timer.read(&gpu)?;
-        let counts = |passes: std::ops::Range<usize>| {
+        let over_maps = |pass: usize| recorded.map_passes.iter().any(|&(_, _, slot)| slot == pass);
+        let counts = |maps: bool| {
             measured.counts.as_ref().map(|counts| {
                 let mut sum = PassCounts::default();
-                counts[passes].iter().for_each(|&count| sum += count);
+                counts.iter().enumerate().filter(|&(i, _)| over_maps(i) == maps).for_each(|(_, &count)| sum += count);
                 sum
             })
         };
+        let is_prefiltered = self.maps.options().filter.is_prefiltered();
         let (shadow_ms, frame_ms) = match (&measured.spans_ms, wall) {
-            (Some(spans), _) if !spans.is_empty() => (
-                // What turns depths into moments is no pass of ours; it is over when the next one begins.
-                match spans.get(map_passes) {
-                    Some(view) if is_prefiltered && map_passes > 0 => view[0],
-                    _ => spans[..map_passes].last().map_or(0.0, |span| span[1]),
-                },
-                spans.iter().map(|span| span[1]).fold(0.0, f64::max),
-            ),
+            (Some(spans), _) if !spans.is_empty() => {
+                let maps = || spans.iter().enumerate().filter(|&(i, _)| over_maps(i)).map(|(_, span)| span);
+                let last = recorded.map_passes.last().map_or(0, |&(_, _, slot)| slot);
+                let shadow_ms = match prepared.slices.is_empty() {
+                    // What turns depths into moments is no pass of ours; it is over when the next one begins.
+                    true if is_prefiltered && maps().next().is_some() && last + 1 < spans.len() => spans[last + 1][0],
+                    true => maps().map(|span| span[1]).fold(0.0, f64::max),
+                    // Between the maps there is the view.
+                    false => maps().map(|span| span[1] - span[0]).sum(),
+                };
+                (shadow_ms, spans.iter().map(|span| span[1]).fold(0.0, f64::max))
+            }
             (_, Some(wall)) => wall,
             _ => (0.0, 0.0),
         };
-        let passes = measured.counts.as_ref().map_or(0, Vec::len);
         let stats = FrameStats {
             plan_ms: prepared.plan_ms,
             shadow_ms,
             frame_ms,
-            splits: self.split_stats(0, &prepared.plans[0], &split_drawn),
+            splits: self.split_stats(0, frame, &prepared.plans[0], &recorded),
+            shadow_draws: recorded.map_passes.iter().map(|(_, drawn, _)| drawn.draws).sum(),
+            shadow_triangles: recorded.map_passes.iter().map(|(_, drawn, _)| drawn.triangles).sum(),
             more_lights: prepared.plans[1..]
                 .iter()
                 .enumerate()
-                .map(|(i, plan)| LightStats { splits: self.split_stats(i + 1, plan, &split_drawn), plan: plan.clone() })
+                .map(|(i, plan)| LightStats {
+                    splits: self.split_stats(i + 1, frame, plan, &recorded),
+                    plan: plan.clone(),
+                })
                 .collect(),
             objects_in_view: prepared.objects_in_view,
-            view_draws: view_drawn.draws,
-            view_triangles: view_drawn.triangles,
-            shadow_counts: counts(0..map_passes.min(passes)),
-            view_counts: counts(map_passes.min(passes)..passes),
+            view_draws: recorded.view.draws,
+            view_triangles: recorded.view.triangles,
+            shadow_counts: counts(true),
+            view_counts: counts(false),
             bytes: self.maps.bytes(),
             generation: self.maps.options().generation.name(),
             storage: self.maps.options().storage.name(),
@@ -428,12 +424,7 @@ impl Renderer {
                     Ok::<_, Error>(GrayAlphaImage::from_raw(width, height, capture.read(&gpu)?).expect(SIZED))
                 })
                 .transpose()?,
-            maps: depth_maps
-                .into_iter()
-                .map(|(row, corner, size, capture)| {
-                    Ok(maps::picture_of(&maps::depths_of(&capture.read(&gpu)?, self.depth_format), row, corner, size))
-                })
-                .collect::<Result<_>>()?,
+            maps: self.map_pictures(recorded.maps)?,
             stats,
         })
     }
@@ -441,32 +432,60 @@ impl Renderer {
     fn probe_unguarded(&mut self, frame: &Frame<'_>, points: &[ProbePoint]) -> Result<Vec<ProbeAnswer>> {
         let gpu = self.gpu.clone();
         let prepared = self.prepare(frame)?;
-        let mut encoder = new_encoder(&gpu);
-        self.record_maps(&mut encoder, frame, &prepared, false);
-        gpu.queue.submit([encoder.finish()]);
-        let mut answers = Vec::with_capacity(points.len());
-        for batch in points.chunks(probe::BATCH) {
-            let asked: Vec<(ProbePoint, Responder)> =
-                batch.iter().map(|&point| (point, self.responder(frame, &prepared.plans[0], point.position))).collect();
+        let rounds = if prepared.slices.is_empty() { 1 } else { prepared.caster_runs.len() };
+        let mut answers = Vec::new();
+        for round in 0..rounds {
+            // One map for all splits: it answers for one after the other.
+            let sliced = !prepared.slices.is_empty();
+            let passes = if sliced { round..round + 1 } else { 0..prepared.caster_runs.len() };
             let mut encoder = new_encoder(&gpu);
-            let pending = self.probe.record(&gpu, &mut encoder, &self.maps, prepared.origin, &asked)?;
+            self.draw_maps(&mut encoder, passes, &prepared, &mut Recorded::default());
             gpu.queue.submit([encoder.finish()]);
-            let mut replies = pending.read(&gpu)?;
-            for (reply, (point, responder)) in replies.iter_mut().zip(&asked) {
-                let faces_light = point.normal.dot(frame.light.light.to_light(point.position)) > 0.0;
-                let unshaded = f32::from(u8::from(faces_light));
-                match *responder {
-                    Responder::Nobody => *reply = ProbeAnswer { visibility: unshaded, split: -1 },
-                    // No caster reaches this split: whatever its map looks like, it is lit.
-                    Responder::Split(split) if prepared.plans[0].casters(split).is_empty() || !frame.shadows_on => {
-                        *reply = ProbeAnswer { visibility: unshaded, split: split as i32 };
+            let maps = if sliced { self.maps.slice_bind_group(round) } else { self.maps.receiver_bind_group() };
+            for (batch, points) in points.chunks(probe::BATCH).enumerate() {
+                let replies = self.ask(frame, &prepared, maps, points)?;
+                if round == 0 {
+                    answers.extend(replies);
+                    continue;
+                }
+                for (answer, reply) in answers[batch * probe::BATCH..].iter_mut().zip(replies) {
+                    if reply.split == round as i32 {
+                        *answer = reply;
                     }
-                    Responder::Split(_) | Responder::View => {}
                 }
             }
-            answers.extend(replies);
         }
         Ok(answers)
+    }
+
+    /// Asks one batch of points.
+    fn ask(
+        &self,
+        frame: &Frame<'_>,
+        prepared: &Prepared,
+        maps: &wgpu::BindGroup,
+        points: &[ProbePoint],
+    ) -> Result<Vec<ProbeAnswer>> {
+        let gpu = &self.gpu;
+        let asked: Vec<(ProbePoint, Responder)> =
+            points.iter().map(|&point| (point, self.responder(frame, &prepared.plans[0], point.position))).collect();
+        let mut encoder = new_encoder(gpu);
+        let pending = self.probe.record(gpu, &mut encoder, maps, prepared.origin, &asked)?;
+        gpu.queue.submit([encoder.finish()]);
+        let mut replies = pending.read(gpu)?;
+        for (reply, (point, responder)) in replies.iter_mut().zip(&asked) {
+            let faces_light = point.normal.dot(frame.light.light.to_light(point.position)) > 0.0;
+            let unshaded = f32::from(u8::from(faces_light));
+            match *responder {
+                Responder::Nobody => *reply = ProbeAnswer { visibility: unshaded, split: -1 },
+                // No caster reaches this split: whatever its map looks like, it is lit.
+                Responder::Split(split) if prepared.plans[0].casters(split).is_empty() || !frame.shadows_on => {
+                    *reply = ProbeAnswer { visibility: unshaded, split: split as i32 };
+                }
+                Responder::Split(_) | Responder::View => {}
+            }
+        }
+        Ok(replies)
     }
 
     /// Who answers for a point.
@@ -517,7 +536,13 @@ impl Renderer {
         };
         self.maps.prepare_lights(&self.gpu.queue, &plans.iter().collect::<Vec<_>>(), &options)?;
         self.skinned.update(&self.gpu, &self.scene_meshes, pose)?;
-        self.forward.prepare(&self.gpu, &FrameUniform::new(view, &lamps, origin)?);
+        self.forward.prepare(&self.gpu, 0, &FrameUniform::new(view, &lamps, origin, None)?);
+        let sliced = frame.shadows_on && self.maps.options().storage == Storage::Reused;
+        let slices = if sliced { Slice::all(&plans[0], view) } else { Vec::new() };
+        for slice in &slices {
+            let uniform = FrameUniform::new(view, &lamps, origin, Some(slice))?;
+            self.forward.prepare(&self.gpu, 1 + slice.split, &uniform);
+        }
         self.timer.restart();
 
         let mut near_to_far: Vec<(f64, usize)> = (0..pose.objects.len())
@@ -528,18 +553,42 @@ impl Renderer {
         let visible: Vec<usize> = near_to_far.into_iter().map(|(_, i)| i).collect();
 
         self.instances.clear();
-        let mut caster_runs = vec![Vec::new(); self.maps.map_count()];
-        for (light, plan) in plans.iter().enumerate() {
-            for (i, runs) in caster_runs[self.maps.first_map(light)..][..plan.splits.len()].iter_mut().enumerate() {
-                let objects = plan.casters(i).iter().map(|&caster| caster_objects[caster as usize]);
-                *runs = self.instances.grouped(pose, origin, objects);
-            }
-        }
-        let solid = self.instances.grouped(pose, origin, visible.iter().copied());
+        let caster_runs = self.caster_runs(frame, origin, &caster_objects, &plans);
+        let solid = self.instances.grouped(pose, origin, false, visible.iter().copied().map(once));
         let far_to_near = self.with_translucent_parts(pose, visible.iter().rev().copied());
-        let translucent = self.instances.ordered(pose, origin, far_to_near.into_iter());
+        let translucent = self.instances.ordered(pose, origin, far_to_near.iter().copied());
+        let last = plans[0].splits.len() - 1;
+        let slices = slices
+            .into_iter()
+            .map(|slice| {
+                let split = &plans[0].splits[slice.split];
+                // What is nearer than the first split or farther than the last one is drawn with them.
+                let near = if slice.split == 0 { f64::NEG_INFINITY } else { split.near };
+                let far = if slice.split == last { f64::INFINITY } else { split.far };
+                let lies_in = |object: &usize| {
+                    let depths = pose.objects[*object].bounds.corners().map(|corner| view.view_depth(corner));
+                    depths.iter().any(|&depth| depth >= near) && depths.iter().any(|&depth| depth <= far)
+                };
+                let solid = visible.iter().copied().filter(lies_in).map(once);
+                SliceRuns {
+                    slice,
+                    solid: self.instances.grouped(pose, origin, false, solid),
+                    translucent: self.instances.ordered(pose, origin, far_to_near.iter().copied().filter(lies_in)),
+                }
+            })
+            .collect();
         self.instances.upload(&self.gpu)?;
-        Ok(Prepared { origin, plans, plan_ms, caster_runs, solid, translucent, objects_in_view: visible.len() })
+        Ok(Prepared {
+            origin,
+            plans,
+            plan_ms,
+            caster_runs,
+            solid,
+            translucent,
+            slices,
+            objects_in_view: visible.len(),
+            every_map: false,
+        })
     }
 
     fn with_translucent_parts(&self, pose: &Pose, objects: impl Iterator<Item = usize>) -> Vec<usize> {
@@ -548,7 +597,7 @@ impl Renderer {
         objects.filter(translucent).collect()
     }
 
-    fn drawable(&self) -> Drawable<'_> {
+    pub(crate) fn drawable(&self) -> Drawable<'_> {
         Drawable {
             scene: &self.scene,
             skinned: &self.skinned.geometry,
@@ -557,125 +606,84 @@ impl Renderer {
         }
     }
 
-    /// One pass per map, but for maps of several lights or faces in which there is no caster: those are not read, and cleared only if
-    /// `every` map is wanted. Nothing where shadows are off.
-    fn record_maps(
+    /// What each pass over the maps draws; nothing where shadows are off.
+    fn caster_runs(
         &mut self,
-        encoder: &mut wgpu::CommandEncoder,
         frame: &Frame<'_>,
-        prepared: &Prepared,
-        every: bool,
-    ) -> Vec<Option<Drawn>> {
+        origin: DVec3,
+        objects: &[usize],
+        plans: &[ShadowPlan],
+    ) -> Vec<Vec<Run>> {
         if !frame.shadows_on {
             return Vec::new();
         }
-        let mut drawn = Vec::with_capacity(prepared.caster_runs.len());
-        let all = every || self.maps.map_count() == self.maps.splits();
-        for (split, runs) in prepared.caster_runs.iter().enumerate() {
-            if runs.is_empty() && !all {
-                drawn.push(None);
-                continue;
+        let pose = frame.pose;
+        let [plan] = plans else {
+            let mut runs = vec![Vec::new(); self.maps.map_count()];
+            for (light, plan) in plans.iter().enumerate() {
+                self.light_runs(frame, origin, objects, light, plan, &mut runs);
             }
-            let slot = self.timer.next();
-            let mut pass = self.maps.begin_split(encoder, split, self.timer.timestamp_writes(slot));
-            drawn.push(Some(
-                self.timer.counted(&mut pass, slot, |pass| {
-                    self.casters.draw(pass, &self.maps, split, &self.drawable(), runs)
-                }),
-            ));
-        }
-        self.maps.filter(encoder);
-        drawn
-    }
-
-    fn record_mask(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        target: &MaskTarget,
-        slot: Slot,
-        prepared: &Prepared,
-    ) -> Drawn {
-        let mut pass = target.begin(encoder, self.timer.timestamp_writes(slot));
-        self.timer.counted(&mut pass, slot, |pass| {
-            self.forward.draw_mask(pass, &self.maps, &self.drawable(), &prepared.solid)
-        })
-    }
-
-    fn record_picture(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        target: &PictureTarget,
-        slot: Slot,
-        prepared: &Prepared,
-    ) -> Drawn {
-        let mut pass = target.begin(encoder, self.timer.timestamp_writes(slot));
-        self.timer.counted(&mut pass, slot, |pass| {
-            let (solid, translucent) = (&prepared.solid, &prepared.translucent);
-            self.forward.draw_picture(pass, &self.maps, &self.drawable(), solid, translucent)
-        })
-    }
-
-    fn split_stats(&self, light: usize, plan: &ShadowPlan, drawn: &[Option<Drawn>]) -> Vec<SplitStats> {
-        let first = self.maps.first_map(light);
-        let texel_bytes = match self.depth_format {
-            DepthFormat::D32Float => 4,
-            DepthFormat::D16Unorm => 2,
+            return runs;
         };
+        if self.maps.map_count() > self.maps.splits() {
+            let mut runs = vec![Vec::new(); self.maps.map_count()];
+            self.light_runs(frame, origin, objects, 0, plan, &mut runs);
+            return runs;
+        }
+        let grouped = |pass: &MapPass| {
+            let copies = pass.casters(plan).map(|(caster, codes)| (objects[caster as usize], codes));
+            self.instances.grouped(pose, origin, pass.leads(), copies)
+        };
+        self.maps.passes().iter().map(grouped).collect()
+    }
+
+    /// What one of several lights draws into its maps.
+    fn light_runs(
+        &mut self,
+        frame: &Frame<'_>,
+        origin: DVec3,
+        objects: &[usize],
+        light: usize,
+        plan: &ShadowPlan,
+        runs: &mut [Vec<Run>],
+    ) {
+        for (i, runs) in runs[self.maps.first_map(light)..][..plan.splits.len()].iter_mut().enumerate() {
+            let casters = plan.casters(i).iter().map(|&caster| once(objects[caster as usize]));
+            *runs = self.instances.grouped(frame.pose, origin, false, casters);
+        }
+    }
+
+    /// The splits' maps as pictures, nearest first.
+    fn map_pictures(&self, mut maps: Vec<MapCapture>) -> Result<Vec<GrayImage>> {
+        maps.sort_by_key(|map| map.split);
+        let sizes = &self.maps.options().map_sizes;
+        let picture = |map: MapCapture| {
+            let depths = maps::depths_of(&map.capture.read(&self.gpu)?, self.depth_format);
+            Ok(maps::picture_of(&depths, map.row, map.corner, sizes[map.split % sizes.len()]))
+        };
+        maps.into_iter().map(picture).collect()
+    }
+
+    fn split_stats(&self, light: usize, frame: &Frame<'_>, plan: &ShadowPlan, recorded: &Recorded) -> Vec<SplitStats> {
+        let first = self.maps.first_map(light);
+        let objects: Vec<&umbrage_scene::Object> = frame.pose.objects.iter().filter(|object| object.casts).collect();
+        let drawable = self.drawable();
+        let triangles =
+            |caster: &u32| drawable.triangles(objects[*caster as usize], |material| material.alpha != AlphaMode::Blend);
         let stats = |(i, split): (usize, &umbrage::Split)| {
-            let Drawn { draws, triangles } = drawn.get(first + i).copied().flatten().unwrap_or_default();
+            let draws_it = |pass: usize| self.maps.passes()[pass].splits().contains(&(first + i));
+            let draws = recorded.map_passes.iter().filter(|&&(pass, ..)| draws_it(pass));
             SplitStats {
                 near: split.near,
                 far: split.far,
                 texel_m: split.texel_m.max_element(),
                 warped: split.warp.is_some() && split.light_position.is_none(),
                 casters: split.casters.len(),
-                draws,
-                triangles,
-                bytes: u64::from(split.size) * u64::from(split.size) * texel_bytes,
+                draws: draws.map(|(_, drawn, _)| drawn.draws).sum(),
+                triangles: if frame.shadows_on { plan.casters(i).iter().map(triangles).sum() } else { 0 },
+                bytes: u64::from(split.size) * u64::from(split.size) * self.depth_format.texel_bytes(),
             }
         };
         plan.splits.iter().enumerate().map(stats).collect()
-    }
-}
-
-fn new_encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
-    gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("Renderer::encoder") })
-}
-
-/// Submits a frame: at once where the GPU takes the time itself, else maps and view apart with a wait after each.
-struct Clock<'a> {
-    gpu: &'a Gpu,
-    by_cpu: bool,
-    begun: Instant,
-    shadow_ms: f64,
-}
-
-impl<'a> Clock<'a> {
-    fn start(gpu: &'a Gpu, timer: &Timer) -> Self {
-        Self { gpu, by_cpu: !timer.has_timestamps(), begun: Instant::now(), shadow_ms: 0.0 }
-    }
-
-    fn submit_and_wait(&self, encoder: wgpu::CommandEncoder) -> Result<f64> {
-        self.gpu.queue.submit([encoder.finish()]);
-        self.gpu.wait()?;
-        Ok(self.begun.elapsed().as_secs_f64() * 1e3)
-    }
-
-    fn after_maps(&mut self, encoder: wgpu::CommandEncoder) -> Result<wgpu::CommandEncoder> {
-        if !self.by_cpu {
-            return Ok(encoder);
-        }
-        self.shadow_ms = self.submit_and_wait(encoder)?;
-        Ok(new_encoder(self.gpu))
-    }
-
-    /// Milliseconds of the maps and of the frame, if the CPU measures.
-    fn after_all(self, encoder: wgpu::CommandEncoder) -> Result<Option<(f64, f64)>> {
-        if self.by_cpu {
-            let frame_ms = self.submit_and_wait(encoder)?;
-            return Ok(Some((self.shadow_ms, frame_ms)));
-        }
-        self.gpu.queue.submit([encoder.finish()]);
-        Ok(None)
     }
 }

@@ -5,6 +5,14 @@ pub(crate) fn casters(library: &str) -> String {
     [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster.wgsl")].join("\n")
 }
 
+/// The same for casters with holes; the library's text has [`MASKED_MEMBERS`].
+pub(crate) fn masked_casters(library: &str) -> String {
+    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster_masked.wgsl")].join("\n")
+}
+
+/// What a caster with holes hands to its fragments.
+pub(crate) const MASKED_MEMBERS: &str = "@location(0) uv: vec2f, @location(1) alpha: f32,";
+
 /// Bind group 0 is the frame, 1 the material, 2 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares.
 pub(crate) fn forward(library: &str) -> String {
     [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl")].join("\n")
@@ -19,7 +27,8 @@ pub(crate) fn probe(library: &str) -> String {
 mod tests {
     use std::mem::offset_of;
 
-    use umbrage_shaders::{Maps, receiver};
+    use naga::valid::Capabilities;
+    use umbrage_shaders::{Casters, Maps, receiver};
 
     use super::*;
     use crate::forward::FrameUniform;
@@ -28,8 +37,10 @@ mod tests {
 
     fn parsed(source: &str) -> naga::Module {
         let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
-        let mut validator =
-            naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
+        let mut validator = naga::valid::Validator::new(
+            naga::valid::ValidationFlags::all(),
+            Capabilities::MULTIVIEW | Capabilities::CLIP_DISTANCES,
+        );
         validator.validate(&module).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
         module
     }
@@ -51,7 +62,11 @@ mod tests {
 
     #[test]
     fn every_pass_is_valid_wgsl() {
-        assert!(!parsed(&casters(&umbrage_shaders::caster(0))).entry_points.is_empty());
+        for (views, tiles) in [(false, false), (true, false), (false, true), (true, true)] {
+            let library = |members| umbrage_shaders::caster(0, Casters { views, tiles }, members);
+            assert_eq!(parsed(&casters(&library(""))).entry_points.len(), 2);
+            assert_eq!(parsed(&masked_casters(&library(MASKED_MEMBERS))).entry_points.len(), 2);
+        }
         for maps in [Maps::default(), Maps { without_loads: true, ..Maps::default() }] {
             for source in [forward(&receiver(2, maps)), probe(&receiver(1, maps))] {
                 assert!(!parsed(&source).entry_points.is_empty());
@@ -63,7 +78,8 @@ mod tests {
     fn both_sides_lay_out_their_structs_alike() {
         let module = parsed(&forward(&receiver(2, Maps::default())));
         let frame = offsets!(
-            FrameUniform: clip_from_eye, eye, is_orthographic, forward, lamp_count, to_sun, daylight, ray_center, ray_right, ray_up, lamps
+            FrameUniform: clip_from_eye, eye, is_orthographic, forward, lamp_count, to_sun, daylight, ray_center, near,
+            ray_right, far, ray_up, lamps
         );
         assert_eq!(layout(&module, "Frame"), frame);
         let lamp = offsets!(LampUniform: position, range, to_light, outer_cosine, color, inner_cosine);

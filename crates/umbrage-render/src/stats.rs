@@ -17,9 +17,9 @@ pub struct SplitStats {
     pub warped: bool,
     /// Objects in its list: mesh nodes or instances, not primitives.
     pub casters: usize,
-    /// Draw calls; instances share one.
+    /// Draw calls that draw into its map; instances share one, and so may splits.
     pub draws: u32,
-    /// Triangles drawn, counting every instance.
+    /// Triangles of its casters.
     pub triangles: u64,
     /// Bytes of its map.
     pub bytes: u64,
@@ -47,6 +47,10 @@ pub struct FrameStats {
     pub frame_ms: f64,
     /// Of the first light, nearest first; of a point light those of its first face, then those of the next.
     pub splits: Vec<SplitStats>,
+    /// Draw calls into all maps.
+    pub shadow_draws: u32,
+    /// Triangles submitted to all maps, counting every instance; multiview draws each of them into several.
+    pub shadow_triangles: u64,
     /// The other lights.
     pub more_lights: Vec<LightStats>,
     /// Objects that the view may show.

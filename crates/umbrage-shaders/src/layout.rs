@@ -118,6 +118,25 @@ pub struct Split {
     pub _padding: [u32; 2],
 }
 
+/// What a pass needs that draws several splits at once.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct CasterPass {
+    /// The first split that it draws.
+    pub first: u32,
+    /// One past the last.
+    pub end: u32,
+    /// Layers that are drawn at once. Split `first + t · views + v` is tile `t` of layer `v`.
+    pub views: u32,
+    /// Up to the alignment of 16 bytes.
+    pub _padding: u32,
+    /// All splits of the frame.
+    pub splits: [Split; MAX_SPLITS],
+}
+
+/// [`Frame::slice`] where every map is there.
+pub const EVERY_SLICE: u32 = u32::MAX;
+
 /// All that a receiver needs for one light and one view; for a point light, for one face of its cube. What receivers bind is an array of
 /// frames: of every light's, six for a point light.
 #[repr(C)]
@@ -165,8 +184,10 @@ pub struct Frame {
     pub selection: u32,
     /// With [`SelectionKind::Map`]: share of a map's half edge over which it blends into the next that contains the point.
     pub map_blend: f32,
+    /// The only split whose map there is, where one map is used again and again; [`EVERY_SLICE`] where all are there.
+    pub slice: u32,
     /// Up to the alignment of 16 bytes.
-    pub _padding: [u32; 2],
+    pub _padding: [u32; 1],
     /// The splits, nearest first; those past `split_count` are not read.
     pub splits: [Split; MAX_SPLITS],
 }

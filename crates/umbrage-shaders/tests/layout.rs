@@ -3,8 +3,8 @@
 use std::mem::offset_of;
 
 use naga::proc::Layouter;
-use umbrage_shaders::layout::{Frame, MomentPass, MomentSplit, Moments, Split};
-use umbrage_shaders::{Maps, MomentMaps};
+use umbrage_shaders::layout::{CasterPass, Frame, MomentPass, MomentSplit, Moments, Split};
+use umbrage_shaders::{Casters, Maps, MomentMaps};
 
 /// A member as one side sees it: name, offset and size in bytes.
 type Member = (String, usize, usize);
@@ -46,7 +46,11 @@ fn split_in_rust() -> (usize, Vec<Member>) {
 fn frame_in_rust() -> (usize, Vec<Member>) {
     in_rust!(Frame: view_depth_plane, to_light, strength, light_position, light_range_m, fade_begin, split_count, filter_kind, enabled, tint,
         filter_width_m, sun_tangent, turn_per_pixel, transition, cone_cosine, first_frame, face_count,
-        shadow_colour, bias_kind, selection, map_blend, splits)
+        shadow_colour, bias_kind, selection, map_blend, slice, splits)
+}
+
+fn pass_in_rust() -> (usize, Vec<Member>) {
+    in_rust!(CasterPass: first, end, views, splits)
 }
 
 #[test]
@@ -58,10 +62,13 @@ fn no_member_is_forgotten() {
 
 #[test]
 fn members_agree() {
-    let (caster, receiver) = (umbrage_shaders::caster(0), umbrage_shaders::receiver(0, Maps::default()));
+    let (caster, receiver) =
+        (umbrage_shaders::caster(0, Casters::default(), ""), umbrage_shaders::receiver(0, Maps::default()));
     assert_eq!(split_in_rust(), in_wgsl(&caster, "UmbrageSplit"));
     assert_eq!(split_in_rust(), in_wgsl(&receiver, "UmbrageSplit"));
     assert_eq!(frame_in_rust(), in_wgsl(&receiver, "UmbrageFrame"));
+    let casters = umbrage_shaders::caster(0, Casters { views: true, tiles: true }, "");
+    assert_eq!(pass_in_rust(), in_wgsl(&casters, "UmbrageCasterPass"));
 }
 
 #[test]
@@ -76,7 +83,7 @@ fn members_of_moments_agree() {
 /// The comparison above must be able to say no: one member moved, one renamed, one resized.
 #[test]
 fn disagreement_is_seen() {
-    let source = umbrage_shaders::caster(0);
+    let source = umbrage_shaders::caster(0, Casters::default(), "");
     for (from, to) in [
         ("size: f32,\n    far: f32,", "far: f32,\n    size: f32,"),
         ("blend_begin: f32,", "blend_start: f32,"),

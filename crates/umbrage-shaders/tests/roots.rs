@@ -2,16 +2,36 @@
 
 use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use umbrage_shaders::{Maps, MomentMaps};
+use umbrage_shaders::{Bound, Casters, Maps, MomentMaps};
 
-const WITHOUT_LOADS: Maps = Maps { without_loads: true, frames: 7, moments: None };
-const MOMENTS: Maps = Maps { without_loads: false, frames: 1, moments: Some(MomentMaps::Sampled) };
+const WITHOUT_LOADS: Maps = Maps { bound: Bound::Array, r32f: false, without_loads: true, frames: 7, moments: None };
+
+/// Every way to bind maps and to read them.
+fn all_maps() -> Vec<Maps> {
+    let bounds = [Bound::Array, Bound::Cube].into_iter().chain((1..=8).map(Bound::Separate));
+    bounds
+        .flat_map(|bound| {
+            [(false, false), (false, true), (true, false)].map(|(r32f, without_loads)| Maps {
+                bound,
+                r32f,
+                without_loads,
+                ..Maps::default()
+            })
+        })
+        .chain(
+            [MomentMaps::Sampled, MomentMaps::Taps, MomentMaps::ByHand]
+                .map(|moments| Maps { moments: Some(moments), ..Maps::default() }),
+        )
+        .collect()
+}
+const MOMENTS: Maps =
+    Maps { bound: Bound::Array, r32f: false, without_loads: false, frames: 1, moments: Some(MomentMaps::Sampled) };
 const MOMENTS_BY_TAPS: Maps = Maps { moments: Some(MomentMaps::Taps), ..MOMENTS };
 const MOMENTS_BY_HAND: Maps = Maps { moments: Some(MomentMaps::ByHand), ..MOMENTS };
 
 fn validated(source: &str) -> (naga::Module, ModuleInfo) {
     let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+    let info = Validator::new(ValidationFlags::all(), Capabilities::MULTIVIEW | Capabilities::CLIP_DISTANCES)
         .validate(&module)
         .unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
     (module, info)
@@ -30,9 +50,23 @@ fn to_webgl2(source: &str, stage: naga::ShaderStage, entry_point: &str) -> Strin
 }
 
 fn vertex_shader(group: u32) -> String {
-    umbrage_shaders::caster(group)
+    umbrage_shaders::caster(group, Casters::default(), "")
         + "@vertex fn vertex(@location(0) position: vec3f) -> @builtin(position) vec4f {
                return umbrage_caster_position(position);
+           }"
+}
+
+/// A vertex shader that is the same for every way to draw casters.
+fn copying_shader(casters: Casters) -> String {
+    umbrage_shaders::caster(0, casters, "@location(0) uv: vec2f,")
+        + "@vertex fn vertex(@location(0) position: vec3f, copy: UmbrageCopy) -> UmbrageCast {
+               var result = umbrage_cast(position, copy);
+               result.uv = position.xy;
+               return result;
+           }
+           @fragment fn fragment(@builtin(position) at: vec4f, @location(0) uv: vec2f) -> @location(0) f32 {
+               if uv.x > 0.5 { discard; }
+               return umbrage_caster_depth(at);
            }"
 }
 
@@ -101,8 +135,30 @@ fn roots_are_valid_wgsl_in_any_bind_group() {
 }
 
 #[test]
+fn every_way_to_read_and_to_draw_maps_is_valid_wgsl() {
+    for maps in all_maps() {
+        validated(&(umbrage_shaders::receiver(2, maps) + FRAGMENT));
+    }
+    for (views, tiles) in [(false, false), (true, false), (false, true), (true, true)] {
+        validated(&copying_shader(Casters { views, tiles }));
+    }
+}
+
+/// As many textures as there are maps, and no more: an app's own textures count against the same limit.
+#[test]
+fn separate_maps_bind_no_texture_too_many() {
+    for count in 1..=8 {
+        let source = umbrage_shaders::receiver(0, Maps { bound: Bound::Separate(count), ..Maps::default() });
+        assert_eq!(source.matches(": texture_depth_2d;").count(), count);
+    }
+}
+
+#[test]
 fn roots_export_to_webgl2() {
     assert!(to_webgl2(&vertex_shader(0), naga::ShaderStage::Vertex, "vertex").contains("void main"));
+    for maps in all_maps().into_iter().filter(|maps| maps.without_loads || maps.r32f) {
+        to_webgl2(&(umbrage_shaders::receiver(1, maps) + FRAGMENT), naga::ShaderStage::Fragment, "fragment");
+    }
     let text = to_webgl2(&fragment_shader_without_loads(1), naga::ShaderStage::Fragment, "fragment");
     assert!(text.contains("sampler2DArrayShadow"), "depth maps become shadow samplers");
 }
@@ -118,9 +174,14 @@ fn moment_passes_are_valid_wgsl() {
 
 #[test]
 fn every_name_is_in_our_namespace() {
-    let receiver = |maps| umbrage_shaders::receiver(0, maps);
-    let texts = [Maps::default(), WITHOUT_LOADS, MOMENTS, MOMENTS_BY_TAPS, MOMENTS_BY_HAND].map(receiver);
-    for source in texts.into_iter().chain([umbrage_shaders::caster(0), umbrage_shaders::contact(0)]) {
+    let casters = [(false, false), (true, false), (false, true), (true, true)]
+        .map(|(views, tiles)| umbrage_shaders::caster(0, Casters { views, tiles }, ""));
+    let contact = umbrage_shaders::contact(0);
+    for source in casters
+        .into_iter()
+        .chain([contact])
+        .chain(all_maps().into_iter().map(|maps| umbrage_shaders::receiver(0, maps)))
+    {
         let module = naga::front::wgsl::parse_str(&source).expect("a valid root");
         let names = (module.functions.iter().filter_map(|(_, f)| f.name.clone()))
             .chain(module.global_variables.iter().filter_map(|(_, v)| v.name.clone()))

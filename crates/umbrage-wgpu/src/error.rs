@@ -116,6 +116,38 @@ pub enum Error {
         /// The device's limit, in texels.
         limit: u32,
     },
+    /// Two options that exclude each other.
+    #[error("{first} and {second} exclude each other: {reason}")]
+    ConflictingOptions {
+        /// One of them, by name and value.
+        first: String,
+        /// The other.
+        second: String,
+        /// Why, and what to do.
+        reason: &'static str,
+    },
+    /// The device lacks a feature that was asked for by name, and fallbacks are forbidden.
+    #[error(
+        "generation {generation} needs {feature}, which this device was not requested with, and fallbacks is false; request the \
+         feature (optional_features), allow fallbacks, or use generation per-split"
+    )]
+    MissingFeature {
+        /// The generation that was asked for.
+        generation: &'static str,
+        /// What it needs.
+        feature: &'static str,
+    },
+    /// More maps than textures that a shader can sample.
+    #[error(
+        "storage separate needs a sampled texture for each of the {count} maps in map_sizes, but a shader of this device samples {limit} \
+         at most (max_sampled_textures_per_shader_stage); use fewer splits, or storage array"
+    )]
+    TooManyTextures {
+        /// Textures needed.
+        count: usize,
+        /// The device's limit.
+        limit: u32,
+    },
     /// The plan was made for other maps.
     #[error(
         "the plan has maps of {plan:?} texels, but these ShadowMaps were created with {maps:?}; \

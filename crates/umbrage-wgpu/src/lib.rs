@@ -14,7 +14,7 @@
 //! 3. **Receive.** Put [`ShadowMaps::receiver_wgsl`] before your shading and multiply the sun's light by
 //!    `umbrage_visibility(position, normal)`. The pipeline has [`ShadowMaps::receiver_layout`] in that group.
 //! 4. **Each frame:** `planner.plan(…)`, [`ShadowMaps::prepare`], and for every split with casters a pass from
-//!    [`ShadowMaps::begin_split`], in which you bind [`ShadowMaps::caster_bind_group`] and draw `plan.casters(split)`.
+//!    [`ShadowMaps::begin_pass`], in which you bind [`ShadowMaps::caster_bind_group`] and draw `plan.casters(split)`.
 //! 5. Draw your picture with [`ShadowMaps::receiver_bind_group`] bound.
 //!
 //! Positions in both shaders are metres relative to [`FrameOptions::origin`]. The normal is that of the surface itself, not an
@@ -48,7 +48,7 @@ mod uniforms;
 
 pub use contact::{ContactFrame, ContactOptions, ContactShadows, contact_wgsl};
 pub use error::{Error, Result};
-pub use maps::{ShadowMaps, optional_features};
+pub use maps::{MapPass, ShadowMaps, Slice, optional_features};
 pub use moments::MomentStorage;
 pub use options::{
     DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, ReceiverBias, ShadowMapsOptions, Softness,

@@ -13,15 +13,25 @@ pub enum DepthFormat {
     D32Float,
     /// Two bytes a texel and a step of 1/65535 of the depth range, which every comparison allows for.
     D16Unorm,
+    /// Four bytes a texel in a colour texture, compared by hand with four loads; a depth buffer beside it. Where depth textures can
+    /// be compared with only (GL, WebGL2) this one can be loaded from, too.
+    R32Float,
 }
 
 impl DepthFormat {
+    /// Whether maps are colours and not depth: casters then need a fragment shader ([`crate::ShadowMaps::caster_targets`]).
+    #[must_use]
+    pub fn is_colour(self) -> bool {
+        self == Self::R32Float
+    }
+
     /// wgpu's name for it.
     #[must_use]
     pub fn texture_format(self) -> wgpu::TextureFormat {
         match self {
             Self::D32Float => wgpu::TextureFormat::Depth32Float,
             Self::D16Unorm => wgpu::TextureFormat::Depth16Unorm,
+            Self::R32Float => wgpu::TextureFormat::R32Float,
         }
     }
 
@@ -29,7 +39,7 @@ impl DepthFormat {
     #[must_use]
     pub fn texel_bytes(self) -> u64 {
         match self {
-            Self::D32Float => 4,
+            Self::D32Float | Self::R32Float => 4,
             Self::D16Unorm => 2,
         }
     }
@@ -37,7 +47,7 @@ impl DepthFormat {
     /// The step between stored depths as a share of the depth range; 0 where it is no coarser than `f32`.
     pub(crate) fn step(self) -> f64 {
         match self {
-            Self::D32Float => 0.0,
+            Self::D32Float | Self::R32Float => 0.0,
             Self::D16Unorm => 1.0 / 65535.0,
         }
     }
@@ -258,13 +268,21 @@ pub enum Derivatives {
 /// Where maps are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Storage {
-    /// What suits the device: [`Storage::Array`].
+    /// What goes with the generation; [`Storage::Array`] where that is `Auto`, too.
     #[default]
     Auto,
     /// Layers of one texture as wide as the largest map: memory is that of the largest times the number of maps.
     Array,
     /// Tiles of one texture: memory is that of the rectangle into which the maps were packed.
     Atlas,
+    /// A texture for each map: memory is that of the maps, and each takes one of the textures that a shader can sample
+    /// (`max_sampled_textures_per_shader_stage`).
+    Separate,
+    /// Faces of a cube map: six maps of one size at most.
+    Cube,
+    /// One map that is used for one split after the other, with the picture drawn in between: memory is that of the largest map. There is
+    /// never a second map to blend with.
+    Reused,
 }
 
 impl Storage {
@@ -275,6 +293,9 @@ impl Storage {
             Self::Auto => "auto",
             Self::Array => "array",
             Self::Atlas => "atlas",
+            Self::Separate => "separate",
+            Self::Cube => "cube",
+            Self::Reused => "reused",
         }
     }
 }
@@ -282,11 +303,21 @@ impl Storage {
 /// How maps are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Generation {
-    /// What suits the device: [`Generation::PerSplit`].
+    /// What goes with the storage: [`Generation::Multipass`] with [`Storage::Reused`], else [`Generation::PerSplit`].
     #[default]
     Auto,
-    /// One pass for each split.
+    /// One pass for each split, and after each the part of the picture that lies in its slice; with [`Storage::Reused`].
+    Multipass,
+    /// One pass for each split; with [`Storage::Array`], [`Storage::Atlas`], [`Storage::Separate`] or [`Storage::Cube`].
     PerSplit,
+    /// One pass for as many splits as the device has views, by multiview into the layers of an array or the faces of a cube: every
+    /// caster is submitted once, and thrown out of the views that it does not belong to.
+    Layered,
+    /// One pass for all splits, by instancing into the tiles of an atlas: every caster is submitted once, in as many instances as it
+    /// has splits. Clip distances keep tiles apart.
+    Instanced,
+    /// One pass for all splits, by multiview into layers of an array that hold two tiles or more, and by instancing into the tiles.
+    Mixed,
 }
 
 impl Generation {
@@ -295,7 +326,11 @@ impl Generation {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",
+            Self::Multipass => "multipass",
             Self::PerSplit => "per-split",
+            Self::Layered => "layered",
+            Self::Instanced => "instanced",
+            Self::Mixed => "mixed",
         }
     }
 }
@@ -361,7 +396,8 @@ pub struct ShadowMapsOptions {
     /// Samples of depth in a texel, 1 or 4: with 4 the edges of casters are smooth before anything is blurred. For filters of moments; the
     /// pipelines that draw casters take [`crate::ShadowMaps::caster_multisample`].
     pub samples: u32,
-    /// Whether a filter of moments may fall back to what the device has ([`crate::MomentStorage`]); if not, it is an error.
+    /// Whether what the device cannot do may be replaced by what it can ([`crate::ShadowMaps::notes`], [`crate::MomentStorage`]); if not, it is an
+    /// error.
     pub fallbacks: bool,
     /// Where maps are kept.
     pub storage: Storage,
@@ -370,6 +406,17 @@ pub struct ShadowMapsOptions {
     /// The lights that throw shadows at once: one sun or spot light by default. Each has maps of its own, of the same sizes, in the same
     /// texture. Several lights and point lights need [`Storage::Array`] and [`Generation::PerSplit`].
     pub lights: Vec<LightSlot>,
+}
+
+impl ShadowMapsOptions {
+    /// The generation and the storage that these options come to on a device that can do everything.
+    ///
+    /// # Errors
+    /// [`Error::ConflictingOptions`] naming two that exclude each other.
+    pub fn path(&self) -> Result<(Generation, Storage)> {
+        let chosen = crate::maps::choose::choose(self, crate::maps::choose::Abilities::ALL)?;
+        Ok((chosen.generation, chosen.storage))
+    }
 }
 
 impl Default for ShadowMapsOptions {

@@ -131,6 +131,7 @@ fn frame(
         sun_tangent: (0.5 * options.softness.sun_angle).tan(),
         turn_per_pixel: if options.softness.turned { TAU } else { 0.0 },
         transition: options.transition.kind() as u32,
+        slice: layout::EVERY_SLICE,
         selection: match plan.selection {
             Selection::Depth => SelectionKind::Depth,
             Selection::Map => SelectionKind::Map,

@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 
-use crate::{args::SceneArgs, parse};
+use crate::{
+    args::{SceneArgs, Switch},
+    parse,
+};
 
 /// `umbrage bench`.
 #[derive(Debug, clap::Args)]
@@ -44,6 +47,9 @@ pub struct BenchArgs {
     /// Numbers of objects for GPU Gems' Figure 10-9, four splits each
     #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "10,30,100,300,1000", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub objects: Vec<u32>,
+    /// Measure every pair of generation and storage on each scene, too, with PSSM(4; 512²)
+    #[arg(long, value_enum, default_value_t)]
+    pub paths: Switch,
     /// Write all figures here (JSON)
     #[arg(long, value_name = "JSON", help_heading = "Output")]
     pub json: Option<PathBuf>,

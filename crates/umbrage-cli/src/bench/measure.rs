@@ -50,8 +50,8 @@ pub fn measure(
             transition: technique.job.transition(),
             moments: technique.job.moments(),
             look: technique.job.look(),
-            storage: umbrage_wgpu::Storage::default(),
-            generation: umbrage_wgpu::Generation::default(),
+            storage: technique.job.storage,
+            generation: technique.job.generation,
             lights: lights::slots(&stage.lights),
         };
         renderers.push(Renderer::new(gpu, &stage.scene, &settings)?);
@@ -120,8 +120,8 @@ fn row(technique: &Technique, measured: &Rounds, baseline: &Rounds, stats: &Fram
         shadow_ratio: ratio(&measured.shadow, &baseline.shadow),
         paper_ratio: None,
         pairs: sum(|split| split.casters as u64),
-        draws: sum(|split| u64::from(split.draws)),
-        triangles: sum(|split| split.triangles),
+        draws: u64::from(stats.shadow_draws),
+        triangles: stats.shadow_triangles,
         map_bytes: stats.bytes,
         shadow_counts: stats.shadow_counts.map(counts),
         view_counts: stats.view_counts.map(counts),

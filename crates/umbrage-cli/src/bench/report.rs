@@ -34,6 +34,8 @@ pub struct SceneReport {
     pub triangles: usize,
     /// One per technique; the first is the baseline.
     pub rows: Vec<Row>,
+    /// One per pair of generation and storage; the first is the baseline.
+    pub paths: Vec<Row>,
 }
 
 /// A number of objects.

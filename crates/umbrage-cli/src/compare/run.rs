@@ -107,8 +107,8 @@ impl Bench<'_> {
                 transition: technique.job.transition(),
                 moments: technique.job.moments(),
                 look: technique.job.look(),
-                storage: umbrage_wgpu::Storage::default(),
-                generation: umbrage_wgpu::Generation::default(),
+                storage: technique.job.storage,
+                generation: technique.job.generation,
                 lights: vec![first.light.light.into()],
             };
             let renderer = Renderer::new(self.gpu, &set.scene, &settings);

@@ -46,6 +46,15 @@ fn geometric_normal(from_eye: vec3f) -> vec3f {
     return normalize(turned / largest);
 }
 
+// The picture is drawn slice by slice, and triangles are not cut at the slices' borders, nor at the camera's own planes.
+override SLICED: bool = false;
+
+// Whether a pixel belongs to what is drawn now.
+fn is_drawn(in: Surface) -> bool {
+    let depth = dot(in.from_eye, frame.forward);
+    return !SLICED || (umbrage_in_slice(in.position) && depth >= frame.near && depth <= frame.far);
+}
+
 // What the pixel covers. Call in uniform control flow.
 fn footprint_of(in: Surface) -> UmbrageFootprint {
     return umbrage_footprint(in.position, dpdx(in.from_eye), dpdy(in.from_eye), in.clip.xy);
@@ -54,14 +63,19 @@ fn footprint_of(in: Surface) -> UmbrageFootprint {
 // Red: visibility of the first light at the pixel's centre. Green: 1, a surface is here.
 @fragment
 fn fs_mask_opaque(in: Surface) -> @location(0) vec2f {
-    return mask_at(in, geometric_normal(in.from_eye), footprint_of(in));
+    let normal = geometric_normal(in.from_eye);
+    let footprint = footprint_of(in);
+    if !is_drawn(in) {
+        discard;
+    }
+    return mask_at(in, normal, footprint);
 }
 
 @fragment
 fn fs_mask_masked(in: Surface) -> @location(0) vec2f {
     let normal = geometric_normal(in.from_eye);
     let footprint = footprint_of(in);
-    if tested_alpha(in.uv, in.color.a) < material.alpha_cutoff {
+    if tested_alpha(in.uv, in.color.a) < material.alpha_cutoff || !is_drawn(in) {
         discard;
     }
     return mask_at(in, normal, footprint);
@@ -76,7 +90,13 @@ fn mask_at(in: Surface, normal: vec3f, footprint: UmbrageFootprint) -> vec2f {
 
 @fragment
 fn fs_picture_opaque(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
-    return vec4f(shaded(in, front, base_color(in)), 1.0);
+    let base = base_color(in);
+    let geometric = geometric_normal(in.from_eye);
+    let footprint = footprint_of(in);
+    if !is_drawn(in) {
+        discard;
+    }
+    return vec4f(shaded(in, front, base, geometric, footprint), 1.0);
 }
 
 // Alpha becomes coverage: a step one pixel wide around the cutoff. With one sample a pixel it is all or nothing: 0.5.
@@ -86,17 +106,23 @@ override LEAST_COVERAGE: f32 = 0.0;
 fn fs_picture_masked(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let color = base_color(in);
     let coverage = (color.a - material.alpha_cutoff) / max(fwidth(color.a), 1e-4) + 0.5;
-    let lit = shaded(in, front, color);
-    if coverage <= LEAST_COVERAGE {
+    let geometric = geometric_normal(in.from_eye);
+    let footprint = footprint_of(in);
+    if coverage <= LEAST_COVERAGE || !is_drawn(in) {
         discard;
     }
-    return vec4f(lit, min(coverage, 1.0));
+    return vec4f(shaded(in, front, color, geometric, footprint), min(coverage, 1.0));
 }
 
 @fragment
 fn fs_picture_blend(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let color = base_color(in);
-    return vec4f(shaded(in, front, color), clamp(color.a, 0.0, 1.0));
+    let geometric = geometric_normal(in.from_eye);
+    let footprint = footprint_of(in);
+    if !is_drawn(in) {
+        discard;
+    }
+    return vec4f(shaded(in, front, color, geometric, footprint), clamp(color.a, 0.0, 1.0));
 }
 
 fn base_color(in: Surface) -> vec4f {
@@ -120,10 +146,8 @@ fn falloff(lamp: Lamp, position: vec3f) -> f32 {
 }
 
 // Lambert's law for each light, a sky from above and light from the ground below. Display light, tone mapped.
-fn shaded(in: Surface, front: bool, base: vec4f) -> vec3f {
-    let geometric = geometric_normal(in.from_eye);
+fn shaded(in: Surface, front: bool, base: vec4f, geometric: vec3f, footprint: UmbrageFootprint) -> vec3f {
     let smooth_normal = normalize(select(-in.normal, in.normal, front));
-    let footprint = footprint_of(in);
     var light = vec3f(0.0);
     var tint = vec3f(1.0);
     for (var i = 0u; i < frame.lamp_count + umbrage_zero(in.position.x); i++) {

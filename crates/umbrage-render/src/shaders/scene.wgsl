@@ -17,7 +17,10 @@ struct Frame {
     daylight: f32,
     // The ray through the middle of the image is `ray_center`; a step of 1 in NDC x and y adds the other two.
     ray_center: vec3f,
+    // The camera's own planes, as view depths in metres.
+    near: f32,
     ray_right: vec3f,
+    far: f32,
     ray_up: vec3f,
     lamps: array<Lamp, 8>,
 }
@@ -56,6 +59,8 @@ struct Instance {
     @location(4) row_x: vec4f,
     @location(5) row_y: vec4f,
     @location(6) row_z: vec4f,
+    // Which copy of a caster it is; see `umbrage_cast_copy`.
+    @location(7) code: u32,
 }
 
 fn position_from_local(instance: Instance, local: vec3f) -> vec3f {

@@ -32,6 +32,7 @@ impl Gpu {
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("Test::device"),
             required_features: (adapter.features() & optional_features()).difference(withheld),
+            required_limits: adapter.limits(),
             ..Default::default()
         }))
         .expect("an adapter gives a device with features that it has");
@@ -304,8 +305,11 @@ impl World {
         let (maps, pipeline) = gpu.checked(|| {
             let maps = ShadowMaps::new(&gpu.device, options).expect("valid options");
             let source = maps.caster_wgsl(0)
-                + "@vertex fn vertex(@location(0) position: vec3f) -> @builtin(position) vec4f {
-                       return umbrage_caster_position(position);
+                + "@vertex fn vertex(@location(0) position: vec3f, copy: UmbrageCopy) -> UmbrageCast {
+                       return umbrage_cast(position, copy);
+                   }
+                   @fragment fn fragment(@builtin(position) at: vec4f) -> @location(0) f32 {
+                       return umbrage_caster_depth(at);
                    }";
             let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("Test::caster"),
@@ -331,8 +335,13 @@ impl World {
                 primitive: maps.caster_primitive(),
                 depth_stencil: Some(maps.caster_depth_stencil()),
                 multisample: maps.caster_multisample(),
-                fragment: None,
-                multiview_mask: None,
+                fragment: (!maps.caster_targets().is_empty()).then(|| wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some("fragment"),
+                    compilation_options: Default::default(),
+                    targets: maps.caster_targets(),
+                }),
+                multiview_mask: maps.caster_multiview_mask(),
                 cache: None,
             });
             (maps, pipeline)
@@ -351,12 +360,12 @@ impl World {
         self.gpu.checked(|| {
             let vertices = self.gpu.buffer_with(bytemuck::cast_slice(triangles), wgpu::BufferUsages::VERTEX);
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-            for split in 0..self.maps.map_count() {
-                let mut pass = self.maps.begin_split(&mut encoder, split, None);
+            for (index, map_pass) in self.maps.passes().iter().enumerate() {
+                let mut pass = self.maps.begin_pass(&mut encoder, index, None);
                 pass.set_pipeline(&self.pipeline);
-                pass.set_bind_group(0, self.maps.caster_bind_group(split), &[]);
+                pass.set_bind_group(0, self.maps.caster_bind_group(index), &[]);
                 pass.set_vertex_buffer(0, vertices.slice(..));
-                pass.draw(0..triangles.len() as u32, 0..1);
+                pass.draw(0..triangles.len() as u32, map_pass.copies(u8::MAX));
             }
             self.maps.filter(&mut encoder);
             self.gpu.queue.submit([encoder.finish()]);
@@ -374,13 +383,13 @@ impl World {
         self.gpu.checked(|| {
             let vertices = self.gpu.buffer_with(bytemuck::cast_slice(&casters.concat()), wgpu::BufferUsages::VERTEX);
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-            for split in 0..self.maps.splits() {
-                let mut pass = self.maps.begin_split(&mut encoder, split, None);
+            for (index, map_pass) in self.maps.passes().iter().enumerate() {
+                let mut pass = self.maps.begin_pass(&mut encoder, index, None);
                 pass.set_pipeline(&self.pipeline);
-                pass.set_bind_group(0, self.maps.caster_bind_group(split), &[]);
+                pass.set_bind_group(0, self.maps.caster_bind_group(index), &[]);
                 pass.set_vertex_buffer(0, vertices.slice(..));
-                for &caster in plan.casters(split) {
-                    pass.draw(begins[caster as usize]..begins[caster as usize + 1], 0..1);
+                for (caster, copies) in map_pass.casters(plan) {
+                    pass.draw(begins[caster as usize]..begins[caster as usize + 1], copies);
                 }
             }
             self.maps.filter(&mut encoder);
@@ -399,16 +408,16 @@ impl World {
         let bytes = self.gpu.checked(|| {
             let back = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("Test::texels"),
-                size: u64::from(row * self.maps.depth_texture().height()),
+                size: u64::from(row * self.maps.map_texture(split).height()),
                 usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
-            let edge = self.maps.depth_texture().width();
+            let edge = self.maps.map_texture(split).width();
             assert_eq!(edge, size, "a copy takes whole layers of a depth texture");
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
             encoder.copy_texture_to_buffer(
                 wgpu::TexelCopyTextureInfo {
-                    texture: self.maps.depth_texture(),
+                    texture: self.maps.map_texture(split),
                     mip_level: 0,
                     origin: wgpu::Origin3d { x: 0, y: 0, z: split as u32 },
                     aspect: wgpu::TextureAspect::DepthOnly,
