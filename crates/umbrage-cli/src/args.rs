@@ -298,6 +298,9 @@ pub struct ShadowArgs {
     /// Share of the shadowed range over which shadows fade out at its far end; 0 is off, as where nothing is seen beyond
     #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
     pub far_fade: f64,
+    /// Where the visibility mask takes positions and normals from: the surfaces themselves as they are drawn, or the picture's depth
+    #[arg(long, value_enum, default_value_t)]
+    pub coordinates: Coordinates,
     /// What a map stores
     #[arg(long, value_enum, default_value_t)]
     pub depth_format: DepthFormat,
@@ -506,6 +509,16 @@ pub enum Transition {
     Dither,
     /// No band
     Hard,
+}
+
+/// `--coordinates`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Coordinates {
+    /// Interpolated world positions
+    #[default]
+    World,
+    /// Rebuilt from depth in a pass of its own, with normals from neighbouring pixels
+    Deferred,
 }
 
 /// `--depth-format`.

@@ -128,6 +128,8 @@ pub struct ShadowJob {
     pub shadow_strength: f64,
     /// `--shadow-colour`.
     pub shadow_colour: DVec3,
+    /// Whether `--coordinates` are `deferred`.
+    pub deferred: bool,
     /// `--depth-format`.
     pub depth_format: args::DepthFormat,
     /// `--generation`.
@@ -337,6 +339,7 @@ impl ShadowJob {
             bias: args.bias,
             shadow_strength: args.shadow_strength,
             shadow_colour: args.shadow_colour,
+            deferred: args.coordinates == args::Coordinates::Deferred,
             depth_format: args.depth_format,
             generation: args.generation.into(),
             storage: args.storage.into(),

@@ -300,7 +300,7 @@ impl Draft {
                 "extent-steps" => format!("2^(1/{value})"),
                 "extent-levels" => format!("1/{value} levels"),
                 "selection" => format!("by {value}"),
-                "scheme" | "fit" | "filter" | "depth-format" => value.clone(),
+                "coordinates" | "scheme" | "fit" | "filter" | "depth-format" => value.clone(),
                 _ => format!("{key} {value}"),
             };
             label += &format!(" {text}");
