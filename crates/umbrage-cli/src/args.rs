@@ -320,7 +320,7 @@ pub struct ShadowArgs {
     #[arg(long, value_name = "R,G,B", default_value = "0,0,0", value_parser = parse::colour, allow_hyphen_values = true)]
     pub shadow_colour: DVec3,
     /// Colour the picture by split
-    #[arg(long)]
+    #[arg(long, value_name = "true|false", num_args = 0..=1, require_equals = true, default_value_t = false, default_missing_value = "true", action = clap::ArgAction::Set)]
     pub tint: bool,
     /// Draw with shadows or without
     #[arg(long, value_enum, default_value_t)]

@@ -31,6 +31,8 @@ into (the sun ahead of the camera, 11 degrees up; into@30: 30 degrees up), metri
 Presets, each reproduced by one command such as `umbrage compare --preset ladder -o ladder`; options given beside take precedence:
   ladder   SSM and PSSM at 1 and 4 Mtexel, tight and still, over the worlds under the suns `metrics`, with flicker
   figure8  the rows and worlds of the paper's Figure 8, columns (a) to (d)
+  psvsm    the five pictures of Parallel-Split Variance Shadow Maps
+  filters  every filter on the same maps; give --sun-angle 3 for soft scores
   dueling  its column (e): looking into the light, larger maps
   stillness  unstabilised, exact, approximate and the source's 64 levels along a walk with turns, with flicker
   table    PSSM(2, 3, 4; 512) beside SSM(1024) over all cameras of all worlds
@@ -173,6 +175,10 @@ pub enum Preset {
     Stillness,
     /// The defaults under suns from 80° to 5° above the horizon
     Suns,
+    /// The five pictures of parallel-split variance shadow maps
+    Psvsm,
+    /// Every filter on the same maps
+    Filters,
     /// Splits chosen by view depth and by map, coloured: Figure 4.1.9 of Practical Cascaded Shadow Maps
     Selection,
     /// SSM(2048) beside PSSM(3; 1024): GPU Gems 3, Figure 10-8

@@ -174,6 +174,42 @@ const STILLNESS: Content = Content {
     ..FIGURE_8
 };
 
+/// *Parallel-Split Variance Shadow Maps*, its five pictures: one shadow map and one variance shadow map of 1024², four splits of 512², the
+/// same in colours, and as variance shadow maps.
+const PSVSM: Content = Content {
+    techniques: &[
+        "ssm:1024:filter=pcf2:label=Shadow map (1024²)",
+        "ssm:1024:filter=vsm:label=Variance shadow map (1024²)",
+        "pssm:4:512:filter=pcf2:label=Parallel-split (4; 512²)",
+        "pssm:4:512:filter=pcf2:tint=true:label=The splits",
+        "pssm:4:512:filter=vsm:label=Parallel-split variance (4; 512²)",
+    ],
+    with: "far-fade=0:stabilize=none",
+    scenes: &["robot-war", "chessboard", "mining-terrain"],
+    cameras: &["middle"],
+    ..FIGURE_8
+};
+
+/// Every filter on the same maps, under a sun of three degrees where the command says so.
+const FILTERS: Content = Content {
+    techniques: &[
+        "pssm:4:1024:filter=pcf2",
+        "pssm:4:1024:filter=pcf3",
+        "pssm:4:1024:filter=pcf5",
+        "pssm:4:1024:filter=pcf7",
+        "pssm:4:1024:filter=disc",
+        "pssm:4:1024:filter=pcss",
+        "pssm:4:1024:filter=esm",
+        "pssm:4:1024:filter=vsm",
+        "pssm:4:1024:filter=evsm2",
+        "pssm:4:1024:filter=evsm4",
+        "pssm:4:1024:filter=msm",
+    ],
+    with: "",
+    cameras: &["near"],
+    ..FIGURE_8
+};
+
 /// What a preset says.
 #[must_use]
 pub fn content(preset: Preset) -> &'static Content {
@@ -184,6 +220,8 @@ pub fn content(preset: Preset) -> &'static Content {
         Preset::Stillness => &STILLNESS,
         Preset::Table => &TABLE,
         Preset::Suns => &SUNS,
+        Preset::Psvsm => &PSVSM,
+        Preset::Filters => &FILTERS,
         Preset::Selection => &SELECTION,
         Preset::GemsFigure => &GEMS_FIGURE,
         Preset::GemsResults => &GEMS_RESULTS,

@@ -163,7 +163,8 @@ impl Bench<'_> {
             let (mut scores, mut shown) = (Vec::new(), Vec::new());
             for (number, (technique, renderer)) in self.techniques.iter().zip(renderers.iter_mut()).enumerate() {
                 let wanted = Outputs { picture: is_shown, mask: true, maps: false, deferred: technique.job.deferred };
-                let rendered = renderer.render(&frame, wanted).map_err(|error| in_technique(technique, error))?;
+                let coloured = Frame { tint: frame.tint || technique.job.tint, ..frame };
+                let rendered = renderer.render(&coloured, wanted).map_err(|error| in_technique(technique, error))?;
                 let mask = rendered.mask.ok_or_else(|| Failure::other("the renderer gave no mask"))?;
                 let image_metrics = is_shown && self.args.image_metrics == Switch::On;
                 let of_view = score(&judged, &mask, &rendered.stats, image_metrics)?;
@@ -175,8 +176,9 @@ impl Bench<'_> {
                     let (shared, next) = answers.split_at(old_points.len());
                     let old = before.as_ref().map(|before| (&before.judged.domain, &before.points[..]));
                     let indices = walks[number].add(Answered { plan: rendered.stats.plan, shared, next }, old)?;
-                    flipped
-                        .extend(indices.iter().filter_map(|&i| pixel_of(view, self.args.size(), old_points[i].position)));
+                    flipped.extend(
+                        indices.iter().filter_map(|&i| pixel_of(view, self.args.size(), old_points[i].position)),
+                    );
                 }
                 if let Some(picture) = rendered.picture {
                     shown.push(Answer { mask, picture, scores: of_view, flipped });
