@@ -94,6 +94,7 @@ pub struct Studio<'a> {
 impl<'a> Studio<'a> {
     /// Opens the device and loads the scene onto it.
     pub fn open(job: &SceneJob, shadows: &'a ShadowJob, stage: &Stage) -> Result<Self> {
+        lights::check_filter(&stage.lights, shadows.filter)?;
         let gpu = Gpu::new(&GpuOptions::default())?;
         let settings = RenderSettings {
             size: job.size,

@@ -349,7 +349,7 @@ impl Renderer {
         if outputs.mask && outputs.deferred && self.shadow_mask.is_none() {
             self.shadow_mask = Some(ShadowMask::new(&gpu.device, &self.maps, MASK_FORMAT, MaskNormals::FromDepth)?);
         }
-        let prepared = self.prepare(frame)?;
+        let prepared = Prepared { every_map: outputs.maps, ..self.prepare(frame)? };
         let mut clock = Clock::start(&gpu, &self.timer);
         if outputs.maps && self.maps.options().samples > 1 {
             return Err(Error::MapsOfSamples { samples: self.maps.options().samples });
@@ -519,7 +519,17 @@ impl Renderer {
             })
             .collect();
         self.instances.upload(&self.gpu)?;
-        Ok(Prepared { origin, plans, plan_ms, caster_runs, solid, translucent, slices, objects_in_view: visible.len() })
+        Ok(Prepared {
+            origin,
+            plans,
+            plan_ms,
+            caster_runs,
+            solid,
+            translucent,
+            slices,
+            objects_in_view: visible.len(),
+            every_map: false,
+        })
     }
 
     fn with_translucent_parts(&self, pose: &Pose, objects: impl Iterator<Item = usize>) -> Vec<usize> {
