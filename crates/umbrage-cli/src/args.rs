@@ -284,6 +284,10 @@ pub struct ShadowArgs {
     /// What the sun's light is multiplied by in full shadow: linear red, green, blue, 0 to 1 each
     #[arg(long, value_name = "R,G,B", default_value = "0,0,0", value_parser = parse::colour, allow_hyphen_values = true)]
     pub shadow_colour: DVec3,
+    /// Look for what shades a surface from close by in the picture's own depth, too: feet and gaps that maps are too coarse for. Such
+    /// shadows move with the camera
+    #[arg(long, value_name = "SWITCH", num_args = 0..=1, require_equals = true, default_value = "off", default_missing_value = "on")]
+    pub contact_shadows: Switch,
     /// Colour the picture by split
     #[arg(long)]
     pub tint: bool,

@@ -102,6 +102,8 @@ pub struct ShadowJob {
     pub bias: args::Bias,
     /// `--shadow-strength`.
     pub shadow_strength: f64,
+    /// `--contact-shadows`.
+    pub contact_shadows: bool,
     /// `--shadow-colour`.
     pub shadow_colour: DVec3,
     /// `--depth-format`.
@@ -258,6 +260,7 @@ impl ShadowJob {
             transition: args.transition,
             bias: args.bias,
             shadow_strength: args.shadow_strength,
+            contact_shadows: args.contact_shadows == args::Switch::On,
             shadow_colour: args.shadow_colour,
             depth_format: args.depth_format,
             tint: args.tint,
@@ -288,6 +291,7 @@ impl ShadowJob {
                 args::Bias::Plane => umbrage_wgpu::ReceiverBias::Plane,
                 args::Bias::Slope => umbrage_wgpu::ReceiverBias::Slope,
             },
+            contact: self.contact_shadows.then(umbrage_wgpu::ContactOptions::default),
         }
     }
 

@@ -6,6 +6,7 @@
 
 mod capture;
 mod casters;
+mod contact;
 mod cull;
 mod draw_list;
 mod error;

@@ -1,6 +1,6 @@
 //! How shadows look, beside where they fall.
 
-use umbrage_wgpu::ReceiverBias;
+use umbrage_wgpu::{ContactOptions, ReceiverBias};
 
 /// How shadows look. Settled before the first frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,10 +11,12 @@ pub struct Look {
     pub colour: [f32; 3],
     /// How receivers are kept from shading themselves.
     pub bias: ReceiverBias,
+    /// Contact shadows from the picture's own depth, in pictures and masks; probes know the maps alone. None on GL.
+    pub contact: Option<ContactOptions>,
 }
 
 impl Default for Look {
     fn default() -> Self {
-        Self { strength: 1.0, colour: [0.0; 3], bias: ReceiverBias::default() }
+        Self { strength: 1.0, colour: [0.0; 3], bias: ReceiverBias::default(), contact: None }
     }
 }

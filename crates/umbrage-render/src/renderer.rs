@@ -11,6 +11,7 @@ use web_time::Instant;
 
 use crate::capture::Capture;
 use crate::casters::Casters;
+use crate::contact::Contact;
 use crate::draw_list::{Drawable, Drawn, Instances, Run};
 use crate::forward::{Forward, FrameUniform, MaskTarget, PictureTarget, Samples};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry, check_object};
@@ -108,6 +109,7 @@ pub struct Renderer {
     instances: Instances,
     casters: Casters,
     forward: Forward,
+    contact: Option<Contact>,
     probe: Probe,
     timer: Timer,
     picture: Option<PictureTarget>,
@@ -146,6 +148,7 @@ impl Renderer {
         shadows.image_size = settings.size;
         shadows.validate()?;
         settings.softness.validate()?;
+        settings.look.contact.iter().try_for_each(umbrage_wgpu::ContactOptions::validate)?;
         if let Some((split, &size)) = shadows.map_sizes.iter().enumerate().find(|&(_, &size)| size > limit) {
             return Err(Error::MapSize { split, size, limit });
         }
@@ -175,6 +178,11 @@ impl Renderer {
             if settings.filter == Filter::Pcss && !gpu.depth_loads() {
                 notes.push("no loads from depth textures on GL: pcss is a disc of fixed width".to_owned());
             }
+            let contact = settings.look.contact.filter(|_| gpu.depth_loads());
+            if settings.look.contact.is_some() && contact.is_none() {
+                notes.push("no loads from depth textures on GL: no contact shadows".to_owned());
+            }
+            let contact = contact.map(|options| Contact::new(gpu, settings.size, options));
             if !timer.has_timestamps() {
                 notes.push("no timestamp queries: times of the GPU are measured by the CPU's clock".to_owned());
             }
@@ -187,7 +195,8 @@ impl Renderer {
                 skinned: SkinnedGeometry::empty(gpu)?,
                 instances: Instances::new(gpu),
                 casters: Casters::new(gpu, &maps, &materials),
-                forward: Forward::new(gpu, &maps, &materials, settings.samples),
+                forward: Forward::new(gpu, &maps, &materials, settings.samples, contact.as_ref()),
+                contact,
                 samples: settings.samples,
                 softness: settings.softness,
                 transition: settings.transition,
@@ -262,6 +271,13 @@ impl Renderer {
         let map_passes = split_drawn.len();
         let mut encoder = clock.after_maps(encoder)?;
         let mut view_drawn = Drawn::default();
+        if let Some(contact) = &self.contact {
+            let slot = self.timer.next();
+            let mut pass = contact.begin(&mut encoder, self.timer.timestamp_writes(slot));
+            view_drawn += self
+                .timer
+                .counted(&mut pass, slot, |pass| self.forward.draw_depth(pass, &self.drawable(), &prepared.solid));
+        }
         let mask = match &self.mask {
             Some(target) if outputs.mask => {
                 let slot = self.timer.next();
@@ -421,6 +437,9 @@ impl Renderer {
         self.maps.prepare(&self.gpu.queue, &plan, &options)?;
         self.skinned.update(&self.gpu, &self.scene_meshes, pose)?;
         self.forward.prepare(&self.gpu, &FrameUniform::new(view, &frame.sun, origin));
+        if let Some(contact) = &self.contact {
+            contact.prepare(&self.gpu, view, &frame.sun, origin)?;
+        }
         self.timer.restart();
 
         let mut near_to_far: Vec<(f64, usize)> = (0..pose.objects.len())
@@ -491,7 +510,7 @@ impl Renderer {
     ) -> Drawn {
         let mut pass = target.begin(encoder, self.timer.timestamp_writes(slot));
         self.timer.counted(&mut pass, slot, |pass| {
-            self.forward.draw_mask(pass, &self.maps, &self.drawable(), &prepared.solid)
+            self.forward.draw_mask(pass, &self.maps, self.contact.as_ref(), &self.drawable(), &prepared.solid)
         })
     }
 
@@ -505,7 +524,8 @@ impl Renderer {
         let mut pass = target.begin(encoder, self.timer.timestamp_writes(slot));
         self.timer.counted(&mut pass, slot, |pass| {
             let (solid, translucent) = (&prepared.solid, &prepared.translucent);
-            self.forward.draw_picture(pass, &self.maps, &self.drawable(), solid, translucent)
+            let contact = self.contact.as_ref();
+            self.forward.draw_picture(pass, &self.maps, contact, &self.drawable(), solid, translucent)
         })
     }
 

@@ -5,9 +5,15 @@ pub(crate) fn casters(library: &str) -> String {
     [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster.wgsl")].join("\n")
 }
 
-/// Bind group 0 is the frame, 1 the material, 2 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares.
-pub(crate) fn forward(library: &str) -> String {
-    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl")].join("\n")
+/// Bind group 0 is the frame, 1 the material, 2 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares, 3 with contact shadows what
+/// [`umbrage_wgpu::contact_wgsl`] declares.
+pub(crate) fn forward(library: &str, contact: bool) -> String {
+    const WITH: &str = "fn contact_visibility(position: vec3f, normal: vec3f) -> f32 {
+    return umbrage_contact_visibility(position, normal, 0.5);
+}";
+    const WITHOUT: &str = "fn contact_visibility(position: vec3f, normal: vec3f) -> f32 { return 1.0; }";
+    let contact = if contact { umbrage_wgpu::contact_wgsl(3) + WITH } else { WITHOUT.to_owned() };
+    [library, &contact, include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl")].join("\n")
 }
 
 /// Bind group 0 is the points, 1 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares.
@@ -52,7 +58,7 @@ mod tests {
     fn every_pass_is_valid_wgsl() {
         assert!(!parsed(&casters(&umbrage_shaders::caster(0))).entry_points.is_empty());
         for maps in [Maps::default(), Maps { without_loads: true, ..Maps::default() }] {
-            for source in [forward(&receiver(2, maps)), probe(&receiver(1, maps))] {
+            for source in [forward(&receiver(2, maps), true), probe(&receiver(1, maps))] {
                 assert!(!parsed(&source).entry_points.is_empty());
             }
         }
@@ -60,7 +66,7 @@ mod tests {
 
     #[test]
     fn both_sides_lay_out_their_structs_alike() {
-        let module = parsed(&forward(&receiver(2, Maps::default())));
+        let module = parsed(&forward(&receiver(2, Maps::default()), true));
         let frame = offsets!(
             FrameUniform: clip_from_eye, eye, is_orthographic, forward, to_light, ray_center, ray_right, ray_up
         );
@@ -71,7 +77,8 @@ mod tests {
     #[test]
     fn a_moved_member_is_noticed() {
         let module = parsed(
-            &forward(&receiver(2, Maps::default())).replace("base_color: vec4f,", "base_color: vec4f, more: f32,"),
+            &forward(&receiver(2, Maps::default()), true)
+                .replace("base_color: vec4f,", "base_color: vec4f, more: f32,"),
         );
         assert_ne!(layout(&module, "Material"), offsets!(MaterialUniform: base_color, emissive, alpha_cutoff));
     }

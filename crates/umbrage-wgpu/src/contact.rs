@@ -12,13 +12,11 @@ pub struct ContactOptions {
     pub length_m: f32,
     /// How thick what the camera sees is taken to be, metres: shadows end where something passes farther than this before the surface.
     pub thickness_m: f32,
-    /// Places to look at on the way, 1 to 64.
-    pub steps: u32,
 }
 
 impl Default for ContactOptions {
     fn default() -> Self {
-        Self { length_m: 0.3, thickness_m: 0.15, steps: 12 }
+        Self { length_m: 0.3, thickness_m: 0.15 }
     }
 }
 
@@ -33,10 +31,6 @@ impl ContactOptions {
                 let value = f64::from(value);
                 return Err(Error::InvalidFrameOption { field, value, expected: "finite metres above 0" });
             }
-        }
-        if !(1..=64).contains(&self.steps) {
-            let value = f64::from(self.steps);
-            return Err(Error::InvalidFrameOption { field: "steps", value, expected: "1 to 64" });
         }
         Ok(())
     }
@@ -71,10 +65,9 @@ struct Uniform {
     forward: [f32; 3],
     thickness_m: f32,
     to_light: [f32; 3],
-    steps: u32,
     pixel_m: f32,
     perspective: f32,
-    _padding: [u32; 2],
+    _padding: [u32; 3],
 }
 
 impl Uniform {
@@ -100,10 +93,9 @@ impl Uniform {
             forward: frame.forward.as_vec3().to_array(),
             thickness_m: options.thickness_m,
             to_light: frame.to_light.as_vec3().to_array(),
-            steps: options.steps,
             pixel_m: (2.0 / (up * f64::from(frame.height.max(1)))) as f32,
             perspective: f32::from(u8::from(perspective)),
-            _padding: [0; 2],
+            _padding: [0; 3],
         })
     }
 }
@@ -229,7 +221,6 @@ mod tests {
         };
         assert_eq!(refused(good, ContactOptions { length_m: 0.0, ..options }), "length_m");
         assert_eq!(refused(good, ContactOptions { thickness_m: f32::NAN, ..options }), "thickness_m");
-        assert_eq!(refused(good, ContactOptions { steps: 65, ..options }), "steps");
         assert_eq!(refused(ContactFrame { clip_from_eye: DMat4::ZERO, ..good }, options), "clip_from_eye");
         assert_eq!(refused(ContactFrame { forward: DVec3::ZERO, ..good }, options), "eye");
     }

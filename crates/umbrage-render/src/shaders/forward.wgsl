@@ -65,7 +65,22 @@ fn mask_at(in: Surface, normal: vec3f) -> vec2f {
     if dot(normal, frame.to_light) <= 0.0 {
         return vec2f(0.0, 1.0);
     }
-    return vec2f(umbrage_shadow_at_pixel(in.position, normal, in.clip.xy).visibility, 1.0);
+    let visibility = umbrage_shadow_at_pixel(in.position, normal, in.clip.xy).visibility;
+    return vec2f(with_contact(visibility, in.position, normal), 1.0);
+}
+
+// Contact shadows are as dark as the others, and off where they are.
+fn with_contact(visibility: f32, position: vec3f, normal: vec3f) -> f32 {
+    let strength = select(0.0, umbrage_frames[0].strength, umbrage_frames[0].enabled != 0u);
+    return min(visibility, mix(1.0, contact_visibility(position, normal), strength));
+}
+
+// The picture's depth, for contact shadows.
+@fragment
+fn fs_depth_masked(in: Surface) {
+    if tested_alpha(in.uv, in.color.a) < material.alpha_cutoff {
+        discard;
+    }
 }
 
 @fragment
@@ -101,8 +116,10 @@ fn base_color(in: Surface) -> vec4f {
 fn shaded(in: Surface, front: bool, base: vec4f) -> vec3f {
     let geometric = geometric_normal(in.from_eye);
     let smooth_normal = normalize(select(-in.normal, in.normal, front));
-    let shadow = umbrage_shadow_at_pixel(in.position, lookup_normal(geometric), in.clip.xy);
-    let sun = SUN * max(dot(smooth_normal, frame.to_light), 0.0) * shadow.light;
+    let lookup = lookup_normal(geometric);
+    let shadow = umbrage_shadow_at_pixel(in.position, lookup, in.clip.xy);
+    let light = umbrage_light_of(0u, with_contact(shadow.visibility, in.position, lookup));
+    let sun = SUN * max(dot(smooth_normal, frame.to_light), 0.0) * light;
     // Brighter on the sun's side of the sky, so that corners can be told apart in the shade.
     let side = 1.0 + 0.15 * dot(smooth_normal, frame.to_light);
     let ambient = side * mix(GROUND_AMBIENT, SKY_AMBIENT, 0.5 * smooth_normal.y + 0.5);
