@@ -2,15 +2,46 @@
 
 use wesl::{CompileOptions, Mangler, ModulePath, Wesl};
 
-/// The roots in `shaders`, whether depth textures can be loaded from, and the file that each becomes in `OUT_DIR`.
-const ROOTS: [(&str, bool, &str); 6] = [
-    ("pass::caster", true, "caster"),
-    ("pass::contact", true, "contact"),
-    ("pass::receiver", true, "receiver"),
-    ("pass::receiver", false, "receiver_without_loads"),
-    ("maps::array", true, "array"),
-    ("maps::array", false, "array_without_loads"),
-];
+/// The root in `shaders` of a text, the features that it is built with, and the file that it becomes in `OUT_DIR`.
+type Text = (&'static str, Vec<String>, String);
+
+/// The most maps that are textures of their own: `layout::MAX_SPLITS`.
+const MOST_MAPS: usize = 8;
+
+fn texts() -> Vec<Text> {
+    let text = |root, features: &[&str], file: String| (root, features.iter().map(ToString::to_string).collect(), file);
+    let mut texts = vec![
+        text("pass::caster", &[], "caster".into()),
+        text("pass::casters", &["views"], "casters_views".into()),
+        text("pass::casters", &["tiles"], "casters_tiles".into()),
+        text("pass::casters", &["views", "tiles"], "casters_views_tiles".into()),
+        text("pass::contact", &[], "contact".into()),
+        text("pass::receiver", &["depth_loads"], "receiver".into()),
+        text("pass::receiver", &[], "receiver_without_loads".into()),
+        text("pass::receiver", &["moments"], "receiver_of_moments".into()),
+        text("pass::moments", &[], "moment_passes".into()),
+        text("pass::moments", &["multisampled"], "moment_passes_of_samples".into()),
+        text("maps::moments", &[], "moments".into()),
+        text("maps::moments", &["own_taps"], "moments_by_taps".into()),
+        text("maps::moments", &["own_taps", "by_hand"], "moments_by_hand".into()),
+    ];
+    // How maps can be read, and what that is called.
+    for (feature, name) in [("depth_loads", ""), ("none", "_without_loads"), ("r32f", "_r32f")] {
+        texts.push(text("maps::array", &[feature], format!("array{name}")));
+        texts.push(text("maps::cube", &[feature], format!("cube{name}")));
+        for count in 1..=MOST_MAPS {
+            let mut features = vec![feature.to_owned()];
+            features.extend((2..=count).map(|map| format!("maps_{map}")));
+            texts.push(("maps::separate", features, format!("separate_{count}{name}")));
+        }
+    }
+    texts
+}
+
+/// `depth_loads`: depth textures can be loaded from. `r32f`: maps are colours. `views`, `tiles`: casters are drawn into several layers or tiles.
+/// `moments`: maps hold moments of depth. `multisampled`: depth has four samples a texel. `own_taps`: the shader takes an anisotropic
+/// sample's taps. `by_hand`: and no sampler filters moments. `maps_2` to `maps_8` come beside these.
+const FEATURES: [&str; 8] = ["depth_loads", "r32f", "views", "tiles", "moments", "multisampled", "own_taps", "by_hand"];
 
 fn main() {
     let mut compiler = Wesl::new("shaders");
@@ -24,10 +55,13 @@ fn main() {
         validate: false,
         ..CompileOptions::default()
     });
-    for (root, depth_loads, file) in ROOTS {
-        compiler.set_feature("depth_loads", depth_loads);
+    let counts: Vec<String> = (2..=MOST_MAPS).map(|map| format!("maps_{map}")).collect();
+    for (root, features, file) in texts() {
+        for feature in FEATURES.into_iter().chain(counts.iter().map(String::as_str)) {
+            compiler.set_feature(feature, features.iter().any(|wanted| wanted == feature));
+        }
         let path: ModulePath = format!("package::{root}").parse().expect("a root's name is a module path");
-        compiler.build_artifact(&path, file);
+        compiler.build_artifact(&path, &file);
     }
     println!("cargo::rerun-if-changed=shaders");
 }

@@ -167,8 +167,8 @@ pub struct SceneArgs {
     /// Pixels
     #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = parse::size, allow_hyphen_values = true, help_heading = "Camera")]
     pub size: [u32; 2],
-    /// One of the scene's cameras
-    #[arg(long, value_name = "NAME|INDEX", help_heading = "Camera")]
+    /// One of the scene's cameras; several between commas are shown side by side by render and truth, each as large as --size
+    #[arg(long, value_name = "NAME|INDEX,…", help_heading = "Camera")]
     pub camera: Option<String>,
     /// Where the eye stands, in metres
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Camera")]
@@ -188,19 +188,29 @@ pub struct SceneArgs {
     /// Move the camera along an author's path (JSON)
     #[arg(long, value_name = "FILE", help_heading = "Camera")]
     pub path: Option<PathBuf>,
-    /// With --path: this many frames; NAME.png becomes NAME.0000.png and so on
+    /// With --path or --sun-to: this many frames; NAME.png becomes NAME.0000.png and so on
     #[arg(long, value_name = "N", allow_hyphen_values = true, help_heading = "Camera")]
     pub frames: Option<u32>,
     /// With --path: metres from the path up to the eye
     #[arg(long, value_name = "M", default_value = "2", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Camera")]
     pub eye_height: f64,
 
-    /// One of the scene's directional lights [default: the first]
-    #[arg(long, value_name = "NAME|INDEX", help_heading = "Light")]
+    /// Lights of the scene, directional, spot or point: one, several between commas, or all (at most 8). Pictures show all of
+    /// them with their shadows; masks, probes, truth and plans are of the first [default: the first directional one]
+    #[arg(long, value_name = "NAME|INDEX,…", help_heading = "Light")]
     pub light: Option<String>,
     /// The way light travels; any length
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Light")]
     pub sun: Option<DVec3>,
+    /// The way light travels in the last of --frames: the sun moves there at an even pace
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Light")]
+    pub sun_to: Option<DVec3>,
+    /// With --sun-to: shadows follow in steps of this many degrees and stand still in between [default: they move every frame]
+    #[arg(long, value_name = "DEGREES", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Light")]
+    pub sun_step: Option<f64>,
+    /// With --sun-step: frames over which a step is faded; 0 is sudden [default: 8]
+    #[arg(long, value_name = "FRAMES", allow_hyphen_values = true, help_heading = "Light")]
+    pub sun_fade: Option<u32>,
     /// Angle across the sun in degrees: what --filter pcss and the exact soft mask of `umbrage truth` go by
     /// [default: 0.53 for pcss; the exact mask is hard]
     #[arg(long, value_name = "DEGREES", value_parser = parse::sun_angle, allow_hyphen_values = true, help_heading = "Light")]
@@ -242,6 +252,9 @@ pub struct ShadowArgs {
     /// What each map is fitted to: the slice alone, or its receivers and casters too
     #[arg(long, value_enum, default_value_t)]
     pub fit: Fit,
+    /// Which map a pixel uses: that of its view depth, or the first (finest) that contains it
+    #[arg(long, value_enum, default_value_t)]
+    pub selection: Selection,
     /// Whether shadows stand still while the camera moves [default: exact, or none where a map is warped]
     #[arg(long, value_enum)]
     pub stabilize: Option<Stabilize>,
@@ -260,21 +273,40 @@ pub struct ShadowArgs {
     /// How a map is looked up
     #[arg(long, value_enum, default_value_t)]
     pub filter: Filter,
-    /// Full width of the filter in metres, the same in every split: for pcf3, pcf5, pcf7 and disc [default: in texels]
+    /// Full width of the filter in metres, the same in every split: for pcf3, pcf5, pcf7, disc and the filters of moments
+    /// [default: in texels; for esm to msm 8 texels of the finest map]
     #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true)]
     pub filter_width: Option<f64>,
+    /// Samples of depth in a texel, for esm to msm: 1 or 4 [default: 1]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub msaa: Option<u32>,
+    /// Share of light that esm to msm take for a leak, 0 to 0.9 [default: 0.2]
+    #[arg(long, value_name = "SHARE", value_parser = parse::share, allow_hyphen_values = true)]
+    pub bleeding: Option<f64>,
+    /// How esm to msm know what a pixel covers where splits meet [default: analytic]
+    #[arg(long, value_enum)]
+    pub derivatives: Option<Derivatives>,
+    /// Whether esm to msm may use what the device has instead of filterable 32-bit floats
+    #[arg(long, value_enum, default_value_t)]
+    pub fallbacks: Fallbacks,
     /// How one split goes over into the next
     #[arg(long, value_enum, default_value_t)]
     pub transition: Transition,
-    /// Share of each split over which it blends into the next; 0 is off
-    #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
-    pub blend: f64,
+    /// Share of each split over which it blends into the next; 0 is off [default: 0.1, or 0 where one map is reused]
+    #[arg(long, value_name = "SHARE", value_parser = parse::share, allow_hyphen_values = true)]
+    pub blend: Option<f64>,
     /// Share of the shadowed range over which shadows fade out at its far end; 0 is off, as where nothing is seen beyond
     #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
     pub far_fade: f64,
     /// What a map stores
     #[arg(long, value_enum, default_value_t)]
     pub depth_format: DepthFormat,
+    /// How maps are drawn; multipass goes with reused, layered with array or cube, instanced with atlas, mixed with array
+    #[arg(long, value_enum, default_value_t)]
+    pub generation: crate::paths::Generation,
+    /// Where maps are kept
+    #[arg(long, value_enum, default_value_t)]
+    pub storage: crate::paths::Storage,
     /// How surfaces are kept from shading themselves; both go by texel, slope and filter width and need no number
     #[arg(long, value_enum, default_value_t)]
     pub bias: Bias,
@@ -284,6 +316,9 @@ pub struct ShadowArgs {
     /// What the sun's light is multiplied by in full shadow: linear red, green, blue, 0 to 1 each
     #[arg(long, value_name = "R,G,B", default_value = "0,0,0", value_parser = parse::colour, allow_hyphen_values = true)]
     pub shadow_colour: DVec3,
+    /// Whether translucent surfaces throw shadows; `umbrage truth` knows none of them
+    #[arg(long, value_enum, default_value_t)]
+    pub translucent: Translucent,
     /// Look for what shades a surface from close by in the picture's own depth, too: feet and gaps that maps are too coarse for. Such
     /// shadows move with the camera
     #[arg(long, value_name = "SWITCH", num_args = 0..=1, require_equals = true, default_value = "off", default_missing_value = "on")]
@@ -386,6 +421,16 @@ pub enum Fit {
     Independent,
 }
 
+/// `--selection`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Selection {
+    /// By view depth
+    #[default]
+    Depth,
+    /// The first map that contains it
+    Map,
+}
+
 /// `--stabilize`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Stabilize {
@@ -416,6 +461,46 @@ pub enum Filter {
     Disc,
     /// As wide as the penumbra of a sun of --sun-angle
     Pcss,
+    /// An exponential of depth, blurred
+    Esm,
+    /// Two moments of depth, blurred
+    Vsm,
+    /// Two moments of an exponential
+    Evsm2,
+    /// Four moments of two exponentials
+    Evsm4,
+    /// Four moments of depth
+    Msm,
+}
+
+/// `--derivatives`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Derivatives {
+    /// Those of the position, which no border interrupts
+    #[default]
+    Analytic,
+    /// One split for all four pixels of a quad
+    Quad,
+}
+
+/// `--fallbacks`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Fallbacks {
+    /// They may, and the report says so
+    #[default]
+    Allow,
+    /// It is an error
+    Forbid,
+}
+
+/// `--translucent`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Translucent {
+    /// They throw none
+    #[default]
+    None,
+    /// They cover as many texels of a map as their alpha says
+    Dithered,
 }
 
 /// `--bias`.
@@ -448,6 +533,8 @@ pub enum DepthFormat {
     D32f,
     /// 16-bit
     D16,
+    /// 32-bit float in a colour texture, compared by hand
+    R32f,
 }
 
 /// `--depth-convention`.

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use glam::DVec3;
-use umbrage::{ExtentSteps, MAX_SPLITS, ShadowSettings, SplitScheme, Warp};
+use umbrage::{ExtentSteps, MAX_SPLITS, ShadowSettings, SplitScheme, SteppedSun, Warp};
 
 use crate::{
     args::{self, SceneArgs, Scheme, ShadowArgs, Technique},
     failure::{Failure, Result},
+    paths,
 };
 
 /// `--fov` where nothing else says one, degrees.
@@ -17,6 +18,8 @@ pub const DEFAULT_FOV: f64 = 60.0;
 pub const DEFAULT_NEAR: f64 = 1.0;
 /// `--far` where nothing else says one, metres.
 pub const DEFAULT_FAR: f64 = 800.0;
+/// `--sun-fade` where nothing else says one, frames.
+pub const DEFAULT_SUN_FADE: u32 = 8;
 /// `--tsm-focus` where nothing else says one.
 pub const DEFAULT_TSM_FOCUS: f64 = 0.3;
 
@@ -45,6 +48,8 @@ pub struct SceneJob {
     pub far: Option<f64>,
     /// The light.
     pub sun: SunChoice,
+    /// `--sun-to` and what goes with it.
+    pub sun_travel: Option<SunTravel>,
     /// `--sun-angle`, degrees across the sun.
     pub sun_angle: Option<f64>,
 }
@@ -85,6 +90,17 @@ pub enum SunChoice {
     Given(DVec3),
 }
 
+/// How the sun moves over the frames.
+#[derive(Debug, PartialEq)]
+pub struct SunTravel {
+    /// The way light travels in the last frame.
+    pub to: DVec3,
+    /// How many frames there are.
+    pub frames: u32,
+    /// Shadows follow in steps; every frame without.
+    pub steps: Option<SteppedSun>,
+}
+
 /// How shadows are made: [`ShadowArgs`], checked.
 #[derive(Debug, PartialEq)]
 pub struct ShadowJob {
@@ -96,18 +112,34 @@ pub struct ShadowJob {
     pub filter: args::Filter,
     /// `--filter-width`, metres.
     pub filter_width: Option<f64>,
+    /// `--bleeding`.
+    pub bleeding: Option<f64>,
+    /// `--msaa`.
+    pub msaa: u32,
+    /// `--derivatives`.
+    pub derivatives: args::Derivatives,
+    /// `--fallbacks`.
+    pub fallbacks: args::Fallbacks,
     /// `--transition`.
     pub transition: args::Transition,
     /// `--bias`.
     pub bias: args::Bias,
     /// `--shadow-strength`.
     pub shadow_strength: f64,
+    /// `--translucent`.
+    pub translucent: args::Translucent,
     /// `--contact-shadows`.
     pub contact_shadows: bool,
     /// `--shadow-colour`.
     pub shadow_colour: DVec3,
     /// `--depth-format`.
     pub depth_format: args::DepthFormat,
+    /// `--generation`.
+    pub generation: umbrage_wgpu::Generation,
+    /// `--storage`.
+    pub storage: umbrage_wgpu::Storage,
+    /// Defaults invented.
+    pub notes: Vec<String>,
     /// `--tint`.
     pub tint: bool,
     /// `--shadows`.
@@ -155,6 +187,7 @@ impl SceneJob {
             near,
             far,
             sun,
+            sun_travel: sun_travel(args)?,
             sun_angle: args.sun_angle,
         })
     }
@@ -176,6 +209,34 @@ impl SceneJob {
     }
 }
 
+fn sun_travel(args: &SceneArgs) -> Result<Option<SunTravel>> {
+    let Some(to) = args.sun_to else {
+        return match (args.sun_step, args.sun_fade) {
+            (Some(_), _) => Err(Failure::input("--sun-step needs a sun that moves; give --sun-to X,Y,Z")),
+            (None, Some(_)) => {
+                Err(Failure::input("--sun-fade needs steps to fade; give --sun-to X,Y,Z and --sun-step DEGREES"))
+            }
+            (None, None) => Ok(None),
+        };
+    };
+    let frames = args.frames.unwrap_or(1);
+    if frames < 2 {
+        return Err(Failure::input("--sun-to moves the sun over frames; give --frames 2 or more"));
+    }
+    let steps = match (args.sun_step, args.sun_fade) {
+        (Some(step), fade) => {
+            let fade = f64::from(fade.unwrap_or(DEFAULT_SUN_FADE));
+            Some(
+                SteppedSun::new(step.to_radians(), fade)
+                    .map_err(|error| Failure::input(format!("--sun-step: {error}")))?,
+            )
+        }
+        (None, Some(_)) => return Err(Failure::input("--sun-fade needs steps to fade; give --sun-step DEGREES")),
+        (None, None) => None,
+    };
+    Ok(Some(SunTravel { to, frames, steps }))
+}
+
 fn camera_choice(args: &SceneArgs) -> Result<CameraChoice> {
     let looks = args.eye.is_some() || args.target.is_some();
     let clash = |a: &str, b: &str| Err(Failure::input(format!("{a} and {b} both choose the camera; give one of them")));
@@ -185,8 +246,8 @@ fn camera_choice(args: &SceneArgs) -> Result<CameraChoice> {
         (None, Some(_)) if looks => return clash("--path", "--eye/--target"),
         _ => {}
     }
-    if args.path.is_none() && args.frames.is_some() {
-        return Err(Failure::input("--frames goes along a path; give one with --path FILE"));
+    if args.path.is_none() && args.sun_to.is_none() && args.frames.is_some() {
+        return Err(Failure::input("--frames goes along a path or a moving sun; give --path FILE or --sun-to X,Y,Z"));
     }
     if args.frames == Some(0) {
         return Err(Failure::input("--frames 0 asks for no frame; give 1 or more"));
@@ -221,6 +282,16 @@ impl ShadowJob {
         let map_sizes = map_sizes(args)?;
         let warps = warps(args, map_sizes.len())?;
         let stabilize = stabilize(args, &warps)?;
+        if args.selection == args::Selection::Map
+            && let Some(warp) = warps.iter().find(|warp| **warp != args::Warp::None)
+        {
+            return Err(Failure::input(format!(
+                "--selection map and a {} map exclude each other: the first map that contains a point need not be the finest \
+                 there; leave one of them away",
+                typed_name(*warp)
+            )));
+        }
+        let (blend, note) = paths::blend(args, &map_sizes)?;
         let settings = ShadowSettings {
             scheme: scheme(args, map_sizes.len())?,
             map_sizes,
@@ -233,6 +304,10 @@ impl ShadowJob {
                 args::Fit::Dependent => umbrage::Fit::Dependent,
                 args::Fit::Independent => umbrage::Fit::Independent,
             },
+            selection: match args.selection {
+                args::Selection::Depth => umbrage::Selection::Depth,
+                args::Selection::Map => umbrage::Selection::Map,
+            },
             stabilize: match stabilize {
                 args::Stabilize::Exact => umbrage::Stabilize::Exact,
                 args::Stabilize::Approximate => umbrage::Stabilize::Approximate(extent_steps(args)),
@@ -240,15 +315,16 @@ impl ShadowJob {
             },
             warps: warps.iter().map(|&warp| planner_warp(warp, args.tsm_focus)).collect(),
             filter_radius: wgpu_filter(args.filter).radius_texels(),
-            blend: args.blend,
+            blend,
             far_fade: args.far_fade,
             depth_clamp: false,
             image_size,
         };
         settings.validate()?;
+        check_moments(args, &warps)?;
         if args.filter_width.is_some() && !wgpu_filter(args.filter).has_width() {
             return Err(Failure::input(format!(
-                "--filter-width: --filter {} has no width to choose; leave it away, or use pcf3, pcf5, pcf7 or disc",
+                "--filter-width: --filter {} has no width to choose; leave it away, or use pcf3, pcf5, pcf7, disc, esm, vsm, evsm2, evsm4 or msm",
                 typed_name(args.filter)
             )));
         }
@@ -257,12 +333,20 @@ impl ShadowJob {
             settings,
             filter: args.filter,
             filter_width: args.filter_width,
+            bleeding: args.bleeding,
+            msaa: args.msaa.unwrap_or(1),
+            derivatives: args.derivatives.unwrap_or_default(),
+            fallbacks: args.fallbacks,
             transition: args.transition,
             bias: args.bias,
             shadow_strength: args.shadow_strength,
+            translucent: args.translucent,
             contact_shadows: args.contact_shadows == args::Switch::On,
             shadow_colour: args.shadow_colour,
             depth_format: args.depth_format,
+            generation: args.generation.into(),
+            storage: args.storage.into(),
+            notes: note.into_iter().collect(),
             tint: args.tint,
             shadows_on: args.shadows == args::Switch::On,
             fit: args.fit,
@@ -278,6 +362,20 @@ impl ShadowJob {
             width_m: self.filter_width.map(|width| width as f32),
             sun_angle: sun_angle.map_or(umbrage_wgpu::Softness::SUN, |degrees| degrees.to_radians() as f32),
             turned: false,
+            bleeding: self.bleeding.map_or(umbrage_wgpu::Softness::default().bleeding, |share| share as f32),
+        }
+    }
+
+    /// What filters of moments leave to choose.
+    #[must_use]
+    pub fn moments(&self) -> umbrage_render::MomentSettings {
+        umbrage_render::MomentSettings {
+            samples: self.msaa,
+            fallbacks: self.fallbacks == args::Fallbacks::Allow,
+            derivatives: match self.derivatives {
+                args::Derivatives::Analytic => umbrage_wgpu::Derivatives::Analytic,
+                args::Derivatives::Quad => umbrage_wgpu::Derivatives::Quad,
+            },
         }
     }
 
@@ -290,6 +388,10 @@ impl ShadowJob {
             bias: match self.bias {
                 args::Bias::Plane => umbrage_wgpu::ReceiverBias::Plane,
                 args::Bias::Slope => umbrage_wgpu::ReceiverBias::Slope,
+            },
+            translucent: match self.translucent {
+                args::Translucent::None => umbrage_render::Translucent::None,
+                args::Translucent::Dithered => umbrage_render::Translucent::Dithered,
             },
             contact: self.contact_shadows.then(umbrage_wgpu::ContactOptions::default),
         }
@@ -317,6 +419,11 @@ pub fn wgpu_filter(filter: args::Filter) -> umbrage_wgpu::Filter {
         args::Filter::Pcf7 => umbrage_wgpu::Filter::Pcf7,
         args::Filter::Disc => umbrage_wgpu::Filter::Disc,
         args::Filter::Pcss => umbrage_wgpu::Filter::Pcss,
+        args::Filter::Esm => umbrage_wgpu::Filter::Esm,
+        args::Filter::Vsm => umbrage_wgpu::Filter::Vsm,
+        args::Filter::Evsm2 => umbrage_wgpu::Filter::Evsm2,
+        args::Filter::Evsm4 => umbrage_wgpu::Filter::Evsm4,
+        args::Filter::Msm => umbrage_wgpu::Filter::Msm,
     }
 }
 
@@ -326,6 +433,7 @@ pub fn wgpu_depth_format(format: args::DepthFormat) -> umbrage_wgpu::DepthFormat
     match format {
         args::DepthFormat::D32f => umbrage_wgpu::DepthFormat::D32Float,
         args::DepthFormat::D16 => umbrage_wgpu::DepthFormat::D16Unorm,
+        args::DepthFormat::R32f => umbrage_wgpu::DepthFormat::R32Float,
     }
 }
 
@@ -366,6 +474,36 @@ fn map_sizes(args: &ShadowArgs) -> Result<Vec<u32>> {
             typed.len(),
             if splits == 1 { "is 1 split".into() } else { format!("are {splits} splits") },
         ))),
+    }
+}
+
+/// What only filters of moments take, and what they do not.
+fn check_moments(args: &ShadowArgs, warps: &[args::Warp]) -> Result<()> {
+    let name = typed_name(args.filter);
+    if wgpu_filter(args.filter).is_prefiltered() {
+        return match warps.iter().find(|warp| **warp != args::Warp::None) {
+            Some(warp) => Err(Failure::input(format!(
+                "--filter {name} needs depth that is linear along the light, which a map warped by {} has not; use a filter that \
+                 compares depth, such as pcf5, or no warp",
+                typed_name(*warp)
+            ))),
+            None if !matches!(args.msaa, None | Some(1 | 4)) => Err(Failure::input(format!(
+                "--msaa {}: a texel has 1 sample or 4, as on every device; give one of these",
+                args.msaa.unwrap_or_default()
+            ))),
+            None => Ok(()),
+        };
+    }
+    let given = [
+        ("--msaa", args.msaa.is_some()),
+        ("--bleeding", args.bleeding.is_some()),
+        ("--derivatives", args.derivatives.is_some()),
+    ];
+    match given.iter().find(|(_, given)| *given) {
+        Some((option, _)) => Err(Failure::input(format!(
+            "{option} belongs to the filters of moments, but --filter is {name}; leave it away, or use esm, vsm, evsm2, evsm4 or msm"
+        ))),
+        None => Ok(()),
     }
 }
 

@@ -99,7 +99,7 @@ pub fn run(args: &PlanArgs) -> Result<()> {
         stage.pose.objects.iter().filter(|object| object.casts).map(|object| object.bounds).collect();
     let mut frames = Vec::new();
     for shot in &stage.shots {
-        let plan = planner.plan(&shot.view, &stage.sun, &casters, &receivers)?;
+        let plan = planner.plan(&shot.view, &shot.shown_light(), &casters, &receivers)?;
         frames.push((shot.frame, report(&job, &shadows, &stage, shot, plan, args.depth_convention)));
     }
     match &args.output {

@@ -34,13 +34,16 @@ pub fn run(args: &ProbeArgs) -> Result<()> {
     let mut staged = Staged::default();
     let bar = progress::steps(stage.shots.len() as u64, "frames");
     for shot in &stage.shots {
-        let frame = studio.frame(&stage, shot);
-        let answers = studio.renderer.probe(&frame, &points)?;
+        let frame = studio.frame(&stage, shot, &shot.view);
+        let answers = match &shot.shown {
+            Some(fade) => studio.renderer.probe_faded(&frame, fade, &points)?,
+            None => studio.renderer.probe(&frame, &points)?,
+        };
         let visibility = answers.iter().flat_map(|answer| answer.visibility.to_le_bytes()).collect();
         staged.file(&numbered_file(&args.out, shot.frame), visibility)?;
         if let Some(path) = &args.report {
             // The same maps once more, for what they cost; no picture is asked for.
-            let rendered = studio.renderer.render(&frame, Outputs::default())?;
+            let rendered = studio.renderer.render_views(&[frame], shot.shown.as_ref(), Outputs::default())?.remove(0);
             let mut report = studio.report(&job, &stage, shot, &rendered.stats);
             report.probe = Some(ProbeReport { split: answers.iter().map(|answer| answer.split).collect() });
             staged.file(&numbered_file(path, shot.frame), to_json(&report)?)?;

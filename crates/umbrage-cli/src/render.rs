@@ -2,18 +2,20 @@
 
 use std::{io::Cursor, path::Path};
 
-use image::{DynamicImage, ImageFormat};
-use umbrage_render::{Frame, FrameStats, Gpu, GpuOptions, Outputs, RenderSettings, Renderer};
+use image::{DynamicImage, ImageBuffer, ImageFormat, Pixel};
+use umbrage::{ShadowPlan, View};
+use umbrage_render::{Frame, FrameStats, Gpu, GpuOptions, Outputs, RenderSettings, Renderer, SplitStats};
 
 use crate::{
     adapter,
     args::{Filter, RenderArgs},
     failure::{Failure, Result},
     job::{SceneJob, ShadowJob, typed_name, wgpu_depth_format, wgpu_filter},
+    lights::{self, LightReport, NamedLight},
     output::{self, Staged, numbered_file, numbered_folder},
     progress,
-    report::{Report, SplitReport, TimesMs, to_json},
-    stage::{Shot, Stage},
+    report::{BesideReport, Report, SplitReport, TimesMs, to_json},
+    stage::{Shot, Stage, camera_report},
 };
 
 /// Runs the subcommand.
@@ -30,27 +32,35 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     }
     output::check(&files, &folders, &job.inputs())?;
 
-    let stage = Stage::open(&job)?;
+    let stage = Stage::open_views(&job)?;
+    if args.maps.is_some() && stage.shots.iter().any(|shot| !shot.beside.is_empty()) {
+        return Err(Failure::input("--maps and several cameras: maps are of one view; name one --camera"));
+    }
     let mut studio = Studio::open(&job, &shadows, &stage)?;
     let outputs =
         Outputs { picture: args.picture.is_some(), mask: args.visibility.is_some(), maps: args.maps.is_some() };
     let mut staged = Staged::default();
     let bar = progress::steps(stage.shots.len() as u64, "frames");
     for shot in &stage.shots {
-        let rendered = studio.renderer.render(&studio.frame(&stage, shot), outputs)?;
-        if let (Some(path), Some(picture)) = (&args.picture, rendered.picture) {
-            staged.file(&numbered_file(path, shot.frame), png(&picture)?)?;
+        let frames: Vec<Frame<'_>> = shot.views().map(|(_, view)| studio.frame(&stage, shot, view)).collect();
+        let mut views = studio.renderer.render_views(&frames, shot.shown.as_ref(), outputs)?;
+        let pictures: Vec<_> = views.iter_mut().filter_map(|view| view.picture.take()).collect();
+        if let (Some(path), false) = (&args.picture, pictures.is_empty()) {
+            staged.file(&numbered_file(path, shot.frame), png(&side_by_side(pictures))?)?;
         }
-        if let (Some(path), Some(mask)) = (&args.visibility, rendered.mask) {
-            staged.file(&numbered_file(path, shot.frame), png(&mask)?)?;
+        let masks: Vec<_> = views.iter_mut().filter_map(|view| view.mask.take()).collect();
+        if let (Some(path), false) = (&args.visibility, masks.is_empty()) {
+            staged.file(&numbered_file(path, shot.frame), png(&side_by_side(masks))?)?;
         }
         if let Some(path) = &args.maps {
-            let maps = rendered.maps.iter().enumerate();
+            let maps = views[0].maps.iter().enumerate();
             let files = maps.map(|(split, map)| Ok((format!("split{split}.png"), png(map)?))).collect::<Result<_>>()?;
             staged.folder(&numbered_folder(path, shot.frame), files)?;
         }
         if let Some(path) = &args.report {
-            let report = studio.report(&job, &stage, shot, &rendered.stats);
+            let mut report = studio.report(&job, &stage, shot, &views[0].stats);
+            let beside = shot.beside.iter().zip(&views[1..]);
+            report.beside = beside.map(|((camera, view), of)| beside_report(&stage, camera, view, &of.stats)).collect();
             staged.file(&numbered_file(path, shot.frame), to_json(&report)?)?;
         }
         bar.inc(1);
@@ -79,39 +89,27 @@ impl<'a> Studio<'a> {
             samples: umbrage_render::Samples::default(),
             softness: shadows.softness(job.sun_angle),
             transition: shadows.transition(),
+            moments: shadows.moments(),
             look: shadows.look(),
-            storage: umbrage_wgpu::Storage::default(),
-            generation: umbrage_wgpu::Generation::default(),
+            storage: shadows.storage,
+            generation: shadows.generation,
+            lights: lights::slots(&stage.lights),
         };
         let renderer = Renderer::new(&gpu, &stage.scene, &settings)?;
         Ok(Self { renderer, shadows, adapter: adapter::description(&gpu) })
     }
 
-    /// What the renderer is told about one shot.
-    pub fn frame<'s>(&self, stage: &'s Stage, shot: &'s Shot) -> Frame<'s> {
-        Frame {
-            pose: &stage.pose,
-            view: &shot.view,
-            sun: stage.sun,
-            shadows_on: self.shadows.shadows_on,
-            tint: self.shadows.tint,
-        }
+    /// What the renderer is told about one view of a shot.
+    pub fn frame<'s>(&self, stage: &'s Stage, shot: &Shot, view: &'s View) -> Frame<'s> {
+        stage.frame(shot, view, self.shadows.shadows_on, self.shadows.tint)
     }
 
     /// What was done and what it cost.
     pub fn report(&self, job: &SceneJob, stage: &Stage, shot: &Shot, stats: &FrameStats) -> Report {
-        let splits = stats.splits.iter().map(|split| SplitReport {
-            near: split.near,
-            far: split.far,
-            texel_m: split.texel_m,
-            warped: split.warped,
-            casters: split.casters as u64,
-            draws: u64::from(split.draws),
-            triangles: split.triangles,
-            bytes: split.bytes,
-        });
+        let mut shot = stage.report(job, shot);
+        shot.lights = light_reports(stage, stats);
         Report {
-            shot: stage.report(job, shot),
+            shot,
             adapter: self.adapter.clone(),
             technique: typed_name(self.shadows.technique),
             generation: stats.generation.to_string(),
@@ -122,6 +120,7 @@ impl<'a> Studio<'a> {
                 .then(|| f64::from(self.shadows.softness(job.sun_angle).sun_angle).to_degrees()),
             transition: typed_name(self.shadows.transition),
             bias: typed_name(self.shadows.bias),
+            translucent: typed_name(self.shadows.translucent),
             contact_shadows: self.shadows.contact_shadows,
             shadow_strength: self.shadows.shadow_strength,
             shadow_colour: self.shadows.shadow_colour.to_array(),
@@ -131,10 +130,64 @@ impl<'a> Studio<'a> {
             planes_m: stats.plan.planes.clone(),
             times_ms: TimesMs { plan: stats.plan_ms, shadow: stats.shadow_ms, frame: stats.frame_ms },
             bytes: stats.bytes,
-            splits: splits.collect(),
+            draws: u64::from(stats.shadow_draws),
+            triangles: stats.shadow_triangles,
+            splits: stats.splits.iter().map(split_report).collect(),
+            beside: Vec::new(),
             probe: None,
-            notes: stage.notes.iter().chain(&stats.notes).cloned().collect(),
+            notes: stage.notes.iter().chain(&self.shadows.notes).chain(&stats.notes).cloned().collect(),
         }
+    }
+}
+
+/// All lights with their splits.
+fn light_reports(stage: &Stage, stats: &FrameStats) -> Vec<LightReport> {
+    let others = stats.more_lights.iter().map(|light| (&light.plan, &light.splits));
+    let all = [(&stats.plan, &stats.splits)].into_iter().chain(others);
+    let report = |(light, (plan, splits)): (&NamedLight, (&ShadowPlan, &Vec<SplitStats>))| LightReport {
+        planes_m: plan.planes.clone(),
+        splits: splits.iter().map(split_report).collect(),
+        ..light.report()
+    };
+    stage.lights.iter().zip(all).map(report).collect()
+}
+
+fn beside_report(stage: &Stage, camera: &str, view: &View, stats: &FrameStats) -> BesideReport {
+    BesideReport {
+        camera: camera_report(camera, view),
+        planes_m: stats.plan.planes.clone(),
+        times_ms: TimesMs { plan: stats.plan_ms, shadow: stats.shadow_ms, frame: stats.frame_ms },
+        lights: light_reports(stage, stats),
+    }
+}
+
+/// Pictures of one height beside each other; there is one at least.
+#[must_use]
+pub fn side_by_side<P: Pixel>(mut pictures: Vec<ImageBuffer<P, Vec<P::Subpixel>>>) -> ImageBuffer<P, Vec<P::Subpixel>> {
+    if pictures.len() == 1 {
+        return pictures.remove(0);
+    }
+    let width = pictures.iter().map(ImageBuffer::width).sum();
+    let height = pictures.iter().map(ImageBuffer::height).max().unwrap_or(0);
+    let mut all = ImageBuffer::new(width, height);
+    let mut left = 0;
+    for picture in &pictures {
+        image::imageops::replace(&mut all, picture, left, 0);
+        left += i64::from(picture.width());
+    }
+    all
+}
+
+fn split_report(split: &SplitStats) -> SplitReport {
+    SplitReport {
+        near: split.near,
+        far: split.far,
+        texel_m: split.texel_m,
+        warped: split.warped,
+        casters: split.casters as u64,
+        draws: u64::from(split.draws),
+        triangles: split.triangles,
+        bytes: split.bytes,
     }
 }
 
@@ -162,6 +215,7 @@ impl From<umbrage_render::Error> for Failure {
             E::Plan(error) => error.into(),
             E::ImageSize { .. } => Self::input(format!("--size: {error}")),
             E::MapSize { .. } => Self::input(format!("--map-size: {error}")),
+            E::Shadows(error) => Self::input(crate::paths::in_options(&error)),
             E::Probe { .. } => Self::input(format!("--points: {error}")),
             _ => Self::input(error.to_string()),
         }

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::lights::LightReport;
+
 /// The report of one frame of `render` or `probe`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
@@ -12,9 +14,9 @@ pub struct Report {
     pub adapter: String,
     /// `pssm`, or a single map: `ssm`, `psm`, `lispsm` or `tsm`.
     pub technique: String,
-    /// How the maps were drawn.
+    /// How the maps were drawn: `multipass`, `per-split`, `layered`, `instanced` or `mixed`.
     pub generation: String,
-    /// How the maps are kept.
+    /// How the maps are kept: `array`, `atlas`, `separate`, `cube` or `reused`.
     pub storage: String,
     /// As `--filter` names it.
     pub filter: String,
@@ -26,6 +28,8 @@ pub struct Report {
     pub transition: String,
     /// `plane` or `slope`: how surfaces are kept from shading themselves.
     pub bias: String,
+    /// `none` or `dithered`: whether translucent surfaces throw shadows.
+    pub translucent: String,
     /// Whether contact shadows were asked for; a note says where there can be none.
     pub contact_shadows: bool,
     /// How dark shadows are, 0 to 1.
@@ -44,13 +48,33 @@ pub struct Report {
     pub times_ms: TimesMs,
     /// Bytes of all shadow maps.
     pub bytes: u64,
-    /// The splits, nearest first.
+    /// Draw calls into all maps; a call may draw into several.
+    pub draws: u64,
+    /// Triangles submitted to all maps, every instance counted once.
+    pub triangles: u64,
+    /// The splits of the first light, nearest first; the others' are in `lights`.
     pub splits: Vec<SplitReport>,
+    /// The views beside the first one, from left to right.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub beside: Vec<BesideReport>,
     /// The answers of `probe`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub probe: Option<ProbeReport>,
     /// Fallbacks taken, defaults invented.
     pub notes: Vec<String>,
+}
+
+/// A view beside the first one.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BesideReport {
+    /// The eye.
+    pub camera: CameraReport,
+    /// `C_0 ..= C_m` of the first light: view depths in metres.
+    pub planes_m: Vec<f64>,
+    /// How long it took.
+    pub times_ms: TimesMs,
+    /// All lights with their splits.
+    pub lights: Vec<LightReport>,
 }
 
 /// The report of one frame of `truth`.
@@ -79,8 +103,25 @@ pub struct ShotReport {
     pub size: [u32; 2],
     /// The eye.
     pub camera: CameraReport,
-    /// The way light travels, a unit vector.
-    pub sun: [f64; 3],
+    /// The way the first light travels, a unit vector, if it is a sun.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sun: Option<[f64; 3]>,
+    /// All lights, the first one first, with the splits of each where maps were made.
+    pub lights: Vec<LightReport>,
+    /// With --sun-to: the suns whose shadows are shown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sun_shown: Option<SunShown>,
+}
+
+/// The suns whose shadows are shown, unit vectors along the light, and the share of the second.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SunShown {
+    /// The sun that is left.
+    pub from: [f64; 3],
+    /// The sun that is faded to.
+    pub to: [f64; 3],
+    /// Its share, 0 to 1.
+    pub weight: f64,
 }
 
 /// The eye: metres and degrees.
@@ -135,9 +176,9 @@ pub struct SplitReport {
     pub warped: bool,
     /// glTF mesh nodes, or instances of them, in the split's list.
     pub casters: u64,
-    /// Draw calls.
+    /// Draw calls that draw into its map.
     pub draws: u64,
-    /// Triangles drawn.
+    /// Triangles of its casters.
     pub triangles: u64,
     /// Bytes of its map.
     pub bytes: u64,

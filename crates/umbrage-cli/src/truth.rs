@@ -10,7 +10,7 @@ use crate::{
     job::SceneJob,
     output::{self, Staged, numbered_file},
     progress,
-    render::png,
+    render::{png, side_by_side},
     report::{TruthReport, TruthTimesMs, to_json},
     stage::Stage,
 };
@@ -29,27 +29,27 @@ pub fn run(args: &TruthArgs) -> Result<()> {
     let job = SceneJob::new(&args.scene)?;
     let files: Vec<_> = [Some(&args.mask), args.report.as_ref()].into_iter().flatten().map(AsRef::as_ref).collect();
     output::check(&files, &[], &job.inputs())?;
-    let stage = Stage::open(&job)?;
+    let stage = Stage::open_views(&job)?;
     let began = Instant::now();
     let truth = Truth::build(&stage.scene, &stage.pose, stage.shots[0].view.eye())?;
     let build = began.elapsed();
     let mut staged = Staged::default();
-    let count = stage.shots.len() as f32;
+    let count = stage.shots.iter().map(|shot| shot.views().count()).sum::<usize>() as f32;
     let bar = progress::fraction("rays");
-    for (k, shot) in stage.shots.iter().enumerate() {
+    let mut done = 0.0;
+    for shot in &stage.shots {
         let began = Instant::now();
-        let mask = truth.mask(&shot.view, stage.sun.direction(), job.size, &|share| {
-            progress::set_fraction(&bar, (k as f32 + share) / count);
-        })?;
-        let image = match job.sun_angle.and_then(sun_disc) {
-            Some(disc) => {
-                let soft = truth.soft(&mask, &disc, &|share| {
-                    progress::set_fraction(&bar, (k as f32 + share) / count);
-                })?;
-                soft.to_image()
-            }
-            None => mask.to_image(),
-        };
+        let mut images = Vec::new();
+        for (_, view) in shot.views() {
+            let progress = |share| progress::set_fraction(&bar, (done + share) / count);
+            let mask = truth.mask_under(view, &shot.light, job.size, &progress)?;
+            images.push(match job.sun_angle.and_then(sun_disc) {
+                Some(disc) => truth.soft(&mask, &disc, &progress)?.to_image(),
+                None => mask.to_image(),
+            });
+            done += 1.0;
+        }
+        let image = side_by_side(images);
         let rays = began.elapsed();
         staged.file(&numbered_file(&args.mask, shot.frame), png(&image)?)?;
         if let Some(path) = &args.report {

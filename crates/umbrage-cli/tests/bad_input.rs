@@ -37,6 +37,13 @@ fn options_that_say_nonsense() {
         ("--camera front --path path.json", &["--camera", "--path"]),
         ("--path path.json --eye 0,1,2 --target 0,0,0", &["--path", "--eye"]),
         ("--frames 3", &["--frames", "--path"]),
+        ("--sun-to 1,-1,0", &["--sun-to", "--frames"]),
+        ("--sun-to 0,0,0 --frames 4", &["--sun-to"]),
+        ("--sun-step 1", &["--sun-step", "--sun-to"]),
+        ("--sun-fade 1", &["--sun-fade", "--sun-step"]),
+        ("--sun-to 1,-1,0 --frames 4 --sun-fade 1", &["--sun-fade", "--sun-step"]),
+        ("--sun-to 1,-1,0 --frames 4 --sun-step 0", &["--sun-step"]),
+        ("--sun-to 1,-1,0 --frames 4 --sun-step 200", &["--sun-step"]),
         ("--path path.json --frames 0", &["--frames 0"]),
         ("--path path.json --frames -1", &["--frames"]),
         ("--path path.json --eye-height nan", &["--eye-height"]),
@@ -142,6 +149,19 @@ fn shadow_options_that_say_nonsense() {
         ("--stabilize maybe", &["--stabilize", "exact", "none"]),
         ("--depth-format d24", &["--depth-format", "d32f", "d16"]),
         ("--shadows maybe", &["--shadows", "on", "off"]),
+        // Pairs of which there is no path.
+        ("--generation layered --storage atlas", &["--generation layered", "--storage atlas"]),
+        ("--generation instanced --storage array", &["--generation instanced", "--storage array"]),
+        ("--generation mixed --storage separate", &["--generation mixed", "--storage separate"]),
+        ("--generation multipass --storage cube", &["--generation multipass", "--storage cube"]),
+        ("--generation per-split --storage reused", &["--generation per-split", "--storage reused"]),
+        ("--generation multipass --blend 0.1", &["--blend 0.1", "--generation multipass", "--storage reused"]),
+        ("--storage reused --blend 0.2 --transition dither", &["--blend 0.2", "--storage reused"]),
+        ("--generation multipass --selection map", &["--selection map", "--generation multipass", "--storage reused"]),
+        ("--storage cube --splits 7", &["--storage cube", "--map-size", "7 splits"]),
+        ("--storage cube --map-size 512,256", &["--storage cube", "--map-size", "512, 256"]),
+        ("--generation fast", &["--generation", "multipass", "per-split", "layered", "instanced", "mixed", "auto"]),
+        ("--storage disk", &["--storage", "array", "atlas", "separate", "cube", "reused", "auto"]),
     ] {
         let planned_late = options.starts_with("--delta 100000") || options.starts_with("--planes 5,10,200");
         if planned_late && !has_adapter() {

@@ -13,7 +13,7 @@ fn every_technique_and_crowd_has_its_row() {
     }
     let folder = Folder::new();
     folder.succeed(
-        "bench tiny.glb chessboard --size 64x48 --rounds 2 --objects 2,5 --techniques ssm:128,pssm:3:512 --json all.json -o page.html",
+        "bench tiny.glb chessboard --size 64x48 --rounds 2 --objects 2,5 --techniques ssm:128,pssm:3:512 --paths off --json all.json -o page.html",
     );
     assert_eq!(folder.new_names(), ["all.json", "page.html"]);
     let report = folder.json("all.json");
@@ -40,6 +40,30 @@ fn every_technique_and_crowd_has_its_row() {
         assert!(page.contains(part), "the page lacks {part}");
     }
     assert!(!page.contains("src=\"http"), "the page fetches something");
+}
+
+#[test]
+fn every_path_has_its_row() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = Folder::new();
+    folder.succeed("bench tiny.glb --size 64x48 --rounds 1 --objects 2 --techniques ssm:128 --json all.json");
+    let report = folder.json("all.json");
+    let rows = report["scenes"][0]["paths"].as_array().expect("paths");
+    let pair = |row: &serde_json::Value| {
+        let text = |field: &str| row[field].as_str().unwrap_or_default().to_owned();
+        format!("{}, {}", text("generation"), text("storage"))
+    };
+    assert_eq!(rows.len(), 9);
+    for row in rows {
+        // A path that this device cannot take says which one was taken.
+        let label = row["technique"].as_str().expect("a label");
+        assert!(label == pair(row) || pair(row).starts_with("per-split"), "{label} took {}", pair(row));
+    }
+    let sampled = |name: &str| rows.iter().find(|row| row["technique"] == name).expect("the row")["map_bytes"].clone();
+    assert_eq!(sampled("multipass, reused"), 512 * 512 * 4);
+    assert_eq!(sampled("per-split, separate"), 4 * 512 * 512 * 4);
 }
 
 #[test]

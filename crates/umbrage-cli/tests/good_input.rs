@@ -132,6 +132,35 @@ fn no_points_give_no_answers() {
     assert_eq!(fs::read(folder.at("a.bin")).expect("answers"), b"");
 }
 
+/// Between steps of the sun the very same picture; a step is faded over as many frames as were asked for.
+#[test]
+fn a_sun_that_moves_in_steps() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = Folder::new();
+    folder.succeed(
+        "render tiny.glb --size 48x36 --camera front --map-size 128 --filter hard --sun 0.3,-1,0.2 --sun-to 0.8,-1,0.2 --frames 13 \
+         --sun-step 12 --sun-fade 3 -o p.png --visibility m.png --report r.json",
+    );
+    let bytes = |name: &str| std::fs::read(folder.at(name)).expect(name);
+    let mask = |k: usize| bytes(&format!("m.{k:04}.png"));
+    let shown = |k: usize| folder.json(&format!("r.{k:04}.json"))["sun_shown"].clone();
+    let weights: Vec<f64> = (0..13).map(|k| shown(k)["weight"].as_f64().expect("a share")).collect();
+    let first_step = weights.iter().position(|&weight| weight < 1.0).expect("a step is taken");
+    assert!(first_step >= 3, "{weights:?}");
+    for k in 1..first_step {
+        assert!(mask(k) == mask(0), "frame {k} before the first step");
+        assert!(bytes(&format!("p.{k:04}.png")) == bytes("p.0000.png"));
+    }
+    let faded = &weights[first_step..first_step + 3];
+    assert!((faded[0] - 1.0 / 3.0).abs() < 1e-9 && (faded[1] - 2.0 / 3.0).abs() < 1e-9 && faded[2] == 1.0);
+    assert!(mask(first_step) != mask(0) && mask(first_step) != mask(first_step + 1));
+    assert_eq!(shown(first_step)["from"], shown(0)["to"]);
+    let sun = |k: usize| folder.json(&format!("r.{k:04}.json"))["sun"].clone();
+    assert!(sun(1) != sun(0), "the true sun moves every frame");
+}
+
 #[test]
 fn frames_get_numbers() {
     let folder = Folder::with("points.bin", [0.0, 0.0, 5.0, 0.0, 1.0, 0.0].map(f64::to_le_bytes).concat());
@@ -227,6 +256,33 @@ fn techniques_schemes_and_formats() {
         // A split without casters has no need of a warp.
         let any = report["splits"].as_array().is_some_and(|splits| splits.iter().any(|split| split["warped"] == true));
         assert_eq!(any, warped, "{options}: {report}");
+    }
+}
+
+#[test]
+fn reports_name_the_path_that_was_taken() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = Folder::new();
+    let shot = "tiny.glb --size 64x48 --map-size 128 --report out.json --maps maps";
+    let report = |options: &str| {
+        folder.succeed(&format!("render {shot} {options}"));
+        let report = folder.json("out.json");
+        let text = |field: &str| report[field].as_str().unwrap_or_default().to_owned();
+        (format!("{} {}", text("generation"), text("storage")), report["notes"].to_string())
+    };
+    assert_eq!(report("").0, "per-split array");
+    assert_eq!(report("--storage separate --depth-format r32f").0, "per-split separate");
+    let (path, notes) = report("--generation multipass");
+    assert_eq!(path, "multipass reused");
+    assert!(notes.contains("--blend 0"), "{notes}");
+    assert!(!report("--storage reused --blend 0").1.contains("--blend"), "nothing was invented");
+    assert!(!report("--storage reused --transition hard --blend 0.3").1.contains("--blend"), "nothing was invented");
+    for (generation, path) in [("layered", "layered array"), ("instanced", "instanced atlas"), ("mixed", "mixed array")]
+    {
+        let (taken, notes) = report(&format!("--generation {generation}"));
+        assert!(taken == path || notes.contains(generation), "{generation} took {taken}: {notes}");
     }
 }
 

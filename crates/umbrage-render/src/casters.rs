@@ -1,4 +1,4 @@
-//! The pass that draws a split's casters into its map.
+//! The pipelines that draw casters into the maps of a pass.
 
 use std::borrow::Cow;
 
@@ -6,6 +6,7 @@ use umbrage_scene::AlphaMode;
 use umbrage_wgpu::ShadowMaps;
 
 use crate::draw_list::{Drawable, Drawn, Run, vertex_layouts};
+use crate::look::Translucent;
 use crate::materials::Materials;
 use crate::{Gpu, shaders};
 
@@ -13,64 +14,76 @@ use crate::{Gpu, shaders};
 pub(crate) struct Casters {
     opaque: wgpu::RenderPipeline,
     masked: wgpu::RenderPipeline,
+    dithered: Option<wgpu::RenderPipeline>,
 }
 
 impl Casters {
-    pub fn new(gpu: &Gpu, maps: &ShadowMaps, materials: &Materials) -> Self {
-        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("Casters::shader"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::casters(&maps.caster_wgsl(0)))),
-        });
+    pub fn new(gpu: &Gpu, maps: &ShadowMaps, materials: &Materials, translucent: Translucent) -> Self {
+        let module = |source| {
+            gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("Casters::shader"),
+                source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
+            })
+        };
+        let opaque = module(shaders::casters(&maps.caster_wgsl(0)));
+        let masked = module(shaders::masked_casters(&maps.caster_wgsl_with(0, shaders::MASKED_MEMBERS)));
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("Casters::layout"),
             bind_group_layouts: &[Some(maps.caster_layout()), Some(&materials.layout)],
             immediate_size: 0,
         });
         let vertex_layouts = vertex_layouts();
-        let pipeline = |label, vertex_entry, buffers, fragment| {
+        let pipeline = |label, module: &wgpu::ShaderModule, entry_points: [&str; 2], buffers, fragment: bool| {
             gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(label),
                 layout: Some(&layout),
                 vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some(vertex_entry),
+                    module,
+                    entry_point: Some(entry_points[0]),
                     compilation_options: Default::default(),
                     buffers,
                 },
                 primitive: maps.caster_primitive(),
                 depth_stencil: Some(maps.caster_depth_stencil()),
-                multisample: Default::default(),
-                fragment,
-                multiview_mask: None,
+                multisample: maps.caster_multisample(),
+                fragment: fragment.then_some(wgpu::FragmentState {
+                    module,
+                    entry_point: Some(entry_points[1]),
+                    compilation_options: Default::default(),
+                    targets: maps.caster_targets(),
+                }),
+                multiview_mask: maps.caster_multiview_mask(),
                 cache: None,
             })
         };
-        let masked_fragment = wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("fs_masked"),
-            compilation_options: Default::default(),
-            targets: &[],
-        };
+        // Maps that are colours are written by a fragment shader.
+        let colour = !maps.caster_targets().is_empty();
+        let buffers = &vertex_layouts;
+        let dithered = (translucent == Translucent::Dithered).then(|| {
+            let module = module(shaders::dithered_casters(&maps.caster_wgsl_with(0, shaders::DITHERED_MEMBERS)));
+            pipeline("Casters::dithered", &module, ["vs_dithered", "fs_dithered"], &buffers[..3], true)
+        });
         Self {
-            opaque: pipeline("Casters::opaque", "vs_opaque", &vertex_layouts[..2], None),
-            masked: pipeline("Casters::masked", "vs_masked", &vertex_layouts[..3], Some(masked_fragment)),
+            opaque: pipeline("Casters::opaque", &opaque, ["vs_opaque", "fs_opaque"], &buffers[..2], colour),
+            masked: pipeline("Casters::masked", &masked, ["vs_masked", "fs_masked"], &buffers[..3], true),
+            dithered,
         }
     }
 
-    /// Draws into a pass that [`ShadowMaps::begin_split`] began. Translucent primitives throw no shadow.
+    /// Draws into map pass `index`, which [`ShadowMaps::begin_pass`] began. Translucent primitives throw a shadow only if they are dithered.
     pub fn draw(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         maps: &ShadowMaps,
-        split: usize,
+        index: usize,
         drawable: &Drawable<'_>,
         runs: &[Run],
     ) -> Drawn {
-        pass.set_bind_group(0, maps.caster_bind_group(split), &[]);
+        pass.set_bind_group(0, maps.caster_bind_group(index), &[]);
         drawable.draw(pass, runs, |material, _| match material.alpha {
             AlphaMode::Opaque => Some(&self.opaque),
             AlphaMode::Mask { .. } => Some(&self.masked),
-            AlphaMode::Blend => None,
+            AlphaMode::Blend => self.dithered.as_ref(),
         })
     }
 }

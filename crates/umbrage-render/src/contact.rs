@@ -1,7 +1,7 @@
 //! Contact shadows: the picture's depth, drawn before everything that asks about it.
 
 use glam::DVec3;
-use umbrage::{DirectionalLight, View};
+use umbrage::View;
 use umbrage_wgpu::{ContactFrame, ContactOptions, ContactShadows};
 
 use crate::forward::DEPTH_FORMAT;
@@ -38,12 +38,11 @@ impl Contact {
     }
 
     /// Hands the frame over.
-    pub fn prepare(&self, gpu: &Gpu, view: &View, sun: &DirectionalLight, origin: DVec3) -> Result<()> {
+    pub fn prepare(&self, gpu: &Gpu, view: &View, origin: DVec3) -> Result<()> {
         let frame = ContactFrame {
             clip_from_eye: view.clip_from_relative(view.eye()),
             eye: view.eye(),
             forward: view.forward(),
-            to_light: -sun.direction(),
             origin,
             height: self.height,
         };

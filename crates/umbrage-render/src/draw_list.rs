@@ -14,15 +14,25 @@ use crate::{Gpu, Result};
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct Instance {
     rows: [[f32; 4]; 3],
+    /// Which copy of a caster, for passes that draw several splits.
+    code: u32,
+}
+
+/// An object and the codes of its copies, one instance each.
+pub(crate) type Copies = (usize, Range<u32>);
+
+/// An object that is drawn once, in any pass that knows no copies.
+pub(crate) fn once(object: usize) -> Copies {
+    (object, 0..1)
 }
 
 impl Instance {
     /// The subtraction happens in `f64`; what is left is small near the eye and fits `f32`.
-    fn new(world_from_local: &DAffine3, origin: DVec3) -> Self {
+    fn new(world_from_local: &DAffine3, origin: DVec3, code: u32) -> Self {
         let m = world_from_local.matrix3;
         let t = world_from_local.translation - origin;
         let row = |i: usize| [m.x_axis[i] as f32, m.y_axis[i] as f32, m.z_axis[i] as f32, t[i] as f32];
-        Self { rows: [row(0), row(1), row(2)] }
+        Self { rows: [row(0), row(1), row(2)], code }
     }
 }
 
@@ -62,30 +72,58 @@ impl Instances {
         self.data.clear();
     }
 
-    /// Objects that share a source drawn together, those given first as early as that allows.
-    pub fn grouped(&mut self, pose: &Pose, origin: DVec3, objects: impl Iterator<Item = usize>) -> Vec<Run> {
-        let mut keyed: Vec<_> = objects.enumerate().map(|(rank, i)| (run_key(&pose.objects[i]), rank, i)).collect();
-        keyed.sort_unstable();
-        let ranks: Vec<usize> = keyed.iter().map(|&(_, rank, _)| rank).collect();
-        let first = self.data.len() as u32;
-        let mut runs = self.list(pose, origin, keyed.into_iter().map(|(key, _, index)| (key, index)));
-        runs.sort_unstable_by_key(|run| ranks[(run.instances.start - first) as usize]);
-        runs
+    /// Objects that share a source drawn together, those given first as early as that allows. Where every draw has to begin with an
+    /// instance that draws nothing, each object's codes begin with one; `leads` keeps the first of a run and drops the others.
+    pub fn grouped(
+        &mut self,
+        pose: &Pose,
+        origin: DVec3,
+        leads: bool,
+        objects: impl Iterator<Item = Copies>,
+    ) -> Vec<Run> {
+        let mut keyed: Vec<_> =
+            objects.enumerate().map(|(rank, (i, codes))| (run_key(&pose.objects[i]), rank, i, codes)).collect();
+        keyed.sort_unstable_by_key(|&(key, rank, ..)| (key, rank));
+        // The rank of each run's first object: the runs below begin where the key changes.
+        let mut ranks: Vec<usize> = Vec::new();
+        for (i, (key, rank, ..)) in keyed.iter().enumerate() {
+            if i == 0 || keyed[i - 1].0 != *key {
+                ranks.push(*rank);
+            }
+        }
+        let runs =
+            self.list(pose, origin, leads, keyed.into_iter().map(|(key, _, index, codes)| (key, (index, codes))));
+        let mut ranked: Vec<_> = ranks.into_iter().zip(runs).collect();
+        ranked.sort_unstable_by_key(|(rank, _)| *rank);
+        ranked.into_iter().map(|(_, run)| run).collect()
     }
 
     /// Objects drawn one after the other in the order given.
     pub fn ordered(&mut self, pose: &Pose, origin: DVec3, objects: impl Iterator<Item = usize>) -> Vec<Run> {
-        self.list(pose, origin, objects.map(|index| (run_key(&pose.objects[index]), index)))
+        self.list(pose, origin, false, objects.map(|index| (run_key(&pose.objects[index]), once(index))))
     }
 
-    fn list(&mut self, pose: &Pose, origin: DVec3, objects: impl Iterator<Item = ((Source, bool), usize)>) -> Vec<Run> {
+    fn list(
+        &mut self,
+        pose: &Pose,
+        origin: DVec3,
+        leads: bool,
+        objects: impl Iterator<Item = ((Source, bool), Copies)>,
+    ) -> Vec<Run> {
         let mut runs: Vec<Run> = Vec::new();
-        for ((source, mirrored), index) in objects {
+        for ((source, mirrored), (index, mut codes)) in objects {
             let at = self.data.len() as u32;
-            self.data.push(Instance::new(&pose.objects[index].world_from_local, origin));
+            let same = |run: &Run| run.source == source && run.mirrored == mirrored;
+            let joins = runs.last().is_some_and(same);
+            if leads && joins {
+                codes.start += 1;
+            }
+            let count = codes.len() as u32;
+            let world_from_local = &pose.objects[index].world_from_local;
+            self.data.extend(codes.map(|code| Instance::new(world_from_local, origin, code)));
             match runs.last_mut() {
-                Some(run) if run.source == source && run.mirrored == mirrored => run.instances.end += 1,
-                _ => runs.push(Run { source, mirrored, instances: at..at + 1 }),
+                Some(run) if joins => run.instances.end += count,
+                _ => runs.push(Run { source, mirrored, instances: at..at + count }),
             }
         }
         runs
@@ -120,8 +158,8 @@ fn run_key(object: &Object) -> (Source, bool) {
 /// How vertex buffers are laid out: slot 0 positions, 1 instances, 2 surfaces, 3 normals. A pipeline uses the first few.
 pub(crate) fn vertex_layouts() -> [Option<wgpu::VertexBufferLayout<'static>>; 4] {
     const POSITION: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x3];
-    const INSTANCE: [wgpu::VertexAttribute; 3] =
-        wgpu::vertex_attr_array![4 => Float32x4, 5 => Float32x4, 6 => Float32x4];
+    const INSTANCE: [wgpu::VertexAttribute; 4] =
+        wgpu::vertex_attr_array![4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Uint32];
     const SURFACE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![1 => Float32x2, 2 => Unorm16x4];
     const NORMAL: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![3 => Float32x3];
     let layout =
@@ -172,6 +210,13 @@ impl Drawable<'_> {
     pub fn has(&self, object: &Object, choose: impl Fn(&GpuMaterial) -> bool) -> bool {
         let (_, primitives) = self.primitives(run_key(object).0);
         primitives.iter().any(|primitive| choose(&self.materials.list[primitive.material]))
+    }
+
+    /// Triangles of an object's primitives whose material `choose` likes.
+    pub fn triangles(&self, object: &Object, choose: impl Fn(&GpuMaterial) -> bool) -> u64 {
+        let (_, primitives) = self.primitives(run_key(object).0);
+        let chosen = primitives.iter().filter(|primitive| choose(&self.materials.list[primitive.material]));
+        chosen.map(GpuPrimitive::triangles).sum()
     }
 
     /// Draws the primitives for which `pipeline_for` has a pipeline. Bind group 1 is the material.
@@ -232,7 +277,7 @@ mod tests {
     fn an_instance_keeps_millimetres_a_hundred_kilometres_away() {
         let origin = DVec3::splat(102_400.0);
         let offset = DVec3::new(1.001, -2.002, 3.003);
-        let instance = Instance::new(&DAffine3::from_translation(origin + offset), origin);
+        let instance = Instance::new(&DAffine3::from_translation(origin + offset), origin, 0);
         for axis in 0..3 {
             assert!((f64::from(instance.rows[axis][3]) - offset[axis]).abs() < 1e-6);
             assert_eq!(instance.rows[axis][axis], 1.0);

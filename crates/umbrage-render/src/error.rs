@@ -44,6 +44,30 @@ pub enum Error {
         /// The device's largest texture.
         limit: u32,
     },
+    /// Maps of several samples a texel have no picture.
+    #[error("maps have {samples} samples a texel and cannot be written; use one sample, or leave the maps away")]
+    MapsOfSamples {
+        /// Samples of depth in a texel.
+        samples: u32,
+    },
+    /// More lights than a picture is shaded by.
+    #[error("{count} lights; a frame has at most {most}")]
+    LampCount {
+        /// How many there were.
+        count: usize,
+        /// How many there may be.
+        most: usize,
+    },
+    /// The frame's lights are not those that the renderer was made for.
+    #[error(
+        "the frame has {frame} lights, but the renderer was made for {renderer}; make it with one slot for each light"
+    )]
+    LampSlots {
+        /// Lights of the frame.
+        frame: usize,
+        /// Length of `RenderSettings::lights`.
+        renderer: usize,
+    },
     /// A texture of the scene is larger than the device allows.
     #[error("texture {index} is {width}x{height} pixels, more than the {limit} this device allows; scale it down")]
     TextureSize {

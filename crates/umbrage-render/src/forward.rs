@@ -3,14 +3,15 @@
 use std::borrow::Cow;
 
 use glam::{DVec3, Vec3};
-use umbrage::{DirectionalLight, Projection, View};
+use umbrage::{Light, Projection, View};
 use umbrage_scene::AlphaMode;
-use umbrage_wgpu::ShadowMaps;
+use umbrage_wgpu::{ShadowMaps, Slice, Storage};
 
 use crate::contact::Contact;
 use crate::draw_list::{Drawable, Drawn, Run, vertex_layouts};
+use crate::lamps::{Lamp, LampUniform, MOST_LAMPS};
 use crate::materials::{GpuMaterial, Materials};
-use crate::{Gpu, shaders};
+use crate::{Gpu, Result, shaders};
 
 /// What the picture is drawn in before it is resolved; the samples of a pixel share one shading.
 pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -67,15 +68,29 @@ pub(crate) struct FrameUniform {
     pub clip_from_eye: [[f32; 4]; 4],
     pub eye: [f32; 3],
     pub is_orthographic: f32,
-    pub forward: PaddedVec3,
-    pub to_light: PaddedVec3,
-    pub ray_center: PaddedVec3,
-    pub ray_right: PaddedVec3,
+    pub forward: [f32; 3],
+    pub lamp_count: u32,
+    pub to_sun: [f32; 3],
+    pub daylight: f32,
+    pub ray_center: [f32; 3],
+    pub near: f32,
+    pub ray_right: [f32; 3],
+    pub far: f32,
     pub ray_up: PaddedVec3,
+    pub lamps: [LampUniform; MOST_LAMPS],
 }
 
+/// How bright the sky is without a sun: enough to tell corners apart where no lamp shines.
+const NIGHT: f32 = 0.2;
+
 impl FrameUniform {
-    pub fn new(view: &View, sun: &DirectionalLight, origin: DVec3) -> Self {
+    /// `slice` is the part of the view that is drawn, if not all of it is.
+    pub fn new(view: &View, lamps: &[Lamp], origin: DVec3, slice: Option<&Slice>) -> Result<Self> {
+        let clip = view.clip_from_relative(view.eye());
+        let sun = lamps.iter().find_map(|lamp| match lamp.light {
+            Light::Directional(sun) => Some(sun.direction()),
+            Light::Spot(_) | Light::Point(_) => None,
+        });
         let frustum = view.frustum();
         let axes = view.world_from_view_rotation();
         let (center, half) = match frustum.projection {
@@ -87,16 +102,21 @@ impl FrameUniform {
             Projection::Orthographic => (view.forward(), [0.0; 2]),
         };
         let eye: Vec3 = (view.eye() - origin).as_vec3();
-        Self {
-            clip_from_eye: view.clip_from_relative(view.eye()).as_mat4().to_cols_array_2d(),
+        Ok(Self {
+            clip_from_eye: slice.map_or(clip, |slice| slice.clip_from(clip)).as_mat4().to_cols_array_2d(),
             eye: eye.to_array(),
             is_orthographic: f32::from(u8::from(frustum.projection == Projection::Orthographic)),
-            forward: view.forward().into(),
-            to_light: (-sun.direction()).into(),
-            ray_center: center.into(),
-            ray_right: (axes.x_axis * half[0]).into(),
+            forward: view.forward().as_vec3().to_array(),
+            lamp_count: lamps.len() as u32,
+            to_sun: (-sun.unwrap_or(DVec3::ZERO)).as_vec3().to_array(),
+            daylight: if sun.is_some() { 1.0 } else { NIGHT },
+            ray_center: center.as_vec3().to_array(),
+            near: frustum.near as f32,
+            ray_right: (axes.x_axis * half[0]).as_vec3().to_array(),
+            far: frustum.far as f32,
             ray_up: (axes.y_axis * half[1]).into(),
-        }
+            lamps: LampUniform::all(lamps, origin)?,
+        })
     }
 }
 
@@ -114,10 +134,23 @@ impl SurfacePipelines {
     }
 }
 
-/// Pipelines and the frame's uniform.
+/// What a pass over the scene is bound to.
+#[derive(Clone, Copy)]
+pub(crate) struct Bindings<'a> {
+    /// The frame, or a slice of it.
+    pub frame: &'a wgpu::BindGroup,
+    /// The shadow maps that it may ask.
+    pub maps: &'a wgpu::BindGroup,
+    /// The picture's depth, for contact shadows.
+    pub contact: Option<&'a wgpu::BindGroup>,
+}
+
+/// Pipelines and the frame's uniforms.
 pub(crate) struct Forward {
     uniform: wgpu::Buffer,
-    bind_group: wgpu::BindGroup,
+    stride: u64,
+    /// The whole frame, then its slices where the picture is drawn slice by slice.
+    bind_groups: Vec<wgpu::BindGroup>,
     picture: SurfacePipelines,
     mask: SurfacePipelines,
     sky: wgpu::RenderPipeline,
@@ -150,17 +183,29 @@ impl Forward {
                 count: None,
             }],
         });
+        let sliced = maps.options().storage == Storage::Reused;
+        let count = if sliced { 1 + maps.splits() } else { 1 };
+        let stride = (size_of::<FrameUniform>() as u64)
+            .next_multiple_of(u64::from(device.limits().min_uniform_buffer_offset_alignment));
         let uniform = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("Forward::frame"),
-            size: size_of::<FrameUniform>() as u64,
+            size: stride * count as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("Forward::bind_group"),
-            layout: &frame_layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
-        });
+        let bind_group = |index| {
+            let resource = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: &uniform,
+                offset: index as u64 * stride,
+                size: wgpu::BufferSize::new(size_of::<FrameUniform>() as u64),
+            });
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("Forward::bind_group"),
+                layout: &frame_layout,
+                entries: &[wgpu::BindGroupEntry { binding: 0, resource }],
+            })
+        };
+        let bind_groups = (0..count).map(bind_group).collect();
         let surface_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("Forward::surface_layout"),
             bind_group_layouts: &[
@@ -181,7 +226,8 @@ impl Forward {
             bind_group_layouts: &[Some(&frame_layout)],
             immediate_size: 0,
         });
-        let builder = Builder { device, module: &module, layout: &surface_layout, samples };
+        let unclipped_depth = sliced && maps.depth_clamp();
+        let builder = Builder { device, module: &module, layout: &surface_layout, samples, sliced, unclipped_depth };
         let picture = builder.pipelines([
             builder.surface("Forward::picture_opaque", "fs_picture_opaque", PICTURE_FORMAT),
             Surface {
@@ -211,62 +257,92 @@ impl Forward {
             let masked = Surface { fragment_entry: Some("fs_depth_masked"), ..bare };
             Builder { layout: &depth_layout, ..builder }.pipelines([bare, masked, bare])
         });
-        Self { uniform, bind_group, picture, mask, sky, depth }
+        Self { uniform, stride, bind_groups, picture, mask, sky, depth }
     }
 
-    /// Writes the frame's uniform.
-    pub fn prepare(&self, gpu: &Gpu, frame: &FrameUniform) {
-        gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(frame));
+    /// Writes the uniform of the whole frame, `index` 0, or of a slice, 1 and so on.
+    pub fn prepare(&self, gpu: &Gpu, index: usize, frame: &FrameUniform) {
+        gpu.queue.write_buffer(&self.uniform, index as u64 * self.stride, bytemuck::bytes_of(frame));
+    }
+
+    /// The bind group of what [`Forward::prepare`] wrote.
+    pub fn bind_group(&self, index: usize) -> &wgpu::BindGroup {
+        &self.bind_groups[index]
     }
 
     /// Draws the depth of everything solid; nothing without contact shadows.
     pub fn draw_depth(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &Drawable<'_>, solid: &[Run]) -> Drawn {
         let Some(depth) = &self.depth else { return Drawn::default() };
-        pass.set_bind_group(0, &self.bind_group, &[]);
+        pass.set_bind_group(0, self.bind_group(0), &[]);
         drawable.draw(pass, solid, |m, mirrored| (m.alpha != AlphaMode::Blend).then(|| depth.of(m, mirrored)))
     }
 
-    /// Draws the sky, everything solid, then what is translucent from back to front.
-    pub fn draw_picture(
+    /// Draws everything solid.
+    pub fn draw_solid(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
-        maps: &ShadowMaps,
-        contact: Option<&Contact>,
+        bindings: Bindings<'_>,
         drawable: &Drawable<'_>,
         solid: &[Run],
-        translucent: &[Run],
     ) -> Drawn {
-        pass.set_bind_group(0, &self.bind_group, &[]);
-        pass.set_bind_group(2, maps.receiver_bind_group(), &[]);
-        if let Some(contact) = contact {
-            pass.set_bind_group(3, &contact.bind_group, &[]);
-        }
+        bind(pass, bindings);
         let pick = |material: &GpuMaterial, mirrored| self.picture.of(material, mirrored);
-        let mut drawn =
-            drawable.draw(pass, solid, |m, mirrored| (m.alpha != AlphaMode::Blend).then(|| pick(m, mirrored)));
+        drawable.draw(pass, solid, |m, mirrored| (m.alpha != AlphaMode::Blend).then(|| pick(m, mirrored)))
+    }
+
+    /// Draws the sky where nothing else is.
+    pub fn draw_sky(&self, pass: &mut wgpu::RenderPass<'_>, bindings: Bindings<'_>) {
+        bind(pass, bindings);
         pass.set_pipeline(&self.sky);
         pass.draw(0..3, 0..1);
-        drawn +=
-            drawable.draw(pass, translucent, |m, mirrored| (m.alpha == AlphaMode::Blend).then(|| pick(m, mirrored)));
-        drawn
+    }
+
+    /// Draws what is translucent, in the order given: from back to front.
+    pub fn draw_translucent(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        bindings: Bindings<'_>,
+        drawable: &Drawable<'_>,
+        translucent: &[Run],
+    ) -> Drawn {
+        bind(pass, bindings);
+        let pick = |material: &GpuMaterial, mirrored| self.picture.of(material, mirrored);
+        drawable.draw(pass, translucent, |m, mirrored| (m.alpha == AlphaMode::Blend).then(|| pick(m, mirrored)))
     }
 
     /// Draws everything solid as bare visibility.
     pub fn draw_mask(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
-        maps: &ShadowMaps,
-        contact: Option<&Contact>,
+        bindings: Bindings<'_>,
         drawable: &Drawable<'_>,
         solid: &[Run],
     ) -> Drawn {
-        pass.set_bind_group(0, &self.bind_group, &[]);
-        pass.set_bind_group(2, maps.receiver_bind_group(), &[]);
-        if let Some(contact) = contact {
-            pass.set_bind_group(3, &contact.bind_group, &[]);
-        }
+        bind(pass, bindings);
         drawable.draw(pass, solid, |m, mirrored| (m.alpha != AlphaMode::Blend).then(|| self.mask.of(m, mirrored)))
     }
+}
+
+fn bind(pass: &mut wgpu::RenderPass<'_>, bindings: Bindings<'_>) {
+    pass.set_bind_group(0, bindings.frame, &[]);
+    pass.set_bind_group(2, bindings.maps, &[]);
+    if let Some(contact) = bindings.contact {
+        pass.set_bind_group(3, contact, &[]);
+    }
+}
+
+/// Where a pass stands among the passes that draw one target together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Turn {
+    /// Clears what was there.
+    pub first: bool,
+    /// Resolves samples; nothing is kept for a later pass.
+    pub last: bool,
+}
+
+impl Turn {
+    /// The only pass.
+    pub const ONLY: Self = Self { first: true, last: true };
 }
 
 /// The textures that a picture is drawn into.
@@ -292,13 +368,14 @@ impl PictureTarget {
     pub fn begin<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
+        turn: Turn,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'e> {
         let (color, resolve_target) = match &self.samples {
-            Some(samples) => (samples, Some(&self.resolved)),
+            Some(samples) => (samples, turn.last.then_some(&self.resolved)),
             None => (&self.resolved, None),
         };
-        begin("PictureTarget::pass", encoder, color, resolve_target, &self.depth, timestamp_writes)
+        begin("PictureTarget::pass", encoder, color, resolve_target, &self.depth, turn, timestamp_writes)
     }
 }
 
@@ -321,9 +398,10 @@ impl MaskTarget {
     pub fn begin<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
+        turn: Turn,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'e> {
-        begin("MaskTarget::pass", encoder, &self.color, None, &self.depth, timestamp_writes)
+        begin("MaskTarget::pass", encoder, &self.color, None, &self.depth, turn, timestamp_writes)
     }
 }
 
@@ -354,20 +432,26 @@ fn begin<'e>(
     color: &wgpu::TextureView,
     resolve_target: Option<&wgpu::TextureView>,
     depth: &wgpu::TextureView,
+    turn: Turn,
     timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
 ) -> wgpu::RenderPass<'e> {
     let keep_samples = if resolve_target.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
+    let keep_depth = if turn.last { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
+    let clear = |color| if turn.first { wgpu::LoadOp::Clear(color) } else { wgpu::LoadOp::Load };
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(label),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
             view: color,
             depth_slice: None,
             resolve_target,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: keep_samples },
+            ops: wgpu::Operations { load: clear(wgpu::Color::TRANSPARENT), store: keep_samples },
         })],
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: depth,
-            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+            depth_ops: Some(wgpu::Operations {
+                load: if turn.first { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load },
+                store: keep_depth,
+            }),
             stencil_ops: None,
         }),
         timestamp_writes,
@@ -392,6 +476,9 @@ struct Builder<'a> {
     module: &'a wgpu::ShaderModule,
     layout: &'a wgpu::PipelineLayout,
     samples: Samples,
+    /// The picture is drawn slice by slice.
+    sliced: bool,
+    unclipped_depth: bool,
 }
 
 impl Builder<'_> {
@@ -405,7 +492,9 @@ impl Builder<'_> {
         SurfacePipelines(surfaces.map(|surface| {
             [Some(wgpu::Face::Back), None].map(|cull_mode| {
                 [wgpu::FrontFace::Ccw, wgpu::FrontFace::Cw].map(|front_face| {
-                    let primitive = wgpu::PrimitiveState { front_face, cull_mode, ..Default::default() };
+                    let unclipped_depth = self.unclipped_depth;
+                    let primitive =
+                        wgpu::PrimitiveState { front_face, cull_mode, unclipped_depth, ..Default::default() };
                     self.pipeline(&surface, "vs_main", &vertex_layouts(), primitive, wgpu::CompareFunction::Greater)
                 })
             })
@@ -426,7 +515,8 @@ impl Builder<'_> {
         primitive: wgpu::PrimitiveState,
         depth_compare: wgpu::CompareFunction,
     ) -> wgpu::RenderPipeline {
-        let constants = [("LEAST_COVERAGE", self.samples.least_coverage())];
+        let constants =
+            [("LEAST_COVERAGE", self.samples.least_coverage()), ("SLICED", f64::from(u8::from(self.sliced)))];
         let targets = [surface.format.map(|format| wgpu::ColorTargetState {
             format,
             blend: surface.blend.then_some(wgpu::BlendState::ALPHA_BLENDING),

@@ -1,5 +1,5 @@
 //! umbrage's demonstration renderer: what an application around `umbrage-wgpu` looks like, and what the command and the
-//! viewer draw with. Forward shading, one sun, no window.
+//! viewer draw with. Forward shading, a few lights, no window.
 //!
 //! [`Gpu`] opens a device, [`Renderer`] uploads a [`umbrage_scene::Scene`] once and then draws [`Frame`]s of it: pictures,
 //! visibility masks, depth maps and answers at given points, with [`FrameStats`] beside them.
@@ -10,14 +10,18 @@ mod contact;
 mod cull;
 mod draw_list;
 mod error;
+mod fade;
 mod forward;
 mod geometry;
 mod gpu;
+mod lamps;
 mod look;
 mod maps;
 mod materials;
 mod mipmaps;
+mod moments;
 mod probe;
+mod record;
 mod renderer;
 mod shaders;
 mod stats;
@@ -26,8 +30,10 @@ mod timing;
 pub use error::{Error, Result};
 pub use forward::Samples;
 pub use gpu::{Gpu, GpuOptions};
-pub use look::Look;
+pub use lamps::{Lamp, MOST_LAMPS};
+pub use look::{Look, Translucent};
+pub use moments::MomentSettings;
 pub use probe::{ProbeAnswer, ProbePoint};
 pub use renderer::{Frame, Outputs, RenderSettings, Rendered, Renderer};
-pub use stats::{FrameStats, SplitStats};
+pub use stats::{FrameStats, LightStats, SplitStats};
 pub use timing::PassCounts;

@@ -113,7 +113,7 @@ impl Probe {
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
-        maps: &ShadowMaps,
+        maps: &wgpu::BindGroup,
         origin: DVec3,
         points: &[(ProbePoint, Responder)],
     ) -> Result<PendingAnswers> {
@@ -176,7 +176,7 @@ impl Probe {
             });
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, &bind_group, &[]);
-            pass.set_bind_group(1, maps.receiver_bind_group(), &[]);
+            pass.set_bind_group(1, maps, &[]);
             pass.draw(0..3, 0..1);
         }
         let capture = Capture::record(gpu, encoder, &answers, 0, [ROW, height])?;

@@ -1,26 +1,29 @@
-//! The demonstration renderer: a scene, a view and a sun in; a picture, a mask, maps and numbers out.
+//! The demonstration renderer: a scene, a view and lights in; a picture, a mask, maps and numbers out.
 
 use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
-use umbrage::{Aabb, DirectionalLight, Planner, ShadowPlan, ShadowSettings, View};
+use umbrage::{Aabb, Planner, Selection, ShadowPlan, ShadowSettings, SunFade, View};
 use umbrage_scene::{AlphaMode, Pose, Scene};
 use umbrage_wgpu::{
-    DepthFormat, Filter, FrameOptions, Generation, ShadowMaps, ShadowMapsOptions, Softness, Storage, Transition,
+    DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, MapPass, ShadowMaps, ShadowMapsOptions,
+    Slice, Softness, Storage, Transition,
 };
 use web_time::Instant;
 
 use crate::capture::Capture;
 use crate::casters::Casters;
 use crate::contact::Contact;
-use crate::draw_list::{Drawable, Drawn, Instances, Run};
+use crate::draw_list::{Drawable, Instances, Run, once};
 use crate::forward::{Forward, FrameUniform, MaskTarget, PictureTarget, Samples};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry, check_object};
-use crate::look::Look;
-use crate::materials::Materials;
+use crate::lamps::Lamp;
+use crate::look::{Look, Translucent};
+use crate::materials::{GpuMaterial, Materials};
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint, Responder};
-use crate::stats::{FrameStats, SplitStats};
-use crate::timing::{PassCounts, Slot, Timer};
-use crate::{Error, Gpu, Result, cull, maps};
+use crate::record::{Clock, MapCapture, Prepared, Recorded, SliceRuns, new_encoder};
+use crate::stats::{FrameStats, LightStats, SplitStats};
+use crate::timing::{PassCounts, Timer};
+use crate::{Error, Gpu, MomentSettings, Result, cull, maps, moments};
 
 /// The frame's origin moves in steps of this many metres, so that positions near the eye are exact to a tenth of a
 /// millimetre in `f32` and yet stay the same from frame to frame, which is what keeps stabilised maps still.
@@ -50,6 +53,10 @@ pub struct RenderSettings {
     pub storage: Storage,
     /// How maps are drawn.
     pub generation: Generation,
+    /// What filters of moments leave to choose.
+    pub moments: MomentSettings,
+    /// What the lights of a frame may be, the first one first.
+    pub lights: Vec<LightSlot>,
 }
 
 /// What varies from frame to frame.
@@ -59,8 +66,10 @@ pub struct Frame<'a> {
     pub pose: &'a Pose,
     /// The eye.
     pub view: &'a View,
-    /// The light.
-    pub sun: DirectionalLight,
+    /// The first light: the one that masks and probes are of.
+    pub light: Lamp,
+    /// More lights, for the picture.
+    pub more_lights: &'a [Lamp],
     /// Whether anything throws shadows; if not, whatever faces the light is lit.
     pub shadows_on: bool,
     /// Whether the picture shows each split in its own colour.
@@ -93,40 +102,53 @@ pub struct Rendered {
 
 /// Draws one scene at one size. Everything that does not change from frame to frame is on the GPU already.
 pub struct Renderer {
-    gpu: Gpu,
-    size: [u32; 2],
+    pub(crate) gpu: Gpu,
+    pub(crate) size: [u32; 2],
     depth_format: DepthFormat,
     samples: Samples,
     softness: Softness,
     transition: Transition,
+    derivatives: Derivatives,
     look: Look,
-    planner: Planner,
-    maps: ShadowMaps,
+    pub(crate) planners: Planners,
+    /// The same for each further view.
+    more_views: Vec<Planners>,
+    pub(crate) maps: ShadowMaps,
     scene: Geometry,
     scene_meshes: SceneMeshes,
     skinned: SkinnedGeometry,
     materials: Materials,
     instances: Instances,
-    casters: Casters,
-    forward: Forward,
-    contact: Option<Contact>,
+    pub(crate) casters: Casters,
+    pub(crate) forward: Forward,
+    pub(crate) contact: Option<Contact>,
+    /// Per node of the scene, whether its translucent surfaces throw shadows; empty where none do.
+    dithered_nodes: Vec<bool>,
     probe: Probe,
-    timer: Timer,
-    picture: Option<PictureTarget>,
-    mask: Option<MaskTarget>,
+    pub(crate) timer: Timer,
+    pub(crate) picture: Option<PictureTarget>,
+    pub(crate) mask: Option<MaskTarget>,
     notes: Vec<String>,
 }
 
-/// A frame that is planned and uploaded, ready to be recorded.
-struct Prepared {
-    origin: DVec3,
-    plan: ShadowPlan,
-    plan_ms: f64,
-    /// Per split.
-    caster_runs: Vec<Vec<Run>>,
-    solid: Vec<Run>,
-    translucent: Vec<Run>,
-    objects_in_view: usize,
+/// What plans one view's maps.
+pub(crate) struct Planners {
+    /// One for each light.
+    pub now: Vec<Planner>,
+    /// While a step of the sun is faded: what plans for the sun that is faded to.
+    pub next: Option<Vec<Planner>>,
+}
+
+impl Planners {
+    fn new(settings: &ShadowSettings, lights: usize) -> Result<Self> {
+        let now = (0..lights).map(|_| Planner::new(settings.clone())).collect::<Result<_, _>>()?;
+        Ok(Self { now, next: None })
+    }
+
+    /// Others of the same settings, which remember nothing.
+    pub fn afresh(&self) -> Result<Self> {
+        Self::new(self.now[0].settings(), self.now.len())
+    }
 }
 
 impl Renderer {
@@ -159,23 +181,43 @@ impl Renderer {
                     map_sizes: shadows.map_sizes.clone(),
                     depth_format: settings.depth_format,
                     filter: settings.filter,
+                    samples: settings.moments.samples,
+                    fallbacks: settings.moments.fallbacks,
                     storage: settings.storage,
                     generation: settings.generation,
+                    lights: settings.lights.clone(),
                     ..ShadowMapsOptions::default()
                 },
             )?;
+            let blends = shadows.blend > 0.0 && settings.transition != Transition::Hard;
+            if maps.options().storage == Storage::Reused && blends && maps.splits() > 1 {
+                return Err(umbrage_wgpu::Error::ConflictingOptions {
+                    first: "storage reused".to_owned(),
+                    second: format!("blend {}", shadows.blend),
+                    reason: "there is one map at a time and none to blend with; use blend 0, the hard transition or storage array",
+                }
+                .into());
+            }
+            if maps.options().storage == Storage::Reused && shadows.selection == Selection::Map {
+                return Err(umbrage_wgpu::Error::ConflictingOptions {
+                    first: "storage reused".to_owned(),
+                    second: "selection map".to_owned(),
+                    reason: "there is one map at a time and none to choose from; use selection depth or storage array",
+                }
+                .into());
+            }
             // Floats hold the depth of a whole world; 16 bits want the shorter range that casters flattened onto the near plane
             // allow, and pay for it with maps that step along the light.
             shadows.depth_clamp = maps.depth_clamp() && settings.depth_format == DepthFormat::D16Unorm;
             let materials = Materials::new(gpu, scene)?;
-            let timer = Timer::new(gpu);
-            let mut notes = Vec::new();
+            let timer = Timer::new(gpu, maps.map_count());
+            let mut notes = maps.notes().to_vec();
             if settings.depth_format == DepthFormat::D16Unorm && !maps.depth_clamp() {
                 notes.push(
                     "no depth clip control: near planes of 16-bit maps stand before their first caster".to_owned(),
                 );
             }
-            if settings.filter == Filter::Pcss && !gpu.depth_loads() {
+            if settings.filter == Filter::Pcss && !gpu.depth_loads() && !settings.depth_format.is_colour() {
                 notes.push("no loads from depth textures on GL: pcss is a disc of fixed width".to_owned());
             }
             let contact = settings.look.contact.filter(|_| gpu.depth_loads());
@@ -183,23 +225,30 @@ impl Renderer {
                 notes.push("no loads from depth textures on GL: no contact shadows".to_owned());
             }
             let contact = contact.map(|options| Contact::new(gpu, settings.size, options));
+            notes.extend(maps.moment_storage().and_then(|storage| moments::note(storage, settings.filter)));
             if !timer.has_timestamps() {
                 notes.push("no timestamp queries: times of the GPU are measured by the CPU's clock".to_owned());
             }
             Ok(Self {
                 size: settings.size,
                 depth_format: settings.depth_format,
-                planner: Planner::new(shadows)?,
+                planners: Planners::new(&shadows, settings.lights.len())?,
+                more_views: Vec::new(),
                 scene: Geometry::of_scene(gpu, scene)?,
                 scene_meshes: SceneMeshes::of_scene(scene),
                 skinned: SkinnedGeometry::empty(gpu)?,
                 instances: Instances::new(gpu),
-                casters: Casters::new(gpu, &maps, &materials),
+                casters: Casters::new(gpu, &maps, &materials, settings.look.translucent),
                 forward: Forward::new(gpu, &maps, &materials, settings.samples, contact.as_ref()),
                 contact,
+                dithered_nodes: match settings.look.translucent {
+                    Translucent::None => Vec::new(),
+                    Translucent::Dithered => scene.nodes.iter().map(|node| node.cast_shadow).collect(),
+                },
                 samples: settings.samples,
                 softness: settings.softness,
                 transition: settings.transition,
+                derivatives: settings.moments.derivatives,
                 look: settings.look,
                 probe: Probe::new(gpu, &maps),
                 timer,
@@ -216,7 +265,7 @@ impl Renderer {
     /// The settings that shadows are planned with, including what the filter, the device and the size have decided.
     #[must_use]
     pub fn shadow_settings(&self) -> &ShadowSettings {
-        self.planner.settings()
+        self.planners.now[0].settings()
     }
 
     /// Forgets what earlier frames have left behind in the planner (sizes that stabilisation holds), as if nothing had been
@@ -225,7 +274,8 @@ impl Renderer {
     /// # Errors
     /// Never in practice: the settings were accepted before.
     pub fn restart(&mut self) -> Result<()> {
-        self.planner = Planner::new(self.planner.settings().clone())?;
+        self.more_views.clear();
+        self.planners = self.planners.afresh()?;
         Ok(())
     }
 
@@ -235,17 +285,59 @@ impl Renderer {
         self.scene.bytes + self.skinned.geometry.bytes + self.materials.bytes
     }
 
+    /// How maps are kept and drawn, with what the options left open decided.
+    #[must_use]
+    pub fn map_options(&self) -> &ShadowMapsOptions {
+        self.maps.options()
+    }
+
     /// Draws a frame and waits for what was asked for.
     ///
     /// # Errors
     /// [`Error::Plan`] if camera, range or bounds are wrong, [`Error::Scene`] if the pose is not one of this scene,
+    /// [`Error::LampSlots`], [`Error::LampCount`] or [`Error::Shadows`] if the lights are not those that the renderer was made for,
     /// [`Error::OutOfMemory`] or [`Error::Device`] if the device fails.
     pub fn render(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
         gpu.guarded("drawing a frame", || self.render_unguarded(frame, outputs))
     }
 
-    /// Visibility at given points. A point that the view shows within the shadowed range gets what a pixel there would
+    /// Draws several views, for a split screen: each as if it were drawn alone, under the suns of `fade` if there is one. The maps are
+    /// one view's after the other's; what stabilisation holds is kept for each, so a view keeps its place in the list from frame to
+    /// frame.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn render_views(
+        &mut self,
+        frames: &[Frame<'_>],
+        fade: Option<&SunFade>,
+        outputs: Outputs,
+    ) -> Result<Vec<Rendered>> {
+        let mut views = Vec::with_capacity(frames.len());
+        for (view, frame) in frames.iter().enumerate() {
+            if view > self.more_views.len() {
+                self.more_views.push(self.planners.afresh()?);
+            }
+            self.swap_planners(view);
+            let rendered = match fade {
+                Some(fade) => self.render_faded(frame, fade, outputs),
+                None => self.render(frame, outputs),
+            };
+            self.swap_planners(view);
+            views.push(rendered?);
+        }
+        Ok(views)
+    }
+
+    /// Brings a further view's planners to the fore, or back.
+    fn swap_planners(&mut self, view: usize) {
+        if let Some(other) = view.checked_sub(1) {
+            std::mem::swap(&mut self.planners, &mut self.more_views[other]);
+        }
+    }
+
+    /// Visibility of the first light at given points. A point that the view shows within the shadowed range gets what a pixel there would
     /// get; any other is answered by the first split whose map covers it, or is lit where none does.
     ///
     /// # Errors
@@ -266,84 +358,74 @@ impl Renderer {
         }
         let prepared = self.prepare(frame)?;
         let mut clock = Clock::start(&gpu, &self.timer);
-        let mut encoder = new_encoder(&gpu);
-        let split_drawn = self.record_maps(&mut encoder, frame, &prepared);
-        let map_passes = split_drawn.len();
-        let mut encoder = clock.after_maps(encoder)?;
-        let mut view_drawn = Drawn::default();
-        if let Some(contact) = &self.contact {
-            let slot = self.timer.next();
-            let mut pass = contact.begin(&mut encoder, self.timer.timestamp_writes(slot));
-            view_drawn += self
-                .timer
-                .counted(&mut pass, slot, |pass| self.forward.draw_depth(pass, &self.drawable(), &prepared.solid));
+        if outputs.maps && self.maps.options().samples > 1 {
+            return Err(Error::MapsOfSamples { samples: self.maps.options().samples });
         }
+        let (recorded, mut encoder) = self.record(new_encoder(&gpu), &mut clock, &prepared, outputs)?;
         let mask = match &self.mask {
-            Some(target) if outputs.mask => {
-                let slot = self.timer.next();
-                view_drawn += self.record_mask(&mut encoder, target, slot, &prepared);
-                Some(Capture::record(&gpu, &mut encoder, &target.texture, 0, self.size)?)
-            }
+            Some(target) if outputs.mask => Some(Capture::record(&gpu, &mut encoder, &target.texture, 0, self.size)?),
             _ => None,
         };
         let picture = match &self.picture {
             Some(target) if outputs.picture => {
-                let slot = self.timer.next();
-                view_drawn += self.record_picture(&mut encoder, target, slot, &prepared);
                 Some(Capture::record(&gpu, &mut encoder, &target.texture, 0, self.size)?)
             }
             _ => None,
-        };
-        let depth_maps = if outputs.maps && frame.shadows_on {
-            let splits = prepared.plan.splits.iter().enumerate();
-            splits
-                .map(|(i, split)| {
-                    let texture = self.maps.depth_texture();
-                    // Depth is copied in whole layers only; a smaller map is cut out of its layer afterwards.
-                    let texels = [texture.width(), texture.height()];
-                    let (layer, corner) = self.maps.map_place(i);
-                    let capture = Capture::record(&gpu, &mut encoder, texture, layer, texels)?;
-                    Ok((texels[0], corner, split.size, capture))
-                })
-                .collect::<Result<Vec<_>>>()?
-        } else {
-            Vec::new()
         };
         self.timer.record(&mut encoder);
         let wall = clock.after_all(encoder)?;
 
         let measured = self.timer.read(&gpu)?;
-        let counts = |passes: std::ops::Range<usize>| {
+        let over_maps = |pass: usize| recorded.map_passes.iter().any(|&(_, _, slot)| slot == pass);
+        let counts = |maps: bool| {
             measured.counts.as_ref().map(|counts| {
                 let mut sum = PassCounts::default();
-                counts[passes].iter().for_each(|&count| sum += count);
+                counts.iter().enumerate().filter(|&(i, _)| over_maps(i) == maps).for_each(|(_, &count)| sum += count);
                 sum
             })
         };
+        let is_prefiltered = self.maps.options().filter.is_prefiltered();
         let (shadow_ms, frame_ms) = match (&measured.spans_ms, wall) {
-            (Some(spans), _) if !spans.is_empty() => (
-                spans[..map_passes].last().map_or(0.0, |span| span[1]),
-                spans.iter().map(|span| span[1]).fold(0.0, f64::max),
-            ),
+            (Some(spans), _) if !spans.is_empty() => {
+                let maps = || spans.iter().enumerate().filter(|&(i, _)| over_maps(i)).map(|(_, span)| span);
+                let last = recorded.map_passes.last().map_or(0, |&(_, _, slot)| slot);
+                let shadow_ms = match prepared.slices.is_empty() {
+                    // What turns depths into moments is no pass of ours; it is over when the next one begins.
+                    true if is_prefiltered && maps().next().is_some() && last + 1 < spans.len() => spans[last + 1][0],
+                    true => maps().map(|span| span[1]).fold(0.0, f64::max),
+                    // Between the maps there is the view.
+                    false => maps().map(|span| span[1] - span[0]).sum(),
+                };
+                (shadow_ms, spans.iter().map(|span| span[1]).fold(0.0, f64::max))
+            }
             (_, Some(wall)) => wall,
             _ => (0.0, 0.0),
         };
-        let passes = measured.counts.as_ref().map_or(0, Vec::len);
         let stats = FrameStats {
             plan_ms: prepared.plan_ms,
             shadow_ms,
             frame_ms,
-            splits: self.split_stats(&prepared.plan, &split_drawn),
+            splits: self.split_stats(0, frame, &prepared.plans[0], &recorded),
+            shadow_draws: recorded.map_passes.iter().map(|(_, drawn, _)| drawn.draws).sum(),
+            shadow_triangles: recorded.map_passes.iter().map(|(_, drawn, _)| drawn.triangles).sum(),
+            more_lights: prepared.plans[1..]
+                .iter()
+                .enumerate()
+                .map(|(i, plan)| LightStats {
+                    splits: self.split_stats(i + 1, frame, plan, &recorded),
+                    plan: plan.clone(),
+                })
+                .collect(),
             objects_in_view: prepared.objects_in_view,
-            view_draws: view_drawn.draws,
-            view_triangles: view_drawn.triangles,
-            shadow_counts: counts(0..map_passes.min(passes)),
-            view_counts: counts(map_passes.min(passes)..passes),
+            view_draws: recorded.view.draws,
+            view_triangles: recorded.view.triangles,
+            shadow_counts: counts(true),
+            view_counts: counts(false),
             bytes: self.maps.bytes(),
             generation: self.maps.options().generation.name(),
             storage: self.maps.options().storage.name(),
             notes: self.notes.clone(),
-            plan: prepared.plan,
+            plan: prepared.plans[0].clone(),
         };
         let [width, height] = self.size;
         const SIZED: &str = "a capture has as many bytes as its picture";
@@ -357,12 +439,7 @@ impl Renderer {
                     Ok::<_, Error>(GrayAlphaImage::from_raw(width, height, capture.read(&gpu)?).expect(SIZED))
                 })
                 .transpose()?,
-            maps: depth_maps
-                .into_iter()
-                .map(|(row, corner, size, capture)| {
-                    Ok(maps::picture_of(&maps::depths_of(&capture.read(&gpu)?, self.depth_format), row, corner, size))
-                })
-                .collect::<Result<_>>()?,
+            maps: self.map_pictures(recorded.maps)?,
             stats,
         })
     }
@@ -370,42 +447,73 @@ impl Renderer {
     fn probe_unguarded(&mut self, frame: &Frame<'_>, points: &[ProbePoint]) -> Result<Vec<ProbeAnswer>> {
         let gpu = self.gpu.clone();
         let prepared = self.prepare(frame)?;
-        let mut encoder = new_encoder(&gpu);
-        self.record_maps(&mut encoder, frame, &prepared);
-        gpu.queue.submit([encoder.finish()]);
-        let mut answers = Vec::with_capacity(points.len());
-        for batch in points.chunks(probe::BATCH) {
-            let asked: Vec<(ProbePoint, Responder)> =
-                batch.iter().map(|&point| (point, self.responder(frame, &prepared.plan, point.position))).collect();
+        let rounds = if prepared.slices.is_empty() { 1 } else { prepared.caster_runs.len() };
+        let mut answers = Vec::new();
+        for round in 0..rounds {
+            // One map for all splits: it answers for one after the other.
+            let sliced = !prepared.slices.is_empty();
+            let passes = if sliced { round..round + 1 } else { 0..prepared.caster_runs.len() };
             let mut encoder = new_encoder(&gpu);
-            let pending = self.probe.record(&gpu, &mut encoder, &self.maps, prepared.origin, &asked)?;
+            self.draw_maps(&mut encoder, passes, &prepared, &mut Recorded::default());
             gpu.queue.submit([encoder.finish()]);
-            let mut replies = pending.read(&gpu)?;
-            for (reply, (point, responder)) in replies.iter_mut().zip(&asked) {
-                let faces_light = point.normal.dot(frame.sun.direction()) < 0.0;
-                let unshaded = f32::from(u8::from(faces_light));
-                match *responder {
-                    Responder::Nobody => *reply = ProbeAnswer { visibility: unshaded, split: -1 },
-                    // No caster reaches this split: whatever its map looks like, it is lit.
-                    Responder::Split(split) if prepared.plan.casters(split).is_empty() || !frame.shadows_on => {
-                        *reply = ProbeAnswer { visibility: unshaded, split: split as i32 };
+            let maps = if sliced { self.maps.slice_bind_group(round) } else { self.maps.receiver_bind_group() };
+            for (batch, points) in points.chunks(probe::BATCH).enumerate() {
+                let replies = self.ask(frame, &prepared, maps, points)?;
+                if round == 0 {
+                    answers.extend(replies);
+                    continue;
+                }
+                for (answer, reply) in answers[batch * probe::BATCH..].iter_mut().zip(replies) {
+                    if reply.split == round as i32 {
+                        *answer = reply;
                     }
-                    Responder::Split(_) | Responder::View => {}
                 }
             }
-            answers.extend(replies);
         }
         Ok(answers)
+    }
+
+    /// Asks one batch of points.
+    fn ask(
+        &self,
+        frame: &Frame<'_>,
+        prepared: &Prepared,
+        maps: &wgpu::BindGroup,
+        points: &[ProbePoint],
+    ) -> Result<Vec<ProbeAnswer>> {
+        let gpu = &self.gpu;
+        let asked: Vec<(ProbePoint, Responder)> =
+            points.iter().map(|&point| (point, self.responder(frame, &prepared.plans[0], point.position))).collect();
+        let mut encoder = new_encoder(gpu);
+        let pending = self.probe.record(gpu, &mut encoder, maps, prepared.origin, &asked)?;
+        gpu.queue.submit([encoder.finish()]);
+        let mut replies = pending.read(gpu)?;
+        for (reply, (point, responder)) in replies.iter_mut().zip(&asked) {
+            let faces_light = point.normal.dot(frame.light.light.to_light(point.position)) > 0.0;
+            let unshaded = f32::from(u8::from(faces_light));
+            match *responder {
+                Responder::Nobody => *reply = ProbeAnswer { visibility: unshaded, split: -1 },
+                // No caster reaches this split: whatever its map looks like, it is lit.
+                Responder::Split(split) if prepared.plans[0].casters(split).is_empty() || !frame.shadows_on => {
+                    *reply = ProbeAnswer { visibility: unshaded, split: split as i32 };
+                }
+                Responder::Split(_) | Responder::View => {}
+            }
+        }
+        Ok(replies)
     }
 
     /// Who answers for a point.
     fn responder(&self, frame: &Frame<'_>, plan: &ShadowPlan, point: DVec3) -> Responder {
         let depth = frame.view.view_depth(point);
+        if !frame.light.light.reaches(point) {
+            return Responder::Nobody;
+        }
         let in_range = plan.planes.last().is_some_and(|&far| depth < far);
         if in_range && cull::may_be_seen(frame.view, &Aabb::new(point, point)) {
             return Responder::View;
         }
-        self.planner.covering_split(point).map_or(Responder::Nobody, Responder::Split)
+        self.planners.now[0].covering_split(point).map_or(Responder::Nobody, Responder::Split)
     }
 
     /// Plans, uploads what moves, and sorts what is to be drawn.
@@ -417,13 +525,19 @@ impl Renderer {
         let view = frame.view;
         let origin = (view.eye() / ORIGIN_STEP).round() * ORIGIN_STEP;
 
-        let caster_objects: Vec<usize> = (0..pose.objects.len()).filter(|&i| pose.objects[i].casts).collect();
+        let caster_objects: Vec<usize> = (0..pose.objects.len()).filter(|&i| self.casts(&pose.objects[i])).collect();
         let casters: Vec<Aabb> = caster_objects.iter().map(|&i| pose.objects[i].bounds).collect();
         let receivers: Vec<Aabb> = pose.objects.iter().map(|object| object.bounds).collect();
         let begun = Instant::now();
-        let plan = self.planner.plan(view, &frame.sun, &casters, &receivers)?;
+        let lamps: Vec<Lamp> = [frame.light].into_iter().chain(frame.more_lights.iter().copied()).collect();
+        let planners = &mut self.planners.now;
+        if lamps.len() != planners.len() {
+            return Err(Error::LampSlots { frame: lamps.len(), renderer: planners.len() });
+        }
+        let plans = planners.iter_mut().zip(&lamps);
+        let plans = plans.map(|(planner, lamp)| Ok(planner.plan(view, &lamp.light, &casters, &receivers)?.clone()));
+        let plans = plans.collect::<Result<Vec<ShadowPlan>>>()?;
         let plan_ms = begun.elapsed().as_secs_f64() * 1e3;
-        let plan = plan.clone();
         let options = FrameOptions {
             origin,
             enabled: frame.shadows_on,
@@ -433,12 +547,19 @@ impl Renderer {
             bias: self.look.bias,
             softness: self.softness,
             transition: self.transition,
+            derivatives: self.derivatives,
         };
-        self.maps.prepare(&self.gpu.queue, &plan, &options)?;
+        self.maps.prepare_lights(&self.gpu.queue, &plans.iter().collect::<Vec<_>>(), &options)?;
         self.skinned.update(&self.gpu, &self.scene_meshes, pose)?;
-        self.forward.prepare(&self.gpu, &FrameUniform::new(view, &frame.sun, origin));
+        self.forward.prepare(&self.gpu, 0, &FrameUniform::new(view, &lamps, origin, None)?);
         if let Some(contact) = &self.contact {
-            contact.prepare(&self.gpu, view, &frame.sun, origin)?;
+            contact.prepare(&self.gpu, view, origin)?;
+        }
+        let sliced = frame.shadows_on && self.maps.options().storage == Storage::Reused;
+        let slices = if sliced { Slice::all(&plans[0], view) } else { Vec::new() };
+        for slice in &slices {
+            let uniform = FrameUniform::new(view, &lamps, origin, Some(slice))?;
+            self.forward.prepare(&self.gpu, 1 + slice.split, &uniform);
         }
         self.timer.restart();
 
@@ -450,17 +571,32 @@ impl Renderer {
         let visible: Vec<usize> = near_to_far.into_iter().map(|(_, i)| i).collect();
 
         self.instances.clear();
-        let caster_runs = (0..plan.splits.len())
-            .map(|i| {
-                let objects = plan.casters(i).iter().map(|&caster| caster_objects[caster as usize]);
-                self.instances.grouped(pose, origin, objects)
+        let caster_runs = self.caster_runs(frame, origin, &caster_objects, &plans);
+        let solid = self.instances.grouped(pose, origin, false, visible.iter().copied().map(once));
+        let far_to_near = self.with_translucent_parts(pose, visible.iter().rev().copied());
+        let translucent = self.instances.ordered(pose, origin, far_to_near.iter().copied());
+        let last = plans[0].splits.len() - 1;
+        let slices = slices
+            .into_iter()
+            .map(|slice| {
+                let split = &plans[0].splits[slice.split];
+                // What is nearer than the first split or farther than the last one is drawn with them.
+                let near = if slice.split == 0 { f64::NEG_INFINITY } else { split.near };
+                let far = if slice.split == last { f64::INFINITY } else { split.far };
+                let lies_in = |object: &usize| {
+                    let depths = pose.objects[*object].bounds.corners().map(|corner| view.view_depth(corner));
+                    depths.iter().any(|&depth| depth >= near) && depths.iter().any(|&depth| depth <= far)
+                };
+                let solid = visible.iter().copied().filter(lies_in).map(once);
+                SliceRuns {
+                    slice,
+                    solid: self.instances.grouped(pose, origin, false, solid),
+                    translucent: self.instances.ordered(pose, origin, far_to_near.iter().copied().filter(lies_in)),
+                }
             })
             .collect();
-        let solid = self.instances.grouped(pose, origin, visible.iter().copied());
-        let far_to_near = self.with_translucent_parts(pose, visible.iter().rev().copied());
-        let translucent = self.instances.ordered(pose, origin, far_to_near.into_iter());
         self.instances.upload(&self.gpu)?;
-        Ok(Prepared { origin, plan, plan_ms, caster_runs, solid, translucent, objects_in_view: visible.len() })
+        Ok(Prepared { origin, plans, plan_ms, caster_runs, solid, translucent, slices, objects_in_view: visible.len() })
     }
 
     fn with_translucent_parts(&self, pose: &Pose, objects: impl Iterator<Item = usize>) -> Vec<usize> {
@@ -469,7 +605,7 @@ impl Renderer {
         objects.filter(translucent).collect()
     }
 
-    fn drawable(&self) -> Drawable<'_> {
+    pub(crate) fn drawable(&self) -> Drawable<'_> {
         Drawable {
             scene: &self.scene,
             skinned: &self.skinned.geometry,
@@ -478,117 +614,93 @@ impl Renderer {
         }
     }
 
-    /// One pass per split; nothing where shadows are off.
-    fn record_maps(
+    /// What each pass over the maps draws; nothing where shadows are off.
+    fn caster_runs(
         &mut self,
-        encoder: &mut wgpu::CommandEncoder,
         frame: &Frame<'_>,
-        prepared: &Prepared,
-    ) -> Vec<Drawn> {
+        origin: DVec3,
+        objects: &[usize],
+        plans: &[ShadowPlan],
+    ) -> Vec<Vec<Run>> {
         if !frame.shadows_on {
             return Vec::new();
         }
-        let mut drawn = Vec::with_capacity(prepared.caster_runs.len());
-        for (split, runs) in prepared.caster_runs.iter().enumerate() {
-            let slot = self.timer.next();
-            let mut pass = self.maps.begin_split(encoder, split, self.timer.timestamp_writes(slot));
-            drawn.push(
-                self.timer.counted(&mut pass, slot, |pass| {
-                    self.casters.draw(pass, &self.maps, split, &self.drawable(), runs)
-                }),
-            );
+        let pose = frame.pose;
+        let [plan] = plans else {
+            let mut runs = vec![Vec::new(); self.maps.map_count()];
+            for (light, plan) in plans.iter().enumerate() {
+                self.light_runs(frame, origin, objects, light, plan, &mut runs);
+            }
+            return runs;
+        };
+        if self.maps.map_count() > self.maps.splits() {
+            let mut runs = vec![Vec::new(); self.maps.map_count()];
+            self.light_runs(frame, origin, objects, 0, plan, &mut runs);
+            return runs;
         }
-        drawn
+        let grouped = |pass: &MapPass| {
+            let copies = pass.casters(plan).map(|(caster, codes)| (objects[caster as usize], codes));
+            self.instances.grouped(pose, origin, pass.leads(), copies)
+        };
+        self.maps.passes().iter().map(grouped).collect()
     }
 
-    fn record_mask(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        target: &MaskTarget,
-        slot: Slot,
-        prepared: &Prepared,
-    ) -> Drawn {
-        let mut pass = target.begin(encoder, self.timer.timestamp_writes(slot));
-        self.timer.counted(&mut pass, slot, |pass| {
-            self.forward.draw_mask(pass, &self.maps, self.contact.as_ref(), &self.drawable(), &prepared.solid)
-        })
+    /// What one of several lights draws into its maps.
+    fn light_runs(
+        &mut self,
+        frame: &Frame<'_>,
+        origin: DVec3,
+        objects: &[usize],
+        light: usize,
+        plan: &ShadowPlan,
+        runs: &mut [Vec<Run>],
+    ) {
+        for (i, runs) in runs[self.maps.first_map(light)..][..plan.splits.len()].iter_mut().enumerate() {
+            let casters = plan.casters(i).iter().map(|&caster| once(objects[caster as usize]));
+            *runs = self.instances.grouped(frame.pose, origin, false, casters);
+        }
     }
 
-    fn record_picture(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        target: &PictureTarget,
-        slot: Slot,
-        prepared: &Prepared,
-    ) -> Drawn {
-        let mut pass = target.begin(encoder, self.timer.timestamp_writes(slot));
-        self.timer.counted(&mut pass, slot, |pass| {
-            let (solid, translucent) = (&prepared.solid, &prepared.translucent);
-            let contact = self.contact.as_ref();
-            self.forward.draw_picture(pass, &self.maps, contact, &self.drawable(), solid, translucent)
-        })
+    /// The splits' maps as pictures, nearest first.
+    fn map_pictures(&self, mut maps: Vec<MapCapture>) -> Result<Vec<GrayImage>> {
+        maps.sort_by_key(|map| map.split);
+        let sizes = &self.maps.options().map_sizes;
+        let picture = |map: MapCapture| {
+            let depths = maps::depths_of(&map.capture.read(&self.gpu)?, self.depth_format);
+            Ok(maps::picture_of(&depths, map.row, map.corner, sizes[map.split % sizes.len()]))
+        };
+        maps.into_iter().map(picture).collect()
     }
 
-    fn split_stats(&self, plan: &ShadowPlan, drawn: &[Drawn]) -> Vec<SplitStats> {
-        let texel_bytes = match self.depth_format {
-            DepthFormat::D32Float => 4,
-            DepthFormat::D16Unorm => 2,
+    /// Whether an object is drawn into maps.
+    fn casts(&self, object: &umbrage_scene::Object) -> bool {
+        object.casts || self.dithered_nodes.get(object.node) == Some(&true)
+    }
+
+    fn split_stats(&self, light: usize, frame: &Frame<'_>, plan: &ShadowPlan, recorded: &Recorded) -> Vec<SplitStats> {
+        let first = self.maps.first_map(light);
+        let objects: Vec<&umbrage_scene::Object> =
+            frame.pose.objects.iter().filter(|object| self.casts(object)).collect();
+        let drawable = self.drawable();
+        let dithered = self.look.translucent == Translucent::Dithered;
+        let triangles = |caster: &u32| {
+            let drawn = |material: &GpuMaterial| dithered || material.alpha != AlphaMode::Blend;
+            drawable.triangles(objects[*caster as usize], drawn)
         };
         let stats = |(i, split): (usize, &umbrage::Split)| {
-            let Drawn { draws, triangles } = drawn.get(i).copied().unwrap_or_default();
+            let draws_it = |pass: usize| self.maps.passes()[pass].splits().contains(&(first + i));
+            let draws = recorded.map_passes.iter().filter(|&&(pass, ..)| draws_it(pass));
             SplitStats {
                 near: split.near,
                 far: split.far,
                 texel_m: split.texel_m.max_element(),
-                warped: split.warp.is_some(),
+                warped: split.warp.is_some() && split.light_position.is_none(),
                 casters: split.casters.len(),
-                draws,
-                triangles,
-                bytes: u64::from(split.size) * u64::from(split.size) * texel_bytes,
+                draws: draws.map(|(_, drawn, _)| drawn.draws).sum(),
+                triangles: if frame.shadows_on { plan.casters(i).iter().map(triangles).sum() } else { 0 },
+                bytes: u64::from(split.size) * u64::from(split.size) * self.depth_format.texel_bytes(),
             }
         };
         plan.splits.iter().enumerate().map(stats).collect()
-    }
-}
-
-fn new_encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
-    gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("Renderer::encoder") })
-}
-
-/// Submits a frame: at once where the GPU takes the time itself, else maps and view apart with a wait after each.
-struct Clock<'a> {
-    gpu: &'a Gpu,
-    by_cpu: bool,
-    begun: Instant,
-    shadow_ms: f64,
-}
-
-impl<'a> Clock<'a> {
-    fn start(gpu: &'a Gpu, timer: &Timer) -> Self {
-        Self { gpu, by_cpu: !timer.has_timestamps(), begun: Instant::now(), shadow_ms: 0.0 }
-    }
-
-    fn submit_and_wait(&self, encoder: wgpu::CommandEncoder) -> Result<f64> {
-        self.gpu.queue.submit([encoder.finish()]);
-        self.gpu.wait()?;
-        Ok(self.begun.elapsed().as_secs_f64() * 1e3)
-    }
-
-    fn after_maps(&mut self, encoder: wgpu::CommandEncoder) -> Result<wgpu::CommandEncoder> {
-        if !self.by_cpu {
-            return Ok(encoder);
-        }
-        self.shadow_ms = self.submit_and_wait(encoder)?;
-        Ok(new_encoder(self.gpu))
-    }
-
-    /// Milliseconds of the maps and of the frame, if the CPU measures.
-    fn after_all(self, encoder: wgpu::CommandEncoder) -> Result<Option<(f64, f64)>> {
-        if self.by_cpu {
-            let frame_ms = self.submit_and_wait(encoder)?;
-            return Ok(Some((self.shadow_ms, frame_ms)));
-        }
-        self.gpu.queue.submit([encoder.finish()]);
-        Ok(None)
     }
 }

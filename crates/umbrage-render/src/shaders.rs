@@ -5,13 +5,31 @@ pub(crate) fn casters(library: &str) -> String {
     [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster.wgsl")].join("\n")
 }
 
+/// The same for casters with holes; the library's text has [`MASKED_MEMBERS`].
+pub(crate) fn masked_casters(library: &str) -> String {
+    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster_masked.wgsl")].join("\n")
+}
+
+/// What a caster with holes hands to its fragments.
+pub(crate) const MASKED_MEMBERS: &str = "@location(0) uv: vec2f, @location(1) alpha: f32,";
+
+/// The same for casters that let some light through; the library's text has [`DITHERED_MEMBERS`].
+pub(crate) fn dithered_casters(library: &str) -> String {
+    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster_dithered.wgsl")].join("\n")
+}
+
+/// What such a caster hands to its fragments.
+pub(crate) const DITHERED_MEMBERS: &str =
+    "@location(0) uv: vec2f, @location(1) alpha: f32, @location(2) @interpolate(flat) offset: vec2f,";
+
 /// Bind group 0 is the frame, 1 the material, 2 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares, 3 with contact shadows what
 /// [`umbrage_wgpu::contact_wgsl`] declares.
 pub(crate) fn forward(library: &str, contact: bool) -> String {
-    const WITH: &str = "fn contact_visibility(position: vec3f, normal: vec3f) -> f32 {
-    return umbrage_contact_visibility(position, normal, 0.5);
+    const WITH: &str = "fn contact_visibility(position: vec3f, normal: vec3f, to_light: vec3f) -> f32 {
+    return umbrage_contact_visibility(position, normal, to_light, 0.5);
 }";
-    const WITHOUT: &str = "fn contact_visibility(position: vec3f, normal: vec3f) -> f32 { return 1.0; }";
+    const WITHOUT: &str =
+        "fn contact_visibility(position: vec3f, normal: vec3f, to_light: vec3f) -> f32 { return 1.0; }";
     let contact = if contact { umbrage_wgpu::contact_wgsl(3) + WITH } else { WITHOUT.to_owned() };
     [library, &contact, include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl")].join("\n")
 }
@@ -25,16 +43,20 @@ pub(crate) fn probe(library: &str) -> String {
 mod tests {
     use std::mem::offset_of;
 
-    use umbrage_shaders::{Maps, receiver};
+    use naga::valid::Capabilities;
+    use umbrage_shaders::{Casters, Maps, receiver};
 
     use super::*;
     use crate::forward::FrameUniform;
+    use crate::lamps::LampUniform;
     use crate::materials::MaterialUniform;
 
     fn parsed(source: &str) -> naga::Module {
         let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
-        let mut validator =
-            naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
+        let mut validator = naga::valid::Validator::new(
+            naga::valid::ValidationFlags::all(),
+            Capabilities::MULTIVIEW | Capabilities::CLIP_DISTANCES,
+        );
         validator.validate(&module).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
         module
     }
@@ -56,7 +78,11 @@ mod tests {
 
     #[test]
     fn every_pass_is_valid_wgsl() {
-        assert!(!parsed(&casters(&umbrage_shaders::caster(0))).entry_points.is_empty());
+        for (views, tiles) in [(false, false), (true, false), (false, true), (true, true)] {
+            let library = |members| umbrage_shaders::caster(0, Casters { views, tiles }, members);
+            assert_eq!(parsed(&casters(&library(""))).entry_points.len(), 2);
+            assert_eq!(parsed(&masked_casters(&library(MASKED_MEMBERS))).entry_points.len(), 2);
+        }
         for maps in [Maps::default(), Maps { without_loads: true, ..Maps::default() }] {
             for source in [forward(&receiver(2, maps), true), probe(&receiver(1, maps))] {
                 assert!(!parsed(&source).entry_points.is_empty());
@@ -68,9 +94,12 @@ mod tests {
     fn both_sides_lay_out_their_structs_alike() {
         let module = parsed(&forward(&receiver(2, Maps::default()), true));
         let frame = offsets!(
-            FrameUniform: clip_from_eye, eye, is_orthographic, forward, to_light, ray_center, ray_right, ray_up
+            FrameUniform: clip_from_eye, eye, is_orthographic, forward, lamp_count, to_sun, daylight, ray_center, near,
+            ray_right, far, ray_up, lamps
         );
         assert_eq!(layout(&module, "Frame"), frame);
+        let lamp = offsets!(LampUniform: position, range, to_light, outer_cosine, color, inner_cosine);
+        assert_eq!(layout(&module, "Lamp"), lamp);
         assert_eq!(layout(&module, "Material"), offsets!(MaterialUniform: base_color, emissive, alpha_cutoff));
     }
 

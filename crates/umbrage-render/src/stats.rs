@@ -17,18 +17,27 @@ pub struct SplitStats {
     pub warped: bool,
     /// Objects in its list: mesh nodes or instances, not primitives.
     pub casters: usize,
-    /// Draw calls; instances share one.
+    /// Draw calls that draw into its map; instances share one, and so may splits.
     pub draws: u32,
-    /// Triangles drawn, counting every instance.
+    /// Triangles of its casters.
     pub triangles: u64,
     /// Bytes of its map.
     pub bytes: u64,
 }
 
+/// One light of a frame beside the first.
+#[derive(Clone, Debug)]
+pub struct LightStats {
+    /// The plan that its maps were drawn by.
+    pub plan: ShadowPlan,
+    /// Nearest first; of a point light those of its first face, then those of the next.
+    pub splits: Vec<SplitStats>,
+}
+
 /// What a frame was made of and what it cost.
 #[derive(Clone, Debug)]
 pub struct FrameStats {
-    /// The plan that the maps were drawn by.
+    /// The plan that the first light's maps were drawn by.
     pub plan: ShadowPlan,
     /// Milliseconds of the planner on the CPU.
     pub plan_ms: f64,
@@ -36,8 +45,14 @@ pub struct FrameStats {
     pub shadow_ms: f64,
     /// Milliseconds from the beginning of the first pass to the end of the last, on the GPU.
     pub frame_ms: f64,
-    /// Nearest first.
+    /// Of the first light, nearest first; of a point light those of its first face, then those of the next.
     pub splits: Vec<SplitStats>,
+    /// Draw calls into all maps.
+    pub shadow_draws: u32,
+    /// Triangles submitted to all maps, counting every instance; multiview draws each of them into several.
+    pub shadow_triangles: u64,
+    /// The other lights.
+    pub more_lights: Vec<LightStats>,
     /// Objects that the view may show.
     pub objects_in_view: usize,
     /// Draw calls of picture and mask together.

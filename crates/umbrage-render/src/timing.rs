@@ -3,8 +3,13 @@
 use crate::capture::read_buffer;
 use crate::{Gpu, Result};
 
-/// Passes of a frame: one per split, the mask and the picture.
-const MOST_PASSES: u32 = umbrage::MAX_SPLITS as u32 + 2;
+/// Passes of a frame beside those of its maps: the mask and the picture.
+const VIEW_PASSES: u32 = 2;
+/// Passes for each map at most: drawn slice by slice, a map goes with the mask and the picture, and once more with the picture for what is
+/// translucent.
+const PASSES_OF_A_MAP: u32 = 5;
+/// Bytes between the answers of two passes: where a resolved query may be put.
+const STRIDE: u64 = wgpu::QUERY_RESOLVE_BUFFER_ALIGNMENT;
 
 const STATISTICS: wgpu::PipelineStatisticsTypes = wgpu::PipelineStatisticsTypes::VERTEX_SHADER_INVOCATIONS
     .union(wgpu::PipelineStatisticsTypes::CLIPPER_PRIMITIVES_OUT)
@@ -43,6 +48,7 @@ pub(crate) struct Timer {
     timestamps: Option<Queries>,
     statistics: Option<Queries>,
     used: u32,
+    slots: Vec<Slot>,
 }
 
 struct Queries {
@@ -53,18 +59,26 @@ struct Queries {
 
 /// A pass that is being measured.
 #[derive(Clone, Copy)]
-pub(crate) struct Slot(u32);
+pub(crate) struct Slot {
+    /// Which pass of the frame.
+    pub pass: u32,
+    /// Its first query of pipeline statistics.
+    query: u32,
+}
 
 impl Timer {
-    pub fn new(gpu: &Gpu) -> Self {
+    /// For frames of up to `maps` maps.
+    pub fn new(gpu: &Gpu, maps: usize) -> Self {
+        let most = PASSES_OF_A_MAP * maps as u32 + VIEW_PASSES;
         let has = |feature| gpu.device.features().contains(feature);
         let statistics = wgpu::QueryType::PipelineStatistics(STATISTICS);
         Self {
             timestamps: has(wgpu::Features::TIMESTAMP_QUERY)
-                .then(|| Queries::new(gpu, wgpu::QueryType::Timestamp, 2 * MOST_PASSES, 1)),
+                .then(|| Queries::new(gpu, wgpu::QueryType::Timestamp, 2 * most, u64::from(2 * most) * 8)),
             statistics: has(wgpu::Features::PIPELINE_STATISTICS_QUERY)
-                .then(|| Queries::new(gpu, statistics, MOST_PASSES, 3)),
+                .then(|| Queries::new(gpu, statistics, most, u64::from(most) * STRIDE)),
             used: 0,
+            slots: Vec::new(),
         }
     }
 
@@ -76,12 +90,15 @@ impl Timer {
     /// Forgets the last frame.
     pub fn restart(&mut self) {
         self.used = 0;
+        self.slots.clear();
     }
 
-    /// The next pass.
-    pub fn next(&mut self) -> Slot {
-        let slot = Slot(self.used);
-        self.used += 1;
+    /// The next pass; `views` layers are drawn at once.
+    pub fn next(&mut self, views: usize) -> Slot {
+        // A query in a multiview pass uses as many as there are views.
+        let slot = Slot { pass: self.slots.len() as u32, query: self.used };
+        self.used += views as u32;
+        self.slots.push(slot);
         slot
     }
 
@@ -89,8 +106,8 @@ impl Timer {
     pub fn timestamp_writes(&self, slot: Slot) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
         self.timestamps.as_ref().map(|queries| wgpu::RenderPassTimestampWrites {
             query_set: &queries.set,
-            beginning_of_pass_write_index: Some(2 * slot.0),
-            end_of_pass_write_index: Some(2 * slot.0 + 1),
+            beginning_of_pass_write_index: Some(2 * slot.pass),
+            end_of_pass_write_index: Some(2 * slot.pass + 1),
         })
     }
 
@@ -102,7 +119,7 @@ impl Timer {
         draw: impl FnOnce(&mut wgpu::RenderPass<'_>) -> T,
     ) -> T {
         if let Some(queries) = &self.statistics {
-            pass.begin_pipeline_statistics_query(&queries.set, slot.0);
+            pass.begin_pipeline_statistics_query(&queries.set, slot.query);
         }
         let result = draw(pass);
         if self.statistics.is_some() {
@@ -113,20 +130,21 @@ impl Timer {
 
     /// Records the answers' way to a readable buffer, after all passes.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        if self.used == 0 {
+        if self.slots.is_empty() {
             return;
         }
         if let Some(queries) = &self.timestamps {
-            queries.record(encoder, 2 * self.used);
+            queries.record(encoder, std::iter::once(0..2 * self.slots.len() as u32));
         }
         if let Some(queries) = &self.statistics {
-            queries.record(encoder, self.used);
+            // One by one: of the queries of a multiview pass the first has the sum, and not every driver answers for the others.
+            queries.record(encoder, self.slots.iter().map(|slot| slot.query..slot.query + 1));
         }
     }
 
     /// Waits for the answers.
     pub fn read(&self, gpu: &Gpu) -> Result<Measured> {
-        let passes = self.used as usize;
+        let passes = self.slots.len();
         if passes == 0 {
             return Ok(Measured::default());
         }
@@ -146,7 +164,7 @@ impl Timer {
                 let numbers = queries.read(gpu)?;
                 // In the order of the bits of PipelineStatisticsTypes.
                 let count = |n: &[u64]| PassCounts { vertices: n[0], primitives: n[1], fragments: n[2] };
-                Some(numbers.chunks(3).take(passes).map(count).collect())
+                Some(numbers.chunks(STRIDE as usize / size_of::<u64>()).take(passes).map(count).collect())
             }
         };
         Ok(Measured { spans_ms, counts })
@@ -154,12 +172,12 @@ impl Timer {
 }
 
 impl Queries {
-    fn new(gpu: &Gpu, ty: wgpu::QueryType, count: u32, numbers_each: u32) -> Self {
+    fn new(gpu: &Gpu, ty: wgpu::QueryType, count: u32, bytes: u64) -> Self {
         let set = gpu.device.create_query_set(&wgpu::QuerySetDescriptor { label: Some("Timer::queries"), ty, count });
         let buffer = |label, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
-                size: u64::from(count * numbers_each) * size_of::<u64>() as u64,
+                size: bytes,
                 usage,
                 mapped_at_creation: false,
             })
@@ -171,8 +189,11 @@ impl Queries {
         }
     }
 
-    fn record(&self, encoder: &mut wgpu::CommandEncoder, used: u32) {
-        encoder.resolve_query_set(&self.set, 0..used, &self.resolved, 0);
+    /// Ranges of queries, each resolved [`STRIDE`] after the last.
+    fn record(&self, encoder: &mut wgpu::CommandEncoder, ranges: impl Iterator<Item = std::ops::Range<u32>>) {
+        for (range, offset) in ranges.zip((0..).step_by(STRIDE as usize)) {
+            encoder.resolve_query_set(&self.set, range, &self.resolved, offset);
+        }
         encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readable, 0, self.readable.size());
     }
 

@@ -35,6 +35,16 @@ pub enum FilterKind {
     Msm = 11,
 }
 
+/// Which map answers for a point, in [`Frame::selection`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum SelectionKind {
+    /// That of the slice in which its view depth lies.
+    Depth = 0,
+    /// The first that contains it.
+    Map = 1,
+}
+
 /// How one split goes over into the next, in [`Frame::transition`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
@@ -108,6 +118,25 @@ pub struct Split {
     pub _padding: [u32; 2],
 }
 
+/// What a pass needs that draws several splits at once.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct CasterPass {
+    /// The first split that it draws.
+    pub first: u32,
+    /// One past the last.
+    pub end: u32,
+    /// Layers that are drawn at once. Split `first + t · views + v` is tile `t` of layer `v`.
+    pub views: u32,
+    /// Up to the alignment of 16 bytes.
+    pub _padding: u32,
+    /// All splits of the frame.
+    pub splits: [Split; MAX_SPLITS],
+}
+
+/// [`Frame::slice`] where every map is there.
+pub const EVERY_SLICE: u32 = u32::MAX;
+
 /// All that a receiver needs for one light and one view; for a point light, for one face of its cube. What receivers bind is an array of
 /// frames: of every light's, six for a point light.
 #[repr(C)]
@@ -151,6 +180,14 @@ pub struct Frame {
     pub shadow_colour: [f32; 3],
     /// A [`BiasKind`].
     pub bias_kind: u32,
+    /// A [`SelectionKind`].
+    pub selection: u32,
+    /// With [`SelectionKind::Map`]: share of a map's half edge over which it blends into the next that contains the point.
+    pub map_blend: f32,
+    /// The only split whose map there is, where one map is used again and again; [`EVERY_SLICE`] where all are there.
+    pub slice: u32,
+    /// Up to the alignment of 16 bytes.
+    pub _padding: [u32; 1],
     /// The splits, nearest first; those past `split_count` are not read.
     pub splits: [Split; MAX_SPLITS],
 }
@@ -161,8 +198,13 @@ pub struct Frame {
 pub struct MomentSplit {
     /// From stored depth to the z of moments, -1 at the first and 1 at the last place that is seen: `z = depth[0] · stored + depth[1]`.
     pub depth: [f32; 2],
-    /// Half width of the blur in texels along u and v, 1 or more: the tent that blur and linear sampling make together.
+    /// Half width in texels along u and v, 1 or more, of the tent that blur and linear sampling make of an edge.
     pub radius: [f32; 2],
+    /// 1: all pixels of a quad use one split. The same in all splits; here and not beside them because Mesa's software driver (22.3) crashes
+    /// over control flow that hangs on a constant place in a second uniform buffer.
+    pub quads: u32,
+    /// Up to the alignment of 16 bytes.
+    pub _padding: [u32; 3],
 }
 
 /// What the passes that make a split's moments need.
@@ -174,7 +216,7 @@ pub struct MomentPass {
     /// Edge of its map in texels.
     pub size: f32,
     /// Up to the alignment of 8 bytes.
-    pub _padding: f32,
+    pub _padding: u32,
 }
 
 /// What a receiver needs of moments beside its [`Frame`].
@@ -185,8 +227,8 @@ pub struct Moments {
     pub exponents: [f32; 2],
     /// Share of light that is taken for a leak: 0 none, less than 1.
     pub bleeding: f32,
-    /// 1: all pixels of a quad use one split.
-    pub quads: u32,
+    /// Up to the alignment of 16 bytes.
+    pub _padding: u32,
     /// The splits, nearest first.
     pub splits: [MomentSplit; MAX_SPLITS],
 }

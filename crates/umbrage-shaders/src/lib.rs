@@ -15,62 +15,174 @@
 //! | binding of [`receiver`] | what |
 //! |---|---|
 //! | 0 | uniform array of [`layout::Frame`]: one for each light, six for a point light |
-//! | 1 | `texture_depth_2d_array`, cleared to 1; [`layout::Split`] says where in it a map lies |
+//! | 1 | `texture_depth_2d_array` or `texture_depth_cube`, cleared to 1; [`layout::Split`] says where in it a map lies |
 //! | 2 | `sampler_comparison` with `LessEqual`, clamped to the edge; nearest for [`layout::FilterKind::Hard`], else linear |
+//! | 3 … | [`Bound::Separate`]: a `texture_depth_2d` for each split. [`Bound::Cube`]: its faces as layers, where loads are possible |
+//!
+//! With [`Maps::r32f`] the textures are `f32` that need no filtering; there is no comparison sampler then, but a cube has a plain one at 2.
 //!
 //! | binding of [`caster`] | what |
 //! |---|---|
-//! | 0 | uniform [`layout::Split`] |
+//! | 0 | uniform [`layout::Split`]; where several splits are drawn at once, [`layout::CasterPass`] |
 
 pub mod layout;
 pub mod twin;
 
-/// The root `shaders/pass/caster.wesl`, all but the constant `UMBRAGE_CASTER_GROUP`.
-pub const CASTER: &str = include_str!(concat!(env!("OUT_DIR"), "/caster.wgsl"));
+macro_rules! text {
+    ($file:literal) => {
+        include_str!(concat!(env!("OUT_DIR"), "/", $file, ".wgsl"))
+    };
+}
 
-const CONTACT: &str = include_str!(concat!(env!("OUT_DIR"), "/contact.wgsl"));
-const RECEIVER: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver.wgsl"));
-const RECEIVER_WITHOUT_LOADS: &str = include_str!(concat!(env!("OUT_DIR"), "/receiver_without_loads.wgsl"));
-const ARRAY: &str = include_str!(concat!(env!("OUT_DIR"), "/array.wgsl"));
-const ARRAY_WITHOUT_LOADS: &str = include_str!(concat!(env!("OUT_DIR"), "/array_without_loads.wgsl"));
+const SEPARATE: [&str; layout::MAX_SPLITS] = [
+    text!("separate_1"),
+    text!("separate_2"),
+    text!("separate_3"),
+    text!("separate_4"),
+    text!("separate_5"),
+    text!("separate_6"),
+    text!("separate_7"),
+    text!("separate_8"),
+];
+const SEPARATE_WITHOUT_LOADS: [&str; layout::MAX_SPLITS] = [
+    text!("separate_1_without_loads"),
+    text!("separate_2_without_loads"),
+    text!("separate_3_without_loads"),
+    text!("separate_4_without_loads"),
+    text!("separate_5_without_loads"),
+    text!("separate_6_without_loads"),
+    text!("separate_7_without_loads"),
+    text!("separate_8_without_loads"),
+];
+const SEPARATE_R32F: [&str; layout::MAX_SPLITS] = [
+    text!("separate_1_r32f"),
+    text!("separate_2_r32f"),
+    text!("separate_3_r32f"),
+    text!("separate_4_r32f"),
+    text!("separate_5_r32f"),
+    text!("separate_6_r32f"),
+    text!("separate_7_r32f"),
+    text!("separate_8_r32f"),
+];
+
+/// How a receiver's maps are bound.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Bound {
+    /// Layers of one texture, and tiles of layers.
+    #[default]
+    Array,
+    /// Faces of a cube.
+    Cube,
+    /// As many textures, 1 to [`layout::MAX_SPLITS`].
+    Separate(usize),
+}
+
+/// The passes from depth to moments, `shaders/pass/moments.wesl`: entry points `vs_all`, `fs_convert`, `fs_blur_u`, `fs_blur_v` and
+/// `fs_halve`, constants `KIND`, `POSITIVE_EXPONENT` and `NEGATIVE_EXPONENT`.
+pub const MOMENT_PASSES: &str = text!("moment_passes");
+
+/// The same from depth with four samples a texel.
+pub const MOMENT_PASSES_OF_SAMPLES: &str = text!("moment_passes_of_samples");
 
 /// How a receiver reads its maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Maps {
+    /// How they are bound.
+    pub bound: Bound,
+    /// They are colours of one 32-bit float, not depth, and compared by hand.
+    pub r32f: bool,
     /// Depth textures can be compared with but not loaded from (GL, WebGL2): [`layout::FilterKind::Pcss`] is an ordinary disc.
     pub without_loads: bool,
     /// Length of the array of frames.
     pub frames: u32,
+    /// Maps hold moments of depth, of one light.
+    pub moments: Option<MomentMaps>,
 }
 
 impl Default for Maps {
     /// One light, read with everything that a device can have.
     fn default() -> Self {
-        Self { without_loads: false, frames: 1 }
+        Self { bound: Bound::Array, r32f: false, without_loads: false, frames: 1, moments: None }
     }
 }
 
-/// Text to put before a vertex shader that draws casters: `fn umbrage_caster_position(position: vec3f) -> vec4f`.
+/// How moments are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MomentMaps {
+    /// Bindings 1: `texture_2d_array<f32>`, 2: a linear and anisotropic sampler, 3: uniform [`layout::Moments`].
+    Sampled,
+    /// The same with a sampler that is linear only; the shader takes up to 16 samples where an anisotropic one would.
+    Taps,
+    /// The same without a sampler.
+    ByHand,
+}
+
+/// How casters are copied into the maps of several splits in one pass; neither: each pass draws one split.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Casters {
+    /// By multiview, into layers.
+    pub views: bool,
+    /// By instancing, into tiles that clip distances keep apart.
+    pub tiles: bool,
+}
+
+/// Text to put before a vertex shader that draws casters, and before everything else in its module. The vertex shader takes an
+/// `UmbrageCopy` and returns the `UmbrageCast` that `umbrage_cast(position: vec3f, copy: UmbrageCopy)` makes; `members` is WGSL for what
+/// else it has to return, for example `"@location(0) uv: vec2f,"`.
 #[must_use]
-pub fn caster(group: u32) -> String {
-    format!("const UMBRAGE_CASTER_GROUP = {group}u;\n{CASTER}\n")
+pub fn caster(group: u32, casters: Casters, members: &str) -> String {
+    let Casters { views, tiles } = casters;
+    let enable = if tiles { "enable clip_distances;\n" } else { "" };
+    let view = if views { "    @builtin(view_index) view: u32,\n" } else { "" };
+    let distances = if tiles { "    @builtin(clip_distances) clip_distances: array<f32, 4>,\n" } else { "" };
+    let root = match (views, tiles) {
+        (false, false) => text!("caster"),
+        (true, false) => text!("casters_views"),
+        (false, true) => text!("casters_tiles"),
+        (true, true) => text!("casters_views_tiles"),
+    };
+    format!(
+        "{enable}const UMBRAGE_CASTER_GROUP = {group}u;\n\
+         struct UmbrageCopy {{\n    @builtin(instance_index) code: u32,\n{view}}}\n\
+         struct UmbrageCast {{\n    @builtin(position) position: vec4f,\n{distances}    {members}\n}}\n{root}\n"
+    )
 }
 
 /// Text to put before a shader that asks for contact shadows:
-/// `fn umbrage_contact_visibility(position: vec3f, normal: vec3f, noise: f32) -> f32`. Binding 0 is its uniform, 1 the picture's depth as
+/// `fn umbrage_contact_visibility(position: vec3f, normal: vec3f, to_light: vec3f, noise: f32) -> f32`. Binding 0 is its uniform, 1 the picture's depth as
 /// `texture_depth_2d`. It may stand beside [`receiver`] in one module.
 #[must_use]
 pub fn contact(group: u32) -> String {
-    format!("const UMBRAGE_CONTACT_GROUP = {group}u;\n{CONTACT}\n")
+    format!("const UMBRAGE_CONTACT_GROUP = {group}u;\n{}\n", text!("contact"))
 }
 
 /// Text to put before a shader that asks what is lit: `fn umbrage_visibility(position: vec3f, normal: vec3f) -> f32`,
 /// `umbrage_shadow` and `umbrage_visibility_in_split`, and the same of one of several lights: `umbrage_visibility_of(light: u32, …)`.
+///
+/// # Panics
+/// If there are fewer than 1 or more than [`layout::MAX_SPLITS`] separate maps.
 #[must_use]
 pub fn receiver(group: u32, maps: Maps) -> String {
-    let Maps { without_loads, frames } = maps;
-    let (receiver, maps) =
-        if without_loads { (RECEIVER_WITHOUT_LOADS, ARRAY_WITHOUT_LOADS) } else { (RECEIVER, ARRAY) };
-    let frames = frames.max(1);
+    let frames = maps.frames.max(1);
+    let loads = maps.r32f || !maps.without_loads;
+    let receiver = match (maps.moments, loads) {
+        (Some(_), _) => text!("receiver_of_moments"),
+        (None, true) => text!("receiver"),
+        (None, false) => text!("receiver_without_loads"),
+    };
+    let maps = match (maps.moments, maps.bound, maps.r32f, loads) {
+        (Some(MomentMaps::Sampled), ..) => text!("moments"),
+        (Some(MomentMaps::Taps), ..) => text!("moments_by_taps"),
+        (Some(MomentMaps::ByHand), ..) => text!("moments_by_hand"),
+        (None, Bound::Array, true, _) => text!("array_r32f"),
+        (None, Bound::Array, false, true) => text!("array"),
+        (None, Bound::Array, false, false) => text!("array_without_loads"),
+        (None, Bound::Cube, true, _) => text!("cube_r32f"),
+        (None, Bound::Cube, false, true) => text!("cube"),
+        (None, Bound::Cube, false, false) => text!("cube_without_loads"),
+        (None, Bound::Separate(count), true, _) => SEPARATE_R32F[count - 1],
+        (None, Bound::Separate(count), false, true) => SEPARATE[count - 1],
+        (None, Bound::Separate(count), false, false) => SEPARATE_WITHOUT_LOADS[count - 1],
+    };
     format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\nconst UMBRAGE_FRAMES = {frames}u;\n{maps}\n{receiver}\n")
 }

@@ -3,8 +3,8 @@
 use std::mem::offset_of;
 
 use naga::proc::Layouter;
-use umbrage_shaders::Maps;
-use umbrage_shaders::layout::{Frame, Split};
+use umbrage_shaders::layout::{CasterPass, Frame, MomentPass, MomentSplit, Moments, Split};
+use umbrage_shaders::{Casters, Maps, MomentMaps};
 
 /// A member as one side sees it: name, offset and size in bytes.
 type Member = (String, usize, usize);
@@ -46,28 +46,44 @@ fn split_in_rust() -> (usize, Vec<Member>) {
 fn frame_in_rust() -> (usize, Vec<Member>) {
     in_rust!(Frame: view_depth_plane, to_light, strength, light_position, light_range_m, fade_begin, split_count, filter_kind, enabled, tint,
         filter_width_m, sun_tangent, turn_per_pixel, transition, cone_cosine, first_frame, face_count,
-        shadow_colour, bias_kind, splits)
+        shadow_colour, bias_kind, selection, map_blend, slice, splits)
+}
+
+fn pass_in_rust() -> (usize, Vec<Member>) {
+    in_rust!(CasterPass: first, end, views, splits)
 }
 
 #[test]
 fn no_member_is_forgotten() {
     let named = |(_, members): (usize, Vec<Member>)| members.iter().map(|(_, _, size)| size).sum::<usize>();
     assert_eq!(named(split_in_rust()) + size_of_val(&Split::default()._padding), size_of::<Split>());
-    assert_eq!(named(frame_in_rust()), size_of::<Frame>());
+    assert_eq!(named(frame_in_rust()) + size_of_val(&Frame::default()._padding), size_of::<Frame>());
 }
 
 #[test]
 fn members_agree() {
-    let (caster, receiver) = (umbrage_shaders::caster(0), umbrage_shaders::receiver(0, Maps::default()));
+    let (caster, receiver) =
+        (umbrage_shaders::caster(0, Casters::default(), ""), umbrage_shaders::receiver(0, Maps::default()));
     assert_eq!(split_in_rust(), in_wgsl(&caster, "UmbrageSplit"));
     assert_eq!(split_in_rust(), in_wgsl(&receiver, "UmbrageSplit"));
     assert_eq!(frame_in_rust(), in_wgsl(&receiver, "UmbrageFrame"));
+    let casters = umbrage_shaders::caster(0, Casters { views: true, tiles: true }, "");
+    assert_eq!(pass_in_rust(), in_wgsl(&casters, "UmbrageCasterPass"));
+}
+
+#[test]
+fn members_of_moments_agree() {
+    let maps = Maps { moments: Some(MomentMaps::Sampled), ..Maps::default() };
+    let (receiver, passes) = (umbrage_shaders::receiver(0, maps), umbrage_shaders::MOMENT_PASSES);
+    assert_eq!(in_rust!(MomentSplit: depth, radius, quads), in_wgsl(passes, "UmbrageMomentSplit"));
+    assert_eq!(in_rust!(MomentPass: split, size), in_wgsl(passes, "UmbrageMomentPass"));
+    assert_eq!(in_rust!(Moments: exponents, bleeding, splits), in_wgsl(&receiver, "UmbrageMoments"));
 }
 
 /// The comparison above must be able to say no: one member moved, one renamed, one resized.
 #[test]
 fn disagreement_is_seen() {
-    let source = umbrage_shaders::caster(0);
+    let source = umbrage_shaders::caster(0, Casters::default(), "");
     for (from, to) in [
         ("size: f32,\n    far: f32,", "far: f32,\n    size: f32,"),
         ("blend_begin: f32,", "blend_start: f32,"),

@@ -2,12 +2,14 @@
 
 use proptest::prelude::*;
 use umbrage_shaders::layout::FilterKind;
-use umbrage_shaders::twin::moments::{blur_weight, lit_share, of_depth, without_bleeding};
+use umbrage_shaders::twin::moments::{Spread, blur_reach, blur_weight, lit_share, of_depth, without_bleeding};
 
 const KINDS: [FilterKind; 5] =
     [FilterKind::Esm, FilterKind::Vsm, FilterKind::Evsm2, FilterKind::Evsm4, FilterKind::Msm];
 const FLOATS: [f32; 2] = [40.0, 5.0];
 const HALVES: [f32; 2] = [5.5, 5.5];
+
+const SHARP: Spread = Spread { texel: 1e-4, plane: 0.0, bias: 1e-4 };
 
 /// Means over depths with weights, summed as a blur does.
 fn moments(kind: FilterKind, exponents: [f32; 2], depths: &[(f32, f32)]) -> [f32; 4] {
@@ -35,7 +37,7 @@ proptest! {
         let lit = |t: f32| depths.iter().filter(|(z, _)| *z >= t).map(|(_, weight)| weight / total).sum::<f32>();
         for kind in KINDS {
             let exponents = if half { HALVES } else { FLOATS };
-            let share = lit_share(kind, exponents, moments(kind, exponents, &depths), t, 0.0, 0.0);
+            let share = lit_share(kind, exponents, moments(kind, exponents, &depths), t, Spread::default());
             prop_assert!((0.0..=1.0).contains(&share), "{kind:?}: {share}");
             // Rounding moves four moments' points by some 0.01 and weights by some hundredths.
             let slack = if kind == FilterKind::Msm { 0.03 } else { 1e-3 };
@@ -49,7 +51,7 @@ proptest! {
         let receiver = caster + gap;
         for kind in KINDS {
             let of = moments(kind, FLOATS, &[(caster, 1.0 - share + 1e-9), (receiver, share)]);
-            let lit = lit_share(kind, FLOATS, of, receiver - 1e-4, 1e-4, 0.0);
+            let lit = lit_share(kind, FLOATS, of, receiver - 1e-4, SHARP);
             // exp(-40 · 0.2) is 3e-4; ESM's bias of 1e-4 is 4e-3.
             prop_assert!((lit - share).abs() < 0.02, "{kind:?}: {lit} instead of {share}");
         }
@@ -61,7 +63,8 @@ proptest! {
         let depths: Vec<(f32, f32)> =
             (-10..=10).map(|k| (middle + slope * k as f32, blur_weight(k as f32, radius))).collect();
         for kind in KINDS {
-            let lit = lit_share(kind, FLOATS, moments(kind, FLOATS, &depths), middle - 1e-3, 1e-3, slope * radius / 6f32.sqrt());
+            let spread = Spread { texel: 1e-3, plane: slope * radius / 6f32.sqrt(), bias: 1e-3 };
+            let lit = lit_share(kind, FLOATS, moments(kind, FLOATS, &depths), middle - 1e-3, spread);
             prop_assert!(lit > 0.95, "{kind:?}: {lit}");
         }
     }
@@ -71,9 +74,9 @@ proptest! {
         let weights: Vec<(f64, f64)> =
             (-17..=17).map(|k| (f64::from(k), f64::from(blur_weight(k as f32, radius)))).collect();
         prop_assert!((weights.iter().map(|(_, w)| w).sum::<f64>() - 1.0).abs() < 1e-5);
-        prop_assert!(weights.iter().all(|(k, w)| *w >= 0.0 && (k.abs() <= f64::from(radius.floor()) || *w == 0.0)));
-        // The linear sampler that reads the map adds a tent of half width 1: r²/6 in all.
-        let variance = weights.iter().map(|(k, w)| k * k * w).sum::<f64>() + 1.0 / 6.0;
+        prop_assert!(weights.iter().all(|(k, w)| *w >= 0.0 && (k.abs() <= f64::from(blur_reach(radius)) || *w == 0.0)));
+        // The ramp that a linear sampler makes of a step adds 1/12: r²/6 in all.
+        let variance = weights.iter().map(|(k, w)| k * k * w).sum::<f64>() + 1.0 / 12.0;
         prop_assert!((variance / (f64::from(radius).powi(2) / 6.0) - 1.0).abs() < 1e-4, "{variance}");
     }
 
@@ -90,7 +93,7 @@ proptest! {
 #[test]
 fn more_moments_leak_less() {
     let depths = [(-0.9, 0.25), (0.5, 0.75)];
-    let leak = |kind| lit_share(kind, FLOATS, moments(kind, FLOATS, &depths), 0.6, 1e-4, 0.0);
+    let leak = |kind| lit_share(kind, FLOATS, moments(kind, FLOATS, &depths), 0.6, SHARP);
     let (vsm, evsm4, msm) = (leak(FilterKind::Vsm), leak(FilterKind::Evsm4), leak(FilterKind::Msm));
     assert!(vsm > 0.3, "{vsm}");
     assert!(evsm4 < 0.02 && msm < 0.1, "{evsm4} {msm}");

@@ -2,13 +2,36 @@
 
 use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use umbrage_shaders::Maps;
+use umbrage_shaders::{Bound, Casters, Maps, MomentMaps};
 
-const WITHOUT_LOADS: Maps = Maps { without_loads: true, frames: 7 };
+const WITHOUT_LOADS: Maps = Maps { bound: Bound::Array, r32f: false, without_loads: true, frames: 7, moments: None };
+
+/// Every way to bind maps and to read them.
+fn all_maps() -> Vec<Maps> {
+    let bounds = [Bound::Array, Bound::Cube].into_iter().chain((1..=8).map(Bound::Separate));
+    bounds
+        .flat_map(|bound| {
+            [(false, false), (false, true), (true, false)].map(|(r32f, without_loads)| Maps {
+                bound,
+                r32f,
+                without_loads,
+                ..Maps::default()
+            })
+        })
+        .chain(
+            [MomentMaps::Sampled, MomentMaps::Taps, MomentMaps::ByHand]
+                .map(|moments| Maps { moments: Some(moments), ..Maps::default() }),
+        )
+        .collect()
+}
+const MOMENTS: Maps =
+    Maps { bound: Bound::Array, r32f: false, without_loads: false, frames: 1, moments: Some(MomentMaps::Sampled) };
+const MOMENTS_BY_TAPS: Maps = Maps { moments: Some(MomentMaps::Taps), ..MOMENTS };
+const MOMENTS_BY_HAND: Maps = Maps { moments: Some(MomentMaps::ByHand), ..MOMENTS };
 
 fn validated(source: &str) -> (naga::Module, ModuleInfo) {
     let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+    let info = Validator::new(ValidationFlags::all(), Capabilities::MULTIVIEW | Capabilities::CLIP_DISTANCES)
         .validate(&module)
         .unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
     (module, info)
@@ -27,9 +50,23 @@ fn to_webgl2(source: &str, stage: naga::ShaderStage, entry_point: &str) -> Strin
 }
 
 fn vertex_shader(group: u32) -> String {
-    umbrage_shaders::caster(group)
+    umbrage_shaders::caster(group, Casters::default(), "")
         + "@vertex fn vertex(@location(0) position: vec3f) -> @builtin(position) vec4f {
                return umbrage_caster_position(position);
+           }"
+}
+
+/// A vertex shader that is the same for every way to draw casters.
+fn copying_shader(casters: Casters) -> String {
+    umbrage_shaders::caster(0, casters, "@location(0) uv: vec2f,")
+        + "@vertex fn vertex(@location(0) position: vec3f, copy: UmbrageCopy) -> UmbrageCast {
+               var result = umbrage_cast(position, copy);
+               result.uv = position.xy;
+               return result;
+           }
+           @fragment fn fragment(@builtin(position) at: vec4f, @location(0) uv: vec2f) -> @location(0) f32 {
+               if uv.x > 0.5 { discard; }
+               return umbrage_caster_depth(at);
            }"
 }
 
@@ -41,7 +78,22 @@ fn fragment_shader_without_loads(group: u32) -> String {
     umbrage_shaders::receiver(group, WITHOUT_LOADS) + FRAGMENT
 }
 
-const FRAGMENT: &str = "@fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
+fn fragment_shader_of_moments(group: u32, maps: Maps) -> String {
+    umbrage_shaders::receiver(group, maps) + FRAGMENT
+}
+
+/// A compute shader knows no derivatives and compiles all the same.
+fn compute_shader_of_moments(group: u32) -> String {
+    umbrage_shaders::receiver(group, MOMENTS)
+        + "@compute @workgroup_size(1) fn compute() { _ = umbrage_visibility(vec3f(0.0), vec3f(0.0, 1.0, 0.0)); }"
+}
+
+const FRAGMENT: &str =
+    "@fragment fn fragment(@location(0) position: vec3f, @builtin(position) pixel: vec4f) -> @location(0) vec4f {
+               let footprint = umbrage_footprint(position, dpdx(position), dpdy(position), pixel.xy);
+               if pixel.x > 100.0 {
+                   return vec4f(umbrage_shadow_with(position, vec3f(0.0, 1.0, 0.0), footprint).visibility);
+               }
                let shadow = umbrage_shadow(position, vec3f(0.0, 1.0, 0.0));
                let one = umbrage_visibility_in_split(position, vec3f(0.0, 1.0, 0.0), 1u);
                let other = umbrage_visibility_of(u32(position.x), position, vec3f(0.0, 1.0, 0.0));
@@ -51,7 +103,7 @@ const FRAGMENT: &str = "@fragment fn fragment(@location(0) position: vec3f) -> @
 fn contact_shader(group: u32) -> String {
     umbrage_shaders::contact(group)
         + "@fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
-               return vec4f(umbrage_contact_visibility(position, vec3f(0.0, 1.0, 0.0), 0.5));
+               return vec4f(umbrage_contact_visibility(position, vec3f(0.0, 1.0, 0.0), vec3f(0.0, 1.0, 0.0), 0.5));
            }"
 }
 
@@ -63,9 +115,17 @@ fn contact_shadows_stand_beside_receivers() {
 #[test]
 fn roots_are_valid_wgsl_in_any_bind_group() {
     for group in [0, 1, 3] {
-        for source in
-            [vertex_shader(group), fragment_shader(group), fragment_shader_without_loads(group), contact_shader(group)]
-        {
+        let texts = [
+            vertex_shader(group),
+            fragment_shader(group),
+            fragment_shader_without_loads(group),
+            fragment_shader_of_moments(group, MOMENTS),
+            fragment_shader_of_moments(group, MOMENTS_BY_TAPS),
+            fragment_shader_of_moments(group, MOMENTS_BY_HAND),
+            compute_shader_of_moments(group),
+            contact_shader(group),
+        ];
+        for source in texts {
             let (module, _) = validated(&source);
             let groups: Vec<u32> =
                 module.global_variables.iter().filter_map(|(_, v)| v.binding.map(|b| b.group)).collect();
@@ -75,17 +135,52 @@ fn roots_are_valid_wgsl_in_any_bind_group() {
 }
 
 #[test]
+fn every_way_to_read_and_to_draw_maps_is_valid_wgsl() {
+    for maps in all_maps() {
+        validated(&(umbrage_shaders::receiver(2, maps) + FRAGMENT));
+    }
+    for (views, tiles) in [(false, false), (true, false), (false, true), (true, true)] {
+        validated(&copying_shader(Casters { views, tiles }));
+    }
+}
+
+/// As many textures as there are maps, and no more: an app's own textures count against the same limit.
+#[test]
+fn separate_maps_bind_no_texture_too_many() {
+    for count in 1..=8 {
+        let source = umbrage_shaders::receiver(0, Maps { bound: Bound::Separate(count), ..Maps::default() });
+        assert_eq!(source.matches(": texture_depth_2d;").count(), count);
+    }
+}
+
+#[test]
 fn roots_export_to_webgl2() {
     assert!(to_webgl2(&vertex_shader(0), naga::ShaderStage::Vertex, "vertex").contains("void main"));
+    for maps in all_maps().into_iter().filter(|maps| maps.without_loads || maps.r32f) {
+        to_webgl2(&(umbrage_shaders::receiver(1, maps) + FRAGMENT), naga::ShaderStage::Fragment, "fragment");
+    }
     let text = to_webgl2(&fragment_shader_without_loads(1), naga::ShaderStage::Fragment, "fragment");
     assert!(text.contains("sampler2DArrayShadow"), "depth maps become shadow samplers");
 }
 
 #[test]
+fn moment_passes_are_valid_wgsl() {
+    for source in [umbrage_shaders::MOMENT_PASSES, umbrage_shaders::MOMENT_PASSES_OF_SAMPLES] {
+        let (module, _) = validated(source);
+        let names: Vec<&str> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
+        assert_eq!(names, ["vs_all", "fs_convert", "fs_blur_u", "fs_blur_v", "fs_halve"]);
+    }
+}
+
+#[test]
 fn every_name_is_in_our_namespace() {
-    let receiver = |maps| umbrage_shaders::receiver(0, maps);
-    for source in
-        [umbrage_shaders::caster(0), umbrage_shaders::contact(0), receiver(Maps::default()), receiver(WITHOUT_LOADS)]
+    let casters = [(false, false), (true, false), (false, true), (true, true)]
+        .map(|(views, tiles)| umbrage_shaders::caster(0, Casters { views, tiles }, ""));
+    let contact = umbrage_shaders::contact(0);
+    for source in casters
+        .into_iter()
+        .chain([contact])
+        .chain(all_maps().into_iter().map(|maps| umbrage_shaders::receiver(0, maps)))
     {
         let module = naga::front::wgsl::parse_str(&source).expect("a valid root");
         let names = (module.functions.iter().filter_map(|(_, f)| f.name.clone()))

@@ -74,7 +74,7 @@ impl Stage {
     /// A view as a renderer takes it.
     #[must_use]
     pub fn frame<'a>(&'a self, view: &'a View, tint: bool) -> Frame<'a> {
-        Frame { pose: &self.pose, view, sun: self.sun, shadows_on: true, tint }
+        Frame { pose: &self.pose, view, light: self.sun.into(), more_lights: &[], shadows_on: true, tint }
     }
 
     /// A technique, ready to draw this world at a size.
@@ -149,9 +149,11 @@ impl Technique {
             samples: Samples::Four,
             softness: Softness::default(),
             transition: Transition::default(),
+            moments: Default::default(),
             look: umbrage_render::Look::default(),
             storage: umbrage_wgpu::Storage::default(),
             generation: umbrage_wgpu::Generation::default(),
+            lights: vec![umbrage_wgpu::LightSlot::Single],
         };
         Self { name: format!("pssm{splits}"), settings }
     }
@@ -183,6 +185,11 @@ impl Technique {
             Filter::Pcf7 => "pcf7",
             Filter::Disc => "disc",
             Filter::Pcss => "pcss",
+            Filter::Esm => "esm",
+            Filter::Vsm => "vsm",
+            Filter::Evsm2 => "evsm2",
+            Filter::Evsm4 => "evsm4",
+            Filter::Msm => "msm",
         })
     }
 

@@ -18,8 +18,8 @@ struct Varying { @builtin(position) clip: vec4f, @location(0) position: vec3f, @
     let light = sun * umbrage_visibility(in.position, in.normal); // ◐ the one call
     return vec4f(vec3f(0.10, 0.13, 0.2) + light * vec3f(0.8, 0.72, 0.6), 1.0);
 }";
-const CASTER: &str = "@vertex fn vertex(@location(0) position: vec3f) -> @builtin(position) vec4f {
-    return umbrage_caster_position(position); // ◐ all that a caster's shader does
+const CASTER: &str = "@vertex fn vertex(@location(0) position: vec3f, copy: UmbrageCopy) -> UmbrageCast {
+    return umbrage_cast(position, copy); // ◐ all that a caster's shader does
 }";
 
 /// Appends a box of 36 vertices, a position and a normal each, and returns its bounds.
@@ -71,7 +71,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let depth = device.create_texture(&target);
 
     // A pipeline for the vertices above; without a colour format it has no fragment shader.
-    let pipeline = |source: String, group, primitive, depth, colour: Option<wgpu::TextureFormat>| {
+    let pipeline = |source: String, group, primitive, depth, colour: Option<wgpu::TextureFormat>, views| {
         let source = wgpu::ShaderSource::Wgsl(source.into());
         let module = &device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
         let layout = wgpu::PipelineLayoutDescriptor { bind_group_layouts: &[Some(group)], ..Default::default() };
@@ -89,7 +89,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             depth_stencil: Some(depth),
             multisample: Default::default(),
             fragment: colour.map(|_| fragment),
-            multiview_mask: None,
+            multiview_mask: views,
             cache: None,
         })
     };
@@ -98,24 +98,31 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut maps = ShadowMaps::new(&device, &ShadowMapsOptions::default())?;
     let mut planner = Planner::new(ShadowSettings { image_size: [SIZE, SIZE], ..maps.matching_settings() })?;
     let (layout, primitive, depth_state) = (maps.caster_layout(), maps.caster_primitive(), maps.caster_depth_stencil());
-    let casters = pipeline(maps.caster_wgsl(0) + CASTER, layout, primitive, depth_state.clone(), None);
+    let casters = pipeline(
+        maps.caster_wgsl(0) + CASTER,
+        layout,
+        primitive,
+        depth_state.clone(),
+        None,
+        maps.caster_multiview_mask(),
+    );
 
     // The app's pipeline, with the shadows' text before its own and their layout in group 0.
     let depth_state = wgpu::DepthStencilState { depth_compare: Some(wgpu::CompareFunction::Greater), ..depth_state };
     let source = maps.receiver_wgsl(0) + &camera + SHADER;
-    let boxes = pipeline(source, maps.receiver_layout(), Default::default(), depth_state, Some(COLOUR));
+    let boxes = pipeline(source, maps.receiver_layout(), Default::default(), depth_state, Some(COLOUR), None);
 
     // ◐ A frame: plan, prepare, draw each split's casters.
     let sun = DirectionalLight::new(-DVec3::new(0.6, 0.5, 0.3))?;
     let plan = planner.plan(&view, &sun, &bounds, &bounds)?;
     maps.prepare(&queue, plan, &FrameOptions::default())?;
     let mut encoder = device.create_command_encoder(&Default::default());
-    for split in 0..maps.splits() {
-        let mut pass = maps.begin_split(&mut encoder, split, None);
+    for (index, maps_of) in maps.passes().iter().enumerate() {
+        let mut pass = maps.begin_pass(&mut encoder, index, None);
         pass.set_pipeline(&casters);
-        pass.set_bind_group(0, maps.caster_bind_group(split), &[]);
+        pass.set_bind_group(0, maps.caster_bind_group(index), &[]);
         pass.set_vertex_buffer(0, vertex_buffer.slice(..));
-        plan.casters(split).iter().for_each(|caster| pass.draw(36 * caster..36 * (caster + 1), 0..1));
+        maps_of.casters(plan).for_each(|(caster, copies)| pass.draw(36 * caster..36 * (caster + 1), copies));
     }
 
     // The app's own pass, with the maps bound.

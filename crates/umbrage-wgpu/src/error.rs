@@ -51,6 +51,60 @@ pub enum Error {
         /// The device's limit.
         limit: u32,
     },
+    /// The device cannot filter 32-bit floats and fallbacks are forbidden.
+    #[error(
+        "filter {filter:?} stores moments in 32-bit floats, but this device was requested without FLOAT32_FILTERABLE and fallbacks \
+         is false; allow fallbacks, request the feature (optional_features), or use a filter that compares depth"
+    )]
+    NoFilterableFloats {
+        /// The filter.
+        filter: crate::Filter,
+    },
+    /// Depth cannot become moments where it cannot be loaded.
+    #[error("filter {filter:?} loads from depth maps, which GL cannot; use a filter that compares depth, such as Pcf5")]
+    NoDepthLoads {
+        /// The filter.
+        filter: crate::Filter,
+    },
+    /// Moments are layers of an array.
+    #[error("storage {} and filter {filter:?} exclude each other: moments are kept as an array; use storage array, or a filter that compares depth", storage.name())]
+    MomentsNeedArray {
+        /// The storage.
+        storage: crate::Storage,
+        /// The filter.
+        filter: crate::Filter,
+    },
+    /// Moments are kept for one light.
+    #[error(
+        "lights asks for {lights:?}, but filter {filter:?} serves one sun; use one light, or a filter that compares depth"
+    )]
+    MomentsNeedOneSun {
+        /// The lights.
+        lights: Vec<crate::LightSlot>,
+        /// The filter.
+        filter: crate::Filter,
+    },
+    /// Maps cannot have so many samples.
+    #[error(
+        "samples is {samples} with filter {filter:?}; give 1, or 4 for a filter of moments (Esm, Vsm, Evsm2, Evsm4, Msm)"
+    )]
+    Samples {
+        /// What was asked for.
+        samples: u32,
+        /// The filter that would read them.
+        filter: crate::Filter,
+    },
+    /// Moments want depth that is linear.
+    #[error(
+        "split {split} of the plan is warped, but filter {filter:?} needs depth that is linear along the light; use warp none, or a \
+         filter that compares depth"
+    )]
+    WarpedMoments {
+        /// Index of the split.
+        split: usize,
+        /// The filter.
+        filter: crate::Filter,
+    },
     /// The device has no texture that holds all maps side by side.
     #[error(
         "storage atlas needs one texture that holds maps of {sizes:?} texels side by side, but this device's textures are at most \
@@ -60,6 +114,38 @@ pub enum Error {
         /// The sizes asked for, nearest split first.
         sizes: Vec<u32>,
         /// The device's limit, in texels.
+        limit: u32,
+    },
+    /// Two options that exclude each other.
+    #[error("{first} and {second} exclude each other: {reason}")]
+    ConflictingOptions {
+        /// One of them, by name and value.
+        first: String,
+        /// The other.
+        second: String,
+        /// Why, and what to do.
+        reason: &'static str,
+    },
+    /// The device lacks a feature that was asked for by name, and fallbacks are forbidden.
+    #[error(
+        "generation {generation} needs {feature}, which this device was not requested with, and fallbacks is false; request the \
+         feature (optional_features), allow fallbacks, or use generation per-split"
+    )]
+    MissingFeature {
+        /// The generation that was asked for.
+        generation: &'static str,
+        /// What it needs.
+        feature: &'static str,
+    },
+    /// More maps than textures that a shader can sample.
+    #[error(
+        "storage separate needs a sampled texture for each of the {count} maps in map_sizes, but a shader of this device samples {limit} \
+         at most (max_sampled_textures_per_shader_stage); use fewer splits, or storage array"
+    )]
+    TooManyTextures {
+        /// Textures needed.
+        count: usize,
+        /// The device's limit.
         limit: u32,
     },
     /// The plan was made for other maps.
@@ -127,8 +213,8 @@ pub enum Error {
     },
     /// The filter knows suns only.
     #[error(
-        "the filter {filter:?} goes by the angle across the sun, but lights[{light}] is a spot or point light; \
-         use another filter"
+        "the filter {filter:?} goes by depths of parallel light, but lights[{light}] is a spot or point light; \
+         use another filter, such as Pcf5"
     )]
     FilterNeedsSun {
         /// The filter.

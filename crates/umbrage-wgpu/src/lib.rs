@@ -14,7 +14,7 @@
 //! 3. **Receive.** Put [`ShadowMaps::receiver_wgsl`] before your shading and multiply the sun's light by
 //!    `umbrage_visibility(position, normal)`. The pipeline has [`ShadowMaps::receiver_layout`] in that group.
 //! 4. **Each frame:** `planner.plan(…)`, [`ShadowMaps::prepare`], and for every split with casters a pass from
-//!    [`ShadowMaps::begin_split`], in which you bind [`ShadowMaps::caster_bind_group`] and draw `plan.casters(split)`.
+//!    [`ShadowMaps::begin_pass`], in which you bind [`ShadowMaps::caster_bind_group`] and draw `plan.casters(split)`.
 //! 5. Draw your picture with [`ShadowMaps::receiver_bind_group`] bound.
 //!
 //! Positions in both shaders are metres relative to [`FrameOptions::origin`]. The normal is that of the surface itself, not an
@@ -30,22 +30,27 @@
 //! | `umbrage_visibility(position: vec3f, normal: vec3f) -> f32` | 1 lit, 0 in shadow or turned away |
 //! | `umbrage_shadow(position, normal) -> UmbrageShadow` | the same with `split: i32` (−1: none), `tint: vec3f` and `light: vec3f`, what to multiply the light by ([`FrameOptions::shadow_colour`]) |
 //! | `umbrage_shadow_at_pixel(position, normal, pixel: vec2f) -> UmbrageShadow` | the same for a fragment's `@builtin(position).xy`: for dithered borders and turned discs |
+//! | `umbrage_footprint(position, dx: vec3f, dy: vec3f, pixel: vec2f) -> UmbrageFootprint` | what a fragment covers, from `dpdx` and `dpdy` of its position: in fragment shaders, in uniform control flow |
+//! | `umbrage_shadow_with(position, normal, footprint) -> UmbrageShadow` | the same for a fragment with that footprint: what filters of moments want |
 //! | `umbrage_visibility_in_split(position, normal, split: u32) -> f32` | what one map alone says, for points off screen |
 //!
-//! They need no derivatives and work in any control flow and in every stage. The two texts belong into two shader modules:
+//! All but `umbrage_footprint` need no derivatives and work in any control flow and in every stage; filters of moments
+//! ([`Filter::is_prefiltered`], with [`ShadowMaps::filter`] between steps 4 and 5) then look at their finest level, which shimmers far away. The two texts belong into two shader modules:
 //! both declare what they share.
 
 mod contact;
 mod error;
 mod local;
 mod maps;
+mod moments;
 mod options;
 mod uniforms;
 
 pub use contact::{ContactFrame, ContactOptions, ContactShadows, contact_wgsl};
 pub use error::{Error, Result};
-pub use maps::{ShadowMaps, optional_features};
+pub use maps::{MapPass, ShadowMaps, Slice, optional_features};
+pub use moments::MomentStorage;
 pub use options::{
-    DepthFormat, Filter, FrameOptions, Generation, LightSlot, ReceiverBias, ShadowMapsOptions, Softness, Storage,
-    Transition,
+    DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, ReceiverBias, ShadowMapsOptions, Softness,
+    Storage, Transition,
 };

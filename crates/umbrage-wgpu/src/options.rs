@@ -13,15 +13,25 @@ pub enum DepthFormat {
     D32Float,
     /// Two bytes a texel and a step of 1/65535 of the depth range, which every comparison allows for.
     D16Unorm,
+    /// Four bytes a texel in a colour texture, compared by hand with four loads; a depth buffer beside it. Where depth textures can
+    /// be compared with only (GL, WebGL2) this one can be loaded from, too.
+    R32Float,
 }
 
 impl DepthFormat {
+    /// Whether maps are colours and not depth: casters then need a fragment shader ([`crate::ShadowMaps::caster_targets`]).
+    #[must_use]
+    pub fn is_colour(self) -> bool {
+        self == Self::R32Float
+    }
+
     /// wgpu's name for it.
     #[must_use]
     pub fn texture_format(self) -> wgpu::TextureFormat {
         match self {
             Self::D32Float => wgpu::TextureFormat::Depth32Float,
             Self::D16Unorm => wgpu::TextureFormat::Depth16Unorm,
+            Self::R32Float => wgpu::TextureFormat::R32Float,
         }
     }
 
@@ -29,7 +39,7 @@ impl DepthFormat {
     #[must_use]
     pub fn texel_bytes(self) -> u64 {
         match self {
-            Self::D32Float => 4,
+            Self::D32Float | Self::R32Float => 4,
             Self::D16Unorm => 2,
         }
     }
@@ -37,7 +47,7 @@ impl DepthFormat {
     /// The step between stored depths as a share of the depth range; 0 where it is no coarser than `f32`.
     pub(crate) fn step(self) -> f64 {
         match self {
-            Self::D32Float => 0.0,
+            Self::D32Float | Self::R32Float => 0.0,
             Self::D16Unorm => 1.0 / 65535.0,
         }
     }
@@ -63,6 +73,17 @@ pub enum Filter {
     /// cannot be loaded, it is [`Filter::Disc`]. Where casters are flattened onto the near plane
     /// (`umbrage::ShadowSettings::depth_clamp`) they seem nearer than they are and penumbrae come out too narrow.
     Pcss,
+    /// Exponential: one moment. The cheapest of the maps that are blurred before they are asked ([`crate::ShadowMaps::filter`]); lit where
+    /// a caster stands close to what it shades.
+    Esm,
+    /// Variance: two moments. Light leaks where casters stand behind each other.
+    Vsm,
+    /// Variance of an exponential: two moments, and far fewer leaks.
+    Evsm2,
+    /// Variance of two exponentials: four moments, and fewer leaks still.
+    Evsm4,
+    /// Four moments of depth itself: few leaks, close to casters too. On a device without filterable 32-bit floats the slowest.
+    Msm,
 }
 
 impl Filter {
@@ -77,13 +98,61 @@ impl Filter {
             Self::Pcf7 => 3.5,
             // The widest disc, 15 texels, and the reach of a tap on its rim.
             Self::Disc | Self::Pcss => 16.0,
+            // The widest blur, 15 texels, and the reach of a linear sample.
+            Self::Esm | Self::Vsm | Self::Evsm2 | Self::Evsm4 | Self::Msm => 16.0,
+        }
+    }
+
+    /// What one fragment reads of one map: texels, or for filters that blur first filtered samples. Inside a blend band it is twice as much.
+    #[must_use]
+    pub const fn samples(self) -> u32 {
+        match self {
+            Self::Hard => 1,
+            Self::Pcf2 => 4,
+            Self::Pcf3 => 16,
+            Self::Pcf5 => 36,
+            Self::Pcf7 => 64,
+            Self::Disc => 4 * 32,
+            Self::Pcss => 4 * 32 + 32,
+            Self::Esm | Self::Vsm | Self::Evsm2 | Self::Evsm4 | Self::Msm => 1,
         }
     }
 
     /// Whether [`Softness::width_m`] changes it: what is one texel, one tap, or as wide as a penumbra, has no width of its own.
     #[must_use]
     pub const fn has_width(self) -> bool {
-        matches!(self, Self::Pcf3 | Self::Pcf5 | Self::Pcf7 | Self::Disc)
+        matches!(self, Self::Pcf3 | Self::Pcf5 | Self::Pcf7 | Self::Disc) || self.is_prefiltered()
+    }
+
+    /// Numbers that a texel stores instead of depth, for filters that blur before they compare; 0 for those that compare first.
+    #[must_use]
+    pub const fn moments(self) -> u32 {
+        match self {
+            Self::Hard | Self::Pcf2 | Self::Pcf3 | Self::Pcf5 | Self::Pcf7 | Self::Disc | Self::Pcss => 0,
+            Self::Esm => 1,
+            Self::Vsm | Self::Evsm2 => 2,
+            Self::Evsm4 | Self::Msm => 4,
+        }
+    }
+
+    /// Whether it needs [`crate::ShadowMaps::filter`] between the casters and the receivers.
+    #[must_use]
+    pub const fn is_prefiltered(self) -> bool {
+        self.moments() > 0
+    }
+
+    /// Looks at the map for one answer of one split: hardware comparisons, loads, or one sample of moments (of up to 16 trilinear taps
+    /// where a pixel sees the map at an angle). A pixel in a blend band asks two splits.
+    #[must_use]
+    pub const fn samples_per_answer(self) -> u32 {
+        match self {
+            Self::Hard | Self::Pcf2 | Self::Esm | Self::Vsm | Self::Evsm2 | Self::Evsm4 | Self::Msm => 1,
+            Self::Pcf3 => 4,
+            Self::Pcf5 => 9,
+            Self::Pcf7 => 16,
+            Self::Disc => 32,
+            Self::Pcss => 64,
+        }
     }
 
     /// The smallest map that holds the filter once, in texels.
@@ -94,7 +163,7 @@ impl Filter {
             Self::Pcf3 => 4,
             Self::Pcf5 => 6,
             Self::Pcf7 => 8,
-            Self::Disc | Self::Pcss => 33,
+            Self::Disc | Self::Pcss | Self::Esm | Self::Vsm | Self::Evsm2 | Self::Evsm4 | Self::Msm => 33,
         }
     }
 
@@ -107,6 +176,11 @@ impl Filter {
             Self::Pcf7 => FilterKind::Pcf7,
             Self::Disc => FilterKind::Disc,
             Self::Pcss => FilterKind::Pcss,
+            Self::Esm => FilterKind::Esm,
+            Self::Vsm => FilterKind::Vsm,
+            Self::Evsm2 => FilterKind::Evsm2,
+            Self::Evsm4 => FilterKind::Evsm4,
+            Self::Msm => FilterKind::Msm,
         }
     }
 
@@ -122,7 +196,7 @@ impl Filter {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Softness {
     /// Full width of the filter across the light in metres, the same in every split, so that an edge is as soft on both sides of a
-    /// border; `None`: as many texels as the filter's name says. Where it asks for less than two texels it gets two, and for more
+    /// border; `None`: as many texels as the filter's name says, and for filters of moments 8 texels of the finest map. Where it asks for less than two texels it gets two, and for more
     /// than the filter reaches ([`Filter::radius_texels`]) that. For the filters that [`Filter::has_width`] names.
     pub width_m: Option<f32>,
     /// Angle in radians across the sun, for [`Filter::Pcss`]: 0 to a right angle. The real one is 0.0093 (0.53°) wide.
@@ -130,6 +204,8 @@ pub struct Softness {
     /// Whether the pattern of a disc turns from pixel to pixel, which makes noise out of bands. Needs
     /// `umbrage_shadow_at_pixel`.
     pub turned: bool,
+    /// Share of light that filters of moments take for a leak, 0 to 0.9: what is less is shadow. More hides leaks and widens shadows.
+    pub bleeding: f32,
 }
 
 impl Softness {
@@ -139,7 +215,7 @@ impl Softness {
 
 impl Default for Softness {
     fn default() -> Self {
-        Self { width_m: None, sun_angle: Self::SUN, turned: false }
+        Self { width_m: None, sun_angle: Self::SUN, turned: false, bleeding: 0.2 }
     }
 }
 
@@ -161,6 +237,10 @@ impl Softness {
                 value: f64::from(self.sun_angle),
                 expected: "radians from 0 to a right angle",
             });
+        }
+        if !(0.0..=0.9).contains(&self.bleeding) {
+            let value = f64::from(self.bleeding);
+            return Err(Error::InvalidFrameOption { field: "bleeding", value, expected: "in 0..=0.9" });
         }
         Ok(())
     }
@@ -188,16 +268,36 @@ impl Transition {
     }
 }
 
+/// How much of a map of moments a pixel covers, where neighbouring pixels may use different splits. Depth maps are compared with at level 0
+/// and need to know none of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Derivatives {
+    /// From how the position changes from pixel to pixel, which no split's border interrupts, by each pixel's own split.
+    #[default]
+    Analytic,
+    /// All four pixels of a quad use the split of the farthest, so that differences between them mean something (source 002's way,
+    /// right for any four splits).
+    Quad,
+}
+
 /// Where maps are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Storage {
-    /// What suits the device: [`Storage::Array`].
+    /// What goes with the generation; [`Storage::Array`] where that is `Auto`, too.
     #[default]
     Auto,
     /// Layers of one texture as wide as the largest map: memory is that of the largest times the number of maps.
     Array,
     /// Tiles of one texture: memory is that of the rectangle into which the maps were packed.
     Atlas,
+    /// A texture for each map: memory is that of the maps, and each takes one of the textures that a shader can sample
+    /// (`max_sampled_textures_per_shader_stage`).
+    Separate,
+    /// Faces of a cube map: six maps of one size at most.
+    Cube,
+    /// One map that is used for one split after the other, with the picture drawn in between: memory is that of the largest map. There is
+    /// never a second map to blend with.
+    Reused,
 }
 
 impl Storage {
@@ -208,6 +308,9 @@ impl Storage {
             Self::Auto => "auto",
             Self::Array => "array",
             Self::Atlas => "atlas",
+            Self::Separate => "separate",
+            Self::Cube => "cube",
+            Self::Reused => "reused",
         }
     }
 }
@@ -215,11 +318,21 @@ impl Storage {
 /// How maps are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Generation {
-    /// What suits the device: [`Generation::PerSplit`].
+    /// What goes with the storage: [`Generation::Multipass`] with [`Storage::Reused`], else [`Generation::PerSplit`].
     #[default]
     Auto,
-    /// One pass for each split.
+    /// One pass for each split, and after each the part of the picture that lies in its slice; with [`Storage::Reused`].
+    Multipass,
+    /// One pass for each split; with [`Storage::Array`], [`Storage::Atlas`], [`Storage::Separate`] or [`Storage::Cube`].
     PerSplit,
+    /// One pass for as many splits as the device has views, by multiview into the layers of an array or the faces of a cube: every
+    /// caster is submitted once, and thrown out of the views that it does not belong to.
+    Layered,
+    /// One pass for all splits, by instancing into the tiles of an atlas: every caster is submitted once, in as many instances as it
+    /// has splits. Clip distances keep tiles apart.
+    Instanced,
+    /// One pass for all splits, by multiview into layers of an array that hold two tiles or more, and by instancing into the tiles.
+    Mixed,
 }
 
 impl Generation {
@@ -228,7 +341,11 @@ impl Generation {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",
+            Self::Multipass => "multipass",
             Self::PerSplit => "per-split",
+            Self::Layered => "layered",
+            Self::Instanced => "instanced",
+            Self::Mixed => "mixed",
         }
     }
 }
@@ -291,6 +408,12 @@ pub struct ShadowMapsOptions {
     pub depth_format: DepthFormat,
     /// How maps are read.
     pub filter: Filter,
+    /// Samples of depth in a texel, 1 or 4: with 4 the edges of casters are smooth before anything is blurred. For filters of moments; the
+    /// pipelines that draw casters take [`crate::ShadowMaps::caster_multisample`].
+    pub samples: u32,
+    /// Whether what the device cannot do may be replaced by what it can ([`crate::ShadowMaps::notes`], [`crate::MomentStorage`]); if not, it is an
+    /// error.
+    pub fallbacks: bool,
     /// Where maps are kept.
     pub storage: Storage,
     /// How maps are drawn.
@@ -300,12 +423,25 @@ pub struct ShadowMapsOptions {
     pub lights: Vec<LightSlot>,
 }
 
+impl ShadowMapsOptions {
+    /// The generation and the storage that these options come to on a device that can do everything.
+    ///
+    /// # Errors
+    /// [`Error::ConflictingOptions`] naming two that exclude each other.
+    pub fn path(&self) -> Result<(Generation, Storage)> {
+        let chosen = crate::maps::choose::choose(self, crate::maps::choose::Abilities::ALL)?;
+        Ok((chosen.generation, chosen.storage))
+    }
+}
+
 impl Default for ShadowMapsOptions {
     fn default() -> Self {
         Self {
             map_sizes: vec![1024; 4],
             depth_format: DepthFormat::default(),
             filter: Filter::default(),
+            samples: 1,
+            fallbacks: true,
             storage: Storage::default(),
             generation: Generation::default(),
             lights: vec![LightSlot::Single],
@@ -334,6 +470,8 @@ pub struct FrameOptions {
     pub softness: Softness,
     /// How splits meet.
     pub transition: Transition,
+    /// How filters of moments know what a pixel covers.
+    pub derivatives: Derivatives,
 }
 
 impl Default for FrameOptions {
@@ -347,6 +485,7 @@ impl Default for FrameOptions {
             bias: ReceiverBias::default(),
             softness: Softness::default(),
             transition: Transition::default(),
+            derivatives: Derivatives::default(),
         }
     }
 }

@@ -3,8 +3,8 @@
 use std::f32::consts::TAU;
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
-use umbrage::ShadowPlan;
-use umbrage_shaders::layout;
+use umbrage::{Selection, ShadowPlan};
+use umbrage_shaders::layout::{self, SelectionKind};
 
 use crate::maps::storage::Tile;
 use crate::{Error, Filter, FrameOptions, Result, ShadowMapsOptions, local};
@@ -73,7 +73,8 @@ pub(crate) fn frames(
         if plan.faces() > slot.faces() {
             return Err(Error::LightSlot { light, faces: plan.faces(), slot: *slot });
         }
-        if maps.filter == Filter::Pcss && plan.light.is_some_and(|light| light.position().is_some()) {
+        let for_suns = maps.filter == Filter::Pcss || maps.filter.is_prefiltered();
+        if for_suns && plan.light.is_some_and(|light| light.position().is_some()) {
             return Err(Error::FilterNeedsSun { filter: maps.filter, light });
         }
         let splits = maps.map_sizes.len();
@@ -130,6 +131,12 @@ fn frame(
         sun_tangent: (0.5 * options.softness.sun_angle).tan(),
         turn_per_pixel: if options.softness.turned { TAU } else { 0.0 },
         transition: options.transition.kind() as u32,
+        slice: layout::EVERY_SLICE,
+        selection: match plan.selection {
+            Selection::Depth => SelectionKind::Depth,
+            Selection::Map => SelectionKind::Map,
+        } as u32,
+        map_blend: plan.blend as f32,
         bias_kind: options.bias.kind() as u32,
         shadow_colour: options.shadow_colour,
         ..layout::Frame::default()

@@ -16,7 +16,8 @@ use crate::split::{blend_begin, coverage, split_planes};
 use crate::stable::HeldSize;
 use crate::volume::{Lies, Plane, Slice, SweptVolume};
 use crate::{
-    Aabb, Error, Fit, Light, PointLight, Result, ShadowSettings, Split, SplitScheme, SpotLight, Stabilize, View, Warp,
+    Aabb, Error, Fit, Light, PointLight, Result, Selection, ShadowSettings, Split, SplitScheme, SpotLight, Stabilize,
+    View, Warp,
 };
 
 /// Share of its depths that a map keeps free before its first caster and behind its last receiver, for rounding.
@@ -96,6 +97,16 @@ impl LocalPlanner {
                         .to_owned(),
             });
         }
+        if settings.selection != Selection::Depth {
+            return Err(Error::ConflictingSettings {
+                first: "selection",
+                second: "light",
+                reason: "maps of a local light lie in its perspective and are chosen by view depth; \
+                         set selection to Depth, or use a directional light"
+                    .to_owned(),
+            });
+        }
+        plan.selection = Selection::Depth;
         let m = settings.splits();
         let (near, far, fades) = shadowed_range(given);
         split_planes(&settings.scheme, near, far, m, &mut plan.planes)?;

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-use crate::{Light, View};
+use crate::{Light, Selection, View};
 
 /// The shadow maps of one light for one view.
 ///
@@ -21,6 +21,10 @@ pub struct ShadowPlan {
     pub light: Option<Light>,
     /// View depth at which the fade to lit begins; `C_m` if there is none.
     pub fade_begin: f64,
+    /// Which map answers for a point.
+    pub selection: Selection,
+    /// With [`Selection::Map`]: share of a map's half edge over which it blends into the next that contains the point.
+    pub blend: f64,
     /// Indices into the planner's caster list, split after split; see [`ShadowPlan::casters`].
     pub caster_indices: Vec<u32>,
     /// For each caster the first and the last split it is drawn in, `None` if it is drawn in none. The range is a bound:

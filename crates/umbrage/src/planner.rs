@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::covered;
 use crate::local::{Given, LightFrustum, LocalPlanner};
 use crate::range::{HeldRange, visible_range};
 use crate::rectangle::{HeldRectangle, Rectangle, longest_edge};
@@ -11,8 +12,8 @@ use crate::stable::{HeldSize, slice_sphere, stable_texel};
 use crate::volume::{Lies, Slice, SweptVolume};
 use crate::warped::WarpPoints;
 use crate::{
-    Aabb, DirectionalLight, Error, Fit, Light, MAX_SPLITS, RangeFit, Result, ShadowPlan, ShadowSettings, Split,
-    Stabilize, View, Warp,
+    Aabb, DirectionalLight, Error, Fit, Light, MAX_SPLITS, RangeFit, Result, Selection, ShadowPlan, ShadowSettings,
+    Split, Stabilize, View, Warp,
 };
 
 /// Texels that a map keeps free around what it serves, besides the filter's reach: half for the texel that a sample's
@@ -41,6 +42,8 @@ pub struct Planner {
     held_rectangle: [HeldRectangle; MAX_SPLITS],
     fan: Option<Fan>,
     volumes: Vec<CoverageVolume>,
+    /// With [`Selection::Map`]: everything that the view shows in range, which any map may be asked about.
+    shown: Option<Shown>,
     world_depths: (f64, f64),
     casters: Vec<Placed>,
     receivers: Vec<Placed>,
@@ -72,6 +75,14 @@ struct CoverageVolume {
     receivers: Option<(Region, Aabb)>,
 }
 
+/// Everything that the view shows in range.
+#[derive(Clone, Debug)]
+struct Shown {
+    volume: CoverageVolume,
+    /// Metres along the light.
+    depths: (f64, f64),
+}
+
 impl Planner {
     /// A planner for these settings.
     ///
@@ -90,6 +101,7 @@ impl Planner {
             held_rectangle: [HeldRectangle::default(); MAX_SPLITS],
             fan: None,
             volumes: Vec::new(),
+            shown: None,
             world_depths: (0.0, 0.0),
             casters: Vec::new(),
             receivers: Vec::new(),
@@ -184,12 +196,15 @@ impl Planner {
             self.whole_width = 2.0 * self.held_whole.hold(sphere.radius);
         }
         self.cull_to_view(view, direction);
+        self.shown = (self.settings.selection == Selection::Map).then(|| self.all_that_is_shown(view, far, &fan));
         if self.settings.stabilize != Stabilize::None && !self.settings.depth_clamp {
             self.world_depths = self.measure_world_depths(direction);
         }
 
         let plan = &mut self.plan;
         plan.begin(view, (*light).into());
+        plan.selection = self.settings.selection;
+        plan.blend = self.settings.blend;
         // Behind the last receiver and beyond the camera's far plane there is nothing to fade into.
         let fades = self.settings.range.is_some_and(|(_, end)| end < view.frustum().far);
         plan.fade_begin = if fades { far - self.settings.far_fade * (far - near) } else { far };
@@ -333,7 +348,7 @@ impl Planner {
             Stabilize::None => widest * margin / (f64::from(size) - 2.0 * margin).max(1.0),
         };
         let casters =
-            if visible { self.list_casters(i, &swept, served.as_ref(), fan, margin_m) } else { self.empty_list() };
+            if visible { self.list_casters(&swept, served.as_ref(), fan, margin_m) } else { self.empty_list() };
 
         // What the map has to show, in the light's plane and in depth.
         let listed = &self.plan.caster_indices[casters.clone()];
@@ -391,6 +406,14 @@ impl Planner {
                 stepped(split, &target, fan, margin, rectangle, (depth - radius, depth + radius))
             }
         };
+        let (split, caster_near) = match self.shown.clone() {
+            Some(shown) if !split.casters.is_empty() => self.serving_all_it_covers(split, &shown, fan, caster_near),
+            _ => (split, caster_near),
+        };
+        for &index in &self.plan.caster_indices[split.casters.clone()] {
+            let range = &mut self.plan.split_range[index as usize];
+            *range = Some((range.map_or(i as u8, |(first, _)| first), i as u8));
+        }
         let mut split = self.with_depth_range(split, caster_near, radius);
         let warp = self.settings.warp(i);
         if warp != Warp::None && !split.casters.is_empty() {
@@ -404,7 +427,49 @@ impl Planner {
             self.warp_points.warp(&mut split, warp, view, margin, self.settings.fit);
         }
         self.plan.splits.push(split);
-        self.volumes.push(CoverageVolume { swept, receivers: served });
+        self.volumes.push(match &self.shown {
+            Some(shown) => shown.volume.clone(),
+            None => CoverageVolume { swept, receivers: served },
+        });
+    }
+
+    /// What any map may be asked about where maps are chosen by what they contain.
+    fn all_that_is_shown(&mut self, view: &View, far: f64, fan: &Fan) -> Shown {
+        let frustum = view.frustum();
+        let (near, far) = (frustum.near, far.min(frustum.far));
+        let slice = Slice::new(view, near, if far > near { far } else { near * 1.01 + 0.01 });
+        let mut corners = Region::EMPTY;
+        slice.corners.iter().for_each(|&corner| corners.include_point(fan, corner));
+        let receivers = match self.settings.fit {
+            Fit::Independent => None,
+            Fit::Dependent => Some(self.receivers_in(&slice, fan)),
+        };
+        let depths = receivers.as_ref().map_or(corners, |(region, _)| *region).depth;
+        Shown { volume: CoverageVolume { swept: slice.swept_towards_light(fan.depth), receivers }, depths }
+    }
+
+    /// The split with a list and a depth range for everything that its map covers and no earlier one takes, and the depth of its
+    /// first caster.
+    fn serving_all_it_covers(&mut self, mut split: Split, shown: &Shown, fan: &Fan, caster_near: f64) -> (Split, f64) {
+        self.plan.caster_indices.truncate(split.casters.start);
+        let taken = covered::Taken::new(&split, &self.plan.splits, self.settings.filter_radius, self.settings.blend);
+        let margin = taken.margin * split.texel_m.max_element();
+        let mut caster_near = caster_near;
+        for &index in &self.candidates {
+            let Placed { center, half } = self.casters[index as usize];
+            let can_shade = shown.volume.receivers.as_ref().is_none_or(|(region, bounds)| {
+                !lies_below(center, half, bounds, fan.depth, margin)
+                    && region.can_be_shadowed_by(fan, center, half, margin)
+            });
+            if can_shade && covered::reaches(&split, center, half) && !taken.holds(center, half) {
+                self.plan.caster_indices.push(index);
+                caster_near = caster_near.min(fan.depth.dot(center) - fan.depth.abs().dot(half));
+            }
+        }
+        split.casters.end = self.plan.caster_indices.len();
+        split.depth_near = split.depth_near.min(shown.depths.0);
+        split.depth_far = split.depth_far.max(shown.depths.1);
+        (split, caster_near)
     }
 
     /// Near and far planes: before the first caster and behind the last receiver, with room for the bias. Where depth is clamped
@@ -482,10 +547,9 @@ impl Planner {
         (region, bounds)
     }
 
-    /// Appends the casters of split `i` to the plan's list.
+    /// Appends the casters of a slice to the plan's list.
     fn list_casters(
         &mut self,
-        i: usize,
         swept: &SweptVolume,
         served: Option<&(Region, Aabb)>,
         fan: &Fan,
@@ -504,8 +568,6 @@ impl Planner {
                 });
             if listed {
                 self.plan.caster_indices.push(index);
-                let range = &mut self.plan.split_range[index as usize];
-                *range = Some((range.map_or(i as u8, |(first, _)| first), i as u8));
             }
         }
         begin..self.plan.caster_indices.len()

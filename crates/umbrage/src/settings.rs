@@ -52,6 +52,19 @@ pub enum Fit {
     Dependent,
 }
 
+/// Which of several maps answers for a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Selection {
+    /// That of the slice in which its view depth lies: the papers' way.
+    #[default]
+    Depth,
+    /// The first (finest) whose map contains it, filter and depth included: sharper where maps reach beyond their slices, and most
+    /// so where view and light are nearly parallel. Lists hold all that can shade what a map covers and no earlier one takes.
+    /// Source: *Practical Cascaded Shadow Maps* (seed 003), "Non-optimized split selection"; our deviations: the filter's
+    /// margin and the depth are part of the question, and the band that blends one map into the next lies along the map's edge.
+    Map,
+}
+
 /// Whether shadows stand still while the camera moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stabilize {
@@ -109,6 +122,8 @@ pub struct ShadowSettings {
     pub range_fit: RangeFit,
     /// What the rectangle is fitted to.
     pub fit: Fit,
+    /// Which map answers for a point. [`Selection::Map`] excludes warps.
+    pub selection: Selection,
     /// Whether shadows stand still.
     pub stabilize: Stabilize,
     /// How each map spreads its texels: none for plain maps, one for all, or one for each split. A warp follows the camera, so it
@@ -118,7 +133,8 @@ pub struct ShadowSettings {
     /// How far the filter reaches from the sample, in texels (0.5 for one nearest texel, 1 for a bilinear comparison,
     /// 1.5 and 2.5 for tents of 3 and 5). Every map is widened by it.
     pub filter_radius: f64,
-    /// Share of each split's depth range over which it blends into the next; 0 is a hard border, at most 1.
+    /// Share of each split's depth range over which it blends into the next; 0 is a hard border, at most 1. With
+    /// [`Selection::Map`] the share of a map's half edge, along that edge.
     pub blend: f64,
     /// Share of the shadowed range over which shadows fade to lit at its far end; 0 to 1. They fade where there is something to fade
     /// into: where `range` ends before the camera's far plane. A range that the camera and the receivers decide has nothing
@@ -139,6 +155,7 @@ impl Default for ShadowSettings {
             range: None,
             range_fit: RangeFit::default(),
             fit: Fit::default(),
+            selection: Selection::default(),
             stabilize: Stabilize::default(),
             warps: Vec::new(),
             filter_radius: 1.5,
@@ -271,6 +288,18 @@ impl ShadowSettings {
             {
                 return Err(Error::setting("warps", format!("the focus {focus} is not between 0 and 1")));
             }
+        }
+        if self.selection == Selection::Map
+            && let Some(warp) = self.warps.iter().find(|warp| **warp != Warp::None)
+        {
+            return Err(Error::ConflictingSettings {
+                first: "warps",
+                second: "selection",
+                reason: format!(
+                    "the first map that contains a point need not be the finest there if it is a {warp:?} map; \
+                     set selection to Depth, or leave the warp away"
+                ),
+            });
         }
         if self.stabilize != Stabilize::None
             && let Some(warp) = self.warps.iter().find(|warp| **warp != Warp::None)

@@ -3,8 +3,8 @@
 use glam::{DQuat, DVec3, EulerRot};
 use proptest::prelude::*;
 use umbrage::{
-    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, Projection, RangeFit, ShadowPlan, ShadowSettings,
-    SplitScheme, Stabilize, View, Warp,
+    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, Projection, RangeFit, Selection, ShadowPlan,
+    ShadowSettings, SplitScheme, Stabilize, View, Warp,
 };
 
 /// A world of boxes on and around a ground, a view and a sun, biased to the awkward: a sun straight down or level, a view into
@@ -245,6 +245,40 @@ proptest! {
             // Unclipped sweeps of convex slices are met in a contiguous run.
             if case.settings.fit == Fit::Independent && !splits.is_empty() {
                 prop_assert_eq!(splits[splits.len() - 1] - splits[0] + 1, splits.len(), "{:?}", splits);
+            }
+        }
+    }
+
+    #[test]
+    fn the_first_map_that_contains_a_point_has_all_its_casters(case in cases()) {
+        let settings = ShadowSettings { selection: Selection::Map, warps: vec![], ..case.settings.clone() };
+        let radius = settings.filter_radius;
+        let mut planner = Planner::new(settings)?;
+        let Ok(plan) = planner.plan(&case.view, &case.light, &case.boxes, &case.boxes) else { return Ok(()) };
+        let plan = plan.clone();
+        let direction = case.light.direction();
+        for (owner, point, depth) in visible_points(&case, plan.planes[plan.splits.len()]) {
+            let holders: Vec<usize> = (0..plan.splits.len())
+                .filter(|&i| !plan.splits[i].casters.is_empty() && plan.splits[i].contains(point, radius))
+                .collect();
+            // Along a map's edge the next one is asked, too.
+            let in_band = holders.first().is_some_and(|&first| {
+                let band = 0.5 * plan.blend * f64::from(plan.splits[first].size);
+                !plan.splits[first].contains(point, radius + band)
+            });
+            let asked = if in_band { 2 } else { 1 };
+            for (index, bounds) in case.boxes.iter().enumerate() {
+                if index == owner || !shades(bounds, point, direction) {
+                    continue;
+                }
+                prop_assert!(!holders.is_empty(), "no map contains {point} at {depth} m, which {index} shades");
+                for &split in holders.iter().take(asked) {
+                    let s = &plan.splits[split];
+                    prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} of {holders:?} has no caster {index} for {point}");
+                    let begin = direction.dot(bounds.center()) - direction.abs().dot(bounds.half_extent());
+                    prop_assert!(case.settings.depth_clamp || s.depth_near <= begin, "the near plane cuts caster {index}");
+                    prop_assert!(s.depth_near <= direction.dot(point), "the near plane lies behind {point}");
+                }
             }
         }
     }

@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 
-use crate::{args::SceneArgs, parse};
+use crate::{
+    args::{SceneArgs, Switch},
+    parse,
+};
 
 /// `umbrage bench`.
 #[derive(Debug, clap::Args)]
@@ -20,6 +23,9 @@ pub struct BenchArgs {
         default_value = "ssm:1024,pssm:2:512,pssm:3:512,pssm:4:512"
     )]
     pub techniques: Vec<String>,
+    /// All filters over four maps of 1024² instead of techniques, divided by pcf2; over robot-war if no scene is named
+    #[arg(long, conflicts_with_all = ["techniques", "with"])]
+    pub filters: bool,
     /// Settings for all techniques that do not say otherwise, as for `umbrage compare`
     #[arg(long, value_name = "SETTINGS", default_value = "filter=pcf2:stabilize=none")]
     pub with: String,
@@ -44,6 +50,9 @@ pub struct BenchArgs {
     /// Numbers of objects for GPU Gems' Figure 10-9, four splits each
     #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "10,30,100,300,1000", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub objects: Vec<u32>,
+    /// Measure every pair of generation and storage on each scene, too, with PSSM(4; 512²)
+    #[arg(long, value_enum, default_value_t)]
+    pub paths: Switch,
     /// Write all figures here (JSON)
     #[arg(long, value_name = "JSON", help_heading = "Output")]
     pub json: Option<PathBuf>,
@@ -74,6 +83,9 @@ impl BenchArgs {
             eye_height: 2.0,
             light: None,
             sun: self.sun,
+            sun_to: None,
+            sun_step: None,
+            sun_fade: None,
             sun_angle: None,
         }
     }

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use indicatif::ProgressBar;
-use umbrage_render::{Frame, FrameStats, Gpu, Outputs, RenderSettings, Renderer, Samples};
+use umbrage_render::{FrameStats, Gpu, Outputs, RenderSettings, Renderer, Samples};
 
 use super::{
     report::{Counts, Row},
@@ -13,6 +13,7 @@ use crate::{
     compare::techniques::Technique,
     failure::Result,
     job::{wgpu_depth_format, wgpu_filter},
+    lights,
     stage::Stage,
 };
 
@@ -47,14 +48,15 @@ pub fn measure(
             samples,
             softness: technique.job.softness(None),
             transition: technique.job.transition(),
+            moments: technique.job.moments(),
             look: technique.job.look(),
-            storage: umbrage_wgpu::Storage::default(),
-            generation: umbrage_wgpu::Generation::default(),
+            storage: technique.job.storage,
+            generation: technique.job.generation,
+            lights: lights::slots(&stage.lights),
         };
         renderers.push(Renderer::new(gpu, &stage.scene, &settings)?);
     }
-    let frame =
-        |shadows_on| Frame { pose: &stage.pose, view: &stage.shots[0].view, sun: stage.sun, shadows_on, tint: false };
+    let frame = |shadows_on| stage.frame(&stage.shots[0], &stage.shots[0].view, shadows_on, false);
     let outputs = Outputs { picture: true, ..Outputs::default() };
     let timed = |renderer: &mut Renderer, shadows_on| -> Result<(f64, FrameStats)> {
         let begin = Instant::now();
@@ -117,9 +119,10 @@ fn row(technique: &Technique, measured: &Rounds, baseline: &Rounds, stats: &Fram
         frame_ratio: ratio(&measured.frame, &baseline.frame),
         shadow_ratio: ratio(&measured.shadow, &baseline.shadow),
         paper_ratio: None,
+        samples: wgpu_filter(technique.job.filter).samples(),
         pairs: sum(|split| split.casters as u64),
-        draws: sum(|split| u64::from(split.draws)),
-        triangles: sum(|split| split.triangles),
+        draws: u64::from(stats.shadow_draws),
+        triangles: stats.shadow_triangles,
         map_bytes: stats.bytes,
         shadow_counts: stats.shadow_counts.map(counts),
         view_counts: stats.view_counts.map(counts),

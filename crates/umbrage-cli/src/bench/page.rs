@@ -75,6 +75,16 @@ fn overview(scenes: &[SceneReport]) -> Result<Section> {
 }
 
 fn scene(report: &SceneReport) -> Section {
+    let of = format!("{}, camera {}, {} triangles", report.scene, report.camera, report.triangles);
+    let section = Section::new(report.scene.clone()).table(&table(of, &report.rows));
+    if report.paths.is_empty() {
+        return section;
+    }
+    let caption = format!("{}: the same maps by every pair of generation and storage", report.scene);
+    section.table(&table(caption, &report.paths))
+}
+
+fn table(caption: String, rows: &[Row]) -> Table {
     let columns = vec![
         Column::text("technique"),
         Column::text("path"),
@@ -85,6 +95,8 @@ fn scene(report: &SceneReport) -> Section {
         Column::number("with − without, ms"),
         Column::number("wall, ms"),
         Column::number("plan, µs"),
+        Column::number("samples / fragment"),
+        Column::number("picture's fragments"),
         Column::number("pairs"),
         Column::number("draws"),
         Column::number("vertices"),
@@ -92,8 +104,7 @@ fn scene(report: &SceneReport) -> Section {
         Column::number("fragments"),
         Column::number("map MiB"),
     ];
-    let caption = format!("{}, camera {}, {} triangles", report.scene, report.camera, report.triangles);
-    let table = report.rows.iter().fold(Table::new(caption, columns), |table, row| {
+    rows.iter().fold(Table::new(caption, columns), |table, row| {
         let count = |f: fn(&super::report::Counts) -> u64| {
             row.shadow_counts.as_ref().map_or(Cell::Missing, |counts| Cell::Number(f(counts) as f64, 0))
         };
@@ -107,6 +118,8 @@ fn scene(report: &SceneReport) -> Section {
             spread(row.cost_ms, 2),
             spread(row.wall_ms, 1),
             spread(row.plan_us, 0),
+            Cell::Number(f64::from(row.samples), 0),
+            row.view_counts.map_or(Cell::Missing, |counts| Cell::Number(counts.fragments as f64, 0)),
             Cell::Number(row.pairs as f64, 0),
             Cell::Number(row.draws as f64, 0),
             count(|counts| counts.vertices),
@@ -114,8 +127,7 @@ fn scene(report: &SceneReport) -> Section {
             count(|counts| counts.fragments),
             Cell::Number(row.map_bytes as f64 / 1_048_576.0, 2),
         ])
-    });
-    Section::new(report.scene.clone()).table(&table)
+    })
 }
 
 /// GPU Gems' Figure 10-9: time and counts over the number of objects.

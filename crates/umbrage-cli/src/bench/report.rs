@@ -34,6 +34,8 @@ pub struct SceneReport {
     pub triangles: usize,
     /// One per technique; the first is the baseline.
     pub rows: Vec<Row>,
+    /// One per pair of generation and storage; the first is the baseline.
+    pub paths: Vec<Row>,
 }
 
 /// A number of objects.
@@ -78,6 +80,8 @@ pub struct Row {
     pub shadow_ratio: Option<Summary>,
     /// Frame over frame in the paper's Table 1.
     pub paper_ratio: Option<f64>,
+    /// What a fragment of the picture reads of a map: texels, or filtered samples of filters that blur first.
+    pub samples: u32,
     /// Caster-split pairs.
     pub pairs: u64,
     /// Draws into the maps.

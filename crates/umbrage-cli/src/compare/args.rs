@@ -111,7 +111,8 @@ pub struct CompareArgs {
     /// Magnify what every other camera sees by this factor a frame, for --frames
     #[arg(long, value_name = "FACTOR", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Shots")]
     pub zoom: Option<f64>,
-    /// One of the scenes' directional lights as their own sun [default: the first]
+    /// One of the scenes' lights: a directional one as their own sun, or a spot or point light in its place
+    /// [default: the first directional one]
     #[arg(long, value_name = "NAME|INDEX", help_heading = "Shots")]
     pub light: Option<String>,
     /// The own sun: the way light travels; any length
@@ -190,6 +191,9 @@ impl CompareArgs {
             eye_height: self.eye_height,
             light: self.light.clone(),
             sun: self.sun,
+            sun_to: None,
+            sun_step: None,
+            sun_fade: None,
             sun_angle: self.sun_angle,
         }
     }

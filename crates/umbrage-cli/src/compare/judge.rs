@@ -46,11 +46,11 @@ impl Judged {
         truth: &Truth,
         pose: &Pose,
         view: &View,
-        sun: umbrage::DirectionalLight,
+        light: &umbrage::Light,
         size: [u32; 2],
         range: Option<(f64, f64)>,
     ) -> Result<Self> {
-        let mask = truth.mask(view, sun.direction(), size, &|_| {})?;
+        let mask = truth.mask_under(view, light, size, &|_| {})?;
         let domain = Domain::new(&mask, range.unwrap_or_else(|| range_of(view, pose)))?;
         Ok(Self { view: *view, truth: mask, domain, soft: None })
     }

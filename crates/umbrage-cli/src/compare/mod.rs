@@ -38,6 +38,6 @@ mod tests {
         let travel = umbrage_scene::light_direction(&scene, &pose, 0).expect("a sun");
         let truth = Truth::build(&scene, &pose, view.eye()).expect("the truth");
         let sun = DirectionalLight::new(travel).expect("a sun");
-        Judged::new(&truth, &pose, &view, sun, size, None).expect("judged")
+        Judged::new(&truth, &pose, &view, &sun.into(), size, None).expect("judged")
     }
 }

@@ -115,8 +115,9 @@ pub struct ViewReport {
     pub frame: Option<u32>,
     /// The sun in words.
     pub sun_name: String,
-    /// The way light travels.
-    pub sun: [f64; 3],
+    /// The way light travels, if it is a sun's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sun: Option<[f64; 3]>,
     /// The options of `umbrage render` that show it; along a path they show all its frames.
     pub options: Vec<String>,
     /// View depths that are scored, metres.
@@ -334,7 +335,7 @@ mod tests {
             },
             frame: None,
             sun_name: "own".into(),
-            sun: [0.0; 3],
+            sun: None,
             options: Vec::new(),
             range_m: [1.0, 2.0],
             scored_pixels: 1,

@@ -1,7 +1,8 @@
 //! Draws, asks, scores, writes.
 
 use indicatif::ProgressBar;
-use umbrage_render::{Frame, Gpu, GpuOptions, Outputs, ProbePoint, RenderSettings, Renderer};
+use umbrage::Light;
+use umbrage_render::{Frame, Gpu, GpuOptions, Lamp, Outputs, ProbePoint, RenderSettings, Renderer};
 use umbrage_truth::{Truth, scores::shared_points};
 
 use super::{
@@ -104,9 +105,11 @@ impl Bench<'_> {
                 samples: umbrage_render::Samples::default(),
                 softness: technique.job.softness(self.args.sun_angle),
                 transition: technique.job.transition(),
+                moments: technique.job.moments(),
                 look: technique.job.look(),
-                storage: umbrage_wgpu::Storage::default(),
-                generation: umbrage_wgpu::Generation::default(),
+                storage: technique.job.storage,
+                generation: technique.job.generation,
+                lights: vec![first.light.light.into()],
             };
             let renderer = Renderer::new(self.gpu, &set.scene, &settings);
             renderers.push(renderer.map_err(|error| in_technique(technique, error))?);
@@ -134,11 +137,12 @@ impl Bench<'_> {
         let mut before: Option<Before> = None;
         for (k, view) in series.views.iter().enumerate() {
             let range = self.args.shadow_range;
-            let mut judged = Judged::new(truth, &set.pose, view, series.sun, self.args.size, range)?;
+            let mut judged = Judged::new(truth, &set.pose, view, &series.light.light, self.args.size, range)?;
             judged.soften(truth, self.args.sun_angle)?;
             self.bar.inc(1);
             let is_shown = self.shown.contains(&[scene, of, k]);
-            let frame = Frame { pose: &set.pose, view, sun: series.sun, shadows_on: true, tint: false };
+            let frame =
+                Frame { pose: &set.pose, view, light: series.light, more_lights: &[], shadows_on: true, tint: false };
             let points = match series.views.get(k + 1) {
                 Some(next) => points_shared_with(&judged, next),
                 None => Vec::new(),
@@ -170,7 +174,10 @@ impl Bench<'_> {
                 camera: stage::camera_report(&series.camera, view),
                 frame: (series.views.len() > 1).then_some(k as u32),
                 sun_name: series.sun_name.clone(),
-                sun: series.sun.direction().to_array(),
+                sun: match series.light.light {
+                    Light::Directional(sun) => Some(sun.direction().to_array()),
+                    Light::Spot(_) | Light::Point(_) => None,
+                },
                 options: series.options[k].clone(),
                 range_m: [judged.domain.range().0, judged.domain.range().1],
                 scored_pixels: judged.domain.pixels().len(),
@@ -205,13 +212,17 @@ impl Bench<'_> {
         renderer: &mut Renderer,
         series: &Series,
     ) -> Result<()> {
-        let against = umbrage::DirectionalLight::new(-frame.sun.direction())?;
-        let mut plain = |sun| -> Result<_> {
-            let frame = Frame { sun, shadows_on: false, ..*frame };
+        let against = match frame.light.light {
+            Light::Directional(sun) => umbrage::DirectionalLight::new(-sun.direction())?.into(),
+            // Turned off: a lamp has no other side.
+            Light::Spot(_) | Light::Point(_) => Lamp { color: glam::Vec3::ZERO, ..frame.light },
+        };
+        let mut plain = |light| -> Result<_> {
+            let frame = Frame { light, shadows_on: false, ..*frame };
             let wanted = Outputs { picture: true, mask: false, maps: false };
             renderer.render(&frame, wanted)?.picture.ok_or_else(|| Failure::other("the renderer gave no picture"))
         };
-        let plain = Plain { lit: plain(frame.sun)?, dark: plain(against)? };
+        let plain = Plain { lit: plain(frame.light)?, dark: plain(against)? };
         let view = self.views.last();
         let title = view.map_or(String::new(), |view| format!("{} · {}", short(&view.scene), series.camera));
         let mut lines = vec![series.sun_name.clone()];

@@ -1,13 +1,15 @@
 //! Which views are compared: cameras × suns, along paths or a few steps, scene by scene.
 
 use glam::{DQuat, DVec3};
-use umbrage::{DirectionalLight, Projection, View};
+use umbrage::{DirectionalLight, Light, Projection, View};
+use umbrage_render::Lamp;
 use umbrage_scene::{CameraPath, HeightMapOptions, Pose, Scene};
 
 use super::args::CompareArgs;
 use crate::{
     failure::{Failure, Result},
     job::{CameraChoice, SceneJob},
+    lights::{self, NamedLight},
     stage,
 };
 
@@ -76,10 +78,10 @@ pub struct Set {
 pub struct Series {
     /// The camera.
     pub camera: String,
-    /// The sun in words: `own sun, 31° up`.
+    /// The sun in words: `own sun, 31° up`; the name of another light.
     pub sun_name: String,
-    /// The sun.
-    pub sun: DirectionalLight,
+    /// The light.
+    pub light: Lamp,
     /// Frames in order; one for a single view.
     pub views: Vec<View>,
     /// Options of `umbrage render` that show the same; of a walk along a path, all frames at once.
@@ -170,10 +172,22 @@ impl Wish<'_> {
             walks.push(self.walk(name, &choice, &scene, &pose, path.as_ref(), &mut notes)?);
         }
         let any = self.job(name, &CameraChoice::Default)?;
-        let own = stage::sun(&any, &scene, &pose, path.as_ref(), &mut notes)?;
+        let own = self.own_light(&lights::chosen(&any, &scene, &pose, path.as_ref(), &mut notes)?)?;
         let mut series = Vec::new();
         for (number, walk) in walks.iter().enumerate() {
-            for (sun_name, travel) in self.suns_of(own.normalize(), walk, number == 0) {
+            let Light::Directional(sun) = own.lamp.light else {
+                let mut options = walk.options.clone();
+                options.iter_mut().for_each(|frame| frame.push(format!("--light={}", own.name)));
+                series.push(Series {
+                    camera: walk.camera.clone(),
+                    sun_name: own.name.clone(),
+                    light: own.lamp,
+                    views: walk.views.clone(),
+                    options,
+                });
+                continue;
+            };
+            for (sun_name, travel) in self.suns_of(sun.direction(), walk, number == 0) {
                 let mut options = walk.options.clone();
                 for frame in &mut options {
                     frame.push(format!("--sun={},{},{}", travel.x, travel.y, travel.z));
@@ -181,13 +195,31 @@ impl Wish<'_> {
                 series.push(Series {
                     camera: walk.camera.clone(),
                     sun_name,
-                    sun: DirectionalLight::new(travel)?,
+                    light: DirectionalLight::new(travel)?.into(),
                     views: walk.views.clone(),
                     options,
                 });
             }
         }
         Ok(Set { name: name.to_owned(), scene, pose, series, notes })
+    }
+
+    /// The one light that techniques are judged under.
+    fn own_light(&self, lights: &[NamedLight]) -> Result<NamedLight> {
+        let [own] = lights else {
+            let names: Vec<&str> = lights.iter().map(|light| light.name.as_str()).collect();
+            return Err(Failure::input(format!(
+                "--light {}: techniques are judged under one light at a time; name one",
+                names.join(",")
+            )));
+        };
+        if own.lamp.light.position().is_some() && !self.args.suns.is_empty() {
+            return Err(Failure::input(format!(
+                "--suns turns a sun, but --light {} is a spot or point light; leave one of them away",
+                own.name
+            )));
+        }
+        Ok(own.clone())
     }
 
     fn cameras_of(&self, scene: &Scene) -> Result<Vec<CameraChoice>> {
@@ -227,7 +259,7 @@ impl Wish<'_> {
         notes: &mut Vec<String>,
     ) -> Result<Walk> {
         let job = self.job(name, choice)?;
-        let shots = stage::shots(&job, scene, pose, path, notes)?;
+        let shots = stage::places(&job, scene, pose, path, notes)?;
         let camera = match choice {
             CameraChoice::Path { .. } => "path".to_owned(),
             CameraChoice::Named(name) => name.clone(),

@@ -299,7 +299,8 @@ impl Draft {
                 "stabilize" => "tight".into(),
                 "extent-steps" => format!("2^(1/{value})"),
                 "extent-levels" => format!("1/{value} levels"),
-                "fit" | "filter" | "depth-format" => value.clone(),
+                "selection" => format!("by {value}"),
+                "scheme" | "fit" | "filter" | "depth-format" => value.clone(),
                 _ => format!("{key} {value}"),
             };
             label += &format!(" {text}");

@@ -46,33 +46,54 @@ fn geometric_normal(from_eye: vec3f) -> vec3f {
     return normalize(turned / largest);
 }
 
-// Red: visibility of the sun at the pixel's centre. Green: 1, a surface is here.
+// The picture is drawn slice by slice, and triangles are not cut at the slices' borders, nor at the camera's own planes.
+override SLICED: bool = false;
+
+// Whether a pixel belongs to what is drawn now.
+fn is_drawn(in: Surface) -> bool {
+    let depth = dot(in.from_eye, frame.forward);
+    return !SLICED || (umbrage_in_slice(in.position) && depth >= frame.near && depth <= frame.far);
+}
+
+// What the pixel covers. Call in uniform control flow.
+fn footprint_of(in: Surface) -> UmbrageFootprint {
+    return umbrage_footprint(in.position, dpdx(in.from_eye), dpdy(in.from_eye), in.clip.xy);
+}
+
+// Red: visibility of the first light at the pixel's centre. Green: 1, a surface is here.
 @fragment
 fn fs_mask_opaque(in: Surface) -> @location(0) vec2f {
-    return mask_at(in, geometric_normal(in.from_eye));
+    let normal = geometric_normal(in.from_eye);
+    let footprint = footprint_of(in);
+    if !is_drawn(in) {
+        discard;
+    }
+    return mask_at(in, normal, footprint);
 }
 
 @fragment
 fn fs_mask_masked(in: Surface) -> @location(0) vec2f {
     let normal = geometric_normal(in.from_eye);
-    if tested_alpha(in.uv, in.color.a) < material.alpha_cutoff {
+    let footprint = footprint_of(in);
+    if tested_alpha(in.uv, in.color.a) < material.alpha_cutoff || !is_drawn(in) {
         discard;
     }
-    return mask_at(in, normal);
+    return mask_at(in, normal, footprint);
 }
 
-fn mask_at(in: Surface, normal: vec3f) -> vec2f {
-    if dot(normal, frame.to_light) <= 0.0 {
+fn mask_at(in: Surface, normal: vec3f, footprint: UmbrageFootprint) -> vec2f {
+    if dot(normal, towards(frame.lamps[0], in.position)) <= 0.0 {
         return vec2f(0.0, 1.0);
     }
-    let visibility = umbrage_shadow_at_pixel(in.position, normal, in.clip.xy).visibility;
+    let visibility = umbrage_shadow_with(in.position, normal, footprint).visibility;
     return vec2f(with_contact(visibility, in.position, normal), 1.0);
 }
 
-// Contact shadows are as dark as the others, and off where they are.
+// Contact shadows are the first light's, as dark as its others, and off where they are.
 fn with_contact(visibility: f32, position: vec3f, normal: vec3f) -> f32 {
     let strength = select(0.0, umbrage_frames[0].strength, umbrage_frames[0].enabled != 0u);
-    return min(visibility, mix(1.0, contact_visibility(position, normal), strength));
+    let to_light = towards(frame.lamps[0], position);
+    return min(visibility, mix(1.0, contact_visibility(position, normal, to_light), strength));
 }
 
 // The picture's depth, for contact shadows.
@@ -85,7 +106,13 @@ fn fs_depth_masked(in: Surface) {
 
 @fragment
 fn fs_picture_opaque(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
-    return vec4f(shaded(in, front, base_color(in)), 1.0);
+    let base = base_color(in);
+    let geometric = geometric_normal(in.from_eye);
+    let footprint = footprint_of(in);
+    if !is_drawn(in) {
+        discard;
+    }
+    return vec4f(shaded(in, front, base, geometric, footprint), 1.0);
 }
 
 // Alpha becomes coverage: a step one pixel wide around the cutoff. With one sample a pixel it is all or nothing: 0.5.
@@ -95,45 +122,74 @@ override LEAST_COVERAGE: f32 = 0.0;
 fn fs_picture_masked(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let color = base_color(in);
     let coverage = (color.a - material.alpha_cutoff) / max(fwidth(color.a), 1e-4) + 0.5;
-    let lit = shaded(in, front, color);
-    if coverage <= LEAST_COVERAGE {
+    let geometric = geometric_normal(in.from_eye);
+    let footprint = footprint_of(in);
+    if coverage <= LEAST_COVERAGE || !is_drawn(in) {
         discard;
     }
-    return vec4f(lit, min(coverage, 1.0));
+    return vec4f(shaded(in, front, color, geometric, footprint), min(coverage, 1.0));
 }
 
 @fragment
 fn fs_picture_blend(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let color = base_color(in);
-    return vec4f(shaded(in, front, color), clamp(color.a, 0.0, 1.0));
+    let geometric = geometric_normal(in.from_eye);
+    let footprint = footprint_of(in);
+    if !is_drawn(in) {
+        discard;
+    }
+    return vec4f(shaded(in, front, color, geometric, footprint), clamp(color.a, 0.0, 1.0));
 }
 
 fn base_color(in: Surface) -> vec4f {
     return material.base_color * in.color * textureSample(base_color_texture, smooth_sampler, in.uv);
 }
 
-// Lambert's sun, a sky from above and light from the ground below. Display light, tone mapped.
-fn shaded(in: Surface, front: bool, base: vec4f) -> vec3f {
-    let geometric = geometric_normal(in.from_eye);
+// The unit vector from a position towards a light.
+fn towards(lamp: Lamp, position: vec3f) -> vec3f {
+    let way = lamp.position - position;
+    return select(lamp.to_light, way / max(length(way), 1e-20), lamp.range > 0.0);
+}
+
+// What a local light has lost on its way (see lamps.rs): 1 at the lamp, 0 at its range and at the rim of its cone.
+fn falloff(lamp: Lamp, position: vec3f) -> f32 {
+    let way = position - lamp.position;
+    let share = length(way) / max(lamp.range, 1e-20);
+    let window = max(1.0 - share * share, 0.0);
+    let cosine = -dot(lamp.to_light, way) / max(length(way), 1e-20);
+    let cone = select(smoothstep(lamp.outer_cosine, lamp.inner_cosine, cosine), 1.0, lamp.outer_cosine < -1.0);
+    return select(1.0, cone * window * window / (1.0 + share * share / 0.09), lamp.range > 0.0);
+}
+
+// Lambert's law for each light, a sky from above and light from the ground below. Display light, tone mapped.
+fn shaded(in: Surface, front: bool, base: vec4f, geometric: vec3f, footprint: UmbrageFootprint) -> vec3f {
     let smooth_normal = normalize(select(-in.normal, in.normal, front));
-    let lookup = lookup_normal(geometric);
-    let shadow = umbrage_shadow_at_pixel(in.position, lookup, in.clip.xy);
-    let light = umbrage_light_of(0u, with_contact(shadow.visibility, in.position, lookup));
-    let sun = SUN * max(dot(smooth_normal, frame.to_light), 0.0) * light;
+    var light = vec3f(0.0);
+    var tint = vec3f(1.0);
+    let contact = with_contact(1.0, in.position, lookup_normal(geometric, towards(frame.lamps[0], in.position)));
+    for (var i = 0u; i < frame.lamp_count + umbrage_zero(in.position.x); i++) {
+        let lamp = frame.lamps[i];
+        let to_light = towards(lamp, in.position);
+        let shadow = umbrage_shadow_of_with(i, in.position, lookup_normal(geometric, to_light), footprint);
+        let facing = max(dot(smooth_normal, to_light), 0.0) * falloff(lamp, in.position);
+        let visibility = min(shadow.visibility, select(1.0, contact, i == 0u));
+        light += SUN * lamp.color * facing * umbrage_light_of(i, visibility);
+        tint = select(tint, shadow.tint, i == 0u);
+    }
     // Brighter on the sun's side of the sky, so that corners can be told apart in the shade.
-    let side = 1.0 + 0.15 * dot(smooth_normal, frame.to_light);
-    let ambient = side * mix(GROUND_AMBIENT, SKY_AMBIENT, 0.5 * smooth_normal.y + 0.5);
-    return tone_mapped((base.rgb * (sun + ambient) + material.emissive) * shadow.tint);
+    let side = 1.0 + 0.15 * dot(smooth_normal, frame.to_sun);
+    let ambient = frame.daylight * side * mix(GROUND_AMBIENT, SKY_AMBIENT, 0.5 * smooth_normal.y + 0.5);
+    return tone_mapped((base.rgb * (light + ambient) + material.emissive) * tint);
 }
 
 // Facets of a smooth surface turn away from the light one by one, which would cut its terminator into jags. For the picture
 // a facet that turns away is looked up as if it were grazed: its neighbours shade it or do not, and the smooth normal
 // darkens it. Surfaces whose two normals agree are not concerned. The mask knows nothing of this.
-fn lookup_normal(geometric: vec3f) -> vec3f {
+fn lookup_normal(geometric: vec3f, to_light: vec3f) -> vec3f {
     // Cosine of about 84 degrees. Lower: jags come back. Higher: light leaks past terminators.
     const LEAST_FACING: f32 = 0.1;
-    let facing = dot(geometric, frame.to_light);
-    return normalize(geometric + max(LEAST_FACING - facing, 0.0) * frame.to_light);
+    let facing = dot(geometric, to_light);
+    return normalize(geometric + max(LEAST_FACING - facing, 0.0) * to_light);
 }
 
 struct SkyPixel {
@@ -157,9 +213,9 @@ fn fs_sky(in: SkyPixel) -> @location(0) vec4f {
     let up = mix(horizon, zenith, smoothstep(0.0, 0.9, pow(max(ray.y, 0.0), 0.6)));
     let sky = mix(up, below, smoothstep(0.0, 0.12, -ray.y));
     // The sun is half a degree wide; its glow is for the eye only.
-    let towards_sun = dot(ray, frame.to_light);
+    let towards_sun = dot(ray, frame.to_sun);
     let glow = 0.25 * pow(max(towards_sun, 0.0), 64.0) + 4.0 * smoothstep(0.99996, 0.99998, towards_sun);
-    return vec4f(tone_mapped(sky + vec3f(1.0, 0.93, 0.8) * glow), 1.0);
+    return vec4f(tone_mapped(frame.daylight * sky + vec3f(1.0, 0.93, 0.8) * glow), 1.0);
 }
 
 // Narkowicz's fit of the ACES film curve (2015), at the exposure that suits SUN.

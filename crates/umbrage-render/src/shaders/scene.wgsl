@@ -10,12 +10,32 @@ struct Frame {
     is_orthographic: f32,
     // Where the camera looks, a unit vector.
     forward: vec3f,
-    // Towards the sun, a unit vector.
-    to_light: vec3f,
+    lamp_count: u32,
+    // Towards the first sun, a unit vector; 0 if there is none.
+    to_sun: vec3f,
+    // How bright the sky is: 1 by day, less without a sun.
+    daylight: f32,
     // The ray through the middle of the image is `ray_center`; a step of 1 in NDC x and y adds the other two.
     ray_center: vec3f,
+    // The camera's own planes, as view depths in metres.
+    near: f32,
     ray_right: vec3f,
+    far: f32,
     ray_up: vec3f,
+    lamps: array<Lamp, 8>,
+}
+
+// A light; range is 0 for a sun.
+struct Lamp {
+    // Relative to the origin.
+    position: vec3f,
+    range: f32,
+    // Towards a sun; against a spot light's axis.
+    to_light: vec3f,
+    outer_cosine: f32,
+    // Linear RGB.
+    color: vec3f,
+    inner_cosine: f32,
 }
 
 struct Material {
@@ -39,6 +59,8 @@ struct Instance {
     @location(4) row_x: vec4f,
     @location(5) row_y: vec4f,
     @location(6) row_z: vec4f,
+    // Which copy of a caster it is; see `umbrage_cast_copy`.
+    @location(7) code: u32,
 }
 
 fn position_from_local(instance: Instance, local: vec3f) -> vec3f {

@@ -43,9 +43,11 @@ pub fn settings() -> RenderSettings {
         samples: Samples::Four,
         softness: Softness::default(),
         transition: Transition::default(),
+        moments: Default::default(),
         look: umbrage_render::Look::default(),
         storage: Storage::default(),
         generation: Generation::default(),
+        lights: vec![umbrage_wgpu::LightSlot::Single],
     }
 }
 
@@ -148,7 +150,7 @@ impl Stage {
     }
 
     pub fn frame<'a>(pose: &'a Pose, view: &'a View, sun: DirectionalLight) -> Frame<'a> {
-        Frame { pose, view, sun, shadows_on: true, tint: false }
+        Frame { pose, view, light: sun.into(), more_lights: &[], shadows_on: true, tint: false }
     }
 
     pub fn render(&mut self, view: &View, sun: DirectionalLight, outputs: Outputs) -> Rendered {

@@ -7,6 +7,8 @@ pub const LEAST_VARIANCE: f32 = 5e-7;
 /// `moments::MOMENT_BIAS`.
 pub const MOMENT_BIAS: f32 = 1e-6;
 
+/// `moments::MOST_WARPED_SPREAD`.
+pub const MOST_WARPED_SPREAD: f32 = 0.05;
 /// `moments::PLANE_BIAS`.
 pub const PLANE_BIAS: f32 = 2.0;
 
@@ -61,20 +63,32 @@ pub fn hamburger(moments: [f32; 4], t: f32) -> f32 {
     }
 }
 
-/// `moments::lit_share`: the lit share at a receiver at `t`; `spread` is how much depth may differ within a texel, `plane` how
-/// much the receiver's plane does within the filter.
+/// `moments::Spread`: how uncertain a receiver's z is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spread {
+    /// Standard deviation within a texel.
+    pub texel: f32,
+    /// The same of the receiver's plane within the filter.
+    pub plane: f32,
+    /// What was taken off as constant bias.
+    pub bias: f32,
+}
+
+/// `moments::lit_share`: the lit share at a receiver at `t`.
 #[must_use]
-pub fn lit_share(kind: FilterKind, exponents: [f32; 2], moments: [f32; 4], t: f32, spread: f32, plane: f32) -> f32 {
-    let warped = (exponents[0] * t).exp();
-    let positive = || chebyshev(moments[0], moments[1], (spread * exponents[0] * warped).powi(2), warped);
+pub fn lit_share(kind: FilterKind, exponents: [f32; 2], moments: [f32; 4], t: f32, spread: Spread) -> f32 {
+    let unbiased = t + spread.bias;
+    let warped = (exponents[0] * unbiased).exp();
+    let least = |exponent: f32, warped: f32| ((spread.texel * exponent).min(MOST_WARPED_SPREAD) * warped).powi(2);
+    let positive = || chebyshev(moments[0], moments[1], least(exponents[0], warped), warped);
     match kind {
-        FilterKind::Vsm => chebyshev(moments[0], moments[1], (spread * spread).max(LEAST_VARIANCE), t),
-        FilterKind::Msm => hamburger(moments, t - PLANE_BIAS * plane),
+        FilterKind::Vsm => chebyshev(moments[0], moments[1], spread.texel.powi(2).max(LEAST_VARIANCE), t),
+        FilterKind::Msm => hamburger(moments, t - PLANE_BIAS * spread.plane),
         FilterKind::Esm => (moments[0] / warped).clamp(0.0, 1.0),
         FilterKind::Evsm2 => positive(),
         _ => {
-            let negative = -(-exponents[1] * t).exp();
-            positive().min(chebyshev(moments[2], moments[3], (spread * exponents[1] * negative).powi(2), negative))
+            let negative = -(-exponents[1] * unbiased).exp();
+            positive().min(chebyshev(moments[2], moments[3], least(exponents[1], negative), negative))
         }
     }
 }
@@ -85,11 +99,17 @@ pub fn without_bleeding(lit: f32, bleeding: f32) -> f32 {
     ((lit - bleeding) / (1.0 - bleeding)).clamp(0.0, 1.0)
 }
 
+/// `moments::blur_reach`: texels to each side that a blur reads.
+#[must_use]
+pub fn blur_reach(radius: f32) -> f32 {
+    (radius * radius + 0.5).sqrt().floor()
+}
+
 /// `moments::blur_weight`: the weight of the texel `k` texels aside in a blur of half width `radius` texels.
 #[must_use]
 pub fn blur_weight(k: f32, radius: f32) -> f32 {
-    let n = radius.floor();
-    let share = (radius * radius - n * n) / (2.0 * n + 1.0);
+    let n = blur_reach(radius);
+    let share = (radius * radius + 0.5 - n * n) / (2.0 * n + 1.0);
     let tent = |n: f32| (1.0 - k.abs() / n).max(0.0) / n;
     tent(n) * (1.0 - share) + tent(n + 1.0) * share
 }

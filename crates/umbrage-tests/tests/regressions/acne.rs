@@ -36,7 +36,7 @@ fn measure(world: World) -> Option<[AcneAndLeak; 2]> {
         for elevation in ELEVATIONS {
             let (sine, cosine) = elevation.to_radians().sin_cos();
             let sun = DirectionalLight::new(-(bearing * cosine + DVec3::Y * sine)).expect("a sun");
-            let frame = Frame { sun, ..stage.frame(&view, false) };
+            let frame = Frame { light: sun.into(), ..stage.frame(&view, false) };
             let outputs = Outputs { mask: true, ..Outputs::default() };
             let rendered = renderer.render(&frame, outputs).expect("a frame");
             let mask = rendered.mask.expect("a mask");

@@ -4,4 +4,5 @@
 mod acne;
 mod ceilings;
 mod goldens;
+mod paths;
 mod robot_war;

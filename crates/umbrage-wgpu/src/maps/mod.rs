@@ -1,205 +1,183 @@
-//! The maps: their texture, the passes that draw them, two kinds of bind group.
+//! The maps: their textures, the passes that draw them, the bind groups.
 
+pub(crate) mod choose;
+mod groups;
 mod lights;
+mod passes;
+mod slices;
 pub(crate) mod storage;
+mod targets;
+
+use std::num::NonZeroU32;
 
 use umbrage::{MAX_SPLITS, ShadowPlan, ShadowSettings};
-use umbrage_shaders::{Maps, layout};
+use umbrage_shaders::{Bound, Casters, Maps};
 
+use choose::{Abilities, Chosen};
+use groups::Uniforms;
+pub use passes::MapPass;
+pub use slices::Slice;
 use storage::{Arrangement, Tile};
+use targets::Targets;
 
+use crate::moments::{MomentStorage, Moments};
 use crate::uniforms::{Place, Viewport};
 use crate::{Error, FrameOptions, Generation, Result, ShadowMapsOptions, Storage};
 
 /// Features that make shadows better where an adapter has them: request `adapter.features() & optional_features()`.
 ///
-/// `DEPTH_CLIP_CONTROL` lets the near plane lie at the receivers ([`ShadowMaps::depth_clamp`]).
+/// `DEPTH_CLIP_CONTROL` lets the near plane lie at the receivers ([`ShadowMaps::depth_clamp`]), `MULTIVIEW` (with a
+/// `max_multiview_view_count` of 2 or more in the limits) draws the layers of [`Generation::Layered`] and [`Generation::Mixed`] at
+/// once, `CLIP_DISTANCES` keeps the tiles of [`Generation::Instanced`] and [`Generation::Mixed`] apart,
+/// `FLOAT32_FILTERABLE` lets the hardware filter moments in full precision ([`MomentStorage`]).
 #[must_use]
 pub fn optional_features() -> wgpu::Features {
     wgpu::Features::DEPTH_CLIP_CONTROL
+        | wgpu::Features::MULTIVIEW
+        | wgpu::Features::CLIP_DISTANCES
+        | wgpu::Features::FLOAT32_FILTERABLE
 }
 
 /// The shadow maps of one light for one view, or of several lights ([`ShadowMaps::prepare_lights`]), on the GPU.
 ///
-/// [`Storage`] says where maps are kept, [`Generation`] how they are drawn. Each frame: [`ShadowMaps::prepare`], one pass per split from
-/// [`ShadowMaps::begin_split`], then any pass of the app with [`ShadowMaps::receiver_bind_group`]. Several views of one scene are as
-/// many `ShadowMaps`, each planned for its view.
+/// [`Storage`] says where maps are kept, [`Generation`] how they are drawn. Each frame: [`ShadowMaps::prepare`], every pass of
+/// [`ShadowMaps::passes`] from [`ShadowMaps::begin_pass`], then any pass of the app with [`ShadowMaps::receiver_bind_group`]. With
+/// [`Storage::Reused`] the app's pass is taken apart into slices, each after its map: see [`ShadowMaps::slice_bind_group`]. Several views of
+/// one scene are as many `ShadowMaps`, each planned for its view.
 #[derive(Debug)]
 pub struct ShadowMaps {
     options: ShadowMapsOptions,
+    notes: Vec<String>,
     places: Vec<Place>,
+    /// The viewport of passes that draw several layers at once.
+    viewport: Viewport,
+    passes: Vec<MapPass>,
+    multiview_mask: Option<NonZeroU32>,
     depth_loads: bool,
     depth_clamp: bool,
-    texture: wgpu::Texture,
-    layers: Vec<wgpu::TextureView>,
-    frame_buffer: wgpu::Buffer,
-    caster_buffer: wgpu::Buffer,
-    caster_stride: u64,
-    caster_layout: wgpu::BindGroupLayout,
-    caster_bind_groups: Vec<wgpu::BindGroup>,
-    receiver_layout: wgpu::BindGroupLayout,
-    receiver_bind_group: wgpu::BindGroup,
+    colour_target: Option<wgpu::ColorTargetState>,
+    targets: Targets,
+    moments: Option<Moments>,
+    casters: Uniforms,
+    receivers: Uniforms,
 }
 
 impl ShadowMaps {
-    /// Makes the texture, buffers and bind groups. Before the first [`ShadowMaps::prepare`] every
+    /// Makes the textures, buffers and bind groups. Before the first [`ShadowMaps::prepare`] every
     /// answer is 0.
     ///
     /// # Errors
-    /// [`Error::SplitCount`], [`Error::MapTooSmall`], [`Error::MapTooLarge`], [`Error::TooManyLayers`], [`Error::TooManyLights`],
-    /// [`Error::LightsNeedArray`].
+    /// [`Error::SplitCount`], [`Error::MapTooSmall`], [`Error::MapTooLarge`], [`Error::TooManyLayers`], [`Error::AtlasTooLarge`],
+    /// [`Error::TooManyTextures`], [`Error::TooManyLights`], [`Error::LightsNeedArray`], [`Error::ConflictingOptions`],
+    /// [`Error::MissingFeature`]; for filters of moments also [`Error::Samples`], [`Error::NoFilterableFloats`],
+    /// [`Error::NoDepthLoads`], [`Error::MomentsNeedArray`] and [`Error::MomentsNeedOneSun`].
     pub fn new(device: &wgpu::Device, options: &ShadowMapsOptions) -> Result<Self> {
-        check_sizes(options, &device.limits())?;
-        let map_sizes = lights::map_sizes(options, &device.limits())?;
+        let limits = device.limits();
+        check_sizes(options, &limits)?;
+        check_samples(options)?;
+        let abilities = Abilities::of(device);
+        let Chosen { storage, generation, notes } = choose::choose(options, abilities)?;
+        let options = ShadowMapsOptions { storage, generation, ..options.clone() };
+        let sizes = &lights::map_sizes(&options, &limits)?;
+        let passes = MapPass::all(generation, sizes.len(), abilities);
+        let arrangement = Arrangement::new(storage, generation, &passes, sizes, limits.max_texture_dimension_2d)?;
+        check_limits(device, storage, &arrangement)?;
+
+        check_moments(&options, sizes.len())?;
+
+        let targets = Targets::new(device, &options, &arrangement, &passes);
         let backend = device.adapter_info().backend;
-        let storage = if options.storage == Storage::Auto { Storage::Array } else { options.storage };
-        let Arrangement { tiles, layers, layer_texels } =
-            Arrangement::new(storage, &map_sizes, device.limits().max_texture_dimension_2d)?;
-        let layer_count = layer_count(layers, layer_texels, backend);
-        let limit = device.limits().max_texture_array_layers;
-        if layer_count > limit {
-            return Err(Error::TooManyLayers { count: layer_count, limit });
+        let depth_loads = backend != wgpu::Backend::Gl;
+        let viewport = Viewport::around(sizes.iter().copied().max().unwrap_or(0), largest_viewport(device));
+        let mut places = places(device, sizes, &arrangement.tiles);
+        if generation == Generation::Layered {
+            places.iter_mut().for_each(|place| place.viewport = viewport);
         }
-
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("ShadowMaps::depth"),
-            size: wgpu::Extent3d {
-                width: layer_texels[0],
-                height: layer_texels[1],
-                depth_or_array_layers: layer_count,
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: options.depth_format.texture_format(),
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
-        let layers = (0..layers)
-            .map(|layer| {
-                texture.create_view(&wgpu::TextureViewDescriptor {
-                    label: Some("ShadowMaps::layer"),
-                    dimension: Some(wgpu::TextureViewDimension::D2),
-                    base_array_layer: layer,
-                    array_layer_count: Some(1),
-                    ..Default::default()
-                })
+        let moments = (options.filter.is_prefiltered())
+            .then(|| {
+                let layers = targets::layers_needed(device, storage, &arrangement);
+                let depths = targets.splits(&arrangement);
+                Moments::new(device, &options, [arrangement.layer_texels[0], layers], &depths)
             })
-            .collect();
-
-        let uniform = |label, size| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
-        let split_bytes = size_of::<layout::Split>() as u64;
-        let caster_stride =
-            split_bytes.next_multiple_of(u64::from(device.limits().min_uniform_buffer_offset_alignment));
-        let frame_buffer = uniform("ShadowMaps::frame", lights::frame_bytes(options));
-        let caster_buffer = uniform("ShadowMaps::casters", caster_stride * map_sizes.len() as u64);
-
-        let caster_layout = caster_layout(device);
-        let caster_bind_groups = (0..map_sizes.len() as u64)
-            .map(|split| {
-                device.create_bind_group(&wgpu::BindGroupDescriptor {
-                    label: Some("ShadowMaps::caster"),
-                    layout: &caster_layout,
-                    entries: &[wgpu::BindGroupEntry {
-                        binding: 0,
-                        resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                            buffer: &caster_buffer,
-                            offset: split * caster_stride,
-                            size: wgpu::BufferSize::new(split_bytes),
-                        }),
-                    }],
-                })
-            })
-            .collect();
-
-        let receiver_layout = receiver_layout(device, lights::frame_bytes(options));
-        let receiver_bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("ShadowMaps::receiver"),
-            layout: &receiver_layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: frame_buffer.as_entire_binding() },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::TextureView(&texture.create_view(&wgpu::TextureViewDescriptor {
-                        label: Some("ShadowMaps::maps"),
-                        dimension: Some(wgpu::TextureViewDimension::D2Array),
-                        ..Default::default()
-                    })),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 2,
-                    resource: wgpu::BindingResource::Sampler(&sampler(device, options)),
-                },
-            ],
-        });
-
+            .transpose()?;
         Ok(Self {
-            options: ShadowMapsOptions { storage, generation: Generation::PerSplit, ..options.clone() },
-            places: places(device, &map_sizes, &tiles),
-            depth_loads: backend != wgpu::Backend::Gl,
+            notes,
+            places,
+            viewport,
+            multiview_mask: targets::multiview_mask(generation, &passes),
+            depth_loads,
             depth_clamp: device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL),
-            texture,
-            layers,
-            frame_buffer,
-            caster_buffer,
-            caster_stride,
-            caster_layout,
-            caster_bind_groups,
-            receiver_layout,
-            receiver_bind_group,
+            colour_target: options.depth_format.is_colour().then(|| options.depth_format.texture_format().into()),
+            casters: Uniforms::of_casters(device, &passes),
+            receivers: Uniforms::of_receivers(device, &options, &targets, depth_loads, moments.as_ref()),
+            targets,
+            moments,
+            passes,
+            options,
         })
     }
 
     /// Hands a frame's plan to the GPU. Takes effect with the next submission to `queue`.
     ///
     /// # Errors
-    /// [`Error::PlanMismatch`] if the plan was made for other maps, [`Error::InvalidPlan`] or [`Error::InvalidSplit`] if it
-    /// holds a number that cannot be used, [`Error::InvalidFrameOption`]. Nothing has been written then.
+    /// [`Error::PlanMismatch`] if the plan was made for other maps, [`Error::ConflictingOptions`] if it blends splits and there is only
+    /// one map at a time, [`Error::InvalidPlan`] or [`Error::InvalidSplit`] if it holds a number that cannot be used,
+    /// [`Error::InvalidFrameOption`]. Nothing has been written then.
     pub fn prepare(&mut self, queue: &wgpu::Queue, plan: &ShadowPlan, options: &FrameOptions) -> Result<()> {
         self.prepare_lights(queue, &[plan], options)
     }
 
-    /// Begins the pass that draws split `split`: its map is cleared, viewport and scissor are set and have to stay. Bind
-    /// [`ShadowMaps::caster_bind_group`] of the same split and draw its casters in any order. Begin every split's pass, the first one
-    /// first: it clears what the others share.
+    /// The passes that draw the maps, in order: with [`Generation::PerSplit`] and [`Generation::Multipass`] one for each split.
+    #[must_use]
+    pub fn passes(&self) -> &[MapPass] {
+        &self.passes
+    }
+
+    /// Begins pass `pass` of [`ShadowMaps::passes`]: its maps are cleared, viewport and scissor are set and have to stay. Bind
+    /// [`ShadowMaps::caster_bind_group`] of the same pass and draw what [`MapPass::casters`] says in any order. Begin every pass, the first
+    /// one first: it clears what the others share.
     ///
     /// # Panics
-    /// If `split` is not less than [`ShadowMaps::map_count`].
-    pub fn begin_split<'e>(
+    /// If there is no such pass.
+    pub fn begin_pass<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
-        split: usize,
+        pass: usize,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'e> {
+        let mut render = self.targets.begin(encoder, pass, self.multiview_mask, timestamp_writes);
+        let split = self.passes[pass].splits().start;
         let Place { tile, viewport } = self.places[split];
-        let shared = self.options.storage == Storage::Atlas && split > 0;
-        let load = if shared { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(1.0) };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("ShadowMaps::split"),
-            color_attachments: &[],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.layers[tile.layer as usize],
-                depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
-                stencil_ops: None,
-            }),
-            timestamp_writes,
-            occlusion_query_set: None,
-            multiview_mask: None,
-        });
-        let (size, edge) = (self.options.map_sizes[split % self.splits()], viewport.edge as f32);
-        let [left, top] = tile.corner.map(|texels| texels as f32 - viewport.guard as f32);
-        pass.set_viewport(left, top, edge, edge, 0.0, 1.0);
-        pass.set_scissor_rect(tile.corner[0], tile.corner[1], size, size);
-        pass
+        match self.options.generation {
+            // The whole layer is the viewport: clip distances cut the tiles out of it.
+            Generation::Instanced | Generation::Mixed => {}
+            Generation::Layered => {
+                let (corner, edge) = (-(self.viewport.guard as f32), self.viewport.edge as f32);
+                render.set_viewport(corner, corner, edge, edge, 0.0, 1.0);
+                render.set_scissor_rect(0, 0, tile.layer_texels[0], tile.layer_texels[1]);
+            }
+            Generation::Auto | Generation::PerSplit | Generation::Multipass => {
+                let (size, edge) = (self.options.map_sizes[split % self.splits()], viewport.edge as f32);
+                let [left, top] = tile.corner.map(|texels| texels as f32 - viewport.guard as f32);
+                render.set_viewport(left, top, edge, edge, 0.0, 1.0);
+                render.set_scissor_rect(tile.corner[0], tile.corner[1], size, size);
+            }
+        }
+        render
+    }
+
+    /// Turns the depths that were drawn into what receivers read: for filters of moments conversion, blur and mip levels
+    /// ([`crate::Filter::is_prefiltered`]), for all others nothing. Call it after the casters and before any receiver.
+    pub fn filter(&self, encoder: &mut wgpu::CommandEncoder) {
+        if let Some(moments) = &self.moments {
+            moments.record(encoder);
+        }
+    }
+
+    /// What moments are kept in on this device; `None` for filters that compare depth.
+    #[must_use]
+    pub fn moment_storage(&self) -> Option<MomentStorage> {
+        self.moments.as_ref().map(Moments::storage)
     }
 
     /// The number of splits; of a point light, of each face.
@@ -209,21 +187,49 @@ impl ShadowMaps {
     }
 
     /// What a vertex shader needs to draw casters; `group` is the index at which the app binds
-    /// [`ShadowMaps::caster_bind_group`].
+    /// [`ShadowMaps::caster_bind_group`]. It stands before everything else in its module. The vertex shader is the same for every path:
+    ///
+    /// ```wgsl
+    /// @vertex fn vertex(@location(0) position: vec3f, copy: UmbrageCopy) -> UmbrageCast {
+    ///     return umbrage_cast(position, copy);
+    /// }
+    /// ```
     #[must_use]
     pub fn caster_wgsl(&self, group: u32) -> String {
-        umbrage_shaders::caster(group)
+        self.caster_wgsl_with(group, "")
+    }
+
+    /// The same for vertex shaders that have more to return: `members` joins the struct `UmbrageCast`, for example
+    /// `"@location(0) uv: vec2f,"`.
+    #[must_use]
+    pub fn caster_wgsl_with(&self, group: u32, members: &str) -> String {
+        let casters = match self.options.generation {
+            Generation::Auto | Generation::PerSplit | Generation::Multipass => Casters::default(),
+            Generation::Layered => Casters { views: true, tiles: false },
+            Generation::Instanced => Casters { views: false, tiles: true },
+            Generation::Mixed => Casters { views: true, tiles: true },
+        };
+        umbrage_shaders::caster(group, casters, members)
     }
 
     /// What any shader needs to ask for visibility; `group` is the index at which the app binds
     /// [`ShadowMaps::receiver_bind_group`]. On GL and WebGL2, where depth textures cannot be loaded from, [`crate::Filter::Pcss`] is
-    /// then [`crate::Filter::Disc`].
+    /// then [`crate::Filter::Disc`], unless the format is [`crate::DepthFormat::R32Float`].
     #[must_use]
     pub fn receiver_wgsl(&self, group: u32) -> String {
-        umbrage_shaders::receiver(
-            group,
-            Maps { without_loads: !self.depth_loads, frames: lights::frame_count(&self.options) as u32 },
-        )
+        let bound = match self.options.storage {
+            Storage::Separate => Bound::Separate(self.splits()),
+            Storage::Cube => Bound::Cube,
+            Storage::Auto | Storage::Array | Storage::Atlas | Storage::Reused => Bound::Array,
+        };
+        let maps = Maps {
+            bound,
+            r32f: self.options.depth_format.is_colour(),
+            without_loads: !self.depth_loads,
+            frames: lights::frame_count(&self.options) as u32,
+            moments: self.moments.as_ref().map(Moments::maps),
+        };
+        umbrage_shaders::receiver(group, maps)
     }
 
     /// What the maps were made with; where the options left a choice, what was chosen.
@@ -232,26 +238,33 @@ impl ShadowMaps {
         &self.options
     }
 
-    /// Planner settings that fit these maps: their sizes, their filter's radius and whether depth is clamped. Everything else,
-    /// `image_size` in the first place, is the default and the app's to change.
+    /// What was asked for and the device could not do, with what was done instead.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Planner settings that fit these maps: their sizes, their filter's radius, whether depth is clamped, and no blend where there is only
+    /// one map at a time. Everything else, `image_size` in the first place, is the default and the app's to change.
     #[must_use]
     pub fn matching_settings(&self) -> ShadowSettings {
-        ShadowSettings {
+        let mut settings = ShadowSettings {
             map_sizes: self.options.map_sizes.clone(),
             filter_radius: self.options.filter.radius_texels(),
             depth_clamp: self.depth_clamp,
             ..ShadowSettings::default()
+        };
+        if self.options.storage == Storage::Reused {
+            settings.blend = 0.0;
         }
+        settings
     }
 
-    /// Bytes of the depth texture.
+    /// Bytes of all maps, of depth buffers beside maps that are colours, and for filters of moments of these with their levels and of the
+    /// texture between two blurs.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        let size = self.texture.size();
-        u64::from(size.width)
-            * u64::from(size.height)
-            * u64::from(size.depth_or_array_layers)
-            * self.options.depth_format.texel_bytes()
+        self.targets.bytes() + self.moments.as_ref().map_or(0, Moments::bytes)
     }
 
     /// Whether depth is not clipped: what `umbrage::ShadowSettings::depth_clamp` wants. True if the device was requested with
@@ -261,7 +274,7 @@ impl ShadowMaps {
         self.depth_clamp
     }
 
-    /// The layer of [`ShadowMaps::depth_texture`] that holds the map of split `split`, and the map's upper left corner there in
+    /// The layer of [`ShadowMaps::map_texture`] that holds the map of split `split`, and the map's upper left corner there in
     /// texels. The map is a square of `map_sizes[split]` texels.
     ///
     /// # Panics
@@ -269,40 +282,52 @@ impl ShadowMaps {
     #[must_use]
     pub fn map_place(&self, split: usize) -> (u32, [u32; 2]) {
         let tile = self.places[split].tile;
-        (tile.layer, tile.corner)
+        (self.targets.layer(tile.layer), tile.corner)
     }
 
-    /// The maps themselves, each where [`ShadowMaps::map_place`] says. Can be copied from.
+    /// The texture that holds the map of split `split`, where [`ShadowMaps::map_place`] says. Can be copied from, but not with several
+    /// samples a texel.
+    ///
+    /// # Panics
+    /// If `split` is not less than [`ShadowMaps::splits`].
     #[must_use]
-    pub fn depth_texture(&self) -> &wgpu::Texture {
-        &self.texture
+    pub fn map_texture(&self, split: usize) -> &wgpu::Texture {
+        self.targets.map(self.places[split].tile.layer)
     }
 
     /// Layout of the group that [`ShadowMaps::caster_wgsl`] declares.
     #[must_use]
     pub fn caster_layout(&self) -> &wgpu::BindGroupLayout {
-        &self.caster_layout
+        &self.casters.layout
     }
 
-    /// The group to bind while drawing the casters of split `split`.
+    /// The group to bind while drawing the casters of pass `pass`.
     ///
     /// # Panics
-    /// If `split` is not less than [`ShadowMaps::map_count`].
+    /// If there is no such pass.
     #[must_use]
-    pub fn caster_bind_group(&self, split: usize) -> &wgpu::BindGroup {
-        &self.caster_bind_groups[split]
+    pub fn caster_bind_group(&self, pass: usize) -> &wgpu::BindGroup {
+        &self.casters.groups[pass]
     }
 
     /// Depth state for a pipeline that draws casters. It has no slope bias: receivers know their own slope.
     #[must_use]
     pub fn caster_depth_stencil(&self) -> wgpu::DepthStencilState {
+        let format = self.options.depth_format;
+        let format = if format.is_colour() { crate::DepthFormat::D32Float } else { format };
         wgpu::DepthStencilState {
-            format: self.options.depth_format.texture_format(),
+            format: format.texture_format(),
             depth_write_enabled: Some(true),
             depth_compare: Some(wgpu::CompareFunction::LessEqual),
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }
+    }
+
+    /// Multisample state for a pipeline that draws casters: as many samples as [`crate::ShadowMapsOptions::samples`].
+    #[must_use]
+    pub fn caster_multisample(&self) -> wgpu::MultisampleState {
+        wgpu::MultisampleState { count: self.options.samples, ..Default::default() }
     }
 
     /// Primitive state for a pipeline that draws casters: triangle lists, both faces (single-sided walls cast, too).
@@ -311,17 +336,61 @@ impl ShadowMaps {
         wgpu::PrimitiveState { cull_mode: None, unclipped_depth: self.depth_clamp, ..Default::default() }
     }
 
+    /// Colour targets of a pipeline that draws casters: none, but one with [`crate::DepthFormat::R32Float`]. Casters then need a fragment
+    /// shader that returns `umbrage_caster_depth(at)` of its `@builtin(position)` at location 0; one that is there anyway, to discard,
+    /// may return it in any format.
+    #[must_use]
+    pub fn caster_targets(&self) -> &[Option<wgpu::ColorTargetState>] {
+        match &self.colour_target {
+            Some(_) => std::slice::from_ref(&self.colour_target),
+            None => &[],
+        }
+    }
+
+    /// Multiview mask of a pipeline that draws casters.
+    #[must_use]
+    pub fn caster_multiview_mask(&self) -> Option<NonZeroU32> {
+        self.multiview_mask
+    }
+
     /// Layout of the group that [`ShadowMaps::receiver_wgsl`] declares, visible to vertex, fragment and compute shaders.
     #[must_use]
     pub fn receiver_layout(&self) -> &wgpu::BindGroupLayout {
-        &self.receiver_layout
+        &self.receivers.layout
     }
 
-    /// The group to bind where visibility is asked for.
+    /// The group to bind where visibility is asked for. With [`Storage::Reused`] it answers for whatever map was drawn last: bind
+    /// [`ShadowMaps::slice_bind_group`] instead.
     #[must_use]
     pub fn receiver_bind_group(&self) -> &wgpu::BindGroup {
-        &self.receiver_bind_group
+        &self.receivers.groups[0]
     }
+
+    /// With [`Storage::Reused`], the group to bind after pass `split` and before the next: visibility is that of the slice whose map is
+    /// there, and `umbrage_in_slice(position)` says what to discard because it belongs to another. Draw slices front to back, each with the
+    /// matrix and the depth range of its [`Slice`] ([`Slice::all`]). With any other storage it is [`ShadowMaps::receiver_bind_group`].
+    ///
+    /// # Panics
+    /// If `split` is not less than [`ShadowMaps::splits`].
+    #[must_use]
+    pub fn slice_bind_group(&self, split: usize) -> &wgpu::BindGroup {
+        assert!(split < self.splits(), "split {split} of {}", self.splits());
+        self.receivers.groups.get(1 + split).unwrap_or(&self.receivers.groups[0])
+    }
+}
+
+/// What the device holds of layers and of textures.
+fn check_limits(device: &wgpu::Device, storage: Storage, arrangement: &Arrangement) -> Result<()> {
+    let limits = device.limits();
+    let (layers, limit) = (targets::layers_needed(device, storage, arrangement), limits.max_texture_array_layers);
+    if layers > limit {
+        return Err(Error::TooManyLayers { count: layers, limit });
+    }
+    let (count, limit) = (arrangement.tiles.len(), limits.max_sampled_textures_per_shader_stage);
+    if storage == Storage::Separate && count > limit as usize {
+        return Err(Error::TooManyTextures { count, limit });
+    }
+    Ok(())
 }
 
 /// Every size has to fit the filter and the device.
@@ -343,70 +412,50 @@ fn check_sizes(options: &ShadowMapsOptions, limits: &wgpu::Limits) -> Result<()>
     }
 }
 
-/// wgpu guesses a GL texture's kind from its number of layers: one is no array, and a multiple of six squares is a cube. A spare
-/// layer makes it an array.
-fn layer_count(layers: u32, [width, height]: [u32; 2], backend: wgpu::Backend) -> u32 {
-    let mistaken = layers == 1 || (layers.is_multiple_of(6) && width == height);
-    if backend == wgpu::Backend::Gl && mistaken { layers + 1 } else { layers }
+/// 1, or 4 where the mean of samples means something. WebGPU has these two everywhere.
+fn check_samples(&ShadowMapsOptions { samples, filter, .. }: &ShadowMapsOptions) -> Result<()> {
+    match samples {
+        1 => Ok(()),
+        4 if filter.is_prefiltered() => Ok(()),
+        _ => Err(Error::Samples { samples, filter }),
+    }
+}
+
+/// Moments are made of depth, a layer for each split of one sun.
+fn check_moments(options: &ShadowMapsOptions, maps: usize) -> Result<()> {
+    let &ShadowMapsOptions { filter, storage, generation, samples, .. } = options;
+    if !filter.is_prefiltered() {
+        return Ok(());
+    }
+    let conflict =
+        |second: String, reason| Err(Error::ConflictingOptions { first: format!("filter {filter:?}"), second, reason });
+    if storage != Storage::Array {
+        return Err(Error::MomentsNeedArray { storage, filter });
+    }
+    if maps > options.map_sizes.len() {
+        return Err(Error::MomentsNeedOneSun { lights: options.lights.clone(), filter });
+    }
+    if options.depth_format.is_colour() {
+        return conflict("depth format R32Float".to_owned(), "moments are made of depth; use D32Float or D16Unorm");
+    }
+    if generation != Generation::PerSplit && (generation != Generation::Layered || samples > 1) {
+        let second = format!("generation {}", generation.name());
+        return conflict(
+            second,
+            "moments need a layer for each split; use generation per-split, or layered with one sample a texel",
+        );
+    }
+    Ok(())
 }
 
 /// A guard band around every map, except in browsers: those that are older than the rule reject a viewport that leaves its target.
-fn places(device: &wgpu::Device, sizes: &[u32], tiles: &[Tile]) -> Vec<Place> {
+fn largest_viewport(device: &wgpu::Device) -> u32 {
     let in_browser = device.adapter_info().backend == wgpu::Backend::BrowserWebGpu;
-    let largest = if in_browser { 0 } else { device.limits().max_texture_dimension_2d };
+    if in_browser { 0 } else { device.limits().max_texture_dimension_2d }
+}
+
+fn places(device: &wgpu::Device, sizes: &[u32], tiles: &[Tile]) -> Vec<Place> {
+    let largest = largest_viewport(device);
     let place = |(&size, &tile)| Place { tile, viewport: Viewport::around(size, largest) };
     sizes.iter().zip(tiles).map(place).collect()
-}
-
-fn sampler(device: &wgpu::Device, options: &ShadowMapsOptions) -> wgpu::Sampler {
-    device.create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("ShadowMaps::compare"),
-        address_mode_u: wgpu::AddressMode::ClampToEdge,
-        address_mode_v: wgpu::AddressMode::ClampToEdge,
-        mag_filter: options.filter.sampler_mode(),
-        min_filter: options.filter.sampler_mode(),
-        compare: Some(wgpu::CompareFunction::LessEqual),
-        ..Default::default()
-    })
-}
-
-fn caster_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("ShadowMaps::caster"),
-        entries: &[uniform_entry(wgpu::ShaderStages::VERTEX, size_of::<layout::Split>() as u64)],
-    })
-}
-
-fn receiver_layout(device: &wgpu::Device, frame_bytes: u64) -> wgpu::BindGroupLayout {
-    let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("ShadowMaps::receiver"),
-        entries: &[
-            uniform_entry(visibility, frame_bytes),
-            entry(
-                1,
-                wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Depth,
-                    view_dimension: wgpu::TextureViewDimension::D2Array,
-                    multisampled: false,
-                },
-            ),
-            entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
-        ],
-    })
-}
-
-/// A uniform of so many bytes at binding 0.
-fn uniform_entry(visibility: wgpu::ShaderStages, bytes: u64) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding: 0,
-        visibility,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: wgpu::BufferSize::new(bytes),
-        },
-        count: None,
-    }
 }

@@ -1,11 +1,12 @@
 //! Where each map lies: which layer of which size, and which part of it.
 
-use crate::{Error, Result, Storage};
+use super::passes::MapPass;
+use crate::{Error, Generation, Result, Storage};
 
 /// Where one map lies, in texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Tile {
-    /// Layer of the texture.
+    /// Layer of the texture, face of the cube, or the texture itself.
     pub layer: u32,
     /// Upper left corner in the layer.
     pub corner: [u32; 2],
@@ -18,33 +19,65 @@ pub(crate) struct Tile {
 pub(crate) struct Arrangement {
     /// One for each split.
     pub tiles: Vec<Tile>,
-    /// Layers of the texture.
+    /// Layers of the texture; of separate textures their number.
     pub layers: u32,
-    /// Width and height of each in texels.
+    /// Width and height of each in texels; of separate textures those of the largest.
     pub layer_texels: [u32; 2],
 }
 
 impl Arrangement {
-    /// For maps of these edges, on a device whose textures are at most `largest` texels wide.
-    pub fn new(storage: Storage, sizes: &[u32], largest: u32) -> Result<Self> {
-        match storage {
-            Storage::Auto | Storage::Array => Ok(Self::array(sizes)),
-            Storage::Atlas => Self::atlas(sizes, largest),
+    /// For maps of these edges drawn in these passes, on a device whose textures are at most `largest` texels wide.
+    pub fn new(
+        storage: Storage,
+        generation: Generation,
+        passes: &[MapPass],
+        sizes: &[u32],
+        largest: u32,
+    ) -> Result<Self> {
+        // Multiview draws as many layers in every pass; the last pass may have some to spare.
+        let layers = passes.iter().map(MapPass::views).sum::<usize>() as u32;
+        match (storage, generation) {
+            (Storage::Atlas, _) => Self::tiles(sizes, 1, largest),
+            (_, Generation::Mixed) => Self::tiles(sizes, layers, largest),
+            (Storage::Auto | Storage::Array, _) => Ok(Self::layers(sizes, layers)),
+            (Storage::Cube, _) => Ok(Self::layers(sizes, 6)),
+            (Storage::Reused, _) => {
+                let mut it = Self::layers(sizes, 1);
+                it.tiles.iter_mut().for_each(|tile| tile.layer = 0);
+                Ok(it)
+            }
+            (Storage::Separate, _) => {
+                let mut it = Self::layers(sizes, layers);
+                it.tiles.iter_mut().zip(sizes).for_each(|(tile, &size)| tile.layer_texels = [size; 2]);
+                Ok(it)
+            }
         }
     }
 
-    fn array(sizes: &[u32]) -> Self {
+    /// A map in each layer, in its upper left corner.
+    fn layers(sizes: &[u32], layers: u32) -> Self {
         let layer_texels = [sizes.iter().copied().max().unwrap_or(0); 2];
         let tiles = (0..sizes.len() as u32).map(|layer| Tile { layer, corner: [0; 2], layer_texels }).collect();
-        Self { tiles, layers: sizes.len() as u32, layer_texels }
+        Self { tiles, layers, layer_texels }
     }
 
-    fn atlas(sizes: &[u32], largest: u32) -> Result<Self> {
-        let Some((corners, layer_texels)) = packed(sizes, largest) else {
-            return Err(Error::AtlasTooLarge { sizes: sizes.to_vec(), limit: largest });
-        };
-        let tiles = corners.into_iter().map(|corner| Tile { layer: 0, corner, layer_texels }).collect();
-        Ok(Self { tiles, layers: 1, layer_texels })
+    /// Split `t · layers + v` is tile `t` of layer `v`.
+    fn tiles(sizes: &[u32], layers: u32, largest: u32) -> Result<Self> {
+        let mut tiles = vec![Tile { layer: 0, corner: [0; 2], layer_texels: [0; 2] }; sizes.len()];
+        let mut layer_texels = [0; 2];
+        for layer in 0..layers as usize {
+            let here: Vec<usize> = (layer..sizes.len()).step_by(layers as usize).collect();
+            let edges: Vec<u32> = here.iter().map(|&split| sizes[split]).collect();
+            let Some((corners, texels)) = packed(&edges, largest) else {
+                return Err(Error::AtlasTooLarge { sizes: sizes.to_vec(), limit: largest });
+            };
+            for (&split, corner) in here.iter().zip(corners) {
+                (tiles[split].layer, tiles[split].corner) = (layer as u32, corner);
+            }
+            layer_texels = [0, 1].map(|axis| layer_texels[axis].max(texels[axis]));
+        }
+        tiles.iter_mut().for_each(|tile| tile.layer_texels = layer_texels);
+        Ok(Self { tiles, layers, layer_texels })
     }
 }
 
@@ -104,9 +137,30 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::maps::choose::Abilities;
+
+    fn arranged(storage: Storage, generation: Generation, sizes: &[u32]) -> Arrangement {
+        let passes = MapPass::all(generation, sizes.len(), Abilities { views: 6, clip_distances: true, leads: false });
+        Arrangement::new(storage, generation, &passes, sizes, 16384).expect("it fits")
+    }
 
     fn atlas(sizes: &[u32]) -> [u32; 2] {
-        Arrangement::new(Storage::Atlas, sizes, 16384).expect("it fits").layer_texels
+        arranged(Storage::Atlas, Generation::PerSplit, sizes).layer_texels
+    }
+
+    #[test]
+    fn mixed_layers_hold_two_tiles() {
+        let it = arranged(Storage::Array, Generation::Mixed, &[512, 512, 512, 512]);
+        assert_eq!((it.layers, it.layer_texels[0] * it.layer_texels[1]), (2, 2 * 512 * 512));
+        assert_eq!(it.tiles.iter().map(|tile| tile.layer).collect::<Vec<_>>(), [0, 1, 0, 1]);
+        assert_eq!(arranged(Storage::Array, Generation::Mixed, &[512]).layers, 1);
+    }
+
+    #[test]
+    fn one_map_is_used_again_and_again() {
+        let it = arranged(Storage::Reused, Generation::Multipass, &[256, 512, 128]);
+        assert_eq!((it.layers, it.layer_texels), (1, [512, 512]));
+        assert!(it.tiles.iter().all(|tile| tile.layer == 0 && tile.corner == [0; 2]));
     }
 
     #[test]
@@ -120,7 +174,9 @@ mod tests {
 
     #[test]
     fn an_atlas_beyond_the_device_is_refused() {
-        let error = Arrangement::new(Storage::Atlas, &[1024; 5], 2048).expect_err("five do not fit");
+        let passes = MapPass::all(Generation::PerSplit, 5, Abilities::default());
+        let error = Arrangement::new(Storage::Atlas, Generation::PerSplit, &passes, &[1024; 5], 2048)
+            .expect_err("five do not fit");
         assert_eq!(error, Error::AtlasTooLarge { sizes: vec![1024; 5], limit: 2048 });
     }
 
@@ -129,7 +185,7 @@ mod tests {
 
         #[test]
         fn tiles_lie_inside_and_apart(sizes in prop::collection::vec(prop_oneof![1u32..600, (0u32..4).prop_map(|i| 128 << i)], 1..=8)) {
-            let it = Arrangement::new(Storage::Atlas, &sizes, 16384).expect("it fits");
+            let it = arranged(Storage::Atlas, Generation::PerSplit, &sizes);
             let squares: Vec<_> = it.tiles.iter().zip(&sizes).collect();
             for (i, (a, size)) in squares.iter().enumerate() {
                 prop_assert!((0..2).all(|axis| a.corner[axis] + *size <= it.layer_texels[axis]));

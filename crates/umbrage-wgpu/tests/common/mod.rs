@@ -3,7 +3,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, DVec4, Vec3};
-use umbrage::{DirectionalLight, ShadowPlan, Split};
+use umbrage::{DirectionalLight, Selection, ShadowPlan, Split};
 use umbrage_wgpu::{FrameOptions, ShadowMaps, ShadowMapsOptions, optional_features};
 
 /// A device of its own for each test, and the queue.
@@ -32,6 +32,7 @@ impl Gpu {
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("Test::device"),
             required_features: (adapter.features() & optional_features()).difference(withheld),
+            required_limits: adapter.limits(),
             ..Default::default()
         }))
         .expect("an adapter gives a device with features that it has");
@@ -138,6 +139,117 @@ impl Gpu {
     }
 }
 
+impl Gpu {
+    /// Draws three vertices with entry points `vs` and `fs` over a square of `size` floating-point pixels, `maps` in group 2 after two
+    /// uniforms, as an app may have them.
+    pub fn fragments(&self, source: &str, size: u32, maps: &ShadowMaps) -> Vec<[f32; 4]> {
+        assert_eq!(16 * size % wgpu::COPY_BYTES_PER_ROW_ALIGNMENT, 0, "rows without gaps");
+        self.checked(|| {
+            let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("Test::fragments"),
+                source: wgpu::ShaderSource::Wgsl(source.into()),
+            });
+            let format = wgpu::TextureFormat::Rgba32Float;
+            let uniform_layout = self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("Test::uniform"),
+                entries: &[wgpu::BindGroupLayoutEntry {
+                    binding: 0,
+                    visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                    ty: wgpu::BindingType::Buffer {
+                        ty: wgpu::BufferBindingType::Uniform,
+                        has_dynamic_offset: false,
+                        min_binding_size: None,
+                    },
+                    count: None,
+                }],
+            });
+            let buffer = self.buffer_with(&[0; 16], wgpu::BufferUsages::UNIFORM);
+            let uniform = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("Test::uniform"),
+                layout: &uniform_layout,
+                entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+            });
+            let pipeline = self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("Test::fragments"),
+                layout: Some(&self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                    label: Some("Test::fragments"),
+                    bind_group_layouts: &[Some(&uniform_layout), Some(&uniform_layout), Some(maps.receiver_layout())],
+                    immediate_size: 0,
+                })),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some("vs"),
+                    compilation_options: Default::default(),
+                    buffers: &[],
+                },
+                primitive: Default::default(),
+                depth_stencil: None,
+                multisample: Default::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some("fs"),
+                    compilation_options: Default::default(),
+                    targets: &[Some(format.into())],
+                }),
+                multiview_mask: None,
+                cache: None,
+            });
+            let extent = wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 };
+            let target = self.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("Test::target"),
+                size: extent,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            });
+            let back = self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("Test::back"),
+                size: u64::from(16 * size * size),
+                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            let mut encoder = self.device.create_command_encoder(&Default::default());
+            {
+                let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                    label: Some("Test::fragments"),
+                    color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                        view: &target.create_view(&Default::default()),
+                        depth_slice: None,
+                        resolve_target: None,
+                        ops: wgpu::Operations {
+                            load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                            store: wgpu::StoreOp::Store,
+                        },
+                    })],
+                    ..Default::default()
+                });
+                pass.set_pipeline(&pipeline);
+                pass.set_bind_group(0, &uniform, &[]);
+                pass.set_bind_group(1, &uniform, &[]);
+                pass.set_bind_group(2, maps.receiver_bind_group(), &[]);
+                pass.draw(0..3, 0..1);
+            }
+            encoder.copy_texture_to_buffer(
+                target.as_image_copy(),
+                wgpu::TexelCopyBufferInfo {
+                    buffer: &back,
+                    layout: wgpu::TexelCopyBufferLayout {
+                        offset: 0,
+                        bytes_per_row: Some(16 * size),
+                        rows_per_image: Some(size),
+                    },
+                },
+                extent,
+            );
+            self.queue.submit([encoder.finish()]);
+            bytemuck::cast_slice(&self.read(&back)).to_vec()
+        })
+    }
+}
+
 /// A point that is asked: position relative to the frame's origin and normal.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -193,8 +305,11 @@ impl World {
         let (maps, pipeline) = gpu.checked(|| {
             let maps = ShadowMaps::new(&gpu.device, options).expect("valid options");
             let source = maps.caster_wgsl(0)
-                + "@vertex fn vertex(@location(0) position: vec3f) -> @builtin(position) vec4f {
-                       return umbrage_caster_position(position);
+                + "@vertex fn vertex(@location(0) position: vec3f, copy: UmbrageCopy) -> UmbrageCast {
+                       return umbrage_cast(position, copy);
+                   }
+                   @fragment fn fragment(@builtin(position) at: vec4f) -> @location(0) f32 {
+                       return umbrage_caster_depth(at);
                    }";
             let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("Test::caster"),
@@ -219,9 +334,14 @@ impl World {
                 },
                 primitive: maps.caster_primitive(),
                 depth_stencil: Some(maps.caster_depth_stencil()),
-                multisample: Default::default(),
-                fragment: None,
-                multiview_mask: None,
+                multisample: maps.caster_multisample(),
+                fragment: (!maps.caster_targets().is_empty()).then(|| wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some("fragment"),
+                    compilation_options: Default::default(),
+                    targets: maps.caster_targets(),
+                }),
+                multiview_mask: maps.caster_multiview_mask(),
                 cache: None,
             });
             (maps, pipeline)
@@ -240,13 +360,14 @@ impl World {
         self.gpu.checked(|| {
             let vertices = self.gpu.buffer_with(bytemuck::cast_slice(triangles), wgpu::BufferUsages::VERTEX);
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-            for split in 0..self.maps.map_count() {
-                let mut pass = self.maps.begin_split(&mut encoder, split, None);
+            for (index, map_pass) in self.maps.passes().iter().enumerate() {
+                let mut pass = self.maps.begin_pass(&mut encoder, index, None);
                 pass.set_pipeline(&self.pipeline);
-                pass.set_bind_group(0, self.maps.caster_bind_group(split), &[]);
+                pass.set_bind_group(0, self.maps.caster_bind_group(index), &[]);
                 pass.set_vertex_buffer(0, vertices.slice(..));
-                pass.draw(0..triangles.len() as u32, 0..1);
+                pass.draw(0..triangles.len() as u32, map_pass.copies(u8::MAX));
             }
+            self.maps.filter(&mut encoder);
             self.gpu.queue.submit([encoder.finish()]);
         });
     }
@@ -262,15 +383,16 @@ impl World {
         self.gpu.checked(|| {
             let vertices = self.gpu.buffer_with(bytemuck::cast_slice(&casters.concat()), wgpu::BufferUsages::VERTEX);
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-            for split in 0..self.maps.splits() {
-                let mut pass = self.maps.begin_split(&mut encoder, split, None);
+            for (index, map_pass) in self.maps.passes().iter().enumerate() {
+                let mut pass = self.maps.begin_pass(&mut encoder, index, None);
                 pass.set_pipeline(&self.pipeline);
-                pass.set_bind_group(0, self.maps.caster_bind_group(split), &[]);
+                pass.set_bind_group(0, self.maps.caster_bind_group(index), &[]);
                 pass.set_vertex_buffer(0, vertices.slice(..));
-                for &caster in plan.casters(split) {
-                    pass.draw(begins[caster as usize]..begins[caster as usize + 1], 0..1);
+                for (caster, copies) in map_pass.casters(plan) {
+                    pass.draw(begins[caster as usize]..begins[caster as usize + 1], copies);
                 }
             }
+            self.maps.filter(&mut encoder);
             self.gpu.queue.submit([encoder.finish()]);
         });
     }
@@ -286,16 +408,16 @@ impl World {
         let bytes = self.gpu.checked(|| {
             let back = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("Test::texels"),
-                size: u64::from(row * self.maps.depth_texture().height()),
+                size: u64::from(row * self.maps.map_texture(split).height()),
                 usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
-            let edge = self.maps.depth_texture().width();
+            let edge = self.maps.map_texture(split).width();
             assert_eq!(edge, size, "a copy takes whole layers of a depth texture");
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
             encoder.copy_texture_to_buffer(
                 wgpu::TexelCopyTextureInfo {
-                    texture: self.maps.depth_texture(),
+                    texture: self.maps.map_texture(split),
                     mip_level: 0,
                     origin: wgpu::Origin3d { x: 0, y: 0, z: split as u32 },
                     aspect: wgpu::TextureAspect::DepthOnly,
@@ -355,6 +477,8 @@ pub fn plan(light: DVec3, center: DVec3, sizes: &[u32], planes: &[f64], widths: 
         light_direction: depth,
         light: None,
         fade_begin: planes[sizes.len()],
+        selection: Selection::Depth,
+        blend: 0.0,
         caster_indices: vec![0; sizes.len()],
         split_range: vec![Some((0, sizes.len() as u8 - 1))],
     }

@@ -1,0 +1,147 @@
+//! The lights of a job: which ones, under which names, and what a report says of them.
+
+use serde::Serialize;
+use umbrage::{DirectionalLight, Light};
+use umbrage_render::{Lamp, MOST_LAMPS};
+use umbrage_scene::{CameraPath, LightKind, Pose, Scene};
+use umbrage_wgpu::LightSlot;
+
+use crate::{
+    failure::{Failure, Result},
+    job::{SceneJob, SunChoice},
+    report::SplitReport,
+    stage::{named, several},
+};
+
+/// A light under the name that people know it by.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedLight {
+    /// The scene's name for it, its number, or how it was given.
+    pub name: String,
+    /// The light.
+    pub lamp: Lamp,
+}
+
+/// One light of a frame.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LightReport {
+    /// The scene's name for it, its number, or how it was given.
+    pub name: String,
+    /// `directional`, `spot` or `point`.
+    pub kind: &'static str,
+    /// The way a sun's light travels, or a spot light's axis: a unit vector.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub direction: Option<[f64; 3]>,
+    /// Where a spot or point light stands, metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub position: Option<[f64; 3]>,
+    /// How far a spot or point light shines, metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub range_m: Option<f64>,
+    /// Degrees between a spot light's axis and its rim.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outer_angle: Option<f64>,
+    /// `C_0 ..= C_m` of its plan: view depths in metres.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub planes_m: Vec<f64>,
+    /// Its splits, nearest first; of a point light those of its face +X, then those of −X, +Y, −Y, +Z and −Z.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub splits: Vec<SplitReport>,
+}
+
+impl NamedLight {
+    /// What there is to say of the light itself.
+    #[must_use]
+    pub fn report(&self) -> LightReport {
+        let light = self.lamp.light;
+        let (kind, direction, outer_angle) = match light {
+            Light::Directional(sun) => ("directional", Some(sun.direction()), None),
+            Light::Spot(spot) => ("spot", Some(spot.direction()), Some(spot.outer_angle().to_degrees())),
+            Light::Point(_) => ("point", None, None),
+        };
+        LightReport {
+            name: self.name.clone(),
+            kind,
+            direction: direction.map(|direction| direction.to_array()),
+            position: light.position().map(|position| position.to_array()),
+            range_m: light.position().map(|_| light.range()),
+            outer_angle,
+            planes_m: Vec::new(),
+            splits: Vec::new(),
+        }
+    }
+}
+
+/// What the maps have to be made for.
+#[must_use]
+pub fn slots(lights: &[NamedLight]) -> Vec<LightSlot> {
+    lights.iter().map(|light| light.lamp.light.into()).collect()
+}
+
+/// The lights that a job asks for, one at least.
+///
+/// # Errors
+/// [`Failure::Input`] naming the option or the light at fault.
+pub fn chosen(
+    job: &SceneJob,
+    scene: &Scene,
+    pose: &Pose,
+    path: Option<&CameraPath>,
+    notes: &mut Vec<String>,
+) -> Result<Vec<NamedLight>> {
+    let sun = |name: &str, direction| -> Result<Vec<NamedLight>> {
+        Ok(vec![NamedLight { name: name.to_owned(), lamp: DirectionalLight::new(direction)?.into() }])
+    };
+    match &job.sun {
+        SunChoice::Given(direction) => return sun("--sun", *direction),
+        SunChoice::Named(wanted) => {
+            let indices = indices(wanted, scene)?;
+            if indices.len() > MOST_LAMPS {
+                return Err(Failure::input(format!(
+                    "--light {wanted}: {} lights; at most {MOST_LAMPS} throw shadows at once, name those",
+                    indices.len()
+                )));
+            }
+            return indices.into_iter().map(|index| of_scene(scene, pose, index)).collect();
+        }
+        SunChoice::Default => {}
+    }
+    if let Some(to_light) = path.and_then(|path| path.sun_direction_to_light) {
+        return sun("the path's sun", -to_light);
+    }
+    if let Some(index) = scene.lights.iter().position(|light| light.kind == LightKind::Directional) {
+        return Ok(vec![of_scene(scene, pose, index)?]);
+    }
+    let direction = umbrage_scene::invented_sun();
+    let others = if scene.lights.is_empty() { "" } else { " (--light takes its spot and point lights)" };
+    notes.push(format!(
+        "the scene has no directional light and no --sun was given: invented one that travels {:.3},{:.3},{:.3}{others}",
+        direction.x, direction.y, direction.z
+    ));
+    sun("invented", direction)
+}
+
+/// The lights that `--light` names: one by its name, whatever is in it; `all`; or several between commas.
+fn indices(wanted: &str, scene: &Scene) -> Result<Vec<usize>> {
+    let names: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
+    if wanted != "all" || names.contains(&wanted) {
+        return several("--light", "light", wanted, &names);
+    }
+    if names.is_empty() {
+        return Err(Failure::input("--light all: the scene has no light"));
+    }
+    Ok((0..names.len()).collect())
+}
+
+fn of_scene(scene: &Scene, pose: &Pose, index: usize) -> Result<NamedLight> {
+    let light = &scene.lights[index];
+    let brightest = light.color.iter().copied().fold(0.0, f32::max);
+    let mut lamp = Lamp::from(umbrage_scene::scene_light(scene, pose, index)?);
+    if light.kind != LightKind::Directional && brightest > 0.0 {
+        lamp.color = glam::Vec3::from(light.color) / brightest;
+    }
+    if let LightKind::Spot { inner, .. } = light.kind {
+        lamp.inner_angle = inner;
+    }
+    Ok(NamedLight { name: named(&light.name, index), lamp })
+}

@@ -1,0 +1,298 @@
+//! The passes of a frame, in the order in which they are recorded: all maps and then the view, or, where one map is used for one split after
+//! the other, map and view slice by slice.
+
+use glam::DVec3;
+use umbrage::ShadowPlan;
+use umbrage_wgpu::Slice;
+use web_time::Instant;
+
+use crate::capture::Capture;
+use crate::draw_list::{Drawn, Run};
+use crate::forward::{Bindings, MaskTarget, PictureTarget, Turn};
+use crate::renderer::{Outputs, Renderer};
+use crate::timing::Timer;
+use crate::{Gpu, Result};
+
+/// A frame that is planned and uploaded, ready to be recorded.
+pub(crate) struct Prepared {
+    pub origin: DVec3,
+    /// One for each light.
+    pub plans: Vec<ShadowPlan>,
+    pub plan_ms: f64,
+    /// What each pass over the maps draws; none where shadows are off.
+    pub caster_runs: Vec<Vec<Run>>,
+    pub solid: Vec<Run>,
+    pub translucent: Vec<Run>,
+    /// The view's slices, where it is drawn slice by slice.
+    pub slices: Vec<SliceRuns>,
+    pub objects_in_view: usize,
+}
+
+/// What lies in one slice of the view.
+pub(crate) struct SliceRuns {
+    pub slice: Slice,
+    pub solid: Vec<Run>,
+    pub translucent: Vec<Run>,
+}
+
+/// A split's map on its way back.
+pub(crate) struct MapCapture {
+    pub split: usize,
+    /// Texels across the layer that it lies in.
+    pub row: u32,
+    pub corner: [u32; 2],
+    pub capture: Capture,
+}
+
+/// What was recorded.
+#[derive(Default)]
+pub(crate) struct Recorded {
+    /// Each pass over maps: which, what it drew, and where it stands among the frame's passes.
+    pub map_passes: Vec<(usize, Drawn, usize)>,
+    pub view: Drawn,
+    pub maps: Vec<MapCapture>,
+}
+
+impl Renderer {
+    /// Records everything that is drawn, in as many submissions as the clock asks for.
+    pub(crate) fn record(
+        &mut self,
+        mut encoder: wgpu::CommandEncoder,
+        clock: &mut Clock,
+        prepared: &Prepared,
+        outputs: Outputs,
+    ) -> Result<(Recorded, wgpu::CommandEncoder)> {
+        let mut recorded = Recorded::default();
+        let (kept_mask, kept_picture) = (self.mask.take(), self.picture.take());
+        let mask = kept_mask.as_ref().filter(|_| outputs.mask);
+        let picture = kept_picture.as_ref().filter(|_| outputs.picture);
+        if prepared.slices.is_empty() {
+            self.draw_maps(&mut encoder, 0..prepared.caster_runs.len(), prepared, &mut recorded);
+            if outputs.maps && !prepared.caster_runs.is_empty() {
+                for split in 0..prepared.plans[0].splits.len() {
+                    recorded.maps.push(self.capture(&mut encoder, split)?);
+                }
+            }
+            encoder = clock.after_maps(encoder)?;
+            self.record_depth(&mut encoder, prepared, &mut recorded);
+            let contact = self.contact.as_ref().map(|contact| &contact.bind_group);
+            let bindings =
+                Bindings { frame: self.forward.bind_group(0), maps: self.maps.receiver_bind_group(), contact };
+            if let Some(target) = mask {
+                let slot = self.timer.next(1);
+                let mut pass = target.begin(&mut encoder, Turn::ONLY, self.timer.timestamp_writes(slot));
+                recorded.view += self.timer.counted(&mut pass, slot, |pass| {
+                    self.forward.draw_mask(pass, bindings, &self.drawable(), &prepared.solid)
+                });
+            }
+            if let Some(target) = picture {
+                let slot = self.timer.next(1);
+                let mut pass = target.begin(&mut encoder, Turn::ONLY, self.timer.timestamp_writes(slot));
+                recorded.view += self.timer.counted(&mut pass, slot, |pass| {
+                    let drawable = self.drawable();
+                    let mut drawn = self.forward.draw_solid(pass, bindings, &drawable, &prepared.solid);
+                    self.forward.draw_sky(pass, bindings);
+                    drawn += self.forward.draw_translucent(pass, bindings, &drawable, &prepared.translucent);
+                    drawn
+                });
+            }
+        } else {
+            self.record_depth(&mut encoder, prepared, &mut recorded);
+            encoder = self.record_slices(encoder, clock, prepared, outputs, (mask, picture), &mut recorded)?;
+        }
+        (self.mask, self.picture) = (kept_mask, kept_picture);
+        Ok((recorded, encoder))
+    }
+
+    /// Records the picture's depth, for contact shadows.
+    fn record_depth(&mut self, encoder: &mut wgpu::CommandEncoder, prepared: &Prepared, recorded: &mut Recorded) {
+        if let Some(contact) = &self.contact {
+            let slot = self.timer.next(1);
+            let mut pass = contact.begin(encoder, self.timer.timestamp_writes(slot));
+            recorded.view += self
+                .timer
+                .counted(&mut pass, slot, |pass| self.forward.draw_depth(pass, &self.drawable(), &prepared.solid));
+        }
+    }
+
+    /// Records passes over the maps, but for maps of several lights or faces in which there is no caster: those are not read.
+    pub(crate) fn draw_maps(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        passes: std::ops::Range<usize>,
+        prepared: &Prepared,
+        recorded: &mut Recorded,
+    ) {
+        let all = self.maps.map_count() == self.maps.splits();
+        for pass in passes.filter(|&pass| all || !prepared.caster_runs[pass].is_empty()) {
+            self.record_map(encoder, pass, prepared, recorded);
+        }
+        if !prepared.caster_runs.is_empty() {
+            self.maps.filter(encoder);
+        }
+    }
+
+    /// Records one pass over the maps.
+    fn record_map(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        index: usize,
+        prepared: &Prepared,
+        recorded: &mut Recorded,
+    ) {
+        let slot = self.timer.next(self.maps.passes()[index].views());
+        let mut pass = self.maps.begin_pass(encoder, index, self.timer.timestamp_writes(slot));
+        let runs = &prepared.caster_runs[index];
+        let drawn = self
+            .timer
+            .counted(&mut pass, slot, |pass| self.casters.draw(pass, &self.maps, index, &self.drawable(), runs));
+        recorded.map_passes.push((index, drawn, slot.pass as usize));
+    }
+
+    /// Records a map's way back.
+    fn capture(&self, encoder: &mut wgpu::CommandEncoder, split: usize) -> Result<MapCapture> {
+        let texture = self.maps.map_texture(split);
+        // Depth is copied in whole layers only; a smaller map is cut out of its layer afterwards.
+        let texels = [texture.width(), texture.height()];
+        let (layer, corner) = self.maps.map_place(split);
+        let capture = Capture::record(&self.gpu, encoder, texture, layer, texels)?;
+        Ok(MapCapture { split, row: texels[0], corner, capture })
+    }
+
+    /// Multipass: each slice's map, then what of the view lies in that slice, front to back. What is translucent comes afterwards, back to
+    /// front, and needs the maps once more.
+    fn record_slices(
+        &mut self,
+        mut encoder: wgpu::CommandEncoder,
+        clock: &mut Clock,
+        prepared: &Prepared,
+        outputs: Outputs,
+        (mask, picture): (Option<&MaskTarget>, Option<&PictureTarget>),
+        recorded: &mut Recorded,
+    ) -> Result<wgpu::CommandEncoder> {
+        let slices = &prepared.slices;
+        let translucent = picture.is_some() && slices.iter().any(|slice| !slice.translucent.is_empty());
+        for (i, part) in slices.iter().enumerate() {
+            self.record_map(&mut encoder, part.slice.split, prepared, recorded);
+            if outputs.maps {
+                recorded.maps.push(self.capture(&mut encoder, part.slice.split)?);
+            }
+            encoder = clock.after_maps(encoder)?;
+            let (first, last) = (i == 0, i + 1 == slices.len());
+            if let Some(target) = mask {
+                let slot = self.timer.next(1);
+                let mut pass = target.begin(&mut encoder, Turn { first, last }, self.timer.timestamp_writes(slot));
+                self.set_slice(&mut pass, &part.slice);
+                recorded.view += self.timer.counted(&mut pass, slot, |pass| {
+                    self.forward.draw_mask(pass, self.bindings(&part.slice), &self.drawable(), &part.solid)
+                });
+            }
+            if let Some(target) = picture {
+                let slot = self.timer.next(1);
+                let turn = Turn { first, last: last && !translucent };
+                let mut pass = target.begin(&mut encoder, turn, self.timer.timestamp_writes(slot));
+                self.set_slice(&mut pass, &part.slice);
+                recorded.view += self.timer.counted(&mut pass, slot, |pass| {
+                    let drawn =
+                        self.forward.draw_solid(pass, self.bindings(&part.slice), &self.drawable(), &part.solid);
+                    if last {
+                        let [width, height] = self.size.map(|pixels| pixels as f32);
+                        pass.set_viewport(0.0, 0.0, width, height, 0.0, 1.0);
+                        self.forward.draw_sky(pass, self.bindings(&part.slice));
+                    }
+                    drawn
+                });
+            }
+            encoder = clock.after_view(encoder)?;
+        }
+        let (Some(target), true) = (picture, translucent) else { return Ok(encoder) };
+        for (i, part) in slices.iter().enumerate().rev() {
+            // The farthest slice's map is still there.
+            if i + 1 < slices.len() {
+                self.record_map(&mut encoder, part.slice.split, prepared, recorded);
+                encoder = clock.after_maps(encoder)?;
+            }
+            let slot = self.timer.next(1);
+            let turn = Turn { first: false, last: i == 0 };
+            let mut pass = target.begin(&mut encoder, turn, self.timer.timestamp_writes(slot));
+            self.set_slice(&mut pass, &part.slice);
+            recorded.view += self.timer.counted(&mut pass, slot, |pass| {
+                self.forward.draw_translucent(pass, self.bindings(&part.slice), &self.drawable(), &part.translucent)
+            });
+            drop(pass);
+            encoder = clock.after_view(encoder)?;
+        }
+        Ok(encoder)
+    }
+
+    fn set_slice(&self, pass: &mut wgpu::RenderPass<'_>, slice: &Slice) {
+        let [width, height] = self.size.map(|pixels| pixels as f32);
+        let [least, most] = slice.depth_range;
+        pass.set_viewport(0.0, 0.0, width, height, least, most);
+    }
+
+    fn bindings(&self, slice: &Slice) -> Bindings<'_> {
+        Bindings {
+            frame: self.forward.bind_group(1 + slice.split),
+            maps: self.maps.slice_bind_group(slice.split),
+            contact: self.contact.as_ref().map(|contact| &contact.bind_group),
+        }
+    }
+}
+
+pub(crate) fn new_encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
+    gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("Renderer::encoder") })
+}
+
+/// Submits a frame: at once where the GPU takes the time itself, else maps and view apart with a wait after each.
+pub(crate) struct Clock {
+    gpu: Gpu,
+    by_cpu: bool,
+    begun: Instant,
+    /// When the last submission was done, milliseconds since the beginning.
+    done_ms: f64,
+    shadow_ms: f64,
+}
+
+impl Clock {
+    pub fn start(gpu: &Gpu, timer: &Timer) -> Self {
+        let by_cpu = !timer.has_timestamps();
+        Self { gpu: gpu.clone(), by_cpu, begun: Instant::now(), done_ms: 0.0, shadow_ms: 0.0 }
+    }
+
+    /// Submits, waits, and returns how long that took since the last time.
+    fn lap(&mut self, encoder: wgpu::CommandEncoder) -> Result<f64> {
+        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.wait()?;
+        let now = self.begun.elapsed().as_secs_f64() * 1e3;
+        Ok(now - std::mem::replace(&mut self.done_ms, now))
+    }
+
+    /// What comes before was maps.
+    pub fn after_maps(&mut self, encoder: wgpu::CommandEncoder) -> Result<wgpu::CommandEncoder> {
+        if !self.by_cpu {
+            return Ok(encoder);
+        }
+        self.shadow_ms += self.lap(encoder)?;
+        Ok(new_encoder(&self.gpu))
+    }
+
+    /// What comes before was the view, and more maps follow.
+    pub fn after_view(&mut self, encoder: wgpu::CommandEncoder) -> Result<wgpu::CommandEncoder> {
+        if !self.by_cpu {
+            return Ok(encoder);
+        }
+        self.lap(encoder)?;
+        Ok(new_encoder(&self.gpu))
+    }
+
+    /// Milliseconds of the maps and of the frame, if the CPU measures.
+    pub fn after_all(mut self, encoder: wgpu::CommandEncoder) -> Result<Option<(f64, f64)>> {
+        if self.by_cpu {
+            self.lap(encoder)?;
+            return Ok(Some((self.shadow_ms, self.done_ms)));
+        }
+        self.gpu.queue.submit([encoder.finish()]);
+        Ok(None)
+    }
+}

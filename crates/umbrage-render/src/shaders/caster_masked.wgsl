@@ -1,0 +1,24 @@
+// Alpha-tested casters into the maps of one pass: they drop what alpha lets light through.
+
+@vertex
+fn vs_masked(
+    @location(0) local: vec3f,
+    @location(1) uv: vec2f,
+    @location(2) color: vec4f,
+    instance: Instance,
+    copy: UmbrageCopy,
+) -> UmbrageCast {
+    var result = umbrage_cast_copy(position_from_local(instance, local), copy, instance.code);
+    result.uv = uv;
+    result.alpha = color.a;
+    return result;
+}
+
+// Where maps are depth nobody takes what is returned.
+@fragment
+fn fs_masked(@builtin(position) at: vec4f, @location(0) uv: vec2f, @location(1) alpha: f32) -> @location(0) f32 {
+    if tested_alpha(uv, alpha) < material.alpha_cutoff {
+        discard;
+    }
+    return umbrage_caster_depth(at);
+}

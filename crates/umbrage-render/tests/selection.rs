@@ -1,0 +1,91 @@
+//! Which map a pixel uses changes how sharp a shadow is and nothing else.
+
+mod common;
+
+use common::{SIZE, Stage, cuboid, gpu, ground, look, meets_box, pixels, scene, settings, sun};
+use glam::{DVec3, Vec3Swizzles as _};
+use image::GrayAlphaImage;
+use umbrage::{Fit, Selection, ShadowSettings, Stabilize, View};
+use umbrage_render::{Gpu, Outputs, RenderSettings};
+
+/// Boxes near and far, on both sides of the view.
+const BOXES: [(DVec3, DVec3); 3] = [
+    (DVec3::new(-1.0, 0.0, -2.0), DVec3::new(1.5, 2.0, 1.0)),
+    (DVec3::new(4.0, 0.0, -33.0), DVec3::new(9.0, 5.0, -28.0)),
+    (DVec3::new(-7.0, 0.0, -16.0), DVec3::new(-5.0, 4.0, -14.0)),
+];
+
+fn chosen(selection: Selection, fit: Fit, stabilize: Stabilize, blend: f64) -> RenderSettings {
+    let plain = settings();
+    RenderSettings {
+        shadows: ShadowSettings { map_sizes: vec![512; 3], selection, fit, stabilize, blend, ..plain.shadows },
+        ..plain
+    }
+}
+
+fn mask(gpu: &Gpu, settings: &RenderSettings, view: &View, light: DVec3) -> GrayAlphaImage {
+    let boxes = BOXES.iter().map(|&(min, max)| cuboid(min, max));
+    let primitives = std::iter::once(ground(0.0, 60.0)).chain(boxes).collect();
+    let mut stage = Stage::new(gpu, &scene(primitives), settings);
+    stage.render(view, sun(light), Outputs { mask: true, ..Default::default() }).mask.expect("a mask")
+}
+
+/// For each pixel of the ground whether it is shaded, by rays.
+fn truth(view: &View, light: DVec3) -> Vec<Option<bool>> {
+    let travel = sun(light).direction();
+    let mut shaded = vec![None; (SIZE[0] * SIZE[1]) as usize];
+    for pixel in pixels(view, SIZE) {
+        let Some(point) = pixel.on_ground(0.0) else { continue };
+        let hidden = BOXES.iter().any(|&(min, max)| meets_box(pixel.eye, pixel.ray, min, max));
+        if hidden || point.xz().abs().max_element() > 59.0 || view.view_depth(point) > 59.0 {
+            continue;
+        }
+        let dark = BOXES.iter().any(|&(min, max)| meets_box(point, -travel, min, max));
+        shaded[(pixel.y * SIZE[0] + pixel.x) as usize] = Some(dark);
+    }
+    shaded
+}
+
+/// Wrong pixels, and those among them that have no edge of the true shadow within `reach` pixels.
+fn wrong(mask: &GrayAlphaImage, truth: &[Option<bool>], reach: i32) -> (usize, usize) {
+    let [width, height] = SIZE.map(|size| size as i32);
+    let at = |x: i32, y: i32| {
+        let inside = (0..width).contains(&x) && (0..height).contains(&y);
+        if inside { truth[(y * width + x) as usize] } else { None }
+    };
+    let (mut wrong, mut astray) = (0, 0);
+    for y in 0..height {
+        for x in 0..width {
+            let Some(dark) = at(x, y) else { continue };
+            if dark == (mask.get_pixel(x as u32, y as u32).0[0] < 128) {
+                continue;
+            }
+            wrong += 1;
+            let near_an_edge = (-reach..=reach)
+                .any(|dy| (-reach..=reach).any(|dx| at(x + dx, y + dy).is_some_and(|near| near != dark)));
+            astray += usize::from(!near_an_edge);
+        }
+    }
+    (wrong, astray)
+}
+
+#[test]
+fn decisions_differ_at_edges_alone_and_get_no_worse() {
+    let Some(gpu) = gpu() else { return };
+    let view = look(DVec3::new(-1.0, 2.5, 9.0), DVec3::new(0.5, 1.0, -8.0));
+    // From the side, and nearly along the view: dueling frusta.
+    for light in [DVec3::new(1.0, -0.4, 0.1), DVec3::new(0.05, -0.25, 1.0)] {
+        let truth = truth(&view, light);
+        for (fit, stabilize, blend) in
+            [(Fit::Independent, Stabilize::None, 0.3), (Fit::Dependent, Stabilize::Exact, 0.0)]
+        {
+            let [by_depth, by_map] = [Selection::Depth, Selection::Map].map(|selection| {
+                wrong(&mask(&gpu, &chosen(selection, fit, stabilize, blend), &view, light), &truth, 2)
+            });
+            let case =
+                format!("sun {light}, {fit:?}, {stabilize:?}, blend {blend}: {by_depth:?} by depth, {by_map:?} by map");
+            assert_eq!(by_map.1, 0, "{case}");
+            assert!(by_map.0 <= by_depth.0 + 10, "{case}");
+        }
+    }
+}

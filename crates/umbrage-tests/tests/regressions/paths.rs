@@ -1,0 +1,170 @@
+//! Every pair of generation and storage draws every world alike, and whatever a device lacks, everything renders.
+
+use image::GrayAlphaImage;
+use umbrage_render::{Gpu, GpuOptions, Outputs, ProbePoint, Renderer};
+use umbrage_scene::procedural::World;
+use umbrage_tests::stage::{Stage, Technique, gpu};
+use umbrage_wgpu::{DepthFormat, Filter, Generation, Storage};
+
+/// The first is what the others are compared with.
+const PAIRS: [(Generation, Storage); 9] = [
+    (Generation::PerSplit, Storage::Array),
+    (Generation::PerSplit, Storage::Atlas),
+    (Generation::PerSplit, Storage::Separate),
+    (Generation::PerSplit, Storage::Cube),
+    (Generation::Multipass, Storage::Reused),
+    (Generation::Layered, Storage::Array),
+    (Generation::Layered, Storage::Cube),
+    (Generation::Instanced, Storage::Atlas),
+    (Generation::Mixed, Storage::Array),
+];
+
+const SIZE: [u32; 2] = [160, 120];
+
+/// The share of pixels that may differ where maps are tiles: their edges are clipped and their texels have other coordinates.
+const TILES: f64 = 0.0005;
+
+/// The mask of a world's camera `middle`, or `None`, said loudly, where the device cannot take this path.
+fn mask(gpu: &Gpu, world: World, technique: &Technique, pair: (Generation, Storage)) -> Option<GrayAlphaImage> {
+    let mut technique = technique.clone();
+    (technique.settings.generation, technique.settings.storage) = pair;
+    let stage = Stage::of(world);
+    let view = stage.view("middle", SIZE);
+    let mut drawer = stage.drawer(gpu, &technique, SIZE);
+    let taken = drawer.renderer.map_options();
+    if taken.generation != pair.0 {
+        eprintln!("SKIPPED: {pair:?} became {:?}", taken.generation);
+        return None;
+    }
+    assert_eq!(taken.storage, pair.1);
+    Some(drawer.mask(&view))
+}
+
+/// Share of pixels that are not the same.
+fn difference(a: &GrayAlphaImage, b: &GrayAlphaImage) -> f64 {
+    let count = a.pixels().zip(b.pixels()).filter(|(a, b)| a != b).count();
+    count as f64 / f64::from(a.width() * a.height())
+}
+
+fn check(world: World, technique: &Technique, pairs: &[(Generation, Storage)]) {
+    let Some(gpu) = gpu() else { return };
+    let expected = mask(gpu, world, technique, PAIRS[0]).expect("the plainest path is there");
+    let shadowed = expected.pixels().filter(|pixel| pixel.0 == [0, 255]).count();
+    assert!(shadowed > 500, "{}: only {shadowed} pixels are in shadow", world.name());
+    for &pair in pairs {
+        let Some(found) = mask(gpu, world, technique, pair) else { continue };
+        let tiles = pair.1 == Storage::Atlas || pair.0 == Generation::Mixed;
+        let (found, most) = (difference(&found, &expected), if tiles { TILES } else { 0.0 });
+        assert!(found <= most, "{} by {pair:?}: {:.4} % of the pixels differ", world.name(), 100.0 * found);
+    }
+}
+
+#[test]
+fn every_pair_draws_every_world_alike() {
+    for world in World::ALL {
+        check(world, &Technique::pssm(4, 256), &PAIRS[1..]);
+    }
+}
+
+#[test]
+fn every_way_to_read_maps_filters_alike() {
+    check(World::Chessboard, &Technique::pssm(3, 256).filter(Filter::Pcf3), &PAIRS[1..]);
+}
+
+/// The comparison must be able to say no: a technique that is a little coarser.
+#[test]
+fn another_resolution_is_no_path() {
+    let Some(gpu) = gpu() else { return };
+    let of = |size| mask(gpu, World::Chessboard, &Technique::pssm(4, size), PAIRS[0]).expect("a mask");
+    assert!(difference(&of(256), &of(248)) > TILES);
+}
+
+/// Maps of different sizes, colours instead of depth.
+#[test]
+fn sizes_and_floats_change_nothing() {
+    let mut technique = Technique::pssm(4, 256);
+    technique.settings.shadows.map_sizes = vec![256, 192, 128, 128];
+    let pairs = PAIRS.iter().copied().filter(|pair| pair.1 != Storage::Cube).skip(1).collect::<Vec<_>>();
+    check(World::Knights, &technique, &pairs);
+    let Some(gpu) = gpu() else { return };
+    let depth = mask(gpu, World::Knights, &technique, PAIRS[0]).expect("a mask");
+    technique.settings.depth_format = DepthFormat::R32Float;
+    for pair in [PAIRS[0], PAIRS[4], PAIRS[5]] {
+        let Some(floats) = mask(gpu, World::Knights, &technique, pair) else { continue };
+        assert_eq!(difference(&depth, &floats), 0.0, "{pair:?}");
+    }
+}
+
+/// Probes ask whatever path there is, and one map at a time as well as all of them.
+#[test]
+fn probes_answer_alike() {
+    let Some(gpu) = gpu() else { return };
+    let stage = Stage::of(World::RobotWar);
+    let view = stage.view("middle", SIZE);
+    let points: Vec<ProbePoint> = (0..400)
+        .map(|i| {
+            let (a, b) = (f64::from(i % 20) - 10.0, f64::from(i / 20) - 10.0);
+            let position = view.eye() + view.forward() * 60.0 + glam::DVec3::new(8.0 * a, 0.0, 8.0 * b);
+            ProbePoint { position: glam::DVec3::new(position.x, 0.05, position.z), normal: glam::DVec3::Y }
+        })
+        .collect();
+    let answers = |pair: (Generation, Storage)| {
+        let mut technique = Technique::pssm(4, 256);
+        (technique.settings.generation, technique.settings.storage) = pair;
+        let mut drawer = stage.drawer(gpu, &technique, SIZE);
+        drawer.renderer.probe(&stage.frame(&view, false), &points).expect("answers")
+    };
+    let expected = answers(PAIRS[0]);
+    assert!(expected.iter().any(|answer| answer.visibility == 0.0) && expected.iter().any(|answer| answer.split > 1));
+    assert_eq!(answers((Generation::Multipass, Storage::Reused)), expected);
+    assert_eq!(answers((Generation::PerSplit, Storage::Separate)), expected);
+}
+
+/// With each optional feature withheld in turn, and with all of them, every path that is asked for renders, and the report names what was
+/// taken.
+#[test]
+fn whatever_a_device_lacks_everything_renders() {
+    if gpu().is_none() {
+        return;
+    }
+    let stage = Stage::of(World::RobotWar);
+    let view = stage.view("near", SIZE);
+    let features = [
+        wgpu::Features::MULTIVIEW,
+        wgpu::Features::CLIP_DISTANCES,
+        wgpu::Features::DEPTH_CLIP_CONTROL,
+        wgpu::Features::TIMESTAMP_QUERY,
+        wgpu::Features::PIPELINE_STATISTICS_QUERY,
+        wgpu::Features::FLOAT32_FILTERABLE,
+        wgpu::Features::all(),
+    ];
+    let mut expected: Option<GrayAlphaImage> = None;
+    for withhold in features {
+        let gpu = Gpu::new(&GpuOptions { withhold }).expect("a device with less");
+        for generation in [Generation::Multipass, Generation::Layered, Generation::Instanced, Generation::Mixed] {
+            let mut technique = Technique::pssm(2, 256);
+            technique.settings.generation = generation;
+            technique.settings.size = SIZE;
+            technique.settings.shadows.range = Some(stage.world.near_far());
+            let mut renderer = Renderer::new(&gpu, &stage.scene, &technique.settings).expect("a renderer");
+            let outputs = Outputs { mask: true, picture: true, maps: true };
+            let rendered = renderer.render(&stage.frame(&view, false), outputs).expect("a frame");
+            let stats = rendered.stats;
+            assert_eq!(stats.splits.len(), rendered.maps.len());
+            let taken = stats.generation == generation.name();
+            let noted = stats.notes.iter().any(|note| note.contains(generation.name()) && note.contains("per-split"));
+            assert!(
+                taken != noted,
+                "{generation:?} without {withhold:?} became {}: {:?}",
+                stats.generation,
+                stats.notes
+            );
+            assert!(taken || stats.generation == "per-split");
+            let mask = rendered.mask.expect("a mask");
+            let expected = expected.get_or_insert_with(|| mask.clone());
+            let found = difference(&mask, expected);
+            // Cut at the slices' borders, where depth cannot be left unclipped, triangles round otherwise.
+            assert!(found <= TILES, "{generation:?} without {withhold:?}: {:.4} % differ", 100.0 * found);
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! Which pass draws which splits, and with which instances.
+
+use std::ops::Range;
+
+use umbrage::ShadowPlan;
+
+use super::choose::Abilities;
+use crate::Generation;
+
+/// One pass that draws casters into the maps of one split or of several; see [`crate::ShadowMaps::passes`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MapPass {
+    splits: Range<usize>,
+    /// Layers drawn at once: split `splits.start + t · views + v` is tile `t` of layer `v`.
+    views: usize,
+    /// One split, whose casters need no code.
+    alone: bool,
+    /// Every draw begins with an instance that draws nothing.
+    leads: bool,
+}
+
+impl MapPass {
+    /// The passes of a generation, first to last.
+    pub(super) fn all(generation: Generation, splits: usize, abilities: Abilities) -> Vec<Self> {
+        let several = |splits, views| Self { splits, views, alone: false, leads: views > 1 && abilities.leads };
+        match generation {
+            Generation::Auto | Generation::PerSplit | Generation::Multipass => (0..splits)
+                .map(|split| Self { splits: split..split + 1, views: 1, alone: true, leads: false })
+                .collect(),
+            Generation::Layered => {
+                // As many views in each pass, so that one pipeline serves all of them.
+                let passes = splits.div_ceil(abilities.views as usize);
+                let views = splits.div_ceil(passes);
+                (0..passes).map(|pass| several(pass * views..splits.min((pass + 1) * views), views)).collect()
+            }
+            Generation::Instanced => vec![several(0..splits, 1)],
+            // Two tiles a layer, more only where there are not enough views.
+            Generation::Mixed => vec![several(0..splits, splits.div_ceil(2).min(abilities.views as usize))],
+        }
+    }
+
+    /// The splits whose maps it draws; with several lights the maps, see [`crate::ShadowMaps::first_map`].
+    #[must_use]
+    pub fn splits(&self) -> Range<usize> {
+        self.splits.clone()
+    }
+
+    /// Layers that it draws at once, 1 without multiview.
+    #[must_use]
+    pub fn views(&self) -> usize {
+        self.views
+    }
+
+    /// Whether every draw has to begin with an instance of a code that draws nothing, the one before the first of [`MapPass::copies`]' own,
+    /// which is part of that range then. An app that draws many copies in one call needs one of them in each call.
+    ///
+    /// Mesa's software driver (seen with 22.3) remembers which layer it draws into when it draws a batch that needs no clipping, and
+    /// draws batches that do into the layer it remembers. Each instance is a batch, so an empty one makes it remember the right layer.
+    #[must_use]
+    pub fn leads(&self) -> bool {
+        self.leads
+    }
+
+    /// Whether it draws one split with the plain text for casters.
+    pub(super) fn is_alone(&self) -> bool {
+        self.alone
+    }
+
+    /// The instances that a caster of the splits in `mask` (bit `i`: split `i`) is drawn with; none if none of them is drawn here. A
+    /// caster that is an instance of the app's own gets one copy for each number of the range, with that number as its code.
+    #[must_use]
+    pub fn copies(&self, mask: u8) -> Range<u32> {
+        if self.alone {
+            // With several lights there are more maps than bits, and the app knows which plan and which split are drawn.
+            let here = self.splits.start >= 8 || mask & (1 << self.splits.start) != 0;
+            return 0..u32::from(here);
+        }
+        let mask = self.splits().filter(|split| mask & (1 << split) != 0).fold(0u32, |mask, split| mask | 1 << split);
+        if mask == 0 {
+            return 0..0;
+        }
+        let (first, last) = (mask.trailing_zeros() as usize, mask.ilog2() as usize);
+        let tile = |split: usize| ((split - self.splits.start) / self.views) as u32;
+        let code = mask << 3;
+        // The code before the first is no copy's: its tile holds none of these splits.
+        code + tile(first) - u32::from(self.leads)..code + tile(last) + 1
+    }
+
+    /// What to draw, where there is one sun or spot light: the plan's casters, as indices into the list given to the planner, each with its instances.
+    pub fn casters(&self, plan: &ShadowPlan) -> impl Iterator<Item = (u32, Range<u32>)> + use<> {
+        let mut masks = vec![0u8; plan.split_range.len()];
+        let mut order = Vec::new();
+        for split in self.splits() {
+            for &caster in plan.casters(split) {
+                let mask = &mut masks[caster as usize];
+                if *mask == 0 {
+                    order.push(caster);
+                }
+                *mask |= 1 << split;
+            }
+        }
+        let pass = self.clone();
+        order.into_iter().map(move |caster| (caster, pass.copies(masks[caster as usize])))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What `umbrage_cast` makes of a code and a view.
+    fn decoded(pass: &MapPass, code: u32, view: usize) -> Option<usize> {
+        let index = pass.splits.start + (code & 7) as usize * pass.views + view;
+        (index < pass.splits.end && (code >> (3 + index)) & 1 == 1).then_some(index)
+    }
+
+    #[test]
+    fn every_split_is_drawn_once_and_by_its_own_casters() {
+        for generation in [Generation::PerSplit, Generation::Layered, Generation::Instanced, Generation::Mixed] {
+            for splits in 1..=8 {
+                for (views, leads) in (2..=8).flat_map(|views| [(views, false), (views, true)]) {
+                    let passes = MapPass::all(generation, splits, Abilities { views, clip_distances: true, leads });
+                    assert!(passes.iter().all(|pass| pass.views <= views as usize && pass.views == passes[0].views));
+                    for mask in 0..1u32 << splits {
+                        let mut drawn = Vec::new();
+                        for pass in &passes {
+                            for code in pass.copies(mask as u8) {
+                                if pass.alone {
+                                    drawn.push(pass.splits.start);
+                                } else {
+                                    drawn.extend((0..pass.views).filter_map(|view| decoded(pass, code, view)));
+                                }
+                            }
+                        }
+                        drawn.sort_unstable();
+                        let wanted: Vec<usize> = (0..splits).filter(|split| mask & (1 << split) != 0).collect();
+                        assert_eq!(drawn, wanted, "{generation:?}, {splits} splits, {views} views, {mask:b}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn submissions_are_as_few_as_views_allow() {
+        let count = |generation, splits, views| {
+            MapPass::all(generation, splits, Abilities { views, clip_distances: true, leads: false }).len()
+        };
+        assert_eq!(count(Generation::PerSplit, 4, 6), 4);
+        assert_eq!(
+            (1..=8).map(|splits| count(Generation::Layered, splits, 6)).collect::<Vec<_>>(),
+            [1, 1, 1, 1, 1, 1, 2, 2]
+        );
+        assert_eq!(count(Generation::Layered, 8, 2), 4);
+        assert_eq!((count(Generation::Instanced, 8, 2), count(Generation::Mixed, 8, 2)), (1, 1));
+    }
+}

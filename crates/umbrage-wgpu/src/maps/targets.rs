@@ -1,0 +1,193 @@
+//! The textures that maps are kept in, and what each pass draws into.
+
+use super::passes::MapPass;
+use super::storage::Arrangement;
+use crate::{DepthFormat, Generation, ShadowMapsOptions, Storage};
+
+/// The textures of all maps.
+#[derive(Debug)]
+pub(super) struct Targets {
+    /// One; where maps are separate, or have several samples a texel, one for each split.
+    pub maps: Vec<wgpu::Texture>,
+    separate: bool,
+    /// Depth buffers beside maps that are colours.
+    depths: Vec<wgpu::Texture>,
+    attachments: Vec<Attachments>,
+}
+
+/// What one pass draws into.
+#[derive(Debug)]
+struct Attachments {
+    colour: Option<wgpu::TextureView>,
+    depth: wgpu::TextureView,
+    /// Whether an earlier pass has drawn other tiles.
+    keeps: bool,
+}
+
+impl Targets {
+    /// `options` have been chosen; `it` and `passes` are what follows from them.
+    pub fn new(device: &wgpu::Device, options: &ShadowMapsOptions, it: &Arrangement, passes: &[MapPass]) -> Self {
+        let format = options.depth_format;
+        let backend = device.adapter_info().backend;
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let read = usage | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        // What has several samples cannot be copied.
+        let read = if options.samples > 1 { read.difference(wgpu::TextureUsages::COPY_SRC) } else { read };
+        let map = |texels, layers| {
+            let format = format.texture_format();
+            texture(device, "ShadowMaps::maps", format, texels, [layers, options.samples], read)
+        };
+        // Several samples and several layers do not go together in one texture.
+        let separate = options.storage == Storage::Separate || options.samples > 1;
+        let maps: Vec<wgpu::Texture> = match options.storage {
+            _ if separate => options.map_sizes.iter().map(|&size| map([size; 2], 1)).collect(),
+            Storage::Cube => vec![map(it.layer_texels, it.layers)],
+            _ => vec![map(it.layer_texels, array_layers(it.layers, it.layer_texels, backend))],
+        };
+        // Passes follow each other, so that those of one size share a depth buffer.
+        let mut depths: Vec<wgpu::Texture> = Vec::new();
+        let attachments = passes
+            .iter()
+            .map(|pass| {
+                let tile = it.tiles[pass.splits().start];
+                let map = if separate { &maps[tile.layer as usize] } else { &maps[0] };
+                let first = if separate { 0 } else { tile.layer };
+                let views = pass.views() as u32;
+                let keeps = options.storage == Storage::Atlas && pass.is_alone() && pass.splits().start > 0;
+                if !format.is_colour() {
+                    return Attachments { colour: None, depth: view(map, first, views), keeps };
+                }
+                let same_size = |depth: &wgpu::Texture| depth.width() == map.width() && depth.height() == map.height();
+                let index = depths.iter().position(same_size).unwrap_or_else(|| {
+                    let format = DepthFormat::D32Float.texture_format();
+                    let texels = [map.width(), map.height()];
+                    depths.push(texture(device, "ShadowMaps::depth", format, texels, [views, 1], usage));
+                    depths.len() - 1
+                });
+                Attachments { colour: Some(view(map, first, views)), depth: view(&depths[index], 0, views), keeps }
+            })
+            .collect();
+        Self { maps, separate, depths, attachments }
+    }
+
+    /// The texture that holds what a tile calls its layer.
+    pub fn map(&self, layer: u32) -> &wgpu::Texture {
+        &self.maps[if self.separate { layer as usize } else { 0 }]
+    }
+
+    /// Which layer of that texture it is.
+    pub fn layer(&self, layer: u32) -> u32 {
+        if self.separate { 0 } else { layer }
+    }
+
+    /// Each split's layer alone.
+    pub fn splits(&self, it: &Arrangement) -> Vec<wgpu::TextureView> {
+        it.tiles.iter().map(|tile| view(self.map(tile.layer), self.layer(tile.layer), 1)).collect()
+    }
+
+    /// Bytes of all textures.
+    pub fn bytes(&self) -> u64 {
+        let bytes = |texture: &wgpu::Texture| {
+            let size = texture.size();
+            let texel = texture.format().block_copy_size(Some(aspect(texture))).unwrap_or(4);
+            u64::from(size.width)
+                * u64::from(size.height)
+                * u64::from(size.depth_or_array_layers)
+                * u64::from(texel * texture.sample_count())
+        };
+        self.maps.iter().chain(&self.depths).map(bytes).sum()
+    }
+
+    /// Begins pass `index`, cleared to the farthest depth.
+    pub fn begin<'e>(
+        &self,
+        encoder: &'e mut wgpu::CommandEncoder,
+        index: usize,
+        multiview_mask: Option<std::num::NonZeroU32>,
+        timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) -> wgpu::RenderPass<'e> {
+        let Attachments { colour, depth, keeps } = &self.attachments[index];
+        let store = wgpu::StoreOp::Store;
+        let colour_load = if *keeps { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::WHITE) };
+        let colour = colour.as_ref().map(|view| wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: colour_load, store },
+        });
+        let load = if *keeps { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(1.0) };
+        let colours = colour.map(Some);
+        encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("ShadowMaps::pass"),
+            color_attachments: colours.as_slice(),
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: depth,
+                depth_ops: Some(wgpu::Operations { load, store }),
+                stencil_ops: None,
+            }),
+            timestamp_writes,
+            occlusion_query_set: None,
+            multiview_mask,
+        })
+    }
+}
+
+/// What of a texture is copied.
+fn aspect(texture: &wgpu::Texture) -> wgpu::TextureAspect {
+    if texture.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All }
+}
+
+fn texture(
+    device: &wgpu::Device,
+    label: &str,
+    format: wgpu::TextureFormat,
+    [width, height]: [u32; 2],
+    [layers, samples]: [u32; 2],
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: layers },
+        mip_level_count: 1,
+        sample_count: samples,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
+}
+
+/// Layers `first` to `first + count` as one attachment.
+fn view(texture: &wgpu::Texture, first: u32, count: u32) -> wgpu::TextureView {
+    let dimension = if count > 1 { wgpu::TextureViewDimension::D2Array } else { wgpu::TextureViewDimension::D2 };
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        label: Some("ShadowMaps::layers"),
+        dimension: Some(dimension),
+        base_array_layer: first,
+        array_layer_count: Some(count),
+        ..Default::default()
+    })
+}
+
+/// wgpu guesses a GL texture's kind from its number of layers: one is no array, and a multiple of six squares is a cube. A spare
+/// layer makes it an array.
+fn array_layers(layers: u32, [width, height]: [u32; 2], backend: wgpu::Backend) -> u32 {
+    let mistaken = layers == 1 || (layers.is_multiple_of(6) && width == height);
+    if backend == wgpu::Backend::Gl && mistaken { layers + 1 } else { layers }
+}
+
+/// Layers that a texture needs with these options.
+pub(super) fn layers_needed(device: &wgpu::Device, storage: Storage, it: &Arrangement) -> u32 {
+    match storage {
+        Storage::Separate => 1,
+        Storage::Cube => it.layers,
+        _ => array_layers(it.layers, it.layer_texels, device.adapter_info().backend),
+    }
+}
+
+/// The views that a pipeline for casters, and every pass, draws into.
+pub(super) fn multiview_mask(generation: Generation, passes: &[MapPass]) -> Option<std::num::NonZeroU32> {
+    let several = matches!(generation, Generation::Layered | Generation::Mixed);
+    let views = passes.first().map_or(1, MapPass::views);
+    several.then(|| std::num::NonZeroU32::new((1 << views) - 1)).flatten()
+}
