@@ -16,6 +16,8 @@ fn texts() -> Vec<Text> {
         text("pass::casters", &["tiles"], "casters_tiles".into()),
         text("pass::casters", &["views", "tiles"], "casters_views_tiles".into()),
         text("pass::contact", &[], "contact".into()),
+        text("pass::mask", &[], "mask".into()),
+        text("pass::mask", &["normals"], "mask_with_normals".into()),
         text("pass::receiver", &["depth_loads"], "receiver".into()),
         text("pass::receiver", &[], "receiver_without_loads".into()),
         text("pass::receiver", &["moments"], "receiver_of_moments".into()),
@@ -40,8 +42,10 @@ fn texts() -> Vec<Text> {
 
 /// `depth_loads`: depth textures can be loaded from. `r32f`: maps are colours. `views`, `tiles`: casters are drawn into several layers or tiles.
 /// `moments`: maps hold moments of depth. `multisampled`: depth has four samples a texel. `own_taps`: the shader takes an anisotropic
-/// sample's taps. `by_hand`: and no sampler filters moments. `maps_2` to `maps_8` come beside these.
-const FEATURES: [&str; 8] = ["depth_loads", "r32f", "views", "tiles", "moments", "multisampled", "own_taps", "by_hand"];
+/// sample's taps. `by_hand`: and no sampler filters moments. `normals`: a mask has a
+/// buffer of normals. `maps_2` to `maps_8` come beside these.
+const FEATURES: [&str; 9] =
+    ["depth_loads", "r32f", "views", "tiles", "normals", "moments", "multisampled", "own_taps", "by_hand"];
 
 fn main() {
     let mut compiler = Wesl::new("shaders");

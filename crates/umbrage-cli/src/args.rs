@@ -298,6 +298,9 @@ pub struct ShadowArgs {
     /// Share of the shadowed range over which shadows fade out at its far end; 0 is off, as where nothing is seen beyond
     #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
     pub far_fade: f64,
+    /// Where the visibility mask takes positions and normals from: the surfaces themselves as they are drawn, or the picture's depth
+    #[arg(long, value_enum, default_value_t)]
+    pub coordinates: Coordinates,
     /// What a map stores
     #[arg(long, value_enum, default_value_t)]
     pub depth_format: DepthFormat,
@@ -324,7 +327,7 @@ pub struct ShadowArgs {
     #[arg(long, value_name = "SWITCH", num_args = 0..=1, require_equals = true, default_value = "off", default_missing_value = "on")]
     pub contact_shadows: Switch,
     /// Colour the picture by split
-    #[arg(long)]
+    #[arg(long, value_name = "true|false", num_args = 0..=1, require_equals = true, default_value_t = false, default_missing_value = "true", action = clap::ArgAction::Set)]
     pub tint: bool,
     /// Draw with shadows or without
     #[arg(long, value_enum, default_value_t)]
@@ -523,6 +526,16 @@ pub enum Transition {
     Dither,
     /// No band
     Hard,
+}
+
+/// `--coordinates`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Coordinates {
+    /// Interpolated world positions
+    #[default]
+    World,
+    /// Rebuilt from depth in a pass of its own, with normals from neighbouring pixels
+    Deferred,
 }
 
 /// `--depth-format`.

@@ -132,6 +132,8 @@ pub struct ShadowJob {
     pub contact_shadows: bool,
     /// `--shadow-colour`.
     pub shadow_colour: DVec3,
+    /// Whether `--coordinates` are `deferred`.
+    pub deferred: bool,
     /// `--depth-format`.
     pub depth_format: args::DepthFormat,
     /// `--generation`.
@@ -343,6 +345,7 @@ impl ShadowJob {
             translucent: args.translucent,
             contact_shadows: args.contact_shadows == args::Switch::On,
             shadow_colour: args.shadow_colour,
+            deferred: args.coordinates == args::Coordinates::Deferred,
             depth_format: args.depth_format,
             generation: args.generation.into(),
             storage: args.storage.into(),

@@ -37,8 +37,12 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         return Err(Failure::input("--maps and several cameras: maps are of one view; name one --camera"));
     }
     let mut studio = Studio::open(&job, &shadows, &stage)?;
-    let outputs =
-        Outputs { picture: args.picture.is_some(), mask: args.visibility.is_some(), maps: args.maps.is_some() };
+    let outputs = Outputs {
+        picture: args.picture.is_some(),
+        mask: args.visibility.is_some(),
+        maps: args.maps.is_some(),
+        deferred: shadows.deferred,
+    };
     let mut staged = Staged::default();
     let bar = progress::steps(stage.shots.len() as u64, "frames");
     for shot in &stage.shots {

@@ -375,7 +375,7 @@ impl PictureTarget {
             Some(samples) => (samples, turn.last.then_some(&self.resolved)),
             None => (&self.resolved, None),
         };
-        begin("PictureTarget::pass", encoder, color, resolve_target, &self.depth, turn, timestamp_writes)
+        begin("PictureTarget::pass", encoder, color, resolve_target, (&self.depth, false), turn, timestamp_writes)
     }
 }
 
@@ -383,8 +383,10 @@ impl PictureTarget {
 pub(crate) struct MaskTarget {
     /// The mask.
     pub texture: wgpu::Texture,
-    color: wgpu::TextureView,
-    depth: wgpu::TextureView,
+    /// What draws it.
+    pub color: wgpu::TextureView,
+    /// Kept, for passes that come after.
+    pub depth: wgpu::TextureView,
 }
 
 impl MaskTarget {
@@ -401,7 +403,7 @@ impl MaskTarget {
         turn: Turn,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'e> {
-        begin("MaskTarget::pass", encoder, &self.color, None, &self.depth, turn, timestamp_writes)
+        begin("MaskTarget::pass", encoder, &self.color, None, (&self.depth, true), turn, timestamp_writes)
     }
 }
 
@@ -421,7 +423,11 @@ fn target_texture(
         sample_count,
         dimension: wgpu::TextureDimension::D2,
         format,
-        usage: if read_back { usage | wgpu::TextureUsages::COPY_SRC } else { usage },
+        usage: match (read_back, format) {
+            (true, _) => usage | wgpu::TextureUsages::COPY_SRC,
+            (false, DEPTH_FORMAT) if sample_count == 1 => usage | wgpu::TextureUsages::TEXTURE_BINDING,
+            (false, _) => usage,
+        },
         view_formats: &[],
     })
 }
@@ -431,12 +437,12 @@ fn begin<'e>(
     encoder: &'e mut wgpu::CommandEncoder,
     color: &wgpu::TextureView,
     resolve_target: Option<&wgpu::TextureView>,
-    depth: &wgpu::TextureView,
+    (depth, keep_depth): (&wgpu::TextureView, bool),
     turn: Turn,
     timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
 ) -> wgpu::RenderPass<'e> {
     let keep_samples = if resolve_target.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
-    let keep_depth = if turn.last { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
+    let keep_depth = if turn.last && !keep_depth { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
     let clear = |color| if turn.first { wgpu::LoadOp::Clear(color) } else { wgpu::LoadOp::Load };
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(label),

@@ -5,8 +5,8 @@ use image::{GrayAlphaImage, GrayImage, RgbaImage};
 use umbrage::{Aabb, Planner, Selection, ShadowPlan, ShadowSettings, SunFade, View};
 use umbrage_scene::{AlphaMode, Pose, Scene};
 use umbrage_wgpu::{
-    DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, MapPass, ShadowMaps, ShadowMapsOptions,
-    Slice, Softness, Storage, Transition,
+    DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, MapPass, MaskFrame, MaskNormals, ShadowMaps,
+    ShadowMapsOptions, ShadowMask, Slice, Softness, Storage, Transition,
 };
 use web_time::Instant;
 
@@ -14,7 +14,7 @@ use crate::capture::Capture;
 use crate::casters::Casters;
 use crate::contact::Contact;
 use crate::draw_list::{Drawable, Instances, Run, once};
-use crate::forward::{Forward, FrameUniform, MaskTarget, PictureTarget, Samples};
+use crate::forward::{Forward, FrameUniform, MASK_FORMAT, MaskTarget, PictureTarget, Samples};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry, check_object};
 use crate::lamps::Lamp;
 use crate::look::{Look, Translucent};
@@ -85,6 +85,9 @@ pub struct Outputs {
     pub mask: bool,
     /// Each split's depth map.
     pub maps: bool,
+    /// Whether the mask is made from the picture's depth, its positions and normals rebuilt from it ([`umbrage_wgpu::ShadowMask`]), and
+    /// not where surfaces are drawn.
+    pub deferred: bool,
 }
 
 /// What came out of a frame.
@@ -128,6 +131,7 @@ pub struct Renderer {
     pub(crate) timer: Timer,
     pub(crate) picture: Option<PictureTarget>,
     pub(crate) mask: Option<MaskTarget>,
+    shadow_mask: Option<ShadowMask>,
     notes: Vec<String>,
 }
 
@@ -254,6 +258,7 @@ impl Renderer {
                 timer,
                 picture: None,
                 mask: None,
+                shadow_mask: None,
                 notes,
                 materials,
                 maps,
@@ -356,6 +361,9 @@ impl Renderer {
         if outputs.mask && self.mask.is_none() {
             self.mask = Some(MaskTarget::new(&gpu, self.size));
         }
+        if outputs.mask && outputs.deferred && self.shadow_mask.is_none() {
+            self.shadow_mask = Some(ShadowMask::new(&gpu.device, &self.maps, MASK_FORMAT, MaskNormals::FromDepth)?);
+        }
         let prepared = self.prepare(frame)?;
         let mut clock = Clock::start(&gpu, &self.timer);
         if outputs.maps && self.maps.options().samples > 1 {
@@ -363,7 +371,12 @@ impl Renderer {
         }
         let (recorded, mut encoder) = self.record(new_encoder(&gpu), &mut clock, &prepared, outputs)?;
         let mask = match &self.mask {
-            Some(target) if outputs.mask => Some(Capture::record(&gpu, &mut encoder, &target.texture, 0, self.size)?),
+            Some(target) if outputs.mask => {
+                if let Some(shadow_mask) = self.shadow_mask.as_ref().filter(|_| outputs.deferred) {
+                    self.record_deferred_mask(&mut encoder, target, shadow_mask, frame, prepared.origin)?;
+                }
+                Some(Capture::record(&gpu, &mut encoder, &target.texture, 0, self.size)?)
+            }
             _ => None,
         };
         let picture = match &self.picture {
@@ -659,6 +672,39 @@ impl Renderer {
             let casters = plan.casters(i).iter().map(|&caster| once(objects[caster as usize]));
             *runs = self.instances.grouped(frame.pose, origin, false, casters);
         }
+    }
+
+    /// Replaces the mask by what its depth alone says.
+    fn record_deferred_mask(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &MaskTarget,
+        shadow_mask: &ShadowMask,
+        frame: &Frame<'_>,
+        origin: DVec3,
+    ) -> Result<()> {
+        let view = frame.view;
+        let camera = MaskFrame {
+            clip_from_eye: view.clip_from_relative(view.eye()),
+            eye: view.eye(),
+            forward: view.forward(),
+            origin,
+            empty_depth: 0.0,
+        };
+        shadow_mask.prepare(&self.gpu.queue, &camera)?;
+        let group = shadow_mask.bind_group(&self.gpu.device, &target.depth, None)?;
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("Renderer::deferred_mask"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &target.color,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations::default(),
+            })],
+            ..Default::default()
+        });
+        shadow_mask.draw(&mut pass, &self.maps, &group);
+        Ok(())
     }
 
     /// The splits' maps as pictures, nearest first.

@@ -8,7 +8,7 @@ use umbrage_render::{Error, Frame, Gpu, GpuOptions, Outputs, ProbePoint, RenderS
 use umbrage_scene::{Pose, Scene, Texture};
 use umbrage_wgpu::{DepthFormat, Filter};
 
-const ALL: Outputs = Outputs { picture: true, mask: true, maps: true };
+const ALL: Outputs = Outputs { picture: true, mask: true, maps: true, deferred: false };
 
 #[test]
 fn an_empty_scene_is_a_picture_of_the_sky() {

@@ -148,6 +148,14 @@ pub fn caster(group: u32, casters: Casters, members: &str) -> String {
     )
 }
 
+/// A whole pass to put behind a [`receiver`]: the entry points `umbrage_mask_vertex` and `umbrage_mask_fragment` turn a picture's depth
+/// (and its normals, if there is a texture of them) into a mask of what is lit.
+#[must_use]
+pub fn mask(group: u32, normals: bool) -> String {
+    let text = if normals { text!("mask_with_normals") } else { text!("mask") };
+    format!("const UMBRAGE_MASK_GROUP = {group}u;\n{text}\n")
+}
+
 /// Text to put before a shader that asks for contact shadows:
 /// `fn umbrage_contact_visibility(position: vec3f, normal: vec3f, to_light: vec3f, noise: f32) -> f32`. Binding 0 is its uniform, 1 the picture's depth as
 /// `texture_depth_2d`. It may stand beside [`receiver`] in one module.

@@ -196,3 +196,10 @@ fn every_name_is_in_our_namespace() {
         assert!(module.overrides.is_empty() && module.entry_points.is_empty(), "a root adds nothing to a pipeline");
     }
 }
+
+#[test]
+fn deferred_masks_stand_behind_receivers() {
+    for normals in [false, true] {
+        validated(&(umbrage_shaders::receiver(1, Maps::default()) + &umbrage_shaders::mask(0, normals)));
+    }
+}

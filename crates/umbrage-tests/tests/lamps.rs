@@ -11,7 +11,7 @@ use umbrage_truth::Truth;
 use umbrage_truth::scores::{Answers, Domain, MisShadowed, mis_shadowed};
 
 const SIZE: [u32; 2] = [240, 180];
-const MASK: Outputs = Outputs { picture: false, mask: true, maps: false };
+const MASK: Outputs = Outputs { picture: false, mask: true, maps: false, deferred: false };
 
 struct Room {
     scene: Scene,
@@ -108,7 +108,8 @@ fn a_light_among_others_is_as_it_is_alone() {
     assert_eq!(rendered.mask, Some(mask(&mut alone, &room.frame(&view, reading, &[]))));
     assert_eq!(rendered.stats.more_lights.iter().map(|light| light.splits.len()).collect::<Vec<_>>(), [12, 2]);
     // The picture has the light of all: no pixel is darker than with one, and some are brighter.
-    let one = alone.render(&room.frame(&view, reading, &[]), Outputs { picture: true, mask: false, maps: false });
+    let one = alone
+        .render(&room.frame(&view, reading, &[]), Outputs { picture: true, mask: false, maps: false, deferred: false });
     let (one, all) = (one.expect("a frame").picture.expect("a picture"), rendered.picture.expect("a picture"));
     let brighter = one.pixels().zip(all.pixels()).filter(|(one, all)| all.0[0] > one.0[0].saturating_add(20)).count();
     assert!(one.pixels().zip(all.pixels()).all(|(one, all)| all.0[0] >= one.0[0].saturating_sub(1)));

@@ -80,12 +80,19 @@ impl Truth {
 }
 
 impl TruthMask {
-    /// A mask made by hand.
-    #[cfg(test)]
-    pub(crate) fn from_hits(size: [usize; 2], to_light: DVec3, hits: Vec<Option<Hit>>) -> Self {
-        assert_eq!(hits.len(), size[0] * size[1]);
-        let light = sun(-to_light).expect("a direction");
-        Self { size, light, hits }
+    /// What is known otherwise than by rays, by a closed form for example: one entry for each pixel, row after row.
+    ///
+    /// # Errors
+    /// [`Error::SizeMismatch`] for more or fewer entries than pixels, [`Error::InvalidSetting`] for a light without direction.
+    pub fn from_hits(size: [usize; 2], to_light: DVec3, hits: Vec<Option<Hit>>) -> Result<Self> {
+        if hits.len() != size[0] * size[1] {
+            return Err(Error::SizeMismatch {
+                what: "the list of hits",
+                got: [hits.len(), 1],
+                expected: [size[0] * size[1], 1],
+            });
+        }
+        Ok(Self { size, light: sun(-to_light)?, hits })
     }
 
     /// Width and height in pixels.

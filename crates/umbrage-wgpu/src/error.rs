@@ -7,6 +7,19 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// A pass that loads from depth textures, on a device that cannot.
+    #[error(
+        "depth textures cannot be loaded from on GL and WebGL2; ask for visibility where surfaces are drawn instead of in a mask"
+    )]
+    MaskNeedsDepthLoads,
+    /// A mask was given normals that it did not ask for, or none where it did.
+    #[error("a mask with normals {normals:?} was {}; give a texture of normals with MaskNormals::Texture and with nothing else", if *.given { "given a texture of them" } else { "given none" })]
+    MaskNormals {
+        /// As the mask was made.
+        normals: crate::MaskNormals,
+        /// Whether a texture was given.
+        given: bool,
+    },
     /// `map_sizes` is empty or too long.
     #[error("map_sizes has {count} entries; give one for each split, 1 to {most}")]
     SplitCount {

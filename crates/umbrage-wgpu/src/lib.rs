@@ -42,6 +42,7 @@ mod contact;
 mod error;
 mod local;
 mod maps;
+mod mask;
 mod moments;
 mod options;
 mod uniforms;
@@ -49,6 +50,7 @@ mod uniforms;
 pub use contact::{ContactFrame, ContactOptions, ContactShadows, contact_wgsl};
 pub use error::{Error, Result};
 pub use maps::{MapPass, ShadowMaps, Slice, optional_features};
+pub use mask::{MaskFrame, MaskNormals, ShadowMask};
 pub use moments::MomentStorage;
 pub use options::{
     DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, ReceiverBias, ShadowMapsOptions, Softness,

@@ -31,9 +31,14 @@ into (the sun ahead of the camera, 11 degrees up; into@30: 30 degrees up), metri
 Presets, each reproduced by one command such as `umbrage compare --preset ladder -o ladder`; options given beside take precedence:
   ladder   SSM and PSSM at 1 and 4 Mtexel, tight and still, over the worlds under the suns `metrics`, with flicker
   figure8  the rows and worlds of the paper's Figure 8, columns (a) to (d)
+  psvsm    the five pictures of Parallel-Split Variance Shadow Maps
+  filters  every filter on the same maps; give --sun-angle 3 for soft scores
   dueling  its column (e): looking into the light, larger maps
   stillness  unstabilised, exact, approximate and the source's 64 levels along a walk with turns, with flicker
   table    PSSM(2, 3, 4; 512) beside SSM(1024) over all cameras of all worlds
+  selection     splits chosen by view depth and by map, coloured (Practical Cascaded Shadow Maps, Figure 4.1.9)
+  gems-figure   SSM(2048) beside PSSM(3; 1024) (GPU Gems 3, Figure 10-8)
+  gems-results  PSSM(3; 1024) and PSSM(4; 1024) at 1280x1024 (its section 10.5), with a scene of yours such as assets/city_candela.glb
   suns     the defaults over all cameras of all worlds, suns 80, 43, 20, 11 and 5 degrees up: acne and leaks";
 
 /// `umbrage compare`.
@@ -72,9 +77,9 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N..F", value_parser = parse::range, allow_hyphen_values = true, help_heading = "Techniques")]
     pub shadow_range: Option<(f64, f64)>,
 
-    /// Pixels
-    #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = parse::size, allow_hyphen_values = true, help_heading = "Shots")]
-    pub size: [u32; 2],
+    /// Pixels [default: 800x600, or the preset's]
+    #[arg(long, value_name = "WxH", value_parser = parse::size, allow_hyphen_values = true, help_heading = "Shots")]
+    pub size: Option<[u32; 2]>,
     /// Cameras of the scenes, by name or number [default: all that have names, or an invented one]
     #[arg(long, value_name = "NAME|INDEX,…", value_delimiter = ',', help_heading = "Shots")]
     pub camera: Vec<String>,
@@ -135,7 +140,7 @@ pub struct CompareArgs {
     /// Write the contact sheet here (PNG)
     #[arg(long, value_name = "PNG", help_heading = "Output")]
     pub sheet: Option<PathBuf>,
-    /// Write the sheet of errors here (PNG): leaks red, acne blue, on the truth in grey
+    /// Write the sheet of errors here (PNG): leaks red, acne blue, on the truth in grey; along a walk, flips yellow
     #[arg(long, value_name = "PNG", help_heading = "Output")]
     pub errors: Option<PathBuf>,
     /// Write all scores here (JSON)
@@ -147,6 +152,9 @@ pub struct CompareArgs {
     /// Columns of the sheets; of more shots, evenly chosen ones are shown
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=64), help_heading = "Output")]
     pub columns: u32,
+    /// Colour the pictures by split; scores do not change
+    #[arg(long, help_heading = "Output")]
+    pub tint: bool,
     /// FLIP and SSIM beside the scores, over the shots on the sheets
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub image_metrics: Switch,
@@ -167,9 +175,31 @@ pub enum Preset {
     Stillness,
     /// The defaults under suns from 80° to 5° above the horizon
     Suns,
+    /// The five pictures of parallel-split variance shadow maps
+    Psvsm,
+    /// Every filter on the same maps
+    Filters,
+    /// Splits chosen by view depth and by map, coloured: Figure 4.1.9 of Practical Cascaded Shadow Maps
+    Selection,
+    /// SSM(2048) beside PSSM(3; 1024): GPU Gems 3, Figure 10-8
+    GemsFigure,
+    /// PSSM(3; 1024) and PSSM(4; 1024) at 1280 × 1024 pixels: GPU Gems 3, section 10.5, in a scene of your choice
+    GemsResults,
 }
 
 impl CompareArgs {
+    /// Pixels across and down.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size.or_else(|| super::preset::content(self.preset?).size).unwrap_or([800, 600])
+    }
+
+    /// Whether pictures show each split in its own colour.
+    #[must_use]
+    pub fn tinted(&self) -> bool {
+        self.tint || self.preset.is_some_and(|preset| super::preset::content(preset).tint)
+    }
+
     /// What the options say about one scene, seen by no camera in particular.
     #[must_use]
     pub fn scene_args(&self, scene: &str) -> SceneArgs {
@@ -179,7 +209,7 @@ impl CompareArgs {
             metres_per_unit: self.metres_per_unit,
             height_offset: self.height_offset,
             time: self.time,
-            size: self.size,
+            size: self.size(),
             camera: None,
             eye: None,
             target: None,

@@ -42,7 +42,12 @@ pub struct Answer {
     pub picture: RgbaImage,
     /// Its scores.
     pub scores: Scores,
+    /// Pixels of the points that it decided otherwise one frame ago.
+    pub flipped: Vec<[u32; 2]>,
 }
+
+/// How pixels are marked that a technique decided otherwise one frame ago.
+const FLIPPED: Rgb<u8> = Rgb([255, 216, 0]);
 
 /// What the truth's picture is put together from, beside the techniques' pictures: all that faces the sun lit, and nothing lit.
 pub struct Plain {
@@ -67,7 +72,11 @@ pub fn columns(judged: &Judged, answers: &[Answer], plain: &Plain, cell: [u32; 2
     let [mut pictures, mut errors] = [Vec::new(), Vec::new()];
     for (answer, decided) in answers.iter().zip(&decided) {
         pictures.push(captioned(&opaque(&answer.picture), &answer.scores));
-        errors.push(captioned(&false_colour(&judged.truth, &judged.domain, decided)?, &answer.scores));
+        let mut wrong = false_colour(&judged.truth, &judged.domain, decided)?;
+        for [x, y] in &answer.flipped {
+            wrong.put_pixel(*x, *y, FLIPPED);
+        }
+        errors.push(captioned(&wrong, &answer.scores));
     }
     let edges = judged.domain.edges().len();
     let truth = |picture: &RgbImage| Cell {

@@ -196,6 +196,8 @@ pub struct Cost {
     pub draws: u64,
     /// Triangles drawn into maps.
     pub triangles: u64,
+    /// Triangles drawn for the view, before any clipping.
+    pub view_triangles: u64,
     /// Vertices shaded for maps; none where the device does not count.
     pub vertices: Option<u64>,
     /// Pixels of maps touched; none where the device does not count.
@@ -230,6 +232,7 @@ pub fn score(judged: &Judged, mask: &GrayAlphaImage, stats: &FrameStats, image_m
         caster_split_pairs: stats.splits.iter().map(|split| split.casters as u64).sum(),
         draws: stats.splits.iter().map(|split| u64::from(split.draws)).sum(),
         triangles: stats.splits.iter().map(|split| split.triangles).sum(),
+        view_triangles: stats.view_triangles,
         vertices: stats.shadow_counts.map(|counts| counts.vertices),
         fragments: stats.shadow_counts.map(|counts| counts.fragments),
     };

@@ -102,7 +102,7 @@ fn techniques_of(args: &CompareArgs, content: Option<&Content>, notes: &mut Vec<
     let mut drafts = Vec::new();
     for text in content.map_or(&[][..], |content| content.techniques) {
         let draft = techniques::parse(text)?;
-        match draft.finish(&with, args.shadow_range, args.size) {
+        match draft.finish(&with, args.shadow_range, args.size()) {
             Ok(_) => drafts.push(draft),
             Err(Rejected::NotBuilt(failure)) => notes.push(format!("left out of the preset: {failure}")),
             Err(Rejected::Wrong(failure)) => return Err(failure),
@@ -122,12 +122,15 @@ fn techniques_of(args: &CompareArgs, content: Option<&Content>, notes: &mut Vec<
             "no technique: give --techniques (for example pssm:4:1024,ssm:2048), --techniques-file or --preset",
         ));
     }
-    Ok(techniques::finish(&drafts, &with, args.shadow_range, args.size)?)
+    Ok(techniques::finish(&drafts, &with, args.shadow_range, args.size())?)
 }
 
 fn scenes_of(args: &CompareArgs, content: Option<&Content>) -> Result<Vec<String>> {
     match content {
         _ if !args.scenes.is_empty() => Ok(args.scenes.clone()),
+        Some(content) if content.scenes.is_empty() => {
+            Err(Failure::input("no scene: the preset has none of its own; give one, such as assets/city_candela.glb"))
+        }
         Some(content) => Ok(content.scenes.iter().map(|&scene| scene.to_owned()).collect()),
         None => Err(Failure::input("no scene: give one or more, or a --preset")),
     }

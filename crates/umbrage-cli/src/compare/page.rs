@@ -63,7 +63,7 @@ fn pictures(labels: &[Label], columns: &[Vec<Shot>; 2]) -> Result<Section> {
         .heading("Errors")
         .text(
             "The same shots: wrong decisions on the truth in grey. Leaks (lit instead of dark) are red, acne (dark instead of lit) is \
-             blue; what is dimmed is not scored.",
+             blue; what is dimmed is not scored. Along a walk, decisions that flipped since the frame before are yellow.",
         );
     Ok(section.sheet(&grid(labels, errors)?))
 }

@@ -21,11 +21,19 @@ pub struct Content {
     pub far: Option<f64>,
     /// How cameras go on, for flicker.
     pub stride: Option<Stride>,
+    /// Pixels, where not those of all commands.
+    pub size: Option<[u32; 2]>,
+    /// Whether pictures show each split in its own colour.
+    pub tint: bool,
 }
 
 /// One map or slice, one nearest texel, one comparison, no blend, no fade, fitted to the slice alone: what the papers measured, and
 /// what the project's ladder was measured with.
 const PLAIN: &str = "filter=hard:blend=0:far-fade=0:fit=independent:stabilize=none";
+
+/// The same over the depths that are visible, for all techniques alike. Splits are logarithmic then, the optimum by the paper's own
+/// analysis once near is where the first thing stands, and maps are chosen by what they contain.
+const VISIBLE: &str = "filter=hard:blend=0:far-fade=0:fit=independent:stabilize=none:range-fit=visible";
 
 const LADDER: Content = Content {
     techniques: &[
@@ -48,24 +56,46 @@ const LADDER: Content = Content {
     near: Some(0.5),
     far: Some(500.0),
     stride: Some(Stride { metres: 0.5, turn: 0.0, zoom: 1.0, frames: 2 }),
+    size: None,
+    tint: false,
 };
 
 /// *Parallel-Split Shadow Maps*, Figure 8: SSM, PSM, LiSPSM, TSM (1024²), PSSM(2, 3, 4; 512²); columns (a) to (d).
 const FIGURE_8: Content = Content {
-    techniques: &["ssm:1024", "psm:1024", "lispsm:1024", "tsm:1024", "pssm:2:512", "pssm:3:512", "pssm:4:512"],
-    with: PLAIN,
+    techniques: &[
+        "ssm:1024",
+        "psm:1024",
+        "lispsm:1024",
+        "tsm:1024",
+        "pssm:2:512:scheme=log:selection=map",
+        "pssm:3:512:scheme=log:selection=map",
+        "pssm:4:512:scheme=log:selection=map",
+    ],
+    with: VISIBLE,
     scenes: &["chessboard", "robot-war", "mining-terrain", "knights"],
     cameras: &["middle"],
     suns: &["own"],
     near: None,
     far: None,
     stride: None,
+    size: None,
+    tint: false,
 };
 
-/// The same figure, column (e): light and eye nearly opposite; single maps of 2048², splits of 1024².
+/// The same figure, column (e): light and eye nearly opposite; single maps of 2048², splits of 1024². The cameras look 5° to 20° down
+/// and the sun stands 5° up before them, so that light and view oppose each other by all but 10° to 25°.
 const DUELING: Content = Content {
-    techniques: &["ssm:2048", "psm:2048", "lispsm:2048", "tsm:2048", "pssm:2:1024", "pssm:3:1024", "pssm:4:1024"],
+    techniques: &[
+        "ssm:2048",
+        "psm:2048",
+        "lispsm:2048",
+        "tsm:2048",
+        "pssm:2:1024:scheme=log:selection=map",
+        "pssm:3:1024:scheme=log:selection=map",
+        "pssm:4:1024:scheme=log:selection=map",
+    ],
     cameras: &["dueling"],
+    suns: &["into@5"],
     ..FIGURE_8
 };
 
@@ -80,6 +110,7 @@ const TABLE: Content = Content {
         "pssm:4:512:fit=dependent:stabilize=exact",
         "pssm:4:512:fit=dependent:stabilize=exact:filter=pcf3:blend=0.1:label=PSSM(4; 512²) as shipped",
     ],
+    with: PLAIN,
     cameras: &[],
     ..FIGURE_8
 };
@@ -94,6 +125,39 @@ const SUNS: Content = Content {
     near: None,
     far: None,
     stride: None,
+    size: None,
+    tint: false,
+};
+
+/// *Practical Cascaded Shadow Maps*, Figure 4.1.9: the split by view depth and the first map that contains the point, each split in its
+/// colour; spheres, as in the source, so that borders by map are seen as their squares.
+const SELECTION: Content = Content {
+    techniques: &["pssm:3:512:selection=depth", "pssm:3:512:selection=map"],
+    with: "filter=pcf3:blend=0:far-fade=0:stabilize=exact:range-fit=visible:scheme=log",
+    scenes: &["robot-war", "knights"],
+    cameras: &["dueling"],
+    suns: &["into@11"],
+    tint: true,
+    ..FIGURE_8
+};
+
+/// *Parallel-Split Shadow Maps on Programmable GPUs*, Figure 10-8: a single map of 2048² beside three splits of 1024² by the
+/// multipass method, with the book's own fit, λ = 0.5 and filter.
+const GEMS_FIGURE: Content = Content {
+    techniques: &["ssm:2048", "pssm:3:1024:generation=multipass"],
+    with: "filter=pcf2:blend=0:far-fade=0:fit=independent:stabilize=none",
+    scenes: &["robot-war", "knights"],
+    cameras: &["near"],
+    ..FIGURE_8
+};
+
+/// The same chapter's section 10.5: three and four splits of 1024² at 1280 × 1024 pixels, in a city that has to be given.
+const GEMS_RESULTS: Content = Content {
+    techniques: &["pssm:3:1024", "pssm:4:1024"],
+    scenes: &[],
+    cameras: &[],
+    size: Some([1280, 1024]),
+    ..GEMS_FIGURE
 };
 
 /// *Practical Cascaded Shadow Maps*, Figures 4.1.2 to 4.1.6: what flickers when the observer goes on. A frame is 0.15 m and 0.003 rad.
@@ -104,8 +168,45 @@ const STILLNESS: Content = Content {
         "pssm:4:512:stabilize=approximate",
         "pssm:4:512:stabilize=approximate:extent-levels=64",
     ],
+    with: PLAIN,
     cameras: &["near", "middle"],
     stride: Some(Stride { metres: 0.15, turn: 0.171_887_338_539_246_97, zoom: 1.0, frames: 60 }),
+    ..FIGURE_8
+};
+
+/// *Parallel-Split Variance Shadow Maps*, its five pictures: one shadow map and one variance shadow map of 1024², four splits of 512², the
+/// same in colours, and as variance shadow maps.
+const PSVSM: Content = Content {
+    techniques: &[
+        "ssm:1024:filter=pcf2:label=Shadow map (1024²)",
+        "ssm:1024:filter=vsm:label=Variance shadow map (1024²)",
+        "pssm:4:512:filter=pcf2:label=Parallel-split (4; 512²)",
+        "pssm:4:512:filter=pcf2:tint=true:label=The splits",
+        "pssm:4:512:filter=vsm:label=Parallel-split variance (4; 512²)",
+    ],
+    with: "far-fade=0:stabilize=none",
+    scenes: &["robot-war", "chessboard", "mining-terrain"],
+    cameras: &["middle"],
+    ..FIGURE_8
+};
+
+/// Every filter on the same maps, under a sun of three degrees where the command says so.
+const FILTERS: Content = Content {
+    techniques: &[
+        "pssm:4:1024:filter=pcf2",
+        "pssm:4:1024:filter=pcf3",
+        "pssm:4:1024:filter=pcf5",
+        "pssm:4:1024:filter=pcf7",
+        "pssm:4:1024:filter=disc",
+        "pssm:4:1024:filter=pcss",
+        "pssm:4:1024:filter=esm",
+        "pssm:4:1024:filter=vsm",
+        "pssm:4:1024:filter=evsm2",
+        "pssm:4:1024:filter=evsm4",
+        "pssm:4:1024:filter=msm",
+    ],
+    with: "",
+    cameras: &["near"],
     ..FIGURE_8
 };
 
@@ -119,5 +220,10 @@ pub fn content(preset: Preset) -> &'static Content {
         Preset::Stillness => &STILLNESS,
         Preset::Table => &TABLE,
         Preset::Suns => &SUNS,
+        Preset::Psvsm => &PSVSM,
+        Preset::Filters => &FILTERS,
+        Preset::Selection => &SELECTION,
+        Preset::GemsFigure => &GEMS_FIGURE,
+        Preset::GemsResults => &GEMS_RESULTS,
     }
 }

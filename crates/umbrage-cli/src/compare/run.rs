@@ -41,7 +41,7 @@ pub fn run(args: &CompareArgs) -> Result<()> {
         args,
         gpu: &gpu,
         techniques: &techniques,
-        cell: sheet::cell_size(shown.len(), args.size),
+        cell: sheet::cell_size(shown.len(), args.size()),
         shown,
         bar: progress::steps((views * (techniques.len() + 1)) as u64, "views × techniques"),
         views: Vec::new(),
@@ -57,12 +57,17 @@ pub fn run(args: &CompareArgs) -> Result<()> {
     let (comparison, columns) = bench.finish(all_notes)?;
 
     let labels = labels(&comparison, &techniques);
-    let cell = sheet::cell_size(columns[0].len(), args.size);
-    let title = |what: &str| format!("{what}, {} × {} pixels", args.size[0], args.size[1]);
+    let cell = sheet::cell_size(columns[0].len(), args.size());
+    let title = |what: &str| format!("{what}, {} × {} pixels", args.size()[0], args.size()[1]);
     let [pictures, errors] = &columns;
     let contents = [
         png(&sheet::assemble(&title("Shadows; insets: where techniques differ most"), &labels, pictures, cell))?,
-        png(&sheet::assemble(&title("Errors on the truth in grey: leaks red, acne blue"), &labels, errors, cell))?,
+        png(&sheet::assemble(
+            &title("Errors on the truth in grey: leaks red, acne blue, flips yellow"),
+            &labels,
+            errors,
+            cell,
+        ))?,
         to_json(&comparison)?,
         page::page(&comparison, &labels, &columns)?.into_bytes(),
     ];
@@ -98,7 +103,7 @@ impl Bench<'_> {
         let mut renderers = Vec::new();
         for technique in self.techniques {
             let settings = RenderSettings {
-                size: self.args.size,
+                size: self.args.size(),
                 shadows: technique.job.settings.clone(),
                 filter: wgpu_filter(technique.job.filter),
                 depth_format: wgpu_depth_format(technique.job.depth_format),
@@ -137,12 +142,18 @@ impl Bench<'_> {
         let mut before: Option<Before> = None;
         for (k, view) in series.views.iter().enumerate() {
             let range = self.args.shadow_range;
-            let mut judged = Judged::new(truth, &set.pose, view, &series.light.light, self.args.size, range)?;
+            let mut judged = Judged::new(truth, &set.pose, view, &series.light.light, self.args.size(), range)?;
             judged.soften(truth, self.args.sun_angle)?;
             self.bar.inc(1);
             let is_shown = self.shown.contains(&[scene, of, k]);
-            let frame =
-                Frame { pose: &set.pose, view, light: series.light, more_lights: &[], shadows_on: true, tint: false };
+            let frame = Frame {
+                pose: &set.pose,
+                view,
+                light: series.light,
+                more_lights: &[],
+                shadows_on: true,
+                tint: self.args.tinted(),
+            };
             let points = match series.views.get(k + 1) {
                 Some(next) => points_shared_with(&judged, next),
                 None => Vec::new(),
@@ -151,21 +162,26 @@ impl Bench<'_> {
             let both: Vec<ProbePoint> = old_points.iter().chain(&points).copied().collect();
             let (mut scores, mut shown) = (Vec::new(), Vec::new());
             for (number, (technique, renderer)) in self.techniques.iter().zip(renderers.iter_mut()).enumerate() {
-                let wanted = Outputs { picture: is_shown, mask: true, maps: false };
-                let rendered = renderer.render(&frame, wanted).map_err(|error| in_technique(technique, error))?;
+                let wanted = Outputs { picture: is_shown, mask: true, maps: false, deferred: technique.job.deferred };
+                let coloured = Frame { tint: frame.tint || technique.job.tint, ..frame };
+                let rendered = renderer.render(&coloured, wanted).map_err(|error| in_technique(technique, error))?;
                 let mask = rendered.mask.ok_or_else(|| Failure::other("the renderer gave no mask"))?;
                 let image_metrics = is_shown && self.args.image_metrics == Switch::On;
                 let of_view = score(&judged, &mask, &rendered.stats, image_metrics)?;
                 scores.push(of_view.clone());
-                if let Some(picture) = rendered.picture {
-                    shown.push(Answer { mask, picture, scores: of_view });
-                }
+                let mut flipped = Vec::new();
                 if !both.is_empty() {
                     let answers = renderer.probe(&frame, &both).map_err(|error| in_technique(technique, error))?;
                     let answers: Vec<f32> = answers.iter().map(|answer| answer.visibility).collect();
                     let (shared, next) = answers.split_at(old_points.len());
                     let old = before.as_ref().map(|before| (&before.judged.domain, &before.points[..]));
-                    walks[number].add(Answered { plan: rendered.stats.plan, shared, next }, old)?;
+                    let indices = walks[number].add(Answered { plan: rendered.stats.plan, shared, next }, old)?;
+                    flipped.extend(
+                        indices.iter().filter_map(|&i| pixel_of(view, self.args.size(), old_points[i].position)),
+                    );
+                }
+                if let Some(picture) = rendered.picture {
+                    shown.push(Answer { mask, picture, scores: of_view, flipped });
                 }
                 self.bar.inc(1);
             }
@@ -219,7 +235,7 @@ impl Bench<'_> {
         };
         let mut plain = |light| -> Result<_> {
             let frame = Frame { light, shadows_on: false, ..*frame };
-            let wanted = Outputs { picture: true, mask: false, maps: false };
+            let wanted = Outputs { picture: true, mask: false, maps: false, deferred: false };
             renderer.render(&frame, wanted)?.picture.ok_or_else(|| Failure::other("the renderer gave no picture"))
         };
         let plain = Plain { lit: plain(frame.light)?, dark: plain(against)? };
@@ -266,7 +282,7 @@ impl Bench<'_> {
             command: ["umbrage".to_owned()].into_iter().chain(std::env::args().skip(1)).collect(),
             reproduce: REPRODUCE,
             adapter: adapter::description(self.gpu),
-            size: self.args.size,
+            size: self.args.size(),
             least_edges: self.args.least_edges,
             pairs: report::pairs(&labels, &self.views)?,
             memory_at_half_percent: report::families(&techniques)?,
@@ -277,6 +293,17 @@ impl Bench<'_> {
         };
         Ok((comparison, self.columns))
     }
+}
+
+/// Where a point is in the picture.
+fn pixel_of(view: &umbrage::View, size: [u32; 2], point: glam::DVec3) -> Option<[u32; 2]> {
+    let (at, lens) = (view.view_from_world_point(point), view.frustum());
+    let scale = lens.scale_at(-at.z);
+    let across = (at.x / scale - lens.left) / (lens.right - lens.left);
+    let down = (lens.top - at.y / scale) / (lens.top - lens.bottom);
+    let pixel = [across * f64::from(size[0]), down * f64::from(size[1])];
+    let inside = pixel.iter().zip(size).all(|(&at, size)| at >= 0.0 && at < f64::from(size));
+    inside.then_some(pixel.map(|at| at as u32))
 }
 
 /// P_k, as the renderer is asked about it.

@@ -47,14 +47,18 @@ impl Stillness {
         Self { transition, all, kept, standing, standing_points: 0, steps: 0, before: None }
     }
 
-    /// One more frame. `shared` are the domain of the frame before and the points that it shares with this one.
+    /// One more frame. `shared` are the domain of the frame before and the points that it shares with this one; answers which of those
+    /// are decided otherwise now.
     ///
     /// # Errors
     /// [`crate::failure::Failure`] if answers are missing or none at all.
-    pub fn add(&mut self, answered: Answered<'_>, shared: Option<(&Domain, &[ProbePoint])>) -> Result<()> {
+    pub fn add(&mut self, answered: Answered<'_>, shared: Option<(&Domain, &[ProbePoint])>) -> Result<Vec<usize>> {
+        let mut flipped = Vec::new();
         let now = Before { plan: answered.plan, answers: answered.next.to_vec() };
         if let (Some(before), Some((domain, points))) = (&self.before, shared) {
             let (old, new) = (&before.answers[..], answered.shared);
+            let differ = |(_, (a, b)): &(usize, (&f32, &f32))| (**a >= 0.5) != (**b >= 0.5);
+            flipped.extend(old.iter().zip(new).enumerate().filter(differ).map(|(index, _)| index));
             self.all.add(FramePair { domain, now: old, next: new })?;
             let splits = now.plan.splits.iter().zip(&before.plan.splits);
             // A split that nothing throws a shadow in stands still, whatever its map.
@@ -82,7 +86,7 @@ impl Stillness {
             self.standing.add(FramePair { domain, now: &standing.0, next: &standing.1 })?;
         }
         self.before = Some(now);
-        Ok(())
+        Ok(flipped)
     }
 
     /// What it came to.

@@ -24,12 +24,11 @@ use crate::{
 };
 
 /// Kinds that are spoken of and do not exist yet.
-const PLANNED: [&str; 2] = ["sdsm", "vsm"];
+const PLANNED: [&str; 1] = ["sdsm"];
 
 /// Options that say what is looked at rather than how shadows are made: they hold for the whole comparison, or not at all.
-const NOT_SETTINGS: [(&str, &str); 3] = [
+const NOT_SETTINGS: [(&str, &str); 2] = [
     ("shadow-range", "it decides which pixels are scored and is one for all; give --shadow-range beside --techniques"),
-    ("tint", "a debug colour changes no shadow; leave it away"),
     ("shadows", "a technique without shadows has no score; leave it away"),
 ];
 
@@ -300,7 +299,7 @@ impl Draft {
                 "extent-steps" => format!("2^(1/{value})"),
                 "extent-levels" => format!("1/{value} levels"),
                 "selection" => format!("by {value}"),
-                "scheme" | "fit" | "filter" | "depth-format" => value.clone(),
+                "coordinates" | "scheme" | "fit" | "filter" | "depth-format" => value.clone(),
                 _ => format!("{key} {value}"),
             };
             label += &format!(" {text}");

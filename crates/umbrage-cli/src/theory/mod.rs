@@ -3,16 +3,18 @@
 //! * [`aliasing`]: the three split schemes over depth and dp/ds (000 Figure 4, 001 Figure 10-4);
 //! * [`area`]: Σ Area(B_i)/Area(B) over the light's direction (000 Figure 5);
 //! * [`fits`]: independent against dependent fit (001 Figures 10-5 and 10-6);
-//! * [`wireframe`]: slices and light frusta in space.
+//! * [`wireframe`]: slices and light frusta in space;
+//! * [`stillness`]: why shadows flicker, and what keeps them still (003 Figures 4.1.3, 4.1.4 and 4.1.6).
 //!
 //! 000 is *Parallel-Split Shadow Maps for Large-scale Virtual Environments* (Zhang, Sun, Xu, Lun 2006), 001 chapter 10 of
-//! *GPU Gems 3* (Zhang, Sun, Nyman 2007).
+//! *GPU Gems 3* (Zhang, Sun, Nyman 2007), 003 *Practical Cascaded Shadow Maps* (Zhang, Zaprjagaev, Bentham 2009).
 
 mod aliasing;
 mod area;
 mod example;
 mod fits;
 mod setting;
+mod stillness;
 mod wireframe;
 
 pub use setting::Setting;
@@ -57,7 +59,13 @@ pub enum Error {
 /// # Errors
 /// [`Error`] if the setting's lens or range is out of range.
 pub fn sections(setting: &Setting) -> Result<Vec<Section>> {
-    Ok(vec![aliasing::section(setting)?, area::section(setting)?, fits::section(setting)?, wireframe::section()?])
+    Ok(vec![
+        aliasing::section(setting)?,
+        area::section(setting)?,
+        fits::section(setting)?,
+        wireframe::section()?,
+        stillness::section(setting)?,
+    ])
 }
 
 /// The whole page with the default setting.
@@ -76,7 +84,7 @@ pub fn page() -> Result<Page> {
         sections: sections(&setting)?,
         footer: "Written by `umbrage theory`. 000: Zhang, Sun, Xu, Lun, Parallel-Split Shadow Maps for Large-scale Virtual \
                  Environments, VRCIA 2006. 001: Zhang, Sun, Nyman, Parallel-Split Shadow Maps on Programmable GPUs, GPU Gems 3, \
-                 chapter 10, 2007."
+                 chapter 10, 2007. 003: Zhang, Zaprjagaev, Bentham, Practical Cascaded Shadow Maps, ShaderX7, 2009."
             .into(),
     })
 }
@@ -106,9 +114,9 @@ mod tests {
     #[test]
     fn the_page_is_whole() {
         let html = page().expect("a page").html();
-        assert_eq!(html.matches("<section").count(), 4);
+        assert_eq!(html.matches("<section").count(), 5);
         assert_eq!(html.matches("<svg ").count(), html.matches("</svg>").count());
-        assert_eq!(html.matches("<svg ").count(), 16);
+        assert_eq!(html.matches("<svg ").count(), 21);
         assert!(!html.contains("NaN") && !html.contains("inf"), "a number that is none");
         assert!(html.len() < 2 << 20, "{} bytes", html.len());
     }

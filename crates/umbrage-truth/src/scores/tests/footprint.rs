@@ -66,7 +66,7 @@ fn the_jacobian_is_that_of_the_rays() {
     for &pixel in domain.pixels().iter().step_by(97) {
         let mut alone = vec![None; mask.hits().len()];
         alone[pixel] = mask.hits()[pixel];
-        let alone = TruthMask::from_hits(mask.size(), mask.light().to_light(DVec3::ZERO), alone);
+        let alone = TruthMask::from_hits(mask.size(), mask.light().to_light(DVec3::ZERO), alone).unwrap();
         let only = Domain::new(&alone, (0.1, 1e4)).unwrap();
         let ours = texel_footprint(&view, &alone, &only, |_, _| Some(texels)).unwrap().unwrap().median;
         let texel = |dx: f64, dy: f64| {
@@ -98,6 +98,6 @@ fn points_without_a_map_are_left_out() {
     let half = texel_footprint(&view, &mask, &domain, |p, _| (p.x > 0.0).then_some(texels)).unwrap().unwrap();
     assert_eq!(half.pixels, 32 * 48);
     assert_eq!(texel_footprint(&view, &mask, &domain, |_, _| None).unwrap(), None);
-    let other = TruthMask::from_hits([1, 1], DVec3::Y, vec![None]);
+    let other = TruthMask::from_hits([1, 1], DVec3::Y, vec![None]).unwrap();
     assert!(texel_footprint(&view, &other, &domain, |_, _| Some(texels)).is_err());
 }

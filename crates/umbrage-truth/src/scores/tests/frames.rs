@@ -21,7 +21,7 @@ pub fn mask(size: [usize; 2], of: impl Fn(usize, usize) -> Option<(f64, bool)>) 
             lit,
         })
     });
-    TruthMask::from_hits(size, DVec3::Y, hits.collect())
+    TruthMask::from_hits(size, DVec3::Y, hits.collect()).unwrap()
 }
 
 /// A flat receiver at depth 10, in shadow left of `edge`.

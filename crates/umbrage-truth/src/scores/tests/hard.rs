@@ -144,7 +144,7 @@ fn only_pixels_that_face_the_light_in_range_are_scored() {
         hit(1.0, 1000.1),
         None,
     ];
-    let domain = domain(&TruthMask::from_hits([9, 1], light, hits));
+    let domain = domain(&TruthMask::from_hits([9, 1], light, hits).unwrap());
     assert_eq!(domain.pixels(), [0, 1, 5, 6]);
     assert!((0..9).all(|pixel| domain.contains(pixel) == domain.pixels().contains(&pixel)));
 }

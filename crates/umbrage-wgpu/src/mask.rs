@@ -1,0 +1,216 @@
+//! Deferred shadows: from the picture's depth to a mask of what is lit.
+
+use std::borrow::Cow;
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DMat4, DVec3};
+
+use crate::{Error, Result, ShadowMaps, Storage};
+
+/// Where the mask's pass takes its normals from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum MaskNormals {
+    /// From the depth of neighbouring pixels. Exact on planes; wrong where a surface is a pixel or two wide, which then may shade itself
+    /// or lie turned away from the light.
+    #[default]
+    FromDepth,
+    /// From a texture as large as the depth, `texture_2d<f32>` with a format that has a sign: unit vectors of the world, of the
+    /// surfaces themselves and not of their shading.
+    Texture,
+}
+
+/// The camera that drew the depth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MaskFrame {
+    /// Positions relative to the eye, along the world's axes, to the clip space that the depth was drawn in. Any depth that a GPU takes,
+    /// reversed and infinite ones too.
+    pub clip_from_eye: DMat4,
+    /// The eye in the world.
+    pub eye: DVec3,
+    /// Where the camera looks, a unit vector.
+    pub forward: DVec3,
+    /// As [`crate::FrameOptions::origin`].
+    pub origin: DVec3,
+    /// What the depth was cleared to: 0 for reversed depth, else 1.
+    pub empty_depth: f32,
+}
+
+/// `UmbrageMask` in `shaders/pass/mask.wesl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+struct Uniform {
+    eye_from_clip: [[f32; 4]; 4],
+    eye: [f32; 3],
+    empty_depth: f32,
+    forward: [f32; 3],
+    perspective: f32,
+}
+
+impl Uniform {
+    fn new(frame: &MaskFrame) -> Result<Self> {
+        let bad = |field, expected| Err(Error::InvalidFrameOption { field, value: f64::NAN, expected });
+        let inverse = frame.clip_from_eye.inverse();
+        if !(frame.clip_from_eye.is_finite() && inverse.is_finite()) {
+            return bad("clip_from_eye", "a finite matrix that has an inverse");
+        }
+        if !((frame.eye - frame.origin).is_finite() && frame.forward.is_normalized()) {
+            return bad("eye", "finite, with a unit vector for forward");
+        }
+        let perspective = frame.clip_from_eye.row(3).truncate().length() > 0.0;
+        Ok(Self {
+            eye_from_clip: inverse.as_mat4().to_cols_array_2d(),
+            eye: (frame.eye - frame.origin).as_vec3().to_array(),
+            empty_depth: frame.empty_depth,
+            forward: frame.forward.as_vec3().to_array(),
+            perspective: f32::from(u8::from(perspective)),
+        })
+    }
+}
+
+/// A pass that asks [`ShadowMaps`] for every pixel of a picture whose depth is drawn already, for applications that shade later: red is
+/// the first light's visibility (1 where nothing was drawn), green 1 where something was.
+///
+/// Positions are rebuilt from depth with one sample a pixel; they agree with the surfaces' own to rounding (`docs/measurements.md`).
+/// Not on GL and WebGL2, which cannot load from a depth texture.
+#[derive(Debug)]
+pub struct ShadowMask {
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+    uniform: wgpu::Buffer,
+    normals: MaskNormals,
+}
+
+impl ShadowMask {
+    /// For masks of `format` (`R8Unorm` holds what is lit, `Rg8Unorm` also where something is).
+    ///
+    /// # Errors
+    /// [`Error::MaskNeedsDepthLoads`] where depth textures cannot be loaded from, [`Error::ConflictingOptions`] with
+    /// [`Storage::Reused`], whose maps are gone when the picture's depth is complete.
+    pub fn new(
+        device: &wgpu::Device,
+        maps: &ShadowMaps,
+        format: wgpu::TextureFormat,
+        normals: MaskNormals,
+    ) -> Result<Self> {
+        if device.adapter_info().backend == wgpu::Backend::Gl {
+            return Err(Error::MaskNeedsDepthLoads);
+        }
+        if maps.options().storage == Storage::Reused {
+            return Err(Error::ConflictingOptions {
+                first: "storage reused".to_owned(),
+                second: "deferred mask".to_owned(),
+                reason: "there is one map at a time, and the picture's depth is complete after the last; use storage array",
+            });
+        }
+        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty,
+            count: None,
+        };
+        let texture = |binding, sample_type| {
+            let view_dimension = wgpu::TextureViewDimension::D2;
+            entry(binding, wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false })
+        };
+        let mut entries = vec![
+            entry(
+                0,
+                wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: wgpu::BufferSize::new(size_of::<Uniform>() as u64),
+                },
+            ),
+            texture(1, wgpu::TextureSampleType::Depth),
+        ];
+        if normals == MaskNormals::Texture {
+            entries.push(texture(2, wgpu::TextureSampleType::Float { filterable: false }));
+        }
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("ShadowMask::layout"),
+            entries: &entries,
+        });
+        let text = maps.receiver_wgsl(1) + &umbrage_shaders::mask(0, normals == MaskNormals::Texture);
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("ShadowMask::shader"),
+            source: wgpu::ShaderSource::Wgsl(Cow::Owned(text)),
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("ShadowMask::pipeline_layout"),
+            bind_group_layouts: &[Some(&layout), Some(maps.receiver_layout())],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("ShadowMask::pipeline"),
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("umbrage_mask_vertex"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("umbrage_mask_fragment"),
+                compilation_options: Default::default(),
+                targets: &[Some(format.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("ShadowMask::uniform"),
+            size: size_of::<Uniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        Ok(Self { pipeline, layout, uniform, normals })
+    }
+
+    /// Hands a frame's camera to the GPU. Takes effect with the next submission to `queue`.
+    ///
+    /// # Errors
+    /// [`Error::InvalidFrameOption`] naming what is wrong. Nothing has been written then.
+    pub fn prepare(&self, queue: &wgpu::Queue, frame: &MaskFrame) -> Result<()> {
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&Uniform::new(frame)?));
+        Ok(())
+    }
+
+    /// The group that [`ShadowMask::draw`] wants: the picture's depth and, with [`MaskNormals::Texture`], its normals.
+    ///
+    /// # Errors
+    /// [`Error::MaskNormals`] if normals are missing or not asked for.
+    pub fn bind_group(
+        &self,
+        device: &wgpu::Device,
+        depth: &wgpu::TextureView,
+        normals: Option<&wgpu::TextureView>,
+    ) -> Result<wgpu::BindGroup> {
+        if normals.is_some() != (self.normals == MaskNormals::Texture) {
+            return Err(Error::MaskNormals { normals: self.normals, given: normals.is_some() });
+        }
+        let mut entries = vec![
+            wgpu::BindGroupEntry { binding: 0, resource: self.uniform.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(depth) },
+        ];
+        entries.extend(
+            normals.map(|view| wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(view) }),
+        );
+        Ok(device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("ShadowMask::bind_group"),
+            layout: &self.layout,
+            entries: &entries,
+        }))
+    }
+
+    /// Draws the mask into a pass of one colour target and no depth. Changes bind groups 0 and 1.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, maps: &ShadowMaps, group: &wgpu::BindGroup) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, group, &[]);
+        pass.set_bind_group(1, maps.receiver_bind_group(), &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
