@@ -69,6 +69,10 @@ pub struct RenderArgs {
     /// Write each split's map into this folder, as pictures
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub maps: Option<PathBuf>,
+    /// Write two pictures of each split into this folder: the scene between the split's planes (planned as a view of its own), and as the
+    /// light sees it through the split's map
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub split_views: Option<PathBuf>,
     /// Write what was done and what it cost here (JSON)
     #[arg(long, value_name = "JSON", help_heading = "Output")]
     pub report: Option<PathBuf>,

@@ -4,6 +4,7 @@
 //! [`Gpu`] opens a device, [`Renderer`] uploads a [`umbrage_scene::Scene`] once and then draws [`Frame`]s of it: pictures,
 //! visibility masks, depth maps and answers at given points, with [`FrameStats`] beside them.
 
+mod answers;
 mod capture;
 mod casters;
 mod contact;

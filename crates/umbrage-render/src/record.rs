@@ -26,6 +26,8 @@ pub(crate) struct Prepared {
     /// The view's slices, where it is drawn slice by slice.
     pub slices: Vec<SliceRuns>,
     pub objects_in_view: usize,
+    /// Whether maps without casters are cleared, too: nobody reads those of several lights or faces, but they may be wanted as pictures.
+    pub every_map: bool,
 }
 
 /// What lies in one slice of the view.
@@ -123,7 +125,7 @@ impl Renderer {
         prepared: &Prepared,
         recorded: &mut Recorded,
     ) {
-        let all = self.maps.map_count() == self.maps.splits();
+        let all = prepared.every_map || self.maps.map_count() == self.maps.splits();
         for pass in passes.filter(|&pass| all || !prepared.caster_runs[pass].is_empty()) {
             self.record_map(encoder, pass, prepared, recorded);
         }

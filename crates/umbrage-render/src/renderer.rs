@@ -19,7 +19,7 @@ use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry, check_object};
 use crate::lamps::Lamp;
 use crate::look::{Look, Translucent};
 use crate::materials::{GpuMaterial, Materials};
-use crate::probe::{self, Probe, ProbeAnswer, ProbePoint, Responder};
+use crate::probe::{self, Probe, ProbeAnswer, ProbePoint};
 use crate::record::{Clock, MapCapture, Prepared, Recorded, SliceRuns, new_encoder};
 use crate::stats::{FrameStats, LightStats, SplitStats};
 use crate::timing::{PassCounts, Timer};
@@ -127,7 +127,7 @@ pub struct Renderer {
     pub(crate) contact: Option<Contact>,
     /// Per node of the scene, whether its translucent surfaces throw shadows; empty where none do.
     dithered_nodes: Vec<bool>,
-    probe: Probe,
+    pub(crate) probe: Probe,
     pub(crate) timer: Timer,
     pub(crate) picture: Option<PictureTarget>,
     pub(crate) mask: Option<MaskTarget>,
@@ -364,7 +364,7 @@ impl Renderer {
         if outputs.mask && outputs.deferred && self.shadow_mask.is_none() {
             self.shadow_mask = Some(ShadowMask::new(&gpu.device, &self.maps, MASK_FORMAT, MaskNormals::FromDepth)?);
         }
-        let prepared = self.prepare(frame)?;
+        let prepared = Prepared { every_map: outputs.maps, ..self.prepare(frame)? };
         let mut clock = Clock::start(&gpu, &self.timer);
         if outputs.maps && self.maps.options().samples > 1 {
             return Err(Error::MapsOfSamples { samples: self.maps.options().samples });
@@ -457,80 +457,8 @@ impl Renderer {
         })
     }
 
-    fn probe_unguarded(&mut self, frame: &Frame<'_>, points: &[ProbePoint]) -> Result<Vec<ProbeAnswer>> {
-        let gpu = self.gpu.clone();
-        let prepared = self.prepare(frame)?;
-        let rounds = if prepared.slices.is_empty() { 1 } else { prepared.caster_runs.len() };
-        let mut answers = Vec::new();
-        for round in 0..rounds {
-            // One map for all splits: it answers for one after the other.
-            let sliced = !prepared.slices.is_empty();
-            let passes = if sliced { round..round + 1 } else { 0..prepared.caster_runs.len() };
-            let mut encoder = new_encoder(&gpu);
-            self.draw_maps(&mut encoder, passes, &prepared, &mut Recorded::default());
-            gpu.queue.submit([encoder.finish()]);
-            let maps = if sliced { self.maps.slice_bind_group(round) } else { self.maps.receiver_bind_group() };
-            for (batch, points) in points.chunks(probe::BATCH).enumerate() {
-                let replies = self.ask(frame, &prepared, maps, points)?;
-                if round == 0 {
-                    answers.extend(replies);
-                    continue;
-                }
-                for (answer, reply) in answers[batch * probe::BATCH..].iter_mut().zip(replies) {
-                    if reply.split == round as i32 {
-                        *answer = reply;
-                    }
-                }
-            }
-        }
-        Ok(answers)
-    }
-
-    /// Asks one batch of points.
-    fn ask(
-        &self,
-        frame: &Frame<'_>,
-        prepared: &Prepared,
-        maps: &wgpu::BindGroup,
-        points: &[ProbePoint],
-    ) -> Result<Vec<ProbeAnswer>> {
-        let gpu = &self.gpu;
-        let asked: Vec<(ProbePoint, Responder)> =
-            points.iter().map(|&point| (point, self.responder(frame, &prepared.plans[0], point.position))).collect();
-        let mut encoder = new_encoder(gpu);
-        let pending = self.probe.record(gpu, &mut encoder, maps, prepared.origin, &asked)?;
-        gpu.queue.submit([encoder.finish()]);
-        let mut replies = pending.read(gpu)?;
-        for (reply, (point, responder)) in replies.iter_mut().zip(&asked) {
-            let faces_light = point.normal.dot(frame.light.light.to_light(point.position)) > 0.0;
-            let unshaded = f32::from(u8::from(faces_light));
-            match *responder {
-                Responder::Nobody => *reply = ProbeAnswer { visibility: unshaded, split: -1 },
-                // No caster reaches this split: whatever its map looks like, it is lit.
-                Responder::Split(split) if prepared.plans[0].casters(split).is_empty() || !frame.shadows_on => {
-                    *reply = ProbeAnswer { visibility: unshaded, split: split as i32 };
-                }
-                Responder::Split(_) | Responder::View => {}
-            }
-        }
-        Ok(replies)
-    }
-
-    /// Who answers for a point.
-    fn responder(&self, frame: &Frame<'_>, plan: &ShadowPlan, point: DVec3) -> Responder {
-        let depth = frame.view.view_depth(point);
-        if !frame.light.light.reaches(point) {
-            return Responder::Nobody;
-        }
-        let in_range = plan.planes.last().is_some_and(|&far| depth < far);
-        if in_range && cull::may_be_seen(frame.view, &Aabb::new(point, point)) {
-            return Responder::View;
-        }
-        self.planners.now[0].covering_split(point).map_or(Responder::Nobody, Responder::Split)
-    }
-
     /// Plans, uploads what moves, and sorts what is to be drawn.
-    fn prepare(&mut self, frame: &Frame<'_>) -> Result<Prepared> {
+    pub(crate) fn prepare(&mut self, frame: &Frame<'_>) -> Result<Prepared> {
         let pose = frame.pose;
         for (index, object) in pose.objects.iter().enumerate() {
             check_object(index, object, self.scene.meshes.len())?;
@@ -609,7 +537,17 @@ impl Renderer {
             })
             .collect();
         self.instances.upload(&self.gpu)?;
-        Ok(Prepared { origin, plans, plan_ms, caster_runs, solid, translucent, slices, objects_in_view: visible.len() })
+        Ok(Prepared {
+            origin,
+            plans,
+            plan_ms,
+            caster_runs,
+            solid,
+            translucent,
+            slices,
+            objects_in_view: visible.len(),
+            every_map: false,
+        })
     }
 
     fn with_translucent_parts(&self, pose: &Pose, objects: impl Iterator<Item = usize>) -> Vec<usize> {

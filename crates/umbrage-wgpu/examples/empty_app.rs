@@ -98,14 +98,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut maps = ShadowMaps::new(&device, &ShadowMapsOptions::default())?;
     let mut planner = Planner::new(ShadowSettings { image_size: [SIZE, SIZE], ..maps.matching_settings() })?;
     let (layout, primitive, depth_state) = (maps.caster_layout(), maps.caster_primitive(), maps.caster_depth_stencil());
-    let casters = pipeline(
-        maps.caster_wgsl(0) + CASTER,
-        layout,
-        primitive,
-        depth_state.clone(),
-        None,
-        maps.caster_multiview_mask(),
-    );
+    let (source, views) = (maps.caster_wgsl(0) + CASTER, maps.caster_multiview_mask());
+    let casters = pipeline(source, layout, primitive, depth_state.clone(), None, views);
 
     // The app's pipeline, with the shadows' text before its own and their layout in group 0.
     let depth_state = wgpu::DepthStencilState { depth_compare: Some(wgpu::CompareFunction::Greater), ..depth_state };

@@ -8,14 +8,19 @@
 //! 1. Request the device with `adapter.features() & umbrage_wgpu::optional_features()`, then make the maps once:
 //!    `ShadowMaps::new(&device, &ShadowMapsOptions::default())`, and a planner that knows them:
 //!    `Planner::new(ShadowSettings { image_size, ..maps.matching_settings() })`.
-//! 2. **Cast.** Put [`ShadowMaps::caster_wgsl`] before your vertex shader and return `umbrage_caster_position(position)` from it. The
-//!    pipeline has [`ShadowMaps::caster_layout`] in that group, [`ShadowMaps::caster_depth_stencil`],
-//!    [`ShadowMaps::caster_primitive`] and no colour target (a fragment shader only if it discards).
+//! 2. **Cast.** Put [`ShadowMaps::caster_wgsl`] before everything else in your vertex shader's module; it takes an `UmbrageCopy` and
+//!    returns `umbrage_cast(position, copy)`. The pipeline has [`ShadowMaps::caster_layout`] in that group,
+//!    [`ShadowMaps::caster_depth_stencil`], [`ShadowMaps::caster_primitive`], [`ShadowMaps::caster_multiview_mask`] and the colour
+//!    targets of [`ShadowMaps::caster_targets`]: none, and a fragment shader only if it discards, but where maps are colours.
 //! 3. **Receive.** Put [`ShadowMaps::receiver_wgsl`] before your shading and multiply the sun's light by
 //!    `umbrage_visibility(position, normal)`. The pipeline has [`ShadowMaps::receiver_layout`] in that group.
-//! 4. **Each frame:** `planner.plan(…)`, [`ShadowMaps::prepare`], and for every split with casters a pass from
-//!    [`ShadowMaps::begin_pass`], in which you bind [`ShadowMaps::caster_bind_group`] and draw `plan.casters(split)`.
+//! 4. **Each frame:** `planner.plan(…)`, [`ShadowMaps::prepare`], and every one of [`ShadowMaps::passes`] from
+//!    [`ShadowMaps::begin_pass`], in which you bind [`ShadowMaps::caster_bind_group`] and draw [`MapPass::casters`], each with the
+//!    instances that it comes with.
 //! 5. Draw your picture with [`ShadowMaps::receiver_bind_group`] bound.
+//!
+//! All of that is the same whichever [`Generation`] and [`Storage`] you choose, but for [`Storage::Reused`], where steps 4 and 5 take turns
+//! for each [`Slice`] of the view. A device that lacks what a generation needs gets another ([`ShadowMaps::notes`]).
 //!
 //! Positions in both shaders are metres relative to [`FrameOptions::origin`]. The normal is that of the surface itself, not an
 //! interpolated or mapped one, turned towards the eye: the bias comes from it. In a fragment shader
@@ -26,7 +31,10 @@
 //!
 //! | function | answer |
 //! |---|---|
-//! | `umbrage_caster_position(position: vec3f) -> vec4f` | clip position in the split that is drawn |
+//! | `umbrage_cast(position: vec3f, copy: UmbrageCopy) -> UmbrageCast` | what a caster's vertex shader returns |
+//! | `umbrage_cast_copy(position, copy, code: u32) -> UmbrageCast` | the same for apps that keep the code of each copy among their own instances |
+//! | `umbrage_caster_depth(position: vec4f) -> f32` | what a caster's fragment shader returns where maps are colours |
+//! | `umbrage_in_slice(position) -> bool` | whether a fragment belongs to the slice that is drawn, where one map is reused |
 //! | `umbrage_visibility(position: vec3f, normal: vec3f) -> f32` | 1 lit, 0 in shadow or turned away |
 //! | `umbrage_shadow(position, normal) -> UmbrageShadow` | the same with `split: i32` (−1: none), `tint: vec3f` and `light: vec3f`, what to multiply the light by ([`FrameOptions::shadow_colour`]) |
 //! | `umbrage_shadow_at_pixel(position, normal, pixel: vec2f) -> UmbrageShadow` | the same for a fragment's `@builtin(position).xy`: for dithered borders and turned discs |

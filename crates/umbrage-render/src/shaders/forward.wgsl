@@ -170,7 +170,7 @@ fn shaded(in: Surface, front: bool, base: vec4f, geometric: vec3f, footprint: Um
     for (var i = 0u; i < frame.lamp_count + umbrage_zero(in.position.x); i++) {
         let lamp = frame.lamps[i];
         let to_light = towards(lamp, in.position);
-        let shadow = umbrage_shadow_of_with(i, in.position, lookup_normal(geometric, to_light), footprint);
+        let shadow = umbrage_shadow_of_with(i, in.position, lookup_normal(geometric, smooth_normal, to_light), footprint);
         let facing = max(dot(smooth_normal, to_light), 0.0) * falloff(lamp, in.position);
         let visibility = min(shadow.visibility, select(1.0, contact, i == 0u));
         light += SUN * lamp.color * facing * umbrage_light_of(i, visibility);
@@ -185,11 +185,12 @@ fn shaded(in: Surface, front: bool, base: vec4f, geometric: vec3f, footprint: Um
 // Facets of a smooth surface turn away from the light one by one, which would cut its terminator into jags. For the picture
 // a facet that turns away is looked up as if it were grazed: its neighbours shade it or do not, and the smooth normal
 // darkens it. Surfaces whose two normals agree are not concerned. The mask knows nothing of this.
-fn lookup_normal(geometric: vec3f, to_light: vec3f) -> vec3f {
+fn lookup_normal(geometric: vec3f, smooth_normal: vec3f, to_light: vec3f) -> vec3f {
     // Cosine of about 84 degrees. Lower: jags come back. Higher: light leaks past terminators.
     const LEAST_FACING: f32 = 0.1;
     let facing = dot(geometric, to_light);
-    return normalize(geometric + max(LEAST_FACING - facing, 0.0) * to_light);
+    let wanted = min(LEAST_FACING, dot(smooth_normal, to_light));
+    return normalize(geometric + max(wanted - facing, 0.0) * to_light);
 }
 
 struct SkyPixel {

@@ -1,0 +1,82 @@
+//! Answers at given points: maps, and the pass that asks them.
+
+use glam::DVec3;
+use umbrage::{Aabb, ShadowPlan};
+
+use crate::probe::{self, ProbeAnswer, ProbePoint, Responder};
+use crate::record::{Prepared, Recorded, new_encoder};
+use crate::{Frame, Renderer, Result, cull};
+
+impl Renderer {
+    pub(crate) fn probe_unguarded(&mut self, frame: &Frame<'_>, points: &[ProbePoint]) -> Result<Vec<ProbeAnswer>> {
+        let gpu = self.gpu.clone();
+        let prepared = self.prepare(frame)?;
+        let rounds = if prepared.slices.is_empty() { 1 } else { prepared.caster_runs.len() };
+        let mut answers = Vec::new();
+        for round in 0..rounds {
+            // One map for all splits: it answers for one after the other.
+            let sliced = !prepared.slices.is_empty();
+            let passes = if sliced { round..round + 1 } else { 0..prepared.caster_runs.len() };
+            let mut encoder = new_encoder(&gpu);
+            self.draw_maps(&mut encoder, passes, &prepared, &mut Recorded::default());
+            gpu.queue.submit([encoder.finish()]);
+            let maps = if sliced { self.maps.slice_bind_group(round) } else { self.maps.receiver_bind_group() };
+            for (batch, points) in points.chunks(probe::BATCH).enumerate() {
+                let replies = self.ask(frame, &prepared, maps, points)?;
+                if round == 0 {
+                    answers.extend(replies);
+                    continue;
+                }
+                for (answer, reply) in answers[batch * probe::BATCH..].iter_mut().zip(replies) {
+                    if reply.split == round as i32 {
+                        *answer = reply;
+                    }
+                }
+            }
+        }
+        Ok(answers)
+    }
+
+    /// Asks one batch of points.
+    fn ask(
+        &self,
+        frame: &Frame<'_>,
+        prepared: &Prepared,
+        maps: &wgpu::BindGroup,
+        points: &[ProbePoint],
+    ) -> Result<Vec<ProbeAnswer>> {
+        let gpu = &self.gpu;
+        let asked: Vec<(ProbePoint, Responder)> =
+            points.iter().map(|&point| (point, self.responder(frame, &prepared.plans[0], point.position))).collect();
+        let mut encoder = new_encoder(gpu);
+        let pending = self.probe.record(gpu, &mut encoder, maps, prepared.origin, &asked)?;
+        gpu.queue.submit([encoder.finish()]);
+        let mut replies = pending.read(gpu)?;
+        for (reply, (point, responder)) in replies.iter_mut().zip(&asked) {
+            let faces_light = point.normal.dot(frame.light.light.to_light(point.position)) > 0.0;
+            let unshaded = f32::from(u8::from(faces_light));
+            match *responder {
+                Responder::Nobody => *reply = ProbeAnswer { visibility: unshaded, split: -1 },
+                // No caster reaches this split: whatever its map looks like, it is lit.
+                Responder::Split(split) if prepared.plans[0].casters(split).is_empty() || !frame.shadows_on => {
+                    *reply = ProbeAnswer { visibility: unshaded, split: split as i32 };
+                }
+                Responder::Split(_) | Responder::View => {}
+            }
+        }
+        Ok(replies)
+    }
+
+    /// Who answers for a point.
+    fn responder(&self, frame: &Frame<'_>, plan: &ShadowPlan, point: DVec3) -> Responder {
+        let depth = frame.view.view_depth(point);
+        if !frame.light.light.reaches(point) {
+            return Responder::Nobody;
+        }
+        let in_range = plan.planes.last().is_some_and(|&far| depth < far);
+        if in_range && cull::may_be_seen(frame.view, &Aabb::new(point, point)) {
+            return Responder::View;
+        }
+        self.planners.now[0].covering_split(point).map_or(Responder::Nobody, Responder::Split)
+    }
+}
