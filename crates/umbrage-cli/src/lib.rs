@@ -21,6 +21,7 @@ mod probe;
 pub mod progress;
 mod render;
 pub mod report;
+pub mod split_views;
 pub mod stage;
 pub mod theory;
 mod truth;

@@ -15,6 +15,7 @@ use crate::{
     output::{self, Staged, numbered_file, numbered_folder},
     progress,
     report::{BesideReport, Report, SplitReport, TimesMs, to_json},
+    split_views,
     stage::{Shot, Stage, camera_report},
 };
 
@@ -24,10 +25,10 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     let shadows = ShadowJob::new(&args.shadows, job.size)?;
     let files: Vec<&Path> =
         [&args.picture, &args.visibility, &args.report].into_iter().flatten().map(AsRef::as_ref).collect();
-    let folders: Vec<&Path> = args.maps.iter().map(AsRef::as_ref).collect();
+    let folders: Vec<&Path> = args.maps.iter().chain(&args.split_views).map(AsRef::as_ref).collect();
     if files.is_empty() && folders.is_empty() {
         return Err(Failure::input(
-            "nothing to write: give -o PICTURE, --visibility MASK, --maps DIR or --report JSON",
+            "nothing to write: give -o PICTURE, --visibility MASK, --maps DIR, --split-views DIR or --report JSON",
         ));
     }
     output::check(&files, &folders, &job.inputs())?;
@@ -36,7 +37,12 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     if args.maps.is_some() && stage.shots.iter().any(|shot| !shot.beside.is_empty()) {
         return Err(Failure::input("--maps and several cameras: maps are of one view; name one --camera"));
     }
+    if args.split_views.is_some() && stage.shots.iter().any(|shot| !shot.beside.is_empty()) {
+        return Err(Failure::input("--split-views and several cameras: splits are of one view; name one --camera"));
+    }
     let mut studio = Studio::open(&job, &shadows, &stage)?;
+    // Views of splits are planned one by one and must not disturb what the frames' own maps hold on to.
+    let mut beside = args.split_views.as_ref().map(|_| Studio::open(&job, &shadows, &stage)).transpose()?;
     let outputs = Outputs {
         picture: args.picture.is_some(),
         mask: args.visibility.is_some(),
@@ -59,6 +65,10 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         if let Some(path) = &args.maps {
             let maps = views[0].maps.iter().enumerate();
             let files = maps.map(|(split, map)| Ok((format!("split{split}.png"), png(map)?))).collect::<Result<_>>()?;
+            staged.folder(&numbered_folder(path, shot.frame), files)?;
+        }
+        if let (Some(path), Some(beside)) = (&args.split_views, &mut beside) {
+            let files = split_views::pictures(&mut beside.renderer, &frames[0], &views[0].stats.plan.splits)?;
             staged.folder(&numbered_folder(path, shot.frame), files)?;
         }
         if let Some(path) = &args.report {
@@ -84,6 +94,7 @@ pub struct Studio<'a> {
 impl<'a> Studio<'a> {
     /// Opens the device and loads the scene onto it.
     pub fn open(job: &SceneJob, shadows: &'a ShadowJob, stage: &Stage) -> Result<Self> {
+        lights::check_filter(&stage.lights, shadows.filter)?;
         let gpu = Gpu::new(&GpuOptions::default())?;
         let settings = RenderSettings {
             size: job.size,
@@ -124,6 +135,8 @@ impl<'a> Studio<'a> {
                 .then(|| f64::from(self.shadows.softness(job.sun_angle).sun_angle).to_degrees()),
             transition: typed_name(self.shadows.transition),
             bias: typed_name(self.shadows.bias),
+            translucent: typed_name(self.shadows.translucent),
+            contact_shadows: self.shadows.contact_shadows,
             shadow_strength: self.shadows.shadow_strength,
             shadow_colour: self.shadows.shadow_colour.to_array(),
             fit: typed_name(self.shadows.fit),

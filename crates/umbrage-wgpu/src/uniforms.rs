@@ -398,6 +398,53 @@ mod tests {
         }
     }
 
+    /// Source 003, Listings 4.1.4 and 4.1.5: map coordinates that a vertex shader hands on, and those that a fragment makes of an
+    /// interpolated position. The source calls the second wrong; perspective-correct interpolation is exact for both, as both are affine
+    /// in the position, and in `f32` they differ by rounding alone.
+    #[test]
+    fn coordinates_of_vertices_and_of_fragments_agree_to_rounding() {
+        let planned = split_near(DVec3::new(0.3, -1.0, 0.4), DVec3::new(20.0, 0.0, -30.0), 0.1, 1024);
+        let uniform = split(0, &planned, 0.0, alone(1024), DVec3::ZERO).expect("a valid split");
+        // One large triangle of ground under a camera at (0, 5, 20) that looks down -Z: w is the distance along -Z.
+        let corners = [DVec3::new(-60.0, 0.0, 15.0), DVec3::new(70.0, 0.0, 15.0), DVec3::new(10.0, 2.0, -400.0)];
+        let w = corners.map(|corner| (20.0 - corner.z) as f32);
+        let (mut between, mut of_fragments) = (0.0_f64, 0.0_f64);
+        for i in 0..200_u32 {
+            for j in 0..200 - i {
+                let screen = [f64::from(i) / 200.0, f64::from(j) / 200.0].map(|share| share as f32);
+                let screen = [screen[0], screen[1], 1.0 - screen[0] - screen[1]];
+                let perspective = |values: [f32; 3]| {
+                    let over = |k: usize| screen[k] / w[k];
+                    (0..3).map(|k| over(k) * values[k]).sum::<f32>() / (0..3).map(over).sum::<f32>()
+                };
+                let position =
+                    [0, 1, 2].map(|axis| perspective([0, 1, 2].map(|k: usize| corners[k].as_vec3().to_array()[axis])));
+                let by_fragment = twin::map_from_world(&uniform, position);
+                let at_vertices = corners.map(|corner| twin::map_from_world(&uniform, corner.as_vec3().to_array()));
+                let by_vertex = [0, 1, 2].map(|axis| perspective([0, 1, 2].map(|k: usize| at_vertices[k][axis])));
+                let exact = planned.map_from_world(glam::Vec3::from_array(position).as_dvec3());
+                // What counts is where the maps are: those of far vertices are thousands of texels away.
+                if exact.truncate().abs().max_element() > 2048.0 {
+                    continue;
+                }
+                for axis in 0..2 {
+                    between = between.max(f64::from((by_fragment[axis] - by_vertex[axis]).abs()));
+                    of_fragments = of_fragments.max((f64::from(by_fragment[axis]) - exact[axis]).abs());
+                }
+            }
+        }
+        println!("fragment against vertex: {between:.6} texels; fragment against f64: {of_fragments:.6} texels");
+        assert!(between < 0.01, "the two methods differ by {between} texels");
+        assert!(of_fragments < 0.001, "an interpolated position is {of_fragments} texels off");
+        // Interpolation that is not perspective-correct would be off by whole shadows: the comparison can say no.
+        let flat = |values: [f32; 3]| values.iter().sum::<f32>() / 3.0;
+        let shares: Vec<f32> = w.iter().map(|w| 1.0 / w).collect();
+        let middle = |k: usize| twin::map_from_world(&uniform, corners[k].as_vec3().to_array())[1];
+        let straight = flat([middle(0), middle(1), middle(2)]);
+        let right = (0..3).map(|k| shares[k] * middle(k)).sum::<f32>() / shares.iter().sum::<f32>();
+        assert!((straight - right).abs() > 100.0, "{straight} and {right}");
+    }
+
     #[test]
     fn viewports_are_as_wide_as_the_device_allows() {
         let edges = |size, largest| {

@@ -21,6 +21,7 @@ mod bounds;
 mod camera;
 mod covered;
 mod error;
+mod fit;
 mod light;
 mod local;
 mod plan;
