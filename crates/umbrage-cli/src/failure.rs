@@ -68,6 +68,7 @@ impl From<umbrage::Error> for Failure {
                 "warps" => "--warp, --tsm-focus",
                 _ => "",
             },
+            umbrage::Error::ConflictingSettings { second: "light", .. } => "--warp, --light",
             umbrage::Error::ConflictingSettings { .. } => "--warp, --stabilize",
             umbrage::Error::InvalidCamera { field, .. } => match *field {
                 "fov" => "--fov",

@@ -7,8 +7,9 @@ use umbrage_scene::{CameraPath, LightKind, Pose, Scene};
 use umbrage_wgpu::LightSlot;
 
 use crate::{
+    args,
     failure::{Failure, Result},
-    job::{SceneJob, SunChoice},
+    job::{SceneJob, SunChoice, typed_name, wgpu_filter},
     report::SplitReport,
     stage::{named, several},
 };
@@ -76,6 +77,30 @@ impl NamedLight {
 #[must_use]
 pub fn slots(lights: &[NamedLight]) -> Vec<LightSlot> {
     lights.iter().map(|light| light.lamp.light.into()).collect()
+}
+
+/// Filters that go by metres of depth along parallel light serve suns only.
+///
+/// # Errors
+/// [`Failure::Input`] naming the filter and the light.
+pub fn check_filter(lights: &[NamedLight], filter: args::Filter) -> Result<()> {
+    let wgpu = wgpu_filter(filter);
+    let serves_suns_only = wgpu == umbrage_wgpu::Filter::Pcss || wgpu.is_prefiltered();
+    let local = lights.iter().find(|light| serves_suns_only && light.lamp.light.position().is_some());
+    match (local, wgpu.is_prefiltered() && lights.len() > 1) {
+        (Some(light), _) => Err(Failure::input(format!(
+            "--filter {}: it goes by depth along parallel light, but --light {} is a spot or point light; \
+             use hard, pcf2, pcf3, pcf5, pcf7 or disc",
+            typed_name(filter),
+            light.name
+        ))),
+        (None, true) => Err(Failure::input(format!(
+            "--filter {}: it serves one sun, but --light names {} lights; name one, or use a filter that compares depth",
+            typed_name(filter),
+            lights.len()
+        ))),
+        (None, false) => Ok(()),
+    }
 }
 
 /// The lights that a job asks for, one at least.

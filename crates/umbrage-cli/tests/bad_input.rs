@@ -64,7 +64,9 @@ fn options_that_say_nonsense() {
         ("--sun-angle 91", &["--sun-angle", "91"]),
         ("--sun-angle wide", &["--sun-angle", "wide"]),
         ("--light nobody", &["--light nobody", "sun", "lamp"]),
-        ("--light lamp", &["--light lamp"]),
+        ("--light sun,nobody", &["--light nobody", "sun", "lamp"]),
+        ("--light sun,lamp,sun", &["--light sun,lamp,sun", "twice"]),
+        ("--light lamp --sun-to 1,-1,0 --frames 2", &["--sun-to", "--light lamp"]),
         ("--light sun --sun 0,-1,0", &["--light", "--sun"]),
         ("--metres-per-post 0", &["--metres-per-post"]),
         ("--metres-per-unit nan", &["--metres-per-unit"]),
@@ -173,6 +175,18 @@ fn shadow_options_that_say_nonsense() {
     folder.refuse("plan tiny.glb --depth-convention backwards", &["--depth-convention", "zero-to-one"]);
     folder.refuse("plan missing.glb", &["missing.glb"]);
     folder.refuse("plan tiny.glb -o tiny.glb", &["tiny.glb", "input"]);
+}
+
+#[test]
+fn lights_and_views_that_do_not_go_together() {
+    let range_zero = tiny_json(8).replace("\"type\":\"point\"", "\"type\":\"point\",\"range\":0");
+    let folder = Folder::with("zero.glb", glb(&range_zero, &tiny_bin()));
+    folder.refuse("render zero.glb --light lamp -o out.png", &["lamp", "range is 0"]);
+    folder.refuse("plan tiny.glb --light lamp --stabilize none --warp lispsm", &["--warp", "--light"]);
+    folder.refuse("plan tiny.glb --camera front,front", &["--camera front,front", "twice"]);
+    folder.refuse("render tiny.glb --light lamp --filter pcss -o out.png", &["--filter pcss", "--light lamp"]);
+    folder.refuse("compare tiny.glb --techniques pssm:1:64 --light sun,lamp -o out", &["--light sun,lamp", "one"]);
+    folder.refuse("compare tiny.glb --techniques pssm:1:64 --light lamp --suns 40 -o out", &["--suns", "--light lamp"]);
 }
 
 #[test]

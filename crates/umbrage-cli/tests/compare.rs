@@ -125,7 +125,8 @@ fn walks_give_flicker_and_still_techniques_have_less() {
     let folder = Folder::new();
     folder.succeed(
         "compare tiny.glb --size 96x72 --camera front --step 0.37 --frames 4 --least-edges 10 --image-metrics off --techniques \
-         pssm:2:64:stabilize=none,pssm:2:64:stabilize=exact --with filter=hard:blend=0:fit=independent --json s.json --sheet s.png",
+         pssm:2:64:stabilize=none,pssm:2:64:stabilize=exact,pssm:2:64:stabilize=approximate --with \
+         filter=hard:blend=0:fit=independent --json s.json --sheet s.png",
     );
     let scores = folder.json("s.json");
     assert_eq!(scores["views"].as_array().map(Vec::len), Some(4));
@@ -136,6 +137,10 @@ fn walks_give_flicker_and_still_techniques_have_less() {
     assert!(number(&walk["flicker"][0]["per_edge"]) > rate(0));
     assert_eq!(number(&walk["flicker"][1]["kept_per_edge"]), 0.0, "points that keep a still split do not flip");
     assert_eq!(number(&walk["flicker"][1]["standing_per_edge"]), 0.0, "{walk}");
+    assert!(10.0 * rate(2) <= rate(0), "approximate maps stand almost as still: {walk}");
+    assert_eq!((number(&walk["flicker"][2]["standing_per_edge"]), &walk["flicker"][2]["steps"]), (0.0, &0.into()));
+    let texels = |number_of: usize| number(&scores["techniques"][number_of]["mean"]["texel_px"]["perspective_p50"]);
+    assert!(texels(2) < 1.2 * texels(0) && texels(2) < texels(1), "and are almost as tight");
     let standing = |number_of: usize| number(&walk["flicker"][number_of]["standing_points"]);
     assert!(standing(0) < 0.01 * standing(1), "no tight map stands, only points that no split decides on: {walk}");
     assert_eq!((&walk["flicker"][0]["steps"], &walk["flicker"][1]["steps"]), (&6.into(), &0.into()), "{walk}");

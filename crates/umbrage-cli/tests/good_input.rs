@@ -224,6 +224,37 @@ fn scenes_bring_their_cameras_and_lights() {
 }
 
 #[test]
+fn lamps_and_several_lights() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = Folder::new();
+    let lamp = "tiny.glb --size 96x72 --splits 1 --map-size 256 --light lamp --filter hard";
+    folder.succeed(&format!("render {lamp} --visibility m.png --maps maps --report r.json"));
+    folder.succeed(&format!("truth {lamp} -o t.png --report t.json"));
+    let (mask, truth) = (folder.mask("m.png"), folder.mask("t.png"));
+    let dark = truth.pixels().filter(|pixel| pixel.0 == [0, 255]).count();
+    let wrong = mask.pixels().zip(truth.pixels()).filter(|(a, b)| a.0 != b.0).count();
+    assert!(dark > 50 && wrong * 20 < dark, "{wrong} wrong, {dark} dark pixels");
+    let report = folder.json("r.json");
+    assert_eq!(report["lights"][0]["kind"], "point");
+    assert_eq!(report["lights"][0]["position"][1].as_f64(), Some(9.0));
+    assert_eq!(report["splits"].as_array().map(Vec::len), Some(6), "one split for each face");
+    assert!(report["sun"].is_null() && folder.json("t.json")["sun"].is_null(), "a lamp is no sun");
+    assert_eq!(names(&folder.at("maps")).len(), 6);
+
+    // Both lights in the picture; the mask is the first one's.
+    let both = lamp.replace("lamp", "lamp,sun");
+    folder.succeed(&format!("render {both} --visibility b.png -o p.png --report b.json"));
+    assert_eq!(folder.mask("b.png"), mask);
+    let lights = folder.json("b.json")["lights"].clone();
+    assert_eq!((&lights[1]["name"], &lights[1]["kind"]), (&"sun".into(), &"directional".into()));
+    assert_eq!(lights[1]["splits"].as_array().map(Vec::len), Some(1));
+    folder.succeed(&format!("plan {lamp} -o plan.json"));
+    assert_eq!(folder.json("plan.json")["splits"].as_array().map(Vec::len), Some(6));
+}
+
+#[test]
 fn techniques_schemes_and_formats() {
     if !has_adapter() {
         return;

@@ -156,7 +156,7 @@ pub struct FlickerReport {
     pub rate: Option<f64>,
     /// F_edge; may exceed 1.
     pub per_edge: Option<f64>,
-    /// F_edge over points that the same split decides on in both frames.
+    /// F_edge over points that the same split decides on in both frames, without another's share and without a fade.
     pub kept_per_edge: Option<f64>,
     /// Those of them whose map took no step, over all pairs of frames.
     pub standing_points: usize,

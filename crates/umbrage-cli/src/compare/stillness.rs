@@ -70,12 +70,11 @@ impl Stillness {
             self.steps += stands.iter().filter(|stands| !**stands).count();
             let (mut kept, mut standing) = ((Vec::new(), Vec::new()), (Vec::new(), Vec::new()));
             for ((point, &old), &new) in points.iter().zip(old).zip(new) {
-                let decides = |plan| deciding_split(plan, point, self.transition);
-                let split = decides(&now.plan);
-                if split == decides(&before.plan) {
+                let decider = decides(&now.plan, point, self.transition);
+                if decider != Decides::Several && decider == decides(&before.plan, point, self.transition) {
                     kept.0.push(old);
                     kept.1.push(new);
-                    if split.is_none_or(|split| stands[split]) {
+                    if !matches!(decider, Decides::Split(split) if !stands[split]) {
                         standing.0.push(old);
                         standing.1.push(new);
                     }
@@ -103,18 +102,32 @@ impl Stillness {
     }
 }
 
-/// The split that decides on a point, by its view depth: where two are mixed the one with the larger share, and none where less than half of
-/// a shadow is left of the fade.
-fn deciding_split(plan: &ShadowPlan, point: &ProbePoint, transition: Transition) -> Option<usize> {
+/// Who decides on a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Decides {
+    /// One split alone.
+    Split(usize),
+    /// Two splits that are mixed, or one that fades out: their shares change as the eye moves, and soft edges with them.
+    Several,
+    /// It lies beyond the range.
+    Nobody,
+}
+
+/// Who decides on a point, by its view depth. A dithered border lies in the middle of its band for points that are no pixels.
+fn decides(plan: &ShadowPlan, point: &ProbePoint, transition: Transition) -> Decides {
     let depth = plan.view_depth_plane.truncate().dot(point.position) + plan.view_depth_plane.w;
-    let end = plan.planes.last().copied()?;
-    if depth > 0.5 * (plan.fade_begin + end) {
-        return None;
+    let Some(index) = plan.splits.iter().position(|split| depth < split.far) else { return Decides::Nobody };
+    if depth > plan.fade_begin {
+        return Decides::Several;
     }
-    let index = plan.splits.iter().position(|split| depth < split.far)?;
     let split = &plan.splits[index];
-    let is_past = transition != Transition::Hard && depth > 0.5 * (split.blend_begin + split.far);
-    Some(if is_past && index + 1 < plan.splits.len() { index + 1 } else { index })
+    let next = (index + 1).min(plan.splits.len() - 1);
+    match transition {
+        Transition::Hard => Decides::Split(index),
+        Transition::Blend if depth > split.blend_begin => Decides::Several,
+        Transition::Dither if depth > 0.5 * (split.blend_begin + split.far) => Decides::Split(next),
+        Transition::Blend | Transition::Dither => Decides::Split(index),
+    }
 }
 
 #[cfg(test)]
@@ -125,7 +138,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_larger_share_decides() {
+    fn one_split_decides_or_several_do() {
         let settings = ShadowSettings {
             range: Some((1.0, 100.0)),
             map_sizes: vec![64; 2],
@@ -140,20 +153,22 @@ mod tests {
         let mut planner = Planner::new(settings).expect("a planner");
         let plan = planner.plan(&view, &sun, &[], &[]).expect("a plan");
         let at = |depth: f64, transition| {
-            deciding_split(plan, &ProbePoint { position: DVec3::NEG_Z * depth, normal: DVec3::Y }, transition)
+            decides(plan, &ProbePoint { position: DVec3::NEG_Z * depth, normal: DVec3::Y }, transition)
         };
+        use Decides::{Nobody, Several, Split};
         // The blend reaches from 17 to 21 m, the fade from 90 to 100.
-        for (depth, mixed, hard) in [
-            (0.7, Some(0), Some(0)),
-            (18.9, Some(0), Some(0)),
-            (19.1, Some(1), Some(0)),
-            (21.1, Some(1), Some(1)),
-            (94.9, Some(1), Some(1)),
-            (95.2, None, None),
-            (101.0, None, None),
+        for (depth, blend, dither, hard) in [
+            (0.7, Split(0), Split(0), Split(0)),
+            (16.9, Split(0), Split(0), Split(0)),
+            (18.9, Several, Split(0), Split(0)),
+            (19.1, Several, Split(1), Split(0)),
+            (21.1, Split(1), Split(1), Split(1)),
+            (89.0, Split(1), Split(1), Split(1)),
+            (91.0, Several, Several, Several),
+            (101.0, Nobody, Nobody, Nobody),
         ] {
-            assert_eq!(at(depth, Transition::Blend), mixed, "{depth}");
-            assert_eq!(at(depth, Transition::Dither), mixed, "{depth}");
+            assert_eq!(at(depth, Transition::Blend), blend, "{depth}");
+            assert_eq!(at(depth, Transition::Dither), dither, "{depth}");
             assert_eq!(at(depth, Transition::Hard), hard, "{depth}");
         }
     }
