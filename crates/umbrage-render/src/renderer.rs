@@ -190,7 +190,6 @@ impl Renderer {
                     storage: settings.storage,
                     generation: settings.generation,
                     lights: settings.lights.clone(),
-                    ..ShadowMapsOptions::default()
                 },
             )?;
             let blends = shadows.blend > 0.0 && settings.transition != Transition::Hard;
