@@ -166,7 +166,8 @@ fn shaded(in: Surface, front: bool, base: vec4f, geometric: vec3f, footprint: Um
     let smooth_normal = normalize(select(-in.normal, in.normal, front));
     var light = vec3f(0.0);
     var tint = vec3f(1.0);
-    let contact = with_contact(1.0, in.position, lookup_normal(geometric, towards(frame.lamps[0], in.position)));
+    let first = towards(frame.lamps[0], in.position);
+    let contact = with_contact(1.0, in.position, lookup_normal(geometric, smooth_normal, first));
     for (var i = 0u; i < frame.lamp_count + umbrage_zero(in.position.x); i++) {
         let lamp = frame.lamps[i];
         let to_light = towards(lamp, in.position);
