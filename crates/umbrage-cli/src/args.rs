@@ -323,6 +323,13 @@ pub struct ShadowArgs {
     /// What the sun's light is multiplied by in full shadow: linear red, green, blue, 0 to 1 each
     #[arg(long, value_name = "R,G,B", default_value = "0,0,0", value_parser = parse::colour, allow_hyphen_values = true)]
     pub shadow_colour: DVec3,
+    /// Whether translucent surfaces throw shadows; `umbrage truth` knows none of them
+    #[arg(long, value_enum, default_value_t)]
+    pub translucent: Translucent,
+    /// Look for what shades a surface from close by in the picture's own depth, too: feet and gaps that maps are too coarse for. Such
+    /// shadows move with the camera
+    #[arg(long, value_name = "SWITCH", num_args = 0..=1, require_equals = true, default_value = "off", default_missing_value = "on")]
+    pub contact_shadows: Switch,
     /// Colour the picture by split
     #[arg(long, value_name = "true|false", num_args = 0..=1, require_equals = true, default_value_t = false, default_missing_value = "true", action = clap::ArgAction::Set)]
     pub tint: bool,
@@ -491,6 +498,16 @@ pub enum Fallbacks {
     Allow,
     /// It is an error
     Forbid,
+}
+
+/// `--translucent`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Translucent {
+    /// They throw none
+    #[default]
+    None,
+    /// They cover as many texels of a map as their alpha says
+    Dithered,
 }
 
 /// `--bias`.

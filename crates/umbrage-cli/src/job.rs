@@ -126,6 +126,10 @@ pub struct ShadowJob {
     pub bias: args::Bias,
     /// `--shadow-strength`.
     pub shadow_strength: f64,
+    /// `--translucent`.
+    pub translucent: args::Translucent,
+    /// `--contact-shadows`.
+    pub contact_shadows: bool,
     /// `--shadow-colour`.
     pub shadow_colour: DVec3,
     /// Whether `--coordinates` are `deferred`.
@@ -338,6 +342,8 @@ impl ShadowJob {
             transition: args.transition,
             bias: args.bias,
             shadow_strength: args.shadow_strength,
+            translucent: args.translucent,
+            contact_shadows: args.contact_shadows == args::Switch::On,
             shadow_colour: args.shadow_colour,
             deferred: args.coordinates == args::Coordinates::Deferred,
             depth_format: args.depth_format,
@@ -386,6 +392,11 @@ impl ShadowJob {
                 args::Bias::Plane => umbrage_wgpu::ReceiverBias::Plane,
                 args::Bias::Slope => umbrage_wgpu::ReceiverBias::Slope,
             },
+            translucent: match self.translucent {
+                args::Translucent::None => umbrage_render::Translucent::None,
+                args::Translucent::Dithered => umbrage_render::Translucent::Dithered,
+            },
+            contact: self.contact_shadows.then(umbrage_wgpu::ContactOptions::default),
         }
     }
 

@@ -135,6 +135,8 @@ impl<'a> Studio<'a> {
                 .then(|| f64::from(self.shadows.softness(job.sun_angle).sun_angle).to_degrees()),
             transition: typed_name(self.shadows.transition),
             bias: typed_name(self.shadows.bias),
+            translucent: typed_name(self.shadows.translucent),
+            contact_shadows: self.shadows.contact_shadows,
             shadow_strength: self.shadows.shadow_strength,
             shadow_colour: self.shadows.shadow_colour.to_array(),
             fit: typed_name(self.shadows.fit),

@@ -28,6 +28,10 @@ pub struct Report {
     pub transition: String,
     /// `plane` or `slope`: how surfaces are kept from shading themselves.
     pub bias: String,
+    /// `none` or `dithered`: whether translucent surfaces throw shadows.
+    pub translucent: String,
+    /// Whether contact shadows were asked for; a note says where there can be none.
+    pub contact_shadows: bool,
     /// How dark shadows are, 0 to 1.
     pub shadow_strength: f64,
     /// What the sun's light is multiplied by in full shadow, linear red, green and blue.

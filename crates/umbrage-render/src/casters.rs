@@ -6,6 +6,7 @@ use umbrage_scene::AlphaMode;
 use umbrage_wgpu::ShadowMaps;
 
 use crate::draw_list::{Drawable, Drawn, Run, vertex_layouts};
+use crate::look::Translucent;
 use crate::materials::Materials;
 use crate::{Gpu, shaders};
 
@@ -13,10 +14,11 @@ use crate::{Gpu, shaders};
 pub(crate) struct Casters {
     opaque: wgpu::RenderPipeline,
     masked: wgpu::RenderPipeline,
+    dithered: Option<wgpu::RenderPipeline>,
 }
 
 impl Casters {
-    pub fn new(gpu: &Gpu, maps: &ShadowMaps, materials: &Materials) -> Self {
+    pub fn new(gpu: &Gpu, maps: &ShadowMaps, materials: &Materials, translucent: Translucent) -> Self {
         let module = |source| {
             gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("Casters::shader"),
@@ -57,13 +59,18 @@ impl Casters {
         // Maps that are colours are written by a fragment shader.
         let colour = !maps.caster_targets().is_empty();
         let buffers = &vertex_layouts;
+        let dithered = (translucent == Translucent::Dithered).then(|| {
+            let module = module(shaders::dithered_casters(&maps.caster_wgsl_with(0, shaders::DITHERED_MEMBERS)));
+            pipeline("Casters::dithered", &module, ["vs_dithered", "fs_dithered"], &buffers[..3], true)
+        });
         Self {
             opaque: pipeline("Casters::opaque", &opaque, ["vs_opaque", "fs_opaque"], &buffers[..2], colour),
             masked: pipeline("Casters::masked", &masked, ["vs_masked", "fs_masked"], &buffers[..3], true),
+            dithered,
         }
     }
 
-    /// Draws into map pass `index`, which [`ShadowMaps::begin_pass`] began. Translucent primitives throw no shadow.
+    /// Draws into map pass `index`, which [`ShadowMaps::begin_pass`] began. Translucent primitives throw a shadow only if they are dithered.
     pub fn draw(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
@@ -76,7 +83,7 @@ impl Casters {
         drawable.draw(pass, runs, |material, _| match material.alpha {
             AlphaMode::Opaque => Some(&self.opaque),
             AlphaMode::Mask { .. } => Some(&self.masked),
-            AlphaMode::Blend => None,
+            AlphaMode::Blend => self.dithered.as_ref(),
         })
     }
 }

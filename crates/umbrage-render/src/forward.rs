@@ -7,6 +7,7 @@ use umbrage::{Light, Projection, View};
 use umbrage_scene::AlphaMode;
 use umbrage_wgpu::{ShadowMaps, Slice, Storage};
 
+use crate::contact::Contact;
 use crate::draw_list::{Drawable, Drawn, Run, vertex_layouts};
 use crate::lamps::{Lamp, LampUniform, MOST_LAMPS};
 use crate::materials::{GpuMaterial, Materials};
@@ -16,7 +17,8 @@ use crate::{Gpu, Result, shaders};
 pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// Red is visibility, green says that a surface was hit.
 pub(crate) const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Unorm;
-const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// What the eye's depth is drawn in: reversed, 0 infinitely far away.
+pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Samples per pixel of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Samples {
@@ -139,6 +141,8 @@ pub(crate) struct Bindings<'a> {
     pub frame: &'a wgpu::BindGroup,
     /// The shadow maps that it may ask.
     pub maps: &'a wgpu::BindGroup,
+    /// The picture's depth, for contact shadows.
+    pub contact: Option<&'a wgpu::BindGroup>,
 }
 
 /// Pipelines and the frame's uniforms.
@@ -150,14 +154,21 @@ pub(crate) struct Forward {
     picture: SurfacePipelines,
     mask: SurfacePipelines,
     sky: wgpu::RenderPipeline,
+    depth: Option<SurfacePipelines>,
 }
 
 impl Forward {
-    pub fn new(gpu: &Gpu, maps: &ShadowMaps, materials: &Materials, samples: Samples) -> Self {
+    pub fn new(
+        gpu: &Gpu,
+        maps: &ShadowMaps,
+        materials: &Materials,
+        samples: Samples,
+        contact: Option<&Contact>,
+    ) -> Self {
         let device = &gpu.device;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("Forward::shader"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::forward(&maps.receiver_wgsl(2)))),
+            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::forward(&maps.receiver_wgsl(2), contact.is_some()))),
         });
         let frame_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("Forward::frame_layout"),
@@ -197,7 +208,17 @@ impl Forward {
         let bind_groups = (0..count).map(bind_group).collect();
         let surface_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("Forward::surface_layout"),
-            bind_group_layouts: &[Some(&frame_layout), Some(&materials.layout), Some(maps.receiver_layout())],
+            bind_group_layouts: &[
+                Some(&frame_layout),
+                Some(&materials.layout),
+                Some(maps.receiver_layout()),
+                contact.map(|contact| contact.shadows.layout()),
+            ][..if contact.is_some() { 4 } else { 3 }],
+            immediate_size: 0,
+        });
+        let depth_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("Forward::depth_layout"),
+            bind_group_layouts: &[Some(&frame_layout), Some(&materials.layout)],
             immediate_size: 0,
         });
         let sky_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -224,7 +245,19 @@ impl Forward {
             opaque(),
         ]);
         let sky = Builder { layout: &sky_layout, ..builder }.sky();
-        Self { uniform, stride, bind_groups, picture, mask, sky }
+        let depth = contact.map(|_| {
+            let bare = Surface {
+                label: "Forward::depth",
+                fragment_entry: None,
+                format: None,
+                samples: 1,
+                alpha_to_coverage: false,
+                blend: false,
+            };
+            let masked = Surface { fragment_entry: Some("fs_depth_masked"), ..bare };
+            Builder { layout: &depth_layout, ..builder }.pipelines([bare, masked, bare])
+        });
+        Self { uniform, stride, bind_groups, picture, mask, sky, depth }
     }
 
     /// Writes the uniform of the whole frame, `index` 0, or of a slice, 1 and so on.
@@ -235,6 +268,13 @@ impl Forward {
     /// The bind group of what [`Forward::prepare`] wrote.
     pub fn bind_group(&self, index: usize) -> &wgpu::BindGroup {
         &self.bind_groups[index]
+    }
+
+    /// Draws the depth of everything solid; nothing without contact shadows.
+    pub fn draw_depth(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &Drawable<'_>, solid: &[Run]) -> Drawn {
+        let Some(depth) = &self.depth else { return Drawn::default() };
+        pass.set_bind_group(0, self.bind_group(0), &[]);
+        drawable.draw(pass, solid, |m, mirrored| (m.alpha != AlphaMode::Blend).then(|| depth.of(m, mirrored)))
     }
 
     /// Draws everything solid.
@@ -286,6 +326,9 @@ impl Forward {
 fn bind(pass: &mut wgpu::RenderPass<'_>, bindings: Bindings<'_>) {
     pass.set_bind_group(0, bindings.frame, &[]);
     pass.set_bind_group(2, bindings.maps, &[]);
+    if let Some(contact) = bindings.contact {
+        pass.set_bind_group(3, contact, &[]);
+    }
 }
 
 /// Where a pass stands among the passes that draw one target together.
@@ -427,8 +470,8 @@ fn begin<'e>(
 #[derive(Clone, Copy)]
 struct Surface {
     label: &'static str,
-    fragment_entry: &'static str,
-    format: wgpu::TextureFormat,
+    fragment_entry: Option<&'static str>,
+    format: Option<wgpu::TextureFormat>,
     samples: u32,
     alpha_to_coverage: bool,
     blend: bool,
@@ -447,6 +490,7 @@ struct Builder<'a> {
 impl Builder<'_> {
     fn surface(&self, label: &'static str, fragment_entry: &'static str, format: wgpu::TextureFormat) -> Surface {
         let samples = self.samples.count();
+        let (fragment_entry, format) = (Some(fragment_entry), Some(format));
         Surface { label, fragment_entry, format, samples, alpha_to_coverage: false, blend: false }
     }
 
@@ -477,6 +521,13 @@ impl Builder<'_> {
         primitive: wgpu::PrimitiveState,
         depth_compare: wgpu::CompareFunction,
     ) -> wgpu::RenderPipeline {
+        let constants =
+            [("LEAST_COVERAGE", self.samples.least_coverage()), ("SLICED", f64::from(u8::from(self.sliced)))];
+        let targets = [surface.format.map(|format| wgpu::ColorTargetState {
+            format,
+            blend: surface.blend.then_some(wgpu::BlendState::ALPHA_BLENDING),
+            write_mask: wgpu::ColorWrites::ALL,
+        })];
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(surface.label),
             layout: Some(self.layout),
@@ -499,21 +550,11 @@ impl Builder<'_> {
                 alpha_to_coverage_enabled: surface.alpha_to_coverage,
                 ..Default::default()
             },
-            fragment: Some(wgpu::FragmentState {
+            fragment: surface.fragment_entry.map(|entry| wgpu::FragmentState {
                 module: self.module,
-                entry_point: Some(surface.fragment_entry),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &[
-                        ("LEAST_COVERAGE", self.samples.least_coverage()),
-                        ("SLICED", f64::from(u8::from(self.sliced))),
-                    ],
-                    ..Default::default()
-                },
-                targets: &[Some(wgpu::ColorTargetState {
-                    format: surface.format,
-                    blend: surface.blend.then_some(wgpu::BlendState::ALPHA_BLENDING),
-                    write_mask: wgpu::ColorWrites::ALL,
-                })],
+                entry_point: Some(entry),
+                compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
+                targets: &targets[..usize::from(surface.format.is_some())],
             }),
             multiview_mask: None,
             cache: None,

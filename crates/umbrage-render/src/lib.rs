@@ -7,6 +7,7 @@
 mod answers;
 mod capture;
 mod casters;
+mod contact;
 mod cull;
 mod draw_list;
 mod error;
@@ -31,7 +32,7 @@ pub use error::{Error, Result};
 pub use forward::Samples;
 pub use gpu::{Gpu, GpuOptions};
 pub use lamps::{Lamp, MOST_LAMPS};
-pub use look::Look;
+pub use look::{Look, Translucent};
 pub use moments::MomentSettings;
 pub use probe::{ProbeAnswer, ProbePoint};
 pub use renderer::{Frame, Outputs, RenderSettings, Rendered, Renderer};

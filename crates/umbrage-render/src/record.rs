@@ -76,7 +76,10 @@ impl Renderer {
                 }
             }
             encoder = clock.after_maps(encoder)?;
-            let bindings = Bindings { frame: self.forward.bind_group(0), maps: self.maps.receiver_bind_group() };
+            self.record_depth(&mut encoder, prepared, &mut recorded);
+            let contact = self.contact.as_ref().map(|contact| &contact.bind_group);
+            let bindings =
+                Bindings { frame: self.forward.bind_group(0), maps: self.maps.receiver_bind_group(), contact };
             if let Some(target) = mask {
                 let slot = self.timer.next(1);
                 let mut pass = target.begin(&mut encoder, Turn::ONLY, self.timer.timestamp_writes(slot));
@@ -96,10 +99,22 @@ impl Renderer {
                 });
             }
         } else {
+            self.record_depth(&mut encoder, prepared, &mut recorded);
             encoder = self.record_slices(encoder, clock, prepared, outputs, (mask, picture), &mut recorded)?;
         }
         (self.mask, self.picture) = (kept_mask, kept_picture);
         Ok((recorded, encoder))
+    }
+
+    /// Records the picture's depth, for contact shadows.
+    fn record_depth(&mut self, encoder: &mut wgpu::CommandEncoder, prepared: &Prepared, recorded: &mut Recorded) {
+        if let Some(contact) = &self.contact {
+            let slot = self.timer.next(1);
+            let mut pass = contact.begin(encoder, self.timer.timestamp_writes(slot));
+            recorded.view += self
+                .timer
+                .counted(&mut pass, slot, |pass| self.forward.draw_depth(pass, &self.drawable(), &prepared.solid));
+        }
     }
 
     /// Records passes over the maps, but for maps of several lights or faces in which there is no caster: those are not read.
@@ -219,7 +234,11 @@ impl Renderer {
     }
 
     fn bindings(&self, slice: &Slice) -> Bindings<'_> {
-        Bindings { frame: self.forward.bind_group(1 + slice.split), maps: self.maps.slice_bind_group(slice.split) }
+        Bindings {
+            frame: self.forward.bind_group(1 + slice.split),
+            maps: self.maps.slice_bind_group(slice.split),
+            contact: self.contact.as_ref().map(|contact| &contact.bind_group),
+        }
     }
 }
 

@@ -12,12 +12,13 @@ use web_time::Instant;
 
 use crate::capture::Capture;
 use crate::casters::Casters;
+use crate::contact::Contact;
 use crate::draw_list::{Drawable, Instances, Run, once};
 use crate::forward::{Forward, FrameUniform, MASK_FORMAT, MaskTarget, PictureTarget, Samples};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry, check_object};
 use crate::lamps::Lamp;
-use crate::look::Look;
-use crate::materials::Materials;
+use crate::look::{Look, Translucent};
+use crate::materials::{GpuMaterial, Materials};
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint};
 use crate::record::{Clock, MapCapture, Prepared, Recorded, SliceRuns, new_encoder};
 use crate::stats::{FrameStats, LightStats, SplitStats};
@@ -123,6 +124,9 @@ pub struct Renderer {
     instances: Instances,
     pub(crate) casters: Casters,
     pub(crate) forward: Forward,
+    pub(crate) contact: Option<Contact>,
+    /// Per node of the scene, whether its translucent surfaces throw shadows; empty where none do.
+    dithered_nodes: Vec<bool>,
     pub(crate) probe: Probe,
     pub(crate) timer: Timer,
     pub(crate) picture: Option<PictureTarget>,
@@ -170,6 +174,7 @@ impl Renderer {
         shadows.image_size = settings.size;
         shadows.validate()?;
         settings.softness.validate()?;
+        settings.look.contact.iter().try_for_each(umbrage_wgpu::ContactOptions::validate)?;
         if let Some((split, &size)) = shadows.map_sizes.iter().enumerate().find(|&(_, &size)| size > limit) {
             return Err(Error::MapSize { split, size, limit });
         }
@@ -185,7 +190,6 @@ impl Renderer {
                     storage: settings.storage,
                     generation: settings.generation,
                     lights: settings.lights.clone(),
-                    ..ShadowMapsOptions::default()
                 },
             )?;
             let blends = shadows.blend > 0.0 && settings.transition != Transition::Hard;
@@ -219,6 +223,11 @@ impl Renderer {
             if settings.filter == Filter::Pcss && !gpu.depth_loads() && !settings.depth_format.is_colour() {
                 notes.push("no loads from depth textures on GL: pcss is a disc of fixed width".to_owned());
             }
+            let contact = settings.look.contact.filter(|_| gpu.depth_loads());
+            if settings.look.contact.is_some() && contact.is_none() {
+                notes.push("no loads from depth textures on GL: no contact shadows".to_owned());
+            }
+            let contact = contact.map(|options| Contact::new(gpu, settings.size, options));
             notes.extend(maps.moment_storage().and_then(|storage| moments::note(storage, settings.filter)));
             if !timer.has_timestamps() {
                 notes.push("no timestamp queries: times of the GPU are measured by the CPU's clock".to_owned());
@@ -232,8 +241,13 @@ impl Renderer {
                 scene_meshes: SceneMeshes::of_scene(scene),
                 skinned: SkinnedGeometry::empty(gpu)?,
                 instances: Instances::new(gpu),
-                casters: Casters::new(gpu, &maps, &materials),
-                forward: Forward::new(gpu, &maps, &materials, settings.samples),
+                casters: Casters::new(gpu, &maps, &materials, settings.look.translucent),
+                forward: Forward::new(gpu, &maps, &materials, settings.samples, contact.as_ref()),
+                contact,
+                dithered_nodes: match settings.look.translucent {
+                    Translucent::None => Vec::new(),
+                    Translucent::Dithered => scene.nodes.iter().map(|node| node.cast_shadow).collect(),
+                },
                 samples: settings.samples,
                 softness: settings.softness,
                 transition: settings.transition,
@@ -451,7 +465,7 @@ impl Renderer {
         let view = frame.view;
         let origin = (view.eye() / ORIGIN_STEP).round() * ORIGIN_STEP;
 
-        let caster_objects: Vec<usize> = (0..pose.objects.len()).filter(|&i| pose.objects[i].casts).collect();
+        let caster_objects: Vec<usize> = (0..pose.objects.len()).filter(|&i| self.casts(&pose.objects[i])).collect();
         let casters: Vec<Aabb> = caster_objects.iter().map(|&i| pose.objects[i].bounds).collect();
         let receivers: Vec<Aabb> = pose.objects.iter().map(|object| object.bounds).collect();
         let begun = Instant::now();
@@ -478,6 +492,9 @@ impl Renderer {
         self.maps.prepare_lights(&self.gpu.queue, &plans.iter().collect::<Vec<_>>(), &options)?;
         self.skinned.update(&self.gpu, &self.scene_meshes, pose)?;
         self.forward.prepare(&self.gpu, 0, &FrameUniform::new(view, &lamps, origin, None)?);
+        if let Some(contact) = &self.contact {
+            contact.prepare(&self.gpu, view, origin)?;
+        }
         let sliced = frame.shadows_on && self.maps.options().storage == Storage::Reused;
         let slices = if sliced { Slice::all(&plans[0], view) } else { Vec::new() };
         for slice in &slices {
@@ -638,12 +655,21 @@ impl Renderer {
         maps.into_iter().map(picture).collect()
     }
 
+    /// Whether an object is drawn into maps.
+    fn casts(&self, object: &umbrage_scene::Object) -> bool {
+        object.casts || self.dithered_nodes.get(object.node) == Some(&true)
+    }
+
     fn split_stats(&self, light: usize, frame: &Frame<'_>, plan: &ShadowPlan, recorded: &Recorded) -> Vec<SplitStats> {
         let first = self.maps.first_map(light);
-        let objects: Vec<&umbrage_scene::Object> = frame.pose.objects.iter().filter(|object| object.casts).collect();
+        let objects: Vec<&umbrage_scene::Object> =
+            frame.pose.objects.iter().filter(|object| self.casts(object)).collect();
         let drawable = self.drawable();
-        let triangles =
-            |caster: &u32| drawable.triangles(objects[*caster as usize], |material| material.alpha != AlphaMode::Blend);
+        let dithered = self.look.translucent == Translucent::Dithered;
+        let triangles = |caster: &u32| {
+            let drawn = |material: &GpuMaterial| dithered || material.alpha != AlphaMode::Blend;
+            drawable.triangles(objects[*caster as usize], drawn)
+        };
         let stats = |(i, split): (usize, &umbrage::Split)| {
             let draws_it = |pass: usize| self.maps.passes()[pass].splits().contains(&(first + i));
             let draws = recorded.map_passes.iter().filter(|&&(pass, ..)| draws_it(pass));

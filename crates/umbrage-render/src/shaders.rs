@@ -13,9 +13,25 @@ pub(crate) fn masked_casters(library: &str) -> String {
 /// What a caster with holes hands to its fragments.
 pub(crate) const MASKED_MEMBERS: &str = "@location(0) uv: vec2f, @location(1) alpha: f32,";
 
-/// Bind group 0 is the frame, 1 the material, 2 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares.
-pub(crate) fn forward(library: &str) -> String {
-    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl")].join("\n")
+/// The same for casters that let some light through; the library's text has [`DITHERED_MEMBERS`].
+pub(crate) fn dithered_casters(library: &str) -> String {
+    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster_dithered.wgsl")].join("\n")
+}
+
+/// What such a caster hands to its fragments.
+pub(crate) const DITHERED_MEMBERS: &str =
+    "@location(0) uv: vec2f, @location(1) alpha: f32, @location(2) @interpolate(flat) offset: vec2f,";
+
+/// Bind group 0 is the frame, 1 the material, 2 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares, 3 with contact shadows what
+/// [`umbrage_wgpu::contact_wgsl`] declares.
+pub(crate) fn forward(library: &str, contact: bool) -> String {
+    const WITH: &str = "fn contact_visibility(position: vec3f, normal: vec3f, to_light: vec3f) -> f32 {
+    return umbrage_contact_visibility(position, normal, to_light, 0.5);
+}";
+    const WITHOUT: &str =
+        "fn contact_visibility(position: vec3f, normal: vec3f, to_light: vec3f) -> f32 { return 1.0; }";
+    let contact = if contact { umbrage_wgpu::contact_wgsl(3) + WITH } else { WITHOUT.to_owned() };
+    [library, &contact, include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl")].join("\n")
 }
 
 /// Bind group 0 is the points, 1 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares.
@@ -68,7 +84,7 @@ mod tests {
             assert_eq!(parsed(&masked_casters(&library(MASKED_MEMBERS))).entry_points.len(), 2);
         }
         for maps in [Maps::default(), Maps { without_loads: true, ..Maps::default() }] {
-            for source in [forward(&receiver(2, maps)), probe(&receiver(1, maps))] {
+            for source in [forward(&receiver(2, maps), true), probe(&receiver(1, maps))] {
                 assert!(!parsed(&source).entry_points.is_empty());
             }
         }
@@ -76,7 +92,7 @@ mod tests {
 
     #[test]
     fn both_sides_lay_out_their_structs_alike() {
-        let module = parsed(&forward(&receiver(2, Maps::default())));
+        let module = parsed(&forward(&receiver(2, Maps::default()), true));
         let frame = offsets!(
             FrameUniform: clip_from_eye, eye, is_orthographic, forward, lamp_count, to_sun, daylight, ray_center, near,
             ray_right, far, ray_up, lamps
@@ -90,7 +106,8 @@ mod tests {
     #[test]
     fn a_moved_member_is_noticed() {
         let module = parsed(
-            &forward(&receiver(2, Maps::default())).replace("base_color: vec4f,", "base_color: vec4f, more: f32,"),
+            &forward(&receiver(2, Maps::default()), true)
+                .replace("base_color: vec4f,", "base_color: vec4f, more: f32,"),
         );
         assert_ne!(layout(&module, "Material"), offsets!(MaterialUniform: base_color, emissive, alpha_cutoff));
     }

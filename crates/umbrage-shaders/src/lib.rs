@@ -157,7 +157,7 @@ pub fn mask(group: u32, normals: bool) -> String {
 }
 
 /// Text to put before a shader that asks for contact shadows:
-/// `fn umbrage_contact_visibility(position: vec3f, normal: vec3f, noise: f32) -> f32`. Binding 0 is its uniform, 1 the picture's depth as
+/// `fn umbrage_contact_visibility(position: vec3f, normal: vec3f, to_light: vec3f, noise: f32) -> f32`. Binding 0 is its uniform, 1 the picture's depth as
 /// `texture_depth_2d`. It may stand beside [`receiver`] in one module.
 #[must_use]
 pub fn contact(group: u32) -> String {

@@ -103,7 +103,7 @@ const FRAGMENT: &str =
 fn contact_shader(group: u32) -> String {
     umbrage_shaders::contact(group)
         + "@fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
-               return vec4f(umbrage_contact_visibility(position, vec3f(0.0, 1.0, 0.0), 0.5));
+               return vec4f(umbrage_contact_visibility(position, vec3f(0.0, 1.0, 0.0), vec3f(0.0, 1.0, 0.0), 0.5));
            }"
 }
 

@@ -87,7 +87,7 @@ fn masks_of_lamps_are_nearly_true() {
                 all.false_light += score.false_light;
                 all.missing += score.missing;
             }
-            println!("{name} {stabilize:?}: E {:.5} ({all:?})", all.rate());
+            eprintln!("{name} {stabilize:?}: E {:.5} ({all:?})", all.rate());
             ceiling.check(&all).unwrap_or_else(|error| panic!("{name} {stabilize:?}: {error}"));
         }
     }

@@ -12,13 +12,11 @@ pub struct ContactOptions {
     pub length_m: f32,
     /// How thick what the camera sees is taken to be, metres: shadows end where something passes farther than this before the surface.
     pub thickness_m: f32,
-    /// Places to look at on the way, 1 to 64.
-    pub steps: u32,
 }
 
 impl Default for ContactOptions {
     fn default() -> Self {
-        Self { length_m: 0.3, thickness_m: 0.15, steps: 12 }
+        Self { length_m: 0.3, thickness_m: 0.15 }
     }
 }
 
@@ -34,15 +32,11 @@ impl ContactOptions {
                 return Err(Error::InvalidFrameOption { field, value, expected: "finite metres above 0" });
             }
         }
-        if !(1..=64).contains(&self.steps) {
-            let value = f64::from(self.steps);
-            return Err(Error::InvalidFrameOption { field: "steps", value, expected: "1 to 64" });
-        }
         Ok(())
     }
 }
 
-/// The camera and the light of one frame.
+/// The camera of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactFrame {
     /// Positions relative to the eye, along the world's axes, to the clip space that the depth was drawn in. Any depth that a GPU takes,
@@ -52,8 +46,6 @@ pub struct ContactFrame {
     pub eye: DVec3,
     /// Where the camera looks, a unit vector.
     pub forward: DVec3,
-    /// Towards the light, a unit vector.
-    pub to_light: DVec3,
     /// What positions in the app's shaders are relative to, as [`crate::FrameOptions::origin`].
     pub origin: DVec3,
     /// Height of the depth texture in pixels.
@@ -70,8 +62,6 @@ struct Uniform {
     length_m: f32,
     forward: [f32; 3],
     thickness_m: f32,
-    to_light: [f32; 3],
-    steps: u32,
     pixel_m: f32,
     perspective: f32,
     _padding: [u32; 2],
@@ -85,9 +75,8 @@ impl Uniform {
         if !(frame.clip_from_eye.is_finite() && inverse.is_finite()) {
             return bad("clip_from_eye", "a finite matrix that has an inverse");
         }
-        if !((frame.eye - frame.origin).is_finite() && frame.forward.is_normalized() && frame.to_light.is_normalized())
-        {
-            return bad("eye", "finite, with unit vectors for forward and to_light");
+        if !((frame.eye - frame.origin).is_finite() && frame.forward.is_normalized()) {
+            return bad("eye", "finite, with a unit vector for forward");
         }
         let perspective = frame.clip_from_eye.row(3).truncate().length() > 0.0;
         // What y of clip space grows by for a metre across the view, where w is 1.
@@ -99,8 +88,6 @@ impl Uniform {
             length_m: options.length_m,
             forward: frame.forward.as_vec3().to_array(),
             thickness_m: options.thickness_m,
-            to_light: frame.to_light.as_vec3().to_array(),
-            steps: options.steps,
             pixel_m: (2.0 / (up * f64::from(frame.height.max(1)))) as f32,
             perspective: f32::from(u8::from(perspective)),
             _padding: [0; 2],
@@ -152,7 +139,7 @@ impl ContactShadows {
         Self { uniform, layout }
     }
 
-    /// Hands a frame's camera and light to the GPU. Takes effect with the next submission to `queue`.
+    /// Hands a frame's camera to the GPU. Takes effect with the next submission to `queue`.
     ///
     /// # Errors
     /// [`Error::InvalidFrameOption`] naming what is wrong. Nothing has been written then.
@@ -182,7 +169,7 @@ impl ContactShadows {
 }
 
 /// Text to put before a shader that asks for contact shadows, beside [`crate::ShadowMaps::receiver_wgsl`] or without it; `group` is the
-/// index at which the app binds [`ContactShadows::bind_group`]. `umbrage_contact_visibility(position, normal, noise) -> f32` is to be
+/// index at which the app binds [`ContactShadows::bind_group`]. `umbrage_contact_visibility(position, normal, to_light, noise) -> f32` is to be
 /// multiplied with, or taken the smaller of, what the maps say.
 #[must_use]
 pub fn contact_wgsl(group: u32) -> String {
@@ -201,7 +188,6 @@ mod tests {
             clip_from_eye: view.clip_from_relative(view.eye()),
             eye: view.eye(),
             forward: view.forward(),
-            to_light: DVec3::Y,
             origin: DVec3::new(1e5, 0.0, 0.0),
             height: 600,
         }
@@ -229,7 +215,6 @@ mod tests {
         };
         assert_eq!(refused(good, ContactOptions { length_m: 0.0, ..options }), "length_m");
         assert_eq!(refused(good, ContactOptions { thickness_m: f32::NAN, ..options }), "thickness_m");
-        assert_eq!(refused(good, ContactOptions { steps: 65, ..options }), "steps");
         assert_eq!(refused(ContactFrame { clip_from_eye: DMat4::ZERO, ..good }, options), "clip_from_eye");
         assert_eq!(refused(ContactFrame { forward: DVec3::ZERO, ..good }, options), "eye");
     }

@@ -103,6 +103,21 @@ impl Filter {
         }
     }
 
+    /// What one fragment reads of one map: texels, or for filters that blur first filtered samples. Inside a blend band it is twice as much.
+    #[must_use]
+    pub const fn samples(self) -> u32 {
+        match self {
+            Self::Hard => 1,
+            Self::Pcf2 => 4,
+            Self::Pcf3 => 16,
+            Self::Pcf5 => 36,
+            Self::Pcf7 => 64,
+            Self::Disc => 4 * 32,
+            Self::Pcss => 4 * 32 + 32,
+            Self::Esm | Self::Vsm | Self::Evsm2 | Self::Evsm4 | Self::Msm => 1,
+        }
+    }
+
     /// Whether [`Softness::width_m`] changes it: what is one texel, one tap, or as wide as a penumbra, has no width of its own.
     #[must_use]
     pub const fn has_width(self) -> bool {

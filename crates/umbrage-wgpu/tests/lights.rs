@@ -181,15 +181,16 @@ fn what_the_device_or_the_options_cannot_hold_is_refused() {
     let Some(gpu) = Gpu::new() else { return };
     let new = |options: &ShadowMapsOptions| ShadowMaps::new(&gpu.device, options);
     // Three lights of eight maps each, kept apart: an array would do.
-    let three = ShadowMapsOptions {
-        map_sizes: vec![64; 8],
-        lights: vec![LightSlot::Single; 3],
-        storage: Storage::Atlas,
-        ..Default::default()
-    };
-    let error = new(&three).expect_err("an atlas is one light's");
-    assert!(matches!(error, Error::LightsNeedArray { maps: 24, splits: 8, storage: Storage::Atlas }), "{error}");
-    assert!(error.to_string().contains("lights") && error.to_string().contains("map_sizes"), "{error}");
+    let three = ShadowMapsOptions { map_sizes: vec![64; 8], lights: vec![LightSlot::Single; 3], ..Default::default() };
+    for storage in [Storage::Separate, Storage::Atlas] {
+        let error = new(&ShadowMapsOptions { storage, ..three.clone() }).expect_err("one light's alone");
+        assert_eq!(error, Error::LightsNeedArray { maps: 24, splits: 8, storage });
+        let message = error.to_string();
+        assert!(
+            message.contains("lights") && message.contains("map_sizes") && message.contains("storage"),
+            "{message}"
+        );
+    }
     assert!(new(&ShadowMapsOptions { storage: Storage::Array, ..three.clone() }).is_ok());
 
     let none = ShadowMapsOptions { lights: vec![], ..Default::default() };

@@ -492,9 +492,11 @@ impl Planner {
         };
         let receivers = match self.settings.stabilize {
             Stabilize::None => None,
-            _ => Some(0.5 * radius),
+            // Finer steps would move more often, and with them what leaks.
+            _ => Some(radius / 8.0),
         };
-        split.receiver_depths = with_room(split.depth_near, split.depth_far, texel, receivers);
+        let (first, last) = split.receiver_depths;
+        split.receiver_depths = with_room(first, last, texel, receivers);
         (split.depth_near, split.depth_far) = with_room(near, far, texel, step);
         split
     }

@@ -23,6 +23,9 @@ pub struct BenchArgs {
         default_value = "ssm:1024,pssm:2:512,pssm:3:512,pssm:4:512"
     )]
     pub techniques: Vec<String>,
+    /// All filters over four maps of 1024² instead of techniques, divided by pcf2; over robot-war if no scene is named
+    #[arg(long, conflicts_with_all = ["techniques", "with"])]
+    pub filters: bool,
     /// Settings for all techniques that do not say otherwise, as for `umbrage compare`
     #[arg(long, value_name = "SETTINGS", default_value = "filter=pcf2:stabilize=none")]
     pub with: String,

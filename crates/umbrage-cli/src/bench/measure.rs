@@ -119,6 +119,7 @@ fn row(technique: &Technique, measured: &Rounds, baseline: &Rounds, stats: &Fram
         frame_ratio: ratio(&measured.frame, &baseline.frame),
         shadow_ratio: ratio(&measured.shadow, &baseline.shadow),
         paper_ratio: None,
+        samples: wgpu_filter(technique.job.filter).samples(),
         pairs: sum(|split| split.casters as u64),
         draws: u64::from(stats.shadow_draws),
         triangles: stats.shadow_triangles,

@@ -80,6 +80,8 @@ pub struct Row {
     pub shadow_ratio: Option<Summary>,
     /// Frame over frame in the paper's Table 1.
     pub paper_ratio: Option<f64>,
+    /// What a fragment of the picture reads of a map: texels, or filtered samples of filters that blur first.
+    pub samples: u32,
     /// Caster-split pairs.
     pub pairs: u64,
     /// Draws into the maps.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use clap::ValueEnum;
 use umbrage::{DirectionalLight, Frustum, SunFade, View};
 use umbrage_render::{Gpu, GpuOptions, Samples};
 use umbrage_scene::procedural::World;
@@ -15,10 +16,11 @@ use super::{
 };
 use crate::{
     adapter,
+    args::Filter,
     args::Switch,
     compare::techniques::{self, Technique},
     failure::{Failure, Result},
-    job::SceneJob,
+    job::{SceneJob, typed_name},
     lights::NamedLight,
     output::{self, Staged},
     progress,
@@ -58,7 +60,8 @@ pub fn run(args: &BenchArgs) -> Result<()> {
     if files.is_empty() {
         return Err(Failure::input("nothing to write: give -o HTML or --json JSON"));
     }
-    let techniques = parsed(&args.techniques, &args.with, args)?;
+    let (specs, with) = if args.filters { (of_filters(), "") } else { (args.techniques.clone(), &*args.with) };
+    let techniques = parsed(&specs, with, args)?;
     let crowd = parsed(&CROWD.map(str::to_owned), "stabilize=none", args)?;
     let pairs = match args.paths {
         Switch::On => {
@@ -70,6 +73,7 @@ pub fn run(args: &BenchArgs) -> Result<()> {
     let pairs = parsed(&pairs, &format!("{}:blend=0", args.with), args)?;
     let samples = if args.samples == "4" { Samples::Four } else { Samples::One };
     let scenes: Vec<String> = match &args.scenes[..] {
+        [] if args.filters => vec![World::RobotWar.name().to_owned()],
         [] => World::ALL.iter().map(|world| world.name().to_owned()).collect(),
         given => given.to_vec(),
     };
@@ -78,14 +82,15 @@ pub fn run(args: &BenchArgs) -> Result<()> {
 
     let gpu = Gpu::new(&GpuOptions::default())?;
     let rounds = u64::from(args.rounds) + 1;
-    let tables = scenes.len() * (techniques.len() + pairs.len()) + args.objects.len() * crowd.len();
+    let objects = if args.filters { &[][..] } else { &args.objects[..] };
+    let tables = scenes.len() * (techniques.len() + pairs.len()) + objects.len() * crowd.len();
     let bar = progress::steps(rounds * tables as u64, "frames with and without shadows");
     let mut report = Report {
         adapter: adapter::description(&gpu),
         size: args.size,
         samples: args.samples.clone(),
         rounds: args.rounds,
-        with: args.with.clone(),
+        with: with.to_owned(),
         scenes: Vec::new(),
         crowds: Vec::new(),
     };
@@ -104,7 +109,7 @@ pub fn run(args: &BenchArgs) -> Result<()> {
             paths: measure(&gpu, &stage, &pairs, args.size, samples, args.rounds, &bar)?,
         });
     }
-    for &objects in &args.objects {
+    for &objects in objects {
         let stage = crowd_stage(args, objects)?;
         let rows = measure(&gpu, &stage, &crowd, args.size, samples, args.rounds, &bar)?;
         report.crowds.push(CrowdReport { objects, rows });
@@ -119,6 +124,18 @@ pub fn run(args: &BenchArgs) -> Result<()> {
         staged.file(path, page::page(&report)?.into_bytes())?;
     }
     staged.commit()
+}
+
+/// Four maps and every filter, PCF 2×2 first.
+fn of_filters() -> Vec<String> {
+    let all = Filter::value_variants().iter();
+    let rest = all.filter(|&&filter| filter != Filter::Pcf2).copied();
+    [Filter::Pcf2]
+        .into_iter()
+        .chain(rest)
+        .map(typed_name)
+        .map(|name| format!("pssm:4:1024:filter={name}:label={name}"))
+        .collect()
 }
 
 fn parsed(specs: &[String], with: &str, args: &BenchArgs) -> Result<Vec<Technique>> {

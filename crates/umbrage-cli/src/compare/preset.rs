@@ -179,10 +179,10 @@ const STILLNESS: Content = Content {
 const PSVSM: Content = Content {
     techniques: &[
         "ssm:1024:filter=pcf2:label=Shadow map (1024²)",
-        "ssm:1024:filter=vsm:label=Variance shadow map (1024²)",
+        "ssm:1024:filter=vsm:filter-width=0.5:label=Variance shadow map (1024²)",
         "pssm:4:512:filter=pcf2:label=Parallel-split (4; 512²)",
         "pssm:4:512:filter=pcf2:tint=true:label=The splits",
-        "pssm:4:512:filter=vsm:label=Parallel-split variance (4; 512²)",
+        "pssm:4:512:filter=vsm:filter-width=0.5:label=Parallel-split variance (4; 512²)",
     ],
     with: "far-fade=0:stabilize=none",
     scenes: &["robot-war", "chessboard", "mining-terrain"],

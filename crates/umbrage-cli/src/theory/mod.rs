@@ -4,6 +4,7 @@
 //! * [`area`]: Σ Area(B_i)/Area(B) over the light's direction (000 Figure 5);
 //! * [`fits`]: independent against dependent fit (001 Figures 10-5 and 10-6);
 //! * [`wireframe`]: slices and light frusta in space;
+//! * [`levels`]: the mip level across a border of splits (003 Figures 4.1.10 to 4.1.14);
 //! * [`stillness`]: why shadows flicker, and what keeps them still (003 Figures 4.1.3, 4.1.4 and 4.1.6).
 //!
 //! 000 is *Parallel-Split Shadow Maps for Large-scale Virtual Environments* (Zhang, Sun, Xu, Lun 2006), 001 chapter 10 of
@@ -13,6 +14,7 @@ mod aliasing;
 mod area;
 mod example;
 mod fits;
+mod levels;
 mod setting;
 mod stillness;
 mod wireframe;
@@ -44,6 +46,12 @@ pub enum Error {
     /// A chart could not be drawn.
     #[error(transparent)]
     Plot(#[from] plot::Error),
+    /// A picture could not be written as PNG.
+    #[error("{reason}")]
+    Picture {
+        /// What the encoder said.
+        reason: String,
+    },
     /// A world has not the camera that the plots look through.
     #[error("the world {world} has no camera {camera}, through which the fits are compared")]
     NoCamera {
@@ -65,6 +73,7 @@ pub fn sections(setting: &Setting) -> Result<Vec<Section>> {
         fits::section(setting)?,
         wireframe::section()?,
         stillness::section(setting)?,
+        levels::section(setting)?,
     ])
 }
 
@@ -114,9 +123,9 @@ mod tests {
     #[test]
     fn the_page_is_whole() {
         let html = page().expect("a page").html();
-        assert_eq!(html.matches("<section").count(), 5);
+        assert_eq!(html.matches("<section").count(), 6);
         assert_eq!(html.matches("<svg ").count(), html.matches("</svg>").count());
-        assert_eq!(html.matches("<svg ").count(), 21);
+        assert_eq!(html.matches("<svg ").count(), 22);
         assert!(!html.contains("NaN") && !html.contains("inf"), "a number that is none");
         assert!(html.len() < 2 << 20, "{} bytes", html.len());
     }

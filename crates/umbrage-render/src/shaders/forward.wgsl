@@ -85,7 +85,23 @@ fn mask_at(in: Surface, normal: vec3f, footprint: UmbrageFootprint) -> vec2f {
     if dot(normal, towards(frame.lamps[0], in.position)) <= 0.0 {
         return vec2f(0.0, 1.0);
     }
-    return vec2f(umbrage_shadow_with(in.position, normal, footprint).visibility, 1.0);
+    let visibility = umbrage_shadow_with(in.position, normal, footprint).visibility;
+    return vec2f(with_contact(visibility, in.position, normal), 1.0);
+}
+
+// Contact shadows are the first light's, as dark as its others, and off where they are.
+fn with_contact(visibility: f32, position: vec3f, normal: vec3f) -> f32 {
+    let strength = select(0.0, umbrage_frames[0].strength, umbrage_frames[0].enabled != 0u);
+    let to_light = towards(frame.lamps[0], position);
+    return min(visibility, mix(1.0, contact_visibility(position, normal, to_light), strength));
+}
+
+// The picture's depth, for contact shadows.
+@fragment
+fn fs_depth_masked(in: Surface) {
+    if tested_alpha(in.uv, in.color.a) < material.alpha_cutoff {
+        discard;
+    }
 }
 
 @fragment
@@ -150,12 +166,15 @@ fn shaded(in: Surface, front: bool, base: vec4f, geometric: vec3f, footprint: Um
     let smooth_normal = normalize(select(-in.normal, in.normal, front));
     var light = vec3f(0.0);
     var tint = vec3f(1.0);
+    let first = towards(frame.lamps[0], in.position);
+    let contact = with_contact(1.0, in.position, lookup_normal(geometric, smooth_normal, first));
     for (var i = 0u; i < frame.lamp_count + umbrage_zero(in.position.x); i++) {
         let lamp = frame.lamps[i];
         let to_light = towards(lamp, in.position);
         let shadow = umbrage_shadow_of_with(i, in.position, lookup_normal(geometric, smooth_normal, to_light), footprint);
         let facing = max(dot(smooth_normal, to_light), 0.0) * falloff(lamp, in.position);
-        light += SUN * lamp.color * facing * shadow.light;
+        let visibility = min(shadow.visibility, select(1.0, contact, i == 0u));
+        light += SUN * lamp.color * facing * umbrage_light_of(i, visibility);
         tint = select(tint, shadow.tint, i == 0u);
     }
     // Brighter on the sun's side of the sky, so that corners can be told apart in the shade.

@@ -1,0 +1,71 @@
+//! Contact shadows: the picture's depth, drawn before everything that asks about it.
+
+use glam::DVec3;
+use umbrage::View;
+use umbrage_wgpu::{ContactFrame, ContactOptions, ContactShadows};
+
+use crate::forward::DEPTH_FORMAT;
+use crate::{Gpu, Result};
+
+/// What contact shadows need of the GPU.
+pub(crate) struct Contact {
+    /// Their uniform and layout.
+    pub shadows: ContactShadows,
+    /// The group to bind where they are asked for.
+    pub bind_group: wgpu::BindGroup,
+    options: ContactOptions,
+    depth: wgpu::TextureView,
+    height: u32,
+}
+
+impl Contact {
+    /// For pictures of this size.
+    pub fn new(gpu: &Gpu, size: [u32; 2], options: ContactOptions) -> Self {
+        let shadows = ContactShadows::new(&gpu.device);
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("Contact::depth"),
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: DEPTH_FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let depth = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let bind_group = shadows.bind_group(&gpu.device, &depth);
+        Self { shadows, bind_group, options, depth, height: size[1] }
+    }
+
+    /// Hands the frame over.
+    pub fn prepare(&self, gpu: &Gpu, view: &View, origin: DVec3) -> Result<()> {
+        let frame = ContactFrame {
+            clip_from_eye: view.clip_from_relative(view.eye()),
+            eye: view.eye(),
+            forward: view.forward(),
+            origin,
+            height: self.height,
+        };
+        Ok(self.shadows.prepare(&gpu.queue, &frame, &self.options)?)
+    }
+
+    /// Begins the pass that draws the depth.
+    pub fn begin<'e>(
+        &self,
+        encoder: &'e mut wgpu::CommandEncoder,
+        timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) -> wgpu::RenderPass<'e> {
+        encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("Contact::pass"),
+            color_attachments: &[],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.depth,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            timestamp_writes,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        })
+    }
+}

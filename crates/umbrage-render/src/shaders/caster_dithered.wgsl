@@ -1,0 +1,30 @@
+// Translucent casters into the maps of one pass: they cover as many texels as alpha says.
+
+@vertex
+fn vs_dithered(
+    @location(0) local: vec3f,
+    @location(1) uv: vec2f,
+    @location(2) color: vec4f,
+    instance: Instance,
+    copy: UmbrageCopy,
+) -> UmbrageCast {
+    var result = umbrage_cast_copy(position_from_local(instance, local), copy, instance.code);
+    result.uv = uv;
+    result.alpha = color.a;
+    result.offset = umbrage_caster_offset(copy, instance.code);
+    return result;
+}
+
+// Where maps are depth nobody takes what is returned.
+@fragment
+fn fs_dithered(
+    @builtin(position) at: vec4f,
+    @location(0) uv: vec2f,
+    @location(1) alpha: f32,
+    @location(2) @interpolate(flat) offset: vec2f,
+) -> @location(0) f32 {
+    if !umbrage_caster_covers(at, offset, tested_alpha(uv, alpha)) {
+        discard;
+    }
+    return umbrage_caster_depth(at);
+}
