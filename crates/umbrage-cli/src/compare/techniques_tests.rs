@@ -122,7 +122,7 @@ fn mistakes_name_the_culprit() {
 #[test]
 fn a_planned_kind_is_told_from_a_mistake() {
     let rejected = |text: &str| parse(text).expect("a draft").finish(&Vec::new(), None, [8, 8]).expect_err(text);
-    assert!(matches!(rejected("vsm:64"), Rejected::NotBuilt(_)));
+    assert!(matches!(rejected("sdsm:64"), Rejected::NotBuilt(_)));
     assert!(matches!(rejected("magic:64"), Rejected::Wrong(_)));
 }
 
