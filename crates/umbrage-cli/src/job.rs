@@ -484,6 +484,13 @@ fn map_sizes(args: &ShadowArgs) -> Result<Vec<u32>> {
 fn check_moments(args: &ShadowArgs, warps: &[args::Warp]) -> Result<()> {
     let name = typed_name(args.filter);
     if wgpu_filter(args.filter).is_prefiltered() {
+        let storage = typed_name(args.storage);
+        if !["auto", "array"].contains(&storage.as_str()) {
+            return Err(Failure::input(format!(
+                "--storage {storage} and --filter {name} exclude each other: moments are kept as an array; use --storage array, or a \
+                 filter that compares depth, such as pcf5"
+            )));
+        }
         return match warps.iter().find(|warp| **warp != args::Warp::None) {
             Some(warp) => Err(Failure::input(format!(
                 "--filter {name} needs depth that is linear along the light, which a map warped by {} has not; use a filter that \

@@ -27,6 +27,7 @@ mod renderer;
 mod shaders;
 mod stats;
 mod timing;
+mod views;
 
 pub use error::{Error, Result};
 pub use forward::Samples;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
-use umbrage::{Aabb, Planner, Selection, ShadowPlan, ShadowSettings, SunFade, View};
+use umbrage::{Aabb, Selection, ShadowPlan, ShadowSettings, View};
 use umbrage_scene::{AlphaMode, Pose, Scene};
 use umbrage_wgpu::{
     DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, MapPass, MaskFrame, MaskNormals, ShadowMaps,
@@ -23,6 +23,7 @@ use crate::probe::{self, Probe, ProbeAnswer, ProbePoint};
 use crate::record::{Clock, MapCapture, Prepared, Recorded, SliceRuns, new_encoder};
 use crate::stats::{FrameStats, LightStats, SplitStats};
 use crate::timing::{PassCounts, Timer};
+use crate::views::Planners;
 use crate::{Error, Gpu, MomentSettings, Result, cull, maps, moments};
 
 /// The frame's origin moves in steps of this many metres, so that positions near the eye are exact to a tenth of a
@@ -115,7 +116,7 @@ pub struct Renderer {
     look: Look,
     pub(crate) planners: Planners,
     /// The same for each further view.
-    more_views: Vec<Planners>,
+    pub(crate) more_views: Vec<Planners>,
     pub(crate) maps: ShadowMaps,
     scene: Geometry,
     scene_meshes: SceneMeshes,
@@ -133,26 +134,6 @@ pub struct Renderer {
     pub(crate) mask: Option<MaskTarget>,
     shadow_mask: Option<ShadowMask>,
     notes: Vec<String>,
-}
-
-/// What plans one view's maps.
-pub(crate) struct Planners {
-    /// One for each light.
-    pub now: Vec<Planner>,
-    /// While a step of the sun is faded: what plans for the sun that is faded to.
-    pub next: Option<Vec<Planner>>,
-}
-
-impl Planners {
-    fn new(settings: &ShadowSettings, lights: usize) -> Result<Self> {
-        let now = (0..lights).map(|_| Planner::new(settings.clone())).collect::<Result<_, _>>()?;
-        Ok(Self { now, next: None })
-    }
-
-    /// Others of the same settings, which remember nothing.
-    pub fn afresh(&self) -> Result<Self> {
-        Self::new(self.now[0].settings(), self.now.len())
-    }
 }
 
 impl Renderer {
@@ -304,41 +285,6 @@ impl Renderer {
     pub fn render(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
         gpu.guarded("drawing a frame", || self.render_unguarded(frame, outputs))
-    }
-
-    /// Draws several views, for a split screen: each as if it were drawn alone, under the suns of `fade` if there is one. The maps are
-    /// one view's after the other's; what stabilisation holds is kept for each, so a view keeps its place in the list from frame to
-    /// frame.
-    ///
-    /// # Errors
-    /// As [`Renderer::render`].
-    pub fn render_views(
-        &mut self,
-        frames: &[Frame<'_>],
-        fade: Option<&SunFade>,
-        outputs: Outputs,
-    ) -> Result<Vec<Rendered>> {
-        let mut views = Vec::with_capacity(frames.len());
-        for (view, frame) in frames.iter().enumerate() {
-            if view > self.more_views.len() {
-                self.more_views.push(self.planners.afresh()?);
-            }
-            self.swap_planners(view);
-            let rendered = match fade {
-                Some(fade) => self.render_faded(frame, fade, outputs),
-                None => self.render(frame, outputs),
-            };
-            self.swap_planners(view);
-            views.push(rendered?);
-        }
-        Ok(views)
-    }
-
-    /// Brings a further view's planners to the fore, or back.
-    fn swap_planners(&mut self, view: usize) {
-        if let Some(other) = view.checked_sub(1) {
-            std::mem::swap(&mut self.planners, &mut self.more_views[other]);
-        }
     }
 
     /// Visibility of the first light at given points. A point that the view shows within the shadowed range gets what a pixel there would

@@ -1,0 +1,63 @@
+//! Several views of one scene, side by side.
+
+use umbrage::{Planner, ShadowSettings, SunFade};
+
+use crate::{Frame, Outputs, Rendered, Renderer, Result};
+
+/// What plans one view's maps.
+pub(crate) struct Planners {
+    /// One for each light.
+    pub now: Vec<Planner>,
+    /// While a step of the sun is faded: what plans for the sun that is faded to.
+    pub next: Option<Vec<Planner>>,
+}
+
+impl Planners {
+    /// One for each light.
+    pub fn new(settings: &ShadowSettings, lights: usize) -> Result<Self> {
+        let now = (0..lights).map(|_| Planner::new(settings.clone())).collect::<Result<_, _>>()?;
+        Ok(Self { now, next: None })
+    }
+
+    /// Others of the same settings, which remember nothing.
+    pub fn afresh(&self) -> Result<Self> {
+        Self::new(self.now[0].settings(), self.now.len())
+    }
+}
+
+impl Renderer {
+    /// Draws several views, for a split screen: each as if it were drawn alone, under the suns of `fade` if there is one. The maps are
+    /// one view's after the other's; what stabilisation holds is kept for each, so a view keeps its place in the list from frame to
+    /// frame.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn render_views(
+        &mut self,
+        frames: &[Frame<'_>],
+        fade: Option<&SunFade>,
+        outputs: Outputs,
+    ) -> Result<Vec<Rendered>> {
+        let mut views = Vec::with_capacity(frames.len());
+        for (view, frame) in frames.iter().enumerate() {
+            if view > self.more_views.len() {
+                self.more_views.push(self.planners.afresh()?);
+            }
+            self.swap_planners(view);
+            let rendered = match fade {
+                Some(fade) => self.render_faded(frame, fade, outputs),
+                None => self.render(frame, outputs),
+            };
+            self.swap_planners(view);
+            views.push(rendered?);
+        }
+        Ok(views)
+    }
+
+    /// Brings a further view's planners to the fore, or back.
+    fn swap_planners(&mut self, view: usize) {
+        if let Some(other) = view.checked_sub(1) {
+            std::mem::swap(&mut self.planners, &mut self.more_views[other]);
+        }
+    }
+}
