@@ -290,7 +290,7 @@ pub struct ShadowArgs {
     /// How esm to msm know what a pixel covers where splits meet [default: analytic]
     #[arg(long, value_enum)]
     pub derivatives: Option<Derivatives>,
-    /// Whether esm to msm may use what the device has instead of filterable 32-bit floats
+    /// Whether what the device lacks may be replaced: filterable 32-bit floats for esm to msm, what --generation needs
     #[arg(long, value_enum, default_value_t)]
     pub fallbacks: Fallbacks,
     /// How one split goes over into the next
