@@ -114,8 +114,11 @@ pub struct Split {
     pub layer: u32,
     /// Added to the depth that the rows give: 0, but for a local light's A, which is greater than 0.
     pub depth_offset: f32,
+    /// 1 if a local light's map stores depth that grows evenly with the metres along its axis, 0 at its near plane and 1 at its far one,
+    /// instead of `A − B/w`.
+    pub is_linear: u32,
     /// Up to the alignment of 16 bytes.
-    pub _padding: [u32; 2],
+    pub _padding: [u32; 1],
 }
 
 /// What a pass needs that draws several splits at once.

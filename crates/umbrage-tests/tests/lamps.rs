@@ -9,6 +9,7 @@ use umbrage_tests::room::room;
 use umbrage_tests::stage::{Technique, gpu};
 use umbrage_truth::Truth;
 use umbrage_truth::scores::{Answers, Domain, MisShadowed, mis_shadowed};
+use umbrage_wgpu::DepthFormat;
 
 const SIZE: [u32; 2] = [240, 180];
 const MASK: Outputs = Outputs { picture: false, mask: true, maps: false, deferred: false };
@@ -90,6 +91,24 @@ fn masks_of_lamps_are_nearly_true() {
             eprintln!("{name} {stabilize:?}: E {:.5} ({all:?})", all.rate());
             ceiling.check(&all).unwrap_or_else(|error| panic!("{name} {stabilize:?}: {error}"));
         }
+    }
+}
+
+#[test]
+fn linear_depth_decides_as_perspective_depth_does() {
+    let Some(gpu) = gpu() else { return };
+    let room = Room::new();
+    for name in ["pendant", "reading", "washer"] {
+        let light = room.light(name);
+        let view = room.view("door");
+        let [perspective, linear] = [DepthFormat::D32Float, DepthFormat::R32Float].map(|depth_format| {
+            let settings = RenderSettings { depth_format, ..settings(&[light], Stabilize::None) };
+            let mut renderer = Renderer::new(gpu, &room.scene, &settings).expect("a renderer");
+            mask(&mut renderer, &room.frame(&view, light, &[]))
+        });
+        let different = perspective.pixels().zip(linear.pixels()).filter(|(a, b)| a != b).count();
+        // One nearest texel, one comparison: what differs is rounding, at edges that a texel's centre grazes.
+        assert!(different <= 20, "{name}: {different} pixels of {}", SIZE[0] * SIZE[1]);
     }
 }
 

@@ -146,6 +146,7 @@ fn frame(
     let splits = plan.splits.iter().enumerate().skip(first);
     for ((uniform, (index, split)), place) in frame.splits.iter_mut().zip(splits).zip(places) {
         *uniform = self::split(index, split, maps.depth_format.step(), *place, options.origin)?;
+        uniform.is_linear = (maps.depth_format.is_colour() && split.light_position.is_some()).into();
     }
     Ok(frame)
 }

@@ -23,7 +23,7 @@ impl Uniforms {
         let bytes = if alone { size_of::<layout::Split>() } else { size_of::<layout::CasterPass>() } as u64;
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("ShadowMaps::caster"),
-            entries: &[uniform_entry(bytes, wgpu::ShaderStages::VERTEX)],
+            entries: &[uniform_entry(bytes, wgpu::ShaderStages::VERTEX_FRAGMENT)],
         });
         Self::new(device, "ShadowMaps::caster", layout, bytes, passes.len(), Vec::new())
     }
