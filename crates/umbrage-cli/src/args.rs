@@ -259,6 +259,9 @@ pub struct ShadowArgs {
     /// Which map a pixel uses: that of its view depth, or the first (finest) that contains it
     #[arg(long, value_enum, default_value_t)]
     pub selection: Selection,
+    /// What a split's borders measure: view depth, or distance from the eye, which a turning camera leaves alone
+    #[arg(long, value_enum, default_value_t)]
+    pub bands: Bands,
     /// Whether shadows stand still while the camera moves [default: exact, or none where a map is warped]
     #[arg(long, value_enum)]
     pub stabilize: Option<Stabilize>,
@@ -436,6 +439,16 @@ pub enum Selection {
     Depth,
     /// The first map that contains it
     Map,
+}
+
+/// `--bands`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Bands {
+    /// Planes across the line of sight
+    #[default]
+    Planar,
+    /// Spheres around the eye
+    Radial,
 }
 
 /// `--stabilize`.

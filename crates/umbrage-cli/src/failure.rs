@@ -68,6 +68,8 @@ impl From<umbrage::Error> for Failure {
                 "warps" => "--warp, --tsm-focus",
                 _ => "",
             },
+            umbrage::Error::ConflictingSettings { first: "bands", second: "camera", .. } => "--bands, --camera",
+            umbrage::Error::ConflictingSettings { first: "bands", second: "light", .. } => "--bands, --light",
             umbrage::Error::ConflictingSettings { second: "light", .. } => "--warp, --light",
             umbrage::Error::ConflictingSettings { .. } => "--warp, --stabilize",
             umbrage::Error::InvalidCamera { field, .. } => match *field {

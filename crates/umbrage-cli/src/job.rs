@@ -146,8 +146,10 @@ pub struct ShadowJob {
     pub tint: bool,
     /// `--shadows`.
     pub shadows_on: bool,
-    /// `--fit`, `--stabilize`, as typed.
+    /// `--fit`, as typed.
     pub fit: args::Fit,
+    /// `--bands`, as typed.
+    pub bands: args::Bands,
     /// As typed, or the default that goes with the maps.
     pub stabilize: args::Stabilize,
     /// `--warp`, or the technique's: one for all splits, or one for each.
@@ -293,6 +295,22 @@ impl ShadowJob {
                 typed_name(*warp)
             )));
         }
+        if args.bands == args::Bands::Radial {
+            let excludes = |option: &str, reason: &str| {
+                Err(Failure::input(format!(
+                    "--bands radial and {option} exclude each other: {reason}; leave one of them away"
+                )))
+            };
+            if args.selection == args::Selection::Map {
+                return excludes("--selection map", "maps that are chosen by what they contain have no bands");
+            }
+            if args.range_fit == args::RangeFit::Visible {
+                return excludes(
+                    "--range-fit visible",
+                    "what is visible changes as the camera turns, and the bands with it",
+                );
+            }
+        }
         let (blend, note) = paths::blend(args, &map_sizes)?;
         let settings = ShadowSettings {
             scheme: scheme(args, map_sizes.len())?,
@@ -309,6 +327,10 @@ impl ShadowJob {
             selection: match args.selection {
                 args::Selection::Depth => umbrage::Selection::Depth,
                 args::Selection::Map => umbrage::Selection::Map,
+            },
+            bands: match args.bands {
+                args::Bands::Planar => umbrage::Bands::Planar,
+                args::Bands::Radial => umbrage::Bands::Radial,
             },
             stabilize: match stabilize {
                 args::Stabilize::Exact => umbrage::Stabilize::Exact,
@@ -353,6 +375,7 @@ impl ShadowJob {
             tint: args.tint,
             shadows_on: args.shadows == args::Switch::On,
             fit: args.fit,
+            bands: args.bands,
             stabilize,
             warps,
         })

@@ -94,6 +94,12 @@ pub fn blend(args: &ShadowArgs, map_sizes: &[u32]) -> Result<(f64, Option<String
              choose from; use --selection depth, or another storage",
         ));
     }
+    if storage == umbrage_wgpu::Storage::Reused && args.bands == crate::args::Bands::Radial {
+        return Err(Failure::input(
+            "--bands radial and --storage reused (--generation multipass) exclude each other: the picture is drawn in slices of view \
+             depth; use --bands planar, or another storage",
+        ));
+    }
     match args.blend {
         Some(blend) if blend > 0.0 && alone => Err(Failure::input(format!(
             "--blend {blend} and --storage reused (--generation multipass) exclude each other: there is one map at a time and none to \

@@ -28,6 +28,8 @@ struct PlanReport {
     /// Approximately stabilised: in which steps maps change their extent.
     #[serde(skip_serializing_if = "Option::is_none")]
     extent_steps: Option<ExtentStepsReport>,
+    /// `planar`: all depths of this report are view depths; `radial`: all but `coverage_m` are distances to the eye.
+    bands: String,
     /// One for all splits, or one for each.
     warp: Vec<String>,
     /// Of the matrices.
@@ -135,6 +137,7 @@ fn report(
             Stabilize::Approximate(ExtentSteps::Levels(count)) => Some(ExtentStepsReport::Levels(count)),
             Stabilize::None | Stabilize::Exact => None,
         },
+        bands: typed_name(shadows.bands),
         warp: shadows.warps.iter().map(|&warp| typed_name(warp)).collect(),
         depth_convention: typed_name(convention),
         planes_m: plan.planes.clone(),

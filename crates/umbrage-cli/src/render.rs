@@ -37,6 +37,11 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     if args.maps.is_some() && stage.shots.iter().any(|shot| !shot.beside.is_empty()) {
         return Err(Failure::input("--maps and several cameras: maps are of one view; name one --camera"));
     }
+    if args.split_views.is_some() && shadows.settings.bands == umbrage::Bands::Radial {
+        return Err(Failure::input(
+            "--split-views and --bands radial exclude each other: each picture lies between two planes; leave one of them away",
+        ));
+    }
     if args.split_views.is_some() && stage.shots.iter().any(|shot| !shot.beside.is_empty()) {
         return Err(Failure::input("--split-views and several cameras: splits are of one view; name one --camera"));
     }
@@ -140,6 +145,7 @@ impl<'a> Studio<'a> {
             shadow_strength: self.shadows.shadow_strength,
             shadow_colour: self.shadows.shadow_colour.to_array(),
             fit: typed_name(self.shadows.fit),
+            bands: typed_name(self.shadows.bands),
             stabilize: typed_name(self.shadows.stabilize),
             warp: self.shadows.warps.iter().map(|&warp| typed_name(warp)).collect(),
             planes_m: stats.plan.planes.clone(),

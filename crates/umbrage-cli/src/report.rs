@@ -40,6 +40,8 @@ pub struct Report {
     pub fit: String,
     /// `none`, `exact` or `approximate`.
     pub stabilize: String,
+    /// `planar` or `radial`: what `planes_m` and the splits' ends measure, view depth or distance to the eye.
+    pub bands: String,
     /// `none`, `psm`, `lispsm` or `tsm`: one for all splits, or one for each.
     pub warp: Vec<String>,
     /// `C_0 ..= C_m`: view depths in metres.

@@ -69,11 +69,10 @@ impl Renderer {
 
     /// Who answers for a point.
     fn responder(&self, frame: &Frame<'_>, plan: &ShadowPlan, point: DVec3) -> Responder {
-        let depth = frame.view.view_depth(point);
         if !frame.light.light.reaches(point) {
             return Responder::Nobody;
         }
-        let in_range = plan.planes.last().is_some_and(|&far| depth < far);
+        let in_range = plan.planes.last().is_some_and(|&far| plan.depth_at(point) < far);
         if in_range && cull::may_be_seen(frame.view, &Aabb::new(point, point)) {
             return Responder::View;
         }

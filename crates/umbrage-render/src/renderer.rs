@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
-use umbrage::{Aabb, Selection, ShadowPlan, ShadowSettings, View};
+use umbrage::{Aabb, Bands, Selection, ShadowPlan, ShadowSettings, View};
 use umbrage_scene::{AlphaMode, Pose, Scene};
 use umbrage_wgpu::{
     DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, MapPass, MaskFrame, MaskNormals, ShadowMaps,
@@ -187,6 +187,14 @@ impl Renderer {
                     first: "storage reused".to_owned(),
                     second: "selection map".to_owned(),
                     reason: "there is one map at a time and none to choose from; use selection depth or storage array",
+                }
+                .into());
+            }
+            if maps.options().storage == Storage::Reused && shadows.bands == Bands::Radial {
+                return Err(umbrage_wgpu::Error::ConflictingOptions {
+                    first: "storage reused".to_owned(),
+                    second: "bands radial".to_owned(),
+                    reason: "the picture is drawn in slices of view depth; use planar bands or storage array",
                 }
                 .into());
             }

@@ -183,6 +183,10 @@ pub struct Frame {
     pub shadow_colour: [f32; 3],
     /// A [`BiasKind`].
     pub bias_kind: u32,
+    /// Where the eye stands, relative to the frame's origin, metres; read with `is_radial`.
+    pub eye: [f32; 3],
+    /// 1: splits are chosen by distance from the eye, and all view depths of the frame are distances.
+    pub is_radial: u32,
     /// A [`SelectionKind`].
     pub selection: u32,
     /// With [`SelectionKind::Map`]: share of a map's half edge over which it blends into the next that contains the point.

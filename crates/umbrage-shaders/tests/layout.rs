@@ -46,7 +46,7 @@ fn split_in_rust() -> (usize, Vec<Member>) {
 fn frame_in_rust() -> (usize, Vec<Member>) {
     in_rust!(Frame: view_depth_plane, to_light, strength, light_position, light_range_m, fade_begin, split_count, filter_kind, enabled, tint,
         filter_width_m, sun_tangent, turn_per_pixel, transition, cone_cosine, first_frame, face_count,
-        shadow_colour, bias_kind, selection, map_blend, slice, splits)
+        shadow_colour, bias_kind, eye, is_radial, selection, map_blend, slice, splits)
 }
 
 fn pass_in_rust() -> (usize, Vec<Member>) {

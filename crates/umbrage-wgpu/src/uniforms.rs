@@ -111,6 +111,9 @@ fn frame(
     if !plane.is_finite() {
         return bad("view_depth_plane", f64::NAN, "four finite numbers");
     }
+    if plan.radial_eye.is_some_and(|eye| !eye.is_finite()) {
+        return bad("radial_eye", f64::NAN, "three finite numbers");
+    }
     if !is_unit(plan.light_direction) {
         return bad("light_direction", plan.light_direction.length(), "a vector of length 1");
     }
@@ -139,6 +142,8 @@ fn frame(
         map_blend: plan.blend as f32,
         bias_kind: options.bias.kind() as u32,
         shadow_colour: options.shadow_colour,
+        eye: plan.radial_eye.map_or([0.0; 3], |eye| (eye - options.origin).as_vec3().to_array()),
+        is_radial: plan.radial_eye.is_some().into(),
         ..layout::Frame::default()
     };
     local::place_light(&mut frame, plan, options.origin);

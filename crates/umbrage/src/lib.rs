@@ -16,6 +16,7 @@
 //! `C_0 = n` and `C_m = f` are the ends of the shadowed range.
 
 mod alias;
+mod bands;
 mod bias;
 mod bounds;
 mod camera;
@@ -37,6 +38,7 @@ mod volume;
 mod warp;
 mod warped;
 
+pub use bands::Bands;
 pub use bias::{Bias, STEEPEST};
 pub use bounds::Aabb;
 pub use camera::{DepthConvention, Frustum, Projection, View};

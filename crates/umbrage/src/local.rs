@@ -16,8 +16,8 @@ use crate::split::{blend_begin, coverage, split_planes};
 use crate::stable::HeldSize;
 use crate::volume::{Lies, Plane, Slice, SweptVolume};
 use crate::{
-    Aabb, Error, Fit, Light, PointLight, Result, Selection, ShadowSettings, Split, SplitScheme, SpotLight, Stabilize,
-    View, Warp,
+    Aabb, Bands, Error, Fit, Light, PointLight, Result, Selection, ShadowSettings, Split, SplitScheme, SpotLight,
+    Stabilize, View, Warp,
 };
 
 /// Share of its depths that a map keeps free before its first caster and behind its last receiver, for rounding.
@@ -106,6 +106,15 @@ impl LocalPlanner {
                     .to_owned(),
             });
         }
+        if settings.bands != Bands::Planar {
+            return Err(Error::ConflictingSettings {
+                first: "bands",
+                second: "light",
+                reason: "splits of a local light are chosen by view depth; \
+                         set bands to Planar, or use a directional light"
+                    .to_owned(),
+            });
+        }
         plan.selection = Selection::Depth;
         let m = settings.splits();
         let (near, far, fades) = shadowed_range(given);
@@ -153,7 +162,7 @@ impl LocalPlanner {
     fn plan_split(&mut self, given: &Given<'_>, frustum: &LightFrustum, i: usize, plan: &mut ShadowPlan) {
         let Given { settings, view, margin, .. } = *given;
         let (near, far) = (plan.planes[i], plan.planes[i + 1]);
-        let (from, to) = coverage(view, &plan.planes, i, settings.blend, settings.image_size);
+        let (from, to) = coverage(view, &plan.planes, i, settings.blend, settings.image_size, Bands::Planar);
         let visible = to > from;
         let (from, to) = if visible { (from, to) } else { (near, far) };
         let slice = Slice::new(view, from, to);

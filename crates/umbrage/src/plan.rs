@@ -11,10 +11,12 @@ use crate::{Light, Selection, View};
 pub struct ShadowPlan {
     /// The splits, nearest first; of a point light those of its first face, then those of the next.
     pub splits: Vec<Split>,
-    /// `C_0 ..= C_m`: view depths in metres.
+    /// `C_0 ..= C_m`: view depths in metres; see [`ShadowPlan::radial_eye`].
     pub planes: Vec<f64>,
     /// The plane that measures view depth: `xyz · point + w`, in metres.
     pub view_depth_plane: DVec4,
+    /// With [`crate::Bands::Radial`] the eye, metres: all depths of this plan are then distances to it. `None`: view depths.
+    pub radial_eye: Option<DVec3>,
     /// The way light travels, a unit vector; the axis of a spot light. A point light has none and the value is straight down.
     pub light_direction: DVec3,
     /// The light that was planned for; `None` stands for a sun along `light_direction`.
@@ -36,6 +38,7 @@ impl ShadowPlan {
     /// Empties the plan for a frame.
     pub(crate) fn begin(&mut self, view: &View, light: Light) {
         self.view_depth_plane = view.forward().extend(-view.forward().dot(view.eye()));
+        self.radial_eye = None;
         self.light_direction = match light {
             Light::Directional(sun) => sun.direction(),
             Light::Spot(spot) => spot.direction(),
@@ -45,6 +48,15 @@ impl ShadowPlan {
         self.caster_indices.clear();
         self.split_range.clear();
         self.splits.clear();
+    }
+
+    /// What chooses the split of a world point, metres: its view depth, or with radial bands its distance to the eye.
+    #[must_use]
+    pub fn depth_at(&self, point: DVec3) -> f64 {
+        match self.radial_eye {
+            Some(eye) => eye.distance(point),
+            None => self.view_depth_plane.truncate().dot(point) + self.view_depth_plane.w,
+        }
     }
 
     /// How many times the settings' splits there are; see [`Light::faces`].
@@ -74,13 +86,14 @@ impl ShadowPlan {
 /// `depth_far`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Split {
-    /// Where the slice begins, `C_i`: a view depth in metres.
+    /// Where the slice begins, `C_i`: a view depth in metres; see [`ShadowPlan::radial_eye`].
     pub near: f64,
     /// Where the slice ends, `C_{i+1}`.
     pub far: f64,
     /// View depth at which the blend into the next split begins; `far` if there is none.
     pub blend_begin: f64,
-    /// The view depths that may sample this map: the slice widened by the previous split's blend band and a pixel quad.
+    /// The view depths, with radial bands too, that may sample this map: the slice widened by the previous split's blend band and a pixel
+    /// quad.
     pub coverage: (f64, f64),
     /// Edge of the map in texels.
     pub size: u32,

@@ -13,8 +13,8 @@ use crate::stable::{HeldSize, slice_sphere, stable_texel};
 use crate::volume::{Lies, Slice, SweptVolume};
 use crate::warped::WarpPoints;
 use crate::{
-    Aabb, DirectionalLight, Error, Fit, Light, MAX_SPLITS, RangeFit, Result, Selection, ShadowPlan, ShadowSettings,
-    Split, Stabilize, View, Warp,
+    Aabb, Bands, DirectionalLight, Error, Fit, Light, MAX_SPLITS, RangeFit, Result, Selection, ShadowPlan,
+    ShadowSettings, Split, Stabilize, View, Warp,
 };
 
 /// Texels that a map keeps free around what it serves, besides the filter's reach: half for the texel that a sample's
@@ -132,7 +132,8 @@ impl Planner {
     ///
     /// # Errors
     /// [`Error::InvalidBounds`] naming a box that is inverted or not finite; [`Error::InvalidSetting`] if the range or the
-    /// planes do not fit this camera; [`Error::ConflictingSettings`] for a warp with a local light.
+    /// planes do not fit this camera; [`Error::ConflictingSettings`] for a warp or radial bands with a local light, and for radial bands with
+    /// an orthographic camera.
     pub fn plan(
         &mut self,
         view: &View,
@@ -173,6 +174,7 @@ impl Planner {
 
     fn plan_sun(&mut self, view: &View, light: &DirectionalLight) -> Result<()> {
         let casters = self.casters.len();
+        self.settings.bands.check_view(view)?;
         let (near, far) = self.range(view);
         let mut planes = std::mem::take(&mut self.plan.planes);
         let rising = split_planes(&self.settings.scheme, near, far, self.settings.splits(), &mut planes);
@@ -206,8 +208,10 @@ impl Planner {
         plan.begin(view, (*light).into());
         plan.selection = self.settings.selection;
         plan.blend = self.settings.blend;
+        plan.radial_eye = (self.settings.bands == Bands::Radial).then(|| view.eye());
         // Behind the last receiver and beyond the camera's far plane there is nothing to fade into.
-        let fades = self.settings.range.is_some_and(|(_, end)| end < view.frustum().far);
+        let last_shown = view.frustum().far / self.settings.bands.least_depth_share(view);
+        let fades = self.settings.range.is_some_and(|(_, end)| end < last_shown);
         plan.fade_begin = if fades { far - self.settings.far_fade * (far - near) } else { far };
         plan.split_range.resize(casters, None);
         self.volumes.clear();
@@ -246,11 +250,15 @@ impl Planner {
             return range;
         }
         let forward = view.forward();
-        let (near, camera_far) = (view.frustum().near, view.frustum().far);
+        let bands = self.settings.bands;
+        let (near, camera_far) = (view.frustum().near, view.frustum().far / bands.least_depth_share(view));
         let deepest = self
             .receivers
             .iter()
-            .map(|r| forward.dot(r.center - view.eye()) + forward.abs().dot(r.half))
+            .map(|r| match bands {
+                Bands::Planar => forward.dot(r.center - view.eye()) + forward.abs().dot(r.half),
+                Bands::Radial => ((r.center - view.eye()).abs() + r.half).length(),
+            })
             .fold(f64::NEG_INFINITY, f64::max);
         // Nothing before the eye: any short range will do.
         let deepest = if deepest > near { deepest } else { 2.0 * near.abs() + 1.0 };
@@ -315,7 +323,7 @@ impl Planner {
         let direction = light.direction();
         let size = settings.map_sizes[i];
         let margin = settings.filter_radius + EDGE_TEXELS;
-        let (from, to) = coverage(view, planes, i, settings.blend, settings.image_size);
+        let (from, to) = coverage(view, planes, i, settings.blend, settings.image_size, settings.bands);
         let blend_begin = blend_begin(planes, i, settings.blend);
         let (near, far) = (planes[i], planes[i + 1]);
         // Where the range holds all that is visible, nothing before it asks.

@@ -1,6 +1,6 @@
 //! What the planner is told once: how many splits, where, how large and how they are fitted.
 
-use crate::{Error, Result, Warp};
+use crate::{Bands, Error, Result, Warp};
 
 /// The most splits a light can have.
 pub const MAX_SPLITS: usize = 8;
@@ -124,6 +124,8 @@ pub struct ShadowSettings {
     pub fit: Fit,
     /// Which map answers for a point. [`Selection::Map`] excludes warps.
     pub selection: Selection,
+    /// The shape of the borders between splits.
+    pub bands: Bands,
     /// Whether shadows stand still.
     pub stabilize: Stabilize,
     /// How each map spreads its texels: none for plain maps, one for all, or one for each split. A warp follows the camera, so it
@@ -156,6 +158,7 @@ impl Default for ShadowSettings {
             range_fit: RangeFit::default(),
             fit: Fit::default(),
             selection: Selection::default(),
+            bands: Bands::default(),
             stabilize: Stabilize::default(),
             warps: Vec::new(),
             filter_radius: 1.5,
@@ -245,6 +248,7 @@ impl ShadowSettings {
             }
         }
         self.check_warps()?;
+        Bands::check(self)?;
         match &self.scheme {
             SplitScheme::Uniform | SplitScheme::Logarithmic => {}
             SplitScheme::Practical { lambda, delta } => {

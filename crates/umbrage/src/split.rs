@@ -1,7 +1,7 @@
 //! Where the planes between splits stand, and which view depths each map has to serve.
 
 use crate::settings::check_range;
-use crate::{Error, Result, SplitScheme, View};
+use crate::{Bands, Error, Result, SplitScheme, View};
 
 /// Computes the `m + 1` planes `C_0 ..= C_m` between `near` and `far` (view depths in metres) into `planes`.
 ///
@@ -44,13 +44,23 @@ pub fn split_planes(scheme: &SplitScheme, near: f64, far: f64, splits: usize, pl
 /// View depths `(from, to)` that may sample split `i`'s map: the slice, widened at its near side by the previous split's blend
 /// band and one pixel quad (the pixels of a quad may differ in their split). Split 0 starts at the camera's near plane, as
 /// nearer receivers use it too; the last ends at the range's or the camera's far plane.
-pub(crate) fn coverage(view: &View, planes: &[f64], i: usize, blend: f64, image_size: [u32; 2]) -> (f64, f64) {
+///
+/// Radial bands between the distances a and b hold view depths from a cos θ to b, where θ is the angle of the view's farthest corner.
+pub(crate) fn coverage(
+    view: &View,
+    planes: &[f64],
+    i: usize,
+    blend: f64,
+    image_size: [u32; 2],
+    bands: Bands,
+) -> (f64, f64) {
     let camera_near = view.frustum().near;
     let from = if i == 0 {
         camera_near
     } else {
         let band_begin = blend_begin(planes, i - 1, blend);
-        (band_begin - quad(view, band_begin, image_size)).max(camera_near)
+        let begin = band_begin - quad(view, band_begin, image_size);
+        (begin * bands.least_depth_share(view)).max(camera_near)
     };
     (from, planes[i + 1].min(view.frustum().far))
 }

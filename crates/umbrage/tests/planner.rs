@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3, EulerRot};
 use proptest::prelude::*;
 use umbrage::{
-    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, Projection, RangeFit, Selection, ShadowPlan,
+    Aabb, Bands, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, Projection, RangeFit, Selection, ShadowPlan,
     ShadowSettings, SplitScheme, Stabilize, View, Warp,
 };
 
@@ -165,6 +165,12 @@ fn shading_end(bounds: &Aabb, point: DVec3, direction: DVec3) -> Option<f64> {
     (enter <= leave).then_some(leave)
 }
 
+/// The same case with radial bands, where they are possible.
+fn radial(case: Case) -> Option<Case> {
+    let settings = ShadowSettings { bands: Bands::Radial, range_fit: RangeFit::Camera, ..case.settings };
+    (case.view.frustum().projection == Projection::Perspective).then_some(Case { settings, ..case })
+}
+
 fn splits_of(plan: &ShadowPlan, depth: f64) -> Vec<usize> {
     let m = plan.splits.len();
     let own = plan.splits.iter().position(|s| depth < s.far).unwrap_or(m - 1);
@@ -176,7 +182,8 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
-    fn no_caster_is_lost_and_every_shadowed_receiver_lies_in_its_map(case in cases()) {
+    fn no_caster_is_lost_and_every_shadowed_receiver_lies_in_its_map(case in cases(), by_distance in any::<bool>()) {
+        let case = if by_distance { radial(case.clone()).unwrap_or(case) } else { case };
         let mut planner = Planner::new(case.settings.clone())?;
         let plan = match planner.plan(&case.view, &case.light, &case.boxes, &case.boxes) {
             Ok(plan) => plan.clone(),
@@ -185,7 +192,11 @@ proptest! {
             Err(other) => return Err(TestCaseError::fail(other.to_string())),
         };
         let direction = case.light.direction();
-        for (owner, point, depth) in visible_points(&case, plan.planes[plan.splits.len()]) {
+        for (owner, point, _) in visible_points(&case, plan.planes[plan.splits.len()]) {
+            let depth = plan.depth_at(point);
+            if depth > plan.planes[plan.splits.len()] {
+                continue;
+            }
             for split in splits_of(&plan, depth) {
                 let s = &plan.splits[split];
                 if let Some(warp) = s.warp {

@@ -123,7 +123,7 @@ pub struct Scores {
     pub seams: SeamScores,
     /// What it cost.
     pub cost: Cost,
-    /// View depths of the planes, metres.
+    /// View depths of the planes (with radial bands distances), metres.
     pub planes_m: Vec<f64>,
 }
 
@@ -212,13 +212,13 @@ pub fn score(judged: &Judged, mask: &GrayAlphaImage, stats: &FrameStats, image_m
     let answers = Answers::from_mask(mask);
     let mut scores = decisions(judged, &answers)?;
     if !judged.domain.pixels().is_empty() {
-        let gradient = |point, depth| texel_gradient(&stats.plan, point, depth);
+        let gradient = |point, _| texel_gradient(&stats.plan, point);
         let far = acne_and_leak(&judged.view, &judged.truth, &judged.domain, &answers, gradient)?;
         scores.acne = Some(far.acne_rate());
         scores.leak = Some(far.leak_rate());
         scores.beyond_edges = Some(far.beyond_rate());
     }
-    scores.seams = seam_scores(&judged.domain, &answers, &stats.plan)?;
+    scores.seams = seam_scores(judged, &answers, &stats.plan)?;
     scores.texel_px = footprint(judged, &stats.plan)?;
     for (bin, (predicted, measured)) in scores.by_depth.iter_mut().zip(densities(judged, &stats.plan)) {
         (bin.predicted_texels_per_px, bin.measured_texels_per_px) = (predicted, measured);
@@ -241,12 +241,14 @@ pub fn score(judged: &Judged, mask: &GrayAlphaImage, stats: &FrameStats, image_m
 }
 
 /// The seam score of one view; nothing where there is nothing to score or no border.
-fn seam_scores(domain: &Domain, answers: &Answers, plan: &ShadowPlan) -> Result<SeamScores> {
+fn seam_scores(judged: &Judged, answers: &Answers, plan: &ShadowPlan) -> Result<SeamScores> {
+    let domain = &judged.domain;
     let inner = plan.planes.get(1..plan.planes.len().saturating_sub(1)).unwrap_or_default();
     if domain.pixels().is_empty() || inner.is_empty() {
         return Ok(SeamScores::default());
     }
-    Ok(seams(domain, answers, inner, |pixel| domain.depth(pixel))?.into())
+    let depth = |pixel| judged.hit(pixel).map_or(f64::INFINITY, |hit| plan.depth_at(hit.position));
+    Ok(seams(domain, answers, inner, depth)?.into())
 }
 
 /// What the decisions alone say.
@@ -297,21 +299,22 @@ fn depth_scores(depths: &ByDepth) -> Vec<DepthScores> {
     depths.bins.iter().map(of).collect()
 }
 
-/// The split whose map serves a view depth.
-fn split_at(plan: &ShadowPlan, depth: f64) -> Option<&Split> {
+/// The split whose map serves a point.
+fn split_at(plan: &ShadowPlan, point: DVec3) -> Option<&Split> {
+    let depth = plan.depth_at(point);
     let split = plan.splits.iter().find(|split| depth <= split.far)?;
     (!split.casters.is_empty()).then_some(split)
 }
 
 /// How the map that serves a point lies there.
-fn texel_gradient(plan: &ShadowPlan, point: DVec3, depth: f64) -> Option<TexelGradient> {
-    let split = split_at(plan, depth)?;
+fn texel_gradient(plan: &ShadowPlan, point: DVec3) -> Option<TexelGradient> {
+    let split = split_at(plan, point)?;
     let [u, v] = split.texel_gradients(point);
     Some(TexelGradient { u, v, width: split.texel_edges(point).max_element() })
 }
 
 fn footprint(judged: &Judged, plan: &ShadowPlan) -> Result<Option<TexelPixels>> {
-    let gradient = |point, depth| texel_gradient(plan, point, depth);
+    let gradient = |point, _| texel_gradient(plan, point);
     let footprint = texel_footprint(&judged.view, &judged.truth, &judged.domain, gradient)?;
     Ok(footprint.map(|Footprint { median, p99, perspective_median, perspective_p99, .. }| TexelPixels {
         m_p50: median,
@@ -352,7 +355,7 @@ fn density_at(judged: &Judged, plan: &ShadowPlan, pixel: usize, depth: f64) -> O
     if !(on_one_surface(right) && on_one_surface(below)) {
         return None;
     }
-    let split = split_at(plan, depth)?;
+    let split = split_at(plan, here.position)?;
     let texel = |hit: &Hit| split.map_from_world(hit.position).truncate();
     let measured = least_singular_value(texel(right) - texel(here), texel(below) - texel(here));
     let size = [width as u32, height as u32];

@@ -113,9 +113,9 @@ enum Decides {
     Nobody,
 }
 
-/// Who decides on a point, by its view depth. A dithered border lies in the middle of its band for points that are no pixels.
+/// Who decides on a point, by its view depth or its distance. A dithered border lies in the middle of its band for points that are no pixels.
 fn decides(plan: &ShadowPlan, point: &ProbePoint, transition: Transition) -> Decides {
-    let depth = plan.view_depth_plane.truncate().dot(point.position) + plan.view_depth_plane.w;
+    let depth = plan.depth_at(point.position);
     let Some(index) = plan.splits.iter().position(|split| depth < split.far) else { return Decides::Nobody };
     if depth > plan.fade_begin {
         return Decides::Several;

@@ -299,6 +299,7 @@ impl Draft {
                 "extent-steps" => format!("2^(1/{value})"),
                 "extent-levels" => format!("1/{value} levels"),
                 "selection" => format!("by {value}"),
+                "bands" => format!("{value} bands"),
                 "coordinates" | "scheme" | "fit" | "filter" | "depth-format" => value.clone(),
                 _ => format!("{key} {value}"),
             };

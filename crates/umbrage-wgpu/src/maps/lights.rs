@@ -92,6 +92,13 @@ impl ShadowMaps {
                 reason: "there is one map at a time and none to choose from; use umbrage::Selection::Depth or storage array",
             });
         }
+        if plans.iter().any(|plan| plan.radial_eye.is_some()) {
+            return Err(Error::ConflictingOptions {
+                first: "storage reused".to_owned(),
+                second: "radial bands".to_owned(),
+                reason: "the picture is drawn in slices of view depth; use umbrage::Bands::Planar or storage array",
+            });
+        }
         if options.transition == Transition::Hard || !plans.iter().any(|plan| inner(plan)) {
             return Ok(());
         }
