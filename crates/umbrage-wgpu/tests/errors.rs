@@ -75,7 +75,7 @@ fn plans_and_frames_that_make_no_sense() {
     assert_eq!(maps.prepare(&gpu.queue, &ShadowPlan::default(), &FrameOptions::default()), Err(empty));
 
     type Spoil = fn(&mut ShadowPlan);
-    let spoiled: [(&str, Spoil); 12] = [
+    let spoiled: [(&str, Spoil); 13] = [
         ("view_depth_plane", |p| p.view_depth_plane.w = f64::NAN),
         ("radial_eye", |p| p.radial_eye = Some(DVec3::NAN)),
         ("light_direction", |p| p.light_direction = DVec3::ZERO),
