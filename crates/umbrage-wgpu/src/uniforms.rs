@@ -434,7 +434,7 @@ mod tests {
                 }
             }
         }
-        println!("fragment against vertex: {between:.6} texels; fragment against f64: {of_fragments:.6} texels");
+        eprintln!("fragment against vertex: {between:.6} texels; fragment against f64: {of_fragments:.6} texels");
         assert!(between < 0.01, "the two methods differ by {between} texels");
         assert!(of_fragments < 0.001, "an interpolated position is {of_fragments} texels off");
         // Interpolation that is not perspective-correct would be off by whole shadows: the comparison can say no.

@@ -10,6 +10,11 @@ use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions, Softnes
 const EDGE: f32 = 20.0;
 const HEIGHT: f32 = 10.0;
 
+/// Texels across each map.
+const SIZE: u32 = 512;
+
+const PLANES: [f64; 5] = [1.0, 20.0, 60.0, 100.0, 150.0];
+
 /// Share of a disc of radius 1 on the far side of a line at distance `x` from its middle.
 fn disc_share(x: f64) -> f64 {
     let x = x.clamp(-1.0, 1.0);
@@ -27,16 +32,42 @@ fn softness_of(values: impl Iterator<Item = f64>, step: f64) -> f64 {
     values.map(|v| v * (1.0 - v) * step).sum()
 }
 
-/// Full widths of the edge in splits 0 and 1, in metres, if it has the form `share`.
-fn widths(filter: Filter, softness: Softness, maps: [f64; 2], share: fn(f64) -> f64) -> Option<[f64; 2]> {
+/// A program that asks the first `splits` splits, four at most.
+fn ask_splits(splits: usize) -> String {
+    let each: String = (0..splits)
+        .map(|split| {
+            format!("    answer[{split}] = umbrage_visibility_in_split(ask.position.xyz, ask.normal.xyz, {split}u);\n")
+        })
+        .collect();
+    format!(
+        "struct Ask {{ position: vec4f, normal: vec4f }}
+@group(0) @binding(0) var<storage, read> asks: array<Ask>;
+@group(0) @binding(1) var<storage, read_write> answers: array<vec4f>;
+@compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {{
+    if id.x >= arrayLength(&asks) {{ return; }}
+    let ask = asks[id.x];
+    var answer = vec4f();
+{each}    answers[id.x] = answer;
+}}"
+    )
+}
+
+/// Full widths of the edge in each split, in metres, if it has the form `share`; `maps` are the widths of the splits' maps.
+fn widths<const N: usize>(
+    filter: Filter,
+    softness: Softness,
+    maps: [f64; N],
+    share: fn(f64) -> f64,
+) -> Option<[f64; N]> {
+    let sizes = [SIZE; N];
     let options = ShadowMapsOptions {
-        map_sizes: vec![512, 512],
+        map_sizes: sizes.to_vec(),
         depth_format: DepthFormat::D32Float,
         filter,
         ..Default::default()
     };
     let mut world = World::new(Gpu::new()?, &options);
-    let mut plan = plan(DVec3::NEG_Y, DVec3::new(f64::from(EDGE), 0.0, 0.0), &[512, 512], &[1.0, 20.0, 60.0], &maps);
+    let mut plan = plan(DVec3::NEG_Y, DVec3::new(f64::from(EDGE), 0.0, 0.0), &sizes, &PLANES[..=N], &maps);
     // The ground is all that is seen.
     plan.splits.iter_mut().for_each(|split| split.receiver_depths = (-5.0, 5.0));
     // The edge runs askew so that it meets texels everywhere.
@@ -50,19 +81,42 @@ fn widths(filter: Filter, softness: Softness, maps: [f64; 2], share: fn(f64) -> 
     let asks: Vec<_> = (rows.iter())
         .flat_map(|&z| (-200..=200).map(move |i| ask(Vec3::new(EDGE + 0.1 * z + step * i as f32, 0.0, z), Vec3::Y)))
         .collect();
-    let answers = world.ask(&asks);
+    let source = world.maps.receiver_wgsl(1) + &ask_splits(N);
+    let answers: Vec<[f32; 4]> = world.gpu.compute(&source, &asks, Some(&world.maps));
     let unit = softness_of((-1000..=1000).map(|i| share(f64::from(i) / 1000.0)), 1e-3);
-    Some([0, 1].map(|split| {
-        let values = answers.iter().map(|answer| f64::from(answer.in_split[split]));
+    Some(std::array::from_fn(|split| {
+        let values = answers.iter().map(|answer| f64::from(answer[split]));
         2.0 * softness_of(values, f64::from(step)) / rows.len() as f64 / unit
     }))
 }
 
-fn check(found: [f64; 2], expected: f64, what: &str) {
+fn check<const N: usize>(found: [f64; N], expected: f64, what: &str) {
     for width in found {
         assert!((width / expected - 1.0).abs() < 0.1, "{what}: {found:?} m wide instead of {expected} m");
     }
-    assert!((found[0] / found[1] - 1.0).abs() < 0.1, "{what}: {found:?} m on the two sides of a border");
+    check_borders(found, what);
+}
+
+/// The same width on both sides of every border between splits.
+fn check_borders<const N: usize>(found: [f64; N], what: &str) {
+    for sides in found.windows(2) {
+        assert!(
+            (sides[0] / sides[1] - 1.0).abs() < 0.1,
+            "{what}: {found:?} m, so {sides:?} m on the two sides of a border"
+        );
+    }
+}
+
+/// Four splits, so three borders; 0.8 m are 2.2 texels of the coarsest map and more of the others, but no more than the filter may take.
+#[test]
+fn edges_are_as_wide_on_both_sides_of_every_border() {
+    let softness = Softness { width_m: Some(0.8), bleeding: 0.02, ..Softness::default() };
+    for (filter, maps) in [(Filter::Pcf7, [64.0, 90.0, 130.0, 190.0]), (Filter::Evsm4, [16.0, 40.0, 90.0, 190.0])] {
+        assert!(2.0 * maps[3] / f64::from(SIZE) <= 0.8);
+        let Some(found) = widths(filter, softness, maps, tent_share) else { return };
+        eprintln!("{filter:?}: {found:.3?} m");
+        check(found, 0.8, &format!("{filter:?}"));
+    }
 }
 
 #[test]
@@ -95,7 +149,7 @@ fn blurs_are_as_wide_as_they_are_told_in_every_split() {
             check(found, f64::from(width), &format!("{filter:?}"));
         }
         let Some(found) = widths(filter, Softness::default(), [24.0, 36.0], tent_share) else { return };
-        assert!((found[0] / found[1] - 1.0).abs() < 0.1, "{filter:?}: {found:?} m on the two sides of a border");
+        check_borders(found, &format!("{filter:?}"));
         // 15 texels of 1/32 m to each side are the most.
         let softness = Softness { width_m: Some(2.0), bleeding: 0.02, ..Softness::default() };
         let Some(capped) = widths(filter, softness, [16.0, 40.0], tent_share) else { return };

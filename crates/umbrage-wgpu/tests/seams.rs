@@ -160,7 +160,7 @@ fn pooled(scenes: &[Scene], filter: Filter, derivatives: Derivatives, naive: boo
     let mut world = World::new(Gpu::new()?, &options);
     let mut sum = Seams::default();
     scenes.iter().for_each(|scene| sum += scene.score(&mut world, derivatives, naive));
-    println!(
+    eprintln!(
         "{filter:?}, {derivatives:?}, naive {naive}: {:.3?} over {} pixels; E {:.4}, nearer {:.4}, farther {:.4}",
         sum.ratio(),
         sum.seam.pixels,

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::covered;
 use crate::fit::{fitted, snapped, stepped};
 use crate::local::{Given, LightFrustum, LocalPlanner};
-use crate::range::{HeldRange, visible_range};
+use crate::range::{HeldFar, HeldRange, Range, visible_range};
 use crate::rectangle::{HeldRectangle, longest_edge};
 use crate::region::{Fan, Region};
 use crate::split::{blend_begin, coverage, split_planes};
@@ -35,6 +35,7 @@ pub struct Planner {
     settings: ShadowSettings,
     plan: ShadowPlan,
     held_range: HeldSize,
+    held_far: HeldFar,
     held_visible_range: HeldRange,
     held_radius: [HeldSize; MAX_SPLITS],
     held_whole: HeldSize,
@@ -95,6 +96,7 @@ impl Planner {
             settings,
             plan: ShadowPlan::default(),
             held_range: HeldSize::default(),
+            held_far: HeldFar::default(),
             held_visible_range: HeldRange::default(),
             held_radius: [HeldSize::default(); MAX_SPLITS],
             held_whole: HeldSize::default(),
@@ -173,11 +175,14 @@ impl Planner {
 
     fn plan_sun(&mut self, view: &View, light: &DirectionalLight) -> Result<()> {
         let casters = self.casters.len();
-        let (near, far) = self.range(view);
-        let mut planes = std::mem::take(&mut self.plan.planes);
-        let rising = split_planes(&self.settings.scheme, near, far, self.settings.splits(), &mut planes);
-        self.plan.planes = planes;
-        rising?;
+        let Range { near, inner_far, far } = self.range(view);
+        let planes = &mut self.plan.planes;
+        if let Err(error) = split_planes(&self.settings.scheme, near, inner_far, self.settings.splits(), planes) {
+            // A range that cannot be divided is not held on to.
+            self.held_far = HeldFar::default();
+            return Err(error);
+        }
+        planes[self.settings.splits()] = far;
 
         let direction = light.direction();
         let (map_u, _) = light.map_axes();
@@ -241,9 +246,9 @@ impl Planner {
 
     /// `C_0` and `C_m`: the setting; the view depths of the visible receivers; or the camera's near and far, far capped by the
     /// receivers.
-    fn range(&mut self, view: &View) -> (f64, f64) {
-        if let Some(range) = self.settings.range {
-            return range;
+    fn range(&mut self, view: &View) -> Range {
+        if let Some((near, far)) = self.settings.range {
+            return Range::new(near, far);
         }
         let forward = view.forward();
         let (near, camera_far) = (view.frustum().near, view.frustum().far);
@@ -257,13 +262,20 @@ impl Planner {
         if self.settings.range_fit == RangeFit::Visible
             && let Some((first, last)) = visible_range(view, near, deepest.min(camera_far), &self.receivers)
         {
-            return self.held_within(first, last, near, camera_far);
+            let (first, last) = self.held_within(first, last, near, camera_far);
+            return Range::new(first, last);
         }
-        let far = match self.settings.stabilize {
-            Stabilize::None => deepest,
-            Stabilize::Exact | Stabilize::Approximate(_) => self.held_range.hold(deepest),
+        let range = match self.settings.stabilize {
+            Stabilize::None => Range::new(near, deepest),
+            Stabilize::Exact => self.held_far.hold(near, deepest, self.farthest(view.eye())),
+            Stabilize::Approximate(_) => Range::new(near, self.held_range.hold(deepest)),
         };
-        (near, far.min(camera_far))
+        Range { near, inner_far: range.inner_far.min(camera_far), far: range.far.min(camera_far) }
+    }
+
+    /// Metres from `eye` to the farthest corner of any receiver; 0 without receivers.
+    fn farthest(&self, eye: DVec3) -> f64 {
+        self.receivers.iter().map(|r| ((r.center - eye).abs() + r.half).length()).fold(0.0, f64::max)
     }
 
     /// A range around the visible receivers: as it is, or in steps where maps have to stand still.

@@ -2,6 +2,7 @@
 
 use crate::View;
 use crate::planner::Placed;
+use crate::stable::HeldSize;
 use crate::volume::{Lies, Slice};
 
 /// Share of a depth by which the range exceeds the receivers, so that rounding to `f32` on the way to a shader leaves none
@@ -78,9 +79,67 @@ impl HeldRange {
     }
 }
 
+/// The view depths that the planes between splits divide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Range {
+    /// `C_0`.
+    pub near: f64,
+    /// The far end that the inner planes `C_1 .. C_{m-1}` are placed for: `far`, or what it was before it was stretched.
+    pub inner_far: f64,
+    /// `C_m`.
+    pub far: f64,
+}
+
+impl Range {
+    pub fn new(near: f64, far: f64) -> Self {
+        Self { near, inner_far: far, far }
+    }
+}
+
+/// The most by which the far end of a range is stretched before all planes follow: √2.
+const MOST_STRETCH: f64 = std::f64::consts::SQRT_2;
+
+/// The far end of a range that ends at the scene's deepest point, whose view depth changes as the camera turns.
+///
+/// It is kept until the deepest point lies beyond it, then rounded up to the next step. The camera's turning never shortens
+/// it: it shrinks when even the farthest point in any direction lies two steps before it. A stretch moves the last plane only, so that
+/// the other splits' maps stand; beyond [`MOST_STRETCH`] all planes are placed anew.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct HeldFar {
+    far: HeldSize,
+    inner_far: f64,
+}
+
+impl HeldFar {
+    /// The range from `near` for a scene that ends at view depth `deepest`, and `farthest` metres from the eye.
+    pub fn hold(&mut self, near: f64, deepest: f64, farthest: f64) -> Range {
+        let far = self.far.hold_until(deepest, farthest.max(deepest));
+        if !(self.inner_far..=MOST_STRETCH * self.inner_far).contains(&far) {
+            self.inner_far = far;
+        }
+        Range { near, inner_far: self.inner_far, far }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::HeldRange;
+    use super::{HeldFar, HeldRange};
+
+    #[test]
+    fn a_held_far_end_starts_tight_stretches_and_ignores_turning() {
+        let mut held = HeldFar::default();
+        let first = held.hold(0.1, 300.0, 400.0);
+        assert_eq!((first.inner_far, first.far), (300.0, 300.0));
+        let stretched = held.hold(0.1, 310.0, 400.0);
+        assert!(stretched.inner_far == 300.0 && (310.0..340.0).contains(&stretched.far), "{stretched:?}");
+        // Looking out of the scene; the scene is as large as before.
+        assert_eq!(held.hold(0.1, 20.0, 400.0), stretched);
+        // Walking out of it.
+        let short = held.hold(0.1, 20.0, 100.0);
+        assert!(short.inner_far == short.far && (20.0..22.0).contains(&short.far), "{short:?}");
+        let long = held.hold(0.1, 500.0, 600.0);
+        assert!(long.inner_far == long.far && long.far >= 500.0, "{long:?}");
+    }
 
     #[test]
     fn a_held_range_contains_what_it_is_asked_for_and_rarely_moves() {

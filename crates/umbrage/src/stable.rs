@@ -104,11 +104,16 @@ const STEPS_PER_OCTAVE: f64 = 8.0;
 
 impl HeldSize {
     pub fn hold(&mut self, size: f64) -> f64 {
+        self.hold_until(size, size)
+    }
+
+    /// As [`Self::hold`], but what is held shrinks only once `least`, no less than `size`, falls two steps below it.
+    pub fn hold_until(&mut self, size: f64, least: f64) -> f64 {
         let step = |size: f64| 2f64.powf((size.log2() * STEPS_PER_OCTAVE).ceil() / STEPS_PER_OCTAVE).max(size);
         let lowest = |held: f64| held * 2f64.powf(-2.0 / STEPS_PER_OCTAVE);
         let value = match self.held {
             None => size,
-            Some(held) if size <= held && size >= lowest(held) => held,
+            Some(held) if size <= held && least >= lowest(held) => held,
             Some(_) => step(size),
         };
         self.held = Some(value);

@@ -180,6 +180,33 @@ proptest! {
     }
 }
 
+/// Turning and walking about a scene, without a range of one's own: the far end changes rarely, and only the last map with it.
+#[test]
+fn turning_stretches_the_last_split_alone() {
+    let place = DVec3::new(1e4, 0.0, -1e4);
+    let mut planner = Planner::new(ShadowSettings::default()).expect("valid");
+    let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).expect("a direction");
+    let world = [Aabb::new(place - DVec3::new(200.0, 1.0, 200.0), place + DVec3::new(200.0, 9.0, 200.0))];
+    let (mut far, mut inner, mut stretches) = (0.0, Vec::new(), 0);
+    for k in 0..600 {
+        let yaw = 0.003 * f64::from(k);
+        let eye =
+            place + DVec3::new(0.0, 2.0, 40.0) + DQuat::from_rotation_y(yaw) * DVec3::NEG_Z * (0.05 * f64::from(k));
+        let view = turned_view(eye, [yaw, -0.1, 0.0]).expect("valid");
+        let planes = &planner.plan(&view, &sun, &world, &world).expect("a plan").planes;
+        let deepest = world[0].corners().map(|corner| view.view_depth(corner)).into_iter().fold(0.0, f64::max);
+        assert!(planes[4] >= deepest, "frame {k}: {planes:?} for {deepest} m");
+        if k == 0 {
+            inner = planes[..4].to_vec();
+        } else {
+            stretches += u32::from(planes[4] != far);
+        }
+        assert_eq!(planes[..4], inner, "frame {k}");
+        far = planes[4];
+    }
+    assert!((1..=3).contains(&stretches), "{stretches} stretches");
+}
+
 /// 0, 10 and 100 km from the world's origin.
 fn place() -> impl Strategy<Value = DVec3> {
     prop_oneof![Just(0.0), Just(1e4), Just(1e5)].prop_map(|distance| DVec3::new(distance, 0.0, -distance))
