@@ -24,11 +24,13 @@ fn with_splits(splits: usize, coordinates: Coordinates) -> RenderSettings {
     RenderSettings { shadows, coordinates, ..plain }
 }
 
-/// Boxes and a sphere on a plain of two triangles, each far larger than any map.
+/// Rows of boxes and a sphere on a plain of two triangles, each far larger than any map.
 fn plain() -> Scene {
-    let boxes =
-        [cuboid(DVec3::new(-1.0, 0.0, -2.0), DVec3::new(1.5, 2.0, 1.0)), sphere(DVec3::new(3.0, 1.0, -6.0), 1.0)];
-    scene(std::iter::once(ground(0.0, 400.0)).chain(boxes).collect())
+    let boxes = (0..40).map(|i| {
+        let at = DVec3::new(2.5 * f64::from(i % 8) - 9.0, 0.0, 3.0 - 4.0 * f64::from(i / 8));
+        cuboid(at, at + DVec3::new(0.7, 1.2, 0.7))
+    });
+    scene(boxes.chain([ground(0.0, 400.0), sphere(DVec3::new(3.0, 1.0, -25.0), 1.0)]).collect())
 }
 
 /// Rows of pillars that stand on steps, far down a street.
@@ -64,9 +66,11 @@ fn vertices_say_what_fragments_say() {
         assert!(differ <= 8, "{name}, {splits} splits: {differ} of {hit} pixels differ");
         assert!(unlike <= 40, "{name}, {splits} splits: {unlike} pixels of the picture differ");
         assert!(of_vertices.pixels().any(|pixel| pixel.0 == [0, 255]), "something is shaded");
-        // The comparison can say no: a sun a few degrees aside.
-        let (aside, _) = drawn(&mut by_vertices, sun(DVec3::new(0.7, -0.7, -0.4)));
-        assert!(differences(&of_fragments, &aside).0 > 40, "{:?}", differences(&of_fragments, &aside));
+        // The comparison can say no: a sun aside.
+        let (aside, _) = drawn(&mut by_vertices, sun(DVec3::new(0.9, -0.7, -0.4)));
+        let (moved, _) = differences(&of_fragments, &aside);
+        eprintln!("{name}: {moved} pixels differ under a sun aside");
+        assert!(moved > 80, "{name}: {moved} pixels differ under a sun aside");
     }
 }
 
