@@ -198,7 +198,7 @@ fn mistakes_name_the_culprit_and_leave_nothing() {
         ("compare --techniques ssm:64 -o out", &["scene"][..]),
         ("compare tiny.glb -o out", &["--techniques"]),
         ("compare tiny.glb --techniques ssm:64", &["-o DIR"]),
-        ("compare tiny.glb --techniques ssm:64,vsm:64 -o out", &["vsm:64", "not built yet"]),
+        ("compare tiny.glb --techniques ssm:64,sdsm:64 -o out", &["sdsm:64", "not built yet"]),
         ("compare tiny.glb --techniques magic:64 -o out", &["magic"]),
         ("compare tiny.glb --techniques pssm:4:512:lambda=7 -o out", &["pssm:4:512:lambda=7", "--lambda"]),
         ("compare tiny.glb --techniques ssm:64 --with colour=red -o out", &["colour"]),

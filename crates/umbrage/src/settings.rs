@@ -33,7 +33,8 @@ impl Default for SplitScheme {
 /// What the shadowed range is fitted to where [`ShadowSettings::range`] does not say it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RangeFit {
-    /// The camera's near and far, far capped by the receivers.
+    /// The camera's near and far, far capped by the receivers. With [`Stabilize::Exact`] the far end is kept while the receivers end
+    /// before it; where they reach beyond, the last split alone is stretched, in geometric steps of 9 %, up to √2 times.
     #[default]
     Camera,
     /// The view depths between which the view shows receivers: their boxes clipped to the frustum, as an empty foreground or a lens
