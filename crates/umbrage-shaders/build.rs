@@ -21,6 +21,9 @@ fn texts() -> Vec<Text> {
         text("pass::receiver", &["depth_loads"], "receiver".into()),
         text("pass::receiver", &[], "receiver_without_loads".into()),
         text("pass::receiver", &["moments"], "receiver_of_moments".into()),
+        text("pass::receiver", &["depth_loads", "places"], "receiver_at_places".into()),
+        text("pass::receiver", &["places"], "receiver_at_places_without_loads".into()),
+        text("pass::receiver", &["moments", "places"], "receiver_at_places_of_moments".into()),
         text("pass::moments", &[], "moment_passes".into()),
         text("pass::moments", &["multisampled"], "moment_passes_of_samples".into()),
         text("maps::moments", &[], "moments".into()),
@@ -43,9 +46,9 @@ fn texts() -> Vec<Text> {
 /// `depth_loads`: depth textures can be loaded from. `r32f`: maps are colours. `views`, `tiles`: casters are drawn into several layers or tiles.
 /// `moments`: maps hold moments of depth. `multisampled`: depth has four samples a texel. `own_taps`: the shader takes an anisotropic
 /// sample's taps. `by_hand`: and no sampler filters moments. `normals`: a mask has a
-/// buffer of normals. `maps_2` to `maps_8` come beside these.
-const FEATURES: [&str; 9] =
-    ["depth_loads", "r32f", "views", "tiles", "normals", "moments", "multisampled", "own_taps", "by_hand"];
+/// buffer of normals. `places`: receivers take map coordinates that vertex shaders made. `maps_2` to `maps_8` come beside these.
+const FEATURES: [&str; 10] =
+    ["depth_loads", "r32f", "views", "tiles", "normals", "moments", "multisampled", "own_taps", "by_hand", "places"];
 
 fn main() {
     let mut compiler = Wesl::new("shaders");

@@ -305,7 +305,7 @@ pub struct ShadowArgs {
     /// Share of the shadowed range over which shadows fade out at its far end; 0 is off, as where nothing is seen beyond
     #[arg(long, value_name = "SHARE", default_value = "0.1", value_parser = parse::share, allow_hyphen_values = true)]
     pub far_fade: f64,
-    /// Where the visibility mask takes positions and normals from: the surfaces themselves as they are drawn, or the picture's depth
+    /// Where the visibility mask takes map coordinates from; split serves one sun, up to 4 splits and no warp, and pictures too
     #[arg(long, value_enum, default_value_t)]
     pub coordinates: Coordinates,
     /// What a map stores
@@ -548,10 +548,12 @@ pub enum Transition {
 /// `--coordinates`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Coordinates {
-    /// Interpolated world positions
+    /// Interpolated world positions, from which each pixel makes its own
     #[default]
     World,
-    /// Rebuilt from depth in a pass of its own, with normals from neighbouring pixels
+    /// Made by each vertex for every split and interpolated
+    Split,
+    /// Positions rebuilt from the picture's depth in a pass of its own, with normals from neighbouring pixels
     Deferred,
 }
 

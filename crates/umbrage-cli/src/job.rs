@@ -134,6 +134,8 @@ pub struct ShadowJob {
     pub shadow_colour: DVec3,
     /// Whether `--coordinates` are `deferred`.
     pub deferred: bool,
+    /// Where everything else takes map coordinates from.
+    pub coordinates: umbrage_render::Coordinates,
     /// `--depth-format`.
     pub depth_format: args::DepthFormat,
     /// `--generation`.
@@ -346,6 +348,7 @@ impl ShadowJob {
         };
         settings.validate()?;
         check_moments(args, &warps)?;
+        paths::check_coordinates(args, settings.map_sizes.len(), &warps)?;
         if args.filter_width.is_some() && !wgpu_filter(args.filter).has_width() {
             return Err(Failure::input(format!(
                 "--filter-width: --filter {} has no width to choose; leave it away, or use pcf3, pcf5, pcf7, disc, esm, vsm, evsm2, evsm4 or msm",
@@ -368,6 +371,10 @@ impl ShadowJob {
             contact_shadows: args.contact_shadows == args::Switch::On,
             shadow_colour: args.shadow_colour,
             deferred: args.coordinates == args::Coordinates::Deferred,
+            coordinates: match args.coordinates {
+                args::Coordinates::Split => umbrage_render::Coordinates::Split,
+                args::Coordinates::World | args::Coordinates::Deferred => umbrage_render::Coordinates::World,
+            },
             depth_format: args.depth_format,
             generation: args.generation.into(),
             storage: args.storage.into(),

@@ -103,6 +103,27 @@ pub fn check_filter(lights: &[NamedLight], filter: args::Filter) -> Result<()> {
     }
 }
 
+/// Coordinates that vertices make are those of one sun.
+///
+/// # Errors
+/// [`Failure::Input`] naming both options.
+pub fn check_coordinates(lights: &[NamedLight], coordinates: umbrage_render::Coordinates) -> Result<()> {
+    if coordinates != umbrage_render::Coordinates::Split {
+        return Ok(());
+    }
+    match (lights.iter().find(|light| light.lamp.light.position().is_some()), lights.len()) {
+        (Some(light), _) => Err(Failure::input(format!(
+            "--coordinates split: --light {} is a spot or point light, the places of whose maps are quotients and cannot be \
+             interpolated; use --coordinates world, or a sun",
+            light.name
+        ))),
+        (None, 0 | 1) => Ok(()),
+        (None, count) => Err(Failure::input(format!(
+            "--coordinates split: it serves one sun, but --light names {count} lights; name one, or use --coordinates world"
+        ))),
+    }
+}
+
 /// The lights that a job asks for, one at least.
 ///
 /// # Errors

@@ -4,8 +4,9 @@ use clap::ValueEnum;
 use umbrage_wgpu::ShadowMapsOptions;
 
 use crate::{
-    args::ShadowArgs,
+    args::{Coordinates, ShadowArgs, Warp},
     failure::{Failure, Result},
+    job::typed_name,
 };
 
 /// `--generation`.
@@ -108,6 +109,31 @@ pub fn blend(args: &ShadowArgs, map_sizes: &[u32]) -> Result<(f64, Option<String
         Some(blend) => Ok((blend, None)),
         None if alone => Ok((0.0, Some("one map for all splits: they do not blend (--blend 0)".to_owned()))),
         None => Ok((DEFAULT_BLEND, None)),
+    }
+}
+
+/// `--coordinates split` goes with a few plain maps alone.
+///
+/// # Errors
+/// [`Failure::Input`] naming the two options that exclude each other.
+pub fn check_coordinates(args: &ShadowArgs, splits: usize, warps: &[Warp]) -> Result<()> {
+    if args.coordinates != Coordinates::Split {
+        return Ok(());
+    }
+    if splits > umbrage_render::Coordinates::MOST_SPLITS {
+        return Err(Failure::input(format!(
+            "--coordinates split and --splits {splits} exclude each other: vertices hand on the coordinates of at most {} splits; use \
+             fewer, or --coordinates world",
+            umbrage_render::Coordinates::MOST_SPLITS
+        )));
+    }
+    match warps.iter().find(|warp| **warp != Warp::None) {
+        Some(warp) => Err(Failure::input(format!(
+            "--coordinates split and --warp {} exclude each other: the places of a warped map are quotients, which cannot be \
+             interpolated; use --coordinates world, or no warp",
+            typed_name(*warp)
+        ))),
+        None => Ok(()),
     }
 }
 

@@ -100,6 +100,7 @@ impl<'a> Studio<'a> {
     /// Opens the device and loads the scene onto it.
     pub fn open(job: &SceneJob, shadows: &'a ShadowJob, stage: &Stage) -> Result<Self> {
         lights::check_filter(&stage.lights, shadows.filter)?;
+        lights::check_coordinates(&stage.lights, shadows.coordinates)?;
         let gpu = Gpu::new(&GpuOptions::default())?;
         let settings = RenderSettings {
             size: job.size,
@@ -111,6 +112,7 @@ impl<'a> Studio<'a> {
             transition: shadows.transition(),
             moments: shadows.moments(),
             look: shadows.look(),
+            coordinates: shadows.coordinates,
             storage: shadows.storage,
             generation: shadows.generation,
             lights: lights::slots(&stage.lights),

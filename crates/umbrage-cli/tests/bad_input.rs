@@ -169,6 +169,9 @@ fn shadow_options_that_say_nonsense() {
         ("--depth-format d24", &["--depth-format", "d32f", "d16"]),
         ("--shadows maybe", &["--shadows", "on", "off"]),
         // Pairs of which there is no path.
+        ("--coordinates split --splits 5", &["--coordinates split", "--splits 5", "4 splits"]),
+        ("--coordinates split --technique lispsm", &["--coordinates split", "--warp lispsm"]),
+        ("--coordinates vertex", &["--coordinates", "vertex"]),
         ("--generation layered --storage atlas", &["--generation layered", "--storage atlas"]),
         ("--generation instanced --storage array", &["--generation instanced", "--storage array"]),
         ("--generation mixed --storage separate", &["--generation mixed", "--storage separate"]),
@@ -206,6 +209,10 @@ fn lights_and_views_that_do_not_go_together() {
     folder.refuse("plan tiny.glb --light lamp --stabilize none --warp lispsm", &["--warp", "--light"]);
     folder.refuse("plan tiny.glb --camera front,front", &["--camera front,front", "twice"]);
     folder.refuse("render tiny.glb --light lamp --filter pcss -o out.png", &["--filter pcss", "--light lamp"]);
+    folder.refuse(
+        "render tiny.glb --light lamp --coordinates split -o out.png",
+        &["--coordinates split", "--light lamp"],
+    );
     folder.refuse("compare tiny.glb --techniques pssm:1:64 --light sun,lamp -o out", &["--light sun,lamp", "one"]);
     folder.refuse("compare tiny.glb --techniques pssm:1:64 --light lamp --suns 40 -o out", &["--suns", "--light lamp"]);
 }

@@ -11,7 +11,7 @@ use crate::contact::Contact;
 use crate::draw_list::{Drawable, Drawn, Run, vertex_layouts};
 use crate::lamps::{Lamp, LampUniform, MOST_LAMPS};
 use crate::materials::{GpuMaterial, Materials};
-use crate::{Gpu, Result, shaders};
+use crate::{Coordinates, Gpu, Result, shaders};
 
 /// What the picture is drawn in before it is resolved; the samples of a pixel share one shading.
 pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -163,12 +163,14 @@ impl Forward {
         maps: &ShadowMaps,
         materials: &Materials,
         samples: Samples,
+        coordinates: Coordinates,
         contact: Option<&Contact>,
-    ) -> Self {
+    ) -> Result<Self> {
         let device = &gpu.device;
+        let library = coordinates.receiver_wgsl(maps, 2)?;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("Forward::shader"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::forward(&maps.receiver_wgsl(2), contact.is_some()))),
+            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::forward(&library, coordinates, contact.is_some()))),
         });
         let frame_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("Forward::frame_layout"),
@@ -248,6 +250,7 @@ impl Forward {
         let depth = contact.map(|_| {
             let bare = Surface {
                 label: "Forward::depth",
+                vertex_entry: "vs_depth",
                 fragment_entry: None,
                 format: None,
                 samples: 1,
@@ -257,7 +260,7 @@ impl Forward {
             let masked = Surface { fragment_entry: Some("fs_depth_masked"), ..bare };
             Builder { layout: &depth_layout, ..builder }.pipelines([bare, masked, bare])
         });
-        Self { uniform, stride, bind_groups, picture, mask, sky, depth }
+        Ok(Self { uniform, stride, bind_groups, picture, mask, sky, depth })
     }
 
     /// Writes the uniform of the whole frame, `index` 0, or of a slice, 1 and so on.
@@ -470,6 +473,7 @@ fn begin<'e>(
 #[derive(Clone, Copy)]
 struct Surface {
     label: &'static str,
+    vertex_entry: &'static str,
     fragment_entry: Option<&'static str>,
     format: Option<wgpu::TextureFormat>,
     samples: u32,
@@ -491,7 +495,15 @@ impl Builder<'_> {
     fn surface(&self, label: &'static str, fragment_entry: &'static str, format: wgpu::TextureFormat) -> Surface {
         let samples = self.samples.count();
         let (fragment_entry, format) = (Some(fragment_entry), Some(format));
-        Surface { label, fragment_entry, format, samples, alpha_to_coverage: false, blend: false }
+        Surface {
+            label,
+            vertex_entry: "vs_main",
+            fragment_entry,
+            format,
+            samples,
+            alpha_to_coverage: false,
+            blend: false,
+        }
     }
 
     fn pipelines(&self, surfaces: [Surface; 3]) -> SurfacePipelines {
@@ -501,7 +513,7 @@ impl Builder<'_> {
                     let unclipped_depth = self.unclipped_depth;
                     let primitive =
                         wgpu::PrimitiveState { front_face, cull_mode, unclipped_depth, ..Default::default() };
-                    self.pipeline(&surface, "vs_main", &vertex_layouts(), primitive, wgpu::CompareFunction::Greater)
+                    self.pipeline(&surface, &vertex_layouts(), primitive, wgpu::CompareFunction::Greater)
                 })
             })
         }))
@@ -509,14 +521,13 @@ impl Builder<'_> {
 
     /// Only where nothing is: infinitely far away is depth 0.
     fn sky(&self) -> wgpu::RenderPipeline {
-        let surface = self.surface("Forward::sky", "fs_sky", PICTURE_FORMAT);
-        self.pipeline(&surface, "vs_sky", &[], Default::default(), wgpu::CompareFunction::GreaterEqual)
+        let surface = Surface { vertex_entry: "vs_sky", ..self.surface("Forward::sky", "fs_sky", PICTURE_FORMAT) };
+        self.pipeline(&surface, &[], Default::default(), wgpu::CompareFunction::GreaterEqual)
     }
 
     fn pipeline(
         &self,
         surface: &Surface,
-        vertex_entry: &str,
         buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
         primitive: wgpu::PrimitiveState,
         depth_compare: wgpu::CompareFunction,
@@ -533,7 +544,7 @@ impl Builder<'_> {
             layout: Some(self.layout),
             vertex: wgpu::VertexState {
                 module: self.module,
-                entry_point: Some(vertex_entry),
+                entry_point: Some(surface.vertex_entry),
                 compilation_options: Default::default(),
                 buffers,
             },

@@ -8,6 +8,7 @@ mod answers;
 mod capture;
 mod casters;
 mod contact;
+mod coordinates;
 mod cull;
 mod draw_list;
 mod error;
@@ -29,6 +30,7 @@ mod stats;
 mod timing;
 mod views;
 
+pub use coordinates::Coordinates;
 pub use error::{Error, Result};
 pub use forward::Samples;
 pub use gpu::{Gpu, GpuOptions};

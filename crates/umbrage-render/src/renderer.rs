@@ -24,7 +24,7 @@ use crate::record::{Clock, MapCapture, Prepared, Recorded, SliceRuns, new_encode
 use crate::stats::{FrameStats, LightStats, SplitStats};
 use crate::timing::{PassCounts, Timer};
 use crate::views::Planners;
-use crate::{Error, Gpu, MomentSettings, Result, cull, maps, moments};
+use crate::{Coordinates, Error, Gpu, MomentSettings, Result, cull, maps, moments};
 
 /// The frame's origin moves in steps of this many metres, so that positions near the eye are exact to a tenth of a
 /// millimetre in `f32` and yet stay the same from frame to frame, which is what keeps stabilised maps still.
@@ -50,6 +50,8 @@ pub struct RenderSettings {
     pub transition: Transition,
     /// How shadows look.
     pub look: Look,
+    /// Where pictures and masks take map coordinates from.
+    pub coordinates: Coordinates,
     /// Where maps are kept.
     pub storage: Storage,
     /// How maps are drawn.
@@ -114,6 +116,7 @@ pub struct Renderer {
     transition: Transition,
     derivatives: Derivatives,
     look: Look,
+    coordinates: Coordinates,
     pub(crate) planners: Planners,
     /// The same for each further view.
     pub(crate) more_views: Vec<Planners>,
@@ -155,6 +158,7 @@ impl Renderer {
         shadows.image_size = settings.size;
         shadows.validate()?;
         settings.softness.validate()?;
+        settings.coordinates.check_settings(&shadows)?;
         settings.look.contact.iter().try_for_each(umbrage_wgpu::ContactOptions::validate)?;
         if let Some((split, &size)) = shadows.map_sizes.iter().enumerate().find(|&(_, &size)| size > limit) {
             return Err(Error::MapSize { split, size, limit });
@@ -231,7 +235,14 @@ impl Renderer {
                 skinned: SkinnedGeometry::empty(gpu)?,
                 instances: Instances::new(gpu),
                 casters: Casters::new(gpu, &maps, &materials, settings.look.translucent),
-                forward: Forward::new(gpu, &maps, &materials, settings.samples, contact.as_ref()),
+                forward: Forward::new(
+                    gpu,
+                    &maps,
+                    &materials,
+                    settings.samples,
+                    settings.coordinates,
+                    contact.as_ref(),
+                )?,
                 contact,
                 dithered_nodes: match settings.look.translucent {
                     Translucent::None => Vec::new(),
@@ -242,6 +253,7 @@ impl Renderer {
                 transition: settings.transition,
                 derivatives: settings.moments.derivatives,
                 look: settings.look,
+                coordinates: settings.coordinates,
                 probe: Probe::new(gpu, &maps),
                 timer,
                 picture: None,
@@ -431,6 +443,7 @@ impl Renderer {
         let plans = planners.iter_mut().zip(&lamps);
         let plans = plans.map(|(planner, lamp)| Ok(planner.plan(view, &lamp.light, &casters, &receivers)?.clone()));
         let plans = plans.collect::<Result<Vec<ShadowPlan>>>()?;
+        plans.iter().try_for_each(|plan| self.coordinates.check_plan(plan))?;
         let plan_ms = begun.elapsed().as_secs_f64() * 1e3;
         let options = FrameOptions {
             origin,

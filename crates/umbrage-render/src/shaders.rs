@@ -1,5 +1,7 @@
 //! The WGSL of every pass: the library's text, what all passes share, and the pass's own.
 
+use crate::Coordinates;
+
 /// Bind group 0 is what [`umbrage_wgpu::ShadowMaps::caster_wgsl`] declares, 1 the material.
 pub(crate) fn casters(library: &str) -> String {
     [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster.wgsl")].join("\n")
@@ -22,16 +24,20 @@ pub(crate) fn dithered_casters(library: &str) -> String {
 pub(crate) const DITHERED_MEMBERS: &str =
     "@location(0) uv: vec2f, @location(1) alpha: f32, @location(2) @interpolate(flat) offset: vec2f,";
 
-/// Bind group 0 is the frame, 1 the material, 2 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares, 3 with contact shadows what
+/// Bind group 0 is the frame, 1 the material, 2 what [`Coordinates::receiver_wgsl`] declares, 3 with contact shadows what
 /// [`umbrage_wgpu::contact_wgsl`] declares.
-pub(crate) fn forward(library: &str, contact: bool) -> String {
+pub(crate) fn forward(library: &str, coordinates: Coordinates, contact: bool) -> String {
     const WITH: &str = "fn contact_visibility(position: vec3f, normal: vec3f, to_light: vec3f) -> f32 {
     return umbrage_contact_visibility(position, normal, to_light, 0.5);
 }";
     const WITHOUT: &str =
         "fn contact_visibility(position: vec3f, normal: vec3f, to_light: vec3f) -> f32 { return 1.0; }";
     let contact = if contact { umbrage_wgpu::contact_wgsl(3) + WITH } else { WITHOUT.to_owned() };
-    [library, &contact, include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl")].join("\n")
+    let surface = match coordinates {
+        Coordinates::World => include_str!("shaders/surface.wgsl"),
+        Coordinates::Split => include_str!("shaders/surface_at_places.wgsl"),
+    };
+    [library, &contact, include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl"), surface].join("\n")
 }
 
 /// Bind group 0 is the points, 1 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares.
@@ -84,7 +90,12 @@ mod tests {
             assert_eq!(parsed(&masked_casters(&library(MASKED_MEMBERS))).entry_points.len(), 2);
         }
         for maps in [Maps::default(), Maps { without_loads: true, ..Maps::default() }] {
-            for source in [forward(&receiver(2, maps), true), probe(&receiver(1, maps))] {
+            let at_places = receiver(2, Maps { places: true, ..maps });
+            for source in [
+                forward(&receiver(2, maps), Coordinates::World, true),
+                forward(&at_places, Coordinates::Split, true),
+                probe(&receiver(1, maps)),
+            ] {
                 assert!(!parsed(&source).entry_points.is_empty());
             }
         }
@@ -92,7 +103,7 @@ mod tests {
 
     #[test]
     fn both_sides_lay_out_their_structs_alike() {
-        let module = parsed(&forward(&receiver(2, Maps::default()), true));
+        let module = parsed(&forward(&receiver(2, Maps::default()), Coordinates::World, true));
         let frame = offsets!(
             FrameUniform: clip_from_eye, eye, is_orthographic, forward, lamp_count, to_sun, daylight, ray_center, near,
             ray_right, far, ray_up, lamps
@@ -106,7 +117,7 @@ mod tests {
     #[test]
     fn a_moved_member_is_noticed() {
         let module = parsed(
-            &forward(&receiver(2, Maps::default()), true)
+            &forward(&receiver(2, Maps::default()), Coordinates::World, true)
                 .replace("base_color: vec4f,", "base_color: vec4f, more: f32,"),
         );
         assert_ne!(layout(&module, "Material"), offsets!(MaterialUniform: base_color, emissive, alpha_cutoff));

@@ -97,12 +97,17 @@ pub struct Maps {
     pub frames: u32,
     /// Maps hold moments of depth, of one light.
     pub moments: Option<MomentMaps>,
+    /// Vertex shaders may make the coordinates of every split's map: `umbrage_places(position: vec3f) -> UmbragePlaces`, four members
+    /// `first` to `fourth`, each a `vec3f` to be interpolated; fragments ask with them,
+    /// `umbrage_shadow_at_places(places, position, normal, pixel)` or a footprint that went through `umbrage_at_places(footprint, places)`.
+    /// For one sun without warps, at most [`layout::MAX_PLACES`] splits; what is asked without places has those of its position.
+    pub places: bool,
 }
 
 impl Default for Maps {
     /// One light, read with everything that a device can have.
     fn default() -> Self {
-        Self { bound: Bound::Array, r32f: false, without_loads: false, frames: 1, moments: None }
+        Self { bound: Bound::Array, r32f: false, without_loads: false, frames: 1, moments: None, places: false }
     }
 }
 
@@ -173,10 +178,13 @@ pub fn contact(group: u32) -> String {
 pub fn receiver(group: u32, maps: Maps) -> String {
     let frames = maps.frames.max(1);
     let loads = maps.r32f || !maps.without_loads;
-    let receiver = match (maps.moments, loads) {
-        (Some(_), _) => text!("receiver_of_moments"),
-        (None, true) => text!("receiver"),
-        (None, false) => text!("receiver_without_loads"),
+    let receiver = match (maps.moments, loads, maps.places) {
+        (Some(_), _, false) => text!("receiver_of_moments"),
+        (Some(_), _, true) => text!("receiver_at_places_of_moments"),
+        (None, true, false) => text!("receiver"),
+        (None, true, true) => text!("receiver_at_places"),
+        (None, false, false) => text!("receiver_without_loads"),
+        (None, false, true) => text!("receiver_at_places_without_loads"),
     };
     let maps = match (maps.moments, maps.bound, maps.r32f, loads) {
         (Some(MomentMaps::Sampled), ..) => text!("moments"),

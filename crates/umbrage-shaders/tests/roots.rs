@@ -4,7 +4,8 @@ use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use umbrage_shaders::{Bound, Casters, Maps, MomentMaps};
 
-const WITHOUT_LOADS: Maps = Maps { bound: Bound::Array, r32f: false, without_loads: true, frames: 7, moments: None };
+const WITHOUT_LOADS: Maps =
+    Maps { bound: Bound::Array, r32f: false, without_loads: true, frames: 7, moments: None, places: false };
 
 /// Every way to bind maps and to read them.
 fn all_maps() -> Vec<Maps> {
@@ -24,8 +25,14 @@ fn all_maps() -> Vec<Maps> {
         )
         .collect()
 }
-const MOMENTS: Maps =
-    Maps { bound: Bound::Array, r32f: false, without_loads: false, frames: 1, moments: Some(MomentMaps::Sampled) };
+const MOMENTS: Maps = Maps {
+    bound: Bound::Array,
+    r32f: false,
+    without_loads: false,
+    frames: 1,
+    moments: Some(MomentMaps::Sampled),
+    places: false,
+};
 const MOMENTS_BY_TAPS: Maps = Maps { moments: Some(MomentMaps::Taps), ..MOMENTS };
 const MOMENTS_BY_HAND: Maps = Maps { moments: Some(MomentMaps::ByHand), ..MOMENTS };
 
@@ -202,4 +209,35 @@ fn deferred_masks_stand_behind_receivers() {
     for normals in [false, true] {
         validated(&(umbrage_shaders::receiver(1, Maps::default()) + &umbrage_shaders::mask(0, normals)));
     }
+}
+
+#[test]
+fn vertices_make_the_coordinates_of_every_split() {
+    const SHADER: &str = "
+        struct Pixel {
+            @builtin(position) clip: vec4f,
+            @location(0) position: vec3f,
+            @location(1) first: vec3f,
+            @location(2) second: vec3f,
+            @location(3) third: vec3f,
+            @location(4) fourth: vec3f,
+        }
+        @vertex fn vertex(@location(0) position: vec3f) -> Pixel {
+            let at = umbrage_places(position);
+            return Pixel(vec4f(position, 1.0), position, at.first, at.second, at.third, at.fourth);
+        }
+        @fragment fn fragment(in: Pixel) -> @location(0) vec4f {
+            let places = UmbragePlaces(in.first, in.second, in.third, in.fourth);
+            let shadow = umbrage_shadow_at_places(places, in.position, vec3f(0.0, 1.0, 0.0), in.clip.xy);
+            return vec4f(shadow.visibility + umbrage_visibility(in.position, vec3f(0.0, 1.0, 0.0)));
+        }";
+    for maps in all_maps() {
+        let source = umbrage_shaders::receiver(0, Maps { places: true, ..maps }) + SHADER;
+        validated(&source);
+    }
+    let source = umbrage_shaders::receiver(0, Maps { places: true, frames: 1, ..WITHOUT_LOADS }) + SHADER;
+    assert!(to_webgl2(&source, naga::ShaderStage::Vertex, "vertex").contains("umbrage_places"));
+    to_webgl2(&source, naga::ShaderStage::Fragment, "fragment");
+    // Without the choice nobody has the functions, and nobody pays for them.
+    assert!(!umbrage_shaders::receiver(0, Maps::default()).contains("UmbragePlaces"));
 }

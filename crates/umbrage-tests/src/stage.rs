@@ -151,6 +151,7 @@ impl Technique {
             transition: Transition::default(),
             moments: Default::default(),
             look: umbrage_render::Look::default(),
+            coordinates: Default::default(),
             storage: umbrage_wgpu::Storage::default(),
             generation: umbrage_wgpu::Generation::default(),
             lights: vec![umbrage_wgpu::LightSlot::Single],

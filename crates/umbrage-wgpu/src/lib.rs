@@ -64,3 +64,4 @@ pub use options::{
     DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, ReceiverBias, ShadowMapsOptions, Softness,
     Storage, Transition,
 };
+pub use umbrage_shaders::layout::MAX_PLACES;

@@ -50,6 +50,7 @@ pub fn measure(
             transition: technique.job.transition(),
             moments: technique.job.moments(),
             look: technique.job.look(),
+            coordinates: technique.job.coordinates,
             storage: technique.job.storage,
             generation: technique.job.generation,
             lights: lights::slots(&stage.lights),

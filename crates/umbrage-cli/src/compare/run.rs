@@ -112,6 +112,7 @@ impl Bench<'_> {
                 transition: technique.job.transition(),
                 moments: technique.job.moments(),
                 look: technique.job.look(),
+                coordinates: technique.job.coordinates,
                 storage: technique.job.storage,
                 generation: technique.job.generation,
                 lights: vec![first.light.light.into()],

@@ -13,24 +13,8 @@ struct Vertex {
     @location(3) normal: vec3f,
 }
 
-struct Surface {
-    @builtin(position) clip: vec4f,
-    // Relative to the origin.
-    @location(0) position: vec3f,
-    // The same relative to the eye: small near it, so that its derivatives are precise.
-    @location(1) from_eye: vec3f,
-    @location(2) normal: vec3f,
-    @location(3) uv: vec2f,
-    @location(4) color: vec4f,
-}
-
-@vertex
-fn vs_main(vertex: Vertex, instance: Instance) -> Surface {
-    let position = position_from_local(instance, vertex.local);
-    let from_eye = position - frame.eye;
-    let normal = normal_from_local(instance, vertex.normal);
-    let clip = frame.clip_from_eye * vec4f(from_eye, 1.0);
-    return Surface(clip, position, from_eye, normal, vertex.uv, vertex.color);
+fn clip_of(from_eye: vec3f) -> vec4f {
+    return frame.clip_from_eye * vec4f(from_eye, 1.0);
 }
 
 // The triangle's own unit normal, turned towards the eye. Call in uniform control flow.
@@ -53,11 +37,6 @@ override SLICED: bool = false;
 fn is_drawn(in: Surface) -> bool {
     let depth = dot(in.from_eye, frame.forward);
     return !SLICED || (umbrage_in_slice(in.position) && depth >= frame.near && depth <= frame.far);
-}
-
-// What the pixel covers. Call in uniform control flow.
-fn footprint_of(in: Surface) -> UmbrageFootprint {
-    return umbrage_footprint(in.position, dpdx(in.from_eye), dpdy(in.from_eye), in.clip.xy);
 }
 
 // Red: visibility of the first light at the pixel's centre. Green: 1, a surface is here.
@@ -96,9 +75,21 @@ fn with_contact(visibility: f32, position: vec3f, normal: vec3f) -> f32 {
     return min(visibility, mix(1.0, contact_visibility(position, normal, to_light), strength));
 }
 
+// What the picture's depth is made from.
+struct Outline {
+    @builtin(position) clip: vec4f,
+    @location(0) uv: vec2f,
+    @location(1) color: vec4f,
+}
+
+@vertex
+fn vs_depth(vertex: Vertex, instance: Instance) -> Outline {
+    return Outline(clip_of(position_from_local(instance, vertex.local) - frame.eye), vertex.uv, vertex.color);
+}
+
 // The picture's depth, for contact shadows.
 @fragment
-fn fs_depth_masked(in: Surface) {
+fn fs_depth_masked(in: Outline) {
     if tested_alpha(in.uv, in.color.a) < material.alpha_cutoff {
         discard;
     }

@@ -45,6 +45,7 @@ pub fn settings() -> RenderSettings {
         transition: Transition::default(),
         moments: Default::default(),
         look: umbrage_render::Look::default(),
+        coordinates: Default::default(),
         storage: Storage::default(),
         generation: Generation::default(),
         lights: vec![umbrage_wgpu::LightSlot::Single],

@@ -217,19 +217,49 @@ impl ShadowMaps {
     /// then [`crate::Filter::Disc`], unless the format is [`crate::DepthFormat::R32Float`].
     #[must_use]
     pub fn receiver_wgsl(&self, group: u32) -> String {
+        umbrage_shaders::receiver(group, self.receiver_maps())
+    }
+
+    /// [`ShadowMaps::receiver_wgsl`] for apps whose vertex shaders make the coordinates of every split's map (`umbrage_places` and `umbrage_shadow_at_places`, see `umbrage_shaders::Maps::places`). Plans have to be of a
+    /// sun, without warps: others have coordinates that cannot be interpolated.
+    ///
+    /// # Errors
+    /// [`Error::ConflictingOptions`] with more than [`crate::MAX_PLACES`] splits, with several lights and with
+    /// [`crate::LightSlot::Cube`].
+    pub fn receiver_wgsl_at_places(&self, group: u32) -> Result<String> {
+        let conflict =
+            |second, reason| Err(Error::ConflictingOptions { first: "coordinates split".to_owned(), second, reason });
+        let lights = &self.options.lights;
+        if self.options.map_sizes.len() > umbrage_shaders::layout::MAX_PLACES {
+            return conflict(
+                format!("{} splits", self.options.map_sizes.len()),
+                "vertices hand on the coordinates of at most 4 splits; use fewer splits or coordinates world",
+            );
+        }
+        if lights.iter().map(|slot| slot.faces()).sum::<usize>() > 1 {
+            return conflict(
+                format!("{} lights with {} faces", lights.len(), lights.iter().map(|slot| slot.faces()).sum::<usize>()),
+                "vertices hand on the coordinates of one sun; use one sun or coordinates world",
+            );
+        }
+        Ok(umbrage_shaders::receiver(group, Maps { places: true, ..self.receiver_maps() }))
+    }
+
+    /// How receivers read these maps.
+    fn receiver_maps(&self) -> Maps {
         let bound = match self.options.storage {
             Storage::Separate => Bound::Separate(self.splits()),
             Storage::Cube => Bound::Cube,
             Storage::Auto | Storage::Array | Storage::Atlas | Storage::Reused => Bound::Array,
         };
-        let maps = Maps {
+        Maps {
             bound,
             r32f: self.options.depth_format.is_colour(),
             without_loads: !self.depth_loads,
             frames: lights::frame_count(&self.options) as u32,
             moments: self.moments.as_ref().map(Moments::maps),
-        };
-        umbrage_shaders::receiver(group, maps)
+            places: false,
+        }
     }
 
     /// What the maps were made with; where the options left a choice, what was chosen.
