@@ -409,6 +409,8 @@ pub enum Scheme {
     Practical,
     /// By --planes
     Manual,
+    /// Where the boxes of casters and receivers in view promise the least error
+    Fitted,
 }
 
 /// `--range-fit`.
