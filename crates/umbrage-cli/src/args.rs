@@ -572,10 +572,10 @@ pub enum DepthFormat {
 /// `--depth-convention`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum DepthConvention {
-    /// wgpu, Direct3D, Metal, Vulkan
+    /// wgpu, Direct3D, Metal, Vulkan: NDC z in [0,1], v down
     #[default]
     ZeroToOne,
-    /// OpenGL
+    /// OpenGL: NDC z in [−1,1], v up
     MinusOneToOne,
 }
 
