@@ -1,4 +1,4 @@
-//! What was typed. What it means is worked out in [`crate::job`].
+//! What was typed. What it means is worked out in [`crate::scene_job`] and [`crate::shadow_job`].
 //!
 //! One set of scene, camera, light and time options serves every subcommand; what a subcommand does not need it accepts
 //! and ignores, so one argument list serves `render`, `probe` and `truth`.

@@ -8,9 +8,10 @@ use umbrage::{Aabb, ExtentSteps, Planner, ShadowPlan, Split, Stabilize};
 use crate::{
     args::{DepthConvention, PlanArgs},
     failure::Result,
-    job::{SceneJob, ShadowJob, typed_name},
     output::{self, Staged, numbered_file},
     report::{ShotReport, to_json},
+    scene_job::SceneJob,
+    shadow_job::{ShadowJob, typed_name},
     stage::{Shot, Stage},
     worlds::print,
 };
