@@ -6,7 +6,7 @@ use umbrage_wgpu::ShadowMapsOptions;
 use crate::{
     args::{Coordinates, ShadowArgs, Warp},
     failure::{Failure, Result},
-    job::typed_name,
+    shadow_job::typed_name,
 };
 
 /// `--generation`.
