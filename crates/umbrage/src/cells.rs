@@ -1,6 +1,6 @@
 //! Thin slices of the view, and what each holds: the bounds of receivers and casters, and how much shadow edge the picture shows there.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use crate::planner::{Placed, lies_below};
 use crate::region::{DIRECTIONS, Fan, Region};
@@ -24,10 +24,9 @@ pub(crate) struct Sight<'a> {
 #[derive(Clone, Debug)]
 pub(crate) struct Cell {
     slice: Slice,
-    /// The receivers inside, in the light's plane, in the world and on the image plane (tangents, or metres of an orthographic view).
+    /// The receivers inside, in the light's plane and in the world.
     pub receivers: Region,
     bounds: Aabb,
-    image: (DVec2, DVec2),
     /// The casters that can shade them, whole; empty if there are none.
     pub casters: Region,
     /// Expected length of shadow edges, metres in the light's plane.
@@ -36,32 +35,12 @@ pub(crate) struct Cell {
 
 impl Cell {
     fn new(slice: Slice) -> Self {
-        Self {
-            slice,
-            receivers: Region::EMPTY,
-            bounds: Aabb::EMPTY,
-            image: (DVec2::INFINITY, DVec2::NEG_INFINITY),
-            casters: Region::EMPTY,
-            edges: 0.0,
-        }
+        Self { slice, receivers: Region::EMPTY, bounds: Aabb::EMPTY, casters: Region::EMPTY, edges: 0.0 }
     }
 
-    fn include(&mut self, view: &View, fan: &Fan, point: DVec3) {
+    fn include(&mut self, fan: &Fan, point: DVec3) {
         self.receivers.include_point(fan, point);
         self.bounds = self.bounds.including(point);
-        let at = view.view_from_world_point(point);
-        let depth = match view.frustum().projection {
-            Projection::Perspective => -at.z,
-            Projection::Orthographic => 1.0,
-        };
-        let on_image = at.truncate() / depth;
-        self.image = (self.image.0.min(on_image), self.image.1.max(on_image));
-    }
-
-    /// Area on the image plane of what the cell shows.
-    fn image_area(&self) -> f64 {
-        let (lo, hi) = self.image;
-        (hi - lo).max(DVec2::ZERO).element_product()
     }
 
     /// Whether a caster with these bounds can shade the cell's receivers.
@@ -122,7 +101,7 @@ impl Cells {
                     continue;
                 }
                 let slice = cell.slice;
-                let include = |point| cell.include(view, fan, point);
+                let include = |point| cell.include(fan, point);
                 match lies {
                     Lies::Inside => between_depths(view, &bounds, depths[i], depths[i + 1], include),
                     _ => {
@@ -167,25 +146,32 @@ impl Cells {
         }
     }
 
-    /// Expected error of each cell's pixels for each metre that a texel measures, up to a factor common to all.
+    /// Expected error of each cell's pixels for each metre that a texel measures, as shares of that of all cells.
     ///
-    /// An edge of a shadow is off by a share of a texel, so that the area decided wrongly is the length of the edges times the
-    /// texel's edge; the picture shows that area at so many pixels to the square metre of the light's plane. A small part goes by the
-    /// pixels alone, for edges that boxes do not show.
-    pub fn weigh(&self, weights: &mut Vec<f64>) {
-        let shadowed = |cell: &&Cell| !cell.casters.is_empty();
-        let area: f64 = self.cells.iter().filter(shadowed).map(Cell::image_area).sum();
+    /// An edge of a shadow is off by a share of a texel, so that the area decided wrongly is the length of the edges times the texel's
+    /// edge. Shadows mostly lie on ground, of which a view from some height shows 1/z³ pixels to the square metre at depth z. A small part goes
+    /// by the pixels alone, for edges that boxes do not tell of: by the rows of pixels that such ground fills.
+    pub fn weigh(&self, projection: Projection, depths: &[f64], weights: &mut Vec<f64>) {
+        let pixels = |pair: &[f64]| match projection {
+            Projection::Perspective => 1.0 / pair[0] - 1.0 / pair[1],
+            Projection::Orthographic => pair[1] - pair[0],
+        };
+        let edges = |pair: &[f64], cell: &Cell| match projection {
+            Projection::Perspective => cell.edges * (pair[0] * pair[1]).powf(-1.5),
+            Projection::Orthographic => cell.edges,
+        };
+        let shadowed = || depths.windows(2).zip(&self.cells).filter(|(_, cell)| !cell.casters.is_empty());
+        let all_pixels: f64 = shadowed().map(|(pair, _)| pixels(pair)).sum();
+        let all_edges: f64 = shadowed().map(|(pair, cell)| edges(pair, cell)).sum();
         weights.clear();
-        weights.extend(self.cells.iter().map(|cell| {
-            let light_area = cell.receivers.area(cell.receivers.least_direction());
-            if cell.casters.is_empty() || light_area <= 0.0 { 0.0 } else { cell.edges * cell.image_area() / light_area }
+        weights.extend(depths.windows(2).zip(&self.cells).map(|(pair, cell)| {
+            if cell.casters.is_empty() {
+                return 0.0;
+            }
+            let by_pixels = pixels(pair) / all_pixels;
+            let by_edges = if all_edges > 0.0 { edges(pair, cell) / all_edges } else { by_pixels };
+            (1.0 - SHARE_BY_PIXELS) * by_edges + SHARE_BY_PIXELS * by_pixels
         }));
-        let edges: f64 = weights.iter().sum();
-        for (weight, cell) in weights.iter_mut().zip(&self.cells) {
-            let by_edges = if edges > 0.0 { *weight / edges } else { 0.0 };
-            let by_pixels = if area > 0.0 && !cell.casters.is_empty() { cell.image_area() / area } else { 0.0 };
-            *weight = (1.0 - SHARE_BY_PIXELS) * by_edges + SHARE_BY_PIXELS * by_pixels;
-        }
     }
 }
 

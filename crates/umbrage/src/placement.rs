@@ -9,16 +9,14 @@ use crate::cells::{Cells, Sight};
 use crate::region::{Fan, Region};
 use crate::split::{coverage, split_planes};
 use crate::stable::slice_sphere;
-use crate::{
-    Error, ExtentSteps, Fit, Frustum, Projection, Result, ShadowSettings, SplitScheme, Stabilize, View,
-};
+use crate::{Error, ExtentSteps, Fit, Frustum, Projection, Result, ShadowSettings, SplitScheme, Stabilize, View};
 
 /// Candidates between the ends, besides those of the fixed schemes and those that are held.
 const CANDIDATES: usize = 40;
 
 /// By how much the best planes have to beat those that are held, where maps have to stand still: less than this share of what the held
 /// ones cost.
-const WORTH_MOVING: f64 = 0.75;
+const WORTH_MOVING: f64 = 2.0 / 3.0;
 
 /// How the edge of a map follows from what it has to show.
 #[derive(Clone, Copy, Debug)]
@@ -138,9 +136,8 @@ impl Search {
             }
         }
         let last = n - 1;
-        let mut j = (0..last).fold(0, |best, j| {
-            if self.costs[at(j, last)] < self.costs[at(best, last)] { j } else { best }
-        });
+        let mut j =
+            (0..last).fold(0, |best, j| if self.costs[at(j, last)] < self.costs[at(best, last)] { j } else { best });
         let mut k = last;
         planes.clear();
         planes.push(k);
@@ -190,7 +187,7 @@ impl Placement {
             && self.held.last() < Some(&far);
         self.choose_candidates(sight.view.frustum().projection, near, far, m)?;
         self.cells.gather(sight, &self.candidates);
-        self.cells.weigh(&mut self.weights);
+        self.cells.weigh(sight.view.frustum().projection, &self.candidates, &mut self.weights);
         if self.weights.iter().sum::<f64>() <= 0.0 {
             // Nothing throws a shadow that is seen: planes that are held stay, others stand where they do for an even scene.
             return Ok(self.hold(planes, holds));
@@ -253,7 +250,10 @@ impl Placement {
         self.candidates.sort_unstable_by(f64::total_cmp);
         self.candidates.dedup();
         if self.candidates.len() <= m {
-            return Err(Error::setting("range", format!("{near} m to {far} m has no room for {m} splits; give a longer range or fewer splits")));
+            return Err(Error::setting(
+                "range",
+                format!("{near} m to {far} m has no room for {m} splits; give a longer range or fewer splits"),
+            ));
         }
         Ok(())
     }
@@ -284,14 +284,14 @@ impl Placement {
             match (settings.stabilize, settings.fit) {
                 (Stabilize::Exact, _) => {
                     let frustum = around(sight.view.frustum());
-                    for j in i + 1..n {
-                        costs.edges[i * n + j] = 2.0 * slice_sphere(&frustum, candidates[i], candidates[j]).radius;
+                    for (j, &to) in candidates.iter().enumerate().skip(i + 1) {
+                        costs.edges[i * n + j] = 2.0 * slice_sphere(&frustum, candidates[i], to).radius;
                     }
                 }
                 (_, Fit::Independent) => {
                     let near = face(sight.view, sight.fan, candidates[i]);
-                    for j in i + 1..n {
-                        let mut region = face(sight.view, sight.fan, candidates[j]);
+                    for (j, &to) in candidates.iter().enumerate().skip(i + 1) {
+                        let mut region = face(sight.view, sight.fan, to);
                         region.include_region(&near);
                         costs.edges[i * n + j] = maps.edge(&region, sight.fan);
                     }
@@ -303,7 +303,8 @@ impl Placement {
                         receivers.include_region(&cell.receivers);
                         casters.include_region(&cell.casters);
                         let lit = casters.is_empty() || receivers.is_empty();
-                        costs.edges[i * n + j] = if lit { 0.0 } else { maps.edge(&casters.within(&receivers), sight.fan) };
+                        costs.edges[i * n + j] =
+                            if lit { 0.0 } else { maps.edge(&casters.within(&receivers), sight.fan) };
                     }
                 }
             }
@@ -336,5 +337,130 @@ fn begin(view: &View, settings: &ShadowSettings, candidates: &[f64], i: usize, j
         None => (0, 0.0),
         Some(before) if before >= j => (j, 0.0),
         Some(before) => (before, (from - candidates[before]) / (candidates[after] - candidates[before])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Candidates at even ratios between 1 and `far`, maps as wide as the far ends of their slices and a picture that is filled evenly: the
+    /// papers' own setting. `power` is that of depth in the density of weights; theirs is −2.
+    fn even(len: usize, far: f64, texels: &[f64], power: i32) -> (Vec<f64>, Costs) {
+        let depths: Vec<f64> = (0..len).map(|i| far.powf(i as f64 / (len - 1) as f64)).collect();
+        let integral = |depth: f64| depth.powi(power + 1) / f64::from(power + 1);
+        let mut edges = vec![0.0; len * len];
+        let mut begins = vec![(0, 0.0); len * len];
+        for i in 0..len {
+            for j in i + 1..len {
+                edges[i * len + j] = depths[j];
+                begins[i * len + j] = (j, 0.0);
+            }
+        }
+        let weights_before = depths.iter().map(|&depth| integral(depth) - integral(1.0)).collect();
+        (depths, Costs { len, edges, begins, weights_before, texels: texels.to_vec() })
+    }
+
+    fn cheapest(costs: &Costs) -> Vec<usize> {
+        let (mut search, mut planes) = (Search::default(), Vec::new());
+        search.cheapest(costs, &mut planes);
+        planes
+    }
+
+    #[test]
+    fn an_even_scene_gets_the_logarithmic_planes_and_another_cost_gets_others() {
+        for m in 1..=6 {
+            let (_, costs) = even(61, 1000.0, &vec![512.0; m], -2);
+            let planes = cheapest(&costs);
+            assert_eq!(planes, (0..=m).map(|i| i * 60 / m).collect::<Vec<_>>());
+            let closed_form = m as f64 * (1000f64.powf(1.0 / m as f64) - 1.0) / 512.0;
+            assert!((costs.total(&planes) - closed_form).abs() < 1e-12 * closed_form);
+        }
+        let (_, wrong) = even(61, 1000.0, &[512.0; 3], -3);
+        assert_ne!(cheapest(&wrong), [0, 20, 40, 60]);
+    }
+
+    #[test]
+    fn a_larger_map_takes_a_longer_slice() {
+        let first = |texels: &[f64]| cheapest(&even(61, 1000.0, texels, -2).1)[1];
+        let same = first(&[512.0, 512.0]);
+        assert!(first(&[2048.0, 512.0]) > same + 5);
+        assert!(first(&[512.0, 2048.0]) < same - 5);
+    }
+
+    #[test]
+    fn a_slice_without_weight_costs_nothing() {
+        // All that throws shadows stands between candidates 7 and 9 and 20 and 22: planes in the gap leave two small maps.
+        let len = 30;
+        let occupied = |i: usize| (7..9).contains(&i) || (20..22).contains(&i);
+        let (mut edges, mut begins, mut weights_before) = (vec![0.0; len * len], vec![(0, 0.0); len * len], vec![0.0]);
+        for i in 0..len {
+            for j in i + 1..len {
+                let held: Vec<usize> = (i..j).filter(|&k| occupied(k)).collect();
+                edges[i * len + j] = held.first().map_or(0.0, |first| (held[held.len() - 1] + 1 - first) as f64);
+                begins[i * len + j] = (j, 0.0);
+            }
+            weights_before.push(weights_before[i] + f64::from(u8::from(occupied(i))));
+        }
+        let costs = Costs { len, edges, begins, weights_before, texels: vec![1.0; 2] };
+        let planes = cheapest(&costs);
+        assert!((9..=20).contains(&planes[1]), "{planes:?}");
+        assert_eq!(costs.total(&planes), 8.0);
+    }
+
+    /// Random costs with bands that reach back.
+    fn any_costs() -> impl Strategy<Value = Costs> {
+        (3usize..9, 1usize..5).prop_filter("room for the splits", |(len, m)| len > m).prop_flat_map(|(len, m)| {
+            let edge = prop_oneof![Just(0.0), 0.0..100.0];
+            let weight = prop_oneof![2 => Just(0.0), 3 => 0.0..1.0];
+            let edges = proptest::collection::vec(edge, len * len);
+            let back = proptest::collection::vec((0usize..3, prop_oneof![Just(0.0), 0.0..1.0]), len * len);
+            let weights = proptest::collection::vec(weight, len - 1);
+            let texels = proptest::collection::vec(1.0..2000.0, m);
+            (edges, back, weights, texels).prop_map(move |(edges, back, weights, texels)| {
+                let mut begins = vec![(0, 0.0); len * len];
+                for i in 0..len {
+                    for j in i + 1..len {
+                        let (back, share) = back[i * len + j];
+                        let begin = j.saturating_sub(back);
+                        begins[i * len + j] = (begin, if begin < j { share } else { 0.0 });
+                    }
+                }
+                let sum = |sum: &mut f64, weight: &f64| {
+                    *sum += weight;
+                    Some(*sum)
+                };
+                let weights_before = std::iter::once(0.0).chain(weights.iter().scan(0.0, sum)).collect();
+                Costs { len, edges, begins, weights_before, texels }
+            })
+        })
+    }
+
+    /// All rows of planes.
+    fn all_rows(len: usize, m: usize) -> Vec<Vec<usize>> {
+        let mut rows = vec![vec![0]];
+        for split in 1..=m {
+            let next = |row: Vec<usize>| {
+                let from = row[split - 1] + 1;
+                let to = if split == m { len - 1 } else { len - 2 };
+                (from.max(if split == m { len - 1 } else { from })..=to).map(move |i| [&row[..], &[i]].concat())
+            };
+            rows = rows.into_iter().flat_map(next).collect();
+        }
+        rows
+    }
+
+    proptest! {
+        #[test]
+        fn the_search_finds_what_trying_all_finds(costs in any_costs()) {
+            let m = costs.texels.len();
+            let planes = cheapest(&costs);
+            prop_assert_eq!(planes.len(), m + 1);
+            prop_assert!(planes[0] == 0 && planes[m] == costs.len - 1 && planes.windows(2).all(|p| p[0] < p[1]));
+            let least = all_rows(costs.len, m).iter().map(|row| costs.total(row)).fold(f64::INFINITY, f64::min);
+            prop_assert!((costs.total(&planes) - least).abs() <= 1e-12 * least.max(1e-300), "{} {least}", costs.total(&planes));
+        }
     }
 }

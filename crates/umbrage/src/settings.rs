@@ -24,7 +24,7 @@ pub enum SplitScheme {
     Manual(Vec<f64>),
     /// Where the scene in view is expected to be shown with the least error: chosen every frame among a few dozen depths, by the boxes of
     /// casters and receivers, the size of each map, and what it is fitted to. Stabilised planes are held until others promise an error
-    /// smaller by a quarter, and all maps move in the frame that takes them. Maps with a warp are taken for plain ones. Needs a
+    /// smaller by a third, and all maps move in the frame that takes them. Maps with a warp are taken for plain ones. Needs a
     /// [`crate::DirectionalLight`] and a scene: [`crate::split_planes`] alone cannot place them. Ours.
     Fitted,
 }
