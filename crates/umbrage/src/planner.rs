@@ -3,13 +3,13 @@
 use glam::{DVec2, DVec3};
 
 use crate::covered;
-use crate::fit::{fitted, snapped, stepped};
+use crate::fit::{Block, fitted, snapped, stepped};
 use crate::local::{Given, LightFrustum, LocalPlanner};
-use crate::range::{HeldFar, HeldRange, Range, visible_range};
+use crate::range::{HeldRanges, Range};
 use crate::rectangle::{HeldRectangle, longest_edge};
 use crate::region::{Fan, Region};
 use crate::split::{blend_begin, coverage, split_planes};
-use crate::stable::{HeldSize, slice_sphere, stable_texel};
+use crate::stable::{HeldHalf, HeldSize, slice_sphere, stable_texel};
 use crate::volume::{Lies, Slice, SweptVolume};
 use crate::warped::WarpPoints;
 use crate::{
@@ -25,23 +25,20 @@ const EDGE_TEXELS: f64 = 1.5;
 /// them: rounding in the bounds, not a length that could be seen (1.2 mm in 1.2 km).
 pub(crate) const BELOW_ALL: f64 = 1e-6;
 
-/// The least length of a range that is fitted to what is visible, as a share of its far end.
-const LEAST_RANGE: f64 = 0.01;
-
 /// Plans shadow maps frame after frame. Keeps its buffers, so that only the first frame allocates, and the sizes that
 /// stabilised maps hold on to.
 #[derive(Clone, Debug)]
 pub struct Planner {
     settings: ShadowSettings,
     plan: ShadowPlan,
-    held_range: HeldSize,
-    held_far: HeldFar,
-    held_visible_range: HeldRange,
-    held_radius: [HeldSize; MAX_SPLITS],
+    held_ranges: HeldRanges,
+    held_half: [HeldHalf; MAX_SPLITS],
     held_whole: HeldSize,
     /// Stabilised: across the sphere around everything that is shadowed, metres. 0 otherwise.
     whole_width: f64,
     held_rectangle: [HeldRectangle; MAX_SPLITS],
+    /// Exactly stabilised and fitted to receivers: around all of them, which no map has to exceed along any axis.
+    around_all: Option<Block>,
     fan: Option<Fan>,
     volumes: Vec<CoverageVolume>,
     /// With [`Selection::Map`]: everything that the view shows in range, which any map may be asked about.
@@ -95,13 +92,12 @@ impl Planner {
         Ok(Self {
             settings,
             plan: ShadowPlan::default(),
-            held_range: HeldSize::default(),
-            held_far: HeldFar::default(),
-            held_visible_range: HeldRange::default(),
-            held_radius: [HeldSize::default(); MAX_SPLITS],
+            held_ranges: HeldRanges::default(),
+            held_half: [HeldHalf::default(); MAX_SPLITS],
             held_whole: HeldSize::default(),
             whole_width: 0.0,
             held_rectangle: [HeldRectangle::default(); MAX_SPLITS],
+            around_all: None,
             fan: None,
             volumes: Vec::new(),
             shown: None,
@@ -177,11 +173,11 @@ impl Planner {
     fn plan_sun(&mut self, view: &View, light: &DirectionalLight) -> Result<()> {
         let casters = self.casters.len();
         self.settings.bands.check_view(view)?;
-        let Range { near, inner_far, far } = self.range(view);
+        let Range { near, inner_far, far } = self.held_ranges.range(&self.settings, view, &self.receivers);
         let planes = &mut self.plan.planes;
         if let Err(error) = split_planes(&self.settings.scheme, near, inner_far, self.settings.splits(), planes) {
             // A range that cannot be divided is not held on to.
-            self.held_far = HeldFar::default();
+            self.held_ranges = HeldRanges::default();
             return Err(error);
         }
         planes[self.settings.splits()] = far;
@@ -203,6 +199,8 @@ impl Planner {
             let sphere = slice_sphere(view.frustum(), view.frustum().near, far);
             self.whole_width = 2.0 * self.held_whole.hold(sphere.radius);
         }
+        let is_capped = self.settings.stabilize == Stabilize::Exact && self.settings.fit == Fit::Dependent;
+        self.around_all = if is_capped { Block::around(&self.receivers, light) } else { None };
         self.cull_to_view(view, direction);
         self.shown = (self.settings.selection == Selection::Map).then(|| self.all_that_is_shown(view, far, &fan));
         if self.settings.stabilize != Stabilize::None && !self.settings.depth_clamp {
@@ -246,52 +244,6 @@ impl Planner {
                 });
             complete && (split.casters.is_empty() || split.contains(point, self.settings.filter_radius))
         })
-    }
-
-    /// `C_0` and `C_m`: the setting; the view depths of the visible receivers; or the camera's near and far, far capped by the
-    /// receivers.
-    fn range(&mut self, view: &View) -> Range {
-        if let Some((near, far)) = self.settings.range {
-            return Range::new(near, far);
-        }
-        let forward = view.forward();
-        let bands = self.settings.bands;
-        let (near, camera_far) = (view.frustum().near, view.frustum().far / bands.least_depth_share(view));
-        let view_depth = |r: &Placed| forward.dot(r.center - view.eye()) + forward.abs().dot(r.half);
-        let deepest = match bands {
-            Bands::Planar => self.receivers.iter().map(view_depth).fold(f64::NEG_INFINITY, f64::max),
-            Bands::Radial => self.farthest(view.eye()),
-        };
-        // Nothing before the eye: any short range will do.
-        let deepest = if deepest > near { deepest } else { 2.0 * near.abs() + 1.0 };
-        if self.settings.range_fit == RangeFit::Visible
-            && let Some((first, last)) = visible_range(view, near, deepest.min(camera_far), &self.receivers)
-        {
-            let (first, last) = self.held_within(first, last, near, camera_far);
-            return Range::new(first, last);
-        }
-        let range = match self.settings.stabilize {
-            Stabilize::None => Range::new(near, deepest),
-            Stabilize::Exact => self.held_far.hold(near, deepest, self.farthest(view.eye())),
-            Stabilize::Approximate(_) => Range::new(near, self.held_range.hold(deepest)),
-        };
-        Range { near, inner_far: range.inner_far.min(camera_far), far: range.far.min(camera_far) }
-    }
-
-    /// Metres from `eye` to the farthest corner of any receiver; 0 without receivers.
-    fn farthest(&self, eye: DVec3) -> f64 {
-        self.receivers.iter().map(|r| ((r.center - eye).abs() + r.half).length()).fold(0.0, f64::max)
-    }
-
-    /// A range around the visible receivers: as it is, or in steps where maps have to stand still.
-    fn held_within(&mut self, first: f64, last: f64, camera_near: f64, camera_far: f64) -> (f64, f64) {
-        let (first, last) = match self.settings.stabilize {
-            Stabilize::Exact | Stabilize::Approximate(_) if first > 0.0 => self.held_visible_range.hold(first, last),
-            _ => (first, last),
-        };
-        // A single wall that faces the camera still gets slices of some depth.
-        let first = first.max(camera_near).min(last * (1.0 - LEAST_RANGE));
-        (first, last.min(camera_far))
     }
 
     /// Receivers that some slice can contain and casters that some slice's sweep can meet.
@@ -347,11 +299,14 @@ impl Planner {
         slice.corners.iter().for_each(|&corner| slice_region.include_point(fan, corner));
 
         let sphere = slice_sphere(view.frustum(), from, to);
-        let radius = match settings.stabilize {
-            Stabilize::Exact | Stabilize::Approximate(_) => self.held_radius[i].hold(sphere.radius),
-            Stabilize::None => sphere.radius,
+        let block = Block::around_sphere(view.world_from_view_point(sphere.center), sphere.radius, light);
+        let block = self.around_all.map_or(block, |all| block.no_longer_than(&all));
+        let half = match settings.stabilize {
+            Stabilize::Exact | Stabilize::Approximate(_) => self.held_half[i].hold(block.half.truncate()),
+            Stabilize::None => block.half.truncate(),
         };
-        let stable_texel = stable_texel(radius, size, margin);
+        let radius = half.max_element();
+        let stable_texel = DVec2::new(stable_texel(half.x, size, margin), stable_texel(half.y, size, margin));
 
         let served = match self.settings.fit {
             Fit::Independent => None,
@@ -359,7 +314,7 @@ impl Planner {
         };
         let widest = served.as_ref().map_or(&slice_region, |(region, _)| region).widest().max(0.0);
         let margin_m = match self.settings.stabilize {
-            Stabilize::Exact => margin * stable_texel,
+            Stabilize::Exact => margin * stable_texel.max_element(),
             Stabilize::Approximate(steps) => {
                 margin * longest_edge(steps, widest, self.whole_width) / (f64::from(size) - 2.0 * margin - 1.0)
             }
@@ -411,17 +366,13 @@ impl Planner {
         };
         let split = match self.settings.stabilize {
             Stabilize::None => fitted(split, &target, fan, margin),
-            Stabilize::Exact => {
-                let center = view.world_from_view_point(sphere.center);
-                snapped(split, light, center, radius, stable_texel)
-            }
+            Stabilize::Exact => snapped(split, light, &block, stable_texel),
             Stabilize::Approximate(steps) => {
                 // A split without casters is lit, whatever its rectangle; it changes nothing that is held.
                 let mut unheld = HeldRectangle::default();
                 let held = if split.casters.is_empty() { &mut unheld } else { &mut self.held_rectangle[i] };
                 let rectangle = held.hold(&target, steps, self.whole_width);
-                let depth = direction.dot(view.world_from_view_point(sphere.center));
-                stepped(split, &target, fan, margin, rectangle, (depth - radius, depth + radius))
+                stepped(split, &target, fan, margin, rectangle, (block.center.z - radius, block.center.z + radius))
             }
         };
         let (split, caster_near) = match self.shown.clone() {
