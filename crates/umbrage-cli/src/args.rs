@@ -413,6 +413,8 @@ pub enum Scheme {
     Practical,
     /// By --planes
     Manual,
+    /// Where the boxes of casters and receivers in view promise the least error
+    Fitted,
 }
 
 /// `--range-fit`.

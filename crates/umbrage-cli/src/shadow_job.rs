@@ -434,6 +434,7 @@ fn scheme(args: &ShadowArgs, splits: usize) -> Result<SplitScheme> {
     Ok(match scheme {
         Scheme::Uniform => SplitScheme::Uniform,
         Scheme::Log => SplitScheme::Logarithmic,
+        Scheme::Fitted => SplitScheme::Fitted,
         Scheme::Practical => SplitScheme::Practical {
             lambda: args.lambda.unwrap_or(0.5),
             delta: args.delta.as_ref().map(|delta| delta.0.clone()).unwrap_or_default(),
