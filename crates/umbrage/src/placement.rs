@@ -5,8 +5,10 @@
 //! Here the row of planes of least expected error is found exactly, by dynamic programming over a few dozen candidates. Ours;
 //! *Sample Distribution Shadow Maps* (Lauritzen et al. 2010) place planes by the depths that a frame shows, which needs the frame.
 
+use glam::DVec2;
+
 use crate::cells::{Cells, Sight};
-use crate::range::visible_range;
+use crate::range::{Range, visible_range};
 use crate::region::{Fan, Region};
 use crate::split::{coverage, split_planes};
 use crate::stable::slice_sphere;
@@ -30,16 +32,23 @@ pub(crate) struct Maps<'a> {
     pub margin: f64,
     /// Across everything that is shadowed, metres: what the source's steps are fractions of.
     pub whole_width: f64,
+    /// Half the edges that no still map exceeds, metres.
+    pub most_half: DVec2,
 }
 
 impl Maps<'_> {
-    /// Metres across what a map shows, the mean of its edges, for each slice between two candidates.
+    /// Metres across a still map around a sphere, the mean of its edges.
+    fn still_edge(&self, radius: f64) -> f64 {
+        radius.min(self.most_half.x) + radius.min(self.most_half.y)
+    }
+
+    /// Metres across a map that shows a region, the mean of its edges.
     fn edge(&self, region: &Region, fan: &Fan) -> f64 {
         let (_, _, lo, hi) = region.least_rectangle(fan);
         let extent = match self.settings.stabilize {
             Stabilize::Approximate(ExtentSteps::Levels(count)) => {
                 let level = self.whole_width / f64::from(count);
-                ((hi - lo) / level).ceil().max(glam::DVec2::ONE) * level
+                ((hi - lo) / level).ceil().max(DVec2::ONE) * level
             }
             // Steps of equal ratio add the same share to all on average.
             _ => hi - lo,
@@ -170,17 +179,12 @@ pub(crate) struct Placement {
 }
 
 impl Placement {
-    /// Writes `m + 1` planes between `near` and `far` into `planes`. Says whether they are others than before.
+    /// Writes the `m + 1` planes of a range into `planes`, the last at its inner far end. Says whether they are others than before.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] naming `range` if it is too short to be divided.
-    pub fn place(
-        &mut self,
-        sight: &Sight,
-        maps: &Maps,
-        (near, far): (f64, f64),
-        planes: &mut Vec<f64>,
-    ) -> Result<bool> {
+    pub fn place(&mut self, sight: &Sight, maps: &Maps, range: Range, planes: &mut Vec<f64>) -> Result<bool> {
+        let (near, far) = (range.near, range.inner_far);
         let settings = maps.settings;
         let m = settings.splits();
         split_planes(&SplitScheme::Logarithmic, near, far, m, planes)?;
@@ -198,7 +202,7 @@ impl Placement {
             // Nothing throws a shadow that is seen: planes that are held stay, others stand where they do for an even scene.
             return Ok(self.hold(planes, holds));
         }
-        self.measure(sight, maps);
+        self.measure(sight, maps, range.far);
         self.search.cheapest(&self.costs, &mut self.best);
         if !(holds && self.held_is_good_enough()) {
             holds = false;
@@ -268,7 +272,7 @@ impl Placement {
     }
 
     /// Fills the costs of all slices.
-    fn measure(&mut self, sight: &Sight, maps: &Maps) {
+    fn measure(&mut self, sight: &Sight, maps: &Maps, far: f64) {
         let Self { candidates, cells, weights, faces, costs, .. } = self;
         let settings = maps.settings;
         let n = candidates.len();
@@ -291,19 +295,21 @@ impl Placement {
                 costs.begins[i * n + j] = begin(sight.view, settings, candidates, i, j);
             }
         }
+        // The last slice may be stretched beyond the depths that the planes are placed for.
+        let end = |j: usize| if j == n - 1 { far } else { candidates[j] };
         let edges = |i: usize| (i + 1..n).map(move |j| (j, i * n + j));
         match (settings.stabilize, settings.fit) {
             (Stabilize::Exact, _) => {
                 let frustum = around(sight.view.frustum());
                 for (i, &from) in candidates.iter().enumerate() {
                     for (j, at) in edges(i) {
-                        costs.edges[at] = 2.0 * slice_sphere(&frustum, from, candidates[j]).radius;
+                        costs.edges[at] = maps.still_edge(slice_sphere(&frustum, from, end(j)).radius);
                     }
                 }
             }
             (_, Fit::Independent) => {
                 faces.clear();
-                faces.extend(candidates.iter().map(|&depth| face(sight.view, sight.fan, depth)));
+                faces.extend((0..n).map(|j| face(sight.view, sight.fan, end(j))));
                 for i in 0..n {
                     for (j, at) in edges(i) {
                         let mut region = faces[i];
