@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::cells::Sight;
 use crate::covered;
-use crate::fit::{fitted, snapped, stepped};
+use crate::fit::{Block, fitted, snapped, stepped};
 use crate::local::{Given, LightFrustum, LocalPlanner};
 use crate::placement::{Maps, Placement};
 use crate::range::{HeldEnds, Range};
@@ -12,7 +12,7 @@ use crate::rectangle::{HeldRectangle, longest_edge};
 use crate::region::{Fan, Region};
 use crate::settings::check_range;
 use crate::split::{blend_begin, coverage, split_planes};
-use crate::stable::{HeldSize, slice_sphere, stable_texel};
+use crate::stable::{HeldHalf, HeldSize, slice_sphere, stable_texel};
 use crate::volume::{Lies, Slice, SweptVolume};
 use crate::warped::WarpPoints;
 use crate::{
@@ -35,11 +35,13 @@ pub struct Planner {
     settings: ShadowSettings,
     plan: ShadowPlan,
     held_ends: HeldEnds,
-    held_radius: [HeldSize; MAX_SPLITS],
+    held_half: [HeldHalf; MAX_SPLITS],
     held_whole: HeldSize,
     /// Stabilised: across the sphere around everything that is shadowed, metres. 0 otherwise.
     whole_width: f64,
     held_rectangle: [HeldRectangle; MAX_SPLITS],
+    /// Exactly stabilised and fitted to receivers: around all of them, which no map has to exceed along any axis.
+    around_all: Option<Block>,
     fan: Option<Fan>,
     volumes: Vec<CoverageVolume>,
     /// With [`Selection::Map`]: everything that the view shows in range, which any map may be asked about.
@@ -95,10 +97,11 @@ impl Planner {
             settings,
             plan: ShadowPlan::default(),
             held_ends: HeldEnds::default(),
-            held_radius: [HeldSize::default(); MAX_SPLITS],
+            held_half: [HeldHalf::default(); MAX_SPLITS],
             held_whole: HeldSize::default(),
             whole_width: 0.0,
             held_rectangle: [HeldRectangle::default(); MAX_SPLITS],
+            around_all: None,
             fan: None,
             volumes: Vec::new(),
             shown: None,
@@ -198,6 +201,8 @@ impl Planner {
             let sphere = slice_sphere(view.frustum(), view.frustum().near, far);
             self.whole_width = 2.0 * self.held_whole.hold(sphere.radius);
         }
+        let is_capped = self.settings.stabilize == Stabilize::Exact && self.settings.fit == Fit::Dependent;
+        self.around_all = if is_capped { Block::around(&self.receivers, light) } else { None };
         self.cull_to_view(view, direction, far);
         if let Err(error) = self.place_planes(view, &fan, range) {
             // A range that cannot be divided is not held on to.
@@ -243,7 +248,7 @@ impl Planner {
             let maps = Maps { settings: &self.settings, margin, whole_width: self.whole_width };
             if self.placement.place(&sight, &maps, ends, &mut self.plan.planes)? {
                 // Other slices have other sizes: none is worth holding on to.
-                self.held_radius = Default::default();
+                self.held_half = Default::default();
             }
         } else {
             split_planes(&self.settings.scheme, ends.0, ends.1, m, &mut self.plan.planes)?;
@@ -323,11 +328,14 @@ impl Planner {
         slice.corners.iter().for_each(|&corner| slice_region.include_point(fan, corner));
 
         let sphere = slice_sphere(view.frustum(), from, to);
-        let radius = match settings.stabilize {
-            Stabilize::Exact | Stabilize::Approximate(_) => self.held_radius[i].hold(sphere.radius),
-            Stabilize::None => sphere.radius,
+        let block = Block::around_sphere(view.world_from_view_point(sphere.center), sphere.radius, light);
+        let block = self.around_all.map_or(block, |all| block.no_longer_than(&all));
+        let half = match settings.stabilize {
+            Stabilize::Exact | Stabilize::Approximate(_) => self.held_half[i].hold(block.half.truncate()),
+            Stabilize::None => block.half.truncate(),
         };
-        let stable_texel = stable_texel(radius, size, margin);
+        let radius = half.max_element();
+        let stable_texel = DVec2::new(stable_texel(half.x, size, margin), stable_texel(half.y, size, margin));
 
         let served = match self.settings.fit {
             Fit::Independent => None,
@@ -335,7 +343,7 @@ impl Planner {
         };
         let widest = served.as_ref().map_or(&slice_region, |(region, _)| region).widest().max(0.0);
         let margin_m = match self.settings.stabilize {
-            Stabilize::Exact => margin * stable_texel,
+            Stabilize::Exact => margin * stable_texel.max_element(),
             Stabilize::Approximate(steps) => {
                 margin * longest_edge(steps, widest, self.whole_width) / (f64::from(size) - 2.0 * margin - 1.0)
             }
@@ -387,17 +395,13 @@ impl Planner {
         };
         let split = match self.settings.stabilize {
             Stabilize::None => fitted(split, &target, fan, margin),
-            Stabilize::Exact => {
-                let center = view.world_from_view_point(sphere.center);
-                snapped(split, light, center, radius, stable_texel)
-            }
+            Stabilize::Exact => snapped(split, light, &block, stable_texel),
             Stabilize::Approximate(steps) => {
                 // A split without casters is lit, whatever its rectangle; it changes nothing that is held.
                 let mut unheld = HeldRectangle::default();
                 let held = if split.casters.is_empty() { &mut unheld } else { &mut self.held_rectangle[i] };
                 let rectangle = held.hold(&target, steps, self.whole_width);
-                let depth = direction.dot(view.world_from_view_point(sphere.center));
-                stepped(split, &target, fan, margin, rectangle, (depth - radius, depth + radius))
+                stepped(split, &target, fan, margin, rectangle, (block.center.z - radius, block.center.z + radius))
             }
         };
         let (split, caster_near) = match self.shown.clone() {

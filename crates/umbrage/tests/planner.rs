@@ -264,10 +264,6 @@ proptest! {
         for (caster, splits) in listed.iter().enumerate() {
             let range = splits.first().map(|&first| (first as u8, splits[splits.len() - 1] as u8));
             prop_assert_eq!(plan.split_range[caster], range);
-            // Unclipped sweeps of convex slices are met in a contiguous run.
-            if case.settings.fit == Fit::Independent && !splits.is_empty() {
-                prop_assert_eq!(splits[splits.len() - 1] - splits[0] + 1, splits.len(), "{:?}", splits);
-            }
         }
     }
 
@@ -424,11 +420,16 @@ fn a_range_without_end_stops_at_the_scene() {
     let view = View::look_at_upright(DVec3::Y, DVec3::new(0.0, 1.0, -1.0), frustum).expect("valid");
     let light = DirectionalLight::new(DVec3::NEG_Y).expect("valid");
     let world = [Aabb::new(DVec3::new(-5.0, 0.0, -70.0), DVec3::new(5.0, 1.0, 10.0))];
-    for stabilize in [Stabilize::None, Stabilize::Exact] {
-        let settings = ShadowSettings { stabilize, ..ShadowSettings::default() };
-        let mut planner = Planner::new(settings).expect("valid");
-        let plan = planner.plan(&view, &light, &world, &world).expect("valid");
-        assert_eq!(plan.planes.first().copied(), Some(0.1));
-        assert!((plan.planes[4] - 70.0).abs() < 1e-9, "{:?}", plan.planes);
-    }
+    let planes_of = |stabilize| {
+        let mut planner = Planner::new(ShadowSettings { stabilize, ..ShadowSettings::default() }).expect("valid");
+        planner.plan(&view, &light, &world, &world).expect("valid").planes.clone()
+    };
+    let tight = planes_of(Stabilize::None);
+    assert_eq!(tight[0], 0.1);
+    assert!((tight[4] - 70.0).abs() < 1e-9, "{tight:?}");
+    // The inner planes are the same; the last one lies where turning and some walking do not move it: the farthest corner, 70.4 m away,
+    // and half a step more.
+    let still = planes_of(Stabilize::Exact);
+    assert_eq!(still[..4], tight[..4]);
+    assert!((still[4] / (70.0f64.powi(2) + 26.0).sqrt() - 2f64.powf(1.0 / 16.0)).abs() < 1e-9, "{still:?}");
 }
