@@ -25,6 +25,7 @@ mod error;
 mod fit;
 mod light;
 mod local;
+mod margin;
 mod plan;
 mod planner;
 mod range;

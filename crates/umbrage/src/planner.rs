@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::covered;
 use crate::fit::{Block, fitted, snapped, stepped};
 use crate::local::{Given, LightFrustum, LocalPlanner};
+use crate::margin::{EDGE_TEXELS, Reach};
 use crate::range::{HeldRanges, Range};
 use crate::rectangle::{HeldRectangle, longest_edge};
 use crate::region::{Fan, Region};
@@ -16,10 +17,6 @@ use crate::{
     Aabb, Bands, DirectionalLight, Error, Fit, Light, MAX_SPLITS, RangeFit, Result, Selection, ShadowPlan,
     ShadowSettings, Split, Stabilize, View, Warp,
 };
-
-/// Texels that a map keeps free around what it serves, besides the filter's reach: half for the texel that a sample's
-/// rounding may choose, one for the normal offset of the receiver's bias.
-const EDGE_TEXELS: f64 = 1.5;
 
 /// Share of a scene's extent by which a caster may rise above the lowest receiver and still count as lying below all of
 /// them: rounding in the bounds, not a length that could be seen (1.2 mm in 1.2 km).
@@ -242,7 +239,7 @@ impl Planner {
                             _ => true,
                         })
                 });
-            complete && (split.casters.is_empty() || split.contains(point, self.settings.filter_radius))
+            complete && (split.casters.is_empty() || split.contains(point, split.filter_reach))
         })
     }
 
@@ -306,7 +303,10 @@ impl Planner {
             Stabilize::None => block.half.truncate(),
         };
         let radius = half.max_element();
-        let stable_texel = DVec2::new(stable_texel(half.x, size, margin), stable_texel(half.y, size, margin));
+        let reach = Reach::of(settings);
+        let stable_reach = reach.texels(2.0 * half.min_element(), size, 2.0 * EDGE_TEXELS + 1.0);
+        let stable_texel = half.to_array().map(|half| stable_texel(half, size, stable_reach + EDGE_TEXELS));
+        let stable_texel = DVec2::from(stable_texel);
 
         let served = match self.settings.fit {
             Fit::Independent => None,
@@ -314,7 +314,7 @@ impl Planner {
         };
         let widest = served.as_ref().map_or(&slice_region, |(region, _)| region).widest().max(0.0);
         let margin_m = match self.settings.stabilize {
-            Stabilize::Exact => margin * stable_texel.max_element(),
+            Stabilize::Exact => (stable_reach + EDGE_TEXELS) * stable_texel.max_element(),
             Stabilize::Approximate(steps) => {
                 margin * longest_edge(steps, widest, self.whole_width) / (f64::from(size) - 2.0 * margin - 1.0)
             }
@@ -360,19 +360,21 @@ impl Planner {
             depth_near: target.depth.0,
             depth_far: target.depth.1,
             receiver_depths: target.depth,
+            filter_reach: stable_reach,
             warp: None,
             light_position: None,
             casters,
         };
         let split = match self.settings.stabilize {
-            Stabilize::None => fitted(split, &target, fan, margin),
+            Stabilize::None if settings.warp(i) != Warp::None => fitted(split, &target, fan, Reach::most(settings)),
+            Stabilize::None => fitted(split, &target, fan, reach),
             Stabilize::Exact => snapped(split, light, &block, stable_texel),
             Stabilize::Approximate(steps) => {
                 // A split without casters is lit, whatever its rectangle; it changes nothing that is held.
                 let mut unheld = HeldRectangle::default();
                 let held = if split.casters.is_empty() { &mut unheld } else { &mut self.held_rectangle[i] };
                 let rectangle = held.hold(&target, steps, self.whole_width);
-                stepped(split, &target, fan, margin, rectangle, (block.center.z - radius, block.center.z + radius))
+                stepped(split, &target, fan, reach, rectangle, (block.center.z - radius, block.center.z + radius))
             }
         };
         let (split, caster_near) = match self.shown.clone() {
@@ -421,7 +423,7 @@ impl Planner {
     /// first caster.
     fn serving_all_it_covers(&mut self, mut split: Split, shown: &Shown, fan: &Fan, caster_near: f64) -> (Split, f64) {
         self.plan.caster_indices.truncate(split.casters.start);
-        let taken = covered::Taken::new(&split, &self.plan.splits, self.settings.filter_radius, self.settings.blend);
+        let taken = covered::Taken::new(&split, &self.plan.splits, self.settings.blend);
         let margin = taken.margin * split.texel_m.max_element();
         let mut caster_near = caster_near;
         for &index in &self.candidates {
