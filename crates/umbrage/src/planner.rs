@@ -2,20 +2,23 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::cells::Sight;
 use crate::covered;
 use crate::fit::{Block, fitted, snapped, stepped};
 use crate::local::{Given, LightFrustum, LocalPlanner};
 use crate::margin::{EDGE_TEXELS, Reach};
-use crate::range::{HeldRanges, Range};
+use crate::placement::{Maps, Placement};
+use crate::range::{HeldEnds, Range};
 use crate::rectangle::{HeldRectangle, longest_edge};
 use crate::region::{Fan, Region};
+use crate::settings::check_range;
 use crate::split::{blend_begin, coverage, split_planes};
 use crate::stable::{HeldHalf, HeldSize, slice_sphere, stable_texel};
 use crate::volume::{Lies, Slice, SweptVolume};
 use crate::warped::WarpPoints;
 use crate::{
     Aabb, Bands, DirectionalLight, Error, Fit, Light, MAX_SPLITS, RangeFit, Result, Selection, ShadowPlan,
-    ShadowSettings, Split, Stabilize, View, Warp,
+    ShadowSettings, Split, SplitScheme, Stabilize, View, Warp,
 };
 
 /// Share of a scene's extent by which a caster may rise above the lowest receiver and still count as lying below all of
@@ -28,7 +31,7 @@ pub(crate) const BELOW_ALL: f64 = 1e-6;
 pub struct Planner {
     settings: ShadowSettings,
     plan: ShadowPlan,
-    held_ranges: HeldRanges,
+    held_ends: HeldEnds,
     held_half: [HeldHalf; MAX_SPLITS],
     held_whole: HeldSize,
     /// Stabilised: across the sphere around everything that is shadowed, metres. 0 otherwise.
@@ -47,6 +50,7 @@ pub struct Planner {
     visible: Vec<u32>,
     across: Vec<u32>,
     warp_points: WarpPoints,
+    placement: Placement,
     local: LocalPlanner,
 }
 
@@ -89,7 +93,7 @@ impl Planner {
         Ok(Self {
             settings,
             plan: ShadowPlan::default(),
-            held_ranges: HeldRanges::default(),
+            held_ends: HeldEnds::default(),
             held_half: [HeldHalf::default(); MAX_SPLITS],
             held_whole: HeldSize::default(),
             whole_width: 0.0,
@@ -105,6 +109,7 @@ impl Planner {
             visible: Vec::new(),
             across: Vec::new(),
             warp_points: WarpPoints::default(),
+            placement: Placement::default(),
             local: LocalPlanner::default(),
         })
     }
@@ -170,15 +175,12 @@ impl Planner {
     fn plan_sun(&mut self, view: &View, light: &DirectionalLight) -> Result<()> {
         let casters = self.casters.len();
         self.settings.bands.check_view(view)?;
-        let Range { near, inner_far, far } = self.held_ranges.range(&self.settings, view, &self.receivers);
-        let planes = &mut self.plan.planes;
-        if let Err(error) = split_planes(&self.settings.scheme, near, inner_far, self.settings.splits(), planes) {
-            // A range that cannot be divided is not held on to.
-            self.held_ranges = HeldRanges::default();
+        let range = self.held_ends.range(&self.settings, view, &self.receivers);
+        if let Err(error) = check_range(range.near, range.inner_far) {
+            self.held_ends.release_far();
             return Err(error);
         }
-        planes[self.settings.splits()] = far;
-
+        let Range { near, far, .. } = range;
         let direction = light.direction();
         let (map_u, _) = light.map_axes();
         let first = match self.settings.stabilize {
@@ -198,7 +200,12 @@ impl Planner {
         }
         let is_capped = self.settings.stabilize == Stabilize::Exact && self.settings.fit == Fit::Dependent;
         self.around_all = if is_capped { Block::around(&self.receivers, light) } else { None };
-        self.cull_to_view(view, direction);
+        self.cull_to_view(view, direction, far);
+        if let Err(error) = self.place_planes(view, &fan, range) {
+            // A range that cannot be divided is not held on to.
+            self.held_ends.release_far();
+            return Err(error);
+        }
         self.shown = (self.settings.selection == Selection::Map).then(|| self.all_that_is_shown(view, far, &fan));
         if self.settings.stabilize != Stabilize::None && !self.settings.depth_clamp {
             self.world_depths = self.measure_world_depths(direction);
@@ -218,6 +225,32 @@ impl Planner {
         for i in 0..self.settings.splits() {
             self.plan_split(i, view, light, &fan);
         }
+        Ok(())
+    }
+
+    /// Writes `C_0 ..= C_m` into the plan.
+    fn place_planes(&mut self, view: &View, fan: &Fan, range: Range) -> Result<()> {
+        let m = self.settings.splits();
+        let ends = (range.near, range.inner_far);
+        if self.settings.scheme == SplitScheme::Fitted {
+            let sight = Sight {
+                view,
+                fan,
+                receivers: &self.receivers,
+                visible: &self.visible,
+                casters: &self.casters,
+                candidates: &self.candidates,
+            };
+            let margin = self.settings.filter_radius + EDGE_TEXELS;
+            let maps = Maps { settings: &self.settings, margin, whole_width: self.whole_width };
+            if self.placement.place(&sight, &maps, ends, &mut self.plan.planes)? {
+                // Other slices have other sizes: none is worth holding on to.
+                self.held_half = Default::default();
+            }
+        } else {
+            split_planes(&self.settings.scheme, ends.0, ends.1, m, &mut self.plan.planes)?;
+        }
+        self.plan.planes[m] = range.far;
         Ok(())
     }
 
@@ -244,12 +277,8 @@ impl Planner {
     }
 
     /// Receivers that some slice can contain and casters that some slice's sweep can meet.
-    fn cull_to_view(&mut self, view: &View, direction: DVec3) {
-        let whole = Slice::new(
-            view,
-            view.frustum().near,
-            self.plan.planes.last().map_or(0.0, |far| far.min(view.frustum().far)),
-        );
+    fn cull_to_view(&mut self, view: &View, direction: DVec3, far: f64) {
+        let whole = Slice::new(view, view.frustum().near, far.min(view.frustum().far));
         self.visible.clear();
         for (i, receiver) in self.receivers.iter().enumerate() {
             if whole.classify(receiver.center, receiver.half) != Lies::Outside {
@@ -303,7 +332,8 @@ impl Planner {
             Stabilize::None => block.half.truncate(),
         };
         let radius = half.max_element();
-        let reach = Reach::of(settings);
+        // A warped map's texels differ in size.
+        let reach = if settings.warp(i) == Warp::None { Reach::of(settings) } else { Reach::most(settings) };
         let stable_reach = reach.texels(2.0 * half.min_element(), size, 2.0 * EDGE_TEXELS + 1.0);
         let stable_texel = half.to_array().map(|half| stable_texel(half, size, stable_reach + EDGE_TEXELS));
         let stable_texel = DVec2::from(stable_texel);
@@ -366,7 +396,6 @@ impl Planner {
             casters,
         };
         let split = match self.settings.stabilize {
-            Stabilize::None if settings.warp(i) != Warp::None => fitted(split, &target, fan, Reach::most(settings)),
             Stabilize::None => fitted(split, &target, fan, reach),
             Stabilize::Exact => snapped(split, light, &block, stable_texel),
             Stabilize::Approximate(steps) => {
@@ -559,7 +588,7 @@ fn with_room(near: f64, far: f64, texel: f64, step: Option<f64>) -> (f64, f64) {
 /// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers` as the light sees it: it then
 /// has nothing behind it to throw a shadow on. A flat ground under everything is the case that matters, and touches what
 /// stands on it. Anything that is not flat has to lie `margin` metres beyond: a filter asks beside its receiver, too.
-fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3, margin: f64) -> bool {
+pub(crate) fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3, margin: f64) -> bool {
     let slack = BELOW_ALL * (receivers.max - receivers.min).max_element();
     (0..3).any(|axis| {
         let beyond = match direction[axis] {

@@ -6,12 +6,12 @@ use crate::stable::HeldSize;
 use crate::volume::{Lies, Slice};
 use crate::{Bands, RangeFit, ShadowSettings, Stabilize, View};
 
-/// The least length of a range that is fitted to what is visible, as a share of its far end.
-const LEAST_RANGE: f64 = 0.01;
-
 /// Share of a depth by which the range exceeds the receivers, so that rounding to `f32` on the way to a shader leaves none
 /// outside.
 const ROOM: f64 = 1e-4;
+
+/// The least length of a range that is fitted to what is visible, as a share of its far end.
+const LEAST_RANGE: f64 = 0.01;
 
 /// Steps per doubling of a held end of the range: one step is 2^(1/4), 19 %.
 const STEPS_PER_OCTAVE: f64 = 4.0;
@@ -134,29 +134,28 @@ impl HeldFar {
     }
 }
 
-/// What is held of a planner's range.
+/// The ends of the shadowed range, and what they hold on to from frame to frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct HeldRanges {
-    approximate: HeldSize,
-    exact: HeldFar,
+pub(crate) struct HeldEnds {
+    deepest: HeldSize,
+    far: HeldFar,
     visible: HeldRange,
 }
 
-impl HeldRanges {
-    /// The setting; the view depths of the visible receivers; or the camera's near and far, far capped by the receivers.
+impl HeldEnds {
+    /// `C_0` and `C_m`: the setting; the view depths of the visible receivers; or the camera's near and far, far capped by the
+    /// receivers.
     pub fn range(&mut self, settings: &ShadowSettings, view: &View, receivers: &[Placed]) -> Range {
         if let Some((near, far)) = settings.range {
             return Range::new(near, far);
         }
         let forward = view.forward();
-        let (near, camera_far) = (view.frustum().near, view.frustum().far / settings.bands.least_depth_share(view));
+        let bands = settings.bands;
+        let (near, camera_far) = (view.frustum().near, view.frustum().far / bands.least_depth_share(view));
         let view_depth = |r: &Placed| forward.dot(r.center - view.eye()) + forward.abs().dot(r.half);
-        let distance = |r: &Placed| ((r.center - view.eye()).abs() + r.half).length();
-        let greatest = |list: &mut dyn Iterator<Item = f64>| list.fold(f64::NEG_INFINITY, f64::max);
-        let farthest = greatest(&mut receivers.iter().map(distance));
-        let deepest = match settings.bands {
-            Bands::Planar => greatest(&mut receivers.iter().map(view_depth)),
-            Bands::Radial => farthest,
+        let deepest = match bands {
+            Bands::Planar => receivers.iter().map(view_depth).fold(f64::NEG_INFINITY, f64::max),
+            Bands::Radial => farthest(view, receivers),
         };
         // Nothing before the eye: any short range will do.
         let deepest = if deepest > near { deepest } else { 2.0 * near.abs() + 1.0 };
@@ -164,34 +163,31 @@ impl HeldRanges {
         if settings.range_fit == RangeFit::Visible
             && let Some((first, last)) = visible_range(view, near, deepest, receivers)
         {
-            let (first, last) = self.visible_within(first, last, settings.stabilize, near, camera_far);
-            return Range::new(first, last);
+            let (first, last) = match settings.stabilize {
+                Stabilize::Exact | Stabilize::Approximate(_) if first > 0.0 => self.visible.hold(first, last),
+                _ => (first, last),
+            };
+            // A single wall that faces the camera still gets slices of some depth.
+            let first = first.max(near).min(last * (1.0 - LEAST_RANGE));
+            return Range::new(first, last.min(camera_far));
         }
         let range = match settings.stabilize {
             Stabilize::None => Range::new(near, deepest),
-            Stabilize::Exact => self.exact.hold(near, deepest, farthest.min(camera_far)),
-            Stabilize::Approximate(_) => Range::new(near, self.approximate.hold(deepest)),
+            Stabilize::Exact => self.far.hold(near, deepest, farthest(view, receivers).min(camera_far)),
+            Stabilize::Approximate(_) => Range::new(near, self.deepest.hold(deepest)),
         };
         Range { near, inner_far: range.inner_far.min(camera_far), far: range.far.min(camera_far) }
     }
 
-    /// A range around the visible receivers: as it is, or in steps where maps have to stand still.
-    fn visible_within(
-        &mut self,
-        first: f64,
-        last: f64,
-        stabilize: Stabilize,
-        camera_near: f64,
-        camera_far: f64,
-    ) -> (f64, f64) {
-        let (first, last) = match stabilize {
-            Stabilize::Exact | Stabilize::Approximate(_) if first > 0.0 => self.visible.hold(first, last),
-            _ => (first, last),
-        };
-        // A single wall that faces the camera still gets slices of some depth.
-        let first = first.max(camera_near).min(last * (1.0 - LEAST_RANGE));
-        (first, last.min(camera_far))
+    /// Lets go of a far end that makes a range which cannot be divided.
+    pub fn release_far(&mut self) {
+        self.far = HeldFar::default();
     }
+}
+
+/// Metres from the eye to the farthest corner of any receiver; 0 without receivers.
+fn farthest(view: &View, receivers: &[Placed]) -> f64 {
+    receivers.iter().map(|r| ((r.center - view.eye()).abs() + r.half).length()).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
