@@ -37,7 +37,7 @@ pub struct Planner {
     /// Stabilised: across the sphere around everything that is shadowed, metres. 0 otherwise.
     whole_width: f64,
     held_rectangle: [HeldRectangle; MAX_SPLITS],
-    /// Exactly stabilised and fitted to receivers: around all of them, which no map has to exceed along any axis.
+    /// Exactly stabilised: around all receivers, which no map has to exceed along any axis.
     around_all: Option<Block>,
     fan: Option<Fan>,
     volumes: Vec<CoverageVolume>,
@@ -198,8 +198,8 @@ impl Planner {
             let sphere = slice_sphere(view.frustum(), view.frustum().near, far);
             self.whole_width = 2.0 * self.held_whole.hold(sphere.radius);
         }
-        let is_capped = self.settings.stabilize == Stabilize::Exact && self.settings.fit == Fit::Dependent;
-        self.around_all = if is_capped { Block::around(&self.receivers, light) } else { None };
+        let is_exact = self.settings.stabilize == Stabilize::Exact;
+        self.around_all = if is_exact { Block::around(&self.receivers, light) } else { None };
         self.cull_to_view(view, direction, far);
         if let Err(error) = self.place_planes(view, &fan, range) {
             // A range that cannot be divided is not held on to.

@@ -40,7 +40,8 @@ impl Default for SplitScheme {
 pub enum RangeFit {
     /// The camera's near and far, far capped by the receivers. With [`Stabilize::Exact`] far is capped by the distance of the farthest
     /// receiver in any direction, which turning does not change, rounded up to steps of 9 % that move the last plane alone; the inner
-    /// planes are placed for the view depth that the first frame asks for, and follow where a view asks for √2 times as much.
+    /// planes are placed for the view depth that the first frame asks for, and follow where a view asks for √2 times as much. The range
+    /// ends at √2 times that depth at most.
     #[default]
     Camera,
     /// The view depths between which the view shows receivers: their boxes clipped to the frustum, as an empty foreground or a lens
@@ -54,8 +55,8 @@ pub enum RangeFit {
 pub enum Fit {
     /// The corners of the slice alone. The near plane stays at the scene's, so no caster in between is lost.
     Independent,
-    /// The slice, clipped to its receivers, and only where casters can throw a shadow on them. An exactly stabilised map, which may
-    /// not depend on what a slice holds, is along neither of its axes longer than all receivers are, and does not move along it then.
+    /// The slice, clipped to its receivers, and only where casters can throw a shadow on them. An exactly stabilised map's depth and
+    /// list alone depend on them.
     #[default]
     Dependent,
 }
