@@ -11,10 +11,10 @@ use glam::{DMat4, DVec2, DVec3};
 
 use crate::light::map_axes;
 use crate::plan::ShadowPlan;
-use crate::planner::{BELOW_ALL, Placed};
+use crate::planner::Placed;
 use crate::split::{blend_begin, coverage, split_planes};
 use crate::stable::HeldSize;
-use crate::volume::{Lies, Plane, Slice, SweptVolume};
+use crate::volume::{BELOW_ALL, Lies, Plane, Slice, SweptVolume};
 use crate::{
     Aabb, Bands, Error, Fit, Light, PointLight, Result, Selection, ShadowSettings, Split, SplitScheme, SpotLight,
     Stabilize, View, Warp,

@@ -1,5 +1,7 @@
 //! The planner: from a view, a light and bounds to a [`ShadowPlan`].
 
+mod lists;
+
 use glam::{DVec2, DVec3};
 
 use crate::cells::Sight;
@@ -14,16 +16,12 @@ use crate::region::{Fan, Region};
 use crate::settings::check_range;
 use crate::split::{blend_begin, coverage, split_planes};
 use crate::stable::{HeldHalf, HeldSize, slice_sphere, stable_texel};
-use crate::volume::{Lies, Slice, SweptVolume};
+use crate::volume::{Lies, Slice, SweptVolume, lies_below};
 use crate::warped::WarpPoints;
 use crate::{
     Aabb, Bands, DirectionalLight, Error, Fit, Light, MAX_SPLITS, RangeFit, Result, Selection, ShadowPlan,
     ShadowSettings, Split, SplitScheme, Stabilize, View, Warp,
 };
-
-/// Share of a scene's extent by which a caster may rise above the lowest receiver and still count as lying below all of
-/// them: rounding in the bounds, not a length that could be seen (1.2 mm in 1.2 km).
-pub(crate) const BELOW_ALL: f64 = 1e-6;
 
 /// Plans shadow maps frame after frame. Keeps its buffers, so that only the first frame allocates, and the sizes that
 /// stabilised maps hold on to.
@@ -231,7 +229,6 @@ impl Planner {
     /// Writes `C_0 ..= C_m` into the plan.
     fn place_planes(&mut self, view: &View, fan: &Fan, range: Range) -> Result<()> {
         let m = self.settings.splits();
-        let ends = (range.near, range.inner_far);
         if self.settings.scheme == SplitScheme::Fitted {
             let sight = Sight {
                 view,
@@ -242,13 +239,14 @@ impl Planner {
                 candidates: &self.candidates,
             };
             let margin = self.settings.filter_radius + EDGE_TEXELS;
-            let maps = Maps { settings: &self.settings, margin, whole_width: self.whole_width };
-            if self.placement.place(&sight, &maps, ends, &mut self.plan.planes)? {
+            let most_half = self.around_all.map_or(DVec2::INFINITY, |all| all.half.truncate());
+            let maps = Maps { settings: &self.settings, margin, whole_width: self.whole_width, most_half };
+            if self.placement.place(&sight, &maps, range, &mut self.plan.planes)? {
                 // Other slices have other sizes: none is worth holding on to.
                 self.held_half = Default::default();
             }
         } else {
-            split_planes(&self.settings.scheme, ends.0, ends.1, m, &mut self.plan.planes)?;
+            split_planes(&self.settings.scheme, range.near, range.inner_far, m, &mut self.plan.planes)?;
         }
         self.plan.planes[m] = range.far;
         Ok(())
@@ -343,39 +341,25 @@ impl Planner {
             Fit::Dependent => Some(self.receivers_in(&slice, fan)),
         };
         let widest = served.as_ref().map_or(&slice_region, |(region, _)| region).widest().max(0.0);
-        let margin_m = match self.settings.stabilize {
+        let (stabilize, whole_width) = (self.settings.stabilize, self.whole_width);
+        let margin_of = |widest: f64| match stabilize {
             Stabilize::Exact => (stable_reach + EDGE_TEXELS) * stable_texel.max_element(),
             Stabilize::Approximate(steps) => {
-                margin * longest_edge(steps, widest, self.whole_width) / (f64::from(size) - 2.0 * margin - 1.0)
+                margin * longest_edge(steps, widest, whole_width) / (f64::from(size) - 2.0 * margin - 1.0)
             }
             Stabilize::None => widest * margin / (f64::from(size) - 2.0 * margin).max(1.0),
         };
-        let casters =
+        let margin_m = margin_of(widest);
+        let mut casters =
             if visible { self.list_casters(&swept, served.as_ref(), fan, margin_m) } else { self.empty_list() };
-
-        // What the map has to show, in the light's plane and in depth.
-        let listed = &self.plan.caster_indices[casters.clone()];
-        let (target, caster_near) = match &served {
-            Some((region, _)) if !listed.is_empty() => {
-                let mut target = Region::EMPTY;
-                for &index in listed {
-                    let caster = &self.casters[index as usize];
-                    target.include_box_within(fan, caster.center, caster.half, region);
-                }
-                let caster_near = target.depth.0;
-                target.depth = region.depth;
-                (target, caster_near)
+        let (mut target, mut caster_near) = self.target(casters.clone(), served.as_ref(), slice_region, fan);
+        // Casters leave a map with smaller texels than its receivers alone, and with those its filter reaches less far.
+        if served.is_some() && !casters.is_empty() && self.settings.warp(i) == Warp::None {
+            let closer = margin_of(target.widest());
+            if self.keep_casters(&mut casters, &swept, served.as_ref(), fan, closer) {
+                (target, caster_near) = self.target(casters.clone(), served.as_ref(), slice_region, fan);
             }
-            Some((region, _)) if !region.is_empty() => (*region, region.depth.0),
-            _ => {
-                let caster_near = listed
-                    .iter()
-                    .map(|&index| &self.casters[index as usize])
-                    .map(|c| direction.dot(c.center) - direction.abs().dot(c.half))
-                    .fold(f64::INFINITY, f64::min);
-                (slice_region, caster_near)
-            }
-        };
+        }
         let split = Split {
             near,
             far,
@@ -512,68 +496,6 @@ impl Planner {
             .fold(f64::NEG_INFINITY, f64::max);
         (near, far)
     }
-
-    fn empty_list(&self) -> std::ops::Range<usize> {
-        let end = self.plan.caster_indices.len();
-        end..end
-    }
-
-    /// The receivers' part of a slice: its bounds in the light's plane and in the world.
-    fn receivers_in(&mut self, slice: &Slice, fan: &Fan) -> (Region, Aabb) {
-        let mut region = Region::EMPTY;
-        let mut bounds = Aabb::EMPTY;
-        self.across.clear();
-        for &index in &self.visible {
-            let receiver = &self.receivers[index as usize];
-            match slice.classify(receiver.center, receiver.half) {
-                Lies::Outside => {}
-                Lies::Inside => {
-                    region.include_box(fan, receiver.center, receiver.half);
-                    bounds = bounds.union(receiver.bounds());
-                }
-                Lies::Across => self.across.push(index),
-            }
-        }
-        for &index in &self.across {
-            let receiver = &self.receivers[index as usize];
-            let own = receiver.bounds();
-            let changes_nothing =
-                bounds.union(own) == bounds && region.encloses_box(fan, receiver.center, receiver.half);
-            if !changes_nothing {
-                slice.clip_box(&own, |point| {
-                    region.include_point(fan, point);
-                    bounds = bounds.including(point);
-                });
-            }
-        }
-        (region, bounds)
-    }
-
-    /// Appends the casters of a slice to the plan's list.
-    fn list_casters(
-        &mut self,
-        swept: &SweptVolume,
-        served: Option<&(Region, Aabb)>,
-        fan: &Fan,
-        margin: f64,
-    ) -> std::ops::Range<usize> {
-        let begin = self.plan.caster_indices.len();
-        if served.is_some_and(|(region, _)| region.is_empty()) {
-            return begin..begin;
-        }
-        for &index in &self.candidates {
-            let Placed { center, half } = self.casters[index as usize];
-            let listed = swept.meets(center, half, margin)
-                && served.is_none_or(|(region, bounds)| {
-                    !lies_below(center, half, bounds, fan.depth, margin)
-                        && region.can_be_shadowed_by(fan, center, half, margin)
-                });
-            if listed {
-                self.plan.caster_indices.push(index);
-            }
-        }
-        begin..self.plan.caster_indices.len()
-    }
 }
 
 /// A range of depths with room for the bias, in whole steps if there is one.
@@ -583,22 +505,6 @@ fn with_room(near: f64, far: f64, texel: f64, step: Option<f64>) -> (f64, f64) {
     let Some(step) = step else { return (near, far) };
     let step = 2f64.powf(step.log2().round());
     ((near / step).floor() * step, (far / step).ceil() * step)
-}
-
-/// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers` as the light sees it: it then
-/// has nothing behind it to throw a shadow on. A flat ground under everything is the case that matters, and touches what
-/// stands on it. Anything that is not flat has to lie `margin` metres beyond: a filter asks beside its receiver, too.
-pub(crate) fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3, margin: f64) -> bool {
-    let slack = BELOW_ALL * (receivers.max - receivers.min).max_element();
-    (0..3).any(|axis| {
-        let beyond = match direction[axis] {
-            along if along < -1e-9 => receivers.min[axis] - (center[axis] + half[axis]),
-            along if along > 1e-9 => (center[axis] - half[axis]) - receivers.max[axis],
-            _ => f64::NEG_INFINITY,
-        };
-        let is_flat = 2.0 * half[axis] <= slack;
-        beyond >= if is_flat { -slack } else { margin }
-    })
 }
 
 fn place(boxes: &[Aabb], list: &'static str, placed: &mut Vec<Placed>) -> Result<()> {

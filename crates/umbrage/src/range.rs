@@ -25,7 +25,12 @@ const HYSTERESIS: f64 = 2.0;
 /// Source: *Parallel-Split Shadow Maps on Programmable GPUs* (seed 001) section 10.2.1, which only says that near and far might be
 /// adjusted "so that the view frustum contains the visible objects as tightly as possible". What stands behind something
 /// else counts as visible: boxes hide nothing.
-fn visible_range(view: &View, near: f64, far: f64, receivers: &[Placed]) -> Option<(f64, f64)> {
+pub(crate) fn visible_range<'a>(
+    view: &View,
+    near: f64,
+    far: f64,
+    receivers: impl IntoIterator<Item = &'a Placed>,
+) -> Option<(f64, f64)> {
     let room = |depth: f64| ROOM * depth.abs();
     let whole = Slice::new(view, near - 0.5 * room(near), far + room(far));
     let forward = view.forward();

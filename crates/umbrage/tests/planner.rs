@@ -35,6 +35,7 @@ fn settings() -> impl Strategy<Value = ShadowSettings> {
     let scheme = prop_oneof![
         Just(SplitScheme::Uniform),
         Just(SplitScheme::Logarithmic),
+        Just(SplitScheme::Fitted),
         (0.0..=1.0f64).prop_map(|lambda| SplitScheme::Practical { lambda, delta: vec![] })
     ];
     let range = prop_oneof![Just(None), Just(Some((1.0, 300.0))), Just(Some((5.0, 80.0)))];
