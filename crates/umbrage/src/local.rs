@@ -232,6 +232,7 @@ impl LocalPlanner {
             depth_near: axis_offset + w_near,
             depth_far: axis_offset + w_far,
             receiver_depths: (axis_offset + w_near, axis_offset + w_far),
+            filter_reach: settings.filter_radius,
             warp: Some(frustum.shadow_from_world(texel, min_texel, size, (w_near, w_far))),
             light_position: Some(frustum.position),
             casters,

@@ -8,6 +8,7 @@ use crate::cells::Sight;
 use crate::covered;
 use crate::fit::{Block, fitted, snapped, stepped};
 use crate::local::{Given, LightFrustum, LocalPlanner};
+use crate::margin::{EDGE_TEXELS, Reach};
 use crate::placement::{Maps, Placement};
 use crate::range::{HeldEnds, Range};
 use crate::rectangle::{HeldRectangle, longest_edge};
@@ -21,10 +22,6 @@ use crate::{
     Aabb, Bands, DirectionalLight, Error, Fit, Light, MAX_SPLITS, RangeFit, Result, Selection, ShadowPlan,
     ShadowSettings, Split, SplitScheme, Stabilize, View, Warp,
 };
-
-/// Texels that a map keeps free around what it serves, besides the filter's reach: half for the texel that a sample's
-/// rounding may choose, one for the normal offset of the receiver's bias.
-const EDGE_TEXELS: f64 = 1.5;
 
 /// Plans shadow maps frame after frame. Keeps its buffers, so that only the first frame allocates, and the sizes that
 /// stabilised maps hold on to.
@@ -273,7 +270,7 @@ impl Planner {
                             _ => true,
                         })
                 });
-            complete && (split.casters.is_empty() || split.contains(point, self.settings.filter_radius))
+            complete && (split.casters.is_empty() || split.contains(point, split.filter_reach))
         })
     }
 
@@ -333,7 +330,11 @@ impl Planner {
             Stabilize::None => block.half.truncate(),
         };
         let radius = half.max_element();
-        let stable_texel = DVec2::new(stable_texel(half.x, size, margin), stable_texel(half.y, size, margin));
+        // A warped map's texels differ in size.
+        let reach = if settings.warp(i) == Warp::None { Reach::of(settings) } else { Reach::most(settings) };
+        let stable_reach = reach.texels(2.0 * half.min_element(), size, 2.0 * EDGE_TEXELS + 1.0);
+        let stable_texel = half.to_array().map(|half| stable_texel(half, size, stable_reach + EDGE_TEXELS));
+        let stable_texel = DVec2::from(stable_texel);
 
         let served = match self.settings.fit {
             Fit::Independent => None,
@@ -342,7 +343,7 @@ impl Planner {
         let widest = served.as_ref().map_or(&slice_region, |(region, _)| region).widest().max(0.0);
         let (stabilize, whole_width) = (self.settings.stabilize, self.whole_width);
         let margin_of = |widest: f64| match stabilize {
-            Stabilize::Exact => margin * stable_texel.max_element(),
+            Stabilize::Exact => (stable_reach + EDGE_TEXELS) * stable_texel.max_element(),
             Stabilize::Approximate(steps) => {
                 margin * longest_edge(steps, widest, whole_width) / (f64::from(size) - 2.0 * margin - 1.0)
             }
@@ -373,19 +374,20 @@ impl Planner {
             depth_near: target.depth.0,
             depth_far: target.depth.1,
             receiver_depths: target.depth,
+            filter_reach: stable_reach,
             warp: None,
             light_position: None,
             casters,
         };
         let split = match self.settings.stabilize {
-            Stabilize::None => fitted(split, &target, fan, margin),
+            Stabilize::None => fitted(split, &target, fan, reach),
             Stabilize::Exact => snapped(split, light, &block, stable_texel),
             Stabilize::Approximate(steps) => {
                 // A split without casters is lit, whatever its rectangle; it changes nothing that is held.
                 let mut unheld = HeldRectangle::default();
                 let held = if split.casters.is_empty() { &mut unheld } else { &mut self.held_rectangle[i] };
                 let rectangle = held.hold(&target, steps, self.whole_width);
-                stepped(split, &target, fan, margin, rectangle, (block.center.z - radius, block.center.z + radius))
+                stepped(split, &target, fan, reach, rectangle, (block.center.z - radius, block.center.z + radius))
             }
         };
         let (split, caster_near) = match self.shown.clone() {
@@ -434,7 +436,7 @@ impl Planner {
     /// first caster.
     fn serving_all_it_covers(&mut self, mut split: Split, shown: &Shown, fan: &Fan, caster_near: f64) -> (Split, f64) {
         self.plan.caster_indices.truncate(split.casters.start);
-        let taken = covered::Taken::new(&split, &self.plan.splits, self.settings.filter_radius, self.settings.blend);
+        let taken = covered::Taken::new(&split, &self.plan.splits, self.settings.blend);
         let margin = taken.margin * split.texel_m.max_element();
         let mut caster_near = caster_near;
         for &index in &self.candidates {
