@@ -28,6 +28,7 @@ mod local;
 mod plan;
 mod planner;
 mod range;
+mod reach;
 mod rectangle;
 mod region;
 mod settings;

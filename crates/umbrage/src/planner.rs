@@ -6,11 +6,12 @@ use crate::covered;
 use crate::fit::{fitted, snapped, stepped};
 use crate::local::{Given, LightFrustum, LocalPlanner};
 use crate::range::{HeldFar, HeldRange, Range, visible_range};
+use crate::reach::{CoverageVolume, lies_below};
 use crate::rectangle::{HeldRectangle, longest_edge};
 use crate::region::{Fan, Region};
 use crate::split::{blend_begin, coverage, split_planes};
 use crate::stable::{HeldSize, slice_sphere, stable_texel};
-use crate::volume::{Lies, Slice, SweptVolume};
+use crate::volume::{Lies, Slice};
 use crate::warped::WarpPoints;
 use crate::{
     Aabb, Bands, DirectionalLight, Error, Fit, Light, MAX_SPLITS, RangeFit, Result, Selection, ShadowPlan,
@@ -32,8 +33,8 @@ const LEAST_RANGE: f64 = 0.01;
 /// stabilised maps hold on to.
 #[derive(Clone, Debug)]
 pub struct Planner {
-    settings: ShadowSettings,
-    plan: ShadowPlan,
+    pub(crate) settings: ShadowSettings,
+    pub(crate) plan: ShadowPlan,
     held_range: HeldSize,
     held_far: HeldFar,
     held_visible_range: HeldRange,
@@ -42,10 +43,10 @@ pub struct Planner {
     /// Stabilised: across the sphere around everything that is shadowed, metres. 0 otherwise.
     whole_width: f64,
     held_rectangle: [HeldRectangle; MAX_SPLITS],
-    fan: Option<Fan>,
-    volumes: Vec<CoverageVolume>,
+    pub(crate) fan: Option<Fan>,
+    pub(crate) volumes: Vec<CoverageVolume>,
     /// With [`Selection::Map`]: everything that the view shows in range, which any map may be asked about.
-    shown: Option<Shown>,
+    pub(crate) shown: Option<Shown>,
     world_depths: (f64, f64),
     casters: Vec<Placed>,
     receivers: Vec<Placed>,
@@ -53,7 +54,7 @@ pub struct Planner {
     visible: Vec<u32>,
     across: Vec<u32>,
     warp_points: WarpPoints,
-    local: LocalPlanner,
+    pub(crate) local: LocalPlanner,
 }
 
 /// A box as centre and half extent.
@@ -69,17 +70,9 @@ impl Placed {
     }
 }
 
-/// The points whose shadows a split's caster list is complete for.
-#[derive(Clone, Debug, PartialEq)]
-struct CoverageVolume {
-    swept: SweptVolume,
-    /// Scene-dependent fit: the receivers inside the slice, in the light's plane and as a world box.
-    receivers: Option<(Region, Aabb)>,
-}
-
 /// Everything that the view shows in range.
 #[derive(Clone, Debug)]
-struct Shown {
+pub(crate) struct Shown {
     volume: CoverageVolume,
     /// Metres along the light.
     depths: (f64, f64),
@@ -226,28 +219,6 @@ impl Planner {
         Ok(())
     }
 
-    /// The first split whose map holds every caster that can shade `point`, for points that the view does not show (points
-    /// that it shows use the split of their view depth). `None`: no map answers for it. Refers to the last plan.
-    #[must_use]
-    pub fn covering_split(&self, point: DVec3) -> Option<usize> {
-        if let Some(light) = self.plan.light.filter(|light| light.position().is_some()) {
-            return self.local.covering_split(&self.plan, &light, point, self.settings.filter_radius);
-        }
-        let fan = self.fan.as_ref()?;
-        self.plan.splits.iter().zip(&self.volumes).position(|(split, volume)| {
-            let complete = volume.swept.contains(point)
-                && volume.receivers.is_none_or(|(region, bounds)| {
-                    region.contains(fan, point)
-                        && (0..3).all(|axis| match fan.depth[axis] {
-                            along if along < 0.0 => point[axis] >= bounds.min[axis],
-                            along if along > 0.0 => point[axis] <= bounds.max[axis],
-                            _ => true,
-                        })
-                });
-            complete && (split.casters.is_empty() || split.contains(point, self.settings.filter_radius))
-        })
-    }
-
     /// `C_0` and `C_m`: the setting; the view depths of the visible receivers; or the camera's near and far, far capped by the
     /// receivers.
     fn range(&mut self, view: &View) -> Range {
@@ -365,12 +336,12 @@ impl Planner {
             }
             Stabilize::None => widest * margin / (f64::from(size) - 2.0 * margin).max(1.0),
         };
-        let casters =
-            if visible { self.list_casters(&swept, served.as_ref(), fan, margin_m) } else { self.empty_list() };
+        let volume = CoverageVolume { swept, receivers: served, margin: margin_m };
+        let casters = if visible { self.list_casters(&volume, fan) } else { self.empty_list() };
 
         // What the map has to show, in the light's plane and in depth.
         let listed = &self.plan.caster_indices[casters.clone()];
-        let (target, caster_near) = match &served {
+        let (target, caster_near) = match &volume.receivers {
             Some((region, _)) if !listed.is_empty() => {
                 let mut target = Region::EMPTY;
                 for &index in listed {
@@ -441,13 +412,13 @@ impl Planner {
             };
             self.warp_points.receivers_of(&slice, boxes);
             let casters = self.plan.caster_indices[split.casters.clone()].iter();
-            self.warp_points.casters_of(&swept, margin_m, casters.map(|&index| &self.casters[index as usize]));
+            self.warp_points.casters_of(&volume.swept, margin_m, casters.map(|&index| &self.casters[index as usize]));
             self.warp_points.warp(&mut split, warp, view, margin, self.settings.fit);
         }
         self.plan.splits.push(split);
         self.volumes.push(match &self.shown {
             Some(shown) => shown.volume.clone(),
-            None => CoverageVolume { swept, receivers: served },
+            None => volume,
         });
     }
 
@@ -463,7 +434,9 @@ impl Planner {
             Fit::Dependent => Some(self.receivers_in(&slice, fan)),
         };
         let depths = receivers.as_ref().map_or(corners, |(region, _)| *region).depth;
-        Shown { volume: CoverageVolume { swept: slice.swept_towards_light(fan.depth), receivers }, depths }
+        let swept = slice.swept_towards_light(fan.depth);
+        // Each map has a margin of its own.
+        Shown { volume: CoverageVolume { swept, receivers, margin: 0.0 }, depths }
     }
 
     /// The split with a list and a depth range for everything that its map covers and no earlier one takes, and the depth of its
@@ -568,25 +541,14 @@ impl Planner {
     }
 
     /// Appends the casters of a slice to the plan's list.
-    fn list_casters(
-        &mut self,
-        swept: &SweptVolume,
-        served: Option<&(Region, Aabb)>,
-        fan: &Fan,
-        margin: f64,
-    ) -> std::ops::Range<usize> {
+    fn list_casters(&mut self, volume: &CoverageVolume, fan: &Fan) -> std::ops::Range<usize> {
         let begin = self.plan.caster_indices.len();
-        if served.is_some_and(|(region, _)| region.is_empty()) {
+        if volume.receivers.is_some_and(|(region, _)| region.is_empty()) {
             return begin..begin;
         }
         for &index in &self.candidates {
             let Placed { center, half } = self.casters[index as usize];
-            let listed = swept.meets(center, half, margin)
-                && served.is_none_or(|(region, bounds)| {
-                    !lies_below(center, half, bounds, fan.depth, margin)
-                        && region.can_be_shadowed_by(fan, center, half, margin)
-                });
-            if listed {
+            if volume.is_shaded_by(fan, center, half) {
                 self.plan.caster_indices.push(index);
             }
         }
@@ -601,22 +563,6 @@ fn with_room(near: f64, far: f64, texel: f64, step: Option<f64>) -> (f64, f64) {
     let Some(step) = step else { return (near, far) };
     let step = 2f64.powf(step.log2().round());
     ((near / step).floor() * step, (far / step).ceil() * step)
-}
-
-/// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers` as the light sees it: it then
-/// has nothing behind it to throw a shadow on. A flat ground under everything is the case that matters, and touches what
-/// stands on it. Anything that is not flat has to lie `margin` metres beyond: a filter asks beside its receiver, too.
-fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3, margin: f64) -> bool {
-    let slack = BELOW_ALL * (receivers.max - receivers.min).max_element();
-    (0..3).any(|axis| {
-        let beyond = match direction[axis] {
-            along if along < -1e-9 => receivers.min[axis] - (center[axis] + half[axis]),
-            along if along > 1e-9 => (center[axis] - half[axis]) - receivers.max[axis],
-            _ => f64::NEG_INFINITY,
-        };
-        let is_flat = 2.0 * half[axis] <= slack;
-        beyond >= if is_flat { -slack } else { margin }
-    })
 }
 
 fn place(boxes: &[Aabb], list: &'static str, placed: &mut Vec<Placed>) -> Result<()> {

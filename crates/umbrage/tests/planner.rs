@@ -178,6 +178,30 @@ fn splits_of(plan: &ShadowPlan, depth: f64) -> Vec<usize> {
     if blended { vec![own, own + 1] } else { vec![own] }
 }
 
+#[test]
+fn parts_beside_and_below_what_a_split_serves_do_not_reach_it() {
+    let frustum = Frustum::perspective(1.0, 1.0, 0.5, 100.0).expect("valid");
+    let view = View::look_at(DVec3::new(0.0, 2.0, 0.0), DVec3::new(0.0, 2.0, -1.0), DVec3::Y, frustum).expect("valid");
+    let light = DirectionalLight::new(DVec3::NEG_Y).expect("valid");
+    let settings = ShadowSettings {
+        map_sizes: vec![512; 2],
+        scheme: SplitScheme::Uniform,
+        range: Some((0.5, 40.5)),
+        ..ShadowSettings::default()
+    };
+    // A tower block along the view, through both slices, on a flat ground.
+    let ground = Aabb::new(DVec3::new(-50.0, 0.0, -50.0), DVec3::new(50.0, 0.0, 50.0));
+    let block = Aabb::new(DVec3::new(-0.5, 3.0, -40.0), DVec3::new(0.5, 8.0, -1.0));
+    let mut planner = Planner::new(settings).expect("valid");
+    let plan = planner.plan(&view, &light, &[block], &[ground]).expect("valid");
+    assert_eq!((plan.casters(0), plan.casters(1)), (&[0][..], &[0][..]));
+    let part = |y: f64, z: f64| Aabb::new(DVec3::new(-0.5, y, z), DVec3::new(0.5, y + 1.0, z + 1.0));
+    assert!(planner.reaches(0, &part(3.0, -10.0)) && !planner.reaches(1, &part(3.0, -10.0)), "before the second slice");
+    assert!(planner.reaches(1, &part(3.0, -36.0)) && !planner.reaches(0, &part(3.0, -36.0)), "behind the first slice");
+    assert!(planner.reaches(0, &part(500.0, -10.0)), "however high");
+    assert!(!planner.reaches(0, &part(-5.0, -10.0)), "under the ground");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
@@ -209,6 +233,9 @@ proptest! {
                     // under the point is the point's own surface.
                     let Some(end) = shading_end(bounds, point, direction).filter(|_| index != owner) else { continue };
                     prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} lost caster {index}, which shades {point} at {depth} m");
+                    let (at, reach) = (point - direction * end, 0.02 * (bounds.max - bounds.min));
+                    let part = Aabb::new((at - reach).max(bounds.min), (at + reach).min(bounds.max));
+                    prop_assert!(!part.is_valid() || planner.reaches(split, &part), "split {split} leaves out {part:?} of caster {index}, which shades {point}");
                     prop_assert!(s.contains(point, case.settings.filter_radius), "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
                     let along = s.depth_axis.dot(point);
                     prop_assert!((s.receiver_depths.0..=s.receiver_depths.1).contains(&along), "{point} at {along} m along the light, outside {:?}", s.receiver_depths);
@@ -237,6 +264,7 @@ proptest! {
             prop_assert!(split.u_axis.cross(split.v_axis).abs_diff_eq(split.depth_axis, 1e-9), "the axes are no right-handed frame");
             for &caster in plan.casters(i) {
                 listed[caster as usize].push(i);
+                prop_assert!(planner.reaches(i, &case.boxes[caster as usize]), "caster {caster} is in the list of split {i}");
             }
             // The matrix says what the texels say.
             let point = case.view.eye() + DVec3::new(3.0, -2.0, 5.0);

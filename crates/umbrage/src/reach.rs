@@ -1,0 +1,88 @@
+//! What can throw a shadow on the points that a split serves.
+
+use glam::DVec3;
+
+use crate::planner::BELOW_ALL;
+use crate::region::{Fan, Region};
+use crate::volume::SweptVolume;
+use crate::{Aabb, Planner};
+
+/// The points whose shadows a split's caster list is complete for.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct CoverageVolume {
+    pub swept: SweptVolume,
+    /// Scene-dependent fit: the receivers inside the slice, in the light's plane and as a world box.
+    pub receivers: Option<(Region, Aabb)>,
+    /// Metres around it that filters ask about.
+    pub margin: f64,
+}
+
+impl CoverageVolume {
+    /// Whether a box can throw a shadow into the volume or its margin (conservatively).
+    pub fn is_shaded_by(&self, fan: &Fan, center: DVec3, half: DVec3) -> bool {
+        self.swept.meets(center, half, self.margin)
+            && self.receivers.is_none_or(|(region, bounds)| {
+                !region.is_empty()
+                    && !lies_below(center, half, &bounds, fan.depth, self.margin)
+                    && region.can_be_shadowed_by(fan, center, half, self.margin)
+            })
+    }
+
+    fn contains(&self, fan: &Fan, point: DVec3) -> bool {
+        self.swept.contains(point)
+            && self.receivers.is_none_or(|(region, bounds)| {
+                region.contains(fan, point)
+                    && (0..3).all(|axis| match fan.depth[axis] {
+                        along if along < 0.0 => point[axis] >= bounds.min[axis],
+                        along if along > 0.0 => point[axis] <= bounds.max[axis],
+                        _ => true,
+                    })
+            })
+    }
+}
+
+impl Planner {
+    /// Whether a part of a caster that the last plan lists for `split` can throw a shadow on anything that the split serves: the test
+    /// that casters were listed by, for the part's own world box. An app that keeps its large meshes in clusters leaves those out of a
+    /// map that it answers `false` for; what the split's points look up stays the same.
+    ///
+    /// Conservative, and `true` for every part where lists are made otherwise: for local lights and with [`crate::Selection::Map`].
+    #[must_use]
+    pub fn reaches(&self, split: usize, part: &Aabb) -> bool {
+        let (center, half) = (part.center(), part.half_extent());
+        match (&self.fan, &self.shown, self.volumes.get(split)) {
+            (Some(fan), None, Some(volume)) => volume.is_shaded_by(fan, center, half),
+            _ => true,
+        }
+    }
+
+    /// The first split whose map holds every caster that can shade `point`, for points that the view does not show (points
+    /// that it shows use the split of their view depth). `None`: no map answers for it. Refers to the last plan.
+    #[must_use]
+    pub fn covering_split(&self, point: DVec3) -> Option<usize> {
+        if let Some(light) = self.plan.light.filter(|light| light.position().is_some()) {
+            return self.local.covering_split(&self.plan, &light, point, self.settings.filter_radius);
+        }
+        let fan = self.fan.as_ref()?;
+        self.plan.splits.iter().zip(&self.volumes).position(|(split, volume)| {
+            volume.contains(fan, point)
+                && (split.casters.is_empty() || split.contains(point, self.settings.filter_radius))
+        })
+    }
+}
+
+/// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers` as the light sees it: it then
+/// has nothing behind it to throw a shadow on. A flat ground under everything is the case that matters, and touches what
+/// stands on it. Anything that is not flat has to lie `margin` metres beyond: a filter asks beside its receiver, too.
+pub(crate) fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3, margin: f64) -> bool {
+    let slack = BELOW_ALL * (receivers.max - receivers.min).max_element();
+    (0..3).any(|axis| {
+        let beyond = match direction[axis] {
+            along if along < -1e-9 => receivers.min[axis] - (center[axis] + half[axis]),
+            along if along > 1e-9 => (center[axis] - half[axis]) - receivers.max[axis],
+            _ => f64::NEG_INFINITY,
+        };
+        let is_flat = 2.0 * half[axis] <= slack;
+        beyond >= if is_flat { -slack } else { margin }
+    })
+}
