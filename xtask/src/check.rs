@@ -1,6 +1,6 @@
 //! What CI runs, and a developer before a commit.
 
-use std::env;
+use std::{env, path::Path, process::Command};
 
 use anyhow::Result;
 
@@ -14,10 +14,16 @@ const REQUIRE_GPU: &str = "UMBRAGE_REQUIRE_GPU";
 /// Tests write their references anew where this is 1.
 const BLESS: &str = "UMBRAGE_BLESS";
 
-/// Formatting, lints, all tests.
+/// What a browser runs.
+const WASM_TARGET: &str = "wasm32-unknown-unknown";
+/// The crates that must build for it.
+const WASM_CRATES: [&str; 4] = ["umbrage", "umbrage-shaders", "umbrage-wgpu", "umbrage-render"];
+
+/// Formatting, lints, the browser's build, all tests.
 pub fn test() -> Result<()> {
     run(cargo().args(["fmt", "--all", "--check"]))?;
     run(cargo().args(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
+    check_wasm()?;
     let has_adapter = has_adapter()?;
     let mut tests = cargo();
     tests.args(["test", "--workspace"]);
@@ -48,6 +54,24 @@ fn has_adapter() -> Result<bool> {
             Ok(false)
         }
     }
+}
+
+/// Checks the crates that a browser runs, where the compiler has that target.
+fn check_wasm() -> Result<()> {
+    if !has_target(WASM_TARGET) {
+        eprintln!(
+            "xtask: SKIPPED: the compiler has no {WASM_TARGET}; `rustup target add {WASM_TARGET}` lets the browser's build be checked"
+        );
+        return Ok(());
+    }
+    run(cargo().args(["check", "--target", WASM_TARGET]).args(WASM_CRATES.iter().flat_map(|name| ["--package", name])))
+}
+
+fn has_target(target: &str) -> bool {
+    let output = Command::new("rustc").args(["--print", "target-libdir", "--target", target]).output();
+    output.is_ok_and(|output| {
+        output.status.success() && Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_dir()
+    })
 }
 
 fn is_set(variable: &str) -> bool {

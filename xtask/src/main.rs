@@ -13,7 +13,7 @@ Usage: cargo xtask COMMAND
 
   demo    install the software Vulkan driver if there is no graphics adapter, build, render the four worlds and the
           city, and write out/demo/index.html
-  test    formatting, lints and all tests, as CI runs them
+  test    formatting, lints, the build for the browser and all tests, as CI runs them
   bless   draw the reference pictures of the tests anew
 ";
 

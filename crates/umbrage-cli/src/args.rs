@@ -1,4 +1,4 @@
-//! What was typed. What it means is worked out in [`crate::job`].
+//! What was typed. What it means is worked out in [`crate::scene_job`] and [`crate::shadow_job`].
 //!
 //! One set of scene, camera, light and time options serves every subcommand; what a subcommand does not need it accepts
 //! and ignores, so one argument list serves `render`, `probe` and `truth`.
@@ -409,6 +409,8 @@ pub enum Scheme {
     Practical,
     /// By --planes
     Manual,
+    /// Where the boxes of casters and receivers in view promise the least error
+    Fitted,
 }
 
 /// `--range-fit`.
@@ -572,10 +574,10 @@ pub enum DepthFormat {
 /// `--depth-convention`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum DepthConvention {
-    /// wgpu, Direct3D, Metal, Vulkan
+    /// wgpu, Direct3D, Metal, Vulkan: NDC z in [0,1], v down
     #[default]
     ZeroToOne,
-    /// OpenGL
+    /// OpenGL: NDC z in [−1,1], v up
     MinusOneToOne,
 }
 

@@ -9,8 +9,9 @@ use umbrage_wgpu::LightSlot;
 use crate::{
     args,
     failure::{Failure, Result},
-    job::{SceneJob, SunChoice, typed_name, wgpu_filter},
     report::SplitReport,
+    scene_job::{SceneJob, SunChoice},
+    shadow_job::{typed_name, wgpu_filter},
     stage::{named, several},
 };
 

@@ -6,7 +6,7 @@ use umbrage_wgpu::ShadowMapsOptions;
 use crate::{
     args::{Coordinates, ShadowArgs, Warp},
     failure::{Failure, Result},
-    job::typed_name,
+    shadow_job::typed_name,
 };
 
 /// `--generation`.
@@ -145,6 +145,7 @@ pub fn in_options(error: &umbrage_wgpu::Error) -> String {
             let option = |name: &str| format!("--{}", name.replace("map_sizes", "map-size"));
             format!("{} and {} exclude each other: {reason}", option(first), option(second))
         }
+        umbrage_wgpu::Error::FilterTooWide { .. } => format!("--filter-width: {error}"),
         other => other.to_string(),
     }
 }

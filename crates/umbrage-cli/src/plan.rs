@@ -2,16 +2,16 @@
 
 use std::path::Path;
 
-use glam::{DMat4, DVec4};
 use serde::Serialize;
 use umbrage::{Aabb, ExtentSteps, Planner, ShadowPlan, Split, Stabilize};
 
 use crate::{
     args::{DepthConvention, PlanArgs},
     failure::Result,
-    job::{SceneJob, ShadowJob, typed_name},
     output::{self, Staged, numbered_file},
     report::{ShotReport, to_json},
+    scene_job::SceneJob,
+    shadow_job::{ShadowJob, typed_name},
     stage::{Shot, Stage},
     worlds::print,
 };
@@ -157,19 +157,10 @@ fn report(
 
 fn split(plan: &ShadowPlan, index: usize, convention: DepthConvention) -> SplitPlan {
     let split: &Split = &plan.splits[index];
-    let shadow_from_world = split.shadow_from_world();
-    let to_convention = match convention {
-        DepthConvention::ZeroToOne => DMat4::IDENTITY,
-        DepthConvention::MinusOneToOne => {
-            DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::new(0.0, 0.0, 2.0, 0.0), DVec4::new(0.0, 0.0, -1.0, 1.0))
-        }
+    let convention = match convention {
+        DepthConvention::ZeroToOne => umbrage::DepthConvention::ZeroToOne,
+        DepthConvention::MinusOneToOne => umbrage::DepthConvention::MinusOneToOne,
     };
-    let texture_from_shadow = DMat4::from_cols(
-        DVec4::new(0.5, 0.0, 0.0, 0.0),
-        DVec4::new(0.0, -0.5, 0.0, 0.0),
-        DVec4::Z,
-        DVec4::new(0.5, 0.5, 0.0, 1.0),
-    );
     SplitPlan {
         near_m: split.near,
         far_m: split.far,
@@ -178,8 +169,8 @@ fn split(plan: &ShadowPlan, index: usize, convention: DepthConvention) -> SplitP
         size: split.size,
         texel_m: split.texel_m.to_array(),
         warped: split.warp.is_some(),
-        shadow_from_world: (to_convention * shadow_from_world).to_cols_array_2d(),
-        texture_from_world: (texture_from_shadow * shadow_from_world).to_cols_array_2d(),
+        shadow_from_world: split.shadow_from_world_in(convention).to_cols_array_2d(),
+        texture_from_world: split.texture_from_world(convention).to_cols_array_2d(),
         casters: plan.casters(index).to_vec(),
     }
 }

@@ -8,11 +8,12 @@ use umbrage_render::{Outputs, ProbePoint};
 use crate::{
     args::ProbeArgs,
     failure::{Failure, Result},
-    job::{SceneJob, ShadowJob},
     output::{self, Staged, numbered_file},
     progress,
     render::Studio,
     report::{ProbeReport, to_json},
+    scene_job::SceneJob,
+    shadow_job::ShadowJob,
     stage::Stage,
 };
 

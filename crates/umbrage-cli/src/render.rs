@@ -10,11 +10,12 @@ use crate::{
     adapter,
     args::{Filter, RenderArgs},
     failure::{Failure, Result},
-    job::{SceneJob, ShadowJob, typed_name, wgpu_depth_format, wgpu_filter},
     lights::{self, LightReport, NamedLight},
     output::{self, Staged, numbered_file, numbered_folder},
     progress,
     report::{BesideReport, Report, SplitReport, TimesMs, to_json},
+    scene_job::SceneJob,
+    shadow_job::{ShadowJob, typed_name, wgpu_depth_format, wgpu_filter},
     split_views,
     stage::{Shot, Stage, camera_report},
 };

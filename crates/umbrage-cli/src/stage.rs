@@ -7,9 +7,9 @@ use umbrage_scene::{CameraPath, HeightMapOptions, Pose, Scene};
 
 use crate::{
     failure::{Failure, Result},
-    job::{CameraChoice, DEFAULT_FAR, DEFAULT_FOV, DEFAULT_NEAR, SceneJob},
     lights::{self, NamedLight},
     report::{CameraReport, ShotReport, SunShown},
+    scene_job::{CameraChoice, DEFAULT_FAR, DEFAULT_FOV, DEFAULT_NEAR, SceneJob},
 };
 
 /// A scene at one moment, with everything that is to be looked at.

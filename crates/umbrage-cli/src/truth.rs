@@ -7,11 +7,11 @@ use umbrage_truth::{SunDisc, Truth};
 use crate::{
     args::TruthArgs,
     failure::{Failure, Result},
-    job::SceneJob,
     output::{self, Staged, numbered_file},
     progress,
     render::{png, side_by_side},
     report::{TruthReport, TruthTimesMs, to_json},
+    scene_job::SceneJob,
     stage::Stage,
 };
 

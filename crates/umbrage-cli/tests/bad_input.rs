@@ -218,9 +218,13 @@ fn lights_and_views_that_do_not_go_together() {
 }
 
 #[test]
-fn a_map_that_the_device_does_not_allow() {
+fn what_only_the_device_or_the_plan_can_refuse() {
     if has_adapter() {
         let folder = Folder::new();
+        for filter in ["vsm", "disc", "pcf5"] {
+            let words = format!("render tiny.glb --filter {filter} --filter-width 100000 -o out.png --report out.json");
+            folder.refuse(&words, &["--filter-width", "100000", "widest map"]);
+        }
         folder.refuse("render tiny.glb --map-size 65536 -o out.png --report out.json", &["--map-size", "65536"]);
     }
 }

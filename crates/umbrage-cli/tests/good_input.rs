@@ -342,8 +342,9 @@ fn a_plan_needs_no_gpu_and_says_it_in_both_conventions() {
         assert_eq!(here["warped"], warped, "{here}");
         let listed = here["casters"].as_array().expect("a list");
         assert!(listed.iter().all(|c| c.as_u64().is_some_and(|c| (c as usize) < casters.len())), "{here}");
-        // z' = 2z − w for any point, the other rows are the same; texture coordinates are 0..1 and v runs down.
+        // z' = 2z − w for any point, the other rows are the same; texture coordinates are 0..1, v runs down, and up with OpenGL.
         let (a, b, t) = (&here["shadow_from_world"], &there["shadow_from_world"], &here["texture_from_world"]);
+        let gl_t = &there["texture_from_world"];
         for column in 0..4 {
             let [x, y, z, w] = [0, 1, 2, 3].map(|row| number(&a[column][row]));
             let [x2, y2, z2, w2] = [0, 1, 2, 3].map(|row| number(&b[column][row]));
@@ -351,6 +352,10 @@ fn a_plan_needs_no_gpu_and_says_it_in_both_conventions() {
             assert!((z2 - (2.0 * z - w)).abs() < 1e-9 * (1.0 + z.abs() + w.abs()));
             assert!((number(&t[column][0]) - 0.5 * (x + w)).abs() < 1e-9 * (1.0 + x.abs() + w.abs()));
             assert!((number(&t[column][1]) - 0.5 * (w - y)).abs() < 1e-9 * (1.0 + y.abs() + w.abs()));
+            assert!((number(&gl_t[column][1]) - 0.5 * (w + y)).abs() < 1e-9 * (1.0 + y.abs() + w.abs()));
+            for row in [0, 2, 3] {
+                assert_eq!(number(&gl_t[column][row]), number(&t[column][row]));
+            }
             assert_eq!(number(&t[column][2]), z);
         }
     }

@@ -204,6 +204,16 @@ pub enum Error {
         /// What it may be.
         expected: &'static str,
     },
+    /// A filter so wide that its radius exceeds even the widest map.
+    #[error(
+        "frame option width_m is {width_m}, half of which is more than the {map_m:.3} m of the widest map; give less, or leave it to the filter"
+    )]
+    FilterTooWide {
+        /// [`crate::Softness::width_m`].
+        width_m: f64,
+        /// The longest edge of any of the light's maps, metres.
+        map_m: f64,
+    },
     /// More or fewer plans than lights.
     #[error("{plans} plans, but these ShadowMaps were created for {lights} lights; give one plan for each of `lights`")]
     LightCount {

@@ -197,7 +197,8 @@ impl Filter {
 pub struct Softness {
     /// Full width of the filter across the light in metres, the same in every split, so that an edge is as soft on both sides of a
     /// border; `None`: as many texels as the filter's name says, and for filters of moments 8 texels of the finest map. Where it asks for less than two texels it gets two, and for more
-    /// than the filter reaches ([`Filter::radius_texels`]) that. For the filters that [`Filter::has_width`] names.
+    /// than the filter reaches ([`Filter::radius_texels`]) that; a radius that exceeds the widest map is an error
+    /// ([`Error::FilterTooWide`]). For the filters that [`Filter::has_width`] names.
     pub width_m: Option<f32>,
     /// Angle in radians across the sun, for [`Filter::Pcss`]: 0 to a right angle. The real one is 0.0093 (0.53°) wide.
     pub sun_angle: f32,

@@ -121,6 +121,13 @@ fn frame(
         return bad("fade_begin", plan.fade_begin, "a finite view depth");
     }
 
+    if let Some(width_m) = options.softness.width_m.filter(|_| maps.filter.has_width()).map(f64::from) {
+        let map_m = plan.splits.iter().map(|s| s.texel_m.max_element() * f64::from(s.size)).fold(0.0, f64::max);
+        if 0.5 * width_m > map_m {
+            return Err(Error::FilterTooWide { width_m, map_m });
+        }
+    }
+
     let mut frame = layout::Frame {
         view_depth_plane: row(plane.truncate(), plane.truncate().dot(options.origin) + plane.w),
         to_light: (-plan.light_direction).as_vec3().to_array(),

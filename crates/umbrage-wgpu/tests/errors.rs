@@ -120,3 +120,24 @@ fn plans_and_frames_that_make_no_sense() {
         }
     }
 }
+
+#[test]
+fn a_filter_wider_than_every_map_is_refused() {
+    let Some(gpu) = Gpu::new() else { return };
+    let good = plan(DVec3::NEG_Y, DVec3::ZERO, &[256, 128], &[1.0, 10.0, 50.0], &[20.0, 100.0]);
+    let widest = good.splits.iter().map(|s| s.texel_m.max_element() * f64::from(s.size)).fold(0.0, f64::max);
+    for filter in [Filter::Pcf3, Filter::Disc, Filter::Vsm, Filter::Hard] {
+        let mut maps = ShadowMaps::new(&gpu.device, &options(&[256, 128], filter)).expect("valid");
+        let mut prepare = |width: f64| {
+            let frame = soft(Softness { width_m: Some(width as f32), ..Default::default() });
+            maps.prepare(&gpu.queue, &good, &frame)
+        };
+        assert!(prepare(1.99 * widest).is_ok(), "{filter:?}");
+        match prepare(2.01 * widest) {
+            // One texel has no width.
+            Ok(()) => assert_eq!(filter, Filter::Hard),
+            Err(Error::FilterTooWide { map_m, .. }) => assert!(map_m == widest && filter != Filter::Hard),
+            Err(other) => panic!("{filter:?}: {other}"),
+        }
+    }
+}

@@ -127,7 +127,7 @@ fn a_map_reads_itself_only() {
             // A roof over everything in one map; nothing but ground in the other.
             plan.splits[1 - dark].depth_near = 60.0;
             plan.splits[1 - dark].depth_far = 100.0;
-            let softness = Softness { width_m: Some(1000.0), ..Softness::default() };
+            let softness = Softness { width_m: Some(60.0), ..Softness::default() };
             let frame = FrameOptions { softness, ..FrameOptions::default() };
             let roof = quad(
                 [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]

@@ -185,7 +185,7 @@ fn check_own_corner(filter: Filter) {
     let Some(gpu) = Gpu::new() else { return };
     let mut world = World::new(gpu, &options(&[256, 128], filter, DepthFormat::D32Float));
     // As wide as they get.
-    let softness = Softness { width_m: Some(1000.0), sun_angle: 0.5, ..Softness::default() };
+    let softness = Softness { width_m: Some(60.0), sun_angle: 0.5, ..Softness::default() };
     let mut plan = two_splits();
     plan.planes = vec![1.0, 2.0, 400.0];
     (plan.splits[0].far, plan.splits[0].blend_begin, plan.splits[1].near, plan.splits[1].far) = (2.0, 2.0, 2.0, 400.0);

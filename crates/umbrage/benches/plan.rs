@@ -2,7 +2,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::DVec3;
-use umbrage::{Aabb, DirectionalLight, Fit, Frustum, Planner, ShadowSettings, Stabilize, View};
+use umbrage::{Aabb, DirectionalLight, Fit, Frustum, Planner, ShadowSettings, SplitScheme, Stabilize, View};
 
 fn plan(criterion: &mut Criterion) {
     let mut world: Vec<Aabb> = (0..10_000u32)
@@ -19,12 +19,16 @@ fn plan(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("plan 10,000 casters, 4 splits");
     for fit in [Fit::Independent, Fit::Dependent] {
         for stabilize in [Stabilize::None, Stabilize::Exact] {
-            let settings = ShadowSettings { fit, stabilize, range: Some((1.0, 800.0)), ..ShadowSettings::default() };
-            let mut planner = Planner::new(settings).expect("valid");
-            let pairs = planner.plan(&view, &light, &world, &world).expect("valid").caster_indices.len();
-            group.bench_function(format!("{fit:?} {stabilize:?} ({pairs} pairs)"), |b| {
-                b.iter(|| planner.plan(&view, &light, &world, &world).expect("valid").caster_indices.len());
-            });
+            for scheme in [SplitScheme::default(), SplitScheme::Fitted] {
+                let name = if scheme == SplitScheme::Fitted { " fitted planes" } else { "" };
+                let range = Some((1.0, 800.0));
+                let settings = ShadowSettings { fit, stabilize, range, scheme, ..ShadowSettings::default() };
+                let mut planner = Planner::new(settings).expect("valid");
+                let pairs = planner.plan(&view, &light, &world, &world).expect("valid").caster_indices.len();
+                group.bench_function(format!("{fit:?} {stabilize:?}{name} ({pairs} pairs)"), |b| {
+                    b.iter(|| planner.plan(&view, &light, &world, &world).expect("valid").caster_indices.len());
+                });
+            }
         }
     }
     group.finish();

@@ -4,12 +4,13 @@ use glam::{DMat3, DMat4, DVec3, DVec4};
 
 use crate::{Error, Result};
 
-/// How a projection matrix maps depth, needed to read near and far back from it.
+/// What an engine's graphics interface takes for granted: needed to read near and far back from a camera's projection, and to hand
+/// maps to the engine ([`crate::Split::shadow_from_world_in`], [`crate::Split::texture_from_world`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthConvention {
-    /// NDC depth in [0,1], in either direction (reversed or not): wgpu, Direct3D, Metal, Vulkan.
+    /// NDC depth in [0,1], textures' v down: wgpu, Direct3D, Metal, Vulkan. A camera's depth may run either way (reversed or not).
     ZeroToOne,
-    /// NDC depth in [−1,1]: OpenGL.
+    /// NDC depth in [−1,1], textures' v up: OpenGL.
     MinusOneToOne,
 }
 

@@ -115,6 +115,15 @@ impl LocalPlanner {
                     .to_owned(),
             });
         }
+        if settings.scheme == SplitScheme::Fitted {
+            return Err(Error::ConflictingSettings {
+                first: "scheme",
+                second: "light",
+                reason: "fitted planes are chosen for light that is parallel in the world; \
+                         set scheme to Logarithmic or another of near and far alone, or use a directional light"
+                    .to_owned(),
+            });
+        }
         plan.selection = Selection::Depth;
         let m = settings.splits();
         let (near, far, fades) = shadowed_range(given);
@@ -458,7 +467,7 @@ fn shadowed_range(given: &Given<'_>) -> (f64, f64, bool) {
     }
     // Planes that were given in metres mean those of the whole view.
     let free = match &settings.scheme {
-        SplitScheme::Uniform | SplitScheme::Logarithmic => true,
+        SplitScheme::Uniform | SplitScheme::Logarithmic | SplitScheme::Fitted => true,
         SplitScheme::Practical { delta, .. } => delta.is_empty(),
         SplitScheme::Manual(_) => false,
     };

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-use crate::{Light, Selection, View};
+use crate::{DepthConvention, Light, Selection, View};
 
 /// The shadow maps of one light for one view.
 ///
@@ -153,6 +153,30 @@ impl Split {
     #[must_use]
     pub fn shadow_from_world(&self) -> DMat4 {
         self.warp.unwrap_or_else(|| self.plain_shadow_from_world())
+    }
+
+    /// [`Split::shadow_from_world`] for an engine of the given convention: with OpenGL's z lies in [−1,1] (`z' = 2z − w`), which its
+    /// depth range puts back into [0,1], so that both store the same depth.
+    #[must_use]
+    pub fn shadow_from_world_in(&self, convention: DepthConvention) -> DMat4 {
+        let to_convention = match convention {
+            DepthConvention::ZeroToOne => DMat4::IDENTITY,
+            DepthConvention::MinusOneToOne => DMat4::from_cols(DVec4::X, DVec4::Y, 2.0 * DVec4::Z, DVec4::W - DVec4::Z),
+        };
+        to_convention * self.shadow_from_world()
+    }
+
+    /// To the map as a texture of an engine of the given convention: u and v in [0,1], v down or, with OpenGL's, up, and the depth that the
+    /// map stores there, in [0,1] with either; to be divided by w, which is 1 in a plain map.
+    #[must_use]
+    pub fn texture_from_world(&self, convention: DepthConvention) -> DMat4 {
+        let up = match convention {
+            DepthConvention::ZeroToOne => -0.5,
+            DepthConvention::MinusOneToOne => 0.5,
+        };
+        let texture_from_shadow =
+            DMat4::from_cols(0.5 * DVec4::X, up * DVec4::Y, DVec4::Z, DVec4::new(0.5, 0.5, 0.0, 1.0));
+        texture_from_shadow * self.shadow_from_world()
     }
 
     fn plain_shadow_from_world(&self) -> DMat4 {

@@ -2,20 +2,23 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::cells::Sight;
 use crate::covered;
 use crate::fit::{fitted, snapped, stepped};
 use crate::local::{Given, LightFrustum, LocalPlanner};
-use crate::range::{HeldFar, HeldRange, Range, visible_range};
+use crate::placement::{Maps, Placement};
+use crate::range::{HeldEnds, Range};
 use crate::reach::{CoverageVolume, lies_below};
 use crate::rectangle::{HeldRectangle, longest_edge};
 use crate::region::{Fan, Region};
+use crate::settings::check_range;
 use crate::split::{blend_begin, coverage, split_planes};
 use crate::stable::{HeldSize, slice_sphere, stable_texel};
 use crate::volume::{Lies, Slice};
 use crate::warped::WarpPoints;
 use crate::{
     Aabb, Bands, DirectionalLight, Error, Fit, Light, MAX_SPLITS, RangeFit, Result, Selection, ShadowPlan,
-    ShadowSettings, Split, Stabilize, View, Warp,
+    ShadowSettings, Split, SplitScheme, Stabilize, View, Warp,
 };
 
 /// Texels that a map keeps free around what it serves, besides the filter's reach: half for the texel that a sample's
@@ -26,18 +29,13 @@ const EDGE_TEXELS: f64 = 1.5;
 /// them: rounding in the bounds, not a length that could be seen (1.2 mm in 1.2 km).
 pub(crate) const BELOW_ALL: f64 = 1e-6;
 
-/// The least length of a range that is fitted to what is visible, as a share of its far end.
-const LEAST_RANGE: f64 = 0.01;
-
 /// Plans shadow maps frame after frame. Keeps its buffers, so that only the first frame allocates, and the sizes that
 /// stabilised maps hold on to.
 #[derive(Clone, Debug)]
 pub struct Planner {
     pub(crate) settings: ShadowSettings,
     pub(crate) plan: ShadowPlan,
-    held_range: HeldSize,
-    held_far: HeldFar,
-    held_visible_range: HeldRange,
+    held_ends: HeldEnds,
     held_radius: [HeldSize; MAX_SPLITS],
     held_whole: HeldSize,
     /// Stabilised: across the sphere around everything that is shadowed, metres. 0 otherwise.
@@ -54,6 +52,7 @@ pub struct Planner {
     visible: Vec<u32>,
     across: Vec<u32>,
     warp_points: WarpPoints,
+    placement: Placement,
     pub(crate) local: LocalPlanner,
 }
 
@@ -88,9 +87,7 @@ impl Planner {
         Ok(Self {
             settings,
             plan: ShadowPlan::default(),
-            held_range: HeldSize::default(),
-            held_far: HeldFar::default(),
-            held_visible_range: HeldRange::default(),
+            held_ends: HeldEnds::default(),
             held_radius: [HeldSize::default(); MAX_SPLITS],
             held_whole: HeldSize::default(),
             whole_width: 0.0,
@@ -105,6 +102,7 @@ impl Planner {
             visible: Vec::new(),
             across: Vec::new(),
             warp_points: WarpPoints::default(),
+            placement: Placement::default(),
             local: LocalPlanner::default(),
         })
     }
@@ -170,15 +168,12 @@ impl Planner {
     fn plan_sun(&mut self, view: &View, light: &DirectionalLight) -> Result<()> {
         let casters = self.casters.len();
         self.settings.bands.check_view(view)?;
-        let Range { near, inner_far, far } = self.range(view);
-        let planes = &mut self.plan.planes;
-        if let Err(error) = split_planes(&self.settings.scheme, near, inner_far, self.settings.splits(), planes) {
-            // A range that cannot be divided is not held on to.
-            self.held_far = HeldFar::default();
+        let range = self.held_ends.range(&self.settings, view, &self.receivers);
+        if let Err(error) = check_range(range.near, range.inner_far) {
+            self.held_ends.release_far();
             return Err(error);
         }
-        planes[self.settings.splits()] = far;
-
+        let Range { near, far, .. } = range;
         let direction = light.direction();
         let (map_u, _) = light.map_axes();
         let first = match self.settings.stabilize {
@@ -196,7 +191,12 @@ impl Planner {
             let sphere = slice_sphere(view.frustum(), view.frustum().near, far);
             self.whole_width = 2.0 * self.held_whole.hold(sphere.radius);
         }
-        self.cull_to_view(view, direction);
+        self.cull_to_view(view, direction, far);
+        if let Err(error) = self.place_planes(view, &fan, range) {
+            // A range that cannot be divided is not held on to.
+            self.held_ends.release_far();
+            return Err(error);
+        }
         self.shown = (self.settings.selection == Selection::Map).then(|| self.all_that_is_shown(view, far, &fan));
         if self.settings.stabilize != Stabilize::None && !self.settings.depth_clamp {
             self.world_depths = self.measure_world_depths(direction);
@@ -219,59 +219,35 @@ impl Planner {
         Ok(())
     }
 
-    /// `C_0` and `C_m`: the setting; the view depths of the visible receivers; or the camera's near and far, far capped by the
-    /// receivers.
-    fn range(&mut self, view: &View) -> Range {
-        if let Some((near, far)) = self.settings.range {
-            return Range::new(near, far);
+    /// Writes `C_0 ..= C_m` into the plan.
+    fn place_planes(&mut self, view: &View, fan: &Fan, range: Range) -> Result<()> {
+        let m = self.settings.splits();
+        let ends = (range.near, range.inner_far);
+        if self.settings.scheme == SplitScheme::Fitted {
+            let sight = Sight {
+                view,
+                fan,
+                receivers: &self.receivers,
+                visible: &self.visible,
+                casters: &self.casters,
+                candidates: &self.candidates,
+            };
+            let margin = self.settings.filter_radius + EDGE_TEXELS;
+            let maps = Maps { settings: &self.settings, margin, whole_width: self.whole_width };
+            if self.placement.place(&sight, &maps, ends, &mut self.plan.planes)? {
+                // Other slices have other sizes: none is worth holding on to.
+                self.held_radius = Default::default();
+            }
+        } else {
+            split_planes(&self.settings.scheme, ends.0, ends.1, m, &mut self.plan.planes)?;
         }
-        let forward = view.forward();
-        let bands = self.settings.bands;
-        let (near, camera_far) = (view.frustum().near, view.frustum().far / bands.least_depth_share(view));
-        let view_depth = |r: &Placed| forward.dot(r.center - view.eye()) + forward.abs().dot(r.half);
-        let deepest = match bands {
-            Bands::Planar => self.receivers.iter().map(view_depth).fold(f64::NEG_INFINITY, f64::max),
-            Bands::Radial => self.farthest(view.eye()),
-        };
-        // Nothing before the eye: any short range will do.
-        let deepest = if deepest > near { deepest } else { 2.0 * near.abs() + 1.0 };
-        if self.settings.range_fit == RangeFit::Visible
-            && let Some((first, last)) = visible_range(view, near, deepest.min(camera_far), &self.receivers)
-        {
-            let (first, last) = self.held_within(first, last, near, camera_far);
-            return Range::new(first, last);
-        }
-        let range = match self.settings.stabilize {
-            Stabilize::None => Range::new(near, deepest),
-            Stabilize::Exact => self.held_far.hold(near, deepest, self.farthest(view.eye())),
-            Stabilize::Approximate(_) => Range::new(near, self.held_range.hold(deepest)),
-        };
-        Range { near, inner_far: range.inner_far.min(camera_far), far: range.far.min(camera_far) }
-    }
-
-    /// Metres from `eye` to the farthest corner of any receiver; 0 without receivers.
-    fn farthest(&self, eye: DVec3) -> f64 {
-        self.receivers.iter().map(|r| ((r.center - eye).abs() + r.half).length()).fold(0.0, f64::max)
-    }
-
-    /// A range around the visible receivers: as it is, or in steps where maps have to stand still.
-    fn held_within(&mut self, first: f64, last: f64, camera_near: f64, camera_far: f64) -> (f64, f64) {
-        let (first, last) = match self.settings.stabilize {
-            Stabilize::Exact | Stabilize::Approximate(_) if first > 0.0 => self.held_visible_range.hold(first, last),
-            _ => (first, last),
-        };
-        // A single wall that faces the camera still gets slices of some depth.
-        let first = first.max(camera_near).min(last * (1.0 - LEAST_RANGE));
-        (first, last.min(camera_far))
+        self.plan.planes[m] = range.far;
+        Ok(())
     }
 
     /// Receivers that some slice can contain and casters that some slice's sweep can meet.
-    fn cull_to_view(&mut self, view: &View, direction: DVec3) {
-        let whole = Slice::new(
-            view,
-            view.frustum().near,
-            self.plan.planes.last().map_or(0.0, |far| far.min(view.frustum().far)),
-        );
+    fn cull_to_view(&mut self, view: &View, direction: DVec3, far: f64) {
+        let whole = Slice::new(view, view.frustum().near, far.min(view.frustum().far));
         self.visible.clear();
         for (i, receiver) in self.receivers.iter().enumerate() {
             if whole.classify(receiver.center, receiver.half) != Lies::Outside {

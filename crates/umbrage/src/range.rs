@@ -1,13 +1,16 @@
 //! The shadowed range fitted to what the view shows: `C_0` and `C_m` as tight as the receivers allow.
 
-use crate::View;
 use crate::planner::Placed;
 use crate::stable::HeldSize;
 use crate::volume::{Lies, Slice};
+use crate::{Bands, RangeFit, ShadowSettings, Stabilize, View};
 
 /// Share of a depth by which the range exceeds the receivers, so that rounding to `f32` on the way to a shader leaves none
 /// outside.
 const ROOM: f64 = 1e-4;
+
+/// The least length of a range that is fitted to what is visible, as a share of its far end.
+const LEAST_RANGE: f64 = 0.01;
 
 /// Steps per doubling of a held end of the range: one step is 2^(1/4), 19 %.
 const STEPS_PER_OCTAVE: f64 = 4.0;
@@ -21,7 +24,7 @@ const HYSTERESIS: f64 = 2.0;
 /// Source: *Parallel-Split Shadow Maps on Programmable GPUs* (seed 001) section 10.2.1, which only says that near and far might be
 /// adjusted "so that the view frustum contains the visible objects as tightly as possible". What stands behind something
 /// else counts as visible: boxes hide nothing.
-pub(crate) fn visible_range(view: &View, near: f64, far: f64, receivers: &[Placed]) -> Option<(f64, f64)> {
+fn visible_range(view: &View, near: f64, far: f64, receivers: &[Placed]) -> Option<(f64, f64)> {
     let room = |depth: f64| ROOM * depth.abs();
     let whole = Slice::new(view, near - 0.5 * room(near), far + room(far));
     let forward = view.forward();
@@ -119,6 +122,61 @@ impl HeldFar {
         }
         Range { near, inner_far: self.inner_far, far }
     }
+}
+
+/// The ends of the shadowed range, and what they hold on to from frame to frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct HeldEnds {
+    deepest: HeldSize,
+    far: HeldFar,
+    visible: HeldRange,
+}
+
+impl HeldEnds {
+    /// `C_0` and `C_m`: the setting; the view depths of the visible receivers; or the camera's near and far, far capped by the
+    /// receivers.
+    pub fn range(&mut self, settings: &ShadowSettings, view: &View, receivers: &[Placed]) -> Range {
+        if let Some((near, far)) = settings.range {
+            return Range::new(near, far);
+        }
+        let forward = view.forward();
+        let bands = settings.bands;
+        let (near, camera_far) = (view.frustum().near, view.frustum().far / bands.least_depth_share(view));
+        let view_depth = |r: &Placed| forward.dot(r.center - view.eye()) + forward.abs().dot(r.half);
+        let deepest = match bands {
+            Bands::Planar => receivers.iter().map(view_depth).fold(f64::NEG_INFINITY, f64::max),
+            Bands::Radial => farthest(view, receivers),
+        };
+        // Nothing before the eye: any short range will do.
+        let deepest = if deepest > near { deepest } else { 2.0 * near.abs() + 1.0 };
+        if settings.range_fit == RangeFit::Visible
+            && let Some((first, last)) = visible_range(view, near, deepest.min(camera_far), receivers)
+        {
+            let (first, last) = match settings.stabilize {
+                Stabilize::Exact | Stabilize::Approximate(_) if first > 0.0 => self.visible.hold(first, last),
+                _ => (first, last),
+            };
+            // A single wall that faces the camera still gets slices of some depth.
+            let first = first.max(near).min(last * (1.0 - LEAST_RANGE));
+            return Range::new(first, last.min(camera_far));
+        }
+        let range = match settings.stabilize {
+            Stabilize::None => Range::new(near, deepest),
+            Stabilize::Exact => self.far.hold(near, deepest, farthest(view, receivers)),
+            Stabilize::Approximate(_) => Range::new(near, self.deepest.hold(deepest)),
+        };
+        Range { near, inner_far: range.inner_far.min(camera_far), far: range.far.min(camera_far) }
+    }
+
+    /// Lets go of a far end that makes a range which cannot be divided.
+    pub fn release_far(&mut self) {
+        self.far = HeldFar::default();
+    }
+}
+
+/// Metres from the eye to the farthest corner of any receiver; 0 without receivers.
+fn farthest(view: &View, receivers: &[Placed]) -> f64 {
+    receivers.iter().map(|r| ((r.center - view.eye()).abs() + r.half).length()).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

@@ -6,6 +6,9 @@ use glam::{DVec2, DVec3};
 /// candidate rectangles is 180° / 32 = 5.6°, which costs at most 5 % of an edge against the smallest rectangle of all.
 pub(crate) const DIRECTIONS: usize = 32;
 
+/// Directions to a quarter turn.
+const QUARTER: usize = DIRECTIONS / 2;
+
 /// World vectors in the light's plane, [`DIRECTIONS`] over half a turn, and the light's depth axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Fan {
@@ -69,6 +72,20 @@ impl Region {
         self.depth = (self.depth.0.min(depth - reach), self.depth.1.max(depth + reach));
     }
 
+    pub fn include_region(&mut self, other: &Self) {
+        for k in 0..DIRECTIONS {
+            self.lo[k] = self.lo[k].min(other.lo[k]);
+            self.hi[k] = self.hi[k].max(other.hi[k]);
+        }
+        self.depth = (self.depth.0.min(other.depth.0), self.depth.1.max(other.depth.1));
+    }
+
+    /// The same with each bound moved into `limits`, depth left as it is.
+    pub fn within(&self, limits: &Self) -> Self {
+        let bound = |own: &[f64; DIRECTIONS]| std::array::from_fn(|k| own[k].clamp(limits.lo[k], limits.hi[k]));
+        Self { lo: bound(&self.lo), hi: bound(&self.hi), depth: self.depth }
+    }
+
     /// Whether the box lies inside in every direction and in depth, so that including any part of it changes nothing.
     pub fn encloses_box(&self, fan: &Fan, center: DVec3, half: DVec3) -> bool {
         let (depth, reach) = (fan.depth.dot(center), fan.depth.abs().dot(half));
@@ -119,12 +136,20 @@ impl Region {
         self.lo.iter().zip(&self.hi).map(|(lo, hi)| hi - lo).fold(0.0, f64::max)
     }
 
+    /// The first axis of the rectangle of least area among those that stand on the fan's directions.
+    pub fn least_direction(&self) -> usize {
+        (1..QUARTER).fold(0, |best, k| if self.area(k) < self.area(best) { k } else { best })
+    }
+
+    /// Area of the rectangle that stands on direction `u` of the fan (of its first half), square metres.
+    pub fn area(&self, u: usize) -> f64 {
+        (self.hi[u] - self.lo[u]) * (self.hi[u + QUARTER] - self.lo[u + QUARTER])
+    }
+
     /// The rectangle of least area among those that stand on the fan's directions, as (u axis, v axis, lo, hi) with
     /// u × v = depth.
     pub fn least_rectangle(&self, fan: &Fan) -> (DVec3, DVec3, DVec2, DVec2) {
-        const QUARTER: usize = DIRECTIONS / 2;
-        let area = |k: usize| (self.hi[k] - self.lo[k]) * (self.hi[k + QUARTER] - self.lo[k + QUARTER]);
-        let best = (1..QUARTER).fold(0, |best, k| if area(k) < area(best) { k } else { best });
+        let best = self.least_direction();
         let (lo, hi) = self.bounds(best);
         let (u, v) = fan.axes(best);
         (u, v, lo, hi)

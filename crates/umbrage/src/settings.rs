@@ -22,6 +22,11 @@ pub enum SplitScheme {
     },
     /// Inner planes `C_1 .. C_{m−1}` as view depths in metres, rising strictly.
     Manual(Vec<f64>),
+    /// Where the scene in view is expected to be shown with the least error: chosen every frame among a few dozen depths, by the boxes of
+    /// casters and receivers, the size of each map, and what it is fitted to. Stabilised planes are held until others promise an error
+    /// smaller by a third, and all maps move in the frame that takes them. Maps with a warp are taken for plain ones. Needs a
+    /// [`crate::DirectionalLight`] and a scene: [`crate::split_planes`] alone cannot place them. Ours.
+    Fitted,
 }
 
 impl Default for SplitScheme {
@@ -251,7 +256,7 @@ impl ShadowSettings {
         self.check_warps()?;
         Bands::check(self)?;
         match &self.scheme {
-            SplitScheme::Uniform | SplitScheme::Logarithmic => {}
+            SplitScheme::Uniform | SplitScheme::Logarithmic | SplitScheme::Fitted => {}
             SplitScheme::Practical { lambda, delta } => {
                 unit("lambda", *lambda)?;
                 if !(delta.len() <= 1 || delta.len() == m - 1) {

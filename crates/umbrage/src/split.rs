@@ -9,7 +9,8 @@ use crate::{Bands, Error, Result, SplitScheme, View};
 /// Shadow Maps* eq. 4 to 7, where δ moves all planes: ours leaves the ends where they are.
 ///
 /// # Errors
-/// [`Error::InvalidSetting`] naming `range`, `delta` or `planes` if the planes would not rise strictly.
+/// [`Error::InvalidSetting`] naming `range`, `delta` or `planes` if the planes would not rise strictly, and `scheme` for
+/// [`SplitScheme::Fitted`], whose planes need a scene.
 pub fn split_planes(scheme: &SplitScheme, near: f64, far: f64, splits: usize, planes: &mut Vec<f64>) -> Result<()> {
     check_range(near, far)?;
     let m = splits as f64;
@@ -27,6 +28,12 @@ pub fn split_planes(scheme: &SplitScheme, near: f64, far: f64, splits: usize, pl
                 lambda * logarithmic(i) + (1.0 - lambda) * uniform(i) + offset
             }
             SplitScheme::Manual(inner) => inner[i - 1],
+            SplitScheme::Fitted => {
+                return Err(Error::setting(
+                    "scheme",
+                    "fitted planes need a scene; plan one with Planner::plan, or choose a scheme of near and far alone",
+                ));
+            }
         });
     }
     planes.push(far);

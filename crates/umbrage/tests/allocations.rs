@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use umbrage::{
-    Aabb, DirectionalLight, Fit, Frustum, Light, Planner, PointLight, ShadowSettings, SpotLight, Stabilize, View, Warp,
+    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Light, Planner, PointLight, ShadowSettings, SplitScheme,
+    SpotLight, Stabilize, View, Warp,
 };
 
 #[test]
@@ -31,6 +32,19 @@ fn only_the_first_frame_allocates() {
                 });
                 assert_eq!(again.count_total, 0, "{fit:?} {stabilize:?} {light:?} allocated {again:?}");
             }
+        }
+        for stabilize in [Stabilize::Exact, Stabilize::None, Stabilize::Approximate(ExtentSteps::default())] {
+            let scheme = SplitScheme::Fitted;
+            let settings = ShadowSettings { fit, stabilize, scheme, ..ShadowSettings::default() };
+            let mut planner = Planner::new(settings).expect("valid");
+            let view = view(0.3).expect("valid");
+            planner.plan(&view, &light, &world, &world).expect("valid");
+            // What is held stands among the candidates from the second frame on.
+            planner.plan(&view, &light, &world, &world).expect("valid");
+            let again = allocation_counter::measure(|| {
+                planner.plan(&view, &light, &world, &world).expect("valid");
+            });
+            assert_eq!(again.count_total, 0, "{fit:?} {stabilize:?} fitted planes allocated {again:?}");
         }
         for warp in [Warp::Psm, Warp::Lispsm, Warp::Tsm { focus: 0.2 }] {
             let settings =

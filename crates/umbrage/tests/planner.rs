@@ -2,6 +2,7 @@
 
 use glam::{DQuat, DVec3, EulerRot};
 use proptest::prelude::*;
+use umbrage::DepthConvention::{MinusOneToOne, ZeroToOne};
 use umbrage::{
     Aabb, Bands, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, Projection, RangeFit, Selection, ShadowPlan,
     ShadowSettings, SplitScheme, Stabilize, View, Warp,
@@ -277,6 +278,16 @@ proptest! {
             prop_assert!((ndc.x - (2.0 * at.x / size - 1.0)).abs() < 1e-9 * (1.0 + ndc.x.abs()));
             prop_assert!((ndc.y - (1.0 - 2.0 * at.y / size)).abs() < 1e-9 * (1.0 + ndc.y.abs()));
             prop_assert!((ndc.z - at.z).abs() < 1e-9 * (1.0 + ndc.z.abs()));
+            // What an engine of either kind makes of its matrix is what it looks up: OpenGL's viewport and depth range turn NDC into
+            // coordinates by (1 + ndc)/2 in all three, the others' turn y and leave z.
+            for (convention, [flip, depth]) in [(ZeroToOne, [-1.0, 0.0]), (MinusOneToOne, [1.0, 0.5])] {
+                let ndc = split.shadow_from_world_in(convention).project_point3(point);
+                let drawn = DVec3::new(0.5 + 0.5 * ndc.x, 0.5 + 0.5 * flip * ndc.y, depth + (1.0 - depth) * ndc.z);
+                let asked = split.texture_from_world(convention).project_point3(point);
+                prop_assert!((drawn - asked).abs().max_element() < 1e-9 * (1.0 + asked.abs().max_element()), "{drawn} {asked}");
+                let v = if flip < 0.0 { at.y } else { size - at.y };
+                prop_assert!((asked * size - DVec3::new(at.x, v, at.z * size)).abs().max_element() < 1e-9 * size * (1.0 + asked.abs().max_element()));
+            }
         }
         for (caster, splits) in listed.iter().enumerate() {
             let range = splits.first().map(|&first| (first as u8, splits[splits.len() - 1] as u8));

@@ -12,8 +12,8 @@ use super::{
 use crate::{
     compare::techniques::Technique,
     failure::Result,
-    job::{wgpu_depth_format, wgpu_filter},
     lights,
+    shadow_job::{wgpu_depth_format, wgpu_filter},
     stage::Stage,
 };
 

@@ -20,11 +20,12 @@ use crate::{
     args::Switch,
     compare::techniques::{self, Technique},
     failure::{Failure, Result},
-    job::{SceneJob, typed_name},
     lights::NamedLight,
     output::{self, Staged},
     progress,
     report::to_json,
+    scene_job::SceneJob,
+    shadow_job::typed_name,
     stage::{Shot, Stage},
 };
 

@@ -21,11 +21,11 @@ use crate::{
     adapter,
     args::Switch,
     failure::{Failure, Result},
-    job::{wgpu_depth_format, wgpu_filter},
     output::Staged,
     progress,
     render::png,
     report::to_json,
+    shadow_job::{wgpu_depth_format, wgpu_filter},
     stage,
 };
 
@@ -334,7 +334,7 @@ fn labels(comparison: &Comparison, techniques: &[Technique]) -> Vec<Label> {
         let [texels, bytes] = [report.texels, report.bytes].map(|count| count as f64 / f64::from(1 << 20));
         let mut lines = vec![
             format!("{texels:.2} Mtexel, {bytes:.1} MiB"),
-            format!("filter {}", crate::job::typed_name(technique.job.filter)),
+            format!("filter {}", crate::shadow_job::typed_name(technique.job.filter)),
         ];
         if let Some(e) = report.mean.e {
             lines.push(format!("mean E {:.2} %, {} views", 100.0 * e, report.mean.views));

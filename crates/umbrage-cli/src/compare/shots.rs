@@ -8,8 +8,8 @@ use umbrage_scene::{CameraPath, HeightMapOptions, Pose, Scene};
 use super::args::CompareArgs;
 use crate::{
     failure::{Failure, Result},
-    job::{CameraChoice, SceneJob},
     lights::{self, NamedLight},
+    scene_job::{CameraChoice, SceneJob},
     stage,
 };
 

@@ -20,7 +20,7 @@ use toml::{Table, Value};
 use crate::{
     args::{ShadowArgs, Technique as Kind},
     failure::{Failure, Result},
-    job::{ShadowJob, typed_name},
+    shadow_job::{ShadowJob, typed_name},
 };
 
 /// Kinds that are spoken of and do not exist yet.

@@ -1,0 +1,466 @@
+//! Planes that find themselves: of many candidates those between which the maps are expected to err least.
+//!
+//! The papers place planes by a formula of near, far and m alone, the optimum for a scene that fills the view evenly. Scenes do not: a
+//! plane in the gap between two rows of casters leaves both maps small, one through a row makes both as wide as the row.
+//! Here the row of planes of least expected error is found exactly, by dynamic programming over a few dozen candidates. Ours;
+//! *Sample Distribution Shadow Maps* (Lauritzen et al. 2010) place planes by the depths that a frame shows, which needs the frame.
+
+use crate::cells::{Cells, Sight};
+use crate::region::{Fan, Region};
+use crate::split::{coverage, split_planes};
+use crate::stable::slice_sphere;
+use crate::{Error, ExtentSteps, Fit, Frustum, Projection, Result, ShadowSettings, SplitScheme, Stabilize, View};
+
+/// Candidates between the ends, besides those of the fixed schemes and those that are held.
+const CANDIDATES: usize = 40;
+
+/// By how much the best planes have to beat those that are held, where maps have to stand still: less than this share of what the held
+/// ones cost.
+const WORTH_MOVING: f64 = 2.0 / 3.0;
+
+/// How the edge of a map follows from what it has to show.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Maps<'a> {
+    pub settings: &'a ShadowSettings,
+    /// Texels that each map keeps free around what it serves.
+    pub margin: f64,
+    /// Across everything that is shadowed, metres: what the source's steps are fractions of.
+    pub whole_width: f64,
+}
+
+impl Maps<'_> {
+    /// Metres across what a map shows, the mean of its edges, for each slice between two candidates.
+    fn edge(&self, region: &Region, fan: &Fan) -> f64 {
+        let (_, _, lo, hi) = region.least_rectangle(fan);
+        let extent = match self.settings.stabilize {
+            Stabilize::Approximate(ExtentSteps::Levels(count)) => {
+                let level = self.whole_width / f64::from(count);
+                ((hi - lo) / level).ceil().max(glam::DVec2::ONE) * level
+            }
+            // Steps of equal ratio add the same share to all on average.
+            _ => hi - lo,
+        };
+        0.5 * (extent.x + extent.y)
+    }
+
+    /// Texels across map `i` that serve its slice.
+    fn texels(&self, i: usize) -> f64 {
+        let rounding = if self.settings.stabilize == Stabilize::None { 0.0 } else { 1.0 };
+        (f64::from(self.settings.map_sizes[i]) - 2.0 * self.margin - rounding).max(1.0)
+    }
+}
+
+/// What every slice between two candidates would cost.
+#[derive(Clone, Debug, Default)]
+struct Costs {
+    /// Number of candidates, ends included.
+    len: usize,
+    /// Metres across the map of slice (i, j), at `i * len + j`.
+    edges: Vec<f64>,
+    /// Where the map of the slice from j begins if the one before begins at i: blending and pixel quads reach back over the border. The
+    /// candidate at or before, and the share of the way to the next.
+    begins: Vec<(usize, f64)>,
+    /// Sums of the cells' weights before each candidate.
+    weights_before: Vec<f64>,
+    /// Texels across each map.
+    texels: Vec<f64>,
+}
+
+impl Costs {
+    /// Expected error of map `split` over the slice from candidate `j` to `k`; `before` is where the slice before it begins.
+    fn slice(&self, split: usize, before: Option<usize>, j: usize, k: usize) -> f64 {
+        let weight = self.weights_before[k] - self.weights_before[j];
+        if weight <= 0.0 {
+            return 0.0;
+        }
+        let edge = |i: usize| self.edges[i * self.len + k];
+        let edge = match before.map(|i| self.begins[i * self.len + j]) {
+            Some((begin, share)) if share > 0.0 => edge(begin) + share * (edge(begin + 1) - edge(begin)),
+            Some((begin, _)) => edge(begin),
+            None => edge(j),
+        };
+        weight * edge / self.texels[split]
+    }
+
+    /// Expected error with planes at these candidates, ends included.
+    fn total(&self, planes: &[usize]) -> f64 {
+        (0..planes.len() - 1)
+            .map(|split| self.slice(split, split.checked_sub(1).map(|i| planes[i]), planes[split], planes[split + 1]))
+            .sum()
+    }
+}
+
+/// The best rows of slices, by the two candidates between which the last of them lies.
+#[derive(Clone, Debug, Default)]
+struct Search {
+    costs: Vec<f64>,
+    costs_before: Vec<f64>,
+    /// Where the slice before the last begins, for each split.
+    parents: Vec<u8>,
+}
+
+impl Search {
+    /// Writes the candidates of least cost into `planes`, ends included. Needs as many candidates as planes, at least.
+    ///
+    /// A slice's map reaches back over its border by a share of the slice before, so that what it costs depends on three planes: the states
+    /// are pairs of candidates, the work is m K³ / 6.
+    fn cheapest(&mut self, costs: &Costs, planes: &mut Vec<usize>) {
+        let (n, m) = (costs.len, costs.texels.len());
+        let at = |i: usize, j: usize| i * n + j;
+        self.costs.clear();
+        self.costs.resize(n * n, f64::INFINITY);
+        self.parents.clear();
+        self.parents.resize(m * n * n, 0);
+        for k in 1..n {
+            self.costs[at(0, k)] = costs.slice(0, None, 0, k);
+        }
+        for split in 1..m {
+            std::mem::swap(&mut self.costs, &mut self.costs_before);
+            self.costs.clear();
+            self.costs.resize(n * n, f64::INFINITY);
+            for j in split..n {
+                for k in j + 1..n {
+                    let (mut best, mut parent) = (f64::INFINITY, 0);
+                    for i in 0..j {
+                        let before = self.costs_before[at(i, j)];
+                        if before < best {
+                            let cost = before + costs.slice(split, Some(i), j, k);
+                            if cost < best {
+                                (best, parent) = (cost, i);
+                            }
+                        }
+                    }
+                    self.costs[at(j, k)] = best;
+                    self.parents[split * n * n + at(j, k)] = parent as u8;
+                }
+            }
+        }
+        let last = n - 1;
+        let mut j =
+            (0..last).fold(0, |best, j| if self.costs[at(j, last)] < self.costs[at(best, last)] { j } else { best });
+        let mut k = last;
+        planes.clear();
+        planes.push(k);
+        for split in (0..m).rev() {
+            planes.push(j);
+            (j, k) = (usize::from(self.parents[split * n * n + at(j, k)]), j);
+        }
+        planes.reverse();
+    }
+}
+
+/// Finds planes frame after frame, and holds on to them where maps have to stand still.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Placement {
+    candidates: Vec<f64>,
+    cells: Cells,
+    weights: Vec<f64>,
+    costs: Costs,
+    search: Search,
+    best: Vec<usize>,
+    scheme: Vec<f64>,
+    /// The inner planes of the last frame.
+    held: Vec<f64>,
+}
+
+impl Placement {
+    /// Writes `m + 1` planes between `near` and `far` into `planes`. Says whether they are others than before.
+    ///
+    /// # Errors
+    /// [`Error::InvalidSetting`] naming `range` if it is too short to be divided.
+    pub fn place(
+        &mut self,
+        sight: &Sight,
+        maps: &Maps,
+        (near, far): (f64, f64),
+        planes: &mut Vec<f64>,
+    ) -> Result<bool> {
+        let settings = maps.settings;
+        let m = settings.splits();
+        split_planes(&SplitScheme::Logarithmic, near, far, m, planes)?;
+        if m == 1 {
+            return Ok(false);
+        }
+        let mut holds = settings.stabilize != Stabilize::None
+            && self.held.len() == m - 1
+            && self.held.first() > Some(&near)
+            && self.held.last() < Some(&far);
+        self.choose_candidates(sight.view.frustum().projection, near, far, m)?;
+        self.cells.gather(sight, &self.candidates);
+        self.cells.weigh(sight.view.frustum().projection, &self.candidates, &mut self.weights);
+        if self.weights.iter().sum::<f64>() <= 0.0 {
+            // Nothing throws a shadow that is seen: planes that are held stay, others stand where they do for an even scene.
+            return Ok(self.hold(planes, holds));
+        }
+        self.measure(sight, maps);
+        self.search.cheapest(&self.costs, &mut self.best);
+        if !(holds && self.held_is_good_enough()) {
+            holds = false;
+            for (plane, &index) in planes[1..m].iter_mut().zip(&self.best[1..m]) {
+                *plane = self.candidates[index];
+            }
+        }
+        Ok(self.hold(planes, holds))
+    }
+
+    /// The planes of the last frame, or else those that are given and held from now on. Says whether they are others than before.
+    fn hold(&mut self, planes: &mut [f64], keep: bool) -> bool {
+        let last = planes.len() - 1;
+        let inner = &mut planes[1..last];
+        if keep {
+            inner.copy_from_slice(&self.held);
+        }
+        let moved = inner != self.held;
+        self.held.clear();
+        self.held.extend_from_slice(inner);
+        moved
+    }
+
+    fn held_is_good_enough(&self) -> bool {
+        let index = |depth: &f64| self.candidates.partition_point(|candidate| candidate < depth);
+        let mut planes = [0; crate::MAX_SPLITS + 1];
+        let m = self.held.len() + 1;
+        for (plane, held) in planes[1..m].iter_mut().zip(&self.held) {
+            *plane = index(held);
+        }
+        planes[m] = self.costs.len - 1;
+        self.costs.total(&self.best) >= WORTH_MOVING * self.costs.total(&planes[..=m])
+    }
+
+    /// Rising depths from near to far: evenly spaced on the picture, with the planes of the fixed schemes and those that are held
+    /// among them.
+    fn choose_candidates(&mut self, projection: Projection, near: f64, far: f64, m: usize) -> Result<()> {
+        let scheme = match projection {
+            Projection::Perspective => SplitScheme::Logarithmic,
+            Projection::Orthographic => SplitScheme::Uniform,
+        };
+        let spread = |scheme: &SplitScheme, splits: usize, all: &mut Vec<f64>, own: &mut Vec<f64>| {
+            // A range with room for the splits may be too short for all the candidates: those that it has no room for are left out.
+            if split_planes(scheme, near, far, splits, own).is_ok() {
+                all.extend_from_slice(&own[1..splits]);
+            }
+        };
+        self.candidates.clear();
+        self.candidates.extend([near, far]);
+        spread(&scheme, CANDIDATES + 1, &mut self.candidates, &mut self.scheme);
+        spread(&SplitScheme::Logarithmic, m, &mut self.candidates, &mut self.scheme);
+        spread(&SplitScheme::Uniform, m, &mut self.candidates, &mut self.scheme);
+        spread(&SplitScheme::default(), m, &mut self.candidates, &mut self.scheme);
+        self.candidates.extend(self.held.iter().filter(|&&held| held > near && held < far));
+        self.candidates.sort_unstable_by(f64::total_cmp);
+        self.candidates.dedup();
+        if self.candidates.len() <= m {
+            return Err(Error::setting(
+                "range",
+                format!("{near} m to {far} m has no room for {m} splits; give a longer range or fewer splits"),
+            ));
+        }
+        Ok(())
+    }
+
+    /// Fills the costs of all slices.
+    fn measure(&mut self, sight: &Sight, maps: &Maps) {
+        let Self { candidates, cells, weights, costs, .. } = self;
+        let settings = maps.settings;
+        let n = candidates.len();
+        costs.len = n;
+        costs.texels.clear();
+        costs.texels.extend((0..settings.splits()).map(|i| maps.texels(i)));
+        costs.weights_before.clear();
+        costs.weights_before.push(0.0);
+        let mut sum = 0.0;
+        costs.weights_before.extend(weights.iter().map(|weight| {
+            sum += weight;
+            sum
+        }));
+        costs.edges.clear();
+        costs.edges.resize(n * n, 0.0);
+        costs.begins.clear();
+        costs.begins.resize(n * n, (0, 0.0));
+        for i in 0..n {
+            for j in i + 1..n {
+                costs.begins[i * n + j] = begin(sight.view, settings, candidates, i, j);
+            }
+            match (settings.stabilize, settings.fit) {
+                (Stabilize::Exact, _) => {
+                    let frustum = around(sight.view.frustum());
+                    for (j, &to) in candidates.iter().enumerate().skip(i + 1) {
+                        costs.edges[i * n + j] = 2.0 * slice_sphere(&frustum, candidates[i], to).radius;
+                    }
+                }
+                (_, Fit::Independent) => {
+                    let near = face(sight.view, sight.fan, candidates[i]);
+                    for (j, &to) in candidates.iter().enumerate().skip(i + 1) {
+                        let mut region = face(sight.view, sight.fan, to);
+                        region.include_region(&near);
+                        costs.edges[i * n + j] = maps.edge(&region, sight.fan);
+                    }
+                }
+                (_, Fit::Dependent) => {
+                    let (mut receivers, mut casters) = (Region::EMPTY, Region::EMPTY);
+                    for j in i + 1..n {
+                        let cell = &cells.cells[j - 1];
+                        receivers.include_region(&cell.receivers);
+                        casters.include_region(&cell.casters);
+                        let lit = casters.is_empty() || receivers.is_empty();
+                        costs.edges[i * n + j] =
+                            if lit { 0.0 } else { maps.edge(&casters.within(&receivers), sight.fan) };
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A symmetric frustum around another: its spheres have a closed form.
+fn around(frustum: &Frustum) -> Frustum {
+    let (right, top) = (frustum.left.abs().max(frustum.right.abs()), frustum.bottom.abs().max(frustum.top.abs()));
+    Frustum { left: -right, right, bottom: -top, top, ..*frustum }
+}
+
+/// The view across a depth, in the light's plane.
+fn face(view: &View, fan: &Fan, depth: f64) -> Region {
+    let mut region = Region::EMPTY;
+    for corner in view.frustum().corners_at(depth) {
+        region.include_point(fan, view.world_from_view_point(corner));
+    }
+    region
+}
+
+/// Where the map of a slice from candidate `j` begins, if the slice before begins at `i`.
+fn begin(view: &View, settings: &ShadowSettings, candidates: &[f64], i: usize, j: usize) -> (usize, f64) {
+    // The far plane has no say in where a slice begins.
+    let planes = [candidates[i], candidates[j], f64::INFINITY];
+    let (from, _) = coverage(view, &planes, 1, settings.blend, settings.image_size, settings.bands);
+    let after = candidates.partition_point(|&candidate| candidate <= from);
+    match after.checked_sub(1) {
+        None => (0, 0.0),
+        Some(before) if before >= j => (j, 0.0),
+        Some(before) => (before, (from - candidates[before]) / (candidates[after] - candidates[before])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Candidates at even ratios between 1 and `far`, maps as wide as the far ends of their slices and a picture that is filled evenly: the
+    /// papers' own setting. `power` is that of depth in the density of weights; theirs is −2.
+    fn even(len: usize, far: f64, texels: &[f64], power: i32) -> (Vec<f64>, Costs) {
+        let depths: Vec<f64> = (0..len).map(|i| far.powf(i as f64 / (len - 1) as f64)).collect();
+        let integral = |depth: f64| depth.powi(power + 1) / f64::from(power + 1);
+        let mut edges = vec![0.0; len * len];
+        let mut begins = vec![(0, 0.0); len * len];
+        for i in 0..len {
+            for j in i + 1..len {
+                edges[i * len + j] = depths[j];
+                begins[i * len + j] = (j, 0.0);
+            }
+        }
+        let weights_before = depths.iter().map(|&depth| integral(depth) - integral(1.0)).collect();
+        (depths, Costs { len, edges, begins, weights_before, texels: texels.to_vec() })
+    }
+
+    fn cheapest(costs: &Costs) -> Vec<usize> {
+        let (mut search, mut planes) = (Search::default(), Vec::new());
+        search.cheapest(costs, &mut planes);
+        planes
+    }
+
+    #[test]
+    fn an_even_scene_gets_the_logarithmic_planes_and_another_cost_gets_others() {
+        for m in 1..=6 {
+            let (_, costs) = even(61, 1000.0, &vec![512.0; m], -2);
+            let planes = cheapest(&costs);
+            assert_eq!(planes, (0..=m).map(|i| i * 60 / m).collect::<Vec<_>>());
+            let closed_form = m as f64 * (1000f64.powf(1.0 / m as f64) - 1.0) / 512.0;
+            assert!((costs.total(&planes) - closed_form).abs() < 1e-12 * closed_form);
+        }
+        let (_, wrong) = even(61, 1000.0, &[512.0; 3], -3);
+        assert_ne!(cheapest(&wrong), [0, 20, 40, 60]);
+    }
+
+    #[test]
+    fn a_larger_map_takes_a_longer_slice() {
+        let first = |texels: &[f64]| cheapest(&even(61, 1000.0, texels, -2).1)[1];
+        let same = first(&[512.0, 512.0]);
+        assert!(first(&[2048.0, 512.0]) > same + 5);
+        assert!(first(&[512.0, 2048.0]) < same - 5);
+    }
+
+    #[test]
+    fn a_slice_without_weight_costs_nothing() {
+        // All that throws shadows stands between candidates 7 and 9 and 20 and 22: planes in the gap leave two small maps.
+        let len = 30;
+        let occupied = |i: usize| (7..9).contains(&i) || (20..22).contains(&i);
+        let (mut edges, mut begins, mut weights_before) = (vec![0.0; len * len], vec![(0, 0.0); len * len], vec![0.0]);
+        for i in 0..len {
+            for j in i + 1..len {
+                let held: Vec<usize> = (i..j).filter(|&k| occupied(k)).collect();
+                edges[i * len + j] = held.first().map_or(0.0, |first| (held[held.len() - 1] + 1 - first) as f64);
+                begins[i * len + j] = (j, 0.0);
+            }
+            weights_before.push(weights_before[i] + f64::from(u8::from(occupied(i))));
+        }
+        let costs = Costs { len, edges, begins, weights_before, texels: vec![1.0; 2] };
+        let planes = cheapest(&costs);
+        assert!((9..=20).contains(&planes[1]), "{planes:?}");
+        assert_eq!(costs.total(&planes), 8.0);
+    }
+
+    /// Random costs with bands that reach back.
+    fn any_costs() -> impl Strategy<Value = Costs> {
+        (3usize..9, 1usize..5).prop_filter("room for the splits", |(len, m)| len > m).prop_flat_map(|(len, m)| {
+            let edge = prop_oneof![Just(0.0), 0.0..100.0];
+            let weight = prop_oneof![2 => Just(0.0), 3 => 0.0..1.0];
+            let edges = proptest::collection::vec(edge, len * len);
+            let back = proptest::collection::vec((0usize..3, prop_oneof![Just(0.0), 0.0..1.0]), len * len);
+            let weights = proptest::collection::vec(weight, len - 1);
+            let texels = proptest::collection::vec(1.0..2000.0, m);
+            (edges, back, weights, texels).prop_map(move |(edges, back, weights, texels)| {
+                let mut begins = vec![(0, 0.0); len * len];
+                for i in 0..len {
+                    for j in i + 1..len {
+                        let (back, share) = back[i * len + j];
+                        let begin = j.saturating_sub(back);
+                        begins[i * len + j] = (begin, if begin < j { share } else { 0.0 });
+                    }
+                }
+                let sum = |sum: &mut f64, weight: &f64| {
+                    *sum += weight;
+                    Some(*sum)
+                };
+                let weights_before = std::iter::once(0.0).chain(weights.iter().scan(0.0, sum)).collect();
+                Costs { len, edges, begins, weights_before, texels }
+            })
+        })
+    }
+
+    /// All rows of planes.
+    fn all_rows(len: usize, m: usize) -> Vec<Vec<usize>> {
+        let mut rows = vec![vec![0]];
+        for split in 1..=m {
+            let next = |row: Vec<usize>| {
+                let from = row[split - 1] + 1;
+                let to = if split == m { len - 1 } else { len - 2 };
+                (from.max(if split == m { len - 1 } else { from })..=to).map(move |i| [&row[..], &[i]].concat())
+            };
+            rows = rows.into_iter().flat_map(next).collect();
+        }
+        rows
+    }
+
+    proptest! {
+        #[test]
+        fn the_search_finds_what_trying_all_finds(costs in any_costs()) {
+            let m = costs.texels.len();
+            let planes = cheapest(&costs);
+            prop_assert_eq!(planes.len(), m + 1);
+            prop_assert!(planes[0] == 0 && planes[m] == costs.len - 1 && planes.windows(2).all(|p| p[0] < p[1]));
+            let least = all_rows(costs.len, m).iter().map(|row| costs.total(row)).fold(f64::INFINITY, f64::min);
+            prop_assert!((costs.total(&planes) - least).abs() <= 1e-12 * least.max(1e-300), "{} {least}", costs.total(&planes));
+        }
+    }
+}
