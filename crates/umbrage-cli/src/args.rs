@@ -164,6 +164,10 @@ pub struct SceneArgs {
     /// Height map: metres added to every height
     #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
     pub height_offset: Option<f64>,
+    /// Move the scene with its cameras and lights by this many metres, as if it lay far from the world's origin; --eye, --target and --path
+    /// are places of the world
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Scene")]
+    pub move_scene: Option<DVec3>,
     /// Seconds into the scene's animations
     #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
     pub time: f64,

@@ -28,6 +28,8 @@ pub struct SceneJob {
     pub metres_per_unit: Option<f64>,
     /// `--height-offset`.
     pub height_offset: Option<f64>,
+    /// `--move-scene`, metres.
+    pub move_scene: Option<DVec3>,
     /// Seconds into the animations.
     pub time_s: f64,
     /// Pixels across and down.
@@ -123,6 +125,7 @@ impl SceneJob {
             metres_per_post: args.metres_per_post,
             metres_per_unit: args.metres_per_unit,
             height_offset: args.height_offset,
+            move_scene: args.move_scene,
             time_s: args.time,
             size: args.size,
             camera,

@@ -105,6 +105,10 @@ impl Stage {
             _ => None,
         };
         let scene = umbrage_scene::open(&job.scene, &height_map)?;
+        let scene = match job.move_scene {
+            Some(by) => scene.moved(by),
+            None => scene,
+        };
         let pose = scene.pose(job.time_s)?;
         let mut notes = scene.notes.clone();
         let places = places(job, &scene, &pose, path.as_ref(), &mut notes)?;

@@ -71,6 +71,9 @@ fn options_that_say_nonsense() {
         ("--metres-per-post 0", &["--metres-per-post"]),
         ("--metres-per-unit nan", &["--metres-per-unit"]),
         ("--height-offset inf", &["--height-offset"]),
+        ("--move-scene 1,2", &["--move-scene", "1,2"]),
+        ("--move-scene 0,nan,0", &["--move-scene", "nan"]),
+        ("--move-scene inf,0,0", &["--move-scene", "inf"]),
         ("--no-such-option", &["--no-such-option"]),
     ] {
         folder.refuse(&format!("render tiny.glb -o out.png {options}"), culprits);

@@ -366,6 +366,25 @@ fn a_plan_needs_no_gpu_and_says_it_in_both_conventions() {
 }
 
 #[test]
+fn a_scene_that_was_moved_far_away_is_planned_alike() {
+    let folder = Folder::new();
+    let options = "--splits 2 --map-size 256,128";
+    folder.succeed(&format!("plan tiny.glb --eye 0,5,9 --target 0,0,0 {options} -o here.json"));
+    let there = "--move-scene 100000,-12,-5000 --eye 100000,-7,-4991 --target 100000,-12,-5000";
+    folder.succeed(&format!("plan tiny.glb {there} {options} -o there.json"));
+    let (here, there) = (folder.json("here.json"), folder.json("there.json"));
+    let near = |a: &serde_json::Value, b: &serde_json::Value| {
+        let (a, b) = (a.as_f64().expect("a number"), b.as_f64().expect("a number"));
+        assert!((a - b).abs() < 1e-9 * (1.0 + a.abs()), "{a} {b}");
+    };
+    (0..3).for_each(|plane| near(&here["planes_m"][plane], &there["planes_m"][plane]));
+    for split in 0..2 {
+        (0..2).for_each(|axis| near(&here["splits"][split]["texel_m"][axis], &there["splits"][split]["texel_m"][axis]));
+        assert_eq!(here["splits"][split]["casters"], there["splits"][split]["casters"]);
+    }
+}
+
+#[test]
 fn a_world_by_its_name() {
     if !has_adapter() {
         return;

@@ -3,9 +3,10 @@
 use std::ops::Range;
 
 use glam::DVec3;
-use umbrage::{Planner, ShadowPlan};
-use umbrage_scene::Object;
+use umbrage::{Aabb, Planner, ShadowPlan};
+use umbrage_scene::{Object, Pose};
 
+use crate::Result;
 use crate::draw_list::{Parts, Run, once};
 use crate::geometry::GpuPrimitive;
 use crate::renderer::{Frame, Renderer};
@@ -14,16 +15,18 @@ use crate::renderer::{Frame, Renderer};
 const LEAST_SPARED: u32 = 128;
 
 impl Renderer {
-    /// What each pass over the maps draws; nothing where shadows are off.
+    /// What each pass over the maps draws; nothing where shadows are off. `visible` are the objects whose surfaces alone ask the maps, if
+    /// that is so.
     pub(crate) fn caster_runs(
         &mut self,
         frame: &Frame<'_>,
         origin: DVec3,
         objects: &[usize],
         plans: &[ShadowPlan],
-    ) -> Vec<Vec<Run>> {
+        visible: Option<&[usize]>,
+    ) -> Result<Vec<Vec<Run>>> {
         if !frame.shadows_on {
-            return Vec::new();
+            return Ok(Vec::new());
         }
         let pose = frame.pose;
         let [plan] = plans else {
@@ -31,12 +34,15 @@ impl Renderer {
             for (light, plan) in plans.iter().enumerate() {
                 self.light_runs(frame, origin, objects, light, plan, &mut runs);
             }
-            return runs;
+            return Ok(runs);
         };
         if self.maps.map_count() > self.maps.splits() {
             let mut runs = vec![Vec::new(); self.maps.map_count()];
             self.light_runs(frame, origin, objects, 0, plan, &mut runs);
-            return runs;
+            return Ok(runs);
+        }
+        if let Some(visible) = visible {
+            self.tell_parts(pose, objects, plan, visible)?;
         }
         let mut all = Vec::new();
         for pass in self.maps.passes() {
@@ -49,7 +55,9 @@ impl Renderer {
             let (mut whole, mut in_part) = (Vec::new(), Vec::new());
             for (index, codes) in copies {
                 let object = &pose.objects[index];
-                match parts_in(planner, split, object, &self.scene.meshes[object.mesh]) {
+                let meshes = &self.scene.meshes;
+                let parts = || parts_in(planner, split, object, &meshes[object.mesh]);
+                match has_parts(object, meshes).then(parts).flatten() {
                     Some(parts) => in_part.push((index, codes, parts)),
                     None => whole.push((index, codes)),
                 }
@@ -61,7 +69,25 @@ impl Renderer {
             }
             all.push(runs);
         }
-        all
+        Ok(all)
+    }
+
+    /// Tells the planner what visible objects are made of, if some caster may be drawn in part.
+    fn tell_parts(&mut self, pose: &Pose, objects: &[usize], plan: &ShadowPlan, visible: &[usize]) -> Result<()> {
+        let meshes = &self.scene.meshes;
+        if !plan.caster_indices.iter().any(|&caster| has_parts(&pose.objects[objects[caster as usize]], meshes)) {
+            return Ok(());
+        }
+        let mut parts: Vec<Aabb> = Vec::new();
+        for object in visible.iter().map(|&index| &pose.objects[index]) {
+            if object.skinned.is_some() {
+                parts.push(object.bounds);
+                continue;
+            }
+            let clusters = meshes[object.mesh].iter().flat_map(|primitive| &primitive.clusters);
+            parts.extend(clusters.map(|cluster| cluster.bounds.transformed(&object.world_from_local)));
+        }
+        Ok(self.planners.now[0].tell_parts(&parts)?)
     }
 
     /// What one of several lights draws into its maps.
@@ -81,18 +107,17 @@ impl Renderer {
     }
 }
 
-/// For each primitive the ranges of indices that reach a split; `None` if the object is better drawn whole, or its vertices move.
+/// Whether maps may leave out some of an object.
+fn has_parts(object: &Object, meshes: &[Vec<GpuPrimitive>]) -> bool {
+    object.skinned.is_none() && meshes[object.mesh].iter().any(|primitive| primitive.clusters.len() > 1)
+}
+
+/// For each primitive the ranges of indices that reach a split; `None` if the object is better drawn whole.
 fn parts_in(planner: &Planner, split: usize, object: &Object, primitives: &[GpuPrimitive]) -> Option<Parts> {
-    if object.skinned.is_some() || primitives.iter().all(|primitive| primitive.clusters.is_empty()) {
-        return None;
-    }
     let mut spared = 0;
     let parts: Parts = primitives
         .iter()
         .map(|primitive| {
-            if primitive.clusters.is_empty() {
-                return vec![primitive.shadow_indices.clone()];
-            }
             let mut ranges: Vec<Range<u32>> = Vec::new();
             for cluster in &primitive.clusters {
                 if !planner.reaches(split, &cluster.bounds.transformed(&object.world_from_local)) {

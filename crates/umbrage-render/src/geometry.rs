@@ -27,7 +27,7 @@ pub(crate) struct GpuPrimitive {
     pub material: usize,
     /// The same triangles for shadow passes.
     pub shadow_indices: Range<u32>,
-    /// Those in parts, if they are many.
+    /// Those in parts; one if they are few, none if their vertices move.
     pub clusters: Vec<Cluster>,
 }
 
@@ -35,6 +35,17 @@ impl GpuPrimitive {
     pub fn triangles(&self) -> u64 {
         u64::from(self.indices.end - self.indices.start) / 3
     }
+}
+
+/// What shadow passes have to know of a primitive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Matter {
+    /// Nothing but where it is.
+    Solid,
+    /// Its surface, too: some of it lets light through.
+    Textured,
+    /// Its vertices are others every frame.
+    Moving,
 }
 
 /// Streams, indices and, per mesh, where its primitives lie.
@@ -60,12 +71,13 @@ impl Geometry {
             }
         }
         let meshes: Vec<&[Primitive]> = scene.meshes.iter().map(|mesh| mesh.primitives.as_slice()).collect();
-        // Only what is opaque throws shadows by its positions alone.
-        Self::of_primitives(gpu, &meshes, |primitive| scene.materials[primitive.material].alpha == AlphaMode::Opaque)
+        Self::of_primitives(gpu, &meshes, |primitive| match scene.materials[primitive.material].alpha {
+            AlphaMode::Opaque => Matter::Solid,
+            AlphaMode::Mask { .. } | AlphaMode::Blend => Matter::Textured,
+        })
     }
 
-    /// Uploads meshes; `is_solid` ones get what shadow passes need.
-    fn of_primitives(gpu: &Gpu, meshes: &[&[Primitive]], is_solid: impl Fn(&Primitive) -> bool) -> Result<Self> {
+    fn of_primitives(gpu: &Gpu, meshes: &[&[Primitive]], matter: impl Fn(&Primitive) -> Matter) -> Result<Self> {
         let all = || meshes.iter().copied().flatten();
         let vertices: u64 = all().map(|primitive| primitive.positions.len() as u64).sum();
         let index_count: u64 = all().map(|primitive| primitive.indices.len() as u64).sum();
@@ -103,9 +115,11 @@ impl Geometry {
             ranges.push(primitives);
         }
         // Positions that only shadow passes read follow those that have normals and surfaces.
-        let solid = ranges.iter_mut().flatten().zip(all()).filter(|(_, primitive)| is_solid(primitive));
-        for (uploaded, primitive) in solid {
-            if let Some(merged) = Merged::of(&primitive.positions, &primitive.indices) {
+        let still = ranges.iter_mut().flatten().zip(all()).filter(|(_, primitive)| matter(primitive) != Matter::Moving);
+        for (uploaded, primitive) in still {
+            if matter(primitive) == Matter::Solid
+                && let Some(merged) = Merged::of(&primitive.positions, &primitive.indices)
+            {
                 let (first_vertex, first_index) = (positions.len() as u32, indices.len() as u32);
                 positions.extend(&merged.positions);
                 indices.extend(merged.indices.iter().map(|index| first_vertex + index));
@@ -142,7 +156,7 @@ pub(crate) struct SkinnedGeometry {
 impl SkinnedGeometry {
     /// Nothing skinned yet.
     pub fn empty(gpu: &Gpu) -> Result<Self> {
-        Ok(Self { geometry: Geometry::of_primitives(gpu, &[], |_| false)?, posed_meshes: Vec::new() })
+        Ok(Self { geometry: Geometry::of_primitives(gpu, &[], |_| Matter::Moving)?, posed_meshes: Vec::new() })
     }
 
     /// Writes this pose's vertices.
@@ -150,7 +164,7 @@ impl SkinnedGeometry {
         let posed_meshes = posed_meshes(scene, pose)?;
         if posed_meshes != self.posed_meshes {
             let meshes: Vec<&[Primitive]> = posed_meshes.iter().map(|&mesh| scene.0[mesh].as_slice()).collect();
-            self.geometry = Geometry::of_primitives(gpu, &meshes, |_| false)?;
+            self.geometry = Geometry::of_primitives(gpu, &meshes, |_| Matter::Moving)?;
             self.posed_meshes = posed_meshes;
         }
         let mut offset = 0;

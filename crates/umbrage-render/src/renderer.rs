@@ -329,7 +329,7 @@ impl Renderer {
         if outputs.mask && outputs.deferred && self.shadow_mask.is_none() {
             self.shadow_mask = Some(ShadowMask::new(&gpu.device, &self.maps, MASK_FORMAT, MaskNormals::FromDepth)?);
         }
-        let prepared = Prepared { every_map: outputs.maps, ..self.prepare(frame)? };
+        let prepared = Prepared { every_map: outputs.maps, ..self.prepare(frame, true)? };
         let mut clock = Clock::start(&gpu, &self.timer);
         if outputs.maps && self.maps.options().samples > 1 {
             return Err(Error::MapsOfSamples { samples: self.maps.options().samples });
@@ -422,8 +422,8 @@ impl Renderer {
         })
     }
 
-    /// Plans, uploads what moves, and sorts what is to be drawn.
-    pub(crate) fn prepare(&mut self, frame: &Frame<'_>) -> Result<Prepared> {
+    /// Plans, uploads what moves, and sorts what is to be drawn. With `surfaces_alone` nothing but what is drawn asks the maps.
+    pub(crate) fn prepare(&mut self, frame: &Frame<'_>, surfaces_alone: bool) -> Result<Prepared> {
         let pose = frame.pose;
         for (index, object) in pose.objects.iter().enumerate() {
             check_object(index, object, self.scene.meshes.len())?;
@@ -478,7 +478,8 @@ impl Renderer {
         let visible: Vec<usize> = near_to_far.into_iter().map(|(_, i)| i).collect();
 
         self.instances.clear();
-        let caster_runs = self.caster_runs(frame, origin, &caster_objects, &plans);
+        let caster_runs =
+            self.caster_runs(frame, origin, &caster_objects, &plans, surfaces_alone.then_some(&visible[..]))?;
         let solid = self.instances.grouped(pose, origin, false, visible.iter().copied().map(once));
         let far_to_near = self.with_translucent_parts(pose, visible.iter().rev().copied());
         let translucent = self.instances.ordered(pose, origin, far_to_near.iter().copied());

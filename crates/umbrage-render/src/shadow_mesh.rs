@@ -52,12 +52,9 @@ impl Merged {
 }
 
 /// Cuts triangles (three indices each, which lie at `first` in the index buffer) into clusters in the order in which they stand: what is
-/// modelled or optimised for a vertex cache lies together, and a whole mesh is drawn as it was. None for small meshes.
+/// modelled or optimised for a vertex cache lies together, and a whole mesh is drawn as it was. One for small meshes.
 pub(crate) fn clusters(positions: &[[f32; 3]], indices: &[u32], first: u32) -> Vec<Cluster> {
-    let length = 3 * CLUSTER;
-    if indices.len() <= length * (LEAST_CLUSTERS - 1) {
-        return Vec::new();
-    }
+    let length = if indices.len() < 3 * CLUSTER * LEAST_CLUSTERS { indices.len().max(1) } else { 3 * CLUSTER };
     let cluster = |(i, own): (usize, &[u32])| {
         let begin = first + (i * length) as u32;
         let corners = own.iter().map(|&index| Vec3::from(positions[index as usize]).as_dvec3());
@@ -114,6 +111,7 @@ mod tests {
     #[test]
     fn small_meshes_stay_whole() {
         let (positions, indices) = strip(CLUSTER as u32);
-        assert!(clusters(&positions, &indices, 0).is_empty());
+        assert_eq!(clusters(&positions, &indices, 0).len(), 1);
+        assert!(clusters(&[], &[], 0).is_empty());
     }
 }

@@ -28,6 +28,7 @@ mod frame;
 mod gltf;
 mod height_map;
 mod model;
+mod moved;
 mod open;
 mod picture;
 mod pose;

@@ -4,8 +4,8 @@ use glam::{DAffine3, DMat4, DQuat, DVec3, Mat4, dvec3};
 use proptest::prelude::*;
 use umbrage::Aabb;
 use umbrage_scene::{
-    AlphaMode, Animation, Channel, Error, Interpolation, Keys, Material, Mesh, Node, Pose, Poser, Primitive, Scene,
-    Skin, Trs,
+    AlphaMode, Animation, Channel, Error, Interpolation, Keys, Lens, Material, Mesh, Node, Pose, Poser, Primitive,
+    Scene, SceneCamera, Skin, Trs, camera_view,
 };
 
 fn triangle(material: usize) -> Primitive {
@@ -402,4 +402,39 @@ proptest! {
         }
         prop_assert!(pose.objects[0].bounds.min.distance(bounds.min) < 1e-9 * (1.0 + bounds.min.length()));
     }
+}
+
+#[test]
+fn a_moved_scene_is_the_same_elsewhere() {
+    let channel = Channel {
+        node: 0,
+        times: vec![0.0, 2.0],
+        values: Keys::Translation(vec![[0.0; 3], [4.0, 0.0, 0.5]]),
+        interpolation: Interpolation::Linear,
+    };
+    let mut scene = moved(channel);
+    scene.nodes.push(Node { parent: Some(0), mesh: Some(0), ..Node::default() });
+    scene.meshes.push(Mesh {
+        name: "skinned".into(),
+        primitives: vec![Primitive { joints: vec![[0; 4]; 3], weights: vec![[1.0, 0.0, 0.0, 0.0]; 3], ..triangle(0) }],
+    });
+    scene.nodes.push(Node { mesh: Some(1), skin: Some(0), ..Node::default() });
+    scene.skins.push(Skin { joints: vec![1], inverse_bind: vec![Mat4::IDENTITY] });
+    let lens = Lens::Perspective { yfov: 1.0, aspect: None, znear: 0.5, zfar: None };
+    scene.cameras.push(SceneCamera { name: "eye".into(), node: 1, lens });
+    let by = dvec3(-1e5, 12.5, 1e5);
+    let elsewhere = scene.clone().moved(by);
+    elsewhere.validate().unwrap_or_else(|error| panic!("{error}"));
+    let (here, there) = (pose(&scene, 1.0), pose(&elsewhere, 1.0));
+    assert_eq!((here.objects.len(), there.objects.len()), (3, 3));
+    for (here, there) in here.objects.iter().zip(&there.objects) {
+        let apart = [there.bounds.min - here.bounds.min - by, there.bounds.max - here.bounds.max - by];
+        assert!(apart.iter().all(|apart| apart.length() < 1e-9), "{here:?} {there:?}");
+    }
+    let eye = |scene: &Scene, pose: &Pose| {
+        let view = camera_view(scene, pose, 0, 1.5, None, None).unwrap_or_else(|error| panic!("{error}"));
+        (view.eye(), view.forward())
+    };
+    let ((eye_here, ahead), (eye_there, same)) = (eye(&scene, &here), eye(&elsewhere, &there));
+    assert!((eye_there - eye_here).abs_diff_eq(by, 1e-9) && ahead == same, "{eye_here} {eye_there}");
 }

@@ -10,3 +10,4 @@ pub mod golden;
 pub mod judge;
 pub mod room;
 pub mod stage;
+pub mod town;

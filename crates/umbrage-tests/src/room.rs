@@ -6,7 +6,7 @@
 use umbrage_scene::{Lens, LightKind, Material, Mesh, Node, Primitive, Scene, SceneCamera, SceneLight, Trs};
 
 /// A corner of a box, metres.
-type Corner = [f32; 3];
+pub(crate) type Corner = [f32; 3];
 
 /// Colours, linear RGB.
 const PLASTER: [f32; 3] = [0.75, 0.72, 0.66];
@@ -70,12 +70,12 @@ pub fn room() -> Scene {
     scene
 }
 
-fn material(scene: &mut Scene, [r, g, b]: [f32; 3]) -> usize {
+pub(crate) fn material(scene: &mut Scene, [r, g, b]: [f32; 3]) -> usize {
     scene.materials.push(Material { base_color: [r, g, b, 1.0], ..Material::default() });
     scene.materials.len() - 1
 }
 
-fn place(scene: &mut Scene, name: &str, primitive: Primitive) {
+pub(crate) fn place(scene: &mut Scene, name: &str, primitive: Primitive) {
     scene.nodes.push(Node { name: name.to_owned(), mesh: Some(scene.meshes.len()), ..Node::default() });
     scene.meshes.push(Mesh { name: name.to_owned(), primitives: vec![primitive] });
 }
@@ -92,7 +92,7 @@ fn table([x, z]: [f32; 2], [width, depth]: [f32; 2], height: f32, leg: f32) -> V
 }
 
 /// Adds a box with faces of its own.
-fn cuboid(primitive: &mut Primitive, min: Corner, max: Corner) {
+pub(crate) fn cuboid(primitive: &mut Primitive, min: Corner, max: Corner) {
     const FACES: [[usize; 4]; 6] = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     const NORMALS: [[f32; 3]; 6] =
         [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]];

@@ -31,6 +31,7 @@ mod plan;
 mod planner;
 mod range;
 mod reach;
+mod receiver_mask;
 mod rectangle;
 mod region;
 mod settings;

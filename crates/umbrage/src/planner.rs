@@ -4,16 +4,17 @@ use glam::{DVec2, DVec3};
 
 use crate::cells::Sight;
 use crate::covered;
-use crate::fit::{fitted, snapped, stepped};
+use crate::fit::{Block, fitted, snapped, stepped};
 use crate::local::{Given, LightFrustum, LocalPlanner};
 use crate::placement::{Maps, Placement};
 use crate::range::{HeldEnds, Range};
 use crate::reach::{CoverageVolume, lies_below};
+use crate::receiver_mask::ReceiverMask;
 use crate::rectangle::{HeldRectangle, longest_edge};
 use crate::region::{Fan, Region};
 use crate::settings::check_range;
 use crate::split::{blend_begin, coverage, split_planes};
-use crate::stable::{HeldSize, slice_sphere, stable_texel};
+use crate::stable::{HeldHalf, HeldSize, slice_sphere, stable_texel};
 use crate::volume::{Lies, Slice};
 use crate::warped::WarpPoints;
 use crate::{
@@ -36,13 +37,18 @@ pub struct Planner {
     pub(crate) settings: ShadowSettings,
     pub(crate) plan: ShadowPlan,
     held_ends: HeldEnds,
-    held_radius: [HeldSize; MAX_SPLITS],
+    held_half: [HeldHalf; MAX_SPLITS],
     held_whole: HeldSize,
     /// Stabilised: across the sphere around everything that is shadowed, metres. 0 otherwise.
     whole_width: f64,
     held_rectangle: [HeldRectangle; MAX_SPLITS],
+    /// Exactly stabilised and fitted to receivers: around all of them, which no map has to exceed along any axis.
+    around_all: Option<Block>,
     pub(crate) fan: Option<Fan>,
     pub(crate) volumes: Vec<CoverageVolume>,
+    /// What the receivers of each split are made of, if that was told for the last plan.
+    pub(crate) masks: Vec<ReceiverMask>,
+    pub(crate) knows_parts: bool,
     /// With [`Selection::Map`]: everything that the view shows in range, which any map may be asked about.
     pub(crate) shown: Option<Shown>,
     world_depths: (f64, f64),
@@ -88,12 +94,15 @@ impl Planner {
             settings,
             plan: ShadowPlan::default(),
             held_ends: HeldEnds::default(),
-            held_radius: [HeldSize::default(); MAX_SPLITS],
+            held_half: [HeldHalf::default(); MAX_SPLITS],
             held_whole: HeldSize::default(),
             whole_width: 0.0,
             held_rectangle: [HeldRectangle::default(); MAX_SPLITS],
+            around_all: None,
             fan: None,
             volumes: Vec::new(),
+            masks: Vec::new(),
+            knows_parts: false,
             shown: None,
             world_depths: (0.0, 0.0),
             casters: Vec::new(),
@@ -134,6 +143,7 @@ impl Planner {
         casters: &[Aabb],
         receivers: &[Aabb],
     ) -> Result<&ShadowPlan> {
+        self.knows_parts = false;
         place(casters, "casters", &mut self.casters)?;
         place(receivers, "receivers", &mut self.receivers)?;
         let light = (*light).into();
@@ -191,6 +201,8 @@ impl Planner {
             let sphere = slice_sphere(view.frustum(), view.frustum().near, far);
             self.whole_width = 2.0 * self.held_whole.hold(sphere.radius);
         }
+        let is_capped = self.settings.stabilize == Stabilize::Exact && self.settings.fit == Fit::Dependent;
+        self.around_all = if is_capped { Block::around(&self.receivers, light) } else { None };
         self.cull_to_view(view, direction, far);
         if let Err(error) = self.place_planes(view, &fan, range) {
             // A range that cannot be divided is not held on to.
@@ -236,7 +248,7 @@ impl Planner {
             let maps = Maps { settings: &self.settings, margin, whole_width: self.whole_width };
             if self.placement.place(&sight, &maps, ends, &mut self.plan.planes)? {
                 // Other slices have other sizes: none is worth holding on to.
-                self.held_radius = Default::default();
+                self.held_half = Default::default();
             }
         } else {
             split_planes(&self.settings.scheme, ends.0, ends.1, m, &mut self.plan.planes)?;
@@ -294,11 +306,14 @@ impl Planner {
         slice.corners.iter().for_each(|&corner| slice_region.include_point(fan, corner));
 
         let sphere = slice_sphere(view.frustum(), from, to);
-        let radius = match settings.stabilize {
-            Stabilize::Exact | Stabilize::Approximate(_) => self.held_radius[i].hold(sphere.radius),
-            Stabilize::None => sphere.radius,
+        let block = Block::around_sphere(view.world_from_view_point(sphere.center), sphere.radius, light);
+        let block = self.around_all.map_or(block, |all| block.no_longer_than(&all));
+        let half = match settings.stabilize {
+            Stabilize::Exact | Stabilize::Approximate(_) => self.held_half[i].hold(block.half.truncate()),
+            Stabilize::None => block.half.truncate(),
         };
-        let stable_texel = stable_texel(radius, size, margin);
+        let radius = half.max_element();
+        let stable_texel = DVec2::new(stable_texel(half.x, size, margin), stable_texel(half.y, size, margin));
 
         let served = match self.settings.fit {
             Fit::Independent => None,
@@ -306,13 +321,13 @@ impl Planner {
         };
         let widest = served.as_ref().map_or(&slice_region, |(region, _)| region).widest().max(0.0);
         let margin_m = match self.settings.stabilize {
-            Stabilize::Exact => margin * stable_texel,
+            Stabilize::Exact => margin * stable_texel.max_element(),
             Stabilize::Approximate(steps) => {
                 margin * longest_edge(steps, widest, self.whole_width) / (f64::from(size) - 2.0 * margin - 1.0)
             }
             Stabilize::None => widest * margin / (f64::from(size) - 2.0 * margin).max(1.0),
         };
-        let volume = CoverageVolume { swept, receivers: served, margin: margin_m };
+        let volume = CoverageVolume { slice, swept, receivers: served, margin: margin_m };
         let casters = if visible { self.list_casters(&volume, fan) } else { self.empty_list() };
 
         // What the map has to show, in the light's plane and in depth.
@@ -358,17 +373,13 @@ impl Planner {
         };
         let split = match self.settings.stabilize {
             Stabilize::None => fitted(split, &target, fan, margin),
-            Stabilize::Exact => {
-                let center = view.world_from_view_point(sphere.center);
-                snapped(split, light, center, radius, stable_texel)
-            }
+            Stabilize::Exact => snapped(split, light, &block, stable_texel),
             Stabilize::Approximate(steps) => {
                 // A split without casters is lit, whatever its rectangle; it changes nothing that is held.
                 let mut unheld = HeldRectangle::default();
                 let held = if split.casters.is_empty() { &mut unheld } else { &mut self.held_rectangle[i] };
                 let rectangle = held.hold(&target, steps, self.whole_width);
-                let depth = direction.dot(view.world_from_view_point(sphere.center));
-                stepped(split, &target, fan, margin, rectangle, (depth - radius, depth + radius))
+                stepped(split, &target, fan, margin, rectangle, (block.center.z - radius, block.center.z + radius))
             }
         };
         let (split, caster_near) = match self.shown.clone() {
@@ -412,7 +423,7 @@ impl Planner {
         let depths = receivers.as_ref().map_or(corners, |(region, _)| *region).depth;
         let swept = slice.swept_towards_light(fan.depth);
         // Each map has a margin of its own.
-        Shown { volume: CoverageVolume { swept, receivers, margin: 0.0 }, depths }
+        Shown { volume: CoverageVolume { slice, swept, receivers, margin: 0.0 }, depths }
     }
 
     /// The split with a list and a depth range for everything that its map covers and no earlier one takes, and the depth of its

@@ -1,4 +1,5 @@
-//! The shadowed range fitted to what the view shows: `C_0` and `C_m` as tight as the receivers allow.
+//! The shadowed range, `C_0` and `C_m`: as it was given, to the scene's end, or as tight as what the view shows allows; held where maps
+//! have to stand still.
 
 use crate::planner::Placed;
 use crate::stable::HeldSize;
@@ -70,14 +71,14 @@ impl HeldStep {
 
 /// Both ends of a range that is held: the far one is rounded up, the near one down.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct HeldRange {
+struct HeldRange {
     inverse_near: HeldStep,
     far: HeldStep,
 }
 
 impl HeldRange {
     /// The held range around `near..far`, both greater than 0.
-    pub fn hold(&mut self, near: f64, far: f64) -> (f64, f64) {
+    fn hold(&mut self, near: f64, far: f64) -> (f64, f64) {
         (1.0 / self.inverse_near.hold(1.0 / near), self.far.hold(far))
     }
 }
@@ -99,26 +100,35 @@ impl Range {
     }
 }
 
-/// The most by which the far end of a range is stretched before all planes follow: √2.
+/// By how much the far end of a held range may exceed the depth for which the inner planes were placed, before they follow: √2.
 const MOST_STRETCH: f64 = std::f64::consts::SQRT_2;
 
-/// The far end of a range that ends at the scene's deepest point, whose view depth changes as the camera turns.
+/// By how much a range first exceeds the scene, so that an eye that walks away from its far end takes no step at once: half a step.
+const FIRST_ROOM: f64 = 1.044_273_782_427_413_8;
+
+/// The far end of a range that ends with the scene.
 ///
-/// It is kept until the deepest point lies beyond it, then rounded up to the next step. The camera's turning never shortens
-/// it: it shrinks when even the farthest point in any direction lies two steps before it. A stretch moves the last plane only, so that
-/// the other splits' maps stand; beyond [`MOST_STRETCH`] all planes are placed anew.
+/// The scene's deepest point changes as the camera turns, its farthest does not: the range ends there, in steps of 9 % as the eye walks
+/// away from it, and a step moves the last plane only. The inner planes are placed for the depth that the first
+/// view asks for, and again, for any that it can ask for by turning, where one asks for √2 times as much.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct HeldFar {
+struct HeldFar {
     far: HeldSize,
+    /// 0 before the first frame.
     inner_far: f64,
 }
 
 impl HeldFar {
     /// The range from `near` for a scene that ends at view depth `deepest`, and `farthest` metres from the eye.
-    pub fn hold(&mut self, near: f64, deepest: f64, farthest: f64) -> Range {
-        let far = self.far.hold_until(deepest, farthest.max(deepest));
-        if !(self.inner_far..=MOST_STRETCH * self.inner_far).contains(&far) {
-            self.inner_far = far;
+    fn hold(&mut self, near: f64, deepest: f64, farthest: f64) -> Range {
+        let farthest = farthest.max(deepest);
+        if self.inner_far == 0.0 {
+            self.inner_far = deepest;
+            self.far.hold(farthest * FIRST_ROOM);
+        }
+        let far = self.far.hold(farthest);
+        if deepest > MOST_STRETCH * self.inner_far || far < self.inner_far {
+            self.inner_far = deepest.max(far / MOST_STRETCH);
         }
         Range { near, inner_far: self.inner_far, far }
     }
@@ -149,8 +159,9 @@ impl HeldEnds {
         };
         // Nothing before the eye: any short range will do.
         let deepest = if deepest > near { deepest } else { 2.0 * near.abs() + 1.0 };
+        let deepest = deepest.min(camera_far);
         if settings.range_fit == RangeFit::Visible
-            && let Some((first, last)) = visible_range(view, near, deepest.min(camera_far), receivers)
+            && let Some((first, last)) = visible_range(view, near, deepest, receivers)
         {
             let (first, last) = match settings.stabilize {
                 Stabilize::Exact | Stabilize::Approximate(_) if first > 0.0 => self.visible.hold(first, last),
@@ -162,7 +173,7 @@ impl HeldEnds {
         }
         let range = match settings.stabilize {
             Stabilize::None => Range::new(near, deepest),
-            Stabilize::Exact => self.far.hold(near, deepest, farthest(view, receivers)),
+            Stabilize::Exact => self.far.hold(near, deepest, farthest(view, receivers).min(camera_far)),
             Stabilize::Approximate(_) => Range::new(near, self.deepest.hold(deepest)),
         };
         Range { near, inner_far: range.inner_far.min(camera_far), far: range.far.min(camera_far) }
@@ -181,22 +192,35 @@ fn farthest(view: &View, receivers: &[Placed]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{HeldFar, HeldRange};
+    use super::{HeldFar, HeldRange, MOST_STRETCH};
 
     #[test]
-    fn a_held_far_end_starts_tight_stretches_and_ignores_turning() {
+    fn a_held_far_end_ignores_turning_and_its_inner_planes_start_tight() {
         let mut held = HeldFar::default();
         let first = held.hold(0.1, 300.0, 400.0);
-        assert_eq!((first.inner_far, first.far), (300.0, 300.0));
-        let stretched = held.hold(0.1, 310.0, 400.0);
-        assert!(stretched.inner_far == 300.0 && (310.0..340.0).contains(&stretched.far), "{stretched:?}");
-        // Looking out of the scene; the scene is as large as before.
-        assert_eq!(held.hold(0.1, 20.0, 400.0), stretched);
+        assert!(first.inner_far == 300.0 && (417.0..418.0).contains(&first.far), "{first:?}");
+        // Turning to the far corner, looking out of the scene, and walking ten metres.
+        for (deepest, farthest) in [(400.0, 400.0), (20.0, 400.0), (310.0, 410.0)] {
+            assert_eq!(held.hold(0.1, deepest, farthest), first);
+        }
+        let stretched = held.hold(0.1, 300.0, 420.0);
+        assert!(stretched.inner_far == 300.0 && (420.0..460.0).contains(&stretched.far), "{stretched:?}");
         // Walking out of it.
         let short = held.hold(0.1, 20.0, 100.0);
-        assert!(short.inner_far == short.far && (20.0..22.0).contains(&short.far), "{short:?}");
+        assert!((100.0..110.0).contains(&short.far) && short.inner_far == short.far / MOST_STRETCH, "{short:?}");
         let long = held.hold(0.1, 500.0, 600.0);
-        assert!(long.inner_far == long.far && long.far >= 500.0, "{long:?}");
+        assert!(long.inner_far == 500.0 && long.far >= 600.0, "{long:?}");
+    }
+
+    #[test]
+    fn inner_planes_follow_once_after_a_first_look_out_of_the_scene() {
+        let mut held = HeldFar::default();
+        let mut inner = vec![held.hold(0.1, 10.0, 400.0).inner_far];
+        for degrees in 0..=90 {
+            inner.push(held.hold(0.1, 10.0 + 390.0 * f64::from(degrees).to_radians().sin(), 400.0).inner_far);
+        }
+        inner.dedup();
+        assert_eq!(inner.len(), 2, "{inner:?}");
     }
 
     #[test]

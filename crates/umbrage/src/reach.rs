@@ -3,13 +3,16 @@
 use glam::DVec3;
 
 use crate::planner::BELOW_ALL;
+use crate::receiver_mask::ReceiverMask;
 use crate::region::{Fan, Region};
-use crate::volume::SweptVolume;
-use crate::{Aabb, Planner};
+use crate::volume::{Slice, SweptVolume};
+use crate::{Aabb, Error, Planner, Result};
 
 /// The points whose shadows a split's caster list is complete for.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct CoverageVolume {
+    pub slice: Slice,
+    /// The slice pushed towards the light.
     pub swept: SweptVolume,
     /// Scene-dependent fit: the receivers inside the slice, in the light's plane and as a world box.
     pub receivers: Option<(Region, Aabb)>,
@@ -42,16 +45,41 @@ impl CoverageVolume {
 }
 
 impl Planner {
+    /// Tells what the receivers of the last plan are made of: boxes in the world that hold all that is drawn of them, which leave less
+    /// air than the receivers' own. [`Planner::reaches`] then also leaves out parts of casters that have none of these boxes behind
+    /// them. For [`crate::Fit::Dependent`]; forgotten with the next plan.
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidBounds`] naming a box that is inverted or not finite; nothing is told then.
+    pub fn tell_parts(&mut self, parts: &[Aabb]) -> Result<()> {
+        if let Some((index, bounds)) = parts.iter().enumerate().find(|(_, bounds)| !bounds.is_valid()) {
+            return Err(Error::InvalidBounds { list: "parts", index, min: bounds.min, max: bounds.max });
+        }
+        let (Some(fan), None) = (&self.fan, &self.shown) else { return Ok(()) };
+        self.masks.resize_with(self.volumes.len(), ReceiverMask::default);
+        for (mask, volume) in self.masks.iter_mut().zip(&self.volumes) {
+            if let Some((_, bounds)) = &volume.receivers {
+                mask.fill(&volume.slice, bounds, parts, fan.depth, volume.margin);
+            }
+        }
+        self.knows_parts = true;
+        Ok(())
+    }
+
     /// Whether a part of a caster that the last plan lists for `split` can throw a shadow on anything that the split serves: the test
     /// that casters were listed by, for the part's own world box. An app that keeps its large meshes in clusters leaves those out of a
-    /// map that it answers `false` for; what the split's points look up stays the same.
+    /// map that it answers `false` for; what the split's points look up stays the same. After [`Planner::tell_parts`] only the points of
+    /// surfaces count, not those of the air between them.
     ///
     /// Conservative, and `true` for every part where lists are made otherwise: for local lights and with [`crate::Selection::Map`].
     #[must_use]
     pub fn reaches(&self, split: usize, part: &Aabb) -> bool {
         let (center, half) = (part.center(), part.half_extent());
         match (&self.fan, &self.shown, self.volumes.get(split)) {
-            (Some(fan), None, Some(volume)) => volume.is_shaded_by(fan, center, half),
+            (Some(fan), None, Some(volume)) => {
+                let masked = self.knows_parts && volume.receivers.is_some();
+                volume.is_shaded_by(fan, center, half) && (!masked || self.masks[split].lies_before_some(center, half))
+            }
             _ => true,
         }
     }

@@ -38,8 +38,9 @@ impl Default for SplitScheme {
 /// What the shadowed range is fitted to where [`ShadowSettings::range`] does not say it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RangeFit {
-    /// The camera's near and far, far capped by the receivers. With [`Stabilize::Exact`] the far end is kept while the receivers end
-    /// before it; where they reach beyond, the last split alone is stretched, in geometric steps of 9 %, up to √2 times.
+    /// The camera's near and far, far capped by the receivers. With [`Stabilize::Exact`] far is capped by the distance of the farthest
+    /// receiver in any direction, which turning does not change, rounded up to steps of 9 % that move the last plane alone; the inner
+    /// planes are placed for the view depth that the first frame asks for, and follow where a view asks for √2 times as much.
     #[default]
     Camera,
     /// The view depths between which the view shows receivers: their boxes clipped to the frustum, as an empty foreground or a lens
@@ -53,7 +54,8 @@ pub enum RangeFit {
 pub enum Fit {
     /// The corners of the slice alone. The near plane stays at the scene's, so no caster in between is lost.
     Independent,
-    /// The slice, clipped to its receivers, and only where casters can throw a shadow on them.
+    /// The slice, clipped to its receivers, and only where casters can throw a shadow on them. An exactly stabilised map, which may
+    /// not depend on what a slice holds, is along neither of its axes longer than all receivers are, and does not move along it then.
     #[default]
     Dependent,
 }
@@ -76,7 +78,7 @@ pub enum Selection {
 pub enum Stabilize {
     /// The tightest map for every frame; edges crawl when the camera moves.
     None,
-    /// A sphere around the slice, moved in whole texels: static shadows do not change at all.
+    /// A rectangle that depends on the lens and the scene alone, moved in whole texels: static shadows do not change at all.
     #[default]
     Exact,
     /// The tight rectangle on axes that are fixed to the light, its extent rounded up to steps, moved in whole texels: tighter than

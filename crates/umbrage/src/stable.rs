@@ -1,6 +1,6 @@
 //! Maps that stand still: a sphere around the slice, moved in whole texels.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::{Frustum, Projection};
 
@@ -104,16 +104,11 @@ const STEPS_PER_OCTAVE: f64 = 8.0;
 
 impl HeldSize {
     pub fn hold(&mut self, size: f64) -> f64 {
-        self.hold_until(size, size)
-    }
-
-    /// As [`Self::hold`], but what is held shrinks only once `least`, no less than `size`, falls two steps below it.
-    pub fn hold_until(&mut self, size: f64, least: f64) -> f64 {
         let step = |size: f64| 2f64.powf((size.log2() * STEPS_PER_OCTAVE).ceil() / STEPS_PER_OCTAVE).max(size);
         let lowest = |held: f64| held * 2f64.powf(-2.0 / STEPS_PER_OCTAVE);
         let value = match self.held {
             None => size,
-            Some(held) if size <= held && least >= lowest(held) => held,
+            Some(held) if size <= held && size >= lowest(held) => held,
             Some(_) => step(size),
         };
         self.held = Some(value);
@@ -121,8 +116,21 @@ impl HeldSize {
     }
 }
 
-/// Metres per texel so that a square map of `size` texels serves a sphere of `radius` with `margin` texels on each side,
-/// wherever rounding to whole texels puts it.
+/// Half the edges of a still map, each held as a [`HeldSize`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct HeldHalf {
+    u: HeldSize,
+    v: HeldSize,
+}
+
+impl HeldHalf {
+    pub fn hold(&mut self, half: DVec2) -> DVec2 {
+        DVec2::new(self.u.hold(half.x), self.v.hold(half.y))
+    }
+}
+
+/// Metres per texel so that a map of `size` texels serves an edge of twice `radius` with `margin` texels on each side, wherever
+/// rounding to whole texels puts it.
 #[must_use]
 pub fn stable_texel(radius: f64, size: u32, margin: f64) -> f64 {
     2.0 * radius / (f64::from(size) - 2.0 * margin - 1.0)

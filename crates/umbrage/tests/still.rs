@@ -170,8 +170,9 @@ proptest! {
             // 10 m of 200 m or more: less than a step.
             let view = turned_view(place + DQuat::from_rotation_y(yaw) * DVec3::Z * (10.0 * walk - 5.0), [yaw, -0.1, 0.0])?;
             let plan = planner.plan(&view, &sun, &world, &world)?;
-            let deepest = world[0].corners().map(|corner| view.view_depth(corner)).into_iter().fold(0.0, f64::max);
-            let spare = plan.planes[4] / deepest;
+            // Turning an exactly stabilised camera changes nothing, so its range ends with the farthest point in any direction.
+            let end = |corner: DVec3| if approximate { view.view_depth(corner) } else { view.eye().distance(corner) };
+            let spare = plan.planes[4] / world[0].corners().map(end).into_iter().fold(0.0, f64::max);
             prop_assert!((1.0 - 1e-9..=2f64.powf(2.0 / 8.0) + 1e-9).contains(&spare), "{spare} times as deep");
             changes += i32::from(plan.planes[4] != far);
             far = plan.planes[4];
@@ -180,31 +181,79 @@ proptest! {
     }
 }
 
-/// Turning and walking about a scene, without a range of one's own: the far end changes rarely, and only the last map with it.
+/// Turning and walking about a scene, without a range of one's own: the far end changes rarely, and only the last map with it, which does
+/// not move at all while it shows the whole scene.
 #[test]
-fn turning_stretches_the_last_split_alone() {
+fn turning_and_walking_about_a_scene_leave_all_maps_alone() {
     let place = DVec3::new(1e4, 0.0, -1e4);
-    let mut planner = Planner::new(ShadowSettings::default()).expect("valid");
     let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).expect("a direction");
     let world = [Aabb::new(place - DVec3::new(200.0, 1.0, 200.0), place + DVec3::new(200.0, 9.0, 200.0))];
-    let (mut far, mut inner, mut stretches) = (0.0, Vec::new(), 0);
-    for k in 0..600 {
-        let yaw = 0.003 * f64::from(k);
-        let eye =
-            place + DVec3::new(0.0, 2.0, 40.0) + DQuat::from_rotation_y(yaw) * DVec3::NEG_Z * (0.05 * f64::from(k));
-        let view = turned_view(eye, [yaw, -0.1, 0.0]).expect("valid");
-        let planes = &planner.plan(&view, &sun, &world, &world).expect("a plan").planes;
-        let deepest = world[0].corners().map(|corner| view.view_depth(corner)).into_iter().fold(0.0, f64::max);
-        assert!(planes[4] >= deepest, "frame {k}: {planes:?} for {deepest} m");
-        if k == 0 {
-            inner = planes[..4].to_vec();
-        } else {
-            stretches += u32::from(planes[4] != far);
+    for (fov, whole) in [(1.2, true), (0.4, false)] {
+        let mut planner = Planner::new(ShadowSettings::default()).expect("valid");
+        let (mut before, mut stretches, mut steps): (Option<ShadowPlan>, _, _) = (None, 0, 0);
+        for k in 0..600 {
+            let yaw = 0.003 * f64::from(k);
+            let ahead = DQuat::from_rotation_y(yaw) * DVec3::NEG_Z * (0.05 * f64::from(k));
+            let lens = Frustum::perspective(fov, 4.0 / 3.0, 0.1, 1000.0).expect("a lens");
+            let view = turned_view(place + DVec3::new(0.0, 2.0, 140.0) + ahead, [yaw, -0.1, 0.0]).expect("valid");
+            let view = view.with_frustum(lens).expect("valid");
+            let plan = planner.plan(&view, &sun, &world, &world).expect("a plan");
+            let farthest = world[0].corners().map(|corner| view.eye().distance(corner)).into_iter().fold(0.0, f64::max);
+            assert!(plan.planes[4] >= farthest, "frame {k}: {:?} for {farthest} m", plan.planes);
+            if let Some(before) = &before {
+                assert_eq!(plan.planes[..4], before.planes[..4], "frame {k}");
+                stretches += u32::from(plan.planes[4] != before.planes[4]);
+                for (i, (new, old)) in plan.splits.iter().zip(&before.splits).enumerate() {
+                    let moved = new.texels_moved_since(old);
+                    steps += u32::from(moved.is_none());
+                    assert!(moved.is_some() || i == 3 && plan.planes[4] != before.planes[4], "frame {k}, split {i}");
+                    assert!(!whole || i < 3 || moved == Some(DVec2::ZERO), "frame {k}: the last map moved");
+                }
+            }
+            before = Some(plan.clone());
         }
-        assert_eq!(planes[..4], inner, "frame {k}");
-        far = planes[4];
+        assert!(stretches <= 2 && steps == if whole { 0 } else { stretches }, "{stretches} stretches, {steps} steps");
     }
-    assert!((1..=3).contains(&stretches), "{stretches} stretches");
+}
+
+proptest! {
+    /// A map is along each axis as long as its slice's sphere or the whole scene asks for, whichever is less, and shows all of the slice
+    /// that is in the scene.
+    #[test]
+    fn no_map_exceeds_the_scene(
+        place in place(), eye in prop::array::uniform3(-300.0..300.0f64), turn in prop::array::uniform3(-3.0..3.0f64), sun in sun(),
+        half in prop_oneof![Just(1.0), 1.0..300.0f64], points in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 30),
+    ) {
+        let settings = ShadowSettings::default();
+        let mut planner = Planner::new(settings.clone())?;
+        let world = [Aabb::new(place - half, place + half), Aabb::new(place, place + DVec3::new(2.0 * half, 0.0, 0.0))];
+        let view = turned_view(place + DVec3::from(eye), turn)?;
+        let plan = planner.plan(&view, &sun, &world, &world)?;
+        let (u, v) = sun.map_axes();
+        let extent = |axis: DVec3| {
+            let along = world.iter().flat_map(|b| b.corners()).map(|corner| axis.dot(corner));
+            along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+        };
+        let whole = DVec2::new(extent(u), extent(v));
+        let whole = whole.max(DVec2::splat(1e-3 * whole.max_element()));
+        for split in &plan.splits {
+            let sphere = slice_sphere(view.frustum(), split.coverage.0, split.coverage.1);
+            let served = split.texel_m * (f64::from(split.size) - 2.0 * (settings.filter_radius + 1.5) - 1.0);
+            let least = whole.min(DVec2::splat(2.0 * sphere.radius));
+            prop_assert!((served / least).abs_diff_eq(DVec2::ONE, 1e-6), "{served} m for {least} m");
+            for point in &points {
+                let point = place + half * DVec3::from(*point);
+                if (split.coverage.0..=split.coverage.1).contains(&view.view_depth(point)) && in_frustum(&view, point) {
+                    prop_assert!(split.contains(point, settings.filter_radius), "{point} lies at {}", split.map_from_world(point));
+                }
+            }
+        }
+    }
+}
+
+fn in_frustum(view: &View, point: DVec3) -> bool {
+    let (at, lens) = (view.view_from_world_point(point), view.frustum());
+    (lens.left * -at.z..=lens.right * -at.z).contains(&at.x) && (lens.bottom * -at.z..=lens.top * -at.z).contains(&at.y)
 }
 
 /// 0, 10 and 100 km from the world's origin.

@@ -70,6 +70,7 @@ impl BenchArgs {
             metres_per_post: None,
             metres_per_unit: None,
             height_offset: None,
+            move_scene: None,
             time: self.time,
             size: self.size,
             camera: self.camera.clone().or(camera.map(str::to_owned)),

@@ -57,6 +57,10 @@ pub struct CompareArgs {
     /// Height maps: metres added to every height
     #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
     pub height_offset: Option<f64>,
+    /// Move scenes with their cameras and lights by this many metres, as if they lay far from the world's origin; --eye, --target and --path
+    /// are places of the world
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Scene")]
+    pub move_scene: Option<DVec3>,
     /// Seconds into the scenes' animations
     #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
     pub time: f64,
@@ -208,6 +212,7 @@ impl CompareArgs {
             metres_per_post: self.metres_per_post,
             metres_per_unit: self.metres_per_unit,
             height_offset: self.height_offset,
+            move_scene: self.move_scene,
             time: self.time,
             size: self.size(),
             camera: None,

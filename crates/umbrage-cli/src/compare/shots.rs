@@ -165,6 +165,10 @@ impl Wish<'_> {
         };
         let path = args.path.as_deref().map(CameraPath::load).transpose()?;
         let scene = umbrage_scene::open(name, &height_map)?;
+        let scene = match args.move_scene {
+            Some(by) => scene.moved(by),
+            None => scene,
+        };
         let pose = scene.pose(args.time)?;
         let mut notes = scene.notes.clone();
         let mut walks = Vec::new();
@@ -277,8 +281,9 @@ impl Wish<'_> {
             ("height-offset", job.height_offset),
         ];
         common.extend(numbers.iter().filter_map(|(option, value)| value.map(|value| format!("--{option}={value}"))));
-        let with = |more: Vec<String>| common.iter().cloned().chain(more).collect::<Vec<_>>();
         let vector = |option: &str, v: DVec3| format!("--{option}={},{},{}", v.x, v.y, v.z);
+        common.extend(job.move_scene.map(|by| vector("move-scene", by)));
+        let with = |more: Vec<String>| common.iter().cloned().chain(more).collect::<Vec<_>>();
         if let CameraChoice::Path { file, frames, eye_height } = choice {
             let path = [
                 format!("--path={}", file.display()),

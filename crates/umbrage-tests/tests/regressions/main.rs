@@ -6,3 +6,4 @@ mod ceilings;
 mod goldens;
 mod paths;
 mod robot_war;
+mod stillness;
