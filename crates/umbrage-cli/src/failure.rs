@@ -63,6 +63,7 @@ impl From<umbrage::Error> for Failure {
                 "blend" => "--blend",
                 "far_fade" => "--far-fade",
                 "filter_radius" => "--filter",
+                "filter_half_width_m" => "--filter-width, --sun-angle",
                 "image_size" => "--size",
                 "stabilize" => "--extent-steps, --extent-levels",
                 "warps" => "--warp, --tsm-focus",

@@ -11,7 +11,7 @@ use crate::{
     output::{self, Staged, numbered_file},
     report::{ShotReport, to_json},
     scene_job::SceneJob,
-    shadow_job::{ShadowJob, typed_name},
+    shadow_job::{ShadowJob, typed_name, wgpu_filter},
     stage::{Shot, Stage},
     worlds::print,
 };
@@ -95,7 +95,10 @@ pub fn run(args: &PlanArgs) -> Result<()> {
         output::check(&[path], &[], &job.inputs())?;
     }
     let stage = Stage::open(&job)?;
-    let mut planner = Planner::new(shadows.settings.clone())?;
+    let mut settings = shadows.settings.clone();
+    (settings.filter_radius, settings.filter_half_width_m) =
+        wgpu_filter(shadows.filter).reach(&shadows.softness(job.sun_angle));
+    let mut planner = Planner::new(settings)?;
     let receivers: Vec<Aabb> = stage.pose.objects.iter().map(|object| object.bounds).collect();
     let casters: Vec<Aabb> =
         stage.pose.objects.iter().filter(|object| object.casts).map(|object| object.bounds).collect();

@@ -135,6 +135,7 @@ impl ShadowJob {
             },
             warps: warps.iter().map(|&warp| planner_warp(warp, args.tsm_focus)).collect(),
             filter_radius: wgpu_filter(args.filter).radius_texels(),
+            filter_half_width_m: None,
             blend,
             far_fade: args.far_fade,
             depth_clamp: false,

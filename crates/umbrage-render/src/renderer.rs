@@ -35,7 +35,7 @@ const ORIGIN_STEP: f64 = 1024.0;
 pub struct RenderSettings {
     /// Pixels across and down.
     pub size: [u32; 2],
-    /// How shadows are planned. `filter_radius`, `depth_clamp` and `image_size` are taken from the filter, the device with its
+    /// How shadows are planned. `filter_radius`, `filter_half_width_m`, `depth_clamp` and `image_size` are taken from the filter, the device with its
     /// depth format, and `size` instead.
     pub shadows: ShadowSettings,
     /// How maps are looked up.
@@ -154,10 +154,10 @@ impl Renderer {
         }
         // The planner's own checks come first: they name a setting where the maps could only name a texture.
         let mut shadows = settings.shadows.clone();
-        shadows.filter_radius = settings.filter.radius_texels();
+        settings.softness.validate()?;
+        (shadows.filter_radius, shadows.filter_half_width_m) = settings.filter.reach(&settings.softness);
         shadows.image_size = settings.size;
         shadows.validate()?;
-        settings.softness.validate()?;
         settings.coordinates.check_settings(&shadows)?;
         settings.look.contact.iter().try_for_each(umbrage_wgpu::ContactOptions::validate)?;
         if let Some((split, &size)) = shadows.map_sizes.iter().enumerate().find(|&(_, &size)| size > limit) {

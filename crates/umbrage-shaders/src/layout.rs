@@ -120,8 +120,8 @@ pub struct Split {
     /// 1 if a local light's map stores depth that grows evenly with the metres along its axis, 0 at its near plane and 1 at its far one,
     /// instead of `A − B/w`.
     pub is_linear: u32,
-    /// Up to the alignment of 16 bytes.
-    pub _padding: [u32; 1],
+    /// Texels around a sample that the filter may read.
+    pub filter_reach: f32,
 }
 
 /// What a pass needs that draws several splits at once.

@@ -40,7 +40,7 @@ macro_rules! in_rust {
 
 fn split_in_rust() -> (usize, Vec<Member>) {
     in_rust!(Split: u_row, v_row, depth_row, w_row, texel_offset, texel_m, size, far, blend_begin, depth_range_m, depth_step_m,
-        is_empty, viewport_texels, guard_texels, corner, layer_texels, layer, depth_offset, is_linear)
+        is_empty, viewport_texels, guard_texels, corner, layer_texels, layer, depth_offset, is_linear, filter_reach)
 }
 
 fn frame_in_rust() -> (usize, Vec<Member>) {
@@ -56,7 +56,7 @@ fn pass_in_rust() -> (usize, Vec<Member>) {
 #[test]
 fn no_member_is_forgotten() {
     let named = |(_, members): (usize, Vec<Member>)| members.iter().map(|(_, _, size)| size).sum::<usize>();
-    assert_eq!(named(split_in_rust()) + size_of_val(&Split::default()._padding), size_of::<Split>());
+    assert_eq!(named(split_in_rust()), size_of::<Split>());
     assert_eq!(named(frame_in_rust()) + size_of_val(&Frame::default()._padding), size_of::<Frame>());
 }
 

@@ -86,6 +86,16 @@ pub enum Filter {
     Msm,
 }
 
+/// Texels that a disc of no given width reaches: its radius of 3 and a tap's own.
+const DISC_REACH: f64 = 4.0;
+
+/// Texels that the narrowest disc reaches: that of one tap, and the tap's own.
+const LEAST_REACH: f64 = 2.0;
+
+/// Metres from a surface within which casters give it a penumbra as wide as the sun asks for; see `MOST_BLOCKER_M` in
+/// shaders/lib/filter.wesl.
+const MOST_BLOCKER_M: f64 = 200.0;
+
 impl Filter {
     /// How far the filter reaches from the sample at most, in texels: what `umbrage::ShadowSettings::filter_radius` wants.
     #[must_use]
@@ -100,6 +110,29 @@ impl Filter {
             Self::Disc | Self::Pcss => 16.0,
             // The widest blur, 15 texels, and the reach of a linear sample.
             Self::Esm | Self::Vsm | Self::Evsm2 | Self::Evsm4 | Self::Msm => 16.0,
+        }
+    }
+
+    /// How far the filter reaches around a sample: at most in texels, for `umbrage::ShadowSettings::filter_radius`, and in metres where that is known,
+    /// for `umbrage::ShadowSettings::filter_half_width_m`. Planned with both, splits in which a disc is narrow lose less of their maps to
+    /// it than [`Filter::radius_texels`]; it stays inside what they keep free whatever the frame's softness says.
+    #[must_use]
+    pub fn reach(self, softness: &Softness) -> (f64, Option<f64>) {
+        match (self, softness.width_m) {
+            (Self::Disc, None) => (DISC_REACH, None),
+            (Self::Disc, Some(width)) => (self.radius_texels(), Some(0.5 * f64::from(width))),
+            (Self::Pcss, _) => {
+                (self.radius_texels(), Some((0.5 * f64::from(softness.sun_angle)).tan() * MOST_BLOCKER_M))
+            }
+            _ => (self.radius_texels(), None),
+        }
+    }
+
+    /// Texels around a sample that the shader may read where a map was planned to keep `planned` free.
+    pub(crate) fn reach_within(self, planned: f64) -> f64 {
+        match self {
+            Self::Disc | Self::Pcss => planned.clamp(LEAST_REACH, self.radius_texels()),
+            _ => self.radius_texels(),
         }
     }
 

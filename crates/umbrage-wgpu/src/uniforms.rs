@@ -158,6 +158,7 @@ fn frame(
     let splits = plan.splits.iter().enumerate().skip(first);
     for ((uniform, (index, split)), place) in frame.splits.iter_mut().zip(splits).zip(places) {
         *uniform = self::split(index, split, maps.depth_format.step(), *place, options.origin)?;
+        uniform.filter_reach = maps.filter.reach_within(split.filter_reach) as f32;
         uniform.is_linear = (maps.depth_format.is_colour() && split.light_position.is_some()).into();
     }
     Ok(frame)
@@ -310,6 +311,7 @@ mod tests {
             depth_near: depth_axis.dot(center) - 50.0,
             depth_far: depth_axis.dot(center) + 50.0,
             receiver_depths: (depth_axis.dot(center) - 50.0, depth_axis.dot(center) + 50.0),
+            filter_reach: 1.5,
             warp: None,
             light_position: None,
             casters: 0..1,

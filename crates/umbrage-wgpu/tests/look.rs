@@ -64,8 +64,12 @@ fn planes_do_not_shade_themselves_and_the_slope_forgives_normals_that_point_asid
         assert_eq!(dark(ReceiverBias::Plane, 0.0), 0, "{filter:?}");
         assert_eq!(dark(ReceiverBias::Slope, 0.0), 0, "{filter:?}");
         assert_eq!(dark(ReceiverBias::Slope, 25.0), 0, "{filter:?}");
-        if filter == Filter::Pcf7 {
-            assert!(dark(ReceiverBias::Plane, 25.0) > 100, "a plane that is another's");
+        // One texel alone knows nothing but its depth; several are followed to where they lead, which is this plane.
+        if filter == Filter::Hard {
+            let found = dark(ReceiverBias::Plane, 90.0);
+            assert!(found > 50, "a plane that is another's: {found}");
+        } else {
+            assert_eq!(dark(ReceiverBias::Plane, 25.0), 0, "{filter:?}");
         }
     }
 }

@@ -5,7 +5,9 @@ mod common;
 use common::{Ask, Gpu, World, ask, cuboid, ground, plan};
 use glam::{DVec3, Vec3};
 use umbrage::ShadowPlan;
-use umbrage_wgpu::{DepthFormat, Error, Filter, FrameOptions, Generation, ShadowMaps, ShadowMapsOptions, Storage};
+use umbrage_wgpu::{
+    DepthFormat, Error, Filter, FrameOptions, Generation, ShadowMaps, ShadowMapsOptions, Softness, Storage,
+};
 
 /// The valid pairs but multipass, which has one map at a time: `umbrage-render` draws pictures with it.
 const PAIRS: [(Generation, Storage); 8] = [
@@ -143,6 +145,9 @@ fn filters_never_see_a_neighbour() {
                 split.min_texel += split.u_axis.dot(DVec3::X * 1000.0 * i as f64) / split.texel_m.x * glam::DVec2::X
                     + split.v_axis.dot(DVec3::X * 1000.0 * i as f64) / split.texel_m.y * glam::DVec2::Y;
             }
+            // A disc as wide as it gets, and one that was planned to be narrow.
+            plan.splits[2].filter_reach = 5.0;
+            let softness = Softness { sun_angle: 0.5, ..Softness::default() };
             let mut triangles = ground(5000.0);
             for x in [1000.0, 3000.0] {
                 let corner = |dx: f32, dz: f32| Vec3::new(x + dx, 90.0, dz);
@@ -153,7 +158,7 @@ fn filters_never_see_a_neighbour() {
                     corner(-60.0, 60.0),
                 ]));
             }
-            world.draw(&plan, &FrameOptions::default(), &triangles);
+            world.draw(&plan, &FrameOptions { softness, ..FrameOptions::default() }, &triangles);
             // In and right outside of the map: what is outside is lit without being asked.
             let edge: Vec<f32> = (0..=200).map(|i| -20.3 + 0.203 * i as f32).collect();
             let mut asks = Vec::new();

@@ -5,7 +5,7 @@ mod common;
 use common::{Gpu, World, ask, plan};
 use glam::{DVec3, Vec3};
 use umbrage_shaders::{layout, twin};
-use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions};
+use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions, Softness};
 
 /// Numbers in [0, 1) from a linear congruential generator (Knuth's constants).
 fn random() -> impl FnMut() -> f32 {
@@ -134,4 +134,16 @@ fn selection_agrees_at_and_around_every_border() {
         assert_eq!(answer.split, expected, "at view depth {depth}");
         assert_eq!(answer.visibility, 1.0, "at view depth {depth}");
     }
+}
+
+/// What the planner is told of discs: as many texels as they have without a width, and metres where those say more.
+#[test]
+fn discs_say_how_many_metres_they_reach() {
+    let wide = Softness { width_m: Some(0.8), sun_angle: 0.1, ..Softness::default() };
+    assert_eq!(Filter::Disc.reach(&Softness::default()), (4.0, None));
+    let (texels, metres) = Filter::Disc.reach(&wide);
+    assert!(texels == 16.0 && metres.is_some_and(|metres| (metres - 0.4).abs() < 1e-6), "{metres:?}");
+    let (texels, metres) = Filter::Pcss.reach(&wide);
+    assert!(texels == 16.0 && metres.is_some_and(|metres| (metres - 200.0 * 0.05f64.tan()).abs() < 1e-5), "{metres:?}");
+    assert_eq!(Filter::Pcf5.reach(&wide), (2.5, None));
 }

@@ -7,7 +7,7 @@ use crate::Split;
 /// How the depth of a receiver has to change before it is compared, so that its own surface does not shade it.
 ///
 /// A tap that lies `offset` texels from the sample is compared with
-/// `depth + min(depth_per_texel · offset, 0) − corner_per_texel · |offset| − constant_m`, in metres along the light.
+/// `depth + min(depth_per_texel · offset − corner_per_texel · |offset|, 0) − constant_m`, in metres along the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bias {
     /// Metres of depth per texel along u and v on the receiver's plane.

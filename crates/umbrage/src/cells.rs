@@ -3,9 +3,8 @@
 use glam::DVec3;
 
 use crate::planner::Placed;
-use crate::reach::lies_below;
 use crate::region::{DIRECTIONS, Fan, Region};
-use crate::volume::{Lies, Slice};
+use crate::volume::{Lies, Slice, lies_below};
 use crate::{Aabb, Projection, View};
 
 /// What the planner has at hand when planes are placed.

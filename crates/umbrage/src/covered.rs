@@ -24,7 +24,7 @@ pub(crate) fn reaches(split: &Split, center: DVec3, half: DVec3) -> bool {
 /// What the maps before one take away from it.
 pub(crate) struct Taken<'a> {
     earlier: &'a [Split],
-    /// Texels that a filter reaches around a sample, rounding included.
+    /// Texels that a filter reaches around a sample of the map that is planned, rounding included.
     pub margin: f64,
     /// Share of a map's half edge over which it asks the next one, too.
     blend: f64,
@@ -33,8 +33,8 @@ pub(crate) struct Taken<'a> {
 }
 
 impl<'a> Taken<'a> {
-    pub fn new(split: &Split, earlier: &'a [Split], filter_radius: f64, blend: f64) -> Self {
-        let margin = filter_radius + ROUNDING_TEXELS;
+    pub fn new(split: &Split, earlier: &'a [Split], blend: f64) -> Self {
+        let margin = split.filter_reach + ROUNDING_TEXELS;
         Self { earlier, margin, blend, reach_m: margin * split.texel_m.max_element() }
     }
 
@@ -44,7 +44,10 @@ impl<'a> Taken<'a> {
         self.earlier.iter().filter(|split| !split.casters.is_empty()).any(|split| {
             let (lo, hi) = rectangle(split, center, half);
             let size = f64::from(split.size);
-            let room = self.margin + 0.5 * self.blend * size + self.reach_m / split.texel_m.min_element();
+            let room = split.filter_reach
+                + ROUNDING_TEXELS
+                + 0.5 * self.blend * size
+                + self.reach_m / split.texel_m.min_element();
             lo.cmpge(DVec2::splat(room)).all() && hi.cmple(DVec2::splat(size - room)).all()
         })
     }

@@ -2,20 +2,21 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::margin::{EDGE_TEXELS, Reach};
 use crate::planner::Placed;
 use crate::rectangle::Rectangle;
 use crate::region::{Fan, Region};
 use crate::{DirectionalLight, Split};
 
-/// The smallest rectangle around `target`, widened by `margin` texels.
-pub(crate) fn fitted(mut split: Split, target: &Region, fan: &Fan, margin: f64) -> Split {
+/// The smallest rectangle around `target`, widened by the filter's reach.
+pub(crate) fn fitted(mut split: Split, target: &Region, fan: &Fan, reach: Reach) -> Split {
     let (u, v, lo, hi) = target.least_rectangle(fan);
     (split.u_axis, split.v_axis) = (u, v);
-    let texels = f64::from(split.size) - 2.0 * margin;
     let longest = (hi - lo).max_element();
     // A target without width (a wall seen edge-on by the light) still gets texels of some size.
     let extent = (hi - lo).max(DVec2::splat(1e-3 * longest.max(1e-3)));
-    split.texel_m = extent / texels;
+    split.filter_reach = reach.texels(extent.min_element(), split.size, 2.0 * EDGE_TEXELS);
+    split.texel_m = extent / (f64::from(split.size) - 2.0 * (split.filter_reach + EDGE_TEXELS));
     split.min_texel = 0.5 * (lo + hi) / split.texel_m - 0.5 * f64::from(split.size);
     split
 }
@@ -25,13 +26,14 @@ pub(crate) fn stepped(
     mut split: Split,
     target: &Region,
     fan: &Fan,
-    margin: f64,
+    reach: Reach,
     held: Rectangle,
     depth: (f64, f64),
 ) -> Split {
     (split.u_axis, split.v_axis) = fan.axes(held.direction);
     let size = f64::from(split.size);
-    split.texel_m = held.extent / (size - 2.0 * margin - 1.0);
+    split.filter_reach = reach.texels(held.extent.min_element(), split.size, 2.0 * EDGE_TEXELS + 1.0);
+    split.texel_m = held.extent / (size - 2.0 * (split.filter_reach + EDGE_TEXELS) - 1.0);
     split.min_texel = (held.center(target) / split.texel_m - 0.5 * size).round();
     (split.depth_near, split.depth_far) = depth;
     split

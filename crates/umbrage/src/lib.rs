@@ -26,6 +26,7 @@ mod error;
 mod fit;
 mod light;
 mod local;
+mod margin;
 mod placement;
 mod plan;
 mod planner;

@@ -11,10 +11,10 @@ use glam::{DMat4, DVec2, DVec3};
 
 use crate::light::map_axes;
 use crate::plan::ShadowPlan;
-use crate::planner::{BELOW_ALL, Placed};
+use crate::planner::Placed;
 use crate::split::{blend_begin, coverage, split_planes};
 use crate::stable::HeldSize;
-use crate::volume::{Lies, Plane, Slice, SweptVolume};
+use crate::volume::{BELOW_ALL, Lies, Plane, Slice, SweptVolume};
 use crate::{
     Aabb, Bands, Error, Fit, Light, PointLight, Result, Selection, ShadowSettings, Split, SplitScheme, SpotLight,
     Stabilize, View, Warp,
@@ -232,6 +232,7 @@ impl LocalPlanner {
             depth_near: axis_offset + w_near,
             depth_far: axis_offset + w_far,
             receiver_depths: (axis_offset + w_near, axis_offset + w_far),
+            filter_reach: settings.filter_radius,
             warp: Some(frustum.shadow_from_world(texel, min_texel, size, (w_near, w_far))),
             light_position: Some(frustum.position),
             casters,

@@ -5,14 +5,20 @@
 //! Here the row of planes of least expected error is found exactly, by dynamic programming over a few dozen candidates. Ours;
 //! *Sample Distribution Shadow Maps* (Lauritzen et al. 2010) place planes by the depths that a frame shows, which needs the frame.
 
+use glam::DVec2;
+
 use crate::cells::{Cells, Sight};
+use crate::range::{Range, visible_range};
 use crate::region::{Fan, Region};
 use crate::split::{coverage, split_planes};
 use crate::stable::slice_sphere;
 use crate::{Error, ExtentSteps, Fit, Frustum, Projection, Result, ShadowSettings, SplitScheme, Stabilize, View};
 
 /// Candidates between the ends, besides those of the fixed schemes and those that are held.
-const CANDIDATES: usize = 40;
+const CANDIDATES: usize = 32;
+
+/// Depths that show anything are taken for a single one below this ratio of the last to the first.
+const LEAST_RATIO: f64 = 1.01;
 
 /// By how much the best planes have to beat those that are held, where maps have to stand still: less than this share of what the held
 /// ones cost.
@@ -26,16 +32,23 @@ pub(crate) struct Maps<'a> {
     pub margin: f64,
     /// Across everything that is shadowed, metres: what the source's steps are fractions of.
     pub whole_width: f64,
+    /// Half the edges that no still map exceeds, metres.
+    pub most_half: DVec2,
 }
 
 impl Maps<'_> {
-    /// Metres across what a map shows, the mean of its edges, for each slice between two candidates.
+    /// Metres across a still map around a sphere, the mean of its edges.
+    fn still_edge(&self, radius: f64) -> f64 {
+        radius.min(self.most_half.x) + radius.min(self.most_half.y)
+    }
+
+    /// Metres across a map that shows a region, the mean of its edges.
     fn edge(&self, region: &Region, fan: &Fan) -> f64 {
         let (_, _, lo, hi) = region.least_rectangle(fan);
         let extent = match self.settings.stabilize {
             Stabilize::Approximate(ExtentSteps::Levels(count)) => {
                 let level = self.whole_width / f64::from(count);
-                ((hi - lo) / level).ceil().max(glam::DVec2::ONE) * level
+                ((hi - lo) / level).ceil().max(DVec2::ONE) * level
             }
             // Steps of equal ratio add the same share to all on average.
             _ => hi - lo,
@@ -155,6 +168,8 @@ pub(crate) struct Placement {
     candidates: Vec<f64>,
     cells: Cells,
     weights: Vec<f64>,
+    /// The view across each candidate, in the light's plane.
+    faces: Vec<Region>,
     costs: Costs,
     search: Search,
     best: Vec<usize>,
@@ -164,17 +179,12 @@ pub(crate) struct Placement {
 }
 
 impl Placement {
-    /// Writes `m + 1` planes between `near` and `far` into `planes`. Says whether they are others than before.
+    /// Writes the `m + 1` planes of a range into `planes`, the last at its inner far end. Says whether they are others than before.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] naming `range` if it is too short to be divided.
-    pub fn place(
-        &mut self,
-        sight: &Sight,
-        maps: &Maps,
-        (near, far): (f64, f64),
-        planes: &mut Vec<f64>,
-    ) -> Result<bool> {
+    pub fn place(&mut self, sight: &Sight, maps: &Maps, range: Range, planes: &mut Vec<f64>) -> Result<bool> {
+        let (near, far) = (range.near, range.inner_far);
         let settings = maps.settings;
         let m = settings.splits();
         split_planes(&SplitScheme::Logarithmic, near, far, m, planes)?;
@@ -185,14 +195,14 @@ impl Placement {
             && self.held.len() == m - 1
             && self.held.first() > Some(&near)
             && self.held.last() < Some(&far);
-        self.choose_candidates(sight.view.frustum().projection, near, far, m)?;
+        self.choose_candidates(sight, near, far, m)?;
         self.cells.gather(sight, &self.candidates);
         self.cells.weigh(sight.view.frustum().projection, &self.candidates, &mut self.weights);
         if self.weights.iter().sum::<f64>() <= 0.0 {
             // Nothing throws a shadow that is seen: planes that are held stay, others stand where they do for an even scene.
             return Ok(self.hold(planes, holds));
         }
-        self.measure(sight, maps);
+        self.measure(sight, maps, range.far);
         self.search.cheapest(&self.costs, &mut self.best);
         if !(holds && self.held_is_good_enough()) {
             holds = false;
@@ -227,29 +237,32 @@ impl Placement {
         self.costs.total(&self.best) >= WORTH_MOVING * self.costs.total(&planes[..=m])
     }
 
-    /// Rising depths from near to far: evenly spaced on the picture, with the planes of the fixed schemes and those that are held
-    /// among them.
-    fn choose_candidates(&mut self, projection: Projection, near: f64, far: f64, m: usize) -> Result<()> {
-        let scheme = match projection {
+    /// Rising depths from near to far: evenly spaced on the picture over the depths that show anything, with the planes of the fixed schemes
+    /// and those that are held among them.
+    fn choose_candidates(&mut self, sight: &Sight, near: f64, far: f64, m: usize) -> Result<()> {
+        let scheme = match sight.view.frustum().projection {
             Projection::Perspective => SplitScheme::Logarithmic,
             Projection::Orthographic => SplitScheme::Uniform,
         };
-        let spread = |scheme: &SplitScheme, splits: usize, all: &mut Vec<f64>, own: &mut Vec<f64>| {
+        let visible = sight.visible.iter().map(|&index| &sight.receivers[index as usize]);
+        let (first, last) = visible_range(sight.view, near, far, visible)
+            .map(|(first, last)| (first.max(near), last.min(far)))
+            .filter(|(first, last)| *last > LEAST_RATIO * first)
+            .unwrap_or((near, far));
+        let Self { candidates, scheme: planes, held, .. } = self;
+        candidates.clear();
+        candidates.extend([near, far]);
+        let fixed = [SplitScheme::Logarithmic, SplitScheme::default()].map(|scheme| (scheme, near, far, m));
+        for (scheme, from, to, splits) in [(scheme, first, last, CANDIDATES)].into_iter().chain(fixed) {
             // A range with room for the splits may be too short for all the candidates: those that it has no room for are left out.
-            if split_planes(scheme, near, far, splits, own).is_ok() {
-                all.extend_from_slice(&own[1..splits]);
+            if split_planes(&scheme, from, to, splits, planes).is_ok() {
+                candidates.extend(planes.iter().filter(|&&plane| plane > near && plane < far));
             }
-        };
-        self.candidates.clear();
-        self.candidates.extend([near, far]);
-        spread(&scheme, CANDIDATES + 1, &mut self.candidates, &mut self.scheme);
-        spread(&SplitScheme::Logarithmic, m, &mut self.candidates, &mut self.scheme);
-        spread(&SplitScheme::Uniform, m, &mut self.candidates, &mut self.scheme);
-        spread(&SplitScheme::default(), m, &mut self.candidates, &mut self.scheme);
-        self.candidates.extend(self.held.iter().filter(|&&held| held > near && held < far));
-        self.candidates.sort_unstable_by(f64::total_cmp);
-        self.candidates.dedup();
-        if self.candidates.len() <= m {
+        }
+        candidates.extend(held.iter().filter(|&&held| held > near && held < far));
+        candidates.sort_unstable_by(f64::total_cmp);
+        candidates.dedup();
+        if candidates.len() <= m {
             return Err(Error::setting(
                 "range",
                 format!("{near} m to {far} m has no room for {m} splits; give a longer range or fewer splits"),
@@ -259,8 +272,8 @@ impl Placement {
     }
 
     /// Fills the costs of all slices.
-    fn measure(&mut self, sight: &Sight, maps: &Maps) {
-        let Self { candidates, cells, weights, costs, .. } = self;
+    fn measure(&mut self, sight: &Sight, maps: &Maps, far: f64) {
+        let Self { candidates, cells, weights, faces, costs, .. } = self;
         let settings = maps.settings;
         let n = candidates.len();
         costs.len = n;
@@ -281,30 +294,43 @@ impl Placement {
             for j in i + 1..n {
                 costs.begins[i * n + j] = begin(sight.view, settings, candidates, i, j);
             }
-            match (settings.stabilize, settings.fit) {
-                (Stabilize::Exact, _) => {
-                    let frustum = around(sight.view.frustum());
-                    for (j, &to) in candidates.iter().enumerate().skip(i + 1) {
-                        costs.edges[i * n + j] = 2.0 * slice_sphere(&frustum, candidates[i], to).radius;
+        }
+        // The last slice may be stretched beyond the depths that the planes are placed for.
+        let end = |j: usize| if j == n - 1 { far } else { candidates[j] };
+        let edges = |i: usize| (i + 1..n).map(move |j| (j, i * n + j));
+        match (settings.stabilize, settings.fit) {
+            (Stabilize::Exact, _) => {
+                let frustum = around(sight.view.frustum());
+                for (i, &from) in candidates.iter().enumerate() {
+                    for (j, at) in edges(i) {
+                        costs.edges[at] = maps.still_edge(slice_sphere(&frustum, from, end(j)).radius);
                     }
                 }
-                (_, Fit::Independent) => {
-                    let near = face(sight.view, sight.fan, candidates[i]);
-                    for (j, &to) in candidates.iter().enumerate().skip(i + 1) {
-                        let mut region = face(sight.view, sight.fan, to);
-                        region.include_region(&near);
-                        costs.edges[i * n + j] = maps.edge(&region, sight.fan);
+            }
+            (_, Fit::Independent) => {
+                faces.clear();
+                faces.extend((0..n).map(|j| face(sight.view, sight.fan, end(j))));
+                for i in 0..n {
+                    for (j, at) in edges(i) {
+                        let mut region = faces[i];
+                        region.include_region(&faces[j]);
+                        costs.edges[at] = maps.edge(&region, sight.fan);
                     }
                 }
-                (_, Fit::Dependent) => {
-                    let (mut receivers, mut casters) = (Region::EMPTY, Region::EMPTY);
-                    for j in i + 1..n {
+            }
+            (_, Fit::Dependent) => {
+                for i in 0..n {
+                    let (mut receivers, mut casters, mut edge) = (Region::EMPTY, Region::EMPTY, 0.0);
+                    for (j, at) in edges(i) {
                         let cell = &cells.cells[j - 1];
-                        receivers.include_region(&cell.receivers);
-                        casters.include_region(&cell.casters);
-                        let lit = casters.is_empty() || receivers.is_empty();
-                        costs.edges[i * n + j] =
-                            if lit { 0.0 } else { maps.edge(&casters.within(&receivers), sight.fan) };
+                        if !cell.receivers.is_empty() {
+                            receivers.include_region(&cell.receivers);
+                            casters.include_region(&cell.casters);
+                            if !casters.is_empty() {
+                                edge = maps.edge(&casters.within(&receivers), sight.fan);
+                            }
+                        }
+                        costs.edges[at] = edge;
                     }
                 }
             }

@@ -116,6 +116,9 @@ pub struct Split {
     /// Metres along `depth_axis` of the first and the last place that is seen through this map, with room for the bias: what filters of
     /// depth's moments spread their numbers over. A caster may lie before it.
     pub receiver_depths: (f64, f64),
+    /// Texels around a sample that a filter may read: what lies on screen lies that far inside the map.
+    /// [`crate::ShadowSettings::filter_radius`], or less where the filter's width is known in metres.
+    pub filter_reach: f64,
     /// Shadow NDC (x, y in [−1,1], y up, z in [0,1]) from world, to be divided by w; `None` for a plain map. w is positive at every
     /// receiver, and does not change along parallel light.
     pub warp: Option<DMat4>,

@@ -1,34 +1,29 @@
 //! The planner: from a view, a light and bounds to a [`ShadowPlan`].
 
+pub(crate) mod lists;
+
 use glam::{DVec2, DVec3};
 
 use crate::cells::Sight;
 use crate::covered;
 use crate::fit::{Block, fitted, snapped, stepped};
 use crate::local::{Given, LightFrustum, LocalPlanner};
+use crate::margin::{EDGE_TEXELS, Reach};
 use crate::placement::{Maps, Placement};
 use crate::range::{HeldEnds, Range};
-use crate::reach::{CoverageVolume, lies_below};
+use crate::reach::CoverageVolume;
 use crate::receiver_mask::ReceiverMask;
 use crate::rectangle::{HeldRectangle, longest_edge};
 use crate::region::{Fan, Region};
 use crate::settings::check_range;
 use crate::split::{blend_begin, coverage, split_planes};
 use crate::stable::{HeldHalf, HeldSize, slice_sphere, stable_texel};
-use crate::volume::{Lies, Slice};
+use crate::volume::{Lies, Slice, lies_below};
 use crate::warped::WarpPoints;
 use crate::{
     Aabb, Bands, DirectionalLight, Error, Fit, Light, MAX_SPLITS, RangeFit, Result, Selection, ShadowPlan,
     ShadowSettings, Split, SplitScheme, Stabilize, View, Warp,
 };
-
-/// Texels that a map keeps free around what it serves, besides the filter's reach: half for the texel that a sample's
-/// rounding may choose, one for the normal offset of the receiver's bias.
-const EDGE_TEXELS: f64 = 1.5;
-
-/// Share of a scene's extent by which a caster may rise above the lowest receiver and still count as lying below all of
-/// them: rounding in the bounds, not a length that could be seen (1.2 mm in 1.2 km).
-pub(crate) const BELOW_ALL: f64 = 1e-6;
 
 /// Plans shadow maps frame after frame. Keeps its buffers, so that only the first frame allocates, and the sizes that
 /// stabilised maps hold on to.
@@ -42,11 +37,11 @@ pub struct Planner {
     /// Stabilised: across the sphere around everything that is shadowed, metres. 0 otherwise.
     whole_width: f64,
     held_rectangle: [HeldRectangle; MAX_SPLITS],
-    /// Exactly stabilised and fitted to receivers: around all of them, which no map has to exceed along any axis.
+    /// Exactly stabilised: around all receivers, which no map has to exceed along any axis.
     around_all: Option<Block>,
     pub(crate) fan: Option<Fan>,
     pub(crate) volumes: Vec<CoverageVolume>,
-    /// What the receivers of each split are made of, if that was told for the last plan.
+    /// Where the parts of each split's receivers lie, if they were told for the last plan.
     pub(crate) masks: Vec<ReceiverMask>,
     pub(crate) knows_parts: bool,
     /// With [`Selection::Map`]: everything that the view shows in range, which any map may be asked about.
@@ -201,8 +196,8 @@ impl Planner {
             let sphere = slice_sphere(view.frustum(), view.frustum().near, far);
             self.whole_width = 2.0 * self.held_whole.hold(sphere.radius);
         }
-        let is_capped = self.settings.stabilize == Stabilize::Exact && self.settings.fit == Fit::Dependent;
-        self.around_all = if is_capped { Block::around(&self.receivers, light) } else { None };
+        let is_exact = self.settings.stabilize == Stabilize::Exact;
+        self.around_all = if is_exact { Block::around(&self.receivers, light) } else { None };
         self.cull_to_view(view, direction, far);
         if let Err(error) = self.place_planes(view, &fan, range) {
             // A range that cannot be divided is not held on to.
@@ -234,7 +229,6 @@ impl Planner {
     /// Writes `C_0 ..= C_m` into the plan.
     fn place_planes(&mut self, view: &View, fan: &Fan, range: Range) -> Result<()> {
         let m = self.settings.splits();
-        let ends = (range.near, range.inner_far);
         if self.settings.scheme == SplitScheme::Fitted {
             let sight = Sight {
                 view,
@@ -245,13 +239,14 @@ impl Planner {
                 candidates: &self.candidates,
             };
             let margin = self.settings.filter_radius + EDGE_TEXELS;
-            let maps = Maps { settings: &self.settings, margin, whole_width: self.whole_width };
-            if self.placement.place(&sight, &maps, ends, &mut self.plan.planes)? {
+            let most_half = self.around_all.map_or(DVec2::INFINITY, |all| all.half.truncate());
+            let maps = Maps { settings: &self.settings, margin, whole_width: self.whole_width, most_half };
+            if self.placement.place(&sight, &maps, range, &mut self.plan.planes)? {
                 // Other slices have other sizes: none is worth holding on to.
                 self.held_half = Default::default();
             }
         } else {
-            split_planes(&self.settings.scheme, ends.0, ends.1, m, &mut self.plan.planes)?;
+            split_planes(&self.settings.scheme, range.near, range.inner_far, m, &mut self.plan.planes)?;
         }
         self.plan.planes[m] = range.far;
         Ok(())
@@ -313,46 +308,36 @@ impl Planner {
             Stabilize::None => block.half.truncate(),
         };
         let radius = half.max_element();
-        let stable_texel = DVec2::new(stable_texel(half.x, size, margin), stable_texel(half.y, size, margin));
+        // A warped map's texels differ in size.
+        let reach = if settings.warp(i) == Warp::None { Reach::of(settings) } else { Reach::most(settings) };
+        let stable_reach = reach.texels(2.0 * half.min_element(), size, 2.0 * EDGE_TEXELS + 1.0);
+        let stable_texel = half.to_array().map(|half| stable_texel(half, size, stable_reach + EDGE_TEXELS));
+        let stable_texel = DVec2::from(stable_texel);
 
         let served = match self.settings.fit {
             Fit::Independent => None,
             Fit::Dependent => Some(self.receivers_in(&slice, fan)),
         };
         let widest = served.as_ref().map_or(&slice_region, |(region, _)| region).widest().max(0.0);
-        let margin_m = match self.settings.stabilize {
-            Stabilize::Exact => margin * stable_texel.max_element(),
+        let (stabilize, whole_width) = (self.settings.stabilize, self.whole_width);
+        let margin_of = |widest: f64| match stabilize {
+            Stabilize::Exact => (stable_reach + EDGE_TEXELS) * stable_texel.max_element(),
             Stabilize::Approximate(steps) => {
-                margin * longest_edge(steps, widest, self.whole_width) / (f64::from(size) - 2.0 * margin - 1.0)
+                margin * longest_edge(steps, widest, whole_width) / (f64::from(size) - 2.0 * margin - 1.0)
             }
             Stabilize::None => widest * margin / (f64::from(size) - 2.0 * margin).max(1.0),
         };
-        let volume = CoverageVolume { slice, swept, receivers: served, margin: margin_m };
-        let casters = if visible { self.list_casters(&volume, fan) } else { self.empty_list() };
-
-        // What the map has to show, in the light's plane and in depth.
-        let listed = &self.plan.caster_indices[casters.clone()];
-        let (target, caster_near) = match &volume.receivers {
-            Some((region, _)) if !listed.is_empty() => {
-                let mut target = Region::EMPTY;
-                for &index in listed {
-                    let caster = &self.casters[index as usize];
-                    target.include_box_within(fan, caster.center, caster.half, region);
-                }
-                let caster_near = target.depth.0;
-                target.depth = region.depth;
-                (target, caster_near)
+        let mut margin_m = margin_of(widest);
+        let mut casters =
+            if visible { self.list_casters(&swept, served.as_ref(), fan, margin_m) } else { self.empty_list() };
+        let (mut target, mut caster_near) = self.target(casters.clone(), served.as_ref(), slice_region, fan);
+        // Casters leave a map with smaller texels than its receivers alone, and with those its filter reaches less far.
+        if served.is_some() && !casters.is_empty() && self.settings.warp(i) == Warp::None {
+            margin_m = margin_of(target.widest());
+            if self.keep_casters(&mut casters, &swept, served.as_ref(), fan, margin_m) {
+                (target, caster_near) = self.target(casters.clone(), served.as_ref(), slice_region, fan);
             }
-            Some((region, _)) if !region.is_empty() => (*region, region.depth.0),
-            _ => {
-                let caster_near = listed
-                    .iter()
-                    .map(|&index| &self.casters[index as usize])
-                    .map(|c| direction.dot(c.center) - direction.abs().dot(c.half))
-                    .fold(f64::INFINITY, f64::min);
-                (slice_region, caster_near)
-            }
-        };
+        }
         let split = Split {
             near,
             far,
@@ -367,19 +352,20 @@ impl Planner {
             depth_near: target.depth.0,
             depth_far: target.depth.1,
             receiver_depths: target.depth,
+            filter_reach: stable_reach,
             warp: None,
             light_position: None,
             casters,
         };
         let split = match self.settings.stabilize {
-            Stabilize::None => fitted(split, &target, fan, margin),
+            Stabilize::None => fitted(split, &target, fan, reach),
             Stabilize::Exact => snapped(split, light, &block, stable_texel),
             Stabilize::Approximate(steps) => {
                 // A split without casters is lit, whatever its rectangle; it changes nothing that is held.
                 let mut unheld = HeldRectangle::default();
                 let held = if split.casters.is_empty() { &mut unheld } else { &mut self.held_rectangle[i] };
                 let rectangle = held.hold(&target, steps, self.whole_width);
-                stepped(split, &target, fan, margin, rectangle, (block.center.z - radius, block.center.z + radius))
+                stepped(split, &target, fan, reach, rectangle, (block.center.z - radius, block.center.z + radius))
             }
         };
         let (split, caster_near) = match self.shown.clone() {
@@ -399,13 +385,13 @@ impl Planner {
             };
             self.warp_points.receivers_of(&slice, boxes);
             let casters = self.plan.caster_indices[split.casters.clone()].iter();
-            self.warp_points.casters_of(&volume.swept, margin_m, casters.map(|&index| &self.casters[index as usize]));
+            self.warp_points.casters_of(&swept, margin_m, casters.map(|&index| &self.casters[index as usize]));
             self.warp_points.warp(&mut split, warp, view, margin, self.settings.fit);
         }
         self.plan.splits.push(split);
         self.volumes.push(match &self.shown {
             Some(shown) => shown.volume.clone(),
-            None => volume,
+            None => CoverageVolume { slice, swept, receivers: served, margin: margin_m },
         });
     }
 
@@ -430,7 +416,7 @@ impl Planner {
     /// first caster.
     fn serving_all_it_covers(&mut self, mut split: Split, shown: &Shown, fan: &Fan, caster_near: f64) -> (Split, f64) {
         self.plan.caster_indices.truncate(split.casters.start);
-        let taken = covered::Taken::new(&split, &self.plan.splits, self.settings.filter_radius, self.settings.blend);
+        let taken = covered::Taken::new(&split, &self.plan.splits, self.settings.blend);
         let margin = taken.margin * split.texel_m.max_element();
         let mut caster_near = caster_near;
         for &index in &self.candidates {
@@ -489,57 +475,6 @@ impl Planner {
             .map(|r| depth_axis.dot(r.center) + reach.dot(r.half))
             .fold(f64::NEG_INFINITY, f64::max);
         (near, far)
-    }
-
-    fn empty_list(&self) -> std::ops::Range<usize> {
-        let end = self.plan.caster_indices.len();
-        end..end
-    }
-
-    /// The receivers' part of a slice: its bounds in the light's plane and in the world.
-    fn receivers_in(&mut self, slice: &Slice, fan: &Fan) -> (Region, Aabb) {
-        let mut region = Region::EMPTY;
-        let mut bounds = Aabb::EMPTY;
-        self.across.clear();
-        for &index in &self.visible {
-            let receiver = &self.receivers[index as usize];
-            match slice.classify(receiver.center, receiver.half) {
-                Lies::Outside => {}
-                Lies::Inside => {
-                    region.include_box(fan, receiver.center, receiver.half);
-                    bounds = bounds.union(receiver.bounds());
-                }
-                Lies::Across => self.across.push(index),
-            }
-        }
-        for &index in &self.across {
-            let receiver = &self.receivers[index as usize];
-            let own = receiver.bounds();
-            let changes_nothing =
-                bounds.union(own) == bounds && region.encloses_box(fan, receiver.center, receiver.half);
-            if !changes_nothing {
-                slice.clip_box(&own, |point| {
-                    region.include_point(fan, point);
-                    bounds = bounds.including(point);
-                });
-            }
-        }
-        (region, bounds)
-    }
-
-    /// Appends the casters of a slice to the plan's list.
-    fn list_casters(&mut self, volume: &CoverageVolume, fan: &Fan) -> std::ops::Range<usize> {
-        let begin = self.plan.caster_indices.len();
-        if volume.receivers.is_some_and(|(region, _)| region.is_empty()) {
-            return begin..begin;
-        }
-        for &index in &self.candidates {
-            let Placed { center, half } = self.casters[index as usize];
-            if volume.is_shaded_by(fan, center, half) {
-                self.plan.caster_indices.push(index);
-            }
-        }
-        begin..self.plan.caster_indices.len()
     }
 }
 

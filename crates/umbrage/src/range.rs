@@ -25,7 +25,12 @@ const HYSTERESIS: f64 = 2.0;
 /// Source: *Parallel-Split Shadow Maps on Programmable GPUs* (seed 001) section 10.2.1, which only says that near and far might be
 /// adjusted "so that the view frustum contains the visible objects as tightly as possible". What stands behind something
 /// else counts as visible: boxes hide nothing.
-fn visible_range(view: &View, near: f64, far: f64, receivers: &[Placed]) -> Option<(f64, f64)> {
+pub(crate) fn visible_range<'a>(
+    view: &View,
+    near: f64,
+    far: f64,
+    receivers: impl IntoIterator<Item = &'a Placed>,
+) -> Option<(f64, f64)> {
     let room = |depth: f64| ROOM * depth.abs();
     let whole = Slice::new(view, near - 0.5 * room(near), far + room(far));
     let forward = view.forward();
@@ -110,7 +115,8 @@ const FIRST_ROOM: f64 = 1.044_273_782_427_413_8;
 ///
 /// The scene's deepest point changes as the camera turns, its farthest does not: the range ends there, in steps of 9 % as the eye walks
 /// away from it, and a step moves the last plane only. The inner planes are placed for the depth that the first
-/// view asks for, and again, for any that it can ask for by turning, where one asks for √2 times as much.
+/// view asks for, and again, for any that it can ask for by turning, where one asks for √2 times as much. A view that
+/// looks out of the scene does not pay for what lies behind it: the range ends at √2 times what the inner planes are placed for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct HeldFar {
     far: HeldSize,
@@ -130,7 +136,7 @@ impl HeldFar {
         if deepest > MOST_STRETCH * self.inner_far || far < self.inner_far {
             self.inner_far = deepest.max(far / MOST_STRETCH);
         }
-        Range { near, inner_far: self.inner_far, far }
+        Range { near, inner_far: self.inner_far, far: far.min(MOST_STRETCH * self.inner_far) }
     }
 }
 
@@ -213,9 +219,11 @@ mod tests {
     }
 
     #[test]
-    fn inner_planes_follow_once_after_a_first_look_out_of_the_scene() {
+    fn a_first_look_out_of_the_scene_is_tight_and_planes_follow_once() {
         let mut held = HeldFar::default();
-        let mut inner = vec![held.hold(0.1, 10.0, 400.0).inner_far];
+        let out = held.hold(0.1, 10.0, 400.0);
+        assert_eq!((out.inner_far, out.far), (10.0, 10.0 * MOST_STRETCH));
+        let mut inner = vec![out.inner_far];
         for degrees in 0..=90 {
             inner.push(held.hold(0.1, 10.0 + 390.0 * f64::from(degrees).to_radians().sin(), 400.0).inner_far);
         }

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use crate::planner::BELOW_ALL;
+use crate::planner::Placed;
+use crate::planner::lists::can_shade;
 use crate::receiver_mask::ReceiverMask;
 use crate::region::{Fan, Region};
 use crate::volume::{Slice, SweptVolume};
@@ -23,12 +24,7 @@ pub(crate) struct CoverageVolume {
 impl CoverageVolume {
     /// Whether a box can throw a shadow into the volume or its margin (conservatively).
     pub fn is_shaded_by(&self, fan: &Fan, center: DVec3, half: DVec3) -> bool {
-        self.swept.meets(center, half, self.margin)
-            && self.receivers.is_none_or(|(region, bounds)| {
-                !region.is_empty()
-                    && !lies_below(center, half, &bounds, fan.depth, self.margin)
-                    && region.can_be_shadowed_by(fan, center, half, self.margin)
-            })
+        can_shade(&Placed { center, half }, &self.swept, self.receivers.as_ref(), fan, self.margin)
     }
 
     fn contains(&self, fan: &Fan, point: DVec3) -> bool {
@@ -93,24 +89,7 @@ impl Planner {
         }
         let fan = self.fan.as_ref()?;
         self.plan.splits.iter().zip(&self.volumes).position(|(split, volume)| {
-            volume.contains(fan, point)
-                && (split.casters.is_empty() || split.contains(point, self.settings.filter_radius))
+            volume.contains(fan, point) && (split.casters.is_empty() || split.contains(point, split.filter_reach))
         })
     }
-}
-
-/// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers` as the light sees it: it then
-/// has nothing behind it to throw a shadow on. A flat ground under everything is the case that matters, and touches what
-/// stands on it. Anything that is not flat has to lie `margin` metres beyond: a filter asks beside its receiver, too.
-pub(crate) fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3, margin: f64) -> bool {
-    let slack = BELOW_ALL * (receivers.max - receivers.min).max_element();
-    (0..3).any(|axis| {
-        let beyond = match direction[axis] {
-            along if along < -1e-9 => receivers.min[axis] - (center[axis] + half[axis]),
-            along if along > 1e-9 => (center[axis] - half[axis]) - receivers.max[axis],
-            _ => f64::NEG_INFINITY,
-        };
-        let is_flat = 2.0 * half[axis] <= slack;
-        beyond >= if is_flat { -slack } else { margin }
-    })
 }

@@ -40,7 +40,8 @@ impl Default for SplitScheme {
 pub enum RangeFit {
     /// The camera's near and far, far capped by the receivers. With [`Stabilize::Exact`] far is capped by the distance of the farthest
     /// receiver in any direction, which turning does not change, rounded up to steps of 9 % that move the last plane alone; the inner
-    /// planes are placed for the view depth that the first frame asks for, and follow where a view asks for √2 times as much.
+    /// planes are placed for the view depth that the first frame asks for, and follow where a view asks for √2 times as much. The range
+    /// ends at √2 times that depth at most.
     #[default]
     Camera,
     /// The view depths between which the view shows receivers: their boxes clipped to the frustum, as an empty foreground or a lens
@@ -54,8 +55,8 @@ pub enum RangeFit {
 pub enum Fit {
     /// The corners of the slice alone. The near plane stays at the scene's, so no caster in between is lost.
     Independent,
-    /// The slice, clipped to its receivers, and only where casters can throw a shadow on them. An exactly stabilised map, which may
-    /// not depend on what a slice holds, is along neither of its axes longer than all receivers are, and does not move along it then.
+    /// The slice, clipped to its receivers, and only where casters can throw a shadow on them. An exactly stabilised map's depth and
+    /// list alone depend on them.
     #[default]
     Dependent,
 }
@@ -143,6 +144,9 @@ pub struct ShadowSettings {
     /// How far the filter reaches from the sample, in texels (0.5 for one nearest texel, 1 for a bilinear comparison,
     /// 1.5 and 2.5 for tents of 3 and 5). Every map is widened by it.
     pub filter_radius: f64,
+    /// Half the width of the filter's kernel in metres, where it is known: splits in which that is less than `filter_radius` texels are
+    /// widened by as much as it is, and not less than 4 texels ([`crate::Split::filter_reach`]). `None`: all by `filter_radius`. Plain maps of a sun only.
+    pub filter_half_width_m: Option<f64>,
     /// Share of each split's depth range over which it blends into the next; 0 is a hard border, at most 1. With
     /// [`Selection::Map`] the share of a map's half edge, along that edge.
     pub blend: f64,
@@ -170,6 +174,7 @@ impl Default for ShadowSettings {
             stabilize: Stabilize::default(),
             warps: Vec::new(),
             filter_radius: 1.5,
+            filter_half_width_m: None,
             blend: 0.1,
             far_fade: 0.1,
             depth_clamp: false,
@@ -228,6 +233,14 @@ impl ShadowSettings {
         unit("far_fade", self.far_fade)?;
         if !(self.filter_radius >= 0.0 && self.filter_radius <= 64.0) {
             return Err(Error::setting("filter_radius", format!("{} texels; give 0 to 64", self.filter_radius)));
+        }
+        if let Some(half_width) = self.filter_half_width_m
+            && !(half_width >= 0.0 && half_width.is_finite())
+        {
+            return Err(Error::setting(
+                "filter_half_width_m",
+                format!("{half_width} m; give a finite width, 0 or more"),
+            ));
         }
         if self.image_size.contains(&0) {
             return Err(Error::setting(

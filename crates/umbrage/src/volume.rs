@@ -233,6 +233,26 @@ impl SweptVolume {
     }
 }
 
+/// Share of a scene's extent by which a caster may rise above the lowest receiver and still count as lying below all of
+/// them: rounding in the bounds, not a length that could be seen (1.2 mm in 1.2 km).
+pub(crate) const BELOW_ALL: f64 = 1e-6;
+
+/// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers` as the light sees it: it then
+/// has nothing behind it to throw a shadow on. A flat ground under everything is the case that matters, and touches what
+/// stands on it. Anything that is not flat has to lie `margin` metres beyond: a filter asks beside its receiver, too.
+pub(crate) fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3, margin: f64) -> bool {
+    let slack = BELOW_ALL * (receivers.max - receivers.min).max_element();
+    (0..3).any(|axis| {
+        let beyond = match direction[axis] {
+            along if along < -1e-9 => receivers.min[axis] - (center[axis] + half[axis]),
+            along if along > 1e-9 => (center[axis] - half[axis]) - receivers.max[axis],
+            _ => f64::NEG_INFINITY,
+        };
+        let is_flat = 2.0 * half[axis] <= slack;
+        beyond >= if is_flat { -slack } else { margin }
+    })
+}
+
 /// A convex polygon of a few corners, on the stack.
 struct Polygon {
     points: [DVec3; MOST_CORNERS],

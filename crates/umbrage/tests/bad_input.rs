@@ -26,6 +26,9 @@ fn settings() {
     assert_eq!(refused(|s| s.far_fade = -0.1), "far_fade");
     assert_eq!(refused(|s| s.filter_radius = f64::NAN), "filter_radius");
     assert_eq!(refused(|s| s.filter_radius = -1.0), "filter_radius");
+    for width in [-0.1, f64::NAN, f64::INFINITY] {
+        assert_eq!(refused(|s| s.filter_half_width_m = Some(width)), "filter_half_width_m");
+    }
     assert_eq!(refused(|s| s.image_size = [0, 600]), "image_size");
     assert_eq!(refused(|s| s.range = Some((5.0, 5.0))), "range");
     assert_eq!(refused(|s| s.range = Some((f64::NAN, 5.0))), "range");

@@ -35,6 +35,7 @@ fn settings() -> impl Strategy<Value = ShadowSettings> {
     let scheme = prop_oneof![
         Just(SplitScheme::Uniform),
         Just(SplitScheme::Logarithmic),
+        Just(SplitScheme::Fitted),
         (0.0..=1.0f64).prop_map(|lambda| SplitScheme::Practical { lambda, delta: vec![] })
     ];
     let range = prop_oneof![Just(None), Just(Some((1.0, 300.0))), Just(Some((5.0, 80.0)))];
@@ -52,25 +53,41 @@ fn settings() -> impl Strategy<Value = ShadowSettings> {
         1 => Just(Stabilize::Approximate(ExtentSteps::Levels(64)))
     ];
     let warps = prop_oneof![Just(vec![]), prop::collection::vec(warp.clone(), 1), prop::collection::vec(warp, 8)];
-    (1usize..=8, scheme, range, any::<[bool; 3]>(), stabilize, prop_oneof![Just(0.0), 0.0..0.5f64], 0.5..3.0f64, warps)
-        .prop_map(|(m, scheme, range, [dependent, clamp, visible], stabilize, blend, filter_radius, mut warps)| {
-            ShadowSettings {
-                map_sizes: vec![256; m],
+    let filter = prop_oneof![
+        2 => (0.5..3.0f64).prop_map(|texels| (texels, None)),
+        1 => prop_oneof![Just(0.0), 0.0..0.5f64, 0.5..40.0f64].prop_map(|metres| (16.0, Some(metres)))
+    ];
+    (1usize..=8, scheme, range, any::<[bool; 3]>(), stabilize, prop_oneof![Just(0.0), 0.0..0.5f64], filter, warps)
+        .prop_map(
+            |(
+                m,
                 scheme,
                 range,
-                range_fit: if visible && range.is_none() { RangeFit::Visible } else { RangeFit::Camera },
-                fit: if dependent { Fit::Dependent } else { Fit::Independent },
+                [dependent, clamp, visible],
                 stabilize,
-                filter_radius,
                 blend,
-                depth_clamp: clamp,
-                warps: {
-                    warps.truncate(if stabilize == Stabilize::None { m } else { 0 });
-                    warps
-                },
-                ..ShadowSettings::default()
-            }
-        })
+                (filter_radius, filter_half_width_m),
+                mut warps,
+            )| {
+                ShadowSettings {
+                    map_sizes: vec![256; m],
+                    scheme,
+                    range,
+                    range_fit: if visible && range.is_none() { RangeFit::Visible } else { RangeFit::Camera },
+                    fit: if dependent { Fit::Dependent } else { Fit::Independent },
+                    stabilize,
+                    filter_radius,
+                    filter_half_width_m,
+                    blend,
+                    depth_clamp: clamp,
+                    warps: {
+                        warps.truncate(if stabilize == Stabilize::None { m } else { 0 });
+                        warps
+                    },
+                    ..ShadowSettings::default()
+                }
+            },
+        )
 }
 
 fn cases() -> impl Strategy<Value = Case> {
@@ -253,7 +270,7 @@ proptest! {
                 let s = &plan.splits[split];
                 if let Some(warp) = s.warp {
                     prop_assert!((warp * point.extend(1.0)).w > 0.0, "{point} at {depth} m lies behind the warp of split {split}");
-                    let inside = case.settings.fit == Fit::Dependent || s.contains(point, case.settings.filter_radius);
+                    let inside = case.settings.fit == Fit::Dependent || s.contains(point, s.filter_reach);
                     prop_assert!(inside, "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
                 }
                 for (index, bounds) in case.boxes.iter().enumerate() {
@@ -264,7 +281,7 @@ proptest! {
                     let (at, reach) = (point - direction * end, 0.02 * (bounds.max - bounds.min));
                     let part = Aabb::new((at - reach).max(bounds.min), (at + reach).min(bounds.max));
                     prop_assert!(!part.is_valid() || planner.reaches(split, &part), "split {split} leaves out {part:?} of caster {index}, which shades {point}");
-                    prop_assert!(s.contains(point, case.settings.filter_radius), "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
+                    prop_assert!(s.contains(point, s.filter_reach), "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
                     let along = s.depth_axis.dot(point);
                     prop_assert!((s.receiver_depths.0..=s.receiver_depths.1).contains(&along), "{point} at {along} m along the light, outside {:?}", s.receiver_depths);
                     let caster_begin = direction.dot(bounds.center()) - direction.abs().dot(bounds.half_extent());
@@ -289,6 +306,11 @@ proptest! {
         for (i, split) in plan.splits.iter().enumerate() {
             prop_assert!(split.near < split.far && split.texel_m.min_element() > 0.0 && split.texel_m.is_finite());
             prop_assert!(split.depth_near < split.depth_far && split.min_texel.is_finite());
+            // A kernel of known width has its room, and no map gives away more.
+            let most = case.settings.filter_radius;
+            let asked = case.settings.filter_half_width_m.map_or(most, |m| m / split.texel_m.min_element() + 1.0);
+            let reach = if split.warp.is_some() { most } else { asked.max(4.0).min(most) };
+            prop_assert!((split.filter_reach - reach).abs() < 1e-6 * reach || split.warp.is_none() && split.filter_reach == most, "{} for {asked}", split.filter_reach);
             prop_assert!(split.u_axis.cross(split.v_axis).abs_diff_eq(split.depth_axis, 1e-9), "the axes are no right-handed frame");
             for &caster in plan.casters(i) {
                 listed[caster as usize].push(i);
@@ -325,19 +347,18 @@ proptest! {
     #[test]
     fn the_first_map_that_contains_a_point_has_all_its_casters(case in cases()) {
         let settings = ShadowSettings { selection: Selection::Map, warps: vec![], ..case.settings.clone() };
-        let radius = settings.filter_radius;
         let mut planner = Planner::new(settings)?;
         let Ok(plan) = planner.plan(&case.view, &case.light, &case.boxes, &case.boxes) else { return Ok(()) };
         let plan = plan.clone();
         let direction = case.light.direction();
         for (owner, point, depth) in visible_points(&case, plan.planes[plan.splits.len()]) {
             let holders: Vec<usize> = (0..plan.splits.len())
-                .filter(|&i| !plan.splits[i].casters.is_empty() && plan.splits[i].contains(point, radius))
+                .filter(|&i| !plan.splits[i].casters.is_empty() && plan.splits[i].contains(point, plan.splits[i].filter_reach))
                 .collect();
             // Along a map's edge the next one is asked, too.
             let in_band = holders.first().is_some_and(|&first| {
                 let band = 0.5 * plan.blend * f64::from(plan.splits[first].size);
-                !plan.splits[first].contains(point, radius + band)
+                !plan.splits[first].contains(point, plan.splits[first].filter_reach + band)
             });
             let asked = if in_band { 2 } else { 1 };
             for (index, bounds) in case.boxes.iter().enumerate() {

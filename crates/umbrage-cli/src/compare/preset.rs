@@ -31,8 +31,8 @@ pub struct Content {
 /// what the project's ladder was measured with.
 const PLAIN: &str = "filter=hard:blend=0:far-fade=0:fit=independent:stabilize=none";
 
-/// The same over the depths that are visible, for all techniques alike. Splits are logarithmic then, the optimum by the paper's own
-/// analysis once near is where the first thing stands, and maps are chosen by what they contain.
+/// The same over the depths that are visible, for all techniques alike. Splits stand where the boxes in view promise the least error, and
+/// maps are chosen by what they contain.
 const VISIBLE: &str = "filter=hard:blend=0:far-fade=0:fit=independent:stabilize=none:range-fit=visible";
 
 const LADDER: Content = Content {
@@ -67,9 +67,9 @@ const FIGURE_8: Content = Content {
         "psm:1024",
         "lispsm:1024",
         "tsm:1024",
-        "pssm:2:512:scheme=log:selection=map",
-        "pssm:3:512:scheme=log:selection=map",
-        "pssm:4:512:scheme=log:selection=map",
+        "pssm:2:512:scheme=fitted:selection=map",
+        "pssm:3:512:scheme=fitted:selection=map",
+        "pssm:4:512:scheme=fitted:selection=map",
     ],
     with: VISIBLE,
     scenes: &["chessboard", "robot-war", "mining-terrain", "knights"],
@@ -90,9 +90,9 @@ const DUELING: Content = Content {
         "psm:2048",
         "lispsm:2048",
         "tsm:2048",
-        "pssm:2:1024:scheme=log:selection=map",
-        "pssm:3:1024:scheme=log:selection=map",
-        "pssm:4:1024:scheme=log:selection=map",
+        "pssm:2:1024:scheme=fitted:selection=map",
+        "pssm:3:1024:scheme=fitted:selection=map",
+        "pssm:4:1024:scheme=fitted:selection=map",
     ],
     cameras: &["dueling"],
     suns: &["into@5"],

@@ -42,6 +42,18 @@ impl AcneAndLeak {
         share(self.leak, self.pixels)
     }
 
+    /// Acne as a share of the pixels beyond the edges' reach, the stricter count; 0 of none.
+    #[must_use]
+    pub fn acne_rate_beyond(&self) -> f64 {
+        share(self.acne, self.beyond)
+    }
+
+    /// Leak as a share of the pixels beyond the edges' reach; 0 of none.
+    #[must_use]
+    pub fn leak_rate_beyond(&self) -> f64 {
+        share(self.leak, self.beyond)
+    }
+
     /// Share of Ω_f that lies beyond the edges' reach: where maps are coarse little does, and small rates say little.
     #[must_use]
     pub fn beyond_rate(&self) -> f64 {

@@ -58,8 +58,10 @@ fn stripes_on_lit_ground_are_acne_and_holes_in_shadow_leak() {
     let stripes = score(&truth, &with_wrong(&truth, (40..60).step_by(2)), Some(1.0));
     assert_eq!((stripes.acne, stripes.leak), (10, 0));
     assert_eq!(stripes.acne_rate(), 10.0 / 2400.0);
+    assert_eq!(stripes.acne_rate_beyond(), 10.0 / stripes.beyond as f64);
     let holes = score(&truth, &with_wrong(&truth, 0..8), Some(1.0));
     assert_eq!((holes.acne, holes.leak, holes.leak_rate()), (0, 8, 8.0 / 2400.0));
+    assert_eq!((holes.acne_rate_beyond(), holes.leak_rate_beyond()), (0.0, 8.0 / holes.beyond as f64));
     assert_eq!(holes.wrong, (0..8).map(|x| 20 * 60 + x).collect::<Vec<_>>());
     let all = score(&truth, &inverted(&truth), Some(1.0));
     assert_eq!(all.acne + all.leak, all.beyond);
@@ -73,6 +75,7 @@ fn coarse_texels_hide_nothing_silently() {
     let truth = edge_at([60, 40], 25);
     let coarse = score(&truth, &inverted(&truth), Some(100.0));
     assert_eq!((coarse.acne, coarse.leak, coarse.beyond_rate()), (0, 0, 0.0));
+    assert_eq!((coarse.acne_rate_beyond(), coarse.leak_rate_beyond()), (0.0, 0.0));
 }
 
 #[test]
