@@ -30,6 +30,8 @@ struct PlanReport {
     extent_steps: Option<ExtentStepsReport>,
     /// `planar`: all depths of this report are view depths; `radial`: all but `coverage_m` are distances to the eye.
     bands: String,
+    /// Where planes stand: `uniform`, `log`, `practical`, `manual` or `fitted`.
+    scheme: String,
     /// One for all splits, or one for each.
     warp: Vec<String>,
     /// Of the matrices.
@@ -141,6 +143,7 @@ fn report(
             Stabilize::None | Stabilize::Exact => None,
         },
         bands: typed_name(shadows.bands),
+        scheme: typed_name(shadows.scheme),
         warp: shadows.warps.iter().map(|&warp| typed_name(warp)).collect(),
         depth_convention: typed_name(convention),
         planes_m: plan.planes.clone(),

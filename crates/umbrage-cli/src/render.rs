@@ -149,6 +149,7 @@ impl<'a> Studio<'a> {
             shadow_colour: self.shadows.shadow_colour.to_array(),
             fit: typed_name(self.shadows.fit),
             bands: typed_name(self.shadows.bands),
+            scheme: typed_name(self.shadows.scheme),
             stabilize: typed_name(self.shadows.stabilize),
             warp: self.shadows.warps.iter().map(|&warp| typed_name(warp)).collect(),
             planes_m: stats.plan.planes.clone(),

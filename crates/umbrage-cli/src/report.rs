@@ -42,6 +42,8 @@ pub struct Report {
     pub stabilize: String,
     /// `planar` or `radial`: what `planes_m` and the splits' ends measure, view depth or distance to the eye.
     pub bands: String,
+    /// Where planes stand: `uniform`, `log`, `practical`, `manual` or `fitted`.
+    pub scheme: String,
     /// `none`, `psm`, `lispsm` or `tsm`: one for all splits, or one for each.
     pub warp: Vec<String>,
     /// `C_0 ..= C_m`: view depths in metres.

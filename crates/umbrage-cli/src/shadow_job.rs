@@ -64,6 +64,8 @@ pub struct ShadowJob {
     pub fit: args::Fit,
     /// `--bands`, as typed.
     pub bands: args::Bands,
+    /// `--scheme`, as typed or as `--planes` implies.
+    pub scheme: Scheme,
     /// As typed, or the default that goes with the maps.
     pub stabilize: args::Stabilize,
     /// `--warp`, or the technique's: one for all splits, or one for each.
@@ -178,6 +180,7 @@ impl ShadowJob {
             shadows_on: args.shadows == args::Switch::On,
             fit: args.fit,
             bands: args.bands,
+            scheme: scheme_name(args),
             stabilize,
             warps,
         })
@@ -415,8 +418,12 @@ fn planner_warp(warp: args::Warp, focus: Option<f64>) -> Warp {
     }
 }
 
+fn scheme_name(args: &ShadowArgs) -> Scheme {
+    args.scheme.unwrap_or(if args.planes.is_some() { Scheme::Manual } else { Scheme::Practical })
+}
+
 fn scheme(args: &ShadowArgs, splits: usize) -> Result<SplitScheme> {
-    let scheme = args.scheme.unwrap_or(if args.planes.is_some() { Scheme::Manual } else { Scheme::Practical });
+    let scheme = scheme_name(args);
     let name = typed_name(scheme);
     let only_for = |option: &str, owner: &str| {
         Err(Failure::input(format!(
