@@ -8,6 +8,8 @@ use crate::Split;
 ///
 /// A tap that lies `offset` texels from the sample is compared with
 /// `depth + min(depth_per_texel · offset − corner_per_texel · |offset|, 0) − constant_m`, in metres along the light.
+///
+/// umbrage's WGSL also asks of a texel that is nearer than that where its surface leads (`leads_behind` in `bias.wesl`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bias {
     /// Metres of depth per texel along u and v on the receiver's plane.
