@@ -10,7 +10,7 @@ use crate::{Frame, Renderer, Result, cull};
 impl Renderer {
     pub(crate) fn probe_unguarded(&mut self, frame: &Frame<'_>, points: &[ProbePoint]) -> Result<Vec<ProbeAnswer>> {
         let gpu = self.gpu.clone();
-        let prepared = self.prepare(frame)?;
+        let prepared = self.prepare(frame, false)?;
         let rounds = if prepared.slices.is_empty() { 1 } else { prepared.caster_runs.len() };
         let mut answers = Vec::new();
         for round in 0..rounds {

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use umbrage_scene::AlphaMode;
 use umbrage_wgpu::ShadowMaps;
 
-use crate::draw_list::{Drawable, Drawn, Run, vertex_layouts};
+use crate::draw_list::{Drawable, Drawn, Run, Show, vertex_layouts};
 use crate::look::Translucent;
 use crate::materials::Materials;
 use crate::{Gpu, shaders};
@@ -80,7 +80,7 @@ impl Casters {
         runs: &[Run],
     ) -> Drawn {
         pass.set_bind_group(0, maps.caster_bind_group(index), &[]);
-        drawable.draw(pass, runs, |material, _| match material.alpha {
+        drawable.draw(pass, runs, Show::Shadows, |material, _| match material.alpha {
             AlphaMode::Opaque => Some(&self.opaque),
             AlphaMode::Mask { .. } => Some(&self.masked),
             AlphaMode::Blend => self.dithered.as_ref(),

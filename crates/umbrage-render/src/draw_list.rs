@@ -45,6 +45,18 @@ pub(crate) enum Source {
     Skinned(usize),
 }
 
+/// For each primitive of a mesh the ranges of its shadow indices that are drawn.
+pub(crate) type Parts = Vec<Vec<Range<u32>>>;
+
+/// Which of a primitive's indices are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Show {
+    /// Those of its surface.
+    Surfaces,
+    /// Those for shadow passes, or what a run has of them.
+    Shadows,
+}
+
 /// Objects that share a source and an orientation: drawn together, once per primitive.
 #[derive(Clone, Debug)]
 pub(crate) struct Run {
@@ -52,6 +64,8 @@ pub(crate) struct Run {
     /// The transform mirrors: front faces are clockwise.
     pub mirrored: bool,
     pub instances: Range<u32>,
+    /// In shadow passes: what is drawn of its object; `None`: all of it.
+    pub parts: Option<Parts>,
 }
 
 /// The instances of all passes of a frame, and the buffer they are uploaded into.
@@ -123,7 +137,7 @@ impl Instances {
             self.data.extend(codes.map(|code| Instance::new(world_from_local, origin, code)));
             match runs.last_mut() {
                 Some(run) if joins => run.instances.end += count,
-                _ => runs.push(Run { source, mirrored, instances: at..at + count }),
+                _ => runs.push(Run { source, mirrored, instances: at..at + count, parts: None }),
             }
         }
         runs
@@ -219,11 +233,12 @@ impl Drawable<'_> {
         chosen.map(GpuPrimitive::triangles).sum()
     }
 
-    /// Draws the primitives for which `pipeline_for` has a pipeline. Bind group 1 is the material.
+    /// Draws `what` of the primitives for which `pipeline_for` has a pipeline. Bind group 1 is the material.
     pub fn draw<'p>(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         runs: &[Run],
+        what: Show,
         pipeline_for: impl Fn(&GpuMaterial, bool) -> Option<&'p wgpu::RenderPipeline>,
     ) -> Drawn {
         let mut drawn = Drawn::default();
@@ -233,10 +248,15 @@ impl Drawable<'_> {
             let count = run.instances.end - run.instances.start;
             let skinned = matches!(run.source, Source::Skinned(_));
             let mut instances_bound = false;
-            for primitive in primitives {
+            for (i, primitive) in primitives.iter().enumerate() {
                 let material = &self.materials.list[primitive.material];
                 let Some(pipeline) = pipeline_for(material, run.mirrored) else { continue };
-                if primitive.indices.is_empty() {
+                let ranges = match (what, &run.parts) {
+                    (Show::Surfaces, _) => std::slice::from_ref(&primitive.indices),
+                    (Show::Shadows, None) => std::slice::from_ref(&primitive.shadow_indices),
+                    (Show::Shadows, Some(parts)) => &parts[i],
+                };
+                if ranges.iter().all(Range::is_empty) {
                     continue;
                 }
                 if bound_skinned != Some(skinned) {
@@ -260,9 +280,11 @@ impl Drawable<'_> {
                     pass.set_bind_group(1, &material.bind_group, &[]);
                     bound_material = Some(primitive.material);
                 }
-                pass.draw_indexed(primitive.indices.clone(), 0, 0..count);
-                drawn.draws += 1;
-                drawn.triangles += primitive.triangles() * u64::from(count);
+                for indices in ranges {
+                    pass.draw_indexed(indices.clone(), 0, 0..count);
+                    drawn.draws += 1;
+                    drawn.triangles += u64::from((indices.end - indices.start) / 3 * count);
+                }
             }
         }
         drawn

@@ -8,7 +8,7 @@ use umbrage_scene::AlphaMode;
 use umbrage_wgpu::{ShadowMaps, Slice, Storage};
 
 use crate::contact::Contact;
-use crate::draw_list::{Drawable, Drawn, Run, vertex_layouts};
+use crate::draw_list::{Drawable, Drawn, Run, Show, vertex_layouts};
 use crate::lamps::{Lamp, LampUniform, MOST_LAMPS};
 use crate::materials::{GpuMaterial, Materials};
 use crate::{Coordinates, Gpu, Result, shaders};
@@ -277,7 +277,9 @@ impl Forward {
     pub fn draw_depth(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &Drawable<'_>, solid: &[Run]) -> Drawn {
         let Some(depth) = &self.depth else { return Drawn::default() };
         pass.set_bind_group(0, self.bind_group(0), &[]);
-        drawable.draw(pass, solid, |m, mirrored| (m.alpha != AlphaMode::Blend).then(|| depth.of(m, mirrored)))
+        drawable.draw(pass, solid, Show::Surfaces, |m, mirrored| {
+            (m.alpha != AlphaMode::Blend).then(|| depth.of(m, mirrored))
+        })
     }
 
     /// Draws everything solid.
@@ -290,7 +292,8 @@ impl Forward {
     ) -> Drawn {
         bind(pass, bindings);
         let pick = |material: &GpuMaterial, mirrored| self.picture.of(material, mirrored);
-        drawable.draw(pass, solid, |m, mirrored| (m.alpha != AlphaMode::Blend).then(|| pick(m, mirrored)))
+        drawable
+            .draw(pass, solid, Show::Surfaces, |m, mirrored| (m.alpha != AlphaMode::Blend).then(|| pick(m, mirrored)))
     }
 
     /// Draws the sky where nothing else is.
@@ -310,7 +313,9 @@ impl Forward {
     ) -> Drawn {
         bind(pass, bindings);
         let pick = |material: &GpuMaterial, mirrored| self.picture.of(material, mirrored);
-        drawable.draw(pass, translucent, |m, mirrored| (m.alpha == AlphaMode::Blend).then(|| pick(m, mirrored)))
+        drawable.draw(pass, translucent, Show::Surfaces, |m, mirrored| {
+            (m.alpha == AlphaMode::Blend).then(|| pick(m, mirrored))
+        })
     }
 
     /// Draws everything solid as bare visibility.
@@ -322,7 +327,9 @@ impl Forward {
         solid: &[Run],
     ) -> Drawn {
         bind(pass, bindings);
-        drawable.draw(pass, solid, |m, mirrored| (m.alpha != AlphaMode::Blend).then(|| self.mask.of(m, mirrored)))
+        drawable.draw(pass, solid, Show::Surfaces, |m, mirrored| {
+            (m.alpha != AlphaMode::Blend).then(|| self.mask.of(m, mirrored))
+        })
     }
 }
 

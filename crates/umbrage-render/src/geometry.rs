@@ -1,13 +1,14 @@
 //! Vertices and indices on the GPU: what stands still is uploaded once, what is skinned every frame.
 //!
 //! Vertices lie in three streams, so that a shadow pass reads positions only: positions, normals, and the *surface*
-//! (texture coordinates and colour). Indices count from the start of the whole buffer, which spares base vertices.
+//! (texture coordinates and colour). What is opaque has indices of its own for shadow passes where that spares vertices. Indices count from the start of the whole buffer, which spares base vertices.
 
 use std::ops::Range;
 
-use umbrage_scene::{Object, Pose, Primitive, Scene, SkinnedMesh};
+use umbrage_scene::{AlphaMode, Object, Pose, Primitive, Scene, SkinnedMesh};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
+use crate::shadow_mesh::{Cluster, Merged, clusters};
 use crate::{Error, Gpu, Result};
 
 /// Texture coordinates and colour of a vertex.
@@ -24,12 +25,27 @@ pub(crate) struct Surface {
 pub(crate) struct GpuPrimitive {
     pub indices: Range<u32>,
     pub material: usize,
+    /// The same triangles for shadow passes.
+    pub shadow_indices: Range<u32>,
+    /// Those in parts; one if they are few, none if their vertices move.
+    pub clusters: Vec<Cluster>,
 }
 
 impl GpuPrimitive {
     pub fn triangles(&self) -> u64 {
         u64::from(self.indices.end - self.indices.start) / 3
     }
+}
+
+/// What shadow passes have to know of a primitive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Matter {
+    /// Nothing but where it is.
+    Solid,
+    /// Its surface, too: some of it lets light through.
+    Textured,
+    /// Its vertices are others every frame.
+    Moving,
 }
 
 /// Streams, indices and, per mesh, where its primitives lie.
@@ -55,17 +71,20 @@ impl Geometry {
             }
         }
         let meshes: Vec<&[Primitive]> = scene.meshes.iter().map(|mesh| mesh.primitives.as_slice()).collect();
-        Self::of_primitives(gpu, &meshes)
+        Self::of_primitives(gpu, &meshes, |primitive| match scene.materials[primitive.material].alpha {
+            AlphaMode::Opaque => Matter::Solid,
+            AlphaMode::Mask { .. } | AlphaMode::Blend => Matter::Textured,
+        })
     }
 
-    fn of_primitives(gpu: &Gpu, meshes: &[&[Primitive]]) -> Result<Self> {
+    fn of_primitives(gpu: &Gpu, meshes: &[&[Primitive]], matter: impl Fn(&Primitive) -> Matter) -> Result<Self> {
         let all = || meshes.iter().copied().flatten();
         let vertices: u64 = all().map(|primitive| primitive.positions.len() as u64).sum();
         let index_count: u64 = all().map(|primitive| primitive.indices.len() as u64).sum();
         gpu.check_buffer("the vertices", vertices * size_of::<Surface>() as u64)?;
         gpu.check_buffer("the indices", index_count * size_of::<u32>() as u64)?;
-        // Indices and draws count in u32: a device with enormous buffers is still bound by that.
-        let most = u64::from(u32::MAX);
+        // Indices and draws count in u32, and shadow passes may have as many again: a device with enormous buffers is still bound by that.
+        let most = u64::from(u32::MAX) / 2;
         if vertices.max(index_count) > most {
             let [needed, limit] = [vertices.max(index_count), most].map(|count| count * size_of::<u32>() as u64);
             return Err(Error::BufferSize { what: "the indices", needed, limit });
@@ -84,11 +103,32 @@ impl Geometry {
                 normals.extend(&primitive.normals);
                 surfaces.extend((0..primitive.positions.len()).map(|vertex| surface(primitive, vertex)));
                 indices.extend(primitive.indices.iter().map(|index| first_vertex + index));
-                primitives
-                    .push(GpuPrimitive { indices: first_index..indices.len() as u32, material: primitive.material });
+                let own = first_index..indices.len() as u32;
+                let material = primitive.material;
+                primitives.push(GpuPrimitive {
+                    shadow_indices: own.clone(),
+                    indices: own,
+                    material,
+                    clusters: Vec::new(),
+                });
             }
             ranges.push(primitives);
         }
+        // Positions that only shadow passes read follow those that have normals and surfaces.
+        let still = ranges.iter_mut().flatten().zip(all()).filter(|(_, primitive)| matter(primitive) != Matter::Moving);
+        for (uploaded, primitive) in still {
+            if matter(primitive) == Matter::Solid
+                && let Some(merged) = Merged::of(&primitive.positions, &primitive.indices)
+            {
+                let (first_vertex, first_index) = (positions.len() as u32, indices.len() as u32);
+                positions.extend(&merged.positions);
+                indices.extend(merged.indices.iter().map(|index| first_vertex + index));
+                uploaded.shadow_indices = first_index..indices.len() as u32;
+            }
+            uploaded.clusters = clusters(&primitive.positions, &primitive.indices, uploaded.shadow_indices.start);
+        }
+        gpu.check_buffer("the vertices", size_of_val(positions.as_slice()) as u64)?;
+        gpu.check_buffer("the indices", size_of_val(indices.as_slice()) as u64)?;
         let buffer = |label, bytes: &[u8], usage| {
             gpu.device.create_buffer_init(&BufferInitDescriptor {
                 label: Some(label),
@@ -116,7 +156,7 @@ pub(crate) struct SkinnedGeometry {
 impl SkinnedGeometry {
     /// Nothing skinned yet.
     pub fn empty(gpu: &Gpu) -> Result<Self> {
-        Ok(Self { geometry: Geometry::of_primitives(gpu, &[])?, posed_meshes: Vec::new() })
+        Ok(Self { geometry: Geometry::of_primitives(gpu, &[], |_| Matter::Moving)?, posed_meshes: Vec::new() })
     }
 
     /// Writes this pose's vertices.
@@ -124,7 +164,7 @@ impl SkinnedGeometry {
         let posed_meshes = posed_meshes(scene, pose)?;
         if posed_meshes != self.posed_meshes {
             let meshes: Vec<&[Primitive]> = posed_meshes.iter().map(|&mesh| scene.0[mesh].as_slice()).collect();
-            self.geometry = Geometry::of_primitives(gpu, &meshes)?;
+            self.geometry = Geometry::of_primitives(gpu, &meshes, |_| Matter::Moving)?;
             self.posed_meshes = posed_meshes;
         }
         let mut offset = 0;

@@ -6,6 +6,7 @@
 
 mod answers;
 mod capture;
+mod caster_runs;
 mod casters;
 mod contact;
 mod coordinates;
@@ -26,6 +27,7 @@ mod probe;
 mod record;
 mod renderer;
 mod shaders;
+mod shadow_mesh;
 mod stats;
 mod timing;
 mod views;

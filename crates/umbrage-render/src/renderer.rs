@@ -5,7 +5,7 @@ use image::{GrayAlphaImage, GrayImage, RgbaImage};
 use umbrage::{Aabb, Bands, Selection, ShadowPlan, ShadowSettings, View};
 use umbrage_scene::{AlphaMode, Pose, Scene};
 use umbrage_wgpu::{
-    DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, MapPass, MaskFrame, MaskNormals, ShadowMaps,
+    DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, MaskFrame, MaskNormals, ShadowMaps,
     ShadowMapsOptions, ShadowMask, Slice, Softness, Storage, Transition,
 };
 use web_time::Instant;
@@ -13,7 +13,7 @@ use web_time::Instant;
 use crate::capture::Capture;
 use crate::casters::Casters;
 use crate::contact::Contact;
-use crate::draw_list::{Drawable, Instances, Run, once};
+use crate::draw_list::{Drawable, Instances, once};
 use crate::forward::{Forward, FrameUniform, MASK_FORMAT, MaskTarget, PictureTarget, Samples};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry, check_object};
 use crate::lamps::Lamp;
@@ -121,11 +121,11 @@ pub struct Renderer {
     /// The same for each further view.
     pub(crate) more_views: Vec<Planners>,
     pub(crate) maps: ShadowMaps,
-    scene: Geometry,
+    pub(crate) scene: Geometry,
     scene_meshes: SceneMeshes,
     skinned: SkinnedGeometry,
     materials: Materials,
-    instances: Instances,
+    pub(crate) instances: Instances,
     pub(crate) casters: Casters,
     pub(crate) forward: Forward,
     pub(crate) contact: Option<Contact>,
@@ -329,7 +329,7 @@ impl Renderer {
         if outputs.mask && outputs.deferred && self.shadow_mask.is_none() {
             self.shadow_mask = Some(ShadowMask::new(&gpu.device, &self.maps, MASK_FORMAT, MaskNormals::FromDepth)?);
         }
-        let prepared = Prepared { every_map: outputs.maps, ..self.prepare(frame)? };
+        let prepared = Prepared { every_map: outputs.maps, ..self.prepare(frame, true)? };
         let mut clock = Clock::start(&gpu, &self.timer);
         if outputs.maps && self.maps.options().samples > 1 {
             return Err(Error::MapsOfSamples { samples: self.maps.options().samples });
@@ -422,8 +422,8 @@ impl Renderer {
         })
     }
 
-    /// Plans, uploads what moves, and sorts what is to be drawn.
-    pub(crate) fn prepare(&mut self, frame: &Frame<'_>) -> Result<Prepared> {
+    /// Plans, uploads what moves, and sorts what is to be drawn. With `surfaces_alone` nothing but what is drawn asks the maps.
+    pub(crate) fn prepare(&mut self, frame: &Frame<'_>, surfaces_alone: bool) -> Result<Prepared> {
         let pose = frame.pose;
         for (index, object) in pose.objects.iter().enumerate() {
             check_object(index, object, self.scene.meshes.len())?;
@@ -478,7 +478,8 @@ impl Renderer {
         let visible: Vec<usize> = near_to_far.into_iter().map(|(_, i)| i).collect();
 
         self.instances.clear();
-        let caster_runs = self.caster_runs(frame, origin, &caster_objects, &plans);
+        let caster_runs =
+            self.caster_runs(frame, origin, &caster_objects, &plans, surfaces_alone.then_some(&visible[..]))?;
         let solid = self.instances.grouped(pose, origin, false, visible.iter().copied().map(once));
         let far_to_near = self.with_translucent_parts(pose, visible.iter().rev().copied());
         let translucent = self.instances.ordered(pose, origin, far_to_near.iter().copied());
@@ -528,53 +529,6 @@ impl Renderer {
             skinned: &self.skinned.geometry,
             materials: &self.materials,
             instances: &self.instances,
-        }
-    }
-
-    /// What each pass over the maps draws; nothing where shadows are off.
-    fn caster_runs(
-        &mut self,
-        frame: &Frame<'_>,
-        origin: DVec3,
-        objects: &[usize],
-        plans: &[ShadowPlan],
-    ) -> Vec<Vec<Run>> {
-        if !frame.shadows_on {
-            return Vec::new();
-        }
-        let pose = frame.pose;
-        let [plan] = plans else {
-            let mut runs = vec![Vec::new(); self.maps.map_count()];
-            for (light, plan) in plans.iter().enumerate() {
-                self.light_runs(frame, origin, objects, light, plan, &mut runs);
-            }
-            return runs;
-        };
-        if self.maps.map_count() > self.maps.splits() {
-            let mut runs = vec![Vec::new(); self.maps.map_count()];
-            self.light_runs(frame, origin, objects, 0, plan, &mut runs);
-            return runs;
-        }
-        let grouped = |pass: &MapPass| {
-            let copies = pass.casters(plan).map(|(caster, codes)| (objects[caster as usize], codes));
-            self.instances.grouped(pose, origin, pass.leads(), copies)
-        };
-        self.maps.passes().iter().map(grouped).collect()
-    }
-
-    /// What one of several lights draws into its maps.
-    fn light_runs(
-        &mut self,
-        frame: &Frame<'_>,
-        origin: DVec3,
-        objects: &[usize],
-        light: usize,
-        plan: &ShadowPlan,
-        runs: &mut [Vec<Run>],
-    ) {
-        for (i, runs) in runs[self.maps.first_map(light)..][..plan.splits.len()].iter_mut().enumerate() {
-            let casters = plan.casters(i).iter().map(|&caster| once(objects[caster as usize]));
-            *runs = self.instances.grouped(frame.pose, origin, false, casters);
         }
     }
 
@@ -640,6 +594,8 @@ impl Renderer {
         let stats = |(i, split): (usize, &umbrage::Split)| {
             let draws_it = |pass: usize| self.maps.passes()[pass].splits().contains(&(first + i));
             let draws = recorded.map_passes.iter().filter(|&&(pass, ..)| draws_it(pass));
+            // Of a map that has a pass of its own, what was drawn: maybe parts of casters.
+            let alone = draws.clone().find(|&&(pass, ..)| self.maps.passes()[pass].splits().len() == 1);
             SplitStats {
                 near: split.near,
                 far: split.far,
@@ -647,7 +603,11 @@ impl Renderer {
                 warped: split.warp.is_some() && split.light_position.is_none(),
                 casters: split.casters.len(),
                 draws: draws.map(|(_, drawn, _)| drawn.draws).sum(),
-                triangles: if frame.shadows_on { plan.casters(i).iter().map(triangles).sum() } else { 0 },
+                triangles: match alone {
+                    Some((_, drawn, _)) => drawn.triangles,
+                    None if frame.shadows_on => plan.casters(i).iter().map(triangles).sum(),
+                    None => 0,
+                },
                 bytes: u64::from(split.size) * u64::from(split.size) * self.depth_format.texel_bytes(),
             }
         };

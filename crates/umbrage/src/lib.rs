@@ -31,6 +31,8 @@ mod placement;
 mod plan;
 mod planner;
 mod range;
+mod reach;
+mod receiver_mask;
 mod rectangle;
 mod region;
 mod settings;

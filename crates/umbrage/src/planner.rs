@@ -1,6 +1,6 @@
 //! The planner: from a view, a light and bounds to a [`ShadowPlan`].
 
-mod lists;
+pub(crate) mod lists;
 
 use glam::{DVec2, DVec3};
 
@@ -11,12 +11,14 @@ use crate::local::{Given, LightFrustum, LocalPlanner};
 use crate::margin::{EDGE_TEXELS, Reach};
 use crate::placement::{Maps, Placement};
 use crate::range::{HeldEnds, Range};
+use crate::reach::CoverageVolume;
+use crate::receiver_mask::ReceiverMask;
 use crate::rectangle::{HeldRectangle, longest_edge};
 use crate::region::{Fan, Region};
 use crate::settings::check_range;
 use crate::split::{blend_begin, coverage, split_planes};
 use crate::stable::{HeldHalf, HeldSize, slice_sphere, stable_texel};
-use crate::volume::{Lies, Slice, SweptVolume, lies_below};
+use crate::volume::{Lies, Slice, lies_below};
 use crate::warped::WarpPoints;
 use crate::{
     Aabb, Bands, DirectionalLight, Error, Fit, Light, MAX_SPLITS, RangeFit, Result, Selection, ShadowPlan,
@@ -27,8 +29,8 @@ use crate::{
 /// stabilised maps hold on to.
 #[derive(Clone, Debug)]
 pub struct Planner {
-    settings: ShadowSettings,
-    plan: ShadowPlan,
+    pub(crate) settings: ShadowSettings,
+    pub(crate) plan: ShadowPlan,
     held_ends: HeldEnds,
     held_half: [HeldHalf; MAX_SPLITS],
     held_whole: HeldSize,
@@ -37,10 +39,13 @@ pub struct Planner {
     held_rectangle: [HeldRectangle; MAX_SPLITS],
     /// Exactly stabilised: around all receivers, which no map has to exceed along any axis.
     around_all: Option<Block>,
-    fan: Option<Fan>,
-    volumes: Vec<CoverageVolume>,
+    pub(crate) fan: Option<Fan>,
+    pub(crate) volumes: Vec<CoverageVolume>,
+    /// Where the parts of each split's receivers lie, if they were told for the last plan.
+    pub(crate) masks: Vec<ReceiverMask>,
+    pub(crate) knows_parts: bool,
     /// With [`Selection::Map`]: everything that the view shows in range, which any map may be asked about.
-    shown: Option<Shown>,
+    pub(crate) shown: Option<Shown>,
     world_depths: (f64, f64),
     casters: Vec<Placed>,
     receivers: Vec<Placed>,
@@ -49,7 +54,7 @@ pub struct Planner {
     across: Vec<u32>,
     warp_points: WarpPoints,
     placement: Placement,
-    local: LocalPlanner,
+    pub(crate) local: LocalPlanner,
 }
 
 /// A box as centre and half extent.
@@ -65,17 +70,9 @@ impl Placed {
     }
 }
 
-/// The points whose shadows a split's caster list is complete for.
-#[derive(Clone, Debug, PartialEq)]
-struct CoverageVolume {
-    swept: SweptVolume,
-    /// Scene-dependent fit: the receivers inside the slice, in the light's plane and as a world box.
-    receivers: Option<(Region, Aabb)>,
-}
-
 /// Everything that the view shows in range.
 #[derive(Clone, Debug)]
-struct Shown {
+pub(crate) struct Shown {
     volume: CoverageVolume,
     /// Metres along the light.
     depths: (f64, f64),
@@ -99,6 +96,8 @@ impl Planner {
             around_all: None,
             fan: None,
             volumes: Vec::new(),
+            masks: Vec::new(),
+            knows_parts: false,
             shown: None,
             world_depths: (0.0, 0.0),
             casters: Vec::new(),
@@ -139,6 +138,7 @@ impl Planner {
         casters: &[Aabb],
         receivers: &[Aabb],
     ) -> Result<&ShadowPlan> {
+        self.knows_parts = false;
         place(casters, "casters", &mut self.casters)?;
         place(receivers, "receivers", &mut self.receivers)?;
         let light = (*light).into();
@@ -252,28 +252,6 @@ impl Planner {
         Ok(())
     }
 
-    /// The first split whose map holds every caster that can shade `point`, for points that the view does not show (points
-    /// that it shows use the split of their view depth). `None`: no map answers for it. Refers to the last plan.
-    #[must_use]
-    pub fn covering_split(&self, point: DVec3) -> Option<usize> {
-        if let Some(light) = self.plan.light.filter(|light| light.position().is_some()) {
-            return self.local.covering_split(&self.plan, &light, point, self.settings.filter_radius);
-        }
-        let fan = self.fan.as_ref()?;
-        self.plan.splits.iter().zip(&self.volumes).position(|(split, volume)| {
-            let complete = volume.swept.contains(point)
-                && volume.receivers.is_none_or(|(region, bounds)| {
-                    region.contains(fan, point)
-                        && (0..3).all(|axis| match fan.depth[axis] {
-                            along if along < 0.0 => point[axis] >= bounds.min[axis],
-                            along if along > 0.0 => point[axis] <= bounds.max[axis],
-                            _ => true,
-                        })
-                });
-            complete && (split.casters.is_empty() || split.contains(point, split.filter_reach))
-        })
-    }
-
     /// Receivers that some slice can contain and casters that some slice's sweep can meet.
     fn cull_to_view(&mut self, view: &View, direction: DVec3, far: f64) {
         let whole = Slice::new(view, view.frustum().near, far.min(view.frustum().far));
@@ -349,14 +327,14 @@ impl Planner {
             }
             Stabilize::None => widest * margin / (f64::from(size) - 2.0 * margin).max(1.0),
         };
-        let margin_m = margin_of(widest);
+        let mut margin_m = margin_of(widest);
         let mut casters =
             if visible { self.list_casters(&swept, served.as_ref(), fan, margin_m) } else { self.empty_list() };
         let (mut target, mut caster_near) = self.target(casters.clone(), served.as_ref(), slice_region, fan);
         // Casters leave a map with smaller texels than its receivers alone, and with those its filter reaches less far.
         if served.is_some() && !casters.is_empty() && self.settings.warp(i) == Warp::None {
-            let closer = margin_of(target.widest());
-            if self.keep_casters(&mut casters, &swept, served.as_ref(), fan, closer) {
+            margin_m = margin_of(target.widest());
+            if self.keep_casters(&mut casters, &swept, served.as_ref(), fan, margin_m) {
                 (target, caster_near) = self.target(casters.clone(), served.as_ref(), slice_region, fan);
             }
         }
@@ -413,7 +391,7 @@ impl Planner {
         self.plan.splits.push(split);
         self.volumes.push(match &self.shown {
             Some(shown) => shown.volume.clone(),
-            None => CoverageVolume { swept, receivers: served },
+            None => CoverageVolume { slice, swept, receivers: served, margin: margin_m },
         });
     }
 
@@ -429,7 +407,9 @@ impl Planner {
             Fit::Dependent => Some(self.receivers_in(&slice, fan)),
         };
         let depths = receivers.as_ref().map_or(corners, |(region, _)| *region).depth;
-        Shown { volume: CoverageVolume { swept: slice.swept_towards_light(fan.depth), receivers }, depths }
+        let swept = slice.swept_towards_light(fan.depth);
+        // Each map has a margin of its own.
+        Shown { volume: CoverageVolume { slice, swept, receivers, margin: 0.0 }, depths }
     }
 
     /// The split with a list and a depth range for everything that its map covers and no earlier one takes, and the depth of its

@@ -196,11 +196,59 @@ fn splits_of(plan: &ShadowPlan, depth: f64) -> Vec<usize> {
     if blended { vec![own, own + 1] } else { vec![own] }
 }
 
+#[test]
+fn parts_beside_and_below_what_a_split_serves_do_not_reach_it() {
+    let frustum = Frustum::perspective(1.0, 1.0, 0.5, 100.0).expect("valid");
+    let view = View::look_at(DVec3::new(0.0, 2.0, 0.0), DVec3::new(0.0, 2.0, -1.0), DVec3::Y, frustum).expect("valid");
+    let light = DirectionalLight::new(DVec3::NEG_Y).expect("valid");
+    let settings = ShadowSettings {
+        map_sizes: vec![512; 2],
+        scheme: SplitScheme::Uniform,
+        range: Some((0.5, 40.5)),
+        ..ShadowSettings::default()
+    };
+    // A tower block along the view, through both slices, on a flat ground.
+    let ground = Aabb::new(DVec3::new(-50.0, 0.0, -50.0), DVec3::new(50.0, 0.0, 50.0));
+    let block = Aabb::new(DVec3::new(-0.5, 3.0, -40.0), DVec3::new(0.5, 8.0, -1.0));
+    let mut planner = Planner::new(settings).expect("valid");
+    let plan = planner.plan(&view, &light, &[block], &[ground]).expect("valid");
+    assert_eq!((plan.casters(0), plan.casters(1)), (&[0][..], &[0][..]));
+    let part = |y: f64, z: f64| Aabb::new(DVec3::new(-0.5, y, z), DVec3::new(0.5, y + 1.0, z + 1.0));
+    assert!(planner.reaches(0, &part(3.0, -10.0)) && !planner.reaches(1, &part(3.0, -10.0)), "before the second slice");
+    assert!(planner.reaches(1, &part(3.0, -36.0)) && !planner.reaches(0, &part(3.0, -36.0)), "behind the first slice");
+    assert!(planner.reaches(0, &part(500.0, -10.0)), "however high");
+    assert!(!planner.reaches(0, &part(-5.0, -10.0)), "under the ground");
+}
+
+#[test]
+fn parts_with_no_surface_behind_them_do_not_reach_a_split_that_knows_its_surfaces() {
+    let frustum = Frustum::perspective(1.0, 1.0, 0.5, 100.0).expect("valid");
+    let view = View::look_at(DVec3::new(0.0, 2.0, 0.0), DVec3::new(0.0, 2.0, -1.0), DVec3::Y, frustum).expect("valid");
+    let light = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.0)).expect("valid");
+    let settings = ShadowSettings { map_sizes: vec![512], range: Some((0.5, 60.5)), ..ShadowSettings::default() };
+    // Two pillars are one object; between them there is nothing.
+    let pillar = |z: f64| Aabb::new(DVec3::new(-1.0, -20.0, z), DVec3::new(1.0, 1.0, z + 2.0));
+    let pillars = [pillar(-50.0), pillar(-10.0)];
+    let block = Aabb::new(DVec3::new(-4.0, 3.0, -52.0), DVec3::new(4.0, 4.0, -5.0));
+    let mut planner = Planner::new(settings).expect("valid");
+    planner.plan(&view, &light, &[block], &[pillars[0].union(pillars[1])]).expect("valid");
+    let part = |x: f64, z: f64| Aabb::new(DVec3::new(x, 3.0, z), DVec3::new(x + 0.5, 4.0, z + 0.5));
+    assert!(planner.reaches(0, &part(-1.5, -30.0)), "between the pillars, as far as their common box tells");
+    planner.tell_parts(&pillars).expect("valid");
+    assert!(!planner.reaches(0, &part(-1.5, -30.0)), "between the pillars");
+    assert!(planner.reaches(0, &part(-1.5, -9.0)) && planner.reaches(0, &part(-1.5, -49.0)), "over a pillar");
+    assert!(planner.reaches(0, &part(-3.5, -9.0)), "beside it, where the sun stands");
+    assert!(!planner.reaches(0, &part(3.5, -9.0)), "beside it, on the far side");
+    assert!(planner.tell_parts(&[Aabb::EMPTY]).is_err());
+    planner.plan(&view, &light, &[block], &[pillars[0].union(pillars[1])]).expect("valid");
+    assert!(planner.reaches(0, &part(-1.5, -30.0)), "a new plan knows no parts yet");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
-    fn no_caster_is_lost_and_every_shadowed_receiver_lies_in_its_map(case in cases(), by_distance in any::<bool>()) {
+    fn no_caster_is_lost_and_every_shadowed_receiver_lies_in_its_map(case in cases(), [by_distance, tells_parts] in any::<[bool; 2]>()) {
         let case = if by_distance { radial(case.clone()).unwrap_or(case) } else { case };
         let mut planner = Planner::new(case.settings.clone())?;
         let plan = match planner.plan(&case.view, &case.light, &case.boxes, &case.boxes) {
@@ -209,6 +257,9 @@ proptest! {
             Err(umbrage::Error::InvalidSetting { .. }) => return Ok(()),
             Err(other) => return Err(TestCaseError::fail(other.to_string())),
         };
+        if tells_parts {
+            planner.tell_parts(&case.boxes)?;
+        }
         let direction = case.light.direction();
         for (owner, point, _) in visible_points(&case, plan.planes[plan.splits.len()]) {
             let depth = plan.depth_at(point);
@@ -227,6 +278,9 @@ proptest! {
                     // under the point is the point's own surface.
                     let Some(end) = shading_end(bounds, point, direction).filter(|_| index != owner) else { continue };
                     prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} lost caster {index}, which shades {point} at {depth} m");
+                    let (at, reach) = (point - direction * end, 0.02 * (bounds.max - bounds.min));
+                    let part = Aabb::new((at - reach).max(bounds.min), (at + reach).min(bounds.max));
+                    prop_assert!(!part.is_valid() || planner.reaches(split, &part), "split {split} leaves out {part:?} of caster {index}, which shades {point}");
                     prop_assert!(s.contains(point, s.filter_reach), "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
                     let along = s.depth_axis.dot(point);
                     prop_assert!((s.receiver_depths.0..=s.receiver_depths.1).contains(&along), "{point} at {along} m along the light, outside {:?}", s.receiver_depths);
@@ -260,6 +314,7 @@ proptest! {
             prop_assert!(split.u_axis.cross(split.v_axis).abs_diff_eq(split.depth_axis, 1e-9), "the axes are no right-handed frame");
             for &caster in plan.casters(i) {
                 listed[caster as usize].push(i);
+                prop_assert!(planner.reaches(i, &case.boxes[caster as usize]), "caster {caster} is in the list of split {i}");
             }
             // The matrix says what the texels say.
             let point = case.view.eye() + DVec3::new(3.0, -2.0, 5.0);

@@ -113,7 +113,7 @@ impl Planner {
 }
 
 /// Whether a caster may leave a shadow on the receivers of a slice, within `margin` metres beside them.
-pub(super) fn can_shade(
+pub(crate) fn can_shade(
     caster: &Placed,
     swept: &SweptVolume,
     served: Option<&(Region, Aabb)>,
