@@ -7,16 +7,16 @@ use crate::Split;
 /// How the depth of a receiver has to change before it is compared, so that its own surface does not shade it.
 ///
 /// A tap that lies `offset` texels from the sample is compared with
-/// `depth + min(depth_per_texel · offset − corner_per_texel · |offset|, 0) − constant_m`, in metres along the light.
+/// `depth + min(depth_per_texel · offset − |corner_per_texel ∘ offset|, 0) − constant_m`, in metres along the light.
 ///
 /// umbrage's WGSL also asks of a texel that is nearer than that where its surface leads (`leads_behind` in `bias.wesl`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bias {
     /// Metres of depth per texel along u and v on the receiver's plane.
     pub depth_per_texel: DVec2,
-    /// Metres that a tap has to be nearer by for every texel that it lies aside, to count as a caster and not as the other side
-    /// of a corner or a fold.
-    pub corner_per_texel: f64,
+    /// Metres that a tap has to be nearer by for every texel along u and v that it lies aside (∘: axis by axis), to count as a caster
+    /// and not as the other side of a corner or a fold.
+    pub corner_per_texel: DVec2,
     /// Metres to move the sample towards the light, whatever the slope.
     pub constant_m: f64,
 }
@@ -37,7 +37,7 @@ impl Bias {
     #[must_use]
     pub fn without_plane(self, reach: DVec2) -> Self {
         let aside = self.depth_per_texel.abs().dot(reach);
-        Self { depth_per_texel: DVec2::ZERO, corner_per_texel: 0.0, constant_m: self.constant_m + aside }
+        Self { depth_per_texel: DVec2::ZERO, corner_per_texel: DVec2::ZERO, constant_m: self.constant_m + aside }
     }
 }
 
@@ -75,7 +75,7 @@ fn bias(normal: DVec3, depth_axis: DVec3, u: DVec3, v: DVec3) -> Bias {
     let texel = u.length().max(v.length());
     Bias {
         depth_per_texel: DVec2::new(normal.dot(u), normal.dot(v)) / cosine,
-        corner_per_texel: texel * (FOLD * (1.0 + slope * slope)).clamp(CORNER.0, CORNER.1),
+        corner_per_texel: DVec2::new(u.length(), v.length()) * (FOLD * (1.0 + slope * slope)).clamp(CORNER.0, CORNER.1),
         constant_m: CONSTANT * texel,
     }
 }
