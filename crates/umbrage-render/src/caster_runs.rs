@@ -10,9 +10,14 @@ use crate::Result;
 use crate::draw_list::{Parts, Run, once};
 use crate::geometry::GpuPrimitive;
 use crate::renderer::{Frame, Renderer};
+use crate::shadow_mesh::descend;
 
-/// Triangles that each draw of an object in parts has to spare, or it is drawn whole: with others of its mesh in one draw.
-const LEAST_SPARED: u32 = 128;
+/// Triangles that each draw of an object in parts has to spare, or it is drawn whole: with others of its mesh in one draw. Gaps between
+/// its parts that spare less are drawn, too.
+const LEAST_SPARED: u32 = 40;
+
+/// Triangles of the parts that the planner is told of, at most.
+const PART: u32 = 128;
 
 impl Renderer {
     /// What each pass over the maps draws; nothing where shadows are off. `visible` are the objects whose surfaces alone ask the maps, if
@@ -84,8 +89,15 @@ impl Renderer {
                 parts.push(object.bounds);
                 continue;
             }
-            let clusters = meshes[object.mesh].iter().flat_map(|primitive| &primitive.clusters);
-            parts.extend(clusters.map(|cluster| cluster.bounds.transformed(&object.world_from_local)));
+            for primitive in &meshes[object.mesh] {
+                descend(&primitive.clusters, |node| {
+                    let goes_on = node.triangles() > PART && node.below > 0;
+                    if !goes_on {
+                        parts.push(node.bounds().transformed(&object.world_from_local));
+                    }
+                    goes_on
+                });
+            }
         }
         Ok(self.planners.now[0].tell_parts(&parts)?)
     }
@@ -119,16 +131,18 @@ fn parts_in(planner: &Planner, split: usize, object: &Object, primitives: &[GpuP
         .iter()
         .map(|primitive| {
             let mut ranges: Vec<Range<u32>> = Vec::new();
-            for cluster in &primitive.clusters {
-                if !planner.reaches(split, &cluster.bounds.transformed(&object.world_from_local)) {
-                    spared += cluster.indices.len() as u32 / 3;
-                    continue;
+            descend(&primitive.clusters, |node| {
+                let reaches = planner.reaches(split, &node.bounds().transformed(&object.world_from_local));
+                if reaches && node.below == 0 {
+                    match ranges.last_mut() {
+                        Some(last) if node.indices.start - last.end < 3 * LEAST_SPARED => last.end = node.indices.end,
+                        _ => ranges.push(node.indices.clone()),
+                    }
                 }
-                match ranges.last_mut() {
-                    Some(last) if last.end == cluster.indices.start => last.end = cluster.indices.end,
-                    _ => ranges.push(cluster.indices.clone()),
-                }
-            }
+                reaches
+            });
+            let drawn: u32 = ranges.iter().map(|range| range.end - range.start).sum();
+            spared += (primitive.shadow_indices.end - primitive.shadow_indices.start - drawn) / 3;
             ranges
         })
         .collect();

@@ -27,7 +27,7 @@ pub(crate) struct GpuPrimitive {
     pub material: usize,
     /// The same triangles for shadow passes.
     pub shadow_indices: Range<u32>,
-    /// Those in parts; one if they are few, none if their vertices move.
+    /// Those as a tree of parts; one node if they are few, none if their vertices move.
     pub clusters: Vec<Cluster>,
 }
 

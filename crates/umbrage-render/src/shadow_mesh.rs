@@ -7,22 +7,45 @@ use std::ops::Range;
 use glam::Vec3;
 use umbrage::Aabb;
 
-/// Triangles of a cluster at most.
-const CLUSTER: usize = 128;
+/// Triangles of the smallest clusters.
+const LEAF: usize = 8;
 
-/// Clusters that a primitive has at least, or it stays whole.
-const LEAST_CLUSTERS: usize = 3;
+/// Triangles that a primitive has at least, or it stays whole.
+const LEAST_TRIANGLES: usize = 128;
 
 /// What merging has to save, as a share of the vertices, to be worth indices of its own.
 const LEAST_SAVED: f64 = 0.05;
 
-/// Consecutive triangles.
+/// Consecutive triangles, in a tree of such runs: a node is followed by the nodes that it consists of.
 #[derive(Clone, Debug)]
 pub(crate) struct Cluster {
     /// Where they lie in the index buffer.
     pub indices: Range<u32>,
+    /// How many of the nodes that follow it consists of; 0 for a leaf.
+    pub below: u32,
     /// Around their vertices, in the mesh's own space.
-    pub bounds: Aabb,
+    min: Vec3,
+    max: Vec3,
+}
+
+impl Cluster {
+    /// Around their vertices, in the mesh's own space.
+    pub fn bounds(&self) -> Aabb {
+        Aabb::new(self.min.as_dvec3(), self.max.as_dvec3())
+    }
+
+    /// How many they are.
+    pub fn triangles(&self) -> u32 {
+        (self.indices.end - self.indices.start) / 3
+    }
+}
+
+/// Calls `each` with nodes of a tree from its root on; what a node consists of follows if the answer is `true`.
+pub(crate) fn descend(tree: &[Cluster], mut each: impl FnMut(&Cluster) -> bool) {
+    let mut at = 0;
+    while let Some(node) = tree.get(at) {
+        at += 1 + if each(node) { 0 } else { node.below as usize };
+    }
 }
 
 /// Vertices told apart by their positions alone.
@@ -51,16 +74,43 @@ impl Merged {
     }
 }
 
-/// Cuts triangles (three indices each, which lie at `first` in the index buffer) into clusters in the order in which they stand: what is
-/// modelled or optimised for a vertex cache lies together, and a whole mesh is drawn as it was. One for small meshes.
+/// Halves triangles (three indices each, which lie at `first` in the index buffer) in the order in which they stand, down to runs of a few:
+/// what is modelled or optimised for a vertex cache lies together, and a whole mesh is drawn as it was. A small mesh is one node.
 pub(crate) fn clusters(positions: &[[f32; 3]], indices: &[u32], first: u32) -> Vec<Cluster> {
-    let length = if indices.len() < 3 * CLUSTER * LEAST_CLUSTERS { indices.len().max(1) } else { 3 * CLUSTER };
-    let cluster = |(i, own): (usize, &[u32])| {
-        let begin = first + (i * length) as u32;
-        let corners = own.iter().map(|&index| Vec3::from(positions[index as usize]).as_dvec3());
-        Cluster { indices: begin..begin + own.len() as u32, bounds: Aabb::from_points(corners) }
-    };
-    indices.chunks(length).enumerate().map(cluster).collect()
+    let mut tree = Vec::new();
+    if !indices.is_empty() {
+        let leaf = if indices.len() < 3 * LEAST_TRIANGLES { indices.len() } else { 3 * LEAF };
+        halve(positions, indices, first, leaf, &mut tree);
+    }
+    tree
+}
+
+/// Appends the tree of a run of triangles; `leaf` is how many indices the smallest runs have.
+fn halve(positions: &[[f32; 3]], indices: &[u32], first: u32, leaf: usize, tree: &mut Vec<Cluster>) {
+    let at = tree.len();
+    tree.push(Cluster {
+        indices: first..first + indices.len() as u32,
+        below: 0,
+        min: Vec3::INFINITY,
+        max: -Vec3::INFINITY,
+    });
+    let (mut min, mut max) = (Vec3::INFINITY, -Vec3::INFINITY);
+    if indices.len() <= leaf {
+        for &index in indices {
+            let corner = Vec3::from(positions[index as usize]);
+            (min, max) = (min.min(corner), max.max(corner));
+        }
+    } else {
+        // All leaves but the last are full.
+        let (left, right) = indices.split_at((indices.len() / 2).next_multiple_of(leaf));
+        for (begin, half) in [(first, left), (first + left.len() as u32, right)] {
+            let node = tree.len();
+            halve(positions, half, begin, leaf, tree);
+            (min, max) = (min.min(tree[node].min), max.max(tree[node].max));
+        }
+        tree[at].below = (tree.len() - at - 1) as u32;
+    }
+    (tree[at].min, tree[at].max) = (min, max);
 }
 
 #[cfg(test)]
@@ -94,23 +144,42 @@ mod tests {
     }
 
     #[test]
-    fn clusters_hold_every_triangle_once_and_their_boxes_hold_them() {
-        let (positions, indices) = strip(1000);
-        let clusters = clusters(&positions, &indices, 30);
-        assert_eq!(clusters.len(), 2000_usize.div_ceil(CLUSTER));
-        assert_eq!((clusters[0].indices.start, clusters.last().map(|last| last.indices.end)), (30, Some(6030)));
-        assert!(clusters.windows(2).all(|pair| pair[0].indices.end == pair[1].indices.start));
-        for cluster in &clusters {
-            for &index in &indices[cluster.indices.start as usize - 30..cluster.indices.end as usize - 30] {
-                let at = Vec3::from(positions[index as usize]).as_dvec3();
-                assert_eq!(cluster.bounds.including(at), cluster.bounds);
+    fn every_level_of_the_tree_holds_every_triangle_once_and_in_its_box() {
+        for quads in [64, 65, 67, 1000, 1021] {
+            let (positions, indices) = strip(quads);
+            let tree = clusters(&positions, &indices, 30);
+            assert_eq!(
+                (tree[0].indices.start, tree[0].triangles(), tree[0].below as usize),
+                (30, 2 * quads, tree.len() - 1)
+            );
+            for depth in 0..12 {
+                // The nodes of this depth and the leaves above it.
+                let (mut end, mut ends) = (30, Vec::new());
+                descend(&tree, |node| {
+                    ends.retain(|&end| end > node.indices.start);
+                    ends.push(node.indices.end);
+                    let goes_on = ends.len() <= depth && node.below > 0;
+                    if !goes_on {
+                        assert_eq!(node.indices.start, end, "{quads} quads, depth {depth}");
+                        end = node.indices.end;
+                    }
+                    goes_on
+                });
+                assert_eq!(end as usize, 30 + indices.len());
+            }
+            for node in &tree {
+                assert!(node.below > 0 || node.triangles() as usize <= LEAF);
+                for &index in &indices[node.indices.start as usize - 30..node.indices.end as usize - 30] {
+                    let at = Vec3::from(positions[index as usize]).as_dvec3();
+                    assert_eq!(node.bounds().including(at), node.bounds());
+                }
             }
         }
     }
 
     #[test]
     fn small_meshes_stay_whole() {
-        let (positions, indices) = strip(CLUSTER as u32);
+        let (positions, indices) = strip(LEAST_TRIANGLES as u32 / 2 - 1);
         assert_eq!(clusters(&positions, &indices, 0).len(), 1);
         assert!(clusters(&[], &[], 0).is_empty());
     }
