@@ -20,7 +20,7 @@ pub struct BenchArgs {
         long,
         value_name = "LIST",
         value_delimiter = ',',
-        default_value = "ssm:1024,pssm:2:512,pssm:3:512,pssm:4:512"
+        default_value = "ssm:1024,pssm:2:512,pssm:3:512,pssm:3:512:scheme=fitted,pssm:4:512"
     )]
     pub techniques: Vec<String>,
     /// All filters over four maps of 1024² instead of techniques, divided by pcf2; over robot-war if no scene is named
