@@ -269,7 +269,7 @@ pub struct ShadowArgs {
     /// Whether shadows stand still while the camera moves [default: exact, or none where a map is warped]
     #[arg(long, value_enum)]
     pub stabilize: Option<Stabilize>,
-    /// With --stabilize approximate: steps to a doubling of a map's extent, 4 to 64; 8 are steps of 9 % [default: 8]
+    /// With --stabilize approximate: steps to a doubling of a map's extent, 4 to 64; 24 are steps of 2.9 %, 8 of 9 % [default: 24]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub extent_steps: Option<u32>,
     /// With --stabilize approximate: instead, equal steps of so many to the whole shadowed range, 8 to 4096 (Practical Cascaded Shadow Maps has 64)

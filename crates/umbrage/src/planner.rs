@@ -17,7 +17,7 @@ use crate::rectangle::{HeldRectangle, longest_edge};
 use crate::region::{Fan, Region};
 use crate::settings::check_range;
 use crate::split::{blend_begin, coverage, split_planes};
-use crate::stable::{HeldHalf, HeldSize, slice_sphere, stable_texel};
+use crate::stable::{HeldHalf, HeldLens, HeldSize, slice_sphere, stable_texel};
 use crate::volume::{Lies, Slice, lies_below};
 use crate::warped::WarpPoints;
 use crate::{
@@ -32,6 +32,9 @@ pub struct Planner {
     pub(crate) settings: ShadowSettings,
     pub(crate) plan: ShadowPlan,
     held_ends: HeldEnds,
+    held_lens: HeldLens,
+    /// Stabilised: the view through the lens that maps are made for, the camera's or one around it.
+    held_view: Option<View>,
     held_half: [HeldHalf; MAX_SPLITS],
     held_whole: HeldSize,
     /// Stabilised: across the sphere around everything that is shadowed, metres. 0 otherwise.
@@ -89,6 +92,8 @@ impl Planner {
             settings,
             plan: ShadowPlan::default(),
             held_ends: HeldEnds::default(),
+            held_lens: HeldLens::default(),
+            held_view: None,
             held_half: [HeldHalf::default(); MAX_SPLITS],
             held_whole: HeldSize::default(),
             whole_width: 0.0,
@@ -196,6 +201,8 @@ impl Planner {
             let sphere = slice_sphere(view.frustum(), view.frustum().near, far);
             self.whole_width = 2.0 * self.held_whole.hold(sphere.radius);
         }
+        let is_held = self.settings.stabilize != Stabilize::None;
+        self.held_view = if is_held { Some(self.hold_lens(view)?) } else { None };
         let is_exact = self.settings.stabilize == Stabilize::Exact;
         self.around_all = if is_exact { Block::around(&self.receivers, light) } else { None };
         self.cull_to_view(view, direction, far);
@@ -224,6 +231,16 @@ impl Planner {
             self.plan_split(i, view, light, &fan);
         }
         Ok(())
+    }
+
+    fn hold_lens(&mut self, view: &View) -> Result<View> {
+        let before = self.held_lens;
+        let lens = self.held_lens.hold(view.frustum());
+        if self.held_lens != before {
+            // All maps change with the lens: none's size is worth holding on to.
+            self.held_half = Default::default();
+        }
+        view.with_frustum(lens)
     }
 
     /// Writes `C_0 ..= C_m` into the plan.
@@ -286,7 +303,8 @@ impl Planner {
         let direction = light.direction();
         let size = settings.map_sizes[i];
         let margin = settings.filter_radius + EDGE_TEXELS;
-        let (from, to) = coverage(view, planes, i, settings.blend, settings.image_size, settings.bands);
+        let covered = |view| coverage(view, planes, i, settings.blend, settings.image_size, settings.bands);
+        let (from, to) = covered(view);
         let blend_begin = blend_begin(planes, i, settings.blend);
         let (near, far) = (planes[i], planes[i + 1]);
         // Where the range holds all that is visible, nothing before it asks.
@@ -300,7 +318,10 @@ impl Planner {
         let mut slice_region = Region::EMPTY;
         slice.corners.iter().for_each(|&corner| slice_region.include_point(fan, corner));
 
-        let sphere = slice_sphere(view.frustum(), from, to);
+        // A wider lens has wider pixels, and its slices reach back farther.
+        let held_view = self.held_view.as_ref().unwrap_or(view);
+        let begin = if visible && i > 0 { covered(held_view).0.min(from) } else { from };
+        let sphere = slice_sphere(held_view.frustum(), begin, to);
         let block = Block::around_sphere(view.world_from_view_point(sphere.center), sphere.radius, light);
         let block = self.around_all.map_or(block, |all| block.no_longer_than(&all));
         let half = match settings.stabilize {

@@ -143,7 +143,6 @@ impl HeldFar {
 /// The ends of the shadowed range, and what they hold on to from frame to frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HeldEnds {
-    deepest: HeldSize,
     far: HeldFar,
     visible: HeldRange,
 }
@@ -178,9 +177,10 @@ impl HeldEnds {
             return Range::new(first, last.min(camera_far));
         }
         let range = match settings.stabilize {
-            Stabilize::None => Range::new(near, deepest),
+            // Almost still maps are held by their own extents, whatever the planes: a range that is held as well would only make them
+            // larger, by 8 % in the second of four splits, and saves no step.
+            Stabilize::None | Stabilize::Approximate(_) => Range::new(near, deepest),
             Stabilize::Exact => self.far.hold(near, deepest, farthest(view, receivers).min(camera_far)),
-            Stabilize::Approximate(_) => Range::new(near, self.deepest.hold(deepest)),
         };
         Range { near, inner_far: range.inner_far.min(camera_far), far: range.far.min(camera_far) }
     }

@@ -102,8 +102,9 @@ impl Stabilize {
 /// The steps in which an approximately stabilised map changes its extent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExtentSteps {
-    /// Geometric steps of the extent in metres, so many to a doubling, 4 to 64: 8 are steps of 2^(1/8), 9 %. One step of hysteresis, and
-    /// the rectangle may stand on any of 16 directions that are fixed to the light. Ours.
+    /// Geometric steps of the extent in metres, so many to a doubling, 4 to 64: 24 are steps of 2^(1/24), 2.9 %. One step of hysteresis, and
+    /// the rectangle may stand on any of 16 directions that are fixed to the light. Ours. Finer steps are sharper and taken more
+    /// often.
     PerDoubling(u32),
     /// So many equal steps of the unsplit light frustum, 8 to 4096: `s_q = 64 / ceil(64 / s)` for 64 of them, as in seed 003, Listing
     /// 4.1.2, to compare with. A near split of a long range falls to the first levels. The unsplit frustum has to stand
@@ -113,7 +114,7 @@ pub enum ExtentSteps {
 
 impl Default for ExtentSteps {
     fn default() -> Self {
-        Self::PerDoubling(8)
+        Self::PerDoubling(24)
     }
 }
 

@@ -78,7 +78,7 @@ proptest! {
         }
     }
 
-    /// Between the tightest map and 2^(2/8) of it, always inside the exact one's.
+    /// Between the tightest map and 2^(2/24) of it, always inside the exact one's.
     #[test]
     fn approximate_maps_are_nearly_tight(
         place in place(), turns in prop::collection::vec(prop::array::uniform3(-3.0..3.0f64), 1..6), sun in sun(), fit in fit(),
@@ -99,7 +99,7 @@ proptest! {
             for ((a, t), s) in plan.splits.iter().zip(&tight.splits).zip(&sphere.splits) {
                 let area = |split: &Split| split.texel_m.x * split.texel_m.y;
                 prop_assert!(area(a) >= 0.9 * area(t), "{} below {}", area(a), area(t));
-                prop_assert!(area(a) <= 2f64.powf(4.0 / 8.0) * 1.25 * area(t), "{} above {}", area(a), area(t));
+                prop_assert!(area(a) <= 2f64.powf(4.0 / 24.0) * 1.25 * area(t), "{} above {}", area(a), area(t));
                 prop_assert!(area(a) <= area(s), "{} above the sphere's {}", area(a), area(s));
             }
         }
@@ -110,7 +110,11 @@ proptest! {
     fn back_and_forth_settles(
         place in place(), first in 0.3..1.2f64, base in 0.3..1.2f64, pose in prop::array::uniform3(-3.0..3.0f64),
         waves in prop::collection::vec([0.0..1.0f64, -1.0..1.0, -1.0..1.0], 2..12), sun in sun(),
-        stabilize in prop_oneof![Just(Stabilize::Exact), Just(Stabilize::Approximate(ExtentSteps::default()))],
+        (stabilize, step) in prop_oneof![
+            Just((Stabilize::Exact, 1.0)),
+            Just((Stabilize::Approximate(ExtentSteps::PerDoubling(8)), 1.0)),
+            Just((Stabilize::Approximate(ExtentSteps::default()), 8.0 / 24.0)),
+        ],
     ) {
         let settings = ShadowSettings { range: Some((1.0, 300.0)), fit: Fit::Independent, stabilize, ..ShadowSettings::default() };
         let mut planner = Planner::new(settings)?;
@@ -124,8 +128,8 @@ proptest! {
         let mut before = splits(first, 0.0, 0.0)?;
         for round in 0..4 {
             for [zoom, turn, walk] in &waves {
-                // Half a degree and 2 % of the angle of view are worth less than a step.
-                let now = splits(base * (1.0 + 0.02 * zoom), 0.009 * turn, 3.0 * walk)?;
+                // Half a degree and 2 % of the angle of view are worth less than a step of 9 %.
+                let now = splits(base * (1.0 + 0.02 * step * zoom), 0.009 * step * turn, 3.0 * walk)?;
                 for (i, (a, b)) in before.iter().zip(&now).enumerate() {
                     prop_assert!(round < 2 || b.texels_moved_since(a).is_some(), "round {round}, split {i}");
                 }
@@ -134,29 +138,28 @@ proptest! {
         }
     }
 
-    /// A long zoom takes one change for each step between the narrowest and the widest lens, and the map always holds the slice.
+    /// A long zoom takes one change for each step of 19 % between the narrowest and the widest lens, and the map always holds the slice.
     #[test]
     fn a_long_zoom_changes_the_texel_in_steps(place in place(), from in 0.3..1.2f64, to in 0.3..1.2f64) {
         let settings = ShadowSettings { range: Some((1.0, 300.0)), stabilize: Stabilize::Exact, ..ShadowSettings::default() };
         let mut planner = Planner::new(settings.clone())?;
         let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2))?;
-        let (mut changes, mut sizes, mut held) = (0, (f64::INFINITY, 0.0f64), None);
+        let (mut changes, mut held) = (0, None);
         for k in 0..120 {
             let fov = from + (to - from) * f64::from(k) / 119.0;
             let view = View::look_at_upright(place, place + DVec3::NEG_Z, Frustum::perspective(fov, 1.5, 0.1, 1000.0)?)?;
             let texel = planner.plan(&view, &sun, &[], &[])?.splits[3].texel_m.x;
             let tight = Planner::new(settings.clone())?.plan(&view, &sun, &[], &[])?.splits[3].texel_m.x;
             prop_assert!(texel >= tight * (1.0 - 1e-12), "the map no longer holds the slice");
-            prop_assert!(texel <= tight * 2f64.powf(2.0 / 8.0) * (1.0 + 1e-9), "{texel} is much larger than {tight}");
-            sizes = (sizes.0.min(tight), sizes.1.max(tight));
+            prop_assert!(texel <= tight * 2f64.powf(2.0 / 4.0) * (1.0 + 1e-9), "{texel} is much larger than {tight}");
             changes += i32::from(held.is_some_and(|held| held != texel));
             held = Some(texel);
         }
-        let steps = ((sizes.1 / sizes.0).log2() * 8.0).ceil();
+        let steps = (((0.5 * to).tan() / (0.5 * from).tan()).log2().abs() * 4.0).ceil();
         prop_assert!(f64::from(changes) <= steps + 1.0, "{changes} changes over {steps} steps");
     }
 
-    /// The far end of the range is the scene's; it is held in steps, too, while the eye walks to and fro.
+    /// The far end of the range is the scene's; for exactly stabilised maps it is held in steps, too, while the eye walks to and fro.
     #[test]
     fn the_range_is_held(
         place in place(), yaw in -3.0..3.0f64, walks in prop::collection::vec(0.0..1.0f64, 4..40), approximate in any::<bool>(),
@@ -176,8 +179,9 @@ proptest! {
             let deepest = greatest(&|corner| view.view_depth(corner));
             let most = if approximate { deepest } else { greatest(&|corner| view.eye().distance(corner)) };
             prop_assert!(far_end >= deepest, "{far_end} m for a scene of {deepest} m");
-            prop_assert!(plan.planes[4] <= most * 2f64.powf(2.0 / 8.0), "{far_end} m for a scene of {most} m");
-            changes += i32::from(plan.planes[4] != far);
+            let room = if approximate { 1.0 + 1e-9 } else { 2f64.powf(2.0 / 8.0) };
+            prop_assert!(plan.planes[4] <= most * room, "{far_end} m for a scene of {most} m");
+            changes += i32::from(!approximate && plan.planes[4] != far);
             far = plan.planes[4];
         }
         prop_assert!(changes <= 2, "{changes}");
@@ -295,6 +299,31 @@ fn tight_maps_do_not_stand_still() {
     };
     let (a, b) = (plan(0.0), plan(0.15));
     assert!(a.splits.iter().zip(&b.splits).all(|(a, b)| b.texels_moved_since(a).is_none()));
+}
+
+/// Into a zoom of a third and out again, as slowly and as often as one likes: what a map shows is the same, and comes back the same.
+#[test]
+fn a_zoom_of_a_third_and_back_changes_nothing() {
+    let mut planner = Planner::new(ShadowSettings::default()).expect("valid");
+    let light = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).expect("valid");
+    let world = [Aabb::new(DVec3::splat(-400.0), DVec3::splat(400.0))];
+    let mut splits = |zoom: f64| {
+        let mut lens = Frustum::perspective(0.9, 1.5, 0.1, 1000.0).expect("valid");
+        for edge in [&mut lens.left, &mut lens.right, &mut lens.bottom, &mut lens.top] {
+            *edge /= zoom;
+        }
+        let view = View::look_at_upright(DVec3::ZERO, DVec3::NEG_Z, lens).expect("valid");
+        planner.plan(&view, &light, &world, &world).expect("valid").splits.clone()
+    };
+    let first = splits(1.0);
+    for k in 0..600 {
+        let zoom = 1.0 + 0.35 * (0.05 * f64::from(k)).sin().powi(2);
+        for (split, first) in splits(zoom).iter().zip(&first) {
+            assert!(split.texels_moved_since(first).is_some(), "at {zoom}");
+        }
+    }
+    let beyond = splits(1.5);
+    assert!(beyond[0].texel_m.x < first[0].texel_m.x / 1.2, "a long zoom does get finer texels");
 }
 
 #[test]

@@ -28,7 +28,7 @@ const REACH: f64 = 3.0;
 const KINDS: [(&str, Stabilize, Colour); 4] = [
     ("unstabilised", Stabilize::None, Colour::Series(1)),
     ("exact", Stabilize::Exact, Colour::Series(0)),
-    ("approximate, steps of 2^(1/8)", Stabilize::Approximate(ExtentSteps::PerDoubling(8)), Colour::Series(2)),
+    ("approximate, steps of 2^(1/24)", Stabilize::Approximate(ExtentSteps::PerDoubling(24)), Colour::Series(2)),
     ("approximate, 64 levels", Stabilize::Approximate(ExtentSteps::Levels(64)), Colour::Series(3)),
 ];
 
