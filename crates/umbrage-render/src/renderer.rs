@@ -73,7 +73,7 @@ pub struct Frame<'a> {
     pub light: Lamp,
     /// More lights, for the picture.
     pub more_lights: &'a [Lamp],
-    /// Whether anything throws shadows; if not, whatever faces the light is lit.
+    /// Whether anything throws shadows; if not, whatever faces the light is lit, and what stabilised maps hold on to stays as it was.
     pub shadows_on: bool,
     /// Whether the picture shows each split in its own colour.
     pub tint: bool,
@@ -436,7 +436,9 @@ impl Renderer {
         let receivers: Vec<Aabb> = pose.objects.iter().map(|object| object.bounds).collect();
         let begun = Instant::now();
         let lamps: Vec<Lamp> = [frame.light].into_iter().chain(frame.more_lights.iter().copied()).collect();
-        let planners = &mut self.planners.now;
+        // What maps hold on to belongs to the frames that show them.
+        let mut aside = if frame.shadows_on { Vec::new() } else { self.planners.now.clone() };
+        let planners = if frame.shadows_on { &mut self.planners.now } else { &mut aside };
         if lamps.len() != planners.len() {
             return Err(Error::LampSlots { frame: lamps.len(), renderer: planners.len() });
         }
