@@ -13,7 +13,8 @@ const SUN: DVec3 = DVec3::new(1.0, -0.6, 0.2);
 fn splits(gpu: &Gpu, between: Option<bool>) -> Vec<Vec<Split>> {
     let plain = settings();
     let stabilize = Stabilize::Approximate(ExtentSteps::PerDoubling(8));
-    let settings = RenderSettings { shadows: ShadowSettings { stabilize, fit: Fit::Independent, ..plain.shadows }, ..plain };
+    let settings =
+        RenderSettings { shadows: ShadowSettings { stabilize, fit: Fit::Independent, ..plain.shadows }, ..plain };
     let primitives = vec![ground(0.0, 60.0), cuboid(DVec3::new(-1.0, 0.0, -12.0), DVec3::new(2.0, 3.0, -9.0))];
     let mut stage = Stage::new(gpu, &scene(primitives), &settings);
     let wanted = Outputs { picture: true, ..Default::default() };
