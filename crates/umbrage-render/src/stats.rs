@@ -19,7 +19,7 @@ pub struct SplitStats {
     pub casters: usize,
     /// Draw calls that draw into its map; instances share one, and so may splits.
     pub draws: u32,
-    /// Triangles of its casters. In a pass of its own those that are drawn: clusters of large meshes that do not reach it are not.
+    /// Triangles of its casters. In a pass of its own those that are drawn: parts of large meshes that do not reach it are not.
     pub triangles: u64,
     /// Bytes of its map.
     pub bytes: u64,

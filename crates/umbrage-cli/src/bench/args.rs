@@ -26,8 +26,8 @@ pub struct BenchArgs {
     /// All filters over four maps of 1024² instead of techniques, divided by pcf2; over robot-war if no scene is named
     #[arg(long, conflicts_with_all = ["techniques", "with"])]
     pub filters: bool,
-    /// Settings for all techniques that do not say otherwise, as for `umbrage compare`
-    #[arg(long, value_name = "SETTINGS", default_value = "filter=pcf2:stabilize=none")]
+    /// Settings for all techniques that do not say otherwise, as for `umbrage compare`; the papers' splits meet in hard borders
+    #[arg(long, value_name = "SETTINGS", default_value = "filter=pcf2:stabilize=none:blend=0")]
     pub with: String,
     /// Rounds that are measured, after one that is not
     #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..=1000))]

@@ -71,7 +71,8 @@ pub fn run(args: &BenchArgs) -> Result<()> {
         Switch::Off => Vec::new(),
     };
     // Without a blend, which a reused map cannot have: all of them draw the same picture.
-    let pairs = parsed(&pairs, &format!("{}:blend=0", args.with), args)?;
+    let others = args.with.split(':').filter(|setting| !setting.starts_with("blend="));
+    let pairs = parsed(&pairs, &others.chain(["blend=0"]).collect::<Vec<_>>().join(":"), args)?;
     let samples = if args.samples == "4" { Samples::Four } else { Samples::One };
     let scenes: Vec<String> = match &args.scenes[..] {
         [] if args.filters => vec![World::RobotWar.name().to_owned()],
