@@ -304,7 +304,7 @@ impl Renderer {
     /// [`Error::OutOfMemory`] or [`Error::Device`] if the device fails.
     pub fn render(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
-        gpu.guarded("drawing a frame", || self.render_unguarded(frame, outputs))
+        self.held_apart(frame, |own| gpu.guarded("drawing a frame", || own.render_unguarded(frame, outputs)))
     }
 
     /// Visibility of the first light at given points. A point that the view shows within the shadowed range gets what a pixel there would
@@ -315,7 +315,17 @@ impl Renderer {
     pub fn probe(&mut self, frame: &Frame<'_>, points: &[ProbePoint]) -> Result<Vec<ProbeAnswer>> {
         probe::check(points)?;
         let gpu = self.gpu.clone();
-        gpu.guarded("answering probes", || self.probe_unguarded(frame, points))
+        self.held_apart(frame, |own| gpu.guarded("answering probes", || own.probe_unguarded(frame, points)))
+    }
+
+    /// What maps hold on to belongs to the frames that show them: one without shadows leaves it as it was.
+    fn held_apart<T>(&mut self, frame: &Frame<'_>, work: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
+        let kept = (!frame.shadows_on).then(|| self.planners.now.clone());
+        let result = work(self);
+        if let Some(kept) = kept {
+            self.planners.now = kept;
+        }
+        result
     }
 
     fn render_unguarded(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
@@ -436,9 +446,7 @@ impl Renderer {
         let receivers: Vec<Aabb> = pose.objects.iter().map(|object| object.bounds).collect();
         let begun = Instant::now();
         let lamps: Vec<Lamp> = [frame.light].into_iter().chain(frame.more_lights.iter().copied()).collect();
-        // What maps hold on to belongs to the frames that show them.
-        let mut aside = if frame.shadows_on { Vec::new() } else { self.planners.now.clone() };
-        let planners = if frame.shadows_on { &mut self.planners.now } else { &mut aside };
+        let planners = &mut self.planners.now;
         if lamps.len() != planners.len() {
             return Err(Error::LampSlots { frame: lamps.len(), renderer: planners.len() });
         }

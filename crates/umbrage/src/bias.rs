@@ -9,7 +9,8 @@ use crate::Split;
 /// A tap that lies `offset` texels from the sample is compared with
 /// `depth + min(depth_per_texel · offset − |corner_per_texel ∘ offset|, 0) − constant_m`, in metres along the light.
 ///
-/// umbrage's WGSL also asks of a texel that is nearer than that where its surface leads (`leads_behind` in `bias.wesl`).
+/// umbrage's WGSL also asks of a texel that is nearer than that, or nearer than the receiver but far behind its plane, where its surface
+/// leads (`leads_behind` in `bias.wesl`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bias {
     /// Metres of depth per texel along u and v on the receiver's plane.
@@ -25,10 +26,10 @@ pub struct Bias {
 /// with the WGSL's constants (`docs/measurements.md`); lower, surfaces that the light grazes show stripes.
 pub const STEEPEST: f64 = 50.0;
 
-/// [`Bias::constant_m`] in texels, [`Bias::corner_per_texel`] in texels per texel at least and at most, and the angle in radians by
+/// [`Bias::constant_m`] in texels' longer edges, [`Bias::corner_per_texel`] in their shorter edges at least and at most, and the angle in radians by
 /// which ground may bend within the filter's reach: as in umbrage's WGSL, where each says what breaks otherwise.
 const CONSTANT: f64 = 0.25;
-const CORNER: (f64, f64) = (0.5, 8.0);
+const CORNER: (f64, f64) = (0.5, 12.0);
 const FOLD: f64 = 0.03;
 
 impl Bias {
@@ -72,10 +73,10 @@ fn bias(normal: DVec3, depth_axis: DVec3, u: DVec3, v: DVec3) -> Bias {
     let sine = (1.0 - facing * facing).max(0.0).sqrt();
     let cosine = facing.max(sine / STEEPEST).max(1e-6);
     let slope = sine / cosine;
-    let texel = u.length().max(v.length());
+    let [shorter, longer] = [u.length().min(v.length()), u.length().max(v.length())];
     Bias {
         depth_per_texel: DVec2::new(normal.dot(u), normal.dot(v)) / cosine,
-        corner_per_texel: DVec2::new(u.length(), v.length()) * (FOLD * (1.0 + slope * slope)).clamp(CORNER.0, CORNER.1),
-        constant_m: CONSTANT * texel,
+        corner_per_texel: DVec2::splat(shorter) * (FOLD * (1.0 + slope * slope)).clamp(CORNER.0, CORNER.1),
+        constant_m: CONSTANT * longer,
     }
 }

@@ -197,12 +197,13 @@ impl Planner {
         }
         let fan = Fan::new(first, direction);
         self.fan = Some(fan);
+        self.held_view = None;
         if self.settings.stabilize != Stabilize::None {
-            let sphere = slice_sphere(view.frustum(), view.frustum().near, far);
+            let held_view = self.hold_lens(view)?;
+            let sphere = slice_sphere(held_view.frustum(), view.frustum().near, far);
             self.whole_width = 2.0 * self.held_whole.hold(sphere.radius);
+            self.held_view = Some(held_view);
         }
-        let is_held = self.settings.stabilize != Stabilize::None;
-        self.held_view = if is_held { Some(self.hold_lens(view)?) } else { None };
         let is_exact = self.settings.stabilize == Stabilize::Exact;
         self.around_all = if is_exact { Block::around(&self.receivers, light) } else { None };
         self.cull_to_view(view, direction, far);

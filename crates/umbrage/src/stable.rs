@@ -141,15 +141,16 @@ pub(crate) struct HeldLens {
 }
 
 impl HeldLens {
-    /// `frustum`, or one around it that is wider by the same factor on all sides.
+    /// `frustum`, or one around it that is wider by the same factor on all sides on which it may grow: one that lies beside the axis is not
+    /// moved away from it.
     pub fn hold(&mut self, frustum: &Frustum) -> Frustum {
         let width = (frustum.right - frustum.left).hypot(frustum.top - frustum.bottom);
         let wider = (self.width.hold_in_steps(width, LENS_STEPS_PER_OCTAVE) / width).max(1.0);
         Frustum {
-            left: frustum.left * wider,
-            right: frustum.right * wider,
-            bottom: frustum.bottom * wider,
-            top: frustum.top * wider,
+            left: frustum.left.min(frustum.left * wider),
+            right: frustum.right.max(frustum.right * wider),
+            bottom: frustum.bottom.min(frustum.bottom * wider),
+            top: frustum.top.max(frustum.top * wider),
             ..*frustum
         }
     }
@@ -173,4 +174,37 @@ impl HeldHalf {
 #[must_use]
 pub fn stable_texel(radius: f64, size: u32, margin: f64) -> f64 {
     2.0 * radius / (f64::from(size) - 2.0 * margin - 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_held_lens_contains_every_lens_it_is_held_for() {
+        // In the middle, to one side of the axis, and beside it (the outer screens of a wall).
+        for [left, right, bottom, top] in
+            [[-1.0, 1.0, -0.6, 0.6], [-0.2, 1.0, -0.6, 0.1], [0.7, 1.4, -0.4, 0.4], [-2.0, -0.5, 0.1, 0.9]]
+        {
+            let frustum =
+                Frustum { left, right, bottom, top, ..Frustum::perspective(1.0, 1.0, 0.1, 100.0).expect("valid") };
+            let (mut held, mut steps, mut before) = (HeldLens::default(), 0, None);
+            for k in 0..400 {
+                let zoom = 1.0 + 0.9 * (0.03 * f64::from(k)).sin();
+                let asked = Frustum {
+                    left: left * zoom,
+                    right: right * zoom,
+                    bottom: bottom * zoom,
+                    top: top * zoom,
+                    ..frustum
+                };
+                let lens = held.hold(&asked);
+                assert!(lens.left <= asked.left && lens.right >= asked.right, "{lens:?} for {asked:?}");
+                assert!(lens.bottom <= asked.bottom && lens.top >= asked.top, "{lens:?} for {asked:?}");
+                steps += i32::from(before.is_some_and(|before| before != held));
+                before = Some(held);
+            }
+            assert!((4..60).contains(&steps), "{steps} steps");
+        }
+    }
 }
