@@ -10,11 +10,14 @@ use crate::Result;
 use crate::draw_list::{Parts, Run, once};
 use crate::geometry::GpuPrimitive;
 use crate::renderer::{Frame, Renderer};
-use crate::shadow_mesh::descend;
+use crate::shadow_mesh::{Cluster, descend};
 
 /// Triangles that each draw of an object in parts has to spare, or it is drawn whole: with others of its mesh in one draw. Gaps between
 /// its parts that spare less are drawn, too.
 const LEAST_SPARED: u32 = 40;
+
+/// Triangles that are asked for together, at most, but for the ends of what is drawn.
+const BLOCK: u32 = 24;
 
 /// Triangles of the parts that the planner is told of, at most.
 const PART: u32 = 128;
@@ -90,7 +93,7 @@ impl Renderer {
                 continue;
             }
             for primitive in &meshes[object.mesh] {
-                descend(&primitive.clusters, |node| {
+                descend(&primitive.clusters, |_, node| {
                     let goes_on = node.triangles() > PART && node.below > 0;
                     if !goes_on {
                         parts.push(node.bounds().transformed(&object.world_from_local));
@@ -126,21 +129,12 @@ fn has_parts(object: &Object, meshes: &[Vec<GpuPrimitive>]) -> bool {
 
 /// For each primitive the ranges of indices that reach a split; `None` if the object is better drawn whole.
 fn parts_in(planner: &Planner, split: usize, object: &Object, primitives: &[GpuPrimitive]) -> Option<Parts> {
+    let reaches = |node: &Cluster| planner.reaches(split, &node.bounds().transformed(&object.world_from_local));
     let mut spared = 0;
     let parts: Parts = primitives
         .iter()
         .map(|primitive| {
-            let mut ranges: Vec<Range<u32>> = Vec::new();
-            descend(&primitive.clusters, |node| {
-                let reaches = planner.reaches(split, &node.bounds().transformed(&object.world_from_local));
-                if reaches && node.below == 0 {
-                    match ranges.last_mut() {
-                        Some(last) if node.indices.start - last.end < 3 * LEAST_SPARED => last.end = node.indices.end,
-                        _ => ranges.push(node.indices.clone()),
-                    }
-                }
-                reaches
-            });
+            let ranges = reaching(&primitive.clusters, reaches);
             let drawn: u32 = ranges.iter().map(|range| range.end - range.start).sum();
             spared += (primitive.shadow_indices.end - primitive.shadow_indices.start - drawn) / 3;
             ranges
@@ -148,4 +142,85 @@ fn parts_in(planner: &Planner, split: usize, object: &Object, primitives: &[GpuP
         .collect();
     let draws = parts.iter().map(Vec::len).sum::<usize>() as u32;
     (spared > 0 && spared >= LEAST_SPARED * draws).then_some(parts)
+}
+
+/// The ranges of indices of a tree's leaves that reach, and what lies between them in the same block or in a narrow gap.
+///
+/// Blocks are asked first. The smaller leaves are worth asking where a row of blocks begins and where it ends, and nowhere else.
+fn reaching(tree: &[Cluster], reaches: impl Fn(&Cluster) -> bool) -> Vec<Range<u32>> {
+    // Rows of blocks, the first and the last of each.
+    let mut rows: Vec<[usize; 2]> = Vec::new();
+    descend(tree, |at, node| {
+        if !reaches(node) {
+            return false;
+        }
+        if node.triangles() > BLOCK && node.below > 0 {
+            return true;
+        }
+        match rows.last_mut() {
+            Some([_, last]) if tree[*last].indices.end == node.indices.start => *last = at,
+            _ => rows.push([at, at]),
+        }
+        false
+    });
+    let mut ranges: Vec<Range<u32>> = Vec::new();
+    for row in rows {
+        let [first, last] = row.map(|at| &tree[at..=at + tree[at].below as usize]);
+        let reaching_leaf = |node: &&Cluster| node.below == 0 && reaches(node);
+        let begin = first.iter().find(reaching_leaf).map_or(first[0].indices.end, |leaf| leaf.indices.start);
+        let end = last.iter().rev().find(reaching_leaf).map_or(last[0].indices.start, |leaf| leaf.indices.end);
+        match ranges.last_mut() {
+            _ if begin >= end => {}
+            Some(last) if begin - last.end < 3 * LEAST_SPARED => last.end = end,
+            _ => ranges.push(begin..end),
+        }
+    }
+    ranges
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shadow_mesh::clusters;
+
+    /// Triangles in a row along x, one a metre.
+    fn row(triangles: u32) -> Vec<Cluster> {
+        let corner = |i: u32| [(i / 3) as f32 + 0.4 * (i % 3) as f32, (i % 2) as f32, 0.0];
+        let positions: Vec<[f32; 3]> = (0..3 * triangles).map(corner).collect();
+        clusters(&positions, &(0..3 * triangles).collect::<Vec<_>>(), 300)
+    }
+
+    #[test]
+    fn all_that_reaches_is_drawn_and_little_else() {
+        for triangles in [128, 500, 777, 4096] {
+            let tree = row(triangles);
+            for (from, to) in [(0.0, 1e9), (100.5, 101.5), (3.0, 60.0), (90.0, 400.0), (-5.0, 0.5), (126.5, 1e9)] {
+                let reaches = |node: &Cluster| node.bounds().max.x >= from && node.bounds().min.x <= to;
+                let ranges = reaching(&tree, reaches);
+                let leaves = || tree.iter().filter(|node| node.below == 0 && reaches(node));
+                for leaf in leaves() {
+                    let drawn = |range: &Range<u32>| range.start <= leaf.indices.start && leaf.indices.end <= range.end;
+                    assert_eq!(ranges.iter().filter(|range| drawn(range)).count(), 1, "{leaf:?} in {ranges:?}");
+                }
+                // What reaches lies together here: nothing beside it is drawn.
+                let wanted: u32 = leaves().map(Cluster::triangles).sum();
+                let drawn: usize = ranges.iter().map(|range| range.len() / 3).sum();
+                assert_eq!(drawn as u32, wanted, "{from}..{to} of {triangles}: {ranges:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn wide_gaps_are_left_out_and_narrow_ones_drawn() {
+        let tree = row(1024);
+        let between = |gap: f64| {
+            let outside = move |node: &Cluster| node.bounds().min.x < 300.0 || node.bounds().max.x > 300.0 + gap;
+            reaching(&tree, outside)
+        };
+        assert_eq!(between(20.0), [300..300 + 3 * 1024]);
+        let two = between(300.0);
+        assert_eq!(two.len(), 2);
+        assert!((280..320).contains(&(two[1].start - two[0].end).div_euclid(3)), "{two:?}");
+        assert!(reaching(&tree, |_| false).is_empty() && reaching(&[], |_| true).is_empty());
+    }
 }

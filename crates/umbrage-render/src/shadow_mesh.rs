@@ -40,11 +40,11 @@ impl Cluster {
     }
 }
 
-/// Calls `each` with nodes of a tree from its root on; what a node consists of follows if the answer is `true`.
-pub(crate) fn descend(tree: &[Cluster], mut each: impl FnMut(&Cluster) -> bool) {
+/// Calls `each` with nodes of a tree and where they stand in it, from the root on; what a node consists of follows if the answer is `true`.
+pub(crate) fn descend(tree: &[Cluster], mut each: impl FnMut(usize, &Cluster) -> bool) {
     let mut at = 0;
     while let Some(node) = tree.get(at) {
-        at += 1 + if each(node) { 0 } else { node.below as usize };
+        at += 1 + if each(at, node) { 0 } else { node.below as usize };
     }
 }
 
@@ -155,7 +155,7 @@ mod tests {
             for depth in 0..12 {
                 // The nodes of this depth and the leaves above it.
                 let (mut end, mut ends) = (30, Vec::new());
-                descend(&tree, |node| {
+                descend(&tree, |_, node| {
                     ends.retain(|&end| end > node.indices.start);
                     ends.push(node.indices.end);
                     let goes_on = ends.len() <= depth && node.below > 0;
