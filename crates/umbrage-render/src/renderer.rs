@@ -318,16 +318,6 @@ impl Renderer {
         self.held_apart(frame, |own| gpu.guarded("answering probes", || own.probe_unguarded(frame, points)))
     }
 
-    /// What maps hold on to belongs to the frames that show them: one without shadows leaves it as it was.
-    fn held_apart<T>(&mut self, frame: &Frame<'_>, work: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
-        let kept = (!frame.shadows_on).then(|| self.planners.now.clone());
-        let result = work(self);
-        if let Some(kept) = kept {
-            self.planners.now = kept;
-        }
-        result
-    }
-
     fn render_unguarded(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
         if outputs.picture && self.picture.is_none() {

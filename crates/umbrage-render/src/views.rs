@@ -60,4 +60,14 @@ impl Renderer {
             std::mem::swap(&mut self.planners, &mut self.more_views[other]);
         }
     }
+
+    /// What maps hold on to belongs to the frames that show them: one without shadows leaves it as it was.
+    pub(crate) fn held_apart<T>(&mut self, frame: &Frame<'_>, work: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
+        let kept = (!frame.shadows_on).then(|| self.planners.now.clone());
+        let result = work(self);
+        if let Some(kept) = kept {
+            self.planners.now = kept;
+        }
+        result
+    }
 }
