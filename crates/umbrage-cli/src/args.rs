@@ -148,11 +148,14 @@ pub enum WorldsCommand {
     },
 }
 
+/// `--texture-memory` where nothing says otherwise, MiB.
+pub const TEXTURE_MIB: u32 = 512;
+
 /// Scene, picture size, camera, light and time.
 #[derive(Debug, clap::Args)]
 pub struct SceneArgs {
-    /// A .glb or .gltf; a height map (.png with its .json, or the --metres options); or a world:
-    /// robot-war, chessboard, knights, mining-terrain
+    /// A .glb, .gltf or .vrm; a height map (.png, .tif or .asc, with a .json beside it or the --metres options where it has
+    /// no scale of its own); or a world: robot-war, chessboard, knights, mining-terrain
     #[arg(value_name = "SCENE")]
     pub scene: String,
     /// Height map: metres between posts
@@ -164,6 +167,15 @@ pub struct SceneArgs {
     /// Height map: metres added to every height
     #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
     pub height_offset: Option<f64>,
+    /// Height map: how a picture holds heights, where its values do not tell
+    #[arg(long, value_enum, default_value_t, help_heading = "Scene")]
+    pub height_encoding: HeightEncoding,
+    /// glTF: most memory for textures, in MiB; larger ones are scaled down, with a note
+    #[arg(long, value_name = "MIB", default_value_t = TEXTURE_MIB, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Scene")]
+    pub texture_memory: u32,
+    /// glTF: let its files lie outside of its folder, as ../textures/bark.png does
+    #[arg(long, help_heading = "Scene")]
+    pub parent_folders: bool,
     /// Move the scene with its cameras and lights by this many metres, as if it lay far from the world's origin; --eye, --target and --path
     /// are places of the world
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Scene")]
@@ -399,6 +411,20 @@ impl Technique {
             Self::Tsm => Some(Warp::Tsm),
         }
     }
+}
+
+/// `--height-encoding`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum HeightEncoding {
+    /// Whichever fits its values
+    #[default]
+    Auto,
+    /// Grey
+    Grey,
+    /// Metres in colours: red · 256 + green + blue / 256 − 32768
+    Terrarium,
+    /// Metres in colours: (red · 65536 + green · 256 + blue) / 10 − 10000
+    Mapbox,
 }
 
 /// `--scheme`.

@@ -11,6 +11,7 @@ pub mod compare;
 pub mod failure;
 pub mod html;
 mod lights;
+mod notes;
 pub mod output;
 pub mod parse;
 mod paths;

@@ -11,6 +11,7 @@ use crate::{
     args::{Filter, RenderArgs},
     failure::{Failure, Result},
     lights::{self, LightReport, NamedLight},
+    notes,
     output::{self, Staged, numbered_file, numbered_folder},
     progress,
     report::{BesideReport, Report, SplitReport, TimesMs, to_json},
@@ -60,6 +61,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     for shot in &stage.shots {
         let frames: Vec<Frame<'_>> = shot.views().map(|(_, view)| studio.frame(&stage, shot, view)).collect();
         let mut views = studio.renderer.render_views(&frames, shot.shown.as_ref(), outputs)?;
+        notes::say(shadows.notes.iter().chain(&views[0].stats.notes));
         let pictures: Vec<_> = views.iter_mut().filter_map(|view| view.picture.take()).collect();
         if let (Some(path), false) = (&args.picture, pictures.is_empty()) {
             staged.file(&numbered_file(path, shot.frame), png(&side_by_side(pictures))?)?;

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use umbrage::SteppedSun;
+use umbrage_scene::{GltfOptions, HeightEncoding, HeightMapOptions, OpenOptions};
 
-use crate::args::SceneArgs;
+use crate::args::{self, SceneArgs};
 use crate::failure::{Failure, Result};
 
 /// `--fov` where nothing else says one, degrees.
@@ -28,6 +29,12 @@ pub struct SceneJob {
     pub metres_per_unit: Option<f64>,
     /// `--height-offset`.
     pub height_offset: Option<f64>,
+    /// `--height-encoding`.
+    pub height_encoding: Option<HeightEncoding>,
+    /// `--texture-memory`, bytes.
+    pub texture_bytes: u64,
+    /// `--parent-folders`.
+    pub parent_folders: bool,
     /// `--move-scene`, metres.
     pub move_scene: Option<DVec3>,
     /// Seconds into the animations.
@@ -125,6 +132,14 @@ impl SceneJob {
             metres_per_post: args.metres_per_post,
             metres_per_unit: args.metres_per_unit,
             height_offset: args.height_offset,
+            height_encoding: match args.height_encoding {
+                args::HeightEncoding::Auto => None,
+                args::HeightEncoding::Grey => Some(HeightEncoding::Grey),
+                args::HeightEncoding::Terrarium => Some(HeightEncoding::Terrarium),
+                args::HeightEncoding::Mapbox => Some(HeightEncoding::Mapbox),
+            },
+            texture_bytes: u64::from(args.texture_memory) << 20,
+            parent_folders: args.parent_folders,
             move_scene: args.move_scene,
             time_s: args.time,
             size: args.size,
@@ -136,6 +151,20 @@ impl SceneJob {
             sun_travel: sun_travel(args)?,
             sun_angle: args.sun_angle,
         })
+    }
+
+    /// How the scene's file is read.
+    #[must_use]
+    pub fn open_options(&self) -> OpenOptions {
+        OpenOptions {
+            height_map: HeightMapOptions {
+                metres_per_post: self.metres_per_post,
+                metres_per_unit: self.metres_per_unit,
+                height_offset: self.height_offset,
+                encoding: self.height_encoding,
+            },
+            gltf: GltfOptions { texture_bytes: self.texture_bytes, parent_folders: self.parent_folders },
+        }
     }
 
     /// Width over height.

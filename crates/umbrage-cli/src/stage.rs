@@ -3,11 +3,12 @@
 use glam::DQuat;
 use umbrage::{DirectionalLight, Frustum, Light, Projection, SunFade, View};
 use umbrage_render::{Frame, Lamp};
-use umbrage_scene::{CameraPath, HeightMapOptions, Pose, Scene};
+use umbrage_scene::{CameraPath, Pose, Scene};
 
 use crate::{
     failure::{Failure, Result},
     lights::{self, NamedLight},
+    notes,
     report::{CameraReport, ShotReport, SunShown},
     scene_job::{CameraChoice, DEFAULT_FAR, DEFAULT_FOV, DEFAULT_NEAR, SceneJob},
 };
@@ -95,16 +96,13 @@ impl Stage {
     /// # Errors
     /// [`Failure::Input`] naming the file or option at fault.
     pub fn open_views(job: &SceneJob) -> Result<Self> {
-        let height_map = HeightMapOptions {
-            metres_per_post: job.metres_per_post,
-            metres_per_unit: job.metres_per_unit,
-            height_offset: job.height_offset,
-        };
         let path = match &job.camera {
             CameraChoice::Path { file, .. } => Some(CameraPath::load(file)?),
             _ => None,
         };
-        let scene = umbrage_scene::open(&job.scene, &height_map)?;
+        let scene = umbrage_scene::open(&job.scene, &job.open_options())?;
+        // At once, for they may say why what follows fails.
+        notes::say(&scene.notes);
         let scene = match job.move_scene {
             Some(by) => scene.moved(by),
             None => scene,
@@ -113,6 +111,7 @@ impl Stage {
         let mut notes = scene.notes.clone();
         let places = places(job, &scene, &pose, path.as_ref(), &mut notes)?;
         let lights = lights::chosen(job, &scene, &pose, path.as_ref(), &mut notes)?;
+        notes::say(&notes);
         let shots = under_the_light(job, places, &lights)?;
         Ok(Self::new(scene, pose, lights, shots, notes))
     }

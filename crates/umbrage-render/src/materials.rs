@@ -1,6 +1,6 @@
 //! Textures, samplers and one bind group per material.
 
-use umbrage_scene::{AlphaMode, Material, Scene, Texture, Wrap};
+use umbrage_scene::{AlphaMode, Material, Scene, Texture, TextureFilter, Wrap};
 use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
 
 use crate::mipmaps;
@@ -66,25 +66,26 @@ impl Materials {
             views.push(view);
             bytes += size;
         }
-        let white = Texture { width: 1, height: 1, rgba: vec![255; 4], wrap: [Wrap::Repeat; 2] };
+        let white =
+            Texture { width: 1, height: 1, rgba: vec![255; 4], wrap: [Wrap::Repeat; 2], filter: TextureFilter::Linear };
         let (white_view, _) = upload_texture(gpu, usize::MAX, &white)?;
         let list = scene
             .materials
             .iter()
             .enumerate()
             .map(|(index, material)| {
-                let (view, wrap) = match material.base_color_texture {
-                    None => (&white_view, white.wrap),
+                let (view, texture) = match material.base_color_texture {
+                    None => (&white_view, &white),
                     Some(texture) => {
                         let view = views.get(texture).ok_or_else(|| Error::Scene {
                             what: "material",
                             index,
                             reason: format!("there is no texture {texture}, only {}", views.len()),
                         })?;
-                        (view, scene.textures[texture].wrap)
+                        (view, &scene.textures[texture])
                     }
                 };
-                Ok(gpu_material(gpu, &layout, material, view, wrap))
+                Ok(gpu_material(gpu, &layout, material, view, texture))
             })
             .collect::<Result<Vec<_>>>()?;
         Ok(Self { layout, list, bytes })
@@ -132,7 +133,7 @@ fn gpu_material(
     layout: &wgpu::BindGroupLayout,
     material: &Material,
     view: &wgpu::TextureView,
-    wrap: [Wrap; 2],
+    texture: &Texture,
 ) -> GpuMaterial {
     let uniform = MaterialUniform {
         base_color: material.base_color,
@@ -144,26 +145,35 @@ fn gpu_material(
         contents: bytemuck::bytes_of(&uniform),
         usage: wgpu::BufferUsages::UNIFORM,
     });
-    let address = wrap.map(|wrap| match wrap {
+    let address = texture.wrap.map(|wrap| match wrap {
         Wrap::Repeat => wgpu::AddressMode::Repeat,
         Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
         Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
     });
-    let linear = wgpu::SamplerDescriptor {
+    // WebGPU has no anisotropy with a nearest filter.
+    let (mag_filter, anisotropy_clamp) = match texture.filter {
+        TextureFilter::Linear => (wgpu::FilterMode::Linear, 8),
+        TextureFilter::Nearest => (wgpu::FilterMode::Nearest, 1),
+    };
+    let both = wgpu::SamplerDescriptor {
         address_mode_u: address[0],
         address_mode_v: address[1],
-        mag_filter: wgpu::FilterMode::Linear,
+        mag_filter,
         min_filter: wgpu::FilterMode::Linear,
         ..Default::default()
     };
     let smooth = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("Materials::smooth_sampler"),
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        anisotropy_clamp: 8,
-        ..linear.clone()
+        anisotropy_clamp,
+        ..both.clone()
     });
-    let exact =
-        gpu.device.create_sampler(&wgpu::SamplerDescriptor { label: Some("Materials::exact_sampler"), ..linear });
+    // The decision of a mask is the same at every distance, so one filter serves both.
+    let exact = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("Materials::exact_sampler"),
+        min_filter: mag_filter,
+        ..both
+    });
     let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("Materials::bind_group"),
         layout,

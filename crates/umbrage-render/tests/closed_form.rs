@@ -5,7 +5,7 @@ mod common;
 use common::*;
 use glam::{DQuat, DVec2, DVec3, Vec3Swizzles as _};
 use umbrage_render::{Outputs, ProbePoint};
-use umbrage_scene::{AlphaMode, Material, Node, Primitive, Skin, Texture, Wrap};
+use umbrage_scene::{AlphaMode, Material, Node, Primitive, Skin, Texture, TextureFilter, Wrap};
 
 /// Compares a mask with `occluded(point on the ground, towards the light, growth in metres)` on those pixels that show the
 /// ground at y = 0 and nothing before it (`covered(eye, ray)`), leaving out a band of `band` metres around shadow edges.
@@ -91,7 +91,13 @@ fn half_card(alpha: AlphaMode) -> umbrage_scene::Scene {
     let mut scene = scene(vec![ground(0.0, 30.0), card]);
     scene.materials.push(Material { alpha, base_color_texture: Some(0), double_sided: true, ..Default::default() });
     let row: Vec<u8> = (0..64_u8).flat_map(|x| [200, 80, 40, if x < 32 { 255 } else { 0 }]).collect();
-    scene.textures.push(Texture { width: 64, height: 1, rgba: row, wrap: [Wrap::Clamp; 2] });
+    scene.textures.push(Texture {
+        width: 64,
+        height: 1,
+        rgba: row,
+        wrap: [Wrap::Clamp; 2],
+        filter: TextureFilter::Linear,
+    });
     scene
 }
 

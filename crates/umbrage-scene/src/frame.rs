@@ -19,7 +19,7 @@ const LEAST_NEAR_SHARE: f64 = 1e-4;
 /// take precedence over the camera's own; without either, far is infinite for a perspective camera.
 ///
 /// # Errors
-/// [`Error::NoSuchElement`], or [`Error::View`] if the camera or the distances are not usable.
+/// [`Error::NoSuchElement`], [`Error::Camera`] if its node is flat, or [`Error::View`] if the distances are not usable.
 pub fn camera_view(
     scene: &Scene,
     pose: &Pose,
@@ -40,7 +40,14 @@ pub fn camera_view(
             Frustum::orthographic(2.0 * ymag * aspect, 2.0 * ymag, near.unwrap_or(znear), far.unwrap_or(zfar))?
         }
     };
-    Ok(View::from_world_from_view((*world_from_view).into(), frustum)?)
+    View::from_world_from_view((*world_from_view).into(), frustum).map_err(|error| Error::Camera {
+        scene: scene.name.clone(),
+        camera: element("cameras", index, &camera.name),
+        reason: format!(
+            "{error}; check the transform of {}, or choose another camera",
+            scene.node_element(camera.node)
+        ),
+    })
 }
 
 /// The way the light of a light of the scene travels along its axis, a unit vector in the world.

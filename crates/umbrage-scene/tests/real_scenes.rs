@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use umbrage_scene::{AlphaMode, Scene, load_gltf};
+use umbrage_scene::{AlphaMode, GltfOptions, Scene, load_gltf};
 
 /// A file of the shared scenes; `None`, loudly, where they are not there.
 fn shared(name: &str) -> Option<PathBuf> {
@@ -15,7 +15,7 @@ fn shared(name: &str) -> Option<PathBuf> {
 }
 
 fn load(name: &str) -> Option<Scene> {
-    shared(name).map(|path| load_gltf(&path).unwrap_or_else(|error| panic!("{error}")))
+    shared(name).map(|path| load_gltf(&path, &GltfOptions::default()).unwrap_or_else(|error| panic!("{error}")))
 }
 
 /// File, placed triangles, stored triangles, extents (as listed, in whole or tenth metres), tolerance of the extents.

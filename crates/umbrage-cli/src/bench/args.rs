@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use glam::DVec3;
 
 use crate::{
-    args::{SceneArgs, Switch},
+    args::{HeightEncoding, SceneArgs, Switch, TEXTURE_MIB},
     parse,
 };
 
@@ -70,6 +70,9 @@ impl BenchArgs {
             metres_per_post: None,
             metres_per_unit: None,
             height_offset: None,
+            height_encoding: HeightEncoding::default(),
+            texture_memory: TEXTURE_MIB,
+            parent_folders: false,
             move_scene: None,
             time: self.time,
             size: self.size,

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::shots::SunSpec;
 use crate::{
-    args::{SceneArgs, Switch},
+    args::{HeightEncoding, SceneArgs, Switch, TEXTURE_MIB},
     parse,
 };
 
@@ -212,6 +212,9 @@ impl CompareArgs {
             metres_per_post: self.metres_per_post,
             metres_per_unit: self.metres_per_unit,
             height_offset: self.height_offset,
+            height_encoding: HeightEncoding::default(),
+            texture_memory: TEXTURE_MIB,
+            parent_folders: false,
             move_scene: self.move_scene,
             time: self.time,
             size: self.size(),

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use umbrage::{DirectionalLight, Light, Projection, View};
 use umbrage_render::Lamp;
-use umbrage_scene::{CameraPath, HeightMapOptions, Pose, Scene};
+use umbrage_scene::{CameraPath, HeightMapOptions, OpenOptions, Pose, Scene};
 
 use super::args::CompareArgs;
 use crate::{
@@ -162,9 +162,10 @@ impl Wish<'_> {
             metres_per_post: args.metres_per_post,
             metres_per_unit: args.metres_per_unit,
             height_offset: args.height_offset,
+            ..HeightMapOptions::default()
         };
         let path = args.path.as_deref().map(CameraPath::load).transpose()?;
-        let scene = umbrage_scene::open(name, &height_map)?;
+        let scene = umbrage_scene::open(name, &OpenOptions { height_map, ..OpenOptions::default() })?;
         let scene = match args.move_scene {
             Some(by) => scene.moved(by),
             None => scene,
