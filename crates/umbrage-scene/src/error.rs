@@ -136,8 +136,10 @@ pub enum Error {
         count: usize,
     },
     /// A light that has no direction was asked for one.
-    #[error("light {light}: {reason}")]
+    #[error("scene {scene}: {light}: {reason}")]
     Light {
+        /// The scene's name.
+        scene: String,
         /// Index and name of the light.
         light: String,
         /// What is wrong and what to do.

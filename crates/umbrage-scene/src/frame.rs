@@ -59,7 +59,7 @@ pub fn light_direction(scene: &Scene, pose: &Pose, index: usize) -> Result<DVec3
     let missing = || Error::NoSuchElement { kind: "light", index, count };
     let light = scene.lights.get(index).ok_or_else(missing)?;
     let world_from_light = pose.world_from_node.get(light.node).ok_or_else(missing)?;
-    let unusable = |reason: &str| Error::Light { light: element("lights", index, &light.name), reason: reason.into() };
+    let unusable = |reason: &str| light_error(scene, index, reason);
     if light.kind == LightKind::Point {
         return Err(unusable("shines to all sides; choose a directional light, or give the sun's direction"));
     }
@@ -94,7 +94,12 @@ pub fn scene_light(scene: &Scene, pose: &Pose, index: usize) -> Result<Light> {
             SpotLight::new(position, light_direction(scene, pose, index)?, outer, range).map(Light::from)
         }
     };
-    made.map_err(|error| Error::Light { light: element("lights", index, &light.name), reason: error.to_string() })
+    made.map_err(|error| light_error(scene, index, error.to_string()))
+}
+
+fn light_error(scene: &Scene, index: usize, reason: impl Into<String>) -> Error {
+    let name = scene.lights.get(index).map_or("", |light| light.name.as_str());
+    Error::Light { scene: scene.name.clone(), light: element("lights", index, name), reason: reason.into() }
 }
 
 /// A sun for scenes without one: from the south-west, 45° up. The way its light travels, a unit vector.

@@ -7,7 +7,7 @@ use draco_core::{
     DataType, EncoderBuffer, EncoderOptions, FaceIndex, GeometryAttributeType, MeshEncoder, PointAttribute, PointIndex,
 };
 use serde_json::{Value, json};
-use umbrage_scene::Scene;
+use umbrage_scene::{GltfOptions, Scene, load_gltf_slice};
 
 /// Vertices along an edge of the patch.
 const EDGE: usize = 9;
@@ -275,5 +275,21 @@ fn compressed_buffer_views_that_lie() {
     ] {
         let message = refused(field, value.clone());
         assert!(message.contains("bufferViews["), "{field} {value}: {message}");
+    }
+}
+
+#[test]
+fn streams_of_the_common_encoder_give_the_patch() {
+    let expected = plain().scene();
+    let files: [(&str, &[u8]); 2] =
+        [("patch-ext", include_bytes!("files/patch-ext.glb")), ("patch-khr", include_bytes!("files/patch-khr.glb"))];
+    for (name, bytes) in files {
+        let scene = load_gltf_slice(name, bytes, &GltfOptions::default()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(shape(&scene), shape(&expected), "{name}");
+        let (got, wanted) = (&scene.meshes[0].primitives[0], &expected.meshes[0].primitives[0]);
+        // The encoder keeps the order of vertices; 8 bits of a normal are half a degree.
+        for (a, b) in got.normals.iter().zip(&wanted.normals) {
+            assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.02), "{name}: {a:?} {b:?}");
+        }
     }
 }

@@ -234,6 +234,35 @@ fn webp_pictures_are_read() {
 }
 
 #[test]
+fn basis_pictures_are_read() {
+    let files: [&[u8]; 2] = [include_bytes!("files/disc-etc1s.ktx2"), include_bytes!("files/disc-uastc.ktx2")];
+    for ktx in files {
+        let mut glb = textured(&[ktx.to_vec()]);
+        glb.json["textures"][0] = json!({ "extensions": { "KHR_texture_basisu": { "source": 0 } } });
+        glb.json["extensionsRequired"] = json!(["KHR_texture_basisu"]);
+        let scene = glb.scene();
+        let texture = &scene.textures[0];
+        assert_eq!((texture.width, texture.height, scene.notes.len()), (64, 48, 0));
+        for (x, y) in [(8, 8), (32, 24), (32, 12), (50, 40), (20, 24)] {
+            let texel = &texture.rgba[4 * (64 * y + x)..][..4];
+            let inside = (x as i32 - 32).pow(2) + (y as i32 - 24).pow(2) < 300;
+            assert_eq!(texel[3] > 127, inside, "{x} {y}");
+            let wanted = [4 * x, 5 * y, 128];
+            assert!((0..3).all(|i| i32::from(texel[i]).abs_diff(wanted[i] as i32) < 40), "{x} {y}: {texel:?}");
+        }
+        // A level of half the size, or one made of the whole.
+        let options = GltfOptions { texture_bytes: 4 * 32 * 24, ..GltfOptions::default() };
+        let half = load_gltf_slice("a.glb", &glb.bytes(), &options).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!((half.textures[0].width, half.textures[0].height), (32, 24));
+        for length in [0, 30, 80, ktx.len() / 2] {
+            let mut glb = textured(&[ktx[..length].to_vec()]);
+            glb.json["textures"][0] = json!({ "extensions": { "KHR_texture_basisu": { "source": 0 } } });
+            noted(&glb.scene(), &["materials[0]", "images[0]"]);
+        }
+    }
+}
+
+#[test]
 fn what_begins_as_a_glb_is_one() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     for name in ["avatar.vrm", "noextension"] {

@@ -69,7 +69,11 @@ impl Image {
 
     /// 8-bit sRGB RGBA pixels, each edge halved so often.
     pub(super) fn decode(&self, document: &Document<'_>, halvings: u32) -> Result<RgbaImage> {
-        document.count(Part::Pixel, u64::from(self.size[0]) * u64::from(self.size[1]), &self.element)?;
+        let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
+        document.count(Part::Pixel, pixels, &self.element).map_err(|error| match error {
+            Error::Invalid { reason, .. } => failed(document, &self.element, reason),
+            other => other,
+        })?;
         let bytes = bytes(document, self.index, &self.element)?;
         let decoded = match self.kind {
             Kind::Plain(format) => picture::decode(&bytes, format, MOST_BYTES).map(|p| picture::halved(p, halvings)),

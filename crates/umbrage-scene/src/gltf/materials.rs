@@ -98,7 +98,13 @@ fn texture(
             reason: format!("its alpha mask needs textures[{index}], which cannot be read: {}", document.said(error)),
         });
     }
-    document.notes.add(user, format!("textures[{index}] is left out: {}", document.said(error)));
+    // By the picture, so that the same fault of many is one line.
+    match error {
+        Error::Image { element, reason, .. } => {
+            document.notes.add(format!("{element} of {user}"), format!("its texture is left out: {reason}"));
+        }
+        error => document.notes.add(user, format!("textures[{index}] is left out: {}", document.said(error))),
+    }
     Ok(None)
 }
 

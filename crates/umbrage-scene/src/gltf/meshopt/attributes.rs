@@ -125,7 +125,8 @@ fn apply(before: [u8; 4], difference: [u8; 4], mode: u8) -> Option<[u8; 4]> {
             Some([low[0], low[1], high[0], high[1]])
         }
         (2, rotation) => {
-            let difference = u32::from_le_bytes(difference).rotate_left(rotation.into());
+            // The specification gives the encoder's rotation, to the left.
+            let difference = u32::from_le_bytes(difference).rotate_right(rotation.into());
             Some((u32::from_le_bytes(before) ^ difference).to_le_bytes())
         }
         _ => None,
