@@ -235,3 +235,34 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_value_is_checked_alone_before_it_is_applied() {
+    let bad = [
+        ("scheme", "even"),
+        ("blend", "1.5"),
+        ("blend", "nan"),
+        ("splits", "0"),
+        ("splits", "2.5"),
+        ("map-size", "512,,256"),
+        ("shadow-range", "5..1"),
+        ("shadow-range", "1..inf"),
+        ("filter-width", "0"),
+        ("planes", "5,x"),
+        ("shadow-colour", "0,0"),
+        ("shadow-colour", "0,0,1.01"),
+        ("warp", "tsm,"),
+        ("rotate-kernel", "maybe"),
+        ("sun-angle", "90.5"),
+    ];
+    for (key, value) in bad {
+        let setting = SETTINGS.iter().find(|setting| setting.key == key).unwrap();
+        assert!(setting.kind.check(value).is_err(), "{key} {value}");
+    }
+    for preset in Preset::ALL {
+        for (key, value) in preset.config().settings() {
+            let setting = SETTINGS.iter().find(|setting| setting.key == key).unwrap();
+            assert_eq!(setting.kind.check(&value.to_string()), Ok(()), "{key} {value}");
+        }
+    }
+}

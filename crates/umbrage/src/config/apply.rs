@@ -108,6 +108,22 @@ pub(super) fn switch(text: &str) -> Result<bool, String> {
     }
 }
 
+/// One of a list of words.
+pub(super) fn one_of(text: &str, words: &[super::Word]) -> Result<(), String> {
+    if words.iter().any(|word| word.word == text) { Ok(()) } else { Err(unknown("word of this setting", text, words)) }
+}
+
+/// Two view depths in metres, `N..F`, rising from above 0.
+pub(super) fn range(text: &str) -> Result<(f64, f64), String> {
+    let (near, far) =
+        text.split_once("..").ok_or_else(|| format!("{text:?} is not a range; give N..F in metres, such as 1..800"))?;
+    match (number(near)?, number(far)?) {
+        (near, _) if near <= 0.0 => Err(format!("near ({near}) is not greater than 0")),
+        (near, far) if near >= far => Err(format!("near ({near}) has to be less than far ({far})")),
+        range => Ok(range),
+    }
+}
+
 /// Checks a word against the list of its key.
 fn known(key: &str, text: &str) -> Result<(), String> {
     let words = settings::WORDS.iter().find(|(listed, _)| *listed == key).map_or(&[][..], |(_, words)| words);
@@ -168,7 +184,7 @@ pub(super) fn shape(config: &mut ShadowConfig, given: &Given<'_>) -> Result<(), 
 }
 
 /// Edges of maps in texels.
-fn map_sizes(text: &str) -> Result<Vec<u32>, String> {
+pub(super) fn map_sizes(text: &str) -> Result<Vec<u32>, String> {
     text.split(',')
         .map(|edge| match count(edge) {
             Ok(edge) if (1..=1 << 16).contains(&edge) => Ok(edge),
@@ -186,7 +202,6 @@ pub(super) fn scheme(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -
         "uniform" => SplitScheme::Uniform,
         "log" => SplitScheme::Logarithmic,
         "practical" => SplitScheme::practical(),
-        // The name of before.
         "optimal" | "fitted" => SplitScheme::Optimal,
         "manual" if given.has("planes") || config.splits() == 1 => SplitScheme::Manual { planes: Vec::new() },
         "manual" => {
@@ -256,9 +271,8 @@ pub(super) fn shadow_range(config: &mut ShadowConfig, text: &str, given: &Given<
     if given.value("range-fit") == Some("visible") {
         return Err("shadow-range and range-fit visible both choose the shadowed range; give one of them".to_owned());
     }
-    let (near, far) =
-        text.split_once("..").ok_or_else(|| format!("{text:?} is not a range; give N..F in metres, such as 1..800"))?;
-    config.range = Range::Metres { near: number(near)?, far: number(far)? };
+    let (near, far) = range(text)?;
+    config.range = Range::Metres { near, far };
     Ok(())
 }
 

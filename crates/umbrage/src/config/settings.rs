@@ -61,6 +61,57 @@ pub enum Kind {
     Switch,
 }
 
+impl Kind {
+    /// Checks a value alone, without regard to other settings.
+    ///
+    /// # Errors
+    /// What is wrong with the value and what to give instead.
+    pub fn check(&self, text: &str) -> Result<(), String> {
+        let within = |value: f64, most: f64| {
+            if (0.0..=most).contains(&value) { Ok(()) } else { Err(format!("{value} is not in 0..{most}")) }
+        };
+        let positive = |text: &str| {
+            apply::number(text).and_then(|v| if v > 0.0 { Ok(v) } else { Err(format!("{v} is not greater than 0")) })
+        };
+        match *self {
+            Self::Words(words) => apply::one_of(text, words),
+            Self::WordList(words) => text.split(',').try_for_each(|word| apply::one_of(word.trim(), words)),
+            Self::Share(most) | Self::Degrees(most) => apply::number(text).and_then(|value| within(value, most)),
+            Self::Metres => positive(text).map(|_| ()),
+            Self::MetresList => text.split(',').try_for_each(|metres| apply::number(metres).map(|_| ())),
+            Self::Range => apply::range(text).map(|_| ()),
+            Self::Count(least, most) => match apply::count(text)? {
+                count if (least..=most).contains(&count) => Ok(()),
+                count => Err(format!("{count}; give {least} to {most}")),
+            },
+            Self::Texels => apply::map_sizes(text).map(|_| ()),
+            Self::Colour => match text.split(',').count() {
+                3 => text.split(',').try_for_each(|part| apply::number(part).and_then(|part| within(part, 1.0))),
+                count => Err(format!("{count} numbers; give red, green and blue from 0 to 1")),
+            },
+            Self::Switch => apply::switch(text).map(|_| ()),
+        }
+    }
+
+    /// What stands for a value in a line of help, such as `TEXELS,…`.
+    #[must_use]
+    pub const fn placeholder(&self) -> &'static str {
+        match self {
+            Self::Words(_) => "WORD",
+            Self::WordList(_) => "WORD,…",
+            Self::Share(_) => "SHARE",
+            Self::Metres => "M",
+            Self::MetresList => "M,…",
+            Self::Range => "N..F",
+            Self::Degrees(_) => "DEGREES",
+            Self::Count(..) => "N",
+            Self::Texels => "TEXELS,…",
+            Self::Colour => "R,G,B",
+            Self::Switch => "SWITCH",
+        }
+    }
+}
+
 /// What a change of a setting makes anew.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Rebuilds {
