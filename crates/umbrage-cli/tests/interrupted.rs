@@ -79,3 +79,39 @@ fn the_next_run_clears_away_what_a_killed_one_left() {
     folder.succeed("truth tiny.glb --size 64x48 -o out/second.png");
     assert_eq!(names(&folder.at("out")), ["first.png", "second.png"]);
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_without_a_desktop_is_quiet() {
+    if !common::has_adapter() {
+        return;
+    }
+    let folder = Folder::new();
+    for runtime_folder in [None, Some("not/absolute")] {
+        let mut command = folder.command("adapter");
+        command.env_remove("XDG_RUNTIME_DIR");
+        runtime_folder.map(|folder| command.env("XDG_RUNTIME_DIR", folder));
+        let output = command.output().expect("it starts");
+        assert!(output.status.success());
+        assert_eq!(common::stderr(&output), "", "with {runtime_folder:?}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn without_a_vulkan_driver_it_is_said_what_to_install() {
+    // Where OpenGL can draw everything the run is as good as any.
+    let folder = Folder::new();
+    let nowhere = folder.at("no-driver.json");
+    let mut command = folder.command("render tiny.glb --size 16x16 --map-size 64 -o out.png");
+    let output =
+        command.env("VK_DRIVER_FILES", &nowhere).env("VK_ICD_FILENAMES", &nowhere).output().expect("it starts");
+    if output.status.success() {
+        return;
+    }
+    let message = common::stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("mesa-vulkan-drivers") && message.lines().count() == 1, "{message}");
+    assert!(!message.contains("Validation Error"), "{message}");
+    assert_eq!(folder.new_names(), [""; 0]);
+}
