@@ -298,7 +298,13 @@ fn a_closed_box_without_thickness_is_dark() {
                     let mask = stage.mask(&view, sun, [33, 33]);
                     let seen = mask.hits().iter().flatten().count();
                     // A wall that light or eye run along may face either way: its turn is rounded.
-                    let faces = |hit: &&crate::Hit| hit.normal.dot(-sun) > 1e-9;
+                    let faces = |hit: &&crate::Hit| {
+                        let sight = match view.frustum().projection {
+                            umbrage::Projection::Perspective => hit.position - view.eye(),
+                            umbrage::Projection::Orthographic => view.forward(),
+                        };
+                        hit.normal.dot(-sun) > 1e-9 && hit.normal.dot(sight.normalize()) < -1e-9
+                    };
                     let lit: Vec<_> = mask.hits().iter().flatten().filter(|hit| hit.lit).filter(faces).collect();
                     assert!(seen >= 31 * 31, "{seen}, scale {scale}, objects {as_objects}, {view:?}");
                     assert!(lit.is_empty(), "scale {scale}, objects {as_objects}, sun {sun}, {view:?}: {lit:?}");
