@@ -1,4 +1,4 @@
-//! `cargo xtask demo | test | bless | results`: the project's automation, so that a machine that has Rust needs nothing else.
+//! `cargo xtask demo | test | bless | results | fuzz`: the project's automation, so that a machine that has Rust needs nothing else.
 
 mod adapter;
 mod check;
@@ -17,6 +17,7 @@ Usage: cargo xtask COMMAND
   demo    install the software Vulkan driver if there is no graphics adapter, build, render the four worlds and the
           city, and write out/demo/index.html
   test    formatting, lints, the build for the browser and all tests, as CI runs them
+  fuzz    load 100,000 mutated files; UMBRAGE_FUZZ_FILES and UMBRAGE_FUZZ_SEED choose others
   bless   draw the reference pictures of the tests anew
   results [--resume | --render | --tiny]
           run the jobs whose figures docs/results.md shows (up to 40 minutes), keep the figures in docs/results and
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
         ["demo"] => demo::run(),
         ["test"] => check::test(),
         ["bless"] => check::bless(),
+        ["fuzz"] => check::fuzz(),
         ["results"] => results::results(Ask::All),
         ["results", "--resume"] => results::results(Ask::Resume),
         ["results", "--render"] => results::results(Ask::Render),
