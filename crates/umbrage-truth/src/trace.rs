@@ -9,9 +9,9 @@ use glam::DVec3;
 
 use crate::bvh::BoxRay;
 
-/// Bound on the error of an edge function, in units of what it is made of: two products of two coordinates of corners that were placed,
-/// moved and sheared, each rounded.
-const EDGE_ERROR: f64 = 16.0 * f64::EPSILON;
+/// How far from an edge a ray may pass and still meet it, as a share of the coordinates of both: a corner that was placed, moved and
+/// sheared is rounded so often.
+pub(crate) const EDGE_ERROR: f64 = 16.0 * f64::EPSILON;
 
 /// A ray with everything that its tests share. `t` is in units of the direction's length.
 pub(crate) struct Ray {
@@ -75,26 +75,41 @@ impl Ray {
         let w = b.0 * a.1 - b.1 * a.0;
         let determinant = u + v + w;
         let (least, most) = (u.min(v).min(w), u.max(v).max(w));
-        let is_outside = least < 0.0 && most > 0.0;
-        if is_outside {
+        if least < 0.0 && most > 0.0 {
             let aside = [a.0, a.1, b.0, b.1, c.0, c.1].into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-            let away = [a.2, b.2, c.2].into_iter().fold(self.reach + aside, |most: f64, t| most.max((t / sz).abs()));
-            let error = EDGE_ERROR * aside * (away + self.reach);
-            // A triangle that is no larger than its rounding has no inside beside the exact one.
+            let ahead = a.2.abs().max(b.2.abs()).max(c.2.abs()) / sz.abs();
+            let tolerance = EDGE_ERROR * (aside + ahead + self.reach);
+            // An edge is at most √8 times as long as its corners are aside, and its function is its length times its distance.
+            let error = 3.0 * tolerance * aside;
+            // A triangle that is no larger than its rounding has no edges to speak of.
             if determinant.abs() <= 8.0 * error || (least < -error && most > error) {
                 return None;
             }
+            return self.meets_edge([a, b, c], tolerance, t_max);
         }
         if determinant == 0.0 {
             return None;
         }
         let weights = [u / determinant, v / determinant, w / determinant];
-        let mut t = weights[0] * a.2 + weights[1] * b.2 + weights[2] * c.2;
-        if is_outside {
-            // A triangle that is seen nearly edge-on reaches far along the ray for its rounding aside, but not beyond its corners.
-            t = t.clamp(a.2.min(b.2).min(c.2), a.2.max(b.2).max(c.2));
-        }
+        let t = weights[0] * a.2 + weights[1] * b.2 + weights[2] * c.2;
         (t >= self.t_min && t <= t_max).then_some(Crossing { t, weights })
+    }
+
+    /// Where the ray passes an edge of a triangle within `tolerance`; corners are sheared, the ray being their third axis.
+    #[cold]
+    fn meets_edge(&self, corners: [(f64, f64, f64); 3], tolerance: f64, t_max: f64) -> Option<Crossing> {
+        (0..3).find_map(|first| {
+            let second = (first + 1) % 3;
+            let (p, q) = (corners[first], corners[second]);
+            let (dx, dy) = (q.0 - p.0, q.1 - p.1);
+            let squared = dx * dx + dy * dy;
+            let share = if squared > 0.0 { (-(p.0 * dx + p.1 * dy) / squared).clamp(0.0, 1.0) } else { 0.0 };
+            let t = p.2 + share * (q.2 - p.2);
+            let mut weights = [0.0; 3];
+            (weights[first], weights[second]) = (1.0 - share, share);
+            let is_near = (p.0 + share * dx).hypot(p.1 + share * dy) <= tolerance;
+            (is_near && t >= self.t_min && t <= t_max).then_some(Crossing { t, weights })
+        })
     }
 }
 

@@ -27,6 +27,10 @@ pub struct Truth {
     contact: Contact,
 }
 
+/// How far behind its start a shadow ray begins, in lifts: as much as rounding moves crossings with planes that light meets at a
+/// millionth.
+const BEHIND: f64 = 1e6;
+
 /// A point that is looked at, from which the light is asked for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
@@ -194,7 +198,11 @@ impl Truth {
     fn is_own_surface(&self, triangle: &Triangle, crossing: &Crossing, seen: &Seen, to_light: DVec3) -> bool {
         let Some(normal) = area_normal(triangle).try_normalize() else { return true };
         let from_plane = (crossing.t * normal.dot(to_light)).abs();
-        let rounding = F64_ERROR * seen.reach + LIFT * seen.reach;
+        let rounding = (F64_ERROR + LIFT) * seen.reach;
+        if crossing.t < 0.0 && from_plane > rounding {
+            // Behind the point.
+            return true;
+        }
         let own = seen.own.map(|number| &self.triangles.surfaces[self.triangles.surface_of(number)]);
         let there = self.surface(triangle);
         if from_plane > rounding + self.contact.most(there) + own.map_or(0.0, |own| self.contact.most(own)) {
@@ -273,9 +281,10 @@ impl Truth {
 
 impl Seen {
     fn shadow_ray(&self, to_light: DVec3, distance: f64) -> Ray {
-        // It begins a little behind its start: on a crease whose wall the eye looks along, the start is in the wall itself.
+        // It begins a little behind its start: on a crease whose wall the eye looks along, the start is in the wall itself, and where light
+        // runs along that wall, too, rounding moves the crossing far.
         let lift = LIFT * self.reach;
-        Ray::new(self.point + lift * self.to_eye, to_light, -lift, distance)
+        Ray::new(self.point + lift * self.to_eye, to_light, -BEHIND * lift, distance)
     }
 }
 
