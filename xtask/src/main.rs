@@ -1,12 +1,15 @@
-//! `cargo xtask demo | test | bless`: the project's automation, so that a machine that has Rust needs nothing else.
+//! `cargo xtask demo | test | bless | results`: the project's automation, so that a machine that has Rust needs nothing else.
 
 mod adapter;
 mod check;
 mod demo;
 mod page;
+mod results;
 mod run;
 
 use std::process::ExitCode;
+
+use crate::results::Ask;
 
 const USAGE: &str = "\
 Usage: cargo xtask COMMAND
@@ -15,6 +18,10 @@ Usage: cargo xtask COMMAND
           city, and write out/demo/index.html
   test    formatting, lints, the build for the browser and all tests, as CI runs them
   bless   draw the reference pictures of the tests anew
+  results [--resume | --render | --tiny]
+          run the jobs whose figures docs/results.md shows (up to 40 minutes), keep the figures in docs/results and
+          render the page; --resume leaves out jobs whose figures are of this build, --render runs none, --tiny runs
+          them as small as they can be, into out/results
 ";
 
 fn main() -> ExitCode {
@@ -23,6 +30,10 @@ fn main() -> ExitCode {
         ["demo"] => demo::run(),
         ["test"] => check::test(),
         ["bless"] => check::bless(),
+        ["results"] => results::results(Ask::All),
+        ["results", "--resume"] => results::results(Ask::Resume),
+        ["results", "--render"] => results::results(Ask::Render),
+        ["results", "--tiny"] => results::results(Ask::Tiny),
         ["help" | "-h" | "--help"] => {
             eprint!("{USAGE}");
             return ExitCode::SUCCESS;

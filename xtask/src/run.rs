@@ -32,6 +32,16 @@ pub fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
+/// Runs `command` and returns what it prints, without the white space around it.
+pub fn output(command: &mut Command) -> Result<String> {
+    let shown = shown(command);
+    let output = command.output().with_context(|| format!("{shown} did not start"))?;
+    if !output.status.success() {
+        bail!("{shown} failed: {}\n{}", output.status, String::from_utf8_lossy(&output.stderr).trim());
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}
+
 /// The command line, for messages.
 fn shown(command: &Command) -> String {
     let program = Path::new(command.get_program());

@@ -3,7 +3,7 @@
 use std::{panic, process::ExitCode};
 
 use clap::Parser;
-use umbrage_cli::args::Args;
+use umbrage_cli::{args::Args, failure::exit_code};
 
 /// A defect of ours: 1, as for anything that is not the user's fault.
 const DEFECT: u8 = 1;
@@ -21,7 +21,7 @@ fn main() -> ExitCode {
         Ok(Ok(())) => ExitCode::SUCCESS,
         Ok(Err(failure)) => {
             eprintln!("umbrage: {failure}");
-            ExitCode::from(failure.exit_code())
+            ExitCode::from(exit_code(&failure))
         }
         Err(_) => ExitCode::from(DEFECT),
     }

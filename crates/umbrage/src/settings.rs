@@ -46,7 +46,7 @@ pub enum RangeFit {
     Camera,
     /// The view depths between which the view shows receivers: their boxes clipped to the frustum, as an empty foreground or a lens
     /// with a tiny near plane would spend splits on air. With [`Stabilize::Exact`] both ends move in geometric steps of 19 %, with
-    /// hysteresis, and maps stand still in between. A logarithmic scheme goes best with it (`docs/measurements.md`).
+    /// hysteresis, and maps stand still in between. A logarithmic scheme goes best with it (`docs/notes/fitted-planes.md`).
     Visible,
 }
 
