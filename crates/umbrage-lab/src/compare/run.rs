@@ -50,6 +50,9 @@ pub fn run(job: Job) -> Result<()> {
         columns: [Vec::new(), Vec::new()],
     };
     let mut all_notes = notes;
+    if settings.image_metrics && !cfg!(feature = "flip") {
+        all_notes.push("FLIP is left out: it needs a build with the feature flip and a C++ compiler".into());
+    }
     for (number, scene) in scenes.iter().enumerate() {
         all_notes.extend(scene.notes.iter().map(|note| format!("{}: {note}", scene.name)));
         run.scene(number, scene)?;
