@@ -113,7 +113,7 @@ fn mutated(glb: &Glb, numbers: &mut Numbers) -> Vec<u8> {
     }
     let mut bytes = glb.bytes();
     // Then the container itself.
-    match numbers.below(8) {
+    match numbers.below(24) {
         0 => bytes.truncate(numbers.below(bytes.len())),
         1 => (0..4).for_each(|i| bytes[8 + i] = numbers.next() as u8),
         2 => (0..4).for_each(|i| bytes[12 + i] = numbers.next() as u8),
