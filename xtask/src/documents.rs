@@ -71,6 +71,8 @@ fn cited(text: &str) -> BTreeSet<String> {
     let mut keys = BTreeSet::new();
     for part in text.split('[').skip(1) {
         let Some((key, _)) = part.split_once(']') else { continue };
+        // rustdoc wants brackets that are no links to be escaped.
+        let key = key.trim_end_matches('\\');
         let letters = key.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '-');
         let year = key.len() >= 5 && key.bytes().rev().take(2).all(|letter| letter.is_ascii_digit());
         let begins = key.starts_with(|letter: char| letter.is_ascii_uppercase());
