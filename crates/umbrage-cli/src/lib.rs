@@ -7,6 +7,7 @@ mod adapter;
 pub mod args;
 pub mod bench;
 pub mod compare;
+pub mod environment;
 pub mod failure;
 pub mod plan;
 mod print;

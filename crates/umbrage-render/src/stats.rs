@@ -1,5 +1,7 @@
 //! What a frame was made of and what it cost.
 
+use std::sync::Arc;
+
 use umbrage::ShadowPlan;
 
 use crate::timing::PassCounts;
@@ -31,7 +33,7 @@ pub struct SplitStats {
 #[non_exhaustive]
 pub struct LightStats {
     /// The plan that its maps were drawn by.
-    pub plan: ShadowPlan,
+    pub plan: Arc<ShadowPlan>,
     /// Nearest first; of a point light those of its first face, then those of the next.
     pub splits: Vec<SplitStats>,
 }
@@ -41,7 +43,7 @@ pub struct LightStats {
 #[non_exhaustive]
 pub struct FrameStats {
     /// The plan that the first light's maps were drawn by.
-    pub plan: ShadowPlan,
+    pub plan: Arc<ShadowPlan>,
     /// Milliseconds of the planner on the CPU.
     pub plan_ms: f64,
     /// Milliseconds from the beginning of the first map to the end of the last, on the GPU; 0 if none was drawn.

@@ -5,8 +5,9 @@ use bytemuck::{Pod, Zeroable};
 /// The most splits a [`Frame`] holds.
 pub const MAX_SPLITS: usize = 8;
 
-/// The most splits whose coordinates vertex shaders hand on: four `vec3f` beside what a shader hands on anyway, of the 15 that every device has.
-pub const MAX_PLACES: usize = 4;
+/// The most splits whose shadow coordinates vertex shaders hand on: four `vec3f` beside what a shader hands on anyway, of the 15 that
+/// every device has.
+pub const MAX_COORDINATES: usize = 4;
 
 /// How one map answers, in [`Frame::filter_kind`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

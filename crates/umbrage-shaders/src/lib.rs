@@ -97,17 +97,17 @@ pub struct Maps {
     pub frames: u32,
     /// Maps hold moments of depth, of one light.
     pub moments: Option<MomentMaps>,
-    /// Vertex shaders may make the coordinates of every split's map: `umbrage_places(position: vec3f) -> UmbragePlaces`, four members
-    /// `first` to `fourth`, each a `vec3f` to be interpolated; fragments ask with them,
-    /// `umbrage_shadow_at_places(places, position, normal, pixel)` or a footprint that went through `umbrage_at_places(footprint, places)`.
-    /// For one sun without warps, at most [`layout::MAX_PLACES`] splits; what is asked without places has those of its position.
-    pub places: bool,
+    /// Vertex shaders may make the shadow coordinates of every split: `umbrage_shadow_coordinates(position: vec3f)` returns an
+    /// `UmbrageShadowCoordinates` of four members `first` to `fourth`, each a `vec3f` to be interpolated; fragments ask
+    /// `umbrage_shadow_from_coordinates(query, coordinates)`. For one sun without warps and at most
+    /// [`layout::MAX_COORDINATES`] splits. `umbrage_shadow(query)` makes those of the query's position.
+    pub coordinates: bool,
 }
 
 impl Default for Maps {
     /// One light, read with everything that a device can have.
     fn default() -> Self {
-        Self { bound: Bound::Array, r32f: false, without_loads: false, frames: 1, moments: None, places: false }
+        Self { bound: Bound::Array, r32f: false, without_loads: false, frames: 1, moments: None, coordinates: false }
     }
 }
 
@@ -122,7 +122,7 @@ pub enum MomentMaps {
     ByHand,
 }
 
-/// How casters are copied into the maps of several splits in one pass; neither: each pass draws one split.
+/// How casters are instanced into the maps of several splits in one pass; neither: each pass draws one split.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Casters {
     /// By multiview, into layers.
@@ -132,8 +132,11 @@ pub struct Casters {
 }
 
 /// Text to put before a vertex shader that draws casters, and before everything else in its module. The vertex shader takes an
-/// `UmbrageCopy` and returns the `UmbrageCast` that `umbrage_cast(position: vec3f, copy: UmbrageCopy)` makes; `members` is WGSL for what
-/// else it has to return, for example `"@location(0) uv: vec2f,"`.
+/// `UmbrageInstance` and returns the `UmbrageCast` that `umbrage_cast(position: vec3f, instance: UmbrageInstance)` makes; `members` is
+/// WGSL for what else it has to return, for example `"@location(0) uv: vec2f,"`.
+///
+/// A vertex shader that takes `@builtin(instance_index)` itself calls `umbrage_cast_at(position, code: u32)`, which asks for no built-in;
+/// with [`Casters::views`] it is `umbrage_cast_at(position, code, view: u32)`, and `view` is the shader's own `@builtin(view_index)`.
 #[must_use]
 pub fn caster(group: u32, casters: Casters, members: &str) -> String {
     let Casters { views, tiles } = casters;
@@ -148,7 +151,7 @@ pub fn caster(group: u32, casters: Casters, members: &str) -> String {
     };
     format!(
         "{enable}const UMBRAGE_CASTER_GROUP = {group}u;\n\
-         struct UmbrageCopy {{\n    @builtin(instance_index) code: u32,\n{view}}}\n\
+         struct UmbrageInstance {{\n    @builtin(instance_index) code: u32,\n{view}}}\n\
          struct UmbrageCast {{\n    @builtin(position) position: vec4f,\n{distances}    {members}\n}}\n{root}\n"
     )
 }
@@ -169,8 +172,16 @@ pub fn contact(group: u32) -> String {
     format!("const UMBRAGE_CONTACT_GROUP = {group}u;\n{}\n", text!("contact"))
 }
 
-/// Text to put before a shader that asks what is lit: `fn umbrage_visibility(position: vec3f, normal: vec3f) -> f32`,
-/// `umbrage_shadow` and `umbrage_visibility_in_split`, and the same of one of several lights: `umbrage_visibility_of(light: u32, …)`.
+/// Text to put before a shader that asks what is lit.
+///
+/// | WGSL | what it answers |
+/// |---|---|
+/// | `umbrage_visibility(position: vec3f, normal: vec3f) -> f32` | how much of the first light reaches a surface, 0 to 1 |
+/// | `umbrage_shadow(query: UmbrageQuery) -> UmbrageShadow` | the same of any light, with the split that answered |
+/// | `umbrage_shadow_from_coordinates(query, coordinates) -> UmbrageShadow` | the same from what vertices made ([`Maps::coordinates`]) |
+///
+/// `umbrage_query(position, normal)` makes a query in any stage; `umbrage_fragment_query(position, normal, dx, dy, pixel)` makes one
+/// that knows its pixel, in uniform control flow. Set a query's `light`, `pixel` or `split` to ask something else.
 ///
 /// # Panics
 /// If there are fewer than 1 or more than [`layout::MAX_SPLITS`] separate maps.
@@ -178,13 +189,13 @@ pub fn contact(group: u32) -> String {
 pub fn receiver(group: u32, maps: Maps) -> String {
     let frames = maps.frames.max(1);
     let loads = maps.r32f || !maps.without_loads;
-    let receiver = match (maps.moments, loads, maps.places) {
+    let receiver = match (maps.moments, loads, maps.coordinates) {
         (Some(_), _, false) => text!("receiver_of_moments"),
-        (Some(_), _, true) => text!("receiver_at_places_of_moments"),
+        (Some(_), _, true) => text!("receiver_with_coordinates_of_moments"),
         (None, true, false) => text!("receiver"),
-        (None, true, true) => text!("receiver_at_places"),
+        (None, true, true) => text!("receiver_with_coordinates"),
         (None, false, false) => text!("receiver_without_loads"),
-        (None, false, true) => text!("receiver_at_places_without_loads"),
+        (None, false, true) => text!("receiver_with_coordinates_without_loads"),
     };
     let maps = match (maps.moments, maps.bound, maps.r32f, loads) {
         (Some(MomentMaps::Sampled), ..) => text!("moments"),

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use umbrage_shaders::layout::{BiasKind, FilterKind, TransitionKind};
+use umbrage_shaders::twin;
 
 use crate::{Error, Result};
 
@@ -86,15 +87,11 @@ pub enum Filter {
     Msm,
 }
 
-/// Texels that a disc of no given width reaches: its radius of 3 and a tap's own.
-const DISC_REACH: f64 = 4.0;
+/// Texels that a disc of no given width reaches: its radius and a tap's own.
+const DISC_REACH: f64 = twin::DISC_RADIUS as f64 + 1.0;
 
 /// Texels that the narrowest disc reaches: that of one tap, and the tap's own.
 const LEAST_REACH: f64 = 2.0;
-
-/// Metres from a surface within which casters give it a penumbra as wide as the sun asks for; see `MOST_BLOCKER_M` in
-/// shaders/lib/filter.wesl.
-const MOST_BLOCKER_M: f64 = 200.0;
 
 impl Filter {
     /// How far the filter reaches from the sample at most, in texels: what `umbrage::ShadowSettings::filter_radius` wants.
@@ -121,9 +118,10 @@ impl Filter {
         match (self, softness.width_m) {
             (Self::Disc, None) => (DISC_REACH, None),
             (Self::Disc, Some(width)) => (self.radius_texels(), Some(0.5 * f64::from(width))),
-            (Self::Pcss, _) => {
-                (self.radius_texels(), Some((0.5 * f64::from(softness.sun_angle)).tan() * MOST_BLOCKER_M))
-            }
+            (Self::Pcss, _) => (
+                self.radius_texels(),
+                Some((0.5 * f64::from(softness.sun_angle)).tan() * f64::from(twin::MOST_BLOCKER_M)),
+            ),
             _ => (self.radius_texels(), None),
         }
     }
@@ -236,7 +234,7 @@ pub struct Softness {
     /// Angle in radians across the sun, for [`Filter::Pcss`]: 0 to a right angle. The real one is 0.0093 (0.53°) wide.
     pub sun_angle: f32,
     /// Whether the pattern of a disc turns from pixel to pixel, which makes noise out of bands. Needs
-    /// `umbrage_shadow_at_pixel`.
+    /// a query that knows its pixel (`umbrage_fragment_query`).
     pub turned: bool,
     /// Share of light that filters of moments take for a leak, 0 to 0.9: what is less is shadow. More hides leaks and widens shadows.
     pub bleeding: f32,
@@ -286,7 +284,8 @@ pub enum Transition {
     /// Both are asked and mixed.
     #[default]
     Blend,
-    /// Each pixel asks one of both, chosen by noise: half the samples. Needs `umbrage_shadow_at_pixel`.
+    /// Each pixel asks one of both, chosen by noise: half the samples. Needs a query that knows its
+    /// pixel (`umbrage_fragment_query`).
     Dither,
     /// Each pixel asks the split of its view depth.
     Hard,

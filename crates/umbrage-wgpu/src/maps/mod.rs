@@ -190,8 +190,8 @@ impl ShadowMaps {
     /// [`ShadowMaps::caster_bind_group`]. It stands before everything else in its module. The vertex shader is the same for every path:
     ///
     /// ```wgsl
-    /// @vertex fn vertex(@location(0) position: vec3f, copy: UmbrageCopy) -> UmbrageCast {
-    ///     return umbrage_cast(position, copy);
+    /// @vertex fn vertex(@location(0) position: vec3f, instance: UmbrageInstance) -> UmbrageCast {
+    ///     return umbrage_cast(position, instance);
     /// }
     /// ```
     #[must_use]
@@ -220,17 +220,18 @@ impl ShadowMaps {
         umbrage_shaders::receiver(group, self.receiver_maps())
     }
 
-    /// [`ShadowMaps::receiver_wgsl`] for apps whose vertex shaders make the coordinates of every split's map (`umbrage_places` and `umbrage_shadow_at_places`, see `umbrage_shaders::Maps::places`). Plans have to be of a
-    /// sun, without warps: others have coordinates that cannot be interpolated.
+    /// [`ShadowMaps::receiver_wgsl`] for apps whose vertex shaders make the shadow coordinates of every split (`umbrage_shadow_coordinates` and
+    /// `umbrage_shadow_from_coordinates`, see `umbrage_shaders::Maps::coordinates`). Plans have to be of a sun, without warps: others have
+    /// coordinates that cannot be interpolated.
     ///
     /// # Errors
-    /// [`Error::ConflictingOptions`] with more than [`crate::MAX_PLACES`] splits, with several lights and with
+    /// [`Error::ConflictingOptions`] with more than [`crate::MAX_COORDINATES`] splits, with several lights and with
     /// [`crate::LightSlot::Cube`].
-    pub fn receiver_wgsl_at_places(&self, group: u32) -> Result<String> {
+    pub fn receiver_wgsl_with_coordinates(&self, group: u32) -> Result<String> {
         let conflict =
             |second, reason| Err(Error::ConflictingOptions { first: "coordinates split".to_owned(), second, reason });
         let lights = &self.options.lights;
-        if self.options.map_sizes.len() > umbrage_shaders::layout::MAX_PLACES {
+        if self.options.map_sizes.len() > umbrage_shaders::layout::MAX_COORDINATES {
             return conflict(
                 format!("{} splits", self.options.map_sizes.len()),
                 "vertices hand on the coordinates of at most 4 splits; use fewer splits or coordinates world",
@@ -242,7 +243,7 @@ impl ShadowMaps {
                 "vertices hand on the coordinates of one sun; use one sun or coordinates world",
             );
         }
-        Ok(umbrage_shaders::receiver(group, Maps { places: true, ..self.receiver_maps() }))
+        Ok(umbrage_shaders::receiver(group, Maps { coordinates: true, ..self.receiver_maps() }))
     }
 
     /// How receivers read these maps.
@@ -258,7 +259,7 @@ impl ShadowMaps {
             without_loads: !self.depth_loads,
             frames: lights::frame_count(&self.options) as u32,
             moments: self.moments.as_ref().map(Moments::maps),
-            places: false,
+            coordinates: false,
         }
     }
 

@@ -2,8 +2,8 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-use crate::planner::Placed;
-use crate::volume::{Lies, Slice, SweptVolume};
+use crate::bounds::Placed;
+use crate::geometry::volume::{Lies, Slice, SweptVolume};
 use crate::{Fit, Split, View, Warp, WarpTarget};
 
 /// Share of the depth range that a warped map keeps free before its first caster and behind its last receiver: for rounding on the

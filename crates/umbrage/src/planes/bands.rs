@@ -1,6 +1,6 @@
 //! What the borders of splits measure: view depth, or distance from the eye.
 
-use crate::{Error, Projection, RangeFit, Result, Selection, ShadowSettings, View};
+use crate::{Error, Projection, Result, View};
 
 /// The shape of the borders between splits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -11,8 +11,8 @@ pub enum Bands {
     /// Spheres around the eye: a point's split follows from its distance to the eye, so that a camera that only turns changes no point's
     /// split. All depths of the settings and the plan that planar bands take for view depths are then distances, except for
     /// [`crate::Split::coverage`]. Maps are as much larger as the corners of the view are nearer in view depth than in distance. Needs a
-    /// perspective camera and a directional light; excludes [`RangeFit::Visible`] (which follows the line of sight) and
-    /// [`Selection::Map`] (which has no bands).
+    /// perspective camera and a directional light; excludes [`crate::RangeFit::Visible`] (which follows the line of sight) and
+    /// [`crate::Selection::Map`] (which has no bands).
     Radial,
 }
 
@@ -25,30 +25,6 @@ impl Bands {
             Self::Planar => 1.0,
             Self::Radial => 1.0 / f.left.abs().max(f.right.abs()).hypot(f.bottom.abs().max(f.top.abs())).hypot(1.0),
         }
-    }
-
-    /// What these bands cannot be combined with, whatever the camera.
-    pub(crate) fn check(settings: &ShadowSettings) -> Result<()> {
-        let excludes = |second, reason: &str| {
-            Err(Error::ConflictingSettings { first: "bands", second, reason: reason.to_owned() })
-        };
-        if settings.bands == Self::Planar {
-            return Ok(());
-        }
-        if settings.range_fit == RangeFit::Visible {
-            return excludes(
-                "range_fit",
-                "radial bands stand still while the camera turns and a visible range does not; \
-                 set range_fit to Camera, or bands to Planar",
-            );
-        }
-        if settings.selection == Selection::Map {
-            return excludes(
-                "selection",
-                "maps that are chosen by what they contain have no bands; set selection to Depth, or bands to Planar",
-            );
-        }
-        Ok(())
     }
 
     /// Radial bands need an eye.

@@ -6,8 +6,8 @@
 
 use glam::{DVec2, DVec3};
 
+use super::volume::{Lies, Slice};
 use crate::Aabb;
-use crate::volume::{Lies, Slice};
 
 /// Cells along each edge of the grid.
 const CELLS: usize = 64;
@@ -23,7 +23,7 @@ const LEAST_RISE: f64 = 0.1;
 ///
 /// The grid lies in a plane square to a world axis and is looked at along the light, so that a box that is flat along this axis,
 /// a piece of ground, has the same height everywhere: *height* is the coordinate along that axis, counted towards the light.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct ReceiverMask {
     /// World axes: the one of heights and those of the grid.
     axes: [usize; 3],

@@ -2,7 +2,12 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::Split;
+use super::casters::{InView, first_depth};
+use super::frame::{Frame, Sun};
+use crate::bounds::Placed;
+use crate::coverage::CoverageVolume;
+use crate::geometry::volume::lies_below;
+use crate::{ShadowPlan, Split};
 
 /// Texels beyond the filter's reach by which a caster may be off, for the rounding of a sample's place.
 const ROUNDING_TEXELS: f64 = 1.0;
@@ -15,17 +20,17 @@ fn rectangle(split: &Split, center: DVec3, half: DVec3) -> (DVec2, DVec2) {
 }
 
 /// Whether a box can leave a mark on the map.
-pub(crate) fn reaches(split: &Split, center: DVec3, half: DVec3) -> bool {
+fn reaches(split: &Split, center: DVec3, half: DVec3) -> bool {
     let (lo, hi) = rectangle(split, center, half);
     lo.cmple(DVec2::splat(f64::from(split.size) + ROUNDING_TEXELS)).all()
         && hi.cmpge(DVec2::splat(-ROUNDING_TEXELS)).all()
 }
 
 /// What the maps before one take away from it.
-pub(crate) struct Taken<'a> {
+struct Taken<'a> {
     earlier: &'a [Split],
     /// Texels that a filter reaches around a sample of the map that is planned, rounding included.
-    pub margin: f64,
+    margin: f64,
     /// Share of a map's half edge over which it asks the next one, too.
     blend: f64,
     /// The same margin in the map that is planned, metres.
@@ -33,14 +38,14 @@ pub(crate) struct Taken<'a> {
 }
 
 impl<'a> Taken<'a> {
-    pub fn new(split: &Split, earlier: &'a [Split], blend: f64) -> Self {
+    fn new(split: &Split, earlier: &'a [Split], blend: f64) -> Self {
         let margin = split.filter_reach + ROUNDING_TEXELS;
         Self { earlier, margin, blend, reach_m: margin * split.texel_m.max_element() }
     }
 
     /// Whether all points that a box can shade belong to one earlier map, filter and blend band included: what shades them lies at
     /// the same place of that map.
-    pub fn holds(&self, center: DVec3, half: DVec3) -> bool {
+    fn holds(&self, center: DVec3, half: DVec3) -> bool {
         self.earlier.iter().filter(|split| !split.casters.is_empty()).any(|split| {
             let (lo, hi) = rectangle(split, center, half);
             let size = f64::from(split.size);
@@ -51,4 +56,38 @@ impl<'a> Taken<'a> {
             lo.cmpge(DVec2::splat(room)).all() && hi.cmple(DVec2::splat(size - room)).all()
         })
     }
+}
+
+/// The split with a list and a depth range for everything that its map covers and no earlier one takes, and the depth of its
+/// first caster. `shown` and its depths are of all that any map may be asked about.
+pub(super) fn serving_all_it_covers(
+    frame: &Frame<'_>,
+    sun: &Sun<'_>,
+    (mut split, mut first): (Split, f64),
+    shown: (&CoverageVolume, (f64, f64)),
+    in_view: &InView,
+    plan: &mut ShadowPlan,
+) -> (Split, f64) {
+    let direction = sun.direction;
+    plan.caster_indices.truncate(split.casters.start);
+    let taken = Taken::new(&split, &plan.splits, frame.settings.blend);
+    let margin = taken.margin * split.texel_m.max_element();
+    let (volume, depths) = shown;
+    for &index in &in_view.casters {
+        let placed @ Placed { center, half } = frame.casters[index as usize];
+        let can_shade = volume.receivers.as_ref().is_none_or(|(region, bounds)| {
+            !lies_below(center, half, bounds, direction, margin)
+                && region.can_be_shadowed_by(&sun.fan, center, half, margin)
+        });
+        if can_shade && reaches(&split, center, half) && !taken.holds(center, half) {
+            plan.caster_indices.push(index);
+            first = first.min(first_depth(&placed, direction));
+        }
+    }
+    split.casters.end = plan.caster_indices.len();
+    split.depth_near = split.depth_near.min(depths.0);
+    split.depth_far = split.depth_far.max(depths.1);
+    // Any of it may be looked up in this map.
+    split.receiver_depths = (split.receiver_depths.0.min(depths.0), split.receiver_depths.1.max(depths.1));
+    (split, first)
 }

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use crate::planner::Placed;
-use crate::region::{DIRECTIONS, Fan, Region};
-use crate::volume::{Lies, Slice, lies_below};
+use crate::bounds::Placed;
+use crate::geometry::region::{DIRECTIONS, Fan, Region};
+use crate::geometry::volume::{Lies, Slice, lies_below};
 use crate::{Aabb, Projection, View};
 
 /// What the planner has at hand when planes are placed.

@@ -7,11 +7,12 @@
 
 use glam::DVec2;
 
-use crate::cells::{Cells, Sight};
-use crate::range::{Range, visible_range};
-use crate::region::{Fan, Region};
-use crate::split::{coverage, split_planes};
-use crate::stable::slice_sphere;
+use super::cells::{Cells, Sight};
+use super::scheme::{coverage, split_planes};
+use super::visible::visible_range;
+use crate::geometry::region::{Fan, Region};
+use crate::geometry::sphere::slice_sphere;
+use crate::held::ends::Range;
 use crate::{Error, ExtentSteps, Fit, Frustum, Projection, Result, ShadowSettings, SplitScheme, Stabilize, View};
 
 /// Candidates between the ends, besides those of the fixed schemes and those that are held.
@@ -28,6 +29,8 @@ const WORTH_MOVING: f64 = 2.0 / 3.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Maps<'a> {
     pub settings: &'a ShadowSettings,
+    /// Pixels across the picture.
+    pub image_size: [u32; 2],
     /// Texels that each map keeps free around what it serves.
     pub margin: f64,
     /// Across everything that is shadowed, metres: what the source's steps are fractions of.
@@ -162,7 +165,7 @@ impl Search {
     }
 }
 
-/// Finds planes frame after frame, and holds on to them where maps have to stand still.
+/// Finds planes; keeps its buffers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Placement {
     candidates: Vec<f64>,
@@ -174,72 +177,66 @@ pub(crate) struct Placement {
     search: Search,
     best: Vec<usize>,
     scheme: Vec<f64>,
-    /// The inner planes of the last frame.
-    held: Vec<f64>,
 }
 
 impl Placement {
-    /// Writes the `m + 1` planes of a range into `planes`, the last at its inner far end. Says whether they are others than before.
+    /// Writes the `m + 1` planes of a range into `planes`, the last at its inner far end: the inner ones that are held, if
+    /// there are any and none promise an error much smaller, or those that promise the least.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] naming `range` if it is too short to be divided.
-    pub fn place(&mut self, sight: &Sight, maps: &Maps, range: Range, planes: &mut Vec<f64>) -> Result<bool> {
+    pub fn place(
+        &mut self,
+        sight: &Sight,
+        maps: &Maps,
+        range: Range,
+        held: Option<&[f64]>,
+        planes: &mut Vec<f64>,
+    ) -> Result<()> {
         let (near, far) = (range.near, range.inner_far);
-        let settings = maps.settings;
-        let m = settings.splits();
+        let m = maps.settings.splits();
         split_planes(&SplitScheme::Logarithmic, near, far, m, planes)?;
         if m == 1 {
-            return Ok(false);
+            return Ok(());
         }
-        let mut holds = settings.stabilize != Stabilize::None
-            && self.held.len() == m - 1
-            && self.held.first() > Some(&near)
-            && self.held.last() < Some(&far);
-        self.choose_candidates(sight, near, far, m)?;
+        let inside = |inner: &&[f64]| inner.first() > Some(&near) && inner.last() < Some(&far);
+        self.choose_candidates(sight, (near, far), m, held.unwrap_or_default())?;
         self.cells.gather(sight, &self.candidates);
         self.cells.weigh(sight.view.frustum().projection, &self.candidates, &mut self.weights);
         if self.weights.iter().sum::<f64>() <= 0.0 {
             // Nothing throws a shadow that is seen: planes that are held stay, others stand where they do for an even scene.
-            return Ok(self.hold(planes, holds));
+            if let Some(inner) = held.filter(inside) {
+                planes[1..m].copy_from_slice(inner);
+            }
+            return Ok(());
         }
         self.measure(sight, maps, range.far);
         self.search.cheapest(&self.costs, &mut self.best);
-        if !(holds && self.held_is_good_enough()) {
-            holds = false;
-            for (plane, &index) in planes[1..m].iter_mut().zip(&self.best[1..m]) {
-                *plane = self.candidates[index];
+        match held.filter(inside) {
+            Some(inner) if self.is_good_enough(inner) => planes[1..m].copy_from_slice(inner),
+            _ => {
+                for (plane, &index) in planes[1..m].iter_mut().zip(&self.best[1..m]) {
+                    *plane = self.candidates[index];
+                }
             }
         }
-        Ok(self.hold(planes, holds))
+        Ok(())
     }
 
-    /// The planes of the last frame, or else those that are given and held from now on. Says whether they are others than before.
-    fn hold(&mut self, planes: &mut [f64], keep: bool) -> bool {
-        let last = planes.len() - 1;
-        let inner = &mut planes[1..last];
-        if keep {
-            inner.copy_from_slice(&self.held);
-        }
-        let moved = inner != self.held;
-        self.held.clear();
-        self.held.extend_from_slice(inner);
-        moved
-    }
-
-    fn held_is_good_enough(&self) -> bool {
+    fn is_good_enough(&self, held: &[f64]) -> bool {
         let index = |depth: &f64| self.candidates.partition_point(|candidate| candidate < depth);
         let mut planes = [0; crate::MAX_SPLITS + 1];
-        let m = self.held.len() + 1;
-        for (plane, held) in planes[1..m].iter_mut().zip(&self.held) {
+        let m = held.len() + 1;
+        for (plane, held) in planes[1..m].iter_mut().zip(held) {
             *plane = index(held);
         }
         planes[m] = self.costs.len - 1;
         self.costs.total(&self.best) >= WORTH_MOVING * self.costs.total(&planes[..=m])
     }
 
-    /// Rising depths from near to far: evenly spaced on the picture over the depths that show anything, with the planes of the fixed schemes
-    /// and those that are held among them.
-    fn choose_candidates(&mut self, sight: &Sight, near: f64, far: f64, m: usize) -> Result<()> {
+    /// Rising depths from near to far: evenly spaced on the picture over the depths that show anything, with the planes of
+    /// the fixed schemes and those that are held among them.
+    fn choose_candidates(&mut self, sight: &Sight, (near, far): (f64, f64), m: usize, held: &[f64]) -> Result<()> {
         let scheme = match sight.view.frustum().projection {
             Projection::Perspective => SplitScheme::Logarithmic,
             Projection::Orthographic => SplitScheme::Uniform,
@@ -249,12 +246,13 @@ impl Placement {
             .map(|(first, last)| (first.max(near), last.min(far)))
             .filter(|(first, last)| *last > LEAST_RATIO * first)
             .unwrap_or((near, far));
-        let Self { candidates, scheme: planes, held, .. } = self;
+        let Self { candidates, scheme: planes, .. } = self;
         candidates.clear();
         candidates.extend([near, far]);
         let fixed = [SplitScheme::Logarithmic, SplitScheme::default()].map(|scheme| (scheme, near, far, m));
         for (scheme, from, to, splits) in [(scheme, first, last, CANDIDATES)].into_iter().chain(fixed) {
-            // A range with room for the splits may be too short for all the candidates: those that it has no room for are left out.
+            // A range with room for the splits may be too short for all the candidates: those that it has no room for are
+            // left out.
             if split_planes(&scheme, from, to, splits, planes).is_ok() {
                 candidates.extend(planes.iter().filter(|&&plane| plane > near && plane < far));
             }
@@ -292,7 +290,7 @@ impl Placement {
         costs.begins.resize(n * n, (0, 0.0));
         for i in 0..n {
             for j in i + 1..n {
-                costs.begins[i * n + j] = begin(sight.view, settings, candidates, i, j);
+                costs.begins[i * n + j] = begin(sight.view, maps, candidates, i, j);
             }
         }
         // The last slice may be stretched beyond the depths that the planes are placed for.
@@ -354,10 +352,10 @@ fn face(view: &View, fan: &Fan, depth: f64) -> Region {
 }
 
 /// Where the map of a slice from candidate `j` begins, if the slice before begins at `i`.
-fn begin(view: &View, settings: &ShadowSettings, candidates: &[f64], i: usize, j: usize) -> (usize, f64) {
+fn begin(view: &View, maps: &Maps, candidates: &[f64], i: usize, j: usize) -> (usize, f64) {
     // The far plane has no say in where a slice begins.
     let planes = [candidates[i], candidates[j], f64::INFINITY];
-    let (from, _) = coverage(view, &planes, 1, settings.blend, settings.image_size, settings.bands);
+    let (from, _) = coverage(view, &planes, 1, maps.settings.blend, maps.image_size, maps.settings.bands);
     let after = candidates.partition_point(|&candidate| candidate <= from);
     match after.checked_sub(1) {
         None => (0, 0.0),

@@ -3,10 +3,13 @@
 use glam::DVec2;
 
 use crate::ExtentSteps;
-use crate::region::{DIRECTIONS, Region};
+use crate::geometry::region::{DIRECTIONS, Region};
 
 /// Relative room for rounding, so that an extent that keeps its value while the camera walks keeps its step as well.
 const ROUNDING: f64 = 1e-9;
+
+/// By how much the edges of a rectangle that has recovered may exceed those of the best one, in the mean.
+const RECOVERED: f64 = 1.05;
 
 /// The orientation and the extent of a map that is stabilised approximately.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,13 +57,16 @@ impl HeldRectangle {
     ///
     /// Geometric steps: a rectangle grows where it has to and is kept while it is at most one step larger along each edge (or two
     /// along one) than the one that would be chosen anew, which is the smallest, in whole steps, of those that stand on the
-    /// fan's directions. The source's steps have neither orientation nor memory.
-    pub fn hold(&mut self, target: &Region, steps: ExtentSteps, whole: f64) -> Rectangle {
+    /// fan's directions. One that `refits` has recovered, and is kept only while it is hardly larger. The source's steps have
+    /// neither orientation nor memory.
+    pub fn hold(&mut self, target: &Region, steps: ExtentSteps, whole: f64, refits: bool) -> Rectangle {
         let rectangle = match steps {
             ExtentSteps::PerDoubling(count) => {
                 let steps = f64::from(count);
                 let best = least(target, steps);
-                let enough = best.area() * 2f64.powf(2.0 / steps) * (1.0 + ROUNDING);
+                let excess = 2f64.powf(2.0 / steps);
+                let excess = if refits { excess.min(RECOVERED * RECOVERED) } else { excess };
+                let enough = best.area() * excess * (1.0 + ROUNDING);
                 let grown = self.held.map(|held| held.grown_to(target, steps));
                 grown.filter(|grown| grown.area() <= enough).unwrap_or(best)
             }
@@ -105,7 +111,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::region::Fan;
+    use crate::geometry::region::Fan;
 
     /// A box of `w` by `h` metres seen from above, turned by `angle`.
     fn turned(w: f64, h: f64, angle: f64) -> Region {
@@ -125,7 +131,7 @@ mod tests {
     #[test]
     fn an_extent_is_rounded_up_to_a_power_of_the_step() {
         let mut held = HeldRectangle::default();
-        let rectangle = held.hold(&turned(100.0, 40.0, 0.0), STEPS, 0.0);
+        let rectangle = held.hold(&turned(100.0, 40.0, 0.0), STEPS, 0.0, false);
         assert_eq!(rectangle.direction, 0);
         // 2^(54/8) = 107.6 is the first above 100, 2^(43/8) = 41.5 the first above 40.
         assert!((rectangle.extent - DVec2::new(2f64.powf(54.0 / 8.0), 2f64.powf(43.0 / 8.0))).length() < 1e-9);
@@ -134,14 +140,14 @@ mod tests {
     #[test]
     fn one_step_of_hysteresis_in_either_direction() {
         let mut held = HeldRectangle::default();
-        let first = held.hold(&turned(100.0, 40.0, 0.0), STEPS, 0.0);
+        let first = held.hold(&turned(100.0, 40.0, 0.0), STEPS, 0.0, false);
         for (w, h) in [(107.0, 41.0), (100.0 / STEP, 40.0), (107.0, 41.4 / STEP), (96.0, 37.0), (100.0, 40.0)] {
-            assert_eq!(held.hold(&turned(w, h, 0.0), STEPS, 0.0), first, "{w} × {h}");
+            assert_eq!(held.hold(&turned(w, h, 0.0), STEPS, 0.0, false), first, "{w} × {h}");
         }
-        let larger = held.hold(&turned(108.0, 40.0, 0.0), STEPS, 0.0);
+        let larger = held.hold(&turned(108.0, 40.0, 0.0), STEPS, 0.0, false);
         assert!((larger.extent.x / first.extent.x - STEP).abs() < 1e-9, "one step up");
-        assert_eq!(held.hold(&turned(100.0, 40.0, 0.0), STEPS, 0.0), larger, "and not down again at once");
-        let smaller = held.hold(&turned(60.0, 40.0, 0.0), STEPS, 0.0);
+        assert_eq!(held.hold(&turned(100.0, 40.0, 0.0), STEPS, 0.0, false), larger, "and not down again at once");
+        let smaller = held.hold(&turned(60.0, 40.0, 0.0), STEPS, 0.0, false);
         assert!(smaller.extent.x < larger.extent.x / STEP.powi(2));
     }
 
@@ -151,7 +157,7 @@ mod tests {
         let mut before = None;
         for k in 0..524 {
             let target = turned(120.0, 70.0, 0.003 * f64::from(k));
-            let rectangle = held.hold(&target, STEPS, 0.0);
+            let rectangle = held.hold(&target, STEPS, 0.0, false);
             assert!(needed(&target, rectangle.direction).cmple(rectangle.extent).all());
             changes += i32::from(before.is_some_and(|before| before != rectangle));
             area += rectangle.area() / (120.0 * 70.0) / 524.0;
@@ -165,7 +171,9 @@ mod tests {
     #[test]
     fn the_source_counts_levels_of_the_whole_frustum() {
         let mut held = HeldRectangle::default();
-        let of = |held: &mut HeldRectangle, w| held.hold(&turned(w, 40.0, 0.0), ExtentSteps::Levels(64), 640.0).extent;
+        let of = |held: &mut HeldRectangle, w| {
+            held.hold(&turned(w, 40.0, 0.0), ExtentSteps::Levels(64), 640.0, false).extent
+        };
         // s = 640 / 101, 64 / s = 10.1, s_q = 64 / 11: 110 m.
         assert!((of(&mut held, 101.0) - DVec2::new(110.0, 40.0)).length() < 1e-6);
         assert!((of(&mut held, 100.0) - DVec2::new(100.0, 40.0)).length() < 1e-6, "no hysteresis");
@@ -178,7 +186,7 @@ mod tests {
         for k in 0..400 {
             let wave = 1.0 + 0.3 * (f64::from(k) * 0.37).sin();
             let target = turned(100.0 * wave, 40.0 / wave, f64::from(k) * 0.01);
-            let edge = held.hold(&target, STEPS, 0.0).extent.max_element();
+            let edge = held.hold(&target, STEPS, 0.0, false).extent.max_element();
             assert!(edge <= longest_edge(STEPS, target.widest(), 0.0), "{edge}");
         }
     }
