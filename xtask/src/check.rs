@@ -172,7 +172,7 @@ fn check_wasm() -> Result<()> {
 
 /// Options that choose crates.
 fn of(names: &[&'static str]) -> Vec<&'static str> {
-    names.iter().flat_map(|name| ["--package", name]).collect()
+    names.iter().flat_map(|&name| ["--package", name]).collect()
 }
 
 fn has_target(target: &str) -> bool {

@@ -308,7 +308,7 @@ pub enum Derivatives {
     /// From how the position changes from pixel to pixel, which no split's border interrupts, by each pixel's own split.
     #[default]
     Analytic,
-    /// All four pixels of a quad use the split of the farthest, so that differences between them mean something (source 002's way,
+    /// All four pixels of a quad use the split of the farthest, so that differences between them mean something (\[PSVSM07\]'s way,
     /// right for any four splits).
     Quad,
 }

@@ -413,7 +413,7 @@ mod tests {
         }
     }
 
-    /// Source 003, Listings 4.1.4 and 4.1.5: map coordinates that a vertex shader hands on, and those that a fragment makes of an
+    /// \[PCSM\], Listings 4.1.4 and 4.1.5: map coordinates that a vertex shader hands on, and those that a fragment makes of an
     /// interpolated position. The source calls the second wrong; perspective-correct interpolation is exact for both, as both are affine
     /// in the position, and in `f32` they differ by rounding alone.
     #[test]
