@@ -1,5 +1,7 @@
 //! What a frame was made of and what it cost.
 
+use std::sync::Arc;
+
 use umbrage::ShadowPlan;
 
 use crate::timing::PassCounts;
@@ -29,7 +31,7 @@ pub struct SplitStats {
 #[derive(Clone, Debug)]
 pub struct LightStats {
     /// The plan that its maps were drawn by.
-    pub plan: ShadowPlan,
+    pub plan: Arc<ShadowPlan>,
     /// Nearest first; of a point light those of its first face, then those of the next.
     pub splits: Vec<SplitStats>,
 }
@@ -38,7 +40,7 @@ pub struct LightStats {
 #[derive(Clone, Debug)]
 pub struct FrameStats {
     /// The plan that the first light's maps were drawn by.
-    pub plan: ShadowPlan,
+    pub plan: Arc<ShadowPlan>,
     /// Milliseconds of the planner on the CPU.
     pub plan_ms: f64,
     /// Milliseconds from the beginning of the first map to the end of the last, on the GPU; 0 if none was drawn.

@@ -23,7 +23,7 @@ pub struct Bias {
 }
 
 /// Steepest slope (tangent of the angle between light and normal) that the receiver's plane is followed to: n·l = 0.02. Measured
-/// with the WGSL's constants (`docs/measurements.md`); lower, surfaces that the light grazes show stripes.
+/// with the WGSL's constants (`docs/notes/bias.md`); lower, surfaces that the light grazes show stripes.
 pub const STEEPEST: f64 = 50.0;
 
 /// [`Bias::constant_m`] in texels' longer edges, [`Bias::corner_per_texel`] in their shorter edges at least and at most, and the angle in radians by

@@ -46,7 +46,7 @@ pub enum RangeFit {
     Camera,
     /// The view depths between which the view shows receivers: their boxes clipped to the frustum, as an empty foreground or a lens
     /// with a tiny near plane would spend splits on air. With [`Stabilize::Exact`] both ends move in geometric steps of 19 %, with
-    /// hysteresis, and maps stand still in between. A logarithmic scheme goes best with it (`docs/measurements.md`).
+    /// hysteresis, and maps stand still in between. A logarithmic scheme goes best with it (`docs/notes/fitted-planes.md`).
     Visible,
 }
 
@@ -270,7 +270,7 @@ impl ShadowSettings {
             }
         }
         self.check_warps()?;
-        Bands::check(self)?;
+        self.check_bands()?;
         match &self.scheme {
             SplitScheme::Uniform | SplitScheme::Logarithmic | SplitScheme::Fitted => {}
             SplitScheme::Practical { lambda, delta } => {
@@ -296,6 +296,30 @@ impl ShadowSettings {
                     return Err(Error::setting("planes", format!("{planes:?} do not rise strictly")));
                 }
             }
+        }
+        Ok(())
+    }
+
+    /// What radial bands cannot be combined with, whatever the camera.
+    fn check_bands(&self) -> Result<()> {
+        let excludes = |second, reason: &str| {
+            Err(Error::ConflictingSettings { first: "bands", second, reason: reason.to_owned() })
+        };
+        if self.bands == Bands::Planar {
+            return Ok(());
+        }
+        if self.range_fit == RangeFit::Visible {
+            return excludes(
+                "range_fit",
+                "radial bands stand still while the camera turns and a visible range does not; \
+                 set range_fit to Camera, or bands to Planar",
+            );
+        }
+        if self.selection == Selection::Map {
+            return excludes(
+                "selection",
+                "maps that are chosen by what they contain have no bands; set selection to Depth, or bands to Planar",
+            );
         }
         Ok(())
     }

@@ -496,6 +496,7 @@ pub fn plan(light: DVec3, center: DVec3, sizes: &[u32], planes: &[f64], widths: 
         blend: 0.0,
         caster_indices: vec![0; sizes.len()],
         split_range: vec![Some((0, sizes.len() as u8 - 1))],
+        ..ShadowPlan::default()
     }
 }
 

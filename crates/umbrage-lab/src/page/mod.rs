@@ -1,0 +1,5 @@
+//! Report pages ([`html`]) and the charts on them ([`plot`]).
+
+mod escape;
+pub mod html;
+pub mod plot;
