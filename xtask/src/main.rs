@@ -5,7 +5,6 @@ mod check;
 mod demo;
 #[cfg(test)]
 mod documents;
-mod page;
 mod results;
 mod run;
 
@@ -33,7 +32,7 @@ Usage: cargo xtask COMMAND
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let result = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["demo"] => demo::run(),
+        ["demo"] => demo::run_demo(),
         ["test"] => check::test(),
         ["test", "--quick"] => check::quick(),
         ["package"] => check::package(),
