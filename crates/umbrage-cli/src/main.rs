@@ -3,7 +3,7 @@
 use std::{panic, process::ExitCode};
 
 use clap::Parser;
-use umbrage_cli::args::Args;
+use umbrage_cli::{args::Args, failure::exit_code};
 
 /// A defect of ours: 1, as for anything that is not the user's fault.
 const DEFECT: u8 = 1;
@@ -17,11 +17,13 @@ fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(DEFECT));
         }
     };
+    umbrage_cli::environment::restart_with_runtime_folder();
+    umbrage_lab::output::clean_up_on_signals();
     match panic::catch_unwind(|| umbrage_cli::run(&args)) {
         Ok(Ok(())) => ExitCode::SUCCESS,
         Ok(Err(failure)) => {
             eprintln!("umbrage: {failure}");
-            ExitCode::from(failure.exit_code())
+            ExitCode::from(exit_code(&failure))
         }
         Err(_) => ExitCode::from(DEFECT),
     }

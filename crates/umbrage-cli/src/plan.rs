@@ -1,20 +1,47 @@
 //! `umbrage plan`: what the planner answers, as JSON, without a GPU.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
 use serde::Serialize;
 use umbrage::{Aabb, ExtentSteps, Planner, ShadowPlan, Split, Stabilize};
-
-use crate::{
-    args::{DepthConvention, PlanArgs},
+use umbrage_lab::{
     failure::Result,
     output::{self, Staged, numbered_file},
     report::{ShotReport, to_json},
-    scene_job::SceneJob,
-    shadow_job::{ShadowJob, typed_name, wgpu_filter},
-    stage::{Shot, Stage},
-    worlds::print,
+    scene_request::SceneRequest,
+    scene_setup::{SceneSetup, Shot},
+    technique::{ShadowArgs, ShadowJob, args::wgpu_filter, typed_name},
 };
+
+use crate::{print::print, scene_args::SceneArgs};
+
+/// `umbrage plan`.
+#[derive(Debug, clap::Args)]
+pub struct PlanArgs {
+    /// Scene, camera, light and time.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Shadows.
+    #[command(flatten)]
+    pub shadows: ShadowArgs,
+    /// Depth of the matrices' normalised device coordinates
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub depth_convention: DepthConvention,
+    /// Write the plan here (JSON) instead of printing it; with --frames, NAME.json becomes NAME.0000.json and so on
+    #[arg(short = 'o', long = "output", value_name = "JSON", help_heading = "Output")]
+    pub output: Option<PathBuf>,
+}
+
+/// `--depth-convention`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum DepthConvention {
+    /// wgpu, Direct3D, Metal, Vulkan: NDC z in [0,1], v down
+    #[default]
+    ZeroToOne,
+    /// OpenGL: NDC z in [−1,1], v up
+    MinusOneToOne,
+}
 
 /// The plan of one frame.
 #[derive(Debug, Serialize)]
@@ -91,23 +118,23 @@ struct Caster {
 
 /// Runs the subcommand.
 pub fn run(args: &PlanArgs) -> Result<()> {
-    let job = SceneJob::new(&args.scene)?;
-    let shadows = ShadowJob::new(&args.shadows, job.size)?;
+    let request = args.scene.request()?;
+    let shadows = ShadowJob::new(&args.shadows, request.size)?;
     if let Some(path) = &args.output {
-        output::check(&[path], &[], &job.inputs())?;
+        output::check(&[path], &[], &request.inputs())?;
     }
-    let stage = Stage::open(&job)?;
+    let setup = SceneSetup::open(&request)?;
     let mut settings = shadows.settings.clone();
     (settings.filter_radius, settings.filter_half_width_m) =
-        wgpu_filter(shadows.filter).reach(&shadows.softness(job.sun_angle));
+        wgpu_filter(shadows.filter).reach(&shadows.softness(request.sun_angle));
     let mut planner = Planner::new(settings)?;
-    let receivers: Vec<Aabb> = stage.pose.objects.iter().map(|object| object.bounds).collect();
+    let receivers: Vec<Aabb> = setup.pose.objects.iter().map(|object| object.bounds).collect();
     let casters: Vec<Aabb> =
-        stage.pose.objects.iter().filter(|object| object.casts).map(|object| object.bounds).collect();
+        setup.pose.objects.iter().filter(|object| object.casts).map(|object| object.bounds).collect();
     let mut frames = Vec::new();
-    for shot in &stage.shots {
+    for shot in &setup.shots {
         let plan = planner.plan(&shot.view, &shot.shown_light(), &casters, &receivers)?;
-        frames.push((shot.frame, report(&job, &shadows, &stage, shot, plan, args.depth_convention)));
+        frames.push((shot.frame, report(&request, &shadows, &setup, shot, plan, args.depth_convention)));
     }
     match &args.output {
         Some(path) => write(path, &frames),
@@ -124,16 +151,16 @@ fn write(path: &Path, frames: &[(Option<u32>, PlanReport)]) -> Result<()> {
 }
 
 fn report(
-    job: &SceneJob,
+    request: &SceneRequest,
     shadows: &ShadowJob,
-    stage: &Stage,
+    setup: &SceneSetup,
     shot: &Shot,
     plan: &ShadowPlan,
     convention: DepthConvention,
 ) -> PlanReport {
-    let casters = stage.pose.objects.iter().filter(|object| object.casts).zip(&plan.split_range);
+    let casters = setup.pose.objects.iter().filter(|object| object.casts).zip(&plan.split_range);
     PlanReport {
-        shot: stage.report(job, shot),
+        shot: setup.report(request, shot),
         technique: typed_name(shadows.technique),
         fit: typed_name(shadows.fit),
         stabilize: typed_name(shadows.stabilize),
@@ -152,12 +179,12 @@ fn report(
         splits: (0..plan.splits.len()).map(|i| split(plan, i, convention)).collect(),
         casters: casters
             .map(|(object, range)| Caster {
-                node: stage.scene.nodes[object.node].name.clone(),
+                node: setup.scene.nodes[object.node].name.clone(),
                 instance: object.instance,
                 split_range: range.map(|(first, last)| [first, last]),
             })
             .collect(),
-        notes: stage.notes.clone(),
+        notes: setup.notes.clone(),
     }
 }
 

@@ -1,54 +1,77 @@
 //! `umbrage probe`: visibility at given points, from the very maps that `render` uses.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use glam::DVec3;
-use umbrage_render::{Outputs, ProbePoint};
-
-use crate::{
-    args::ProbeArgs,
+use umbrage_lab::{
     failure::{Failure, Result},
     output::{self, Staged, numbered_file},
     progress,
-    render::Studio,
     report::{ProbeReport, to_json},
-    scene_job::SceneJob,
-    shadow_job::ShadowJob,
-    stage::Stage,
+    scene_setup::SceneSetup,
+    session::Session,
+    technique::{ShadowArgs, ShadowJob},
 };
+use umbrage_render::{Outputs, ProbePoint};
+
+use crate::scene_args::SceneArgs;
+
+/// `umbrage probe`.
+#[derive(Debug, clap::Args)]
+pub struct ProbeArgs {
+    /// Scene, camera, light and time.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Shadows.
+    #[command(flatten)]
+    pub shadows: ShadowArgs,
+    /// Records of six little-endian f64: a world position and a geometric normal
+    #[arg(long, value_name = "IN")]
+    pub points: PathBuf,
+    /// Write one little-endian f32 of visibility per record here
+    #[arg(long, value_name = "OUT", help_heading = "Output")]
+    pub out: PathBuf,
+    /// Write what was done and what it cost here, with the split of each point (JSON)
+    #[arg(long, value_name = "JSON", help_heading = "Output")]
+    pub report: Option<PathBuf>,
+}
 
 /// Six little-endian f64: a position and a normal.
 const RECORD_BYTES: usize = 6 * size_of::<f64>();
 
 /// Runs the subcommand.
 pub fn run(args: &ProbeArgs) -> Result<()> {
-    let job = SceneJob::new(&args.scene)?;
-    let shadows = ShadowJob::new(&args.shadows, job.size)?;
+    let request = args.scene.request()?;
+    let shadows = ShadowJob::new(&args.shadows, request.size)?;
     let files: Vec<&Path> = [Some(&args.out), args.report.as_ref()].into_iter().flatten().map(AsRef::as_ref).collect();
-    let inputs: Vec<&Path> = job.inputs().into_iter().chain([args.points.as_path()]).collect();
+    let inputs: Vec<&Path> = request.inputs().into_iter().chain([args.points.as_path()]).collect();
     output::check(&files, &[], &inputs)?;
     let bytes = fs::read(&args.points).map_err(|error| Failure::file("read", &args.points, &error))?;
     let points = points(&args.points, &bytes)?;
 
-    let stage = Stage::open(&job)?;
-    let mut studio = Studio::open(&job, &shadows, &stage)?;
+    let setup = SceneSetup::open(&request)?;
+    let mut session = Session::open(&request, &shadows, &setup)?;
     let mut staged = Staged::default();
-    let bar = progress::steps(stage.shots.len() as u64, "frames");
-    for shot in &stage.shots {
-        let frame = studio.frame(&stage, shot, &shot.view);
+    let bar = progress::steps(setup.shots.len() as u64, "frames");
+    for shot in &setup.shots {
+        let frame = session.frame(&setup, shot, &shot.view);
         let answers = match &shot.shown {
-            Some(fade) => studio.renderer.probe_faded(&frame, fade, &points)?,
-            None => studio.renderer.probe(&frame, &points)?,
+            Some(fade) => session.renderer.probe_faded(&frame, fade, &points)?,
+            None => session.renderer.probe(&frame, &points)?,
         };
         let visibility = answers.iter().flat_map(|answer| answer.visibility.to_le_bytes()).collect();
         staged.file(&numbered_file(&args.out, shot.frame), visibility)?;
         if let Some(path) = &args.report {
             // The same maps once more, for what they cost; no picture is asked for.
-            let rendered = studio.renderer.render_views(&[frame], shot.shown.as_ref(), Outputs::default())?.remove(0);
-            let mut report = studio.report(&job, &stage, shot, &rendered.stats);
+            let rendered = session.renderer.render_views(&[frame], shot.shown.as_ref(), Outputs::default())?.remove(0);
+            let mut report = session.report(&request, &setup, shot, &rendered.stats);
             report.probe = Some(ProbeReport { split: answers.iter().map(|answer| answer.split).collect() });
             staged.file(&numbered_file(path, shot.frame), to_json(&report)?)?;
         }
+        staged.finish_frame();
         bar.inc(1);
     }
     bar.finish_and_clear();

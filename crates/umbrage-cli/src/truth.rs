@@ -1,49 +1,58 @@
 //! `umbrage truth`: the mask by rays, hard or under a sun with a size.
 
-use std::time::Instant;
+use std::{path::PathBuf, time::Instant};
 
-use umbrage_truth::{SunDisc, Truth};
-
-use crate::{
-    args::TruthArgs,
-    failure::{Failure, Result},
+use umbrage_lab::{
+    failure::Result,
     output::{self, Staged, numbered_file},
+    picture::{png, side_by_side},
     progress,
-    render::{png, side_by_side},
     report::{TruthReport, TruthTimesMs, to_json},
-    scene_job::SceneJob,
-    stage::Stage,
+    scene_setup::SceneSetup,
+    sun_disc::sun_disc,
+    technique::ShadowArgs,
 };
+use umbrage_truth::Truth;
 
-/// Directions by which a sun with a size is looked at.
-const SOFT_SAMPLES: u32 = 256;
+use crate::scene_args::SceneArgs;
 
-/// The sun's disc of an angle in degrees; a sun of 0 degrees is a point and throws hard shadows.
-#[must_use]
-pub fn sun_disc(degrees: f64) -> Option<SunDisc> {
-    (degrees > 0.0).then(|| SunDisc::new(degrees.to_radians(), SOFT_SAMPLES))
+/// `umbrage truth`.
+#[derive(Debug, clap::Args)]
+pub struct TruthArgs {
+    /// Scene, camera, light and time.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Accepted and ignored: rays need none of it.
+    #[command(flatten)]
+    pub shadows: ShadowArgs,
+    /// Write the exact visibility mask here (PNG, grey and alpha); soft with --sun-angle, by 256 directions
+    #[arg(short = 'o', long = "output", value_name = "MASK", help_heading = "Output")]
+    pub mask: PathBuf,
+    /// Write scene, camera, sun and times here (JSON)
+    #[arg(long, value_name = "JSON", help_heading = "Output")]
+    pub report: Option<PathBuf>,
 }
 
 /// Runs the subcommand.
 pub fn run(args: &TruthArgs) -> Result<()> {
-    let job = SceneJob::new(&args.scene)?;
+    let request = args.scene.request()?;
     let files: Vec<_> = [Some(&args.mask), args.report.as_ref()].into_iter().flatten().map(AsRef::as_ref).collect();
-    output::check(&files, &[], &job.inputs())?;
-    let stage = Stage::open_views(&job)?;
+    output::check(&files, &[], &request.inputs())?;
+    let setup = SceneSetup::open_views(&request)?;
     let began = Instant::now();
-    let truth = Truth::build(&stage.scene, &stage.pose, stage.shots[0].view.eye())?;
+    let truth = Truth::build(&setup.scene, &setup.pose, setup.shots[0].view.eye())?;
     let build = began.elapsed();
     let mut staged = Staged::default();
-    let count = stage.shots.iter().map(|shot| shot.views().count()).sum::<usize>() as f32;
+    let count = setup.shots.iter().map(|shot| shot.views().count()).sum::<usize>() as f32;
     let bar = progress::fraction("rays");
     let mut done = 0.0;
-    for shot in &stage.shots {
+    for shot in &setup.shots {
         let began = Instant::now();
         let mut images = Vec::new();
         for (_, view) in shot.views() {
             let progress = |share| progress::set_fraction(&bar, (done + share) / count);
-            let mask = truth.mask_under(view, &shot.light, job.size, &progress)?;
-            images.push(match job.sun_angle.and_then(sun_disc) {
+            let mask = truth.mask_under(view, &shot.light, request.size, &progress)?;
+            images.push(match request.sun_angle.and_then(sun_disc) {
                 Some(disc) => truth.soft(&mask, &disc, &progress)?.to_image(),
                 None => mask.to_image(),
             });
@@ -54,20 +63,14 @@ pub fn run(args: &TruthArgs) -> Result<()> {
         staged.file(&numbered_file(&args.mask, shot.frame), png(&image)?)?;
         if let Some(path) = &args.report {
             let report = TruthReport {
-                shot: stage.report(&job, shot),
+                shot: setup.report(&request, shot),
                 times_ms: TruthTimesMs { build: build.as_secs_f64() * 1e3, rays: rays.as_secs_f64() * 1e3 },
-                notes: stage.notes.clone(),
+                notes: setup.notes.clone(),
             };
             staged.file(&numbered_file(path, shot.frame), to_json(&report)?)?;
         }
+        staged.finish_frame();
     }
     bar.finish_and_clear();
     staged.commit()
-}
-
-/// What the judge refuses is the scene or an option.
-impl From<umbrage_truth::Error> for Failure {
-    fn from(error: umbrage_truth::Error) -> Self {
-        Self::input(error.to_string())
-    }
 }

@@ -1,14 +1,31 @@
 //! `umbrage worlds`: the procedural worlds, by name and as files.
 
-use std::io::{self, Write};
+use std::path::PathBuf;
 
-use umbrage_scene::procedural::World;
-
-use crate::{
-    args::WorldsCommand,
+use clap::Subcommand;
+use umbrage_lab::{
     failure::{Failure, Result},
     output::{self, Staged},
 };
+use umbrage_scene::procedural::World;
+
+use crate::print::print;
+
+/// `umbrage worlds`.
+#[derive(Debug, Subcommand)]
+pub enum WorldsCommand {
+    /// Name them, with their cameras
+    List,
+    /// Write one as binary glTF
+    Export {
+        /// A world's name, see `umbrage worlds list`
+        #[arg(value_name = "NAME")]
+        name: String,
+        /// Write it here (.glb)
+        #[arg(short = 'o', long = "output", value_name = "FILE")]
+        output: PathBuf,
+    },
+}
 
 /// Runs the subcommand.
 pub fn run(command: &WorldsCommand) -> Result<()> {
@@ -39,15 +56,4 @@ fn list() -> Result<()> {
         text += &format!("{}\t{}\n", world.name(), cameras.join(" "));
     }
     print(&text)
-}
-
-/// To standard output; a reader who has left is no error.
-pub fn print(text: &str) -> Result<()> {
-    let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::input(format!("cannot write to standard output: {error}")))
-        }
-        _ => Ok(()),
-    }
 }

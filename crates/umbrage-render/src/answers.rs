@@ -76,6 +76,6 @@ impl Renderer {
         if in_range && cull::may_be_seen(frame.view, &Aabb::new(point, point)) {
             return Responder::View;
         }
-        self.planners.now[0].covering_split(point).map_or(Responder::Nobody, Responder::Split)
+        plan.covering_split(point).map_or(Responder::Nobody, Responder::Split)
     }
 }

@@ -1,12 +1,12 @@
 //! What each pass over the maps draws: the casters of its splits, and of large meshes the clusters that reach them.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::DVec3;
-use umbrage::{Aabb, Planner, ShadowPlan};
+use umbrage::{Aabb, ShadowPlan};
 use umbrage_scene::{Object, Pose};
 
-use crate::Result;
 use crate::draw_list::{Parts, Run, once};
 use crate::geometry::GpuPrimitive;
 use crate::renderer::{Frame, Renderer};
@@ -23,18 +23,16 @@ const BLOCK: u32 = 24;
 const PART: u32 = 128;
 
 impl Renderer {
-    /// What each pass over the maps draws; nothing where shadows are off. `visible` are the objects whose surfaces alone ask the maps, if
-    /// that is so.
+    /// What each pass over the maps draws; nothing where shadows are off.
     pub(crate) fn caster_runs(
         &mut self,
         frame: &Frame<'_>,
         origin: DVec3,
         objects: &[usize],
-        plans: &[ShadowPlan],
-        visible: Option<&[usize]>,
-    ) -> Result<Vec<Vec<Run>>> {
+        plans: &[Arc<ShadowPlan>],
+    ) -> Vec<Vec<Run>> {
         if !frame.shadows_on {
-            return Ok(Vec::new());
+            return Vec::new();
         }
         let pose = frame.pose;
         let [plan] = plans else {
@@ -42,15 +40,12 @@ impl Renderer {
             for (light, plan) in plans.iter().enumerate() {
                 self.light_runs(frame, origin, objects, light, plan, &mut runs);
             }
-            return Ok(runs);
+            return runs;
         };
         if self.maps.map_count() > self.maps.splits() {
             let mut runs = vec![Vec::new(); self.maps.map_count()];
             self.light_runs(frame, origin, objects, 0, plan, &mut runs);
-            return Ok(runs);
-        }
-        if let Some(visible) = visible {
-            self.tell_parts(pose, objects, plan, visible)?;
+            return runs;
         }
         let mut all = Vec::new();
         for pass in self.maps.passes() {
@@ -59,12 +54,12 @@ impl Renderer {
                 all.push(self.instances.grouped(pose, origin, pass.leads(), copies));
                 continue;
             }
-            let (planner, split) = (&self.planners.now[0], pass.splits().start);
+            let split = pass.splits().start;
             let (mut whole, mut in_part) = (Vec::new(), Vec::new());
             for (index, codes) in copies {
                 let object = &pose.objects[index];
                 let meshes = &self.scene.meshes;
-                let parts = || parts_in(planner, split, object, &meshes[object.mesh]);
+                let parts = || parts_in(plan, split, object, &meshes[object.mesh]);
                 match has_parts(object, meshes).then(parts).flatten() {
                     Some(parts) => in_part.push((index, codes, parts)),
                     None => whole.push((index, codes)),
@@ -77,14 +72,14 @@ impl Renderer {
             }
             all.push(runs);
         }
-        Ok(all)
+        all
     }
 
-    /// Tells the planner what visible objects are made of, if some caster may be drawn in part.
-    fn tell_parts(&mut self, pose: &Pose, objects: &[usize], plan: &ShadowPlan, visible: &[usize]) -> Result<()> {
+    /// What visible objects are made of, for the planner; `None` if no caster may be drawn in part.
+    pub(crate) fn receiver_clusters(&self, pose: &Pose, casters: &[usize], visible: &[usize]) -> Option<Vec<Aabb>> {
         let meshes = &self.scene.meshes;
-        if !plan.caster_indices.iter().any(|&caster| has_parts(&pose.objects[objects[caster as usize]], meshes)) {
-            return Ok(());
+        if self.maps.map_count() > self.maps.splits() || !casters.iter().any(|&i| has_parts(&pose.objects[i], meshes)) {
+            return None;
         }
         let mut parts: Vec<Aabb> = Vec::new();
         for object in visible.iter().map(|&index| &pose.objects[index]) {
@@ -102,7 +97,7 @@ impl Renderer {
                 });
             }
         }
-        Ok(self.planners.now[0].tell_parts(&parts)?)
+        Some(parts)
     }
 
     /// What one of several lights draws into its maps.
@@ -128,8 +123,8 @@ fn has_parts(object: &Object, meshes: &[Vec<GpuPrimitive>]) -> bool {
 }
 
 /// For each primitive the ranges of indices that reach a split; `None` if the object is better drawn whole.
-fn parts_in(planner: &Planner, split: usize, object: &Object, primitives: &[GpuPrimitive]) -> Option<Parts> {
-    let reaches = |node: &Cluster| planner.reaches(split, &node.bounds().transformed(&object.world_from_local));
+fn parts_in(plan: &ShadowPlan, split: usize, object: &Object, primitives: &[GpuPrimitive]) -> Option<Parts> {
+    let reaches = |node: &Cluster| plan.casts_into(split, &node.bounds().transformed(&object.world_from_local));
     let mut spared = 0;
     let parts: Parts = primitives
         .iter()

@@ -1,6 +1,8 @@
 //! The passes of a frame, in the order in which they are recorded: all maps and then the view, or, where one map is used for one split after
 //! the other, map and view slice by slice.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use umbrage::ShadowPlan;
 use umbrage_wgpu::Slice;
@@ -17,7 +19,7 @@ use crate::{Gpu, Result};
 pub(crate) struct Prepared {
     pub origin: DVec3,
     /// One for each light.
-    pub plans: Vec<ShadowPlan>,
+    pub plans: Vec<Arc<ShadowPlan>>,
     pub plan_ms: f64,
     /// What each pass over the maps draws; none where shadows are off.
     pub caster_runs: Vec<Vec<Run>>,

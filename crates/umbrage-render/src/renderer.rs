@@ -1,11 +1,13 @@
 //! The demonstration renderer: a scene, a view and lights in; a picture, a mask, maps and numbers out.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
-use umbrage::{Aabb, Bands, Selection, ShadowPlan, ShadowSettings, View};
+use umbrage::{Aabb, Bands, PlanInputs, Selection, ShadowPlan, ShadowSettings, View, Warp};
 use umbrage_scene::{AlphaMode, Pose, Scene};
 use umbrage_wgpu::{
-    DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, MaskFrame, MaskNormals, ShadowMaps,
+    DepthFormat, Derivatives, Filter, Fixed, FrameOptions, Generation, LightSlot, MaskFrame, MaskNormals, ShadowMaps,
     ShadowMapsOptions, ShadowMask, Slice, Softness, Storage, Transition,
 };
 use web_time::Instant;
@@ -175,6 +177,14 @@ impl Renderer {
                     storage: settings.storage,
                     generation: settings.generation,
                     lights: settings.lights.clone(),
+                    // All of it is settled here, so that no shader is made for anything else.
+                    fixed: Fixed {
+                        selection: Some(shadows.selection),
+                        bands: Some(shadows.bands),
+                        warped: shadows.warps.iter().all(|warp| *warp == Warp::None).then_some(false),
+                        transition: Some(settings.transition),
+                        bias: Some(settings.look.bias),
+                    },
                 },
             )?;
             let blends = shadows.blend > 0.0 && settings.transition != Transition::Hard;
@@ -270,7 +280,7 @@ impl Renderer {
     /// The settings that shadows are planned with, including what the filter, the device and the size have decided.
     #[must_use]
     pub fn shadow_settings(&self) -> &ShadowSettings {
-        self.planners.now[0].settings()
+        self.planners.now[0].planner.settings()
     }
 
     /// Forgets what earlier frames have left behind in the planner (sizes that stabilisation holds), as if nothing had been
@@ -391,7 +401,7 @@ impl Renderer {
                 .enumerate()
                 .map(|(i, plan)| LightStats {
                     splits: self.split_stats(i + 1, frame, plan, &recorded),
-                    plan: plan.clone(),
+                    plan: Arc::clone(plan),
                 })
                 .collect(),
             objects_in_view: prepared.objects_in_view,
@@ -403,7 +413,7 @@ impl Renderer {
             generation: self.maps.options().generation.name(),
             storage: self.maps.options().storage.name(),
             notes: self.notes.clone(),
-            plan: prepared.plans[0].clone(),
+            plan: Arc::clone(&prepared.plans[0]),
         };
         let [width, height] = self.size;
         const SIZED: &str = "a capture has as many bytes as its picture";
@@ -434,15 +444,27 @@ impl Renderer {
         let caster_objects: Vec<usize> = (0..pose.objects.len()).filter(|&i| self.casts(&pose.objects[i])).collect();
         let casters: Vec<Aabb> = caster_objects.iter().map(|&i| pose.objects[i].bounds).collect();
         let receivers: Vec<Aabb> = pose.objects.iter().map(|object| object.bounds).collect();
+        let mut near_to_far: Vec<(f64, usize)> = (0..pose.objects.len())
+            .filter(|&i| cull::may_be_seen(view, &pose.objects[i].bounds))
+            .map(|i| (view.view_depth(pose.objects[i].bounds.center()), i))
+            .collect();
+        near_to_far.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let visible: Vec<usize> = near_to_far.into_iter().map(|(_, i)| i).collect();
+        let asks_surfaces = surfaces_alone && frame.shadows_on && frame.more_lights.is_empty();
+        let clusters = if asks_surfaces { self.receiver_clusters(pose, &caster_objects, &visible) } else { None };
+
         let begun = Instant::now();
         let lamps: Vec<Lamp> = [frame.light].into_iter().chain(frame.more_lights.iter().copied()).collect();
         let planners = &mut self.planners.now;
         if lamps.len() != planners.len() {
             return Err(Error::LampSlots { frame: lamps.len(), renderer: planners.len() });
         }
-        let plans = planners.iter_mut().zip(&lamps);
-        let plans = plans.map(|(planner, lamp)| Ok(planner.plan(view, &lamp.light, &casters, &receivers)?.clone()));
-        let plans = plans.collect::<Result<Vec<ShadowPlan>>>()?;
+        let (receiver_clusters, image_size) = (clusters.as_deref(), self.size);
+        let plans = planners.iter_mut().zip(&lamps).map(|(planner, lamp)| {
+            let inputs = PlanInputs::new(view, lamp.light, &casters, &receivers);
+            planner.plan(&PlanInputs { receiver_clusters, image_size, ..inputs })
+        });
+        let plans = plans.collect::<Result<Vec<Arc<ShadowPlan>>>>()?;
         plans.iter().try_for_each(|plan| self.coordinates.check_plan(plan))?;
         let plan_ms = begun.elapsed().as_secs_f64() * 1e3;
         let options = FrameOptions {
@@ -456,7 +478,7 @@ impl Renderer {
             transition: self.transition,
             derivatives: self.derivatives,
         };
-        self.maps.prepare_lights(&self.gpu.queue, &plans.iter().collect::<Vec<_>>(), &options)?;
+        self.maps.prepare_lights(&self.gpu.queue, &plans.iter().map(|plan| &**plan).collect::<Vec<_>>(), &options)?;
         self.skinned.update(&self.gpu, &self.scene_meshes, pose)?;
         self.forward.prepare(&self.gpu, 0, &FrameUniform::new(view, &lamps, origin, None)?);
         if let Some(contact) = &self.contact {
@@ -470,16 +492,8 @@ impl Renderer {
         }
         self.timer.restart();
 
-        let mut near_to_far: Vec<(f64, usize)> = (0..pose.objects.len())
-            .filter(|&i| cull::may_be_seen(view, &pose.objects[i].bounds))
-            .map(|i| (view.view_depth(pose.objects[i].bounds.center()), i))
-            .collect();
-        near_to_far.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let visible: Vec<usize> = near_to_far.into_iter().map(|(_, i)| i).collect();
-
         self.instances.clear();
-        let caster_runs =
-            self.caster_runs(frame, origin, &caster_objects, &plans, surfaces_alone.then_some(&visible[..]))?;
+        let caster_runs = self.caster_runs(frame, origin, &caster_objects, &plans);
         let solid = self.instances.grouped(pose, origin, false, visible.iter().copied().map(once));
         let far_to_near = self.with_translucent_parts(pose, visible.iter().rev().copied());
         let translucent = self.instances.ordered(pose, origin, far_to_near.iter().copied());

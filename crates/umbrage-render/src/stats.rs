@@ -1,11 +1,14 @@
 //! What a frame was made of and what it cost.
 
+use std::sync::Arc;
+
 use umbrage::ShadowPlan;
 
 use crate::timing::PassCounts;
 
 /// One split of a frame.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SplitStats {
     /// View depth in metres where it begins.
     pub near: f64,
@@ -27,18 +30,20 @@ pub struct SplitStats {
 
 /// One light of a frame beside the first.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct LightStats {
     /// The plan that its maps were drawn by.
-    pub plan: ShadowPlan,
+    pub plan: Arc<ShadowPlan>,
     /// Nearest first; of a point light those of its first face, then those of the next.
     pub splits: Vec<SplitStats>,
 }
 
 /// What a frame was made of and what it cost.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct FrameStats {
     /// The plan that the first light's maps were drawn by.
-    pub plan: ShadowPlan,
+    pub plan: Arc<ShadowPlan>,
     /// Milliseconds of the planner on the CPU.
     pub plan_ms: f64,
     /// Milliseconds from the beginning of the first map to the end of the last, on the GPU; 0 if none was drawn.

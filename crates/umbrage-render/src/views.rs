@@ -1,27 +1,53 @@
 //! Several views of one scene, side by side.
 
-use umbrage::{Planner, ShadowSettings, SunFade};
+use std::sync::Arc;
+
+use umbrage::{Held, PlanInputs, Planner, ShadowPlan, ShadowSettings, SunFade};
 
 use crate::{Frame, Outputs, Rendered, Renderer, Result};
 
 /// What plans one view's maps.
 pub(crate) struct Planners {
     /// One for each light.
-    pub now: Vec<Planner>,
+    pub now: Vec<LightPlanner>,
     /// While a step of the sun is faded: what plans for the sun that is faded to.
-    pub next: Option<Vec<Planner>>,
+    pub next: Option<Vec<LightPlanner>>,
+}
+
+/// What plans one light's maps.
+pub(crate) struct LightPlanner {
+    pub planner: Planner,
+    /// The last plan. Its buffers serve the next one once nobody else holds it.
+    plan: Arc<ShadowPlan>,
+}
+
+impl LightPlanner {
+    fn new(settings: &ShadowSettings) -> Result<Self> {
+        Ok(Self { planner: Planner::new(settings.clone())?, plan: Arc::default() })
+    }
+
+    /// Plans a frame.
+    pub fn plan(&mut self, inputs: &PlanInputs<'_>) -> Result<Arc<ShadowPlan>> {
+        if Arc::get_mut(&mut self.plan).is_none() {
+            self.plan = Arc::default();
+        }
+        if let Some(plan) = Arc::get_mut(&mut self.plan) {
+            self.planner.plan_into(inputs, plan)?;
+        }
+        Ok(Arc::clone(&self.plan))
+    }
 }
 
 impl Planners {
     /// One for each light.
     pub fn new(settings: &ShadowSettings, lights: usize) -> Result<Self> {
-        let now = (0..lights).map(|_| Planner::new(settings.clone())).collect::<Result<_, _>>()?;
+        let now = (0..lights).map(|_| LightPlanner::new(settings)).collect::<Result<_>>()?;
         Ok(Self { now, next: None })
     }
 
     /// Others of the same settings, which remember nothing.
     pub fn afresh(&self) -> Result<Self> {
-        Self::new(self.now[0].settings(), self.now.len())
+        Self::new(self.now[0].planner.settings(), self.now.len())
     }
 }
 
@@ -63,10 +89,13 @@ impl Renderer {
 
     /// What maps hold on to belongs to the frames that show them: one without shadows leaves it as it was.
     pub(crate) fn held_apart<T>(&mut self, frame: &Frame<'_>, work: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
-        let kept = (!frame.shadows_on).then(|| self.planners.now.clone());
+        let kept: Vec<Held> = match frame.shadows_on {
+            true => Vec::new(),
+            false => self.planners.now.iter().map(|light| light.planner.held().clone()).collect(),
+        };
         let result = work(self);
-        if let Some(kept) = kept {
-            self.planners.now = kept;
+        for (light, held) in self.planners.now.iter_mut().zip(kept) {
+            light.planner.set_held(held);
         }
         result
     }

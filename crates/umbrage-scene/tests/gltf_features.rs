@@ -320,3 +320,18 @@ fn vertices_without_weights_and_normals_without_length_are_put_right() {
     assert_eq!((primitive.weights[0], primitive.joints[0]), ([1.0, 0.0, 0.0, 0.0], [1, 0, 0, 0]));
     assert_eq!(scene.notes.len(), 2, "{:?}", scene.notes);
 }
+
+#[test]
+fn nodes_keep_the_digits_of_their_numbers() {
+    // In f32 a metre is lost at 100,000 km, and with it where a camera stands beside what it sees.
+    let mut glb = Glb::triangle();
+    glb.json["nodes"] = json!([
+        { "mesh": 0, "translation": [100_000_000.125, 0.1, -999_999_999.75] },
+        { "mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 100_000_000.125, 0.1, -999_999_999.75, 1] },
+    ]);
+    glb.json["scenes"] = json!([{ "nodes": [0, 1] }]);
+    let scene = glb.scene();
+    for node in &scene.nodes {
+        assert_eq!(node.local.translation.to_array(), [100_000_000.125, 0.1, -999_999_999.75]);
+    }
+}

@@ -10,7 +10,7 @@ use crate::Split;
 /// `depth + min(depth_per_texel · offset − |corner_per_texel ∘ offset|, 0) − constant_m`, in metres along the light.
 ///
 /// umbrage's WGSL also asks of a texel that is nearer than that, or nearer than the receiver but far behind its plane, where its surface
-/// leads (`leads_behind` in `bias.wesl`).
+/// leads (`meets_receiver` in `bias.wesl`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bias {
     /// Metres of depth per texel along u and v on the receiver's plane.
@@ -23,7 +23,7 @@ pub struct Bias {
 }
 
 /// Steepest slope (tangent of the angle between light and normal) that the receiver's plane is followed to: n·l = 0.02. Measured
-/// with the WGSL's constants (`docs/measurements.md`); lower, surfaces that the light grazes show stripes.
+/// with the WGSL's constants (`docs/notes/bias.md`); lower, surfaces that the light grazes show stripes.
 pub const STEEPEST: f64 = 50.0;
 
 /// [`Bias::constant_m`] in texels' longer edges, [`Bias::corner_per_texel`] in their shorter edges at least and at most, and the angle in radians by

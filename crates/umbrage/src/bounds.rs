@@ -84,3 +84,27 @@ impl Aabb {
         Self::from_points(self.corners().map(|corner| target_from_source.transform_point3(corner)))
     }
 }
+
+/// A box as centre and half extent, which is what tests against planes need.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Placed {
+    pub center: DVec3,
+    pub half: DVec3,
+}
+
+impl Placed {
+    pub fn bounds(&self) -> Aabb {
+        Aabb::new(self.center - self.half, self.center + self.half)
+    }
+
+    /// Metres from a point to the nearest point of the box; 0 inside.
+    pub fn distance_to(&self, point: DVec3) -> f64 {
+        ((point - self.center).abs() - self.half).max(DVec3::ZERO).length()
+    }
+}
+
+impl From<Aabb> for Placed {
+    fn from(bounds: Aabb) -> Self {
+        Self { center: bounds.center(), half: bounds.half_extent() }
+    }
+}

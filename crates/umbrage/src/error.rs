@@ -43,6 +43,15 @@ pub enum Error {
         /// Why, and what to do.
         reason: String,
     },
+    /// Two settings of a [`crate::ShadowConfig`] exclude each other.
+    #[error("{0}")]
+    Conflict(Box<crate::config::Conflict>),
+    /// No setting has this key.
+    #[error("{key:?} is no shadow setting; `umbrage::config::SETTINGS` lists them")]
+    UnknownSetting {
+        /// The key as given.
+        key: String,
+    },
     /// The bounds of a caster or receiver are inverted, infinite or NaN.
     #[error("{list}[{index}] has no valid bounds ({min} to {max}); give finite corners with min <= max")]
     InvalidBounds {

@@ -14,45 +14,52 @@
 //!
 //! Column vectors, column-major matrices, radians. A transform is named `target_from_source`. Splits count from 0;
 //! `C_0 = n` and `C_m = f` are the ends of the shadowed range.
+//!
+//! # Speed in a development build
+//!
+//! Planning is some fifty times slower without optimisation. Let Cargo optimise the planner in an application's `dev`
+//! profile, too:
+//!
+//! ```toml
+//! [profile.dev.package.umbrage]
+//! opt-level = 3
+//! [profile.dev.package.glam]
+//! opt-level = 3
+//! ```
 
 mod alias;
-mod bands;
 mod bias;
 mod bounds;
 mod camera;
-mod cells;
-mod covered;
+pub mod config;
+mod coverage;
 mod error;
-mod fit;
+mod geometry;
+mod held;
 mod light;
-mod local;
 mod margin;
-mod placement;
 mod plan;
+mod planes;
 mod planner;
-mod range;
-mod reach;
-mod receiver_mask;
-mod rectangle;
-mod region;
 mod settings;
-mod split;
-mod stable;
 mod stepped;
-mod volume;
 mod warp;
-mod warped;
 
-pub use bands::Bands;
+pub use glam;
+
 pub use bias::{Bias, STEEPEST};
 pub use bounds::Aabb;
 pub use camera::{DepthConvention, Frustum, Projection, View};
+pub use config::ShadowConfig;
+pub use coverage::PlanCoverage;
 pub use error::{Error, Result};
+pub use geometry::sphere::{Sphere, slice_sphere, stable_texel};
+pub use held::Held;
 pub use light::{DirectionalLight, Light, PointLight, SpotLight};
 pub use plan::{ShadowPlan, Split};
-pub use planner::Planner;
+pub use planes::bands::Bands;
+pub use planes::scheme::split_planes;
+pub use planner::{PlanInputs, Planner, plan};
 pub use settings::{ExtentSteps, Fit, MAX_SPLITS, RangeFit, Selection, ShadowSettings, SplitScheme, Stabilize};
-pub use split::split_planes;
-pub use stable::{Sphere, slice_sphere, stable_texel};
 pub use stepped::{SteppedSun, SunFade};
 pub use warp::{Warp, WarpTarget, texels_along};

@@ -2,7 +2,8 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-use crate::{DepthConvention, Light, Selection, View};
+use crate::coverage::PlanCoverage;
+use crate::{Aabb, DepthConvention, Light, Selection, View};
 
 /// The shadow maps of one light for one view.
 ///
@@ -32,6 +33,8 @@ pub struct ShadowPlan {
     /// For each caster the first and the last split it is drawn in, `None` if it is drawn in none. The range is a bound:
     /// the lists are exact.
     pub split_range: Vec<Option<(u8, u8)>>,
+    /// What the lists are complete for; see [`ShadowPlan::casts_into`] and [`ShadowPlan::covering_split`].
+    pub coverage: PlanCoverage,
 }
 
 impl ShadowPlan {
@@ -45,9 +48,23 @@ impl ShadowPlan {
             Light::Point(_) => DVec3::NEG_Y,
         };
         self.light = Some(light);
+        self.selection = Selection::Depth;
+        self.blend = 0.0;
+        self.planes.clear();
         self.caster_indices.clear();
         self.split_range.clear();
         self.splits.clear();
+        self.coverage.clear();
+    }
+
+    /// Adds a split whose casters are listed.
+    pub(crate) fn add(&mut self, split: Split) {
+        let at = self.splits.len() as u8;
+        for &index in &self.caster_indices[split.casters.clone()] {
+            let range = &mut self.split_range[index as usize];
+            *range = Some((range.map_or(at, |(first, _)| first), at));
+        }
+        self.splits.push(split);
     }
 
     /// What chooses the split of a world point, metres: its view depth, or with radial bands its distance to the eye.
@@ -63,6 +80,44 @@ impl ShadowPlan {
     #[must_use]
     pub fn faces(&self) -> usize {
         self.light.map_or(1, |light| light.faces())
+    }
+
+    /// Whether a part of a caster of `split` can throw a shadow on anything that the split serves: the test that casters were
+    /// listed by, for the part's own world box. An application that keeps large meshes in clusters skips those that it
+    /// rejects.
+    ///
+    /// Conservative: skipping what it rejects never changes a visible pixel. With
+    /// [`crate::PlanInputs::receiver_clusters`] it also rejects parts with no such cluster behind them. Always `true` for
+    /// local lights and with [`Selection::Map`].
+    #[must_use]
+    pub fn casts_into(&self, split: usize, part: &Aabb) -> bool {
+        self.coverage.casts_into(split, part)
+    }
+
+    /// The first split whose map holds every caster that can shade `point`, for points that the view does not show (points
+    /// that it shows use the split of their view depth). A split without casters answers "lit". `None`: no map answers.
+    #[must_use]
+    pub fn covering_split(&self, point: DVec3) -> Option<usize> {
+        let in_map = |split: &Split| split.contains(point, split.filter_reach);
+        if let Some(light) = self.light.filter(|light| light.position().is_some()) {
+            let m = self.coverage.local.len() / light.faces();
+            let first = light.face_of(point) * m;
+            let covers = |&i: &usize| {
+                let split = &self.splits[i];
+                self.coverage.contains_local(i, point) && (split.casters.is_empty() || in_map(split))
+            };
+            return (first..first + m).find(covers).filter(|_| light.reaches(point));
+        }
+        let mut covering = self.splits.iter().enumerate().filter(|(i, _)| self.coverage.contains(*i, point));
+        match self.selection {
+            Selection::Depth => covering.find(|(_, split)| split.casters.is_empty() || in_map(split)),
+            // A map without casters is asked about nothing, and shadows that no map holds there are none.
+            Selection::Map => {
+                let lit = covering.clone().find(|(_, split)| split.casters.is_empty());
+                covering.find(|(_, split)| !split.casters.is_empty() && in_map(split)).or(lit)
+            }
+        }
+        .map(|(i, _)| i)
     }
 
     /// The casters of split `index`, as indices into the list given to the planner.

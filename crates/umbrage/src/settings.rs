@@ -5,7 +5,7 @@ use crate::{Bands, Error, Result, Warp};
 /// The most splits a light can have.
 pub const MAX_SPLITS: usize = 8;
 
-/// Where the planes between splits stand. Source: *Parallel-Split Shadow Maps* (seed 000) section 3.
+/// Where the planes between splits stand. Source: \[PSSM06\] section 3.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SplitScheme {
     /// `C_i = n + (f − n) i/m`: equal slices.
@@ -46,7 +46,7 @@ pub enum RangeFit {
     Camera,
     /// The view depths between which the view shows receivers: their boxes clipped to the frustum, as an empty foreground or a lens
     /// with a tiny near plane would spend splits on air. With [`Stabilize::Exact`] both ends move in geometric steps of 19 %, with
-    /// hysteresis, and maps stand still in between. A logarithmic scheme goes best with it (`docs/measurements.md`).
+    /// hysteresis, and maps stand still in between. A logarithmic scheme goes best with it (`docs/notes/fitted-planes.md`).
     Visible,
 }
 
@@ -69,7 +69,7 @@ pub enum Selection {
     Depth,
     /// The first (finest) whose map contains it, filter and depth included: sharper where maps reach beyond their slices, and most
     /// so where view and light are nearly parallel. Lists hold all that can shade what a map covers and no earlier one takes.
-    /// Source: *Practical Cascaded Shadow Maps* (seed 003), "Non-optimized split selection"; our deviations: the filter's
+    /// Source: \[PCSM\], "Non-optimized split selection"; our deviations: the filter's
     /// margin and the depth are part of the question, and the band that blends one map into the next lies along the map's edge.
     Map,
 }
@@ -83,8 +83,8 @@ pub enum Stabilize {
     #[default]
     Exact,
     /// The tight rectangle on axes that are fixed to the light, its extent rounded up to steps, moved in whole texels: tighter than
-    /// [`Stabilize::Exact`], and as still but for the frames in which a step is taken. Source: *Practical Cascaded Shadow
-    /// Maps* (seed 003), "Approximated solution".
+    /// [`Stabilize::Exact`], and as still but for the frames in which a step is taken. Source: \[PCSM\],
+    /// "Approximated solution".
     Approximate(ExtentSteps),
 }
 
@@ -106,7 +106,7 @@ pub enum ExtentSteps {
     /// the rectangle may stand on any of 16 directions that are fixed to the light. Ours. Finer steps are sharper and taken more
     /// often.
     PerDoubling(u32),
-    /// So many equal steps of the unsplit light frustum, 8 to 4096: `s_q = 64 / ceil(64 / s)` for 64 of them, as in seed 003, Listing
+    /// So many equal steps of the unsplit light frustum, 8 to 4096: `s_q = 64 / ceil(64 / s)` for 64 of them, as in \[PCSM\], Listing
     /// 4.1.2, to compare with. A near split of a long range falls to the first levels. The unsplit frustum has to stand
     /// still itself; the source does not say how, ours is the sphere around the whole range.
     Levels(u32),
@@ -270,7 +270,7 @@ impl ShadowSettings {
             }
         }
         self.check_warps()?;
-        Bands::check(self)?;
+        self.check_bands()?;
         match &self.scheme {
             SplitScheme::Uniform | SplitScheme::Logarithmic | SplitScheme::Fitted => {}
             SplitScheme::Practical { lambda, delta } => {
@@ -296,6 +296,30 @@ impl ShadowSettings {
                     return Err(Error::setting("planes", format!("{planes:?} do not rise strictly")));
                 }
             }
+        }
+        Ok(())
+    }
+
+    /// What radial bands cannot be combined with, whatever the camera.
+    fn check_bands(&self) -> Result<()> {
+        let excludes = |second, reason: &str| {
+            Err(Error::ConflictingSettings { first: "bands", second, reason: reason.to_owned() })
+        };
+        if self.bands == Bands::Planar {
+            return Ok(());
+        }
+        if self.range_fit == RangeFit::Visible {
+            return excludes(
+                "range_fit",
+                "radial bands stand still while the camera turns and a visible range does not; \
+                 set range_fit to Camera, or bands to Planar",
+            );
+        }
+        if self.selection == Selection::Map {
+            return excludes(
+                "selection",
+                "maps that are chosen by what they contain have no bands; set selection to Depth, or bands to Planar",
+            );
         }
         Ok(())
     }

@@ -32,6 +32,45 @@ pub enum Warp {
     },
 }
 
+impl Warp {
+    /// The word of each warp.
+    pub const WORDS: &'static [crate::config::Word] = &[
+        crate::config::Word { word: "none", help: "Evenly" },
+        crate::config::Word { word: "psm", help: "As a perspective shadow map" },
+        crate::config::Word { word: "lispsm", help: "As a light space perspective shadow map" },
+        crate::config::Word { word: "tsm", help: "As a trapezoidal shadow map" },
+    ];
+
+    /// The warp's word in config files and on the command line.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Psm => "psm",
+            Self::Lispsm => "lispsm",
+            Self::Tsm { .. } => "tsm",
+        }
+    }
+}
+
+impl std::str::FromStr for Warp {
+    type Err = String;
+
+    /// The warp of this word; a trapezoid has the usual focus of 0.3.
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "none" => Ok(Self::None),
+            "psm" => Ok(Self::Psm),
+            "lispsm" => Ok(Self::Lispsm),
+            "tsm" => Ok(Self::Tsm { focus: USUAL_FOCUS }),
+            _ => Err(crate::config::unknown("warp", text, Self::WORDS)),
+        }
+    }
+}
+
+/// Share of the depth range that a trapezoidal map focuses on where nothing says another.
+const USUAL_FOCUS: f64 = 0.3;
+
 /// Where the focus line of a trapezoid lands: the near 80 % of the map, as NDC from +1 (near) to −1 (far).
 const FOCUS_LINE: f64 = -0.6;
 

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use umbrage::{
-    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Light, Planner, PointLight, ShadowSettings, SplitScheme,
-    SpotLight, Stabilize, View, Warp,
+    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Light, PlanInputs, Planner, PointLight, ShadowPlan,
+    ShadowSettings, SplitScheme, SpotLight, Stabilize, View, Warp,
 };
 
 #[test]
@@ -38,13 +38,16 @@ fn only_the_first_frame_allocates() {
             let settings = ShadowSettings { fit, stabilize, scheme, ..ShadowSettings::default() };
             let mut planner = Planner::new(settings).expect("valid");
             let view = view(0.3).expect("valid");
-            planner.plan(&view, &light, &world, &world).expect("valid");
+            let inputs = PlanInputs::new(&view, light, &world, &world);
+            let inputs = PlanInputs { receiver_clusters: Some(&world), ..inputs };
+            let mut plan = ShadowPlan::default();
+            planner.plan_into(&inputs, &mut plan).expect("valid");
             // What is held stands among the candidates from the second frame on.
-            planner.plan(&view, &light, &world, &world).expect("valid");
-            planner.tell_parts(&world).expect("valid");
+            planner.plan_into(&inputs, &mut plan).expect("valid");
             let again = allocation_counter::measure(|| {
-                planner.plan(&view, &light, &world, &world).expect("valid");
-                planner.tell_parts(&world).expect("valid");
+                for _ in 0..30 {
+                    planner.plan_into(&inputs, &mut plan).expect("valid");
+                }
             });
             assert_eq!(again.count_total, 0, "{fit:?} {stabilize:?} fitted planes allocated {again:?}");
         }

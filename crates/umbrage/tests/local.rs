@@ -256,7 +256,7 @@ proptest! {
         let plan = planned(&case, &mut planner)?;
         let light = case.light.position().expect("a local light");
         for point in points.into_iter().map(|p| DVec3::from(p) + case.view.eye()) {
-            let Some(split) = planner.covering_split(point) else { continue };
+            let Some(split) = plan.covering_split(point) else { continue };
             for (index, bounds) in case.boxes.iter().enumerate() {
                 if shading(bounds, light, point).is_some() {
                     prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} answers for {point} without caster {index}");

@@ -4,8 +4,8 @@ use glam::{DQuat, DVec3, EulerRot};
 use proptest::prelude::*;
 use umbrage::DepthConvention::{MinusOneToOne, ZeroToOne};
 use umbrage::{
-    Aabb, Bands, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, Projection, RangeFit, Selection, ShadowPlan,
-    ShadowSettings, SplitScheme, Stabilize, View, Warp,
+    Aabb, Bands, DirectionalLight, ExtentSteps, Fit, Frustum, PlanInputs, Planner, Projection, RangeFit, Selection,
+    ShadowPlan, ShadowSettings, SplitScheme, Stabilize, View, Warp,
 };
 
 /// A world of boxes on and around a ground, a view and a sun, biased to the awkward: a sun straight down or level, a view into
@@ -214,10 +214,10 @@ fn parts_beside_and_below_what_a_split_serves_do_not_reach_it() {
     let plan = planner.plan(&view, &light, &[block], &[ground]).expect("valid");
     assert_eq!((plan.casters(0), plan.casters(1)), (&[0][..], &[0][..]));
     let part = |y: f64, z: f64| Aabb::new(DVec3::new(-0.5, y, z), DVec3::new(0.5, y + 1.0, z + 1.0));
-    assert!(planner.reaches(0, &part(3.0, -10.0)) && !planner.reaches(1, &part(3.0, -10.0)), "before the second slice");
-    assert!(planner.reaches(1, &part(3.0, -36.0)) && !planner.reaches(0, &part(3.0, -36.0)), "behind the first slice");
-    assert!(planner.reaches(0, &part(500.0, -10.0)), "however high");
-    assert!(!planner.reaches(0, &part(-5.0, -10.0)), "under the ground");
+    assert!(plan.casts_into(0, &part(3.0, -10.0)) && !plan.casts_into(1, &part(3.0, -10.0)), "before the second slice");
+    assert!(plan.casts_into(1, &part(3.0, -36.0)) && !plan.casts_into(0, &part(3.0, -36.0)), "behind the first slice");
+    assert!(plan.casts_into(0, &part(500.0, -10.0)), "however high");
+    assert!(!plan.casts_into(0, &part(-5.0, -10.0)), "under the ground");
 }
 
 #[test]
@@ -231,17 +231,21 @@ fn parts_with_no_surface_behind_them_do_not_reach_a_split_that_knows_its_surface
     let pillars = [pillar(-50.0), pillar(-10.0)];
     let block = Aabb::new(DVec3::new(-4.0, 3.0, -52.0), DVec3::new(4.0, 4.0, -5.0));
     let mut planner = Planner::new(settings).expect("valid");
-    planner.plan(&view, &light, &[block], &[pillars[0].union(pillars[1])]).expect("valid");
+    let whole = [pillars[0].union(pillars[1])];
+    let inputs = PlanInputs::new(&view, light, std::slice::from_ref(&block), &whole);
     let part = |x: f64, z: f64| Aabb::new(DVec3::new(x, 3.0, z), DVec3::new(x + 0.5, 4.0, z + 0.5));
-    assert!(planner.reaches(0, &part(-1.5, -30.0)), "between the pillars, as far as their common box tells");
-    planner.tell_parts(&pillars).expect("valid");
-    assert!(!planner.reaches(0, &part(-1.5, -30.0)), "between the pillars");
-    assert!(planner.reaches(0, &part(-1.5, -9.0)) && planner.reaches(0, &part(-1.5, -49.0)), "over a pillar");
-    assert!(planner.reaches(0, &part(-3.5, -9.0)), "beside it, where the sun stands");
-    assert!(!planner.reaches(0, &part(3.5, -9.0)), "beside it, on the far side");
-    assert!(planner.tell_parts(&[Aabb::EMPTY]).is_err());
-    planner.plan(&view, &light, &[block], &[pillars[0].union(pillars[1])]).expect("valid");
-    assert!(planner.reaches(0, &part(-1.5, -30.0)), "a new plan knows no parts yet");
+    let plan = planner.plan_frame(&inputs).expect("valid");
+    assert!(plan.casts_into(0, &part(-1.5, -30.0)), "between the pillars, as far as their common box tells");
+    let plan = planner.plan_frame(&PlanInputs { receiver_clusters: Some(&pillars), ..inputs }).expect("valid");
+    assert!(!plan.casts_into(0, &part(-1.5, -30.0)), "between the pillars");
+    assert!(plan.casts_into(0, &part(-1.5, -9.0)) && plan.casts_into(0, &part(-1.5, -49.0)), "over a pillar");
+    assert!(plan.casts_into(0, &part(-3.5, -9.0)), "beside it, where the sun stands");
+    assert!(!plan.casts_into(0, &part(3.5, -9.0)), "beside it, on the far side");
+    let bad = PlanInputs { receiver_clusters: Some(&[Aabb::EMPTY]), ..inputs };
+    let error = planner.plan_frame(&bad).expect_err("no box");
+    assert!(matches!(error, umbrage::Error::InvalidBounds { list: "receiver_clusters", index: 0, .. }), "{error}");
+    let plan = planner.plan_frame(&inputs).expect("valid");
+    assert!(plan.casts_into(0, &part(-1.5, -30.0)), "a new plan knows no clusters yet");
 }
 
 proptest! {
@@ -251,15 +255,14 @@ proptest! {
     fn no_caster_is_lost_and_every_shadowed_receiver_lies_in_its_map(case in cases(), [by_distance, tells_parts] in any::<[bool; 2]>()) {
         let case = if by_distance { radial(case.clone()).unwrap_or(case) } else { case };
         let mut planner = Planner::new(case.settings.clone())?;
-        let plan = match planner.plan(&case.view, &case.light, &case.boxes, &case.boxes) {
+        let receiver_clusters = tells_parts.then_some(&case.boxes[..]);
+        let inputs = PlanInputs::new(&case.view, case.light, &case.boxes, &case.boxes);
+        let plan = match planner.plan_frame(&PlanInputs { receiver_clusters, ..inputs }) {
             Ok(plan) => plan.clone(),
             // A short range before an endless one may leave no room for eight planes; that is an answer too.
             Err(umbrage::Error::InvalidSetting { .. }) => return Ok(()),
             Err(other) => return Err(TestCaseError::fail(other.to_string())),
         };
-        if tells_parts {
-            planner.tell_parts(&case.boxes)?;
-        }
         let direction = case.light.direction();
         for (owner, point, _) in visible_points(&case, plan.planes[plan.splits.len()]) {
             let depth = plan.depth_at(point);
@@ -280,7 +283,7 @@ proptest! {
                     prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} lost caster {index}, which shades {point} at {depth} m");
                     let (at, reach) = (point - direction * end, 0.02 * (bounds.max - bounds.min));
                     let part = Aabb::new((at - reach).max(bounds.min), (at + reach).min(bounds.max));
-                    prop_assert!(!part.is_valid() || planner.reaches(split, &part), "split {split} leaves out {part:?} of caster {index}, which shades {point}");
+                    prop_assert!(!part.is_valid() || plan.casts_into(split, &part), "split {split} leaves out {part:?} of caster {index}, which shades {point}");
                     prop_assert!(s.contains(point, s.filter_reach), "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
                     let along = s.depth_axis.dot(point);
                     prop_assert!((s.receiver_depths.0..=s.receiver_depths.1).contains(&along), "{point} at {along} m along the light, outside {:?}", s.receiver_depths);
@@ -314,7 +317,7 @@ proptest! {
             prop_assert!(split.u_axis.cross(split.v_axis).abs_diff_eq(split.depth_axis, 1e-9), "the axes are no right-handed frame");
             for &caster in plan.casters(i) {
                 listed[caster as usize].push(i);
-                prop_assert!(planner.reaches(i, &case.boxes[caster as usize]), "caster {caster} is in the list of split {i}");
+                prop_assert!(plan.casts_into(i, &case.boxes[caster as usize]), "caster {caster} is in the list of split {i}");
             }
             // The matrix says what the texels say.
             let point = case.view.eye() + DVec3::new(3.0, -2.0, 5.0);
@@ -395,7 +398,7 @@ proptest! {
         let Ok(plan) = planner.plan(&case.view, &case.light, &case.boxes, &case.boxes) else { return Ok(()) };
         let plan = plan.clone();
         for point in points.into_iter().map(DVec3::from) {
-            let Some(split) = planner.covering_split(point) else { continue };
+            let Some(split) = plan.covering_split(point) else { continue };
             for (index, bounds) in case.boxes.iter().enumerate() {
                 if shades(bounds, point, case.light.direction()) {
                     prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} answers for {point} without caster {index}");

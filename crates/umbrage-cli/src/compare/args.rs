@@ -1,14 +1,16 @@
-//! What was typed after `umbrage compare`.
+//! The options of `umbrage compare`.
 
 use std::path::PathBuf;
 
-use clap::ValueEnum;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
-
-use super::shots::SunSpec;
-use crate::{
-    args::{HeightEncoding, SceneArgs, Switch, TEXTURE_MIB},
+use umbrage_lab::{
+    compare::{
+        preset::{self, Preset},
+        shots::{SunSpec, sun_spec},
+    },
     parse,
+    technique::args::Switch,
 };
 
 const TECHNIQUES_HELP: &str = "\
@@ -72,8 +74,8 @@ pub struct CompareArgs {
     #[arg(long, value_name = "FILE", help_heading = "Techniques")]
     pub techniques_file: Option<PathBuf>,
     /// A known set of techniques, scenes, cameras and suns
-    #[arg(long, value_enum, help_heading = "Techniques")]
-    pub preset: Option<Preset>,
+    #[arg(long, value_parser = preset_parser(), help_heading = "Techniques")]
+    pub preset: Option<&'static Preset>,
     /// Settings for all techniques that do not say otherwise: filter=hard:blend=0
     #[arg(long, value_name = "SETTINGS", help_heading = "Techniques")]
     pub with: Option<String>,
@@ -132,7 +134,7 @@ pub struct CompareArgs {
     #[arg(long, value_name = "DEGREES", value_parser = parse::sun_angle, allow_hyphen_values = true, help_heading = "Shots")]
     pub sun_angle: Option<f64>,
     /// Suns that every camera is seen under, see below [default: own]
-    #[arg(long, value_name = "SUN,…", value_delimiter = ',', value_parser = super::shots::sun_spec, allow_hyphen_values = true, help_heading = "Shots")]
+    #[arg(long, value_name = "SUN,…", value_delimiter = ',', value_parser = sun_spec, allow_hyphen_values = true, help_heading = "Shots")]
     pub suns: Vec<SunSpec>,
     /// A view counts in means and comparisons if the true shadow has this many edge pixels
     #[arg(long, value_name = "PIXELS", default_value_t = umbrage_truth::scores::LEAST_EDGES, help_heading = "Shots")]
@@ -153,6 +155,10 @@ pub struct CompareArgs {
     /// Write one page with sheets, tables and plots here (HTML)
     #[arg(long, value_name = "HTML", help_heading = "Output")]
     pub html: Option<PathBuf>,
+    /// Keep what is finished in this file while the run goes on; if it is cut off, the same command goes on from there. The file goes away
+    /// in the end
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub resume: Option<PathBuf>,
     /// Columns of the sheets; of more shots, evenly chosen ones are shown
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=64), help_heading = "Output")]
     pub columns: u32,
@@ -164,75 +170,8 @@ pub struct CompareArgs {
     pub image_metrics: Switch,
 }
 
-/// `--preset`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Preset {
-    /// A ladder of techniques to stand beside: error, memory and flicker
-    Ladder,
-    /// The paper's Figure 8, columns (a) to (d)
-    Figure8,
-    /// The paper's Figure 8, column (e): the dueling frusta
-    Dueling,
-    /// What stands in the first table of measurements
-    Table,
-    /// The kinds of stabilisation along a walk
-    Stillness,
-    /// The defaults under suns from 80° to 5° above the horizon
-    Suns,
-    /// The five pictures of parallel-split variance shadow maps
-    Psvsm,
-    /// Every filter on the same maps
-    Filters,
-    /// Splits chosen by view depth and by map, coloured: Figure 4.1.9 of Practical Cascaded Shadow Maps
-    Selection,
-    /// SSM(2048) beside PSSM(3; 1024): GPU Gems 3, Figure 10-8
-    GemsFigure,
-    /// PSSM(3; 1024) and PSSM(4; 1024) at 1280 × 1024 pixels: GPU Gems 3, section 10.5, in a scene of your choice
-    GemsResults,
-}
-
-impl CompareArgs {
-    /// Pixels across and down.
-    #[must_use]
-    pub fn size(&self) -> [u32; 2] {
-        self.size.or_else(|| super::preset::content(self.preset?).size).unwrap_or([800, 600])
-    }
-
-    /// Whether pictures show each split in its own colour.
-    #[must_use]
-    pub fn tinted(&self) -> bool {
-        self.tint || self.preset.is_some_and(|preset| super::preset::content(preset).tint)
-    }
-
-    /// What the options say about one scene, seen by no camera in particular.
-    #[must_use]
-    pub fn scene_args(&self, scene: &str) -> SceneArgs {
-        SceneArgs {
-            scene: scene.to_owned(),
-            metres_per_post: self.metres_per_post,
-            metres_per_unit: self.metres_per_unit,
-            height_offset: self.height_offset,
-            height_encoding: HeightEncoding::default(),
-            texture_memory: TEXTURE_MIB,
-            parent_folders: false,
-            move_scene: self.move_scene,
-            time: self.time,
-            size: self.size(),
-            camera: None,
-            eye: None,
-            target: None,
-            fov: self.fov,
-            near: self.near,
-            far: self.far,
-            path: None,
-            frames: None,
-            eye_height: self.eye_height,
-            light: self.light.clone(),
-            sun: self.sun,
-            sun_to: None,
-            sun_step: None,
-            sun_fade: None,
-            sun_angle: self.sun_angle,
-        }
-    }
+/// The names of the laboratory's presets.
+fn preset_parser() -> impl TypedValueParser<Value = &'static Preset> {
+    let names = preset::ALL.map(|preset| PossibleValue::new(preset.name).help(preset.about));
+    PossibleValuesParser::new(names).try_map(|name| preset::named(&name).ok_or("there is no such preset"))
 }

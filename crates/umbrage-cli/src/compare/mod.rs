@@ -1,43 +1,13 @@
 //! `umbrage compare`: any techniques on any shots, judged by rays.
-//!
-//! [`techniques`] reads what is compared, [`shots`] where; [`run()`] draws every mask by the same path as `umbrage render
-//! --visibility`, scores it ([`judge`], and along walks [`stillness`]) and keeps the numbers ([`report`]) and the pictures (`columns`, [`sheet`]); `page`
-//! makes one HTML page of both.
 
 pub mod args;
-mod columns;
-mod inset;
-pub mod judge;
-mod order;
-mod page;
-mod preset;
-pub mod report;
-mod run;
-pub mod sheet;
-pub mod shots;
-pub mod stillness;
-pub mod techniques;
-mod text;
+mod job;
 
-pub use run::run;
+pub use args::CompareArgs;
 
-#[cfg(test)]
-mod tests {
-    use umbrage::DirectionalLight;
-    use umbrage_scene::procedural::World;
-    use umbrage_truth::Truth;
+use umbrage_lab::{compare, failure::Result};
 
-    use super::judge::Judged;
-
-    /// The first camera of the Huge Chessboard under its own sun.
-    pub fn chessboard_shot(size: [u32; 2]) -> Judged {
-        let scene = World::Chessboard.build();
-        let pose = scene.pose(0.0).expect("a pose");
-        let aspect = f64::from(size[0]) / f64::from(size[1]);
-        let view = umbrage_scene::camera_view(&scene, &pose, 0, aspect, None, None).expect("a camera");
-        let travel = umbrage_scene::light_direction(&scene, &pose, 0).expect("a sun");
-        let truth = Truth::build(&scene, &pose, view.eye()).expect("the truth");
-        let sun = DirectionalLight::new(travel).expect("a sun");
-        Judged::new(&truth, &pose, &view, &sun.into(), size, None).expect("judged")
-    }
+/// Runs the subcommand.
+pub fn run(args: &CompareArgs) -> Result<()> {
+    compare::run(job::job(args)?)
 }

@@ -15,6 +15,7 @@ mod cameras;
 mod container;
 mod decompose;
 mod draco;
+mod exact;
 mod extensions;
 mod hierarchy;
 mod images;
@@ -34,6 +35,7 @@ use std::path::Path;
 
 use budget::Used;
 use buffers::Buffers;
+use exact::Exact;
 use gltf::json;
 use notes::Notes;
 
@@ -107,7 +109,8 @@ fn load(file: &str, bytes: &[u8], options: &GltfOptions, external: External<'_>)
     }
     let buffers = Buffers::new(&root, chunks.binary);
     let used = Used::new(bytes.len());
-    let document = Document { file, root, broken, options, buffers, external, used, notes };
+    let exact = Exact::of(chunks.json);
+    let document = Document { file, root, exact, broken, options, buffers, external, used, notes };
 
     let (materials, textures, texture_coordinates) = materials::load(&document)?;
     let mut scene = Scene { name: file.to_owned(), materials, textures, ..Scene::default() };
@@ -123,6 +126,7 @@ fn load(file: &str, bytes: &[u8], options: &GltfOptions, external: External<'_>)
 struct Document<'a> {
     file: &'a str,
     root: json::Root,
+    exact: Exact,
     broken: text::Broken,
     options: &'a GltfOptions,
     buffers: Buffers<'a>,

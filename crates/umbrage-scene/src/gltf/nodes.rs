@@ -6,6 +6,7 @@ use gltf::json;
 use super::budget::Part;
 use super::buffers::{self, Integers};
 use super::decompose::decompose;
+use super::exact::{ExactNode, or_rounded};
 use super::hierarchy::{self, Hierarchy, node_name};
 use super::{Document, cameras, lights};
 use crate::error::element;
@@ -62,7 +63,7 @@ fn add_node(
 ) -> Result<()> {
     let json = &document.root.nodes[index];
     let user = node_name(document, index);
-    let (local, inner) = transform(document, json, &user)?;
+    let (local, inner) = transform(document, json, document.exact.node(index), &user)?;
     let parent = hierarchy.parent[index].map(|parent| places.of_file_node[parent]);
     let mut node = Node { name: json.name.clone().unwrap_or_default(), parent, local, ..Node::default() };
     if let Some(inner) = inner {
@@ -106,10 +107,10 @@ fn add_node(
 }
 
 /// The local transform of a node, in two parts if its matrix shears.
-fn transform(document: &Document<'_>, json: &json::Node, user: &str) -> Result<(Trs, Option<Trs>)> {
+fn transform(document: &Document<'_>, json: &json::Node, exact: ExactNode, user: &str) -> Result<(Trs, Option<Trs>)> {
     if let Some(m) = json.matrix {
         document.finite(user, "matrix", &m)?;
-        let m = affine(&m.map(f64::from)).ok_or_else(|| {
+        let m = affine(&or_rounded(exact.matrix, m)).ok_or_else(|| {
             document.invalid(user, "has a matrix whose last row is not 0 0 0 1; only affine transforms place a node")
         })?;
         let column = |i: usize| DVec3::new(m[i], m[i + 1], m[i + 2]);
@@ -122,9 +123,9 @@ fn transform(document: &Document<'_>, json: &json::Node, user: &str) -> Result<(
     let rotation = json.rotation.unwrap_or_default().0;
     document.finite(user, "rotation", &rotation)?;
     let local = Trs {
-        translation: translation.map(f64::from).into(),
-        rotation: rotation_or_none(document, rotation, user),
-        scale: scale.map(f64::from).into(),
+        translation: or_rounded(exact.translation, translation).into(),
+        rotation: rotation_or_none(document, or_rounded(exact.rotation, rotation), user),
+        scale: or_rounded(exact.scale, scale).into(),
     };
     Ok((local, None))
 }
@@ -137,15 +138,15 @@ fn affine(m: &[f64; 16]) -> Option<[f64; 16]> {
 }
 
 /// A rotation; none, with a note, where the quaternion has no length.
-fn rotation_or_none(document: &Document<'_>, xyzw: [f32; 4], user: &str) -> DQuat {
+fn rotation_or_none(document: &Document<'_>, xyzw: [f64; 4], user: &str) -> DQuat {
     unit_quaternion(xyzw).unwrap_or_else(|| {
         document.notes.add(user, "has a rotation of length 0; it is not rotated");
         DQuat::IDENTITY
     })
 }
 
-fn unit_quaternion(xyzw: [f32; 4]) -> Option<DQuat> {
-    let q = DQuat::from_array(xyzw.map(f64::from));
+fn unit_quaternion(xyzw: [f64; 4]) -> Option<DQuat> {
+    let q = DQuat::from_array(xyzw);
     (q.length() > 0.0 && q.length().is_finite()).then(|| q.normalize())
 }
 
@@ -185,7 +186,7 @@ fn instances(document: &Document<'_>, extension: &serde_json::Value, user: &str)
     let instance = |i: usize| Trs {
         translation: vector(&translations, i).unwrap_or(DVec3::ZERO),
         rotation: match rotations.as_ref().and_then(|list| list.get(i)) {
-            Some(&q) => rotation_or_none(document, q, &user),
+            Some(&q) => rotation_or_none(document, q.map(f64::from), &user),
             None => DQuat::IDENTITY,
         },
         scale: vector(&scales, i).unwrap_or(DVec3::ONE),

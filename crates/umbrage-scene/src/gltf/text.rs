@@ -78,10 +78,9 @@ fn list<'v>(value: &'v mut Value, pointer: &str) -> &'v mut [Value] {
     value.pointer_mut(pointer).and_then(Value::as_array_mut).map_or(&mut [], Vec::as_mut_slice)
 }
 
-/// The text without what writers pad chunks with. Names in another encoding lose the characters that are not UTF-8.
+/// The text. Names in another encoding lose the characters that are not UTF-8.
 fn text<'b>(bytes: &'b [u8], notes: &Notes) -> Cow<'b, str> {
-    let end = bytes.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
-    let text = String::from_utf8_lossy(&bytes[..end]);
+    let text = String::from_utf8_lossy(bytes);
     if matches!(text, Cow::Owned(_)) {
         notes.add("the JSON", "has characters that are not UTF-8; they are replaced");
     }

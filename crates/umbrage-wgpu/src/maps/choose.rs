@@ -51,7 +51,7 @@ pub(crate) struct Chosen {
 /// Finds the path, or says which two options exclude each other.
 pub(crate) fn choose(options: &ShadowMapsOptions, abilities: Abilities) -> Result<Chosen> {
     let (generation, storage) = match (options.generation, options.storage) {
-        // One pass per split draws the fewest vertices and needs nothing of the device (docs/measurements.md).
+        // One pass per split draws the fewest vertices and needs nothing of the device (docs/notes/paths.md).
         (Generation::Auto, Storage::Auto) => (Generation::PerSplit, Storage::Array),
         (Generation::Auto, Storage::Reused) => (Generation::Multipass, Storage::Reused),
         (Generation::Auto, storage) => (Generation::PerSplit, storage),

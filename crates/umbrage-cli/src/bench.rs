@@ -1,0 +1,106 @@
+//! `umbrage bench`: what shadows cost.
+
+use std::path::PathBuf;
+
+use glam::DVec3;
+use umbrage_lab::{
+    bench::{self, Job},
+    failure::Result,
+    parse,
+    scene_request::{CameraChoice, LightChoice, SceneRequest},
+    technique::{args::Switch, text},
+};
+use umbrage_render::Samples;
+use umbrage_scene::procedural::World;
+
+/// The camera of a world that is taken if none is named: shadows near, in the middle and far in one picture.
+const CAMERA: &str = "middle";
+
+/// `umbrage bench`.
+#[derive(Debug, clap::Args)]
+pub struct BenchArgs {
+    /// Scenes as for `umbrage render` [default: the four worlds]
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<String>,
+    /// Techniques, as for `umbrage compare`; the first is what the others are divided by
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        default_value = "ssm:1024,pssm:2:512,pssm:3:512,pssm:3:512:scheme=fitted,pssm:4:512"
+    )]
+    pub techniques: Vec<String>,
+    /// All filters over four maps of 1024² instead of techniques, divided by pcf2; over robot-war if no scene is named
+    #[arg(long, conflicts_with_all = ["techniques", "with"])]
+    pub filters: bool,
+    /// Settings for all techniques that do not say otherwise, as for `umbrage compare`; the papers' splits meet in hard borders
+    #[arg(long, value_name = "SETTINGS", default_value = "filter=pcf2:stabilize=none:blend=0")]
+    pub with: String,
+    /// Rounds that are measured, after one that is not
+    #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub rounds: u32,
+    /// Pixels
+    #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = parse::size, allow_hyphen_values = true)]
+    pub size: [u32; 2],
+    /// Samples per pixel of the picture: 1 or 4
+    #[arg(long, value_name = "N", default_value = "1", value_parser = ["1", "4"])]
+    pub samples: String,
+    /// Camera by name or number [default: middle, or the scene's first]
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub camera: Option<String>,
+    /// The way light travels [default: the scene's own sun]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true)]
+    pub sun: Option<DVec3>,
+    /// Seconds into the scenes' animations
+    #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = parse::number, allow_hyphen_values = true)]
+    pub time: f64,
+    /// Numbers of objects for GPU Gems' Figure 10-9, four splits each
+    #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "10,30,100,300,1000", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub objects: Vec<u32>,
+    /// Measure every pair of generation and storage on each scene, too, with PSSM(4; 512²)
+    #[arg(long, value_enum, default_value_t)]
+    pub paths: Switch,
+    /// Write all figures here (JSON)
+    #[arg(long, value_name = "JSON", help_heading = "Output")]
+    pub json: Option<PathBuf>,
+    /// Write one page with tables and plots here (HTML)
+    #[arg(short = 'o', long = "output", value_name = "HTML", help_heading = "Output")]
+    pub html: Option<PathBuf>,
+}
+
+/// Runs the subcommand.
+pub fn run(args: &BenchArgs) -> Result<()> {
+    let (texts, with) =
+        if args.filters { (bench::filter_techniques(), "") } else { (args.techniques.clone(), &*args.with) };
+    let techniques = text::parse_all(&texts, with, args.size)?;
+    let scenes: Vec<String> = match &args.scenes[..] {
+        [] if args.filters => vec![World::RobotWar.name().to_owned()],
+        [] => World::ALL.iter().map(|world| world.name().to_owned()).collect(),
+        given => given.to_vec(),
+    };
+    bench::run(&Job {
+        scenes: scenes.iter().map(|scene| scene_request(args, scene)).collect::<Result<_>>()?,
+        techniques,
+        with: with.to_owned(),
+        rounds: args.rounds,
+        size: args.size,
+        samples: if args.samples == "4" { Samples::Four } else { Samples::One },
+        objects: if args.filters { Vec::new() } else { args.objects.clone() },
+        paths: args.paths == Switch::On,
+        paths_with: args.with.clone(),
+        json: args.json.clone(),
+        html: args.html.clone(),
+    })
+}
+
+/// The scene, by the camera that was named, the one in the middle of a world, or its first.
+fn scene_request(args: &BenchArgs, scene: &str) -> Result<SceneRequest> {
+    let of_world = World::from_name(scene).map(|_| CAMERA.to_owned());
+    let camera = args.camera.clone().or(of_world);
+    let request = SceneRequest {
+        time_s: args.time,
+        light: args.sun.map_or(LightChoice::Default, LightChoice::Given),
+        ..SceneRequest::new(scene, args.size)
+    };
+    request.with_camera(camera.map_or(CameraChoice::Default, CameraChoice::Named))
+}

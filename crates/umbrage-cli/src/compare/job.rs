@@ -1,0 +1,251 @@
+//! What `umbrage compare` is to do: options and preset taken together, everything checked that can be before a frame is drawn.
+
+use std::path::Path;
+
+use umbrage_lab::{
+    compare::{
+        Job, Outputs, Settings,
+        shots::{SceneShots, ShotRequest, Stride, sun_spec},
+    },
+    failure::{Failure, Result},
+    scene_request::{CameraChoice, SceneRequest},
+    technique::{
+        Technique,
+        args::Switch,
+        text::{self, Rejected},
+    },
+};
+use umbrage_scene::{HeightMapOptions, OpenOptions};
+
+use super::args::CompareArgs;
+use crate::scene_args::light_choice;
+
+/// Pixels across and down where neither the options nor the preset say any.
+const DEFAULT_SIZE: [u32; 2] = [800, 600];
+
+/// # Errors
+/// [`Failure::Input`] naming the option, technique or file at fault.
+pub fn job(args: &CompareArgs) -> Result<Job> {
+    let files = [&args.sheet, &args.errors, &args.json, &args.html].map(Clone::clone);
+    let outputs = Outputs::new(args.folder.clone(), files)?;
+    let mut notes = Vec::new();
+    let techniques = techniques_of(args, &mut notes)?;
+    let scenes = scenes_of(args)?;
+    let mut inputs: Vec<&Path> = scenes.iter().map(Path::new).collect();
+    inputs.extend([&args.path, &args.techniques_file].into_iter().flatten().map(AsRef::<Path>::as_ref));
+    outputs.check(&inputs)?;
+    let shots = shot_request(args, scenes.len())?;
+    let scenes = scenes.iter().map(|scene| shots.open(scene)).collect::<Result<Vec<SceneShots>>>()?;
+    let settings = Settings {
+        size: size(args),
+        shadow_range: args.shadow_range,
+        sun_angle: args.sun_angle,
+        least_edges: args.least_edges,
+        columns: args.columns as usize,
+        tint: args.tint || args.preset.is_some_and(|preset| preset.tint),
+        image_metrics: args.image_metrics == Switch::On,
+    };
+    let command = ["umbrage".to_owned()].into_iter().chain(std::env::args().skip(1)).collect();
+    Ok(Job { techniques, scenes, settings, outputs, notes, resume: args.resume.clone(), command })
+}
+
+fn size(args: &CompareArgs) -> [u32; 2] {
+    args.size.or_else(|| args.preset?.size).unwrap_or(DEFAULT_SIZE)
+}
+
+fn techniques_of(args: &CompareArgs, notes: &mut Vec<String>) -> Result<Vec<Technique>> {
+    let (preset, size) = (args.preset, size(args));
+    let mut with = text::parse_with(preset.map_or("", |preset| preset.with))?;
+    let mut sources = Vec::new();
+    for text in preset.map_or(&[][..], |preset| preset.techniques) {
+        let source = text::parse(text)?;
+        match source.finish(&with, args.shadow_range, size) {
+            Ok(_) => sources.push(source),
+            Err(Rejected::NotBuilt(failure)) => notes.push(format!("left out of the preset: {failure}")),
+            Err(Rejected::Wrong(failure)) => return Err(failure),
+        }
+    }
+    if let Some(path) = &args.techniques_file {
+        let (with_of_file, from_file) = text::load(path)?;
+        with.extend(with_of_file);
+        sources.extend(from_file);
+    }
+    for text in &args.techniques {
+        sources.push(text::parse(text)?);
+    }
+    with.extend(text::parse_with(args.with.as_deref().unwrap_or(""))?);
+    if sources.is_empty() {
+        return Err(Failure::input(
+            "no technique: give --techniques (for example pssm:4:1024,ssm:2048), --techniques-file or --preset",
+        ));
+    }
+    Ok(text::finish(&sources, &with, args.shadow_range, size)?)
+}
+
+fn scenes_of(args: &CompareArgs) -> Result<Vec<String>> {
+    match args.preset {
+        _ if !args.scenes.is_empty() => Ok(args.scenes.clone()),
+        Some(preset) if preset.scenes.is_empty() => {
+            Err(Failure::input("no scene: the preset has none of its own; give one, such as assets/city_candela.glb"))
+        }
+        Some(preset) => Ok(preset.scenes.iter().map(|&scene| scene.to_owned()).collect()),
+        None => Err(Failure::input("no scene: give one or more, or a --preset")),
+    }
+}
+
+/// Which views of each scene: what was typed, then what the preset says.
+fn shot_request(args: &CompareArgs, scenes: usize) -> Result<ShotRequest> {
+    let preset = args.preset;
+    if args.path.is_some() && scenes > 1 {
+        return Err(Failure::input("--path goes through one scene; give one scene"));
+    }
+    if args.frames == Some(0) {
+        return Err(Failure::input("--frames 0 asks for no frame; give 1 or more"));
+    }
+    let stride = stride_of(args, preset.and_then(|preset| preset.stride))?;
+    let suns = match preset {
+        _ if !args.suns.is_empty() => Some(args.suns.clone()),
+        Some(preset) if args.sun.is_none() && args.light.is_none() => {
+            Some(preset.suns.iter().map(|text| sun_spec(text).map_err(Failure::other)).collect::<Result<_>>()?)
+        }
+        _ => None,
+    };
+    let base = SceneRequest {
+        files: OpenOptions {
+            height_map: HeightMapOptions {
+                metres_per_post: args.metres_per_post,
+                metres_per_unit: args.metres_per_unit,
+                height_offset: args.height_offset,
+                ..HeightMapOptions::default()
+            },
+            ..OpenOptions::default()
+        },
+        move_scene: args.move_scene,
+        time_s: args.time,
+        fov: args.fov,
+        near: args.near.or(preset.and_then(|preset| preset.near)),
+        far: args.far.or(preset.and_then(|preset| preset.far)),
+        light: light_choice(args.light.as_deref(), args.sun)?,
+        sun_angle: args.sun_angle,
+        ..SceneRequest::new("", size(args))
+    };
+    Ok(ShotRequest { base, cameras: cameras_of(args)?, suns, stride })
+}
+
+/// Cameras by name, by a point to look at and along a path; none: all that a scene has.
+fn cameras_of(args: &CompareArgs) -> Result<Vec<CameraChoice>> {
+    let typed = !args.camera.is_empty() || args.eye.is_some() || args.path.is_some();
+    let mut cameras: Vec<CameraChoice> = match args.preset {
+        Some(preset) if !typed => preset.cameras.iter().map(|&name| CameraChoice::Named(name.to_owned())).collect(),
+        _ => args.camera.iter().cloned().map(CameraChoice::Named).collect(),
+    };
+    match (args.eye, args.target) {
+        (Some(eye), Some(target)) => cameras.push(CameraChoice::LookAt { eye, target }),
+        (None, None) => {}
+        (Some(_), None) => return Err(Failure::input("--eye without --target: give the point to look at")),
+        (None, Some(_)) => return Err(Failure::input("--target without --eye: give the point to look from")),
+    }
+    if let Some(file) = &args.path {
+        let frames = Some(args.frames.unwrap_or(1));
+        cameras.push(CameraChoice::Path { file: file.clone(), frames, eye_height: args.eye_height });
+    }
+    Ok(cameras)
+}
+
+/// `--step`, `--turn`, `--zoom` and `--frames`, what is not said taken from the preset.
+fn stride_of(args: &CompareArgs, preset: Option<Stride>) -> Result<Option<Stride>> {
+    let typed = [("--step", args.step), ("--turn", args.turn), ("--zoom", args.zoom)];
+    if let Some((option, _)) = typed.iter().find(|(_, value)| value.is_some()) {
+        let frames = args.frames.or(preset.map(|preset| preset.frames)).unwrap_or(2);
+        if frames < 2 {
+            return Err(Failure::input(format!("{option} with --frames 1 goes nowhere; give --frames 2 or more")));
+        }
+        let still = Stride { metres: 0.0, turn: 0.0, zoom: 1.0, frames };
+        return Ok(Some(Stride {
+            metres: args.step.unwrap_or(still.metres),
+            turn: args.turn.unwrap_or(still.turn),
+            zoom: args.zoom.unwrap_or(still.zoom),
+            frames,
+        }));
+    }
+    match (args.frames, preset) {
+        (Some(frames), Some(preset)) if args.path.is_none() => Ok((frames > 1).then_some(Stride { frames, ..preset })),
+        (Some(_), None) if args.path.is_none() => Err(Failure::input(
+            "--frames needs a way to go: give --path FILE, --step M, --turn DEGREES or --zoom FACTOR",
+        )),
+        _ => Ok(preset),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+    use umbrage_lab::technique::args::{Filter, Stabilize};
+
+    use umbrage_lab::compare::shots::SunSpec;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        args: CompareArgs,
+    }
+
+    fn args(words: &str) -> CompareArgs {
+        Line::try_parse_from(["compare"].into_iter().chain(words.split_whitespace())).expect("an argument list").args
+    }
+
+    #[test]
+    fn presets_hold_only_what_exists_and_say_so() {
+        for preset in ["ladder", "figure8", "dueling", "table"] {
+            let args = args(&format!("--preset {preset} -o x"));
+            let content = args.preset.expect("a preset");
+            let mut notes = Vec::new();
+            let techniques = techniques_of(&args, &mut notes).expect(preset);
+            assert_eq!(techniques.len() + notes.len(), content.techniques.len(), "{preset}: {notes:?}");
+            assert!(techniques.len() >= 4 && notes.is_empty(), "{preset}");
+            let mut labels: Vec<_> = techniques.iter().map(|technique| &technique.label).collect();
+            labels.sort();
+            labels.dedup();
+            assert!(labels.len() == techniques.len() && labels.iter().all(|label| !label.contains('#')), "{labels:?}");
+            shot_request(&args, 4).expect("shots");
+        }
+    }
+
+    #[test]
+    fn what_was_typed_goes_before_the_preset() {
+        let args = args("robot-war --preset ladder --with filter=pcf3 --suns 30 --near 2 --camera near,far -o x");
+        let techniques = techniques_of(&args, &mut Vec::new()).expect("techniques");
+        assert!(techniques.iter().all(|technique| technique.job.filter == Filter::Pcf3));
+        assert!(techniques.iter().any(|technique| technique.job.stabilize == Stabilize::Exact));
+        let shots = shot_request(&args, 1).expect("shots");
+        assert_eq!((shots.base.near, shots.base.far), (Some(2.0), Some(500.0)));
+        assert_eq!(shots.cameras, ["near", "far"].map(|name| CameraChoice::Named(name.into())));
+        assert_eq!(shots.suns, Some(vec![SunSpec::At { elevation: 30.0, bearing: None }]));
+        assert_eq!(scenes_of(&args).expect("a scene"), ["robot-war"]);
+    }
+
+    #[test]
+    fn a_walk_needs_a_way_to_go() {
+        for (words, culprit) in [
+            ("a --frames 0 -o x", "--frames 0"),
+            ("a --frames 5 -o x", "--step"),
+            ("a --step 1 --frames 1 -o x", "--step"),
+            ("a --zoom 2 --frames 1 -o x", "--zoom"),
+        ] {
+            let message = shot_request(&args(words), 1).expect_err(words).to_string();
+            assert!(message.contains(culprit), "{words}: {message}");
+        }
+        assert!(shot_request(&args("a b --path p.json -o x"), 2).is_err());
+        assert_eq!(
+            shot_request(&args("a --step 0.5 -o x"), 1).expect("steps").stride,
+            Some(Stride { metres: 0.5, turn: 0.0, zoom: 1.0, frames: 2 })
+        );
+        assert_eq!(
+            shot_request(&args("a --turn -1 --zoom 1.1 --frames 9 -o x"), 1).expect("turns").stride,
+            Some(Stride { metres: 0.0, turn: -1.0, zoom: 1.1, frames: 9 })
+        );
+        assert_eq!(shot_request(&args("a --path p --frames 5 -o x"), 1).expect("a path").stride, None);
+    }
+}

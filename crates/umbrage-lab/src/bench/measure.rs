@@ -1,0 +1,116 @@
+//! Rounds of one scene: every technique in turn, with shadows and without.
+
+use std::time::Instant;
+
+use indicatif::ProgressBar;
+use umbrage_render::{FrameStats, Gpu, Outputs, Renderer};
+
+use super::{
+    job::Job,
+    report::{Counts, Row},
+    summary::Summary,
+};
+use crate::{
+    failure::Result,
+    lights,
+    scene_setup::SceneSetup,
+    technique::{Technique, args::wgpu_filter},
+};
+
+/// One technique's measurements, round by round, in milliseconds.
+#[derive(Default)]
+struct Rounds {
+    plan: Vec<f64>,
+    shadow: Vec<f64>,
+    frame: Vec<f64>,
+    wall: Vec<f64>,
+    frame_without: Vec<f64>,
+    wall_without: Vec<f64>,
+}
+
+/// Measures `techniques` on the first shot of the setup; the first technique is the baseline of all ratios.
+pub fn measure(
+    gpu: &Gpu,
+    setup: &SceneSetup,
+    techniques: &[Technique],
+    job: &Job,
+    bar: &ProgressBar,
+) -> Result<Vec<Row>> {
+    let mut renderers = Vec::new();
+    for technique in techniques {
+        let lights = lights::slots(&setup.lights);
+        let settings = technique.job.render_settings(job.size, job.samples, None, lights);
+        renderers.push(Renderer::new(gpu, &setup.scene, &settings)?);
+    }
+    let frame = |shadows_on| setup.frame(&setup.shots[0], &setup.shots[0].view, shadows_on, false);
+    let outputs = Outputs { picture: true, ..Outputs::default() };
+    let timed = |renderer: &mut Renderer, shadows_on| -> Result<(f64, FrameStats)> {
+        let begin = Instant::now();
+        let stats = renderer.render(&frame(shadows_on), outputs)?.stats;
+        Ok((1e3 * begin.elapsed().as_secs_f64(), stats))
+    };
+    let mut all: Vec<Rounds> = techniques.iter().map(|_| Rounds::default()).collect();
+    let mut last: Vec<Option<FrameStats>> = techniques.iter().map(|_| None).collect();
+    for round in 0..=job.rounds {
+        for ((renderer, measured), last) in renderers.iter_mut().zip(&mut all).zip(&mut last) {
+            let (wall, stats) = timed(renderer, true)?;
+            let (wall_without, without) = timed(renderer, false)?;
+            // The first round fills caches and compiles; it is not counted.
+            if round > 0 {
+                measured.plan.push(stats.plan_ms);
+                measured.shadow.push(stats.shadow_ms);
+                measured.frame.push(stats.frame_ms);
+                measured.wall.push(wall);
+                measured.frame_without.push(without.frame_ms);
+                measured.wall_without.push(wall_without);
+            }
+            *last = Some(stats);
+            bar.inc(1);
+        }
+    }
+    let [first, ..] = &all[..] else { return Ok(Vec::new()) };
+    Ok(techniques
+        .iter()
+        .zip(&all)
+        .zip(&last)
+        .filter_map(|((technique, measured), stats)| Some(row(technique, measured, first, stats.as_ref()?)))
+        .collect())
+}
+
+fn row(technique: &Technique, measured: &Rounds, baseline: &Rounds, stats: &FrameStats) -> Row {
+    let ratio = |of: &[f64], to: &[f64]| {
+        let ratios: Vec<f64> = of.iter().zip(to).filter(|(_, to)| **to > 0.0).map(|(of, to)| of / to).collect();
+        Summary::of(&ratios)
+    };
+    let cost: Vec<f64> = measured.frame.iter().zip(&measured.frame_without).map(|(on, off)| on - off).collect();
+    let counts = |counts: umbrage_render::PassCounts| Counts {
+        vertices: counts.vertices,
+        primitives: counts.primitives,
+        fragments: counts.fragments,
+    };
+    let sum = |f: fn(&umbrage_render::SplitStats) -> u64| stats.splits.iter().map(f).sum();
+    Row {
+        technique: technique.label.clone(),
+        spec: technique.spec.clone(),
+        splits: stats.splits.len(),
+        generation: stats.generation.to_string(),
+        storage: stats.storage.to_string(),
+        plan_us: Summary::of(&measured.plan.iter().map(|ms| 1e3 * ms).collect::<Vec<_>>()),
+        shadow_ms: Summary::of(&measured.shadow),
+        frame_ms: Summary::of(&measured.frame),
+        wall_ms: Summary::of(&measured.wall),
+        frame_without_ms: Summary::of(&measured.frame_without),
+        wall_without_ms: Summary::of(&measured.wall_without),
+        cost_ms: Summary::of(&cost),
+        frame_ratio: ratio(&measured.frame, &baseline.frame),
+        shadow_ratio: ratio(&measured.shadow, &baseline.shadow),
+        paper_ratio: None,
+        samples: wgpu_filter(technique.job.filter).samples(),
+        pairs: sum(|split| split.casters as u64),
+        draws: u64::from(stats.shadow_draws),
+        triangles: stats.shadow_triangles,
+        map_bytes: stats.bytes,
+        shadow_counts: stats.shadow_counts.map(counts),
+        view_counts: stats.view_counts.map(counts),
+    }
+}

@@ -1,0 +1,391 @@
+//! Everything that was measured, as the JSON has it.
+
+use serde::{Deserialize, Serialize};
+use umbrage_truth::scores::{MemoryAt, Seams, memory_at, paired};
+
+use super::judge::{Cost, Scores, TexelPixels};
+use crate::{failure::Result, report::CameraReport};
+
+/// The error at which techniques are compared by their memory.
+pub const LIMIT: f64 = 0.005;
+
+/// A comparison.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// What was typed.
+    pub command: Vec<String>,
+    /// How one mask is drawn again.
+    pub reproduce: &'static str,
+    /// The graphics adapter.
+    pub adapter: String,
+    /// Pixels across and down.
+    pub size: [u32; 2],
+    /// |B*| of a view that counts.
+    pub least_edges: usize,
+    /// The rows.
+    pub techniques: Vec<TechniqueReport>,
+    /// Every view, whether it counts or not.
+    pub views: Vec<ViewReport>,
+    /// Flicker along walks of two frames or more.
+    pub walks: Vec<WalkReport>,
+    /// Every technique against every later one, by E over the views that count.
+    pub pairs: Vec<PairReport>,
+    /// Memory at which a technique comes down to E = 0.5 %, for those that were measured at two sizes or more.
+    pub memory_at_half_percent: Vec<FamilyReport>,
+    /// What was left out, invented or does not count.
+    pub notes: Vec<String>,
+}
+
+/// A technique and how it does on average.
+#[derive(Clone, Debug, Serialize)]
+pub struct TechniqueReport {
+    /// As in tables.
+    pub label: String,
+    /// The short form, with all settings.
+    pub spec: String,
+    /// What it shares with itself at other sizes.
+    pub family: String,
+    /// As options of `umbrage render`.
+    pub options: Vec<String>,
+    /// Texels of all maps.
+    pub texels: u64,
+    /// Bytes of all maps.
+    pub bytes: u64,
+    /// Means over the views that count.
+    pub mean: Means,
+}
+
+/// Means over the views that count.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "as in Scores and Cost")]
+pub struct Means {
+    /// How many they are.
+    pub views: usize,
+    pub e: Option<f64>,
+    pub e_false_shadow: Option<f64>,
+    pub e_false_light: Option<f64>,
+    pub acne: Option<f64>,
+    pub leak: Option<f64>,
+    pub beyond_edges: Option<f64>,
+    pub e_log: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub e_soft: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub e_pen: Option<f64>,
+    pub edge_distance_px: Option<f64>,
+    pub edge_distance_p95_px: Option<f64>,
+    pub texel_px: Option<TexelPixels>,
+    /// The seam score: E on the borders of splits over the larger E of their sides, pooled over all views; none on fewer than 2,000 pixels.
+    pub seam_ratio: Option<f64>,
+    /// F, over the walks that count.
+    pub flicker: Option<f64>,
+    /// F_edge, over the walks that count.
+    pub flicker_per_edge: Option<f64>,
+    /// The same over points that keep their split.
+    pub kept_flicker_per_edge: Option<f64>,
+    /// The same over points that keep their split while its map takes no step.
+    pub standing_flicker_per_edge: Option<f64>,
+    pub flip: Option<f64>,
+    pub ssim: Option<f64>,
+    pub caster_split_pairs: Option<f64>,
+    pub draws: Option<f64>,
+    pub triangles: Option<f64>,
+    pub by_depth: Vec<DepthMeans>,
+}
+
+/// A bin of depth, over the views that count.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "as in DepthScores")]
+pub struct DepthMeans {
+    /// Geometric mean of the bin's middles, metres.
+    pub depth_m: f64,
+    pub e: Option<f64>,
+    pub predicted_texels_per_px: Option<f64>,
+    pub measured_texels_per_px: Option<f64>,
+}
+
+/// A view.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct ViewReport {
+    /// The scene as it was named.
+    pub scene: String,
+    /// The eye.
+    pub camera: CameraReport,
+    /// Number of the frame in its walk.
+    pub frame: Option<u32>,
+    /// The sun in words.
+    pub sun_name: String,
+    /// The way light travels, if it is a sun's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sun: Option<[f64; 3]>,
+    /// The options of `umbrage render` that show it; along a path they show all its frames.
+    pub options: Vec<String>,
+    /// View depths that are scored, metres.
+    pub range_m: [f64; 2],
+    /// |Ω_f|.
+    pub scored_pixels: usize,
+    /// |B*|.
+    pub true_edges: usize,
+    /// The view rule: whether it counts in means and comparisons.
+    pub counts: bool,
+    /// One per technique, in their order.
+    pub scores: Vec<Scores>,
+}
+
+/// A walk: one camera's frames under one sun.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct WalkReport {
+    /// The scene as it was named.
+    pub scene: String,
+    /// The camera.
+    pub camera: String,
+    /// The sun in words.
+    pub sun_name: String,
+    /// How many frames.
+    pub frames: usize,
+    /// Whether each of its views counts.
+    pub counts: bool,
+    /// One per technique, in their order.
+    pub flicker: Vec<FlickerReport>,
+}
+
+/// Flicker of one technique along one walk.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+pub struct FlickerReport {
+    /// F.
+    pub rate: Option<f64>,
+    /// F_edge; may exceed 1.
+    pub per_edge: Option<f64>,
+    /// F_edge over points that the same split decides on in both frames, without another's share and without a fade.
+    pub kept_per_edge: Option<f64>,
+    /// Those of them whose map took no step, over all pairs of frames.
+    pub standing_points: usize,
+    /// F_edge over them.
+    pub standing_per_edge: Option<f64>,
+    /// How often a map took a step: changed its texel, axes or depth range instead of moving by whole texels. Of a map that is not
+    /// stabilised, how often it moved.
+    pub steps: usize,
+}
+
+/// Two techniques over the same views.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PairReport {
+    /// The first.
+    pub first: String,
+    /// The second.
+    pub second: String,
+    /// Views.
+    pub views: usize,
+    /// Mean of E of the first less E of the second: below 0 the first is better.
+    pub mean_difference: f64,
+    /// Its standard error; none for a single view.
+    pub standard_error: Option<f64>,
+    /// Views in which the first is better.
+    pub first_better: usize,
+    /// Views in which the second is better.
+    pub second_better: usize,
+    /// Views in which they are equal.
+    pub ties: usize,
+}
+
+/// Memory for an error, of one technique at several sizes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FamilyReport {
+    /// The technique without its sizes.
+    pub family: String,
+    /// `at most`, `about` or `more than`.
+    pub bound: &'static str,
+    /// Texels.
+    pub texels: f64,
+}
+
+/// Means of one technique; `number` is its place among the scores of each view.
+#[must_use]
+pub fn means(number: usize, views: &[ViewReport], walks: &[WalkReport]) -> Means {
+    let scores: Vec<&Scores> = views.iter().filter(|view| view.counts).map(|view| &view.scores[number]).collect();
+    let over = |of: &dyn Fn(&Scores) -> Option<f64>| mean(scores.iter().filter_map(|scores| of(scores)));
+    let cost = |of: fn(&Cost) -> u64| over(&|scores| Some(of(&scores.cost) as f64));
+    let texel = |of: fn(&TexelPixels) -> f64| over(&|scores| scores.texel_px.as_ref().map(of));
+    let flicker = |of: fn(&FlickerReport) -> Option<f64>| {
+        mean(walks.iter().filter(|walk| walk.counts).filter_map(|walk| of(&walk.flicker[number])))
+    };
+    let bins = scores.iter().map(|scores| scores.by_depth.len()).max().unwrap_or(0);
+    let by_depth = (0..bins).filter_map(|bin| {
+        let of: Vec<_> = scores.iter().filter_map(|scores| scores.by_depth.get(bin)).collect();
+        Some(DepthMeans {
+            depth_m: mean(of.iter().map(|bin| 0.5 * (bin.near_m.ln() + bin.far_m.ln())))?.exp(),
+            e: mean(of.iter().filter_map(|bin| bin.e)),
+            predicted_texels_per_px: mean(of.iter().filter_map(|bin| bin.predicted_texels_per_px)),
+            measured_texels_per_px: mean(of.iter().filter_map(|bin| bin.measured_texels_per_px)),
+        })
+    });
+    Means {
+        views: scores.len(),
+        e: over(&|scores| scores.e),
+        e_false_shadow: over(&|scores| scores.e_false_shadow),
+        e_false_light: over(&|scores| scores.e_false_light),
+        acne: over(&|scores| scores.acne),
+        leak: over(&|scores| scores.leak),
+        beyond_edges: over(&|scores| scores.beyond_edges),
+        e_log: over(&|scores| scores.e_log),
+        e_soft: over(&|scores| scores.e_soft),
+        e_pen: over(&|scores| scores.e_pen),
+        edge_distance_px: over(&|scores| scores.edge_distance_px),
+        edge_distance_p95_px: over(&|scores| scores.edge_distance_p95_px),
+        texel_px: (|| {
+            Some(TexelPixels {
+                m_p50: texel(|t| t.m_p50)?,
+                m_p99: texel(|t| t.m_p99)?,
+                perspective_p50: texel(|t| t.perspective_p50)?,
+                perspective_p99: texel(|t| t.perspective_p99)?,
+            })
+        })(),
+        seam_ratio: seam_ratio(number, views),
+        flicker: flicker(|f| f.rate),
+        flicker_per_edge: flicker(|f| f.per_edge),
+        kept_flicker_per_edge: flicker(|f| f.kept_per_edge),
+        standing_flicker_per_edge: flicker(|f| f.standing_per_edge),
+        flip: over(&|scores| scores.flip),
+        ssim: over(&|scores| scores.ssim),
+        caster_split_pairs: cost(|cost| cost.caster_split_pairs),
+        draws: cost(|cost| cost.draws),
+        triangles: cost(|cost| cost.triangles),
+        by_depth: by_depth.collect(),
+    }
+}
+
+/// A seam needs pixels, not edges: every view is pooled.
+fn seam_ratio(number: usize, views: &[ViewReport]) -> Option<f64> {
+    let mut sum = Seams::default();
+    views.iter().for_each(|view| sum += view.scores[number].seams.counts);
+    sum.ratio().filter(|ratio| sum.counts() && ratio.is_finite())
+}
+
+/// Every technique against every later one, over the views that count.
+pub fn pairs(labels: &[String], views: &[ViewReport]) -> Result<Vec<PairReport>> {
+    let counting: Vec<&ViewReport> = views.iter().filter(|view| view.counts).collect();
+    let mut pairs = Vec::new();
+    for first in 0..labels.len() {
+        for second in first + 1..labels.len() {
+            let both = counting.iter().filter_map(|view| view.scores[first].e.zip(view.scores[second].e));
+            let (a, b): (Vec<f64>, Vec<f64>) = both.unzip();
+            if a.is_empty() {
+                continue;
+            }
+            let result = paired(&a, &b)?;
+            pairs.push(PairReport {
+                first: labels[first].clone(),
+                second: labels[second].clone(),
+                views: result.views(),
+                mean_difference: result.mean_difference,
+                standard_error: result.standard_error,
+                first_better: result.first_better,
+                second_better: result.second_better,
+                ties: result.ties,
+            });
+        }
+    }
+    Ok(pairs)
+}
+
+/// Memory at [`LIMIT`] of every technique that was measured at two sizes or more.
+pub fn families(techniques: &[TechniqueReport]) -> Result<Vec<FamilyReport>> {
+    let mut families = Vec::new();
+    for (number, technique) in techniques.iter().enumerate() {
+        if techniques[..number].iter().any(|earlier| earlier.family == technique.family) {
+            continue;
+        }
+        let of_family = techniques[number..].iter().filter(|other| other.family == technique.family);
+        let measured: Vec<(f64, f64)> =
+            of_family.filter_map(|other| other.mean.e.map(|e| (other.texels as f64, e))).collect();
+        if measured.len() < 2 {
+            continue;
+        }
+        let (bound, texels) = match memory_at(&measured, LIMIT)? {
+            MemoryAt::AtMost(texels) => ("at most", texels),
+            MemoryAt::About(texels) => ("about", texels),
+            MemoryAt::MoreThan(texels) => ("more than", texels),
+        };
+        families.push(FamilyReport { family: technique.family.clone(), bound, texels });
+    }
+    Ok(families)
+}
+
+/// The mean; `None` of nothing.
+pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (count, sum) = values.fold((0_u32, 0.0), |(count, sum), value| (count + 1, sum + value));
+    (count > 0).then(|| sum / f64::from(count))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn view(counts: bool, errors: &[f64]) -> ViewReport {
+        ViewReport {
+            scene: "s".into(),
+            camera: CameraReport {
+                name: "c".into(),
+                eye: [0.0; 3],
+                forward: [0.0; 3],
+                up: [0.0; 3],
+                fov: None,
+                near: 1.0,
+                far: None,
+            },
+            frame: None,
+            sun_name: "own".into(),
+            sun: None,
+            options: Vec::new(),
+            range_m: [1.0, 2.0],
+            scored_pixels: 1,
+            true_edges: 1,
+            counts,
+            scores: errors.iter().map(|&e| Scores { e: Some(e), ..Scores::default() }).collect(),
+        }
+    }
+
+    #[test]
+    fn views_that_do_not_count_are_in_no_mean_and_no_comparison() {
+        let views = [view(true, &[0.1, 0.2]), view(false, &[0.9, 0.0]), view(true, &[0.3, 0.2])];
+        let first = means(0, &views, &[]);
+        assert_eq!((first.views, first.e.map(|e| (e * 1e9).round())), (2, Some(2e8)));
+        assert_eq!((first.flicker, first.texel_px), (None, None));
+        let pairs = pairs(&["a".into(), "b".into()], &views).expect("pairs");
+        assert_eq!(pairs.len(), 1);
+        assert_eq!((pairs[0].views, pairs[0].first_better, pairs[0].second_better), (2, 1, 1));
+        assert!(pairs[0].mean_difference.abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_technique_does_not_differ_from_itself() {
+        let views = [view(true, &[0.1, 0.1]), view(true, &[0.3, 0.3])];
+        let pairs = pairs(&["a".into(), "a #2".into()], &views).expect("pairs");
+        assert_eq!((pairs[0].mean_difference, pairs[0].ties), (0.0, 2));
+    }
+
+    #[test]
+    fn without_a_view_that_counts_there_is_no_mean() {
+        let views = [view(false, &[0.1, 0.2])];
+        assert_eq!(means(0, &views, &[]), Means::default());
+        assert!(pairs(&["a".into(), "b".into()], &views).expect("pairs").is_empty());
+    }
+
+    #[test]
+    fn families_need_two_sizes() {
+        let technique = |family: &str, texels, e| TechniqueReport {
+            label: String::new(),
+            spec: String::new(),
+            family: family.into(),
+            options: Vec::new(),
+            texels,
+            bytes: 4 * texels,
+            mean: Means { e: Some(e), ..Means::default() },
+        };
+        let techniques = [technique("a", 1000, 0.01), technique("b", 1000, 0.5), technique("a", 4000, 0.0025)];
+        let families = families(&techniques).expect("families");
+        assert_eq!(families.len(), 1);
+        assert_eq!((families[0].family.as_str(), families[0].bound), ("a", "about"));
+        assert!((families[0].texels - 2000.0).abs() < 1.0, "{}", families[0].texels);
+    }
+}

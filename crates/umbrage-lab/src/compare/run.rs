@@ -1,0 +1,407 @@
+//! Draws, asks, scores, writes.
+
+use indicatif::ProgressBar;
+use serde_json::{Value, json};
+use umbrage::Light;
+use umbrage_render::{Frame, Gpu, GpuOptions, Lamp, Outputs, ProbePoint, Renderer, Samples};
+use umbrage_truth::{Truth, scores::shared_points};
+
+use super::{
+    columns::{self, Answer, Place, Plain, columns},
+    job::{Job, Settings},
+    journal::{Finished, Journal},
+    judge::{ViewTruth, score},
+    page,
+    report::{self, Comparison, TechniqueReport, ViewReport, WalkReport},
+    sheet::{self, Column, Label},
+    shots::{SceneShots, Series},
+    stillness::{Answered, Stillness},
+};
+use crate::{
+    failure::{Failure, Result},
+    output::Staged,
+    picture::png,
+    progress,
+    report::to_json,
+    scene_setup,
+    session::adapter_description,
+    technique::{Technique, typed_name},
+};
+
+const REPRODUCE: &str = "umbrage render OPTIONS-OF-THE-VIEW OPTIONS-OF-THE-TECHNIQUE --visibility MASK.png; truth: umbrage truth OPTIONS-OF-THE-VIEW -o TRUTH.png";
+
+/// Draws, scores and writes everything.
+///
+/// # Errors
+/// [`Failure`] naming the technique that cannot be drawn, or the file that cannot be written.
+pub fn run(job: Job) -> Result<()> {
+    let Job { techniques, scenes, settings, outputs, notes, resume, command } = job;
+    let gpu = Gpu::new(&GpuOptions::default())?;
+    let of = description(&techniques, &scenes, &settings, &adapter_description(&gpu));
+    let journal = resume.as_deref().map(|path| Journal::open(path, &of)).transpose()?;
+    let shown = columns::chosen(&scenes, settings.columns);
+    let views: usize = scenes.iter().flat_map(|scene| &scene.series).map(|series| series.views.len()).sum();
+    let mut run = Run {
+        settings: &settings,
+        command,
+        gpu: &gpu,
+        techniques: &techniques,
+        cell: sheet::cell_size(shown.len(), settings.size),
+        shown,
+        bar: progress::steps((views * (techniques.len() + 1)) as u64, "views × techniques"),
+        views: Vec::new(),
+        walks: Vec::new(),
+        columns: [Vec::new(), Vec::new()],
+        journal,
+    };
+    let mut all_notes = notes;
+    if settings.image_metrics && !cfg!(feature = "flip") {
+        all_notes.push("FLIP is left out: it needs a build with the feature flip and a C++ compiler".into());
+    }
+    if let Some(journal) = run.journal.as_ref().filter(|journal| !journal.finished.is_empty() || journal.dropped > 0) {
+        all_notes.push(journal.note());
+    }
+    for (number, scene) in scenes.iter().enumerate() {
+        all_notes.extend(scene.notes.iter().map(|note| format!("{}: {note}", scene.name)));
+        run.scene(number, scene)?;
+    }
+    run.bar.finish_and_clear();
+    let journal = run.journal.take();
+    let (comparison, columns) = run.finish(all_notes)?;
+
+    let labels = labels(&comparison, &techniques);
+    let cell = sheet::cell_size(columns[0].len(), settings.size);
+    let title = |what: &str| format!("{what}, {} × {} pixels", settings.size[0], settings.size[1]);
+    let [pictures, errors] = &columns;
+    let contents = [
+        png(&sheet::assemble(&title("Shadows; insets: where techniques differ most"), &labels, pictures, cell))?,
+        png(&sheet::assemble(
+            &title("Errors on the truth in grey: leaks red, acne blue, flips yellow"),
+            &labels,
+            errors,
+            cell,
+        ))?,
+        to_json(&comparison)?,
+        page::page(&comparison, &labels, &columns)?.into_bytes(),
+    ];
+    let mut staged = Staged::default();
+    outputs.stage(contents, &mut staged)?;
+    staged.commit()?;
+    journal.map_or(Ok(()), Journal::remove)
+}
+
+/// What grows while scenes are gone through.
+struct Run<'a> {
+    settings: &'a Settings,
+    command: Vec<String>,
+    gpu: &'a Gpu,
+    techniques: &'a [Technique],
+    cell: [u32; 2],
+    shown: Vec<Place>,
+    bar: ProgressBar,
+    views: Vec<ViewReport>,
+    walks: Vec<WalkReport>,
+    columns: [Vec<Column>; 2],
+    journal: Option<Journal>,
+}
+
+/// A frame whose points the next one is asked about again.
+struct Before {
+    judged: ViewTruth,
+    /// P_k.
+    points: Vec<ProbePoint>,
+}
+
+impl Run<'_> {
+    fn scene(&mut self, number: usize, set: &SceneShots) -> Result<()> {
+        let Some(first) = set.series.first() else { return Ok(()) };
+        let mut take = |of| self.journal.as_mut().and_then(|journal| journal.take([number, of]));
+        let before: Vec<Option<Finished>> = (0..set.series.len()).map(&mut take).collect();
+        if before.iter().all(Option::is_some) {
+            before.into_iter().flatten().for_each(|finished| self.restore(finished));
+            return Ok(());
+        }
+        let truth = Truth::build(&set.scene, &set.pose, first.views[0].eye())?;
+        let mut renderers = Vec::new();
+        for technique in self.techniques {
+            let lights = vec![first.light.light.into()];
+            let settings =
+                technique.job.render_settings(self.settings.size, Samples::default(), self.settings.sun_angle, lights);
+            let renderer = Renderer::new(self.gpu, &set.scene, &settings);
+            renderers.push(renderer.map_err(|error| in_technique(technique, error))?);
+        }
+        for (of, (series, finished)) in set.series.iter().zip(before).enumerate() {
+            match finished {
+                Some(finished) => self.restore(finished),
+                None => {
+                    let begin = [self.views.len(), self.walks.len(), self.columns[0].len()];
+                    self.series(set, series, [number, of], &truth, &mut renderers)?;
+                    self.keep([number, of], begin)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes over a series that an earlier run finished.
+    fn restore(&mut self, finished: Finished) {
+        self.bar.inc((finished.views.len() * (self.techniques.len() + 1)) as u64);
+        self.views.extend(finished.views);
+        self.walks.extend(finished.walk);
+        for (sheet, columns) in self.columns.iter_mut().zip(finished.columns) {
+            sheet.extend(columns);
+        }
+    }
+
+    /// Keeps the series that begins at these numbers of views, walks and columns.
+    fn keep(&mut self, series: [usize; 2], [views, walks, columns]: [usize; 3]) -> Result<()> {
+        let Some(journal) = &mut self.journal else { return Ok(()) };
+        journal.keep(&Finished {
+            series,
+            views: self.views[views..].to_vec(),
+            walk: self.walks.get(walks).cloned(),
+            columns: [self.columns[0][columns..].to_vec(), self.columns[1][columns..].to_vec()],
+        })
+    }
+
+    fn series(
+        &mut self,
+        set: &SceneShots,
+        series: &Series,
+        [scene, of]: [usize; 2],
+        truth: &Truth,
+        renderers: &mut [Renderer],
+    ) -> Result<()> {
+        for renderer in renderers.iter_mut() {
+            renderer.restart()?;
+        }
+        let first_view = self.views.len();
+        let mut walks: Vec<Stillness> =
+            self.techniques.iter().map(|technique| Stillness::new(technique.job.transition())).collect();
+        let mut before: Option<Before> = None;
+        for (k, view) in series.views.iter().enumerate() {
+            let range = self.settings.shadow_range;
+            let mut judged = ViewTruth::new(truth, &set.pose, view, &series.light.light, self.settings.size, range)?;
+            judged.soften(truth, self.settings.sun_angle)?;
+            self.bar.inc(1);
+            let is_shown = self.shown.contains(&[scene, of, k]);
+            let frame = Frame {
+                pose: &set.pose,
+                view,
+                light: series.light,
+                more_lights: &[],
+                shadows_on: true,
+                tint: self.settings.tint,
+            };
+            let points = match series.views.get(k + 1) {
+                Some(next) => points_shared_with(&judged, next),
+                None => Vec::new(),
+            };
+            let old_points = before.as_ref().map_or(&[][..], |before| &before.points);
+            let both: Vec<ProbePoint> = old_points.iter().chain(&points).copied().collect();
+            let (mut scores, mut shown) = (Vec::new(), Vec::new());
+            for (number, (technique, renderer)) in self.techniques.iter().zip(renderers.iter_mut()).enumerate() {
+                let wanted = Outputs { picture: is_shown, mask: true, maps: false, deferred: technique.job.deferred };
+                let coloured = Frame { tint: frame.tint || technique.job.tint, ..frame };
+                let rendered = renderer.render(&coloured, wanted).map_err(|error| in_technique(technique, error))?;
+                let mask = rendered.mask.ok_or_else(|| Failure::other("the renderer gave no mask"))?;
+                let image_metrics = is_shown && self.settings.image_metrics;
+                let of_view = score(&judged, &mask, &rendered.stats, image_metrics)?;
+                scores.push(of_view.clone());
+                let mut flipped = Vec::new();
+                if !both.is_empty() {
+                    let answers = renderer.probe(&frame, &both).map_err(|error| in_technique(technique, error))?;
+                    let answers: Vec<f32> = answers.iter().map(|answer| answer.visibility).collect();
+                    let (shared, next) = answers.split_at(old_points.len());
+                    let old = before.as_ref().map(|before| (&before.judged.domain, &before.points[..]));
+                    let indices = walks[number].add(Answered { plan: rendered.stats.plan, shared, next }, old)?;
+                    flipped.extend(
+                        indices.iter().filter_map(|&i| pixel_of(view, self.settings.size, old_points[i].position)),
+                    );
+                }
+                if let Some(picture) = rendered.picture {
+                    shown.push(Answer { mask, picture, scores: of_view, flipped });
+                }
+                self.bar.inc(1);
+            }
+            self.views.push(ViewReport {
+                scene: set.name.clone(),
+                camera: scene_setup::camera_report(&series.camera, view),
+                frame: (series.views.len() > 1).then_some(k as u32),
+                sun_name: series.sun_name.clone(),
+                sun: match series.light.light {
+                    Light::Directional(sun) => Some(sun.direction().to_array()),
+                    Light::Spot(_) | Light::Point(_) => None,
+                },
+                options: series.options[k].clone(),
+                range_m: [judged.domain.range().0, judged.domain.range().1],
+                scored_pixels: judged.domain.pixels().len(),
+                true_edges: judged.domain.edges().len(),
+                counts: judged.domain.edges().len() >= self.settings.least_edges && !judged.domain.pixels().is_empty(),
+                scores,
+            });
+            if is_shown {
+                self.show(&judged, &shown, &frame, &mut renderers[0], series)?;
+            }
+            before = Some(Before { judged, points });
+        }
+        if series.views.len() > 1 {
+            self.walks.push(WalkReport {
+                scene: set.name.clone(),
+                camera: series.camera.clone(),
+                sun_name: series.sun_name.clone(),
+                frames: series.views.len(),
+                counts: self.views[first_view..].iter().all(|view| view.counts),
+                flicker: walks.iter().map(Stillness::report).collect(),
+            });
+        }
+        Ok(())
+    }
+
+    /// Adds a column to both sheets.
+    fn show(
+        &mut self,
+        judged: &ViewTruth,
+        answers: &[Answer],
+        frame: &Frame<'_>,
+        renderer: &mut Renderer,
+        series: &Series,
+    ) -> Result<()> {
+        let against = match frame.light.light {
+            Light::Directional(sun) => umbrage::DirectionalLight::new(-sun.direction())?.into(),
+            // Turned off: a lamp has no other side.
+            Light::Spot(_) | Light::Point(_) => Lamp { color: glam::Vec3::ZERO, ..frame.light },
+        };
+        let mut plain = |light| -> Result<_> {
+            let frame = Frame { light, shadows_on: false, ..*frame };
+            let wanted = Outputs { picture: true, mask: false, maps: false, deferred: false };
+            renderer.render(&frame, wanted)?.picture.ok_or_else(|| Failure::other("the renderer gave no picture"))
+        };
+        let plain = Plain { lit: plain(frame.light)?, dark: plain(against)? };
+        let view = self.views.last();
+        let title = view.map_or(String::new(), |view| format!("{} · {}", short(&view.scene), series.camera));
+        let mut lines = vec![series.sun_name.clone()];
+        if let Some(number) = view.and_then(|view| view.frame) {
+            lines.push(format!("frame {number} of {}", series.views.len()));
+        }
+        let warning = columns::warning(&judged.domain, self.settings.least_edges);
+        for (sheet, column) in self.columns.iter_mut().zip(columns(judged, answers, &plain, self.cell)?) {
+            sheet.push(Column { title: title.clone(), lines: lines.clone(), warning: warning.clone(), ..column });
+        }
+        Ok(())
+    }
+
+    fn finish(self, mut notes: Vec<String>) -> Result<(Comparison, [Vec<Column>; 2])> {
+        let reports = self.techniques.iter().enumerate().map(|(number, technique)| TechniqueReport {
+            label: technique.label.clone(),
+            spec: technique.spec.clone(),
+            family: technique.family.clone(),
+            options: technique.options.clone(),
+            texels: technique.texels(),
+            bytes: self.views.first().map_or(0, |view| view.scores[number].cost.bytes),
+            mean: report::means(number, &self.views, &self.walks),
+        });
+        let techniques: Vec<TechniqueReport> = reports.collect();
+        let counting = self.views.iter().filter(|view| view.counts).count();
+        if counting == 0 {
+            notes.push(format!(
+                "no view counts: none has {} edge pixels; there are no means. Give a larger --size, other shots, or a smaller --least-edges",
+                self.settings.least_edges
+            ));
+        } else if counting < self.views.len() {
+            notes.push(format!(
+                "{} of {} views do not count: fewer than {} edge pixels",
+                self.views.len() - counting,
+                self.views.len(),
+                self.settings.least_edges
+            ));
+        }
+        let labels: Vec<String> = techniques.iter().map(|technique| technique.label.clone()).collect();
+        let comparison = Comparison {
+            command: self.command,
+            reproduce: REPRODUCE,
+            adapter: adapter_description(self.gpu),
+            size: self.settings.size,
+            least_edges: self.settings.least_edges,
+            pairs: report::pairs(&labels, &self.views)?,
+            memory_at_half_percent: report::families(&techniques)?,
+            techniques,
+            views: self.views,
+            walks: self.walks,
+            notes,
+        };
+        Ok((comparison, self.columns))
+    }
+}
+
+/// Everything that decides what a series comes to, for the journal.
+fn description(techniques: &[Technique], scenes: &[SceneShots], settings: &Settings, adapter: &str) -> Value {
+    let series = |scene: &SceneShots| {
+        let of = |series: &Series| json!([series.camera, series.sun_name, series.options]);
+        json!({ "scene": scene.name, "series": scene.series.iter().map(of).collect::<Vec<_>>() })
+    };
+    let technique = |technique: &Technique| json!([technique.label, technique.options]);
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "adapter": adapter,
+        "techniques": techniques.iter().map(technique).collect::<Vec<_>>(),
+        "scenes": scenes.iter().map(series).collect::<Vec<_>>(),
+        "size": settings.size,
+        "shadow-range": settings.shadow_range,
+        "sun-angle": settings.sun_angle,
+        "least-edges": settings.least_edges,
+        "columns": settings.columns,
+        "tint": settings.tint,
+        "image-metrics": settings.image_metrics,
+    })
+}
+
+/// Where a point is in the picture.
+fn pixel_of(view: &umbrage::View, size: [u32; 2], point: glam::DVec3) -> Option<[u32; 2]> {
+    let (at, lens) = (view.view_from_world_point(point), view.frustum());
+    let scale = lens.scale_at(-at.z);
+    let across = (at.x / scale - lens.left) / (lens.right - lens.left);
+    let down = (lens.top - at.y / scale) / (lens.top - lens.bottom);
+    let pixel = [across * f64::from(size[0]), down * f64::from(size[1])];
+    let inside = pixel.iter().zip(size).all(|(&at, size)| at >= 0.0 && at < f64::from(size));
+    inside.then_some(pixel.map(|at| at as u32))
+}
+
+/// P_k, as the renderer is asked about it.
+fn points_shared_with(judged: &ViewTruth, next: &umbrage::View) -> Vec<ProbePoint> {
+    let shared = shared_points(&judged.truth, &judged.domain, next, judged.domain.range());
+    let point =
+        |pixel: usize| judged.truth.hits()[pixel].map(|hit| ProbePoint { position: hit.position, normal: hit.normal });
+    shared.into_iter().filter_map(point).collect()
+}
+
+/// Says which technique it was.
+fn in_technique(technique: &Technique, error: umbrage_render::Error) -> Failure {
+    match Failure::from(error) {
+        Failure::Input(message) => Failure::Input(format!("technique {}: {message}", technique.spec)),
+        Failure::Other(message) => Failure::Other(format!("technique {}: {message}", technique.spec)),
+    }
+}
+
+/// A scene's name without its folders.
+fn short(scene: &str) -> String {
+    std::path::Path::new(scene).file_name().map_or(scene.into(), |name| name.to_string_lossy().into_owned())
+}
+
+/// What stands beside the rows: techniques, then the truth.
+fn labels(comparison: &Comparison, techniques: &[Technique]) -> Vec<Label> {
+    let of = |(report, technique): (&TechniqueReport, &Technique)| {
+        let [texels, bytes] = [report.texels, report.bytes].map(|count| count as f64 / f64::from(1 << 20));
+        let mut lines =
+            vec![format!("{texels:.2} Mtexel, {bytes:.1} MiB"), format!("filter {}", typed_name(technique.job.filter))];
+        if let Some(e) = report.mean.e {
+            lines.push(format!("mean E {:.2} %, {} views", 100.0 * e, report.mean.views));
+        }
+        if let Some(flicker) = report.mean.flicker_per_edge {
+            lines.push(format!("F_edge {:.1} %", 100.0 * flicker));
+        }
+        Label { title: report.label.clone(), lines }
+    };
+    let truth = Label { title: "ray-traced truth".into(), lines: Vec::new() };
+    comparison.techniques.iter().zip(techniques).map(of).chain([truth]).collect()
+}

@@ -1,0 +1,165 @@
+//! The lights of a request: which ones, under which names, and what a report says of them.
+
+use umbrage::{DirectionalLight, Light};
+use umbrage_render::{Lamp, MOST_LAMPS};
+use umbrage_scene::{CameraPath, LightKind, Pose, Scene};
+use umbrage_wgpu::LightSlot;
+
+use crate::{
+    choose::{named, several},
+    failure::{Failure, Result},
+    report::LightReport,
+    scene_request::{LightChoice, SceneRequest},
+    technique::args::{Filter, typed_name, wgpu_filter},
+};
+
+/// A light under the name that people know it by.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedLight {
+    /// The scene's name for it, its number, or how it was given.
+    pub name: String,
+    /// The light.
+    pub lamp: Lamp,
+}
+
+impl NamedLight {
+    /// What there is to say of the light itself.
+    #[must_use]
+    pub fn report(&self) -> LightReport {
+        let light = self.lamp.light;
+        let (kind, direction, outer_angle) = match light {
+            Light::Directional(sun) => ("directional", Some(sun.direction()), None),
+            Light::Spot(spot) => ("spot", Some(spot.direction()), Some(spot.outer_angle().to_degrees())),
+            Light::Point(_) => ("point", None, None),
+        };
+        LightReport {
+            name: self.name.clone(),
+            kind,
+            direction: direction.map(|direction| direction.to_array()),
+            position: light.position().map(|position| position.to_array()),
+            range_m: light.position().map(|_| light.range()),
+            outer_angle,
+            planes_m: Vec::new(),
+            splits: Vec::new(),
+        }
+    }
+}
+
+/// What the maps have to be made for.
+#[must_use]
+pub fn slots(lights: &[NamedLight]) -> Vec<LightSlot> {
+    lights.iter().map(|light| light.lamp.light.into()).collect()
+}
+
+/// Filters that go by metres of depth along parallel light serve suns only.
+///
+/// # Errors
+/// [`Failure::Input`] naming the filter and the light.
+pub fn check_filter(lights: &[NamedLight], filter: Filter) -> Result<()> {
+    let wgpu = wgpu_filter(filter);
+    let serves_suns_only = wgpu == umbrage_wgpu::Filter::Pcss || wgpu.is_prefiltered();
+    let local = lights.iter().find(|light| serves_suns_only && light.lamp.light.position().is_some());
+    match (local, wgpu.is_prefiltered() && lights.len() > 1) {
+        (Some(light), _) => Err(Failure::input(format!(
+            "--filter {}: it goes by depth along parallel light, but --light {} is a spot or point light; \
+             use hard, pcf2, pcf3, pcf5, pcf7 or disc",
+            typed_name(filter),
+            light.name
+        ))),
+        (None, true) => Err(Failure::input(format!(
+            "--filter {}: it serves one sun, but --light names {} lights; name one, or use a filter that compares depth",
+            typed_name(filter),
+            lights.len()
+        ))),
+        (None, false) => Ok(()),
+    }
+}
+
+/// Coordinates that vertices make are those of one sun.
+///
+/// # Errors
+/// [`Failure::Input`] naming both options.
+pub fn check_coordinates(lights: &[NamedLight], coordinates: umbrage_render::Coordinates) -> Result<()> {
+    if coordinates != umbrage_render::Coordinates::Split {
+        return Ok(());
+    }
+    match (lights.iter().find(|light| light.lamp.light.position().is_some()), lights.len()) {
+        (Some(light), _) => Err(Failure::input(format!(
+            "--coordinates split: --light {} is a spot or point light, the places of whose maps are quotients and cannot be \
+             interpolated; use --coordinates world, or a sun",
+            light.name
+        ))),
+        (None, 0 | 1) => Ok(()),
+        (None, count) => Err(Failure::input(format!(
+            "--coordinates split: it serves one sun, but --light names {count} lights; name one, or use --coordinates world"
+        ))),
+    }
+}
+
+/// The lights that a request asks for, one at least.
+///
+/// # Errors
+/// [`Failure::Input`] naming the option or the light at fault.
+pub fn chosen(
+    request: &SceneRequest,
+    scene: &Scene,
+    pose: &Pose,
+    path: Option<&CameraPath>,
+    notes: &mut Vec<String>,
+) -> Result<Vec<NamedLight>> {
+    let sun = |name: &str, direction| -> Result<Vec<NamedLight>> {
+        Ok(vec![NamedLight { name: name.to_owned(), lamp: DirectionalLight::new(direction)?.into() }])
+    };
+    match &request.light {
+        LightChoice::Given(direction) => return sun("--sun", *direction),
+        LightChoice::Named(wanted) => {
+            let indices = indices(wanted, scene)?;
+            if indices.len() > MOST_LAMPS {
+                return Err(Failure::input(format!(
+                    "--light {wanted}: {} lights; at most {MOST_LAMPS} throw shadows at once, name those",
+                    indices.len()
+                )));
+            }
+            return indices.into_iter().map(|index| of_scene(scene, pose, index)).collect();
+        }
+        LightChoice::Default => {}
+    }
+    if let Some(to_light) = path.and_then(|path| path.sun_direction_to_light) {
+        return sun("the path's sun", -to_light);
+    }
+    if let Some(index) = scene.lights.iter().position(|light| light.kind == LightKind::Directional) {
+        return Ok(vec![of_scene(scene, pose, index)?]);
+    }
+    let direction = umbrage_scene::invented_sun();
+    let others = if scene.lights.is_empty() { "" } else { " (--light takes its spot and point lights)" };
+    notes.push(format!(
+        "the scene has no directional light and no --sun was given: invented one that travels {:.3},{:.3},{:.3}{others}",
+        direction.x, direction.y, direction.z
+    ));
+    sun("invented", direction)
+}
+
+/// The lights that `--light` names: one by its name, whatever is in it; `all`; or several between commas.
+fn indices(wanted: &str, scene: &Scene) -> Result<Vec<usize>> {
+    let names: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
+    if wanted != "all" || names.contains(&wanted) {
+        return several("--light", "light", wanted, &names);
+    }
+    if names.is_empty() {
+        return Err(Failure::input("--light all: the scene has no light"));
+    }
+    Ok((0..names.len()).collect())
+}
+
+fn of_scene(scene: &Scene, pose: &Pose, index: usize) -> Result<NamedLight> {
+    let light = &scene.lights[index];
+    let brightest = light.color.iter().copied().fold(0.0, f32::max);
+    let mut lamp = Lamp::from(umbrage_scene::scene_light(scene, pose, index)?);
+    if light.kind != LightKind::Directional && brightest > 0.0 {
+        lamp.color = glam::Vec3::from(light.color) / brightest;
+    }
+    if let LightKind::Spot { inner, .. } = light.kind {
+        lamp.inner_angle = inner;
+    }
+    Ok(NamedLight { name: named(&light.name, index), lamp })
+}

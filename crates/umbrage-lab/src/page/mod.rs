@@ -1,0 +1,4 @@
+//! Report pages ([`html`]) and the charts on them ([`plot`]).
+
+pub mod html;
+pub mod plot;

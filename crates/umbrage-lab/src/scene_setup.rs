@@ -1,0 +1,289 @@
+//! The scene of a request, opened and posed, with its views and its lights: what `render`, `probe` and `truth` have in common.
+
+use glam::DQuat;
+use umbrage::{DirectionalLight, Frustum, Light, Projection, SunFade, View};
+use umbrage_render::{Frame, Lamp};
+use umbrage_scene::{CameraPath, Pose, Scene};
+
+use crate::{
+    choose::{named, several},
+    failure::{Failure, Result},
+    lights::{self, NamedLight},
+    notes,
+    report::{CameraReport, ShotReport, SunShown},
+    scene_request::{CameraChoice, DEFAULT_FAR, DEFAULT_FOV, DEFAULT_NEAR, SceneRequest},
+};
+
+/// A scene at one moment, with everything that is to be looked at.
+#[derive(Debug)]
+pub struct SceneSetup {
+    /// The scene.
+    pub scene: Scene,
+    /// Posed at `--time`.
+    pub pose: Pose,
+    /// The lights, one at least; masks and probes are of the first.
+    pub lights: Vec<NamedLight>,
+    /// All but the first, as the renderer takes them.
+    pub more_lights: Vec<Lamp>,
+    /// One, or one per frame.
+    pub shots: Vec<Shot>,
+    /// What the loader left out, and which defaults were invented.
+    pub notes: Vec<String>,
+}
+
+/// The camera of a frame, before its light is known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameView {
+    /// The number that its files get.
+    pub frame: Option<u32>,
+    /// Where the view comes from.
+    pub camera: String,
+    /// The view.
+    pub view: View,
+    /// Views beside it, with their cameras.
+    pub beside: Vec<(String, View)>,
+}
+
+/// One view of the scene under its lights.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shot {
+    /// The number that its files get.
+    pub frame: Option<u32>,
+    /// Where the view comes from.
+    pub camera: String,
+    /// The view.
+    pub view: View,
+    /// Views beside it, of the same moment: the cameras that they come from, and they.
+    pub beside: Vec<(String, View)>,
+    /// The first light in this frame.
+    pub light: Light,
+    /// If it is a sun, the suns whose shadows are shown: the same, or one or two that follow it in steps.
+    pub shown: Option<SunFade>,
+}
+
+impl Shot {
+    /// The view and those beside it, from left to right.
+    pub fn views(&self) -> impl Iterator<Item = (&str, &View)> {
+        let beside = self.beside.iter().map(|(camera, view)| (camera.as_str(), view));
+        [(self.camera.as_str(), &self.view)].into_iter().chain(beside)
+    }
+
+    /// The light whose maps are made.
+    #[must_use]
+    pub fn shown_light(&self) -> Light {
+        self.shown.map_or(self.light, |fade| fade.to.into())
+    }
+}
+
+impl SceneSetup {
+    /// Reads the files that the request names, for subcommands that look through one camera.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] naming the file or option at fault.
+    pub fn open(request: &SceneRequest) -> Result<Self> {
+        let setup = Self::open_views(request)?;
+        if let Some(shot) = setup.shots.iter().find(|shot| !shot.beside.is_empty()) {
+            let cameras: Vec<&str> = shot.views().map(|(camera, _)| camera).collect();
+            return Err(Failure::input(format!(
+                "--camera {}: only render and truth show several cameras beside each other; name one",
+                cameras.join(",")
+            )));
+        }
+        Ok(setup)
+    }
+
+    /// The same for those that show several cameras side by side.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] naming the file or option at fault.
+    pub fn open_views(request: &SceneRequest) -> Result<Self> {
+        let path = match &request.camera {
+            CameraChoice::Path { file, .. } => Some(CameraPath::load(file)?),
+            _ => None,
+        };
+        let scene = umbrage_scene::open(&request.scene, &request.files)?;
+        // At once, for they may say why what follows fails.
+        notes::say(&scene.notes);
+        let scene = match request.move_scene {
+            Some(by) => scene.moved(by),
+            None => scene,
+        };
+        let pose = scene.pose(request.time_s)?;
+        let mut notes = scene.notes.clone();
+        let frame_views = frame_views(request, &scene, &pose, path.as_ref(), &mut notes)?;
+        let lights = lights::chosen(request, &scene, &pose, path.as_ref(), &mut notes)?;
+        notes::say(&notes);
+        let shots = under_the_light(request, frame_views, &lights)?;
+        Ok(Self::new(scene, pose, lights, shots, notes))
+    }
+
+    /// A setup from its parts; `lights` has one at least.
+    #[must_use]
+    pub fn new(scene: Scene, pose: Pose, lights: Vec<NamedLight>, shots: Vec<Shot>, notes: Vec<String>) -> Self {
+        let more_lights = lights.iter().skip(1).map(|light| light.lamp).collect();
+        Self { scene, pose, lights, more_lights, shots, notes }
+    }
+
+    /// What the renderer is told about one view of a shot.
+    #[must_use]
+    pub fn frame<'s>(&'s self, shot: &Shot, view: &'s View, shadows_on: bool, tint: bool) -> Frame<'s> {
+        let light = Lamp { light: shot.light, ..self.lights[0].lamp };
+        Frame { pose: &self.pose, view, light, more_lights: &self.more_lights, shadows_on, tint }
+    }
+
+    /// The part of a report that says what was looked at.
+    #[must_use]
+    pub fn report(&self, request: &SceneRequest, shot: &Shot) -> ShotReport {
+        ShotReport {
+            scene: request.scene.clone(),
+            time_s: request.time_s,
+            frame: shot.frame,
+            size: request.size,
+            camera: camera_report(&shot.camera, &shot.view),
+            sun: match shot.light {
+                Light::Directional(sun) => Some(sun.direction().to_array()),
+                Light::Spot(_) | Light::Point(_) => None,
+            },
+            lights: self.lights.iter().map(NamedLight::report).collect(),
+            sun_shown: shot.shown.filter(|_| request.sun_travel.is_some()).map(|shown| SunShown {
+                from: shown.from.direction().to_array(),
+                to: shown.to.direction().to_array(),
+                weight: shown.weight,
+            }),
+        }
+    }
+}
+
+/// Every frame's views with their light. A moving sun takes a single view along over all frames.
+fn under_the_light(
+    request: &SceneRequest,
+    mut frame_views: Vec<FrameView>,
+    lights: &[NamedLight],
+) -> Result<Vec<Shot>> {
+    let first = lights[0].lamp.light;
+    let shot =
+        |FrameView { frame, camera, view, beside }, light, shown| Shot { frame, camera, view, beside, light, shown };
+    let (travel, sun) = match (&request.sun_travel, first) {
+        (Some(travel), Light::Directional(sun)) => (travel, sun),
+        (Some(_), Light::Spot(_) | Light::Point(_)) => {
+            return Err(Failure::input(format!(
+                "--sun-to moves a sun, but --light {} is a spot or point light; leave one of them away",
+                lights[0].name
+            )));
+        }
+        (None, Light::Directional(sun)) => {
+            let shown = Some(SunFade { from: sun, to: sun, weight: 1.0 });
+            return Ok(frame_views.into_iter().map(|view| shot(view, first, shown)).collect());
+        }
+        (None, Light::Spot(_) | Light::Point(_)) => {
+            return Ok(frame_views.into_iter().map(|view| shot(view, first, None)).collect());
+        }
+    };
+    if let [only] = &frame_views[..] {
+        frame_views = (0..travel.frames).map(|k| FrameView { frame: Some(k), ..only.clone() }).collect();
+    }
+    let turn = DQuat::from_rotation_arc(sun.direction(), travel.to.normalize());
+    let last = frame_views.len().saturating_sub(1).max(1) as f64;
+    let mut steps = travel.steps;
+    let shots = (0..).zip(frame_views).map(|(k, view)| {
+        let turned = DQuat::IDENTITY.slerp(turn, f64::from(k) / last) * sun.direction();
+        let sun = DirectionalLight::new(turned)?;
+        let shown = match &mut steps {
+            Some(steps) => steps.follow(&sun, 1.0)?,
+            None => SunFade { from: sun, to: sun, weight: 1.0 },
+        };
+        Ok(shot(view, sun.into(), Some(shown)))
+    });
+    shots.collect()
+}
+
+/// The eye, for a report.
+#[must_use]
+pub fn camera_report(name: &str, view: &View) -> CameraReport {
+    let frustum = view.frustum();
+    CameraReport {
+        name: name.to_owned(),
+        eye: view.eye().to_array(),
+        forward: view.forward().to_array(),
+        up: view.world_from_view_rotation().y_axis.to_array(),
+        fov: (frustum.projection == Projection::Perspective)
+            .then(|| (frustum.top.atan() - frustum.bottom.atan()).to_degrees()),
+        near: frustum.near,
+        far: frustum.far.is_finite().then_some(frustum.far),
+    }
+}
+
+/// The views that a request asks for.
+///
+/// # Errors
+/// [`Failure::Input`] naming the option or camera at fault.
+pub fn frame_views(
+    request: &SceneRequest,
+    scene: &Scene,
+    pose: &Pose,
+    path: Option<&CameraPath>,
+    notes: &mut Vec<String>,
+) -> Result<Vec<FrameView>> {
+    let single = |camera: String, view: View| Ok(vec![FrameView { frame: None, camera, view, beside: Vec::new() }]);
+    match (&request.camera, path) {
+        (CameraChoice::LookAt { eye, target }, _) => {
+            single("--eye, --target".into(), View::look_at_upright(*eye, *target, frustum(request)?)?)
+        }
+        (CameraChoice::Path { file, frames, eye_height }, Some(path)) => {
+            let count = frames.unwrap_or(1);
+            (0..count)
+                .map(|k| {
+                    let (eye, target) = path.pose_at(k as usize, count as usize, *eye_height)?;
+                    Ok(FrameView {
+                        frame: frames.map(|_| k),
+                        camera: file.display().to_string(),
+                        view: View::look_at_upright(eye, target, frustum(request)?)?,
+                        beside: Vec::new(),
+                    })
+                })
+                .collect()
+        }
+        (CameraChoice::Named(wanted), _) => {
+            let names: Vec<&str> = scene.cameras.iter().map(|camera| camera.name.as_str()).collect();
+            let views = several("--camera", "camera", wanted, &names)?.into_iter();
+            let views = views.map(|i| Ok((named(names[i], i), scene_camera(request, scene, pose, i)?)));
+            let mut views = views.collect::<Result<Vec<_>>>()?;
+            let (camera, view) = views.remove(0);
+            Ok(vec![FrameView { frame: None, camera, view, beside: views }])
+        }
+        _ if scene.cameras.is_empty() => {
+            notes.push("the scene has no camera and none was given: invented one that sees all of it".into());
+            let fov = request.fov.unwrap_or(DEFAULT_FOV).to_radians();
+            single(
+                "invented".into(),
+                umbrage_scene::invented_view(pose, fov, request.aspect(), request.near, request.far)?,
+            )
+        }
+        _ => {
+            let name = named(&scene.cameras[0].name, 0);
+            notes.push(format!("no camera was chosen: took the scene's first, {name}"));
+            single(name, scene_camera(request, scene, pose, 0)?)
+        }
+    }
+}
+
+/// What the options alone say about the lens.
+fn frustum(request: &SceneRequest) -> Result<Frustum> {
+    let fov = request.fov.unwrap_or(DEFAULT_FOV).to_radians();
+    Ok(Frustum::perspective(
+        fov,
+        request.aspect(),
+        request.near.unwrap_or(DEFAULT_NEAR),
+        request.far.unwrap_or(DEFAULT_FAR),
+    )?)
+}
+
+/// A camera of the scene, with what the options change about its lens.
+fn scene_camera(request: &SceneRequest, scene: &Scene, pose: &Pose, index: usize) -> Result<View> {
+    let view = umbrage_scene::camera_view(scene, pose, index, request.aspect(), request.near, request.far)?;
+    let (frustum, Some(fov)) = (view.frustum(), request.fov) else { return Ok(view) };
+    if frustum.projection == Projection::Orthographic {
+        return Err(Failure::input("--fov: the chosen camera is orthographic and has no angle; leave --fov away"));
+    }
+    Ok(view.with_frustum(Frustum::perspective(fov.to_radians(), request.aspect(), frustum.near, frustum.far)?)?)
+}

@@ -1,0 +1,127 @@
+//! A device with a scene loaded onto it: what `render` and `probe` draw with, and what their reports say of it.
+
+use std::sync::Arc;
+
+use umbrage::{ShadowPlan, View};
+use umbrage_render::{Frame, FrameStats, Gpu, GpuOptions, Renderer, Samples, SplitStats};
+
+use crate::{
+    failure::Result,
+    lights::{self, NamedLight},
+    report::{BesideReport, LightReport, Report, SplitReport, TimesMs},
+    scene_request::SceneRequest,
+    scene_setup::{SceneSetup, Shot, camera_report},
+    technique::{Filter, ShadowJob, typed_name},
+};
+
+/// A renderer set up as the options say; `render` and `probe` share it.
+pub struct Session<'a> {
+    /// Draws and probes.
+    pub renderer: Renderer,
+    shadows: &'a ShadowJob,
+    adapter: String,
+}
+
+impl<'a> Session<'a> {
+    /// Opens the device and loads the scene onto it.
+    pub fn open(request: &SceneRequest, shadows: &'a ShadowJob, setup: &SceneSetup) -> Result<Self> {
+        lights::check_filter(&setup.lights, shadows.filter)?;
+        lights::check_coordinates(&setup.lights, shadows.coordinates)?;
+        let gpu = Gpu::new(&GpuOptions::default())?;
+        let lights = lights::slots(&setup.lights);
+        let settings = shadows.render_settings(request.size, Samples::default(), request.sun_angle, lights);
+        let renderer = Renderer::new(&gpu, &setup.scene, &settings)?;
+        Ok(Self { renderer, shadows, adapter: adapter_description(&gpu) })
+    }
+
+    /// What the renderer is told about one view of a shot.
+    pub fn frame<'s>(&self, setup: &'s SceneSetup, shot: &Shot, view: &'s View) -> Frame<'s> {
+        setup.frame(shot, view, self.shadows.shadows_on, self.shadows.tint)
+    }
+
+    /// What was done and what it cost.
+    pub fn report(&self, request: &SceneRequest, setup: &SceneSetup, shot: &Shot, stats: &FrameStats) -> Report {
+        let mut shot = setup.report(request, shot);
+        shot.lights = light_reports(setup, stats);
+        Report {
+            shot,
+            adapter: self.adapter.clone(),
+            technique: typed_name(self.shadows.technique),
+            generation: stats.generation.to_string(),
+            storage: stats.storage.to_string(),
+            filter: typed_name(self.shadows.filter),
+            filter_width: self.shadows.filter_width,
+            sun_angle: (self.shadows.filter == Filter::Pcss)
+                .then(|| f64::from(self.shadows.softness(request.sun_angle).sun_angle).to_degrees()),
+            transition: typed_name(self.shadows.transition),
+            bias: typed_name(self.shadows.bias),
+            translucent: typed_name(self.shadows.translucent),
+            contact_shadows: self.shadows.contact_shadows,
+            shadow_strength: self.shadows.shadow_strength,
+            shadow_colour: self.shadows.shadow_colour.to_array(),
+            fit: typed_name(self.shadows.fit),
+            bands: typed_name(self.shadows.bands),
+            scheme: typed_name(self.shadows.scheme),
+            stabilize: typed_name(self.shadows.stabilize),
+            warp: self.shadows.warps.iter().map(|&warp| typed_name(warp)).collect(),
+            planes_m: stats.plan.planes.clone(),
+            times_ms: TimesMs { plan: stats.plan_ms, shadow: stats.shadow_ms, frame: stats.frame_ms },
+            bytes: stats.bytes,
+            draws: u64::from(stats.shadow_draws),
+            triangles: stats.shadow_triangles,
+            splits: stats.splits.iter().map(split_report).collect(),
+            beside: Vec::new(),
+            probe: None,
+            notes: setup.notes.iter().chain(&self.shadows.notes).chain(&stats.notes).cloned().collect(),
+        }
+    }
+}
+
+/// All lights with their splits.
+fn light_reports(setup: &SceneSetup, stats: &FrameStats) -> Vec<LightReport> {
+    let others = stats.more_lights.iter().map(|light| (&light.plan, &light.splits));
+    let all = [(&stats.plan, &stats.splits)].into_iter().chain(others);
+    let report = |(light, (plan, splits)): (&NamedLight, (&Arc<ShadowPlan>, &Vec<SplitStats>))| LightReport {
+        planes_m: plan.planes.clone(),
+        splits: splits.iter().map(split_report).collect(),
+        ..light.report()
+    };
+    setup.lights.iter().zip(all).map(report).collect()
+}
+
+/// One of the views beside the first.
+#[must_use]
+pub fn beside_report(setup: &SceneSetup, camera: &str, view: &View, stats: &FrameStats) -> BesideReport {
+    BesideReport {
+        camera: camera_report(camera, view),
+        planes_m: stats.plan.planes.clone(),
+        times_ms: TimesMs { plan: stats.plan_ms, shadow: stats.shadow_ms, frame: stats.frame_ms },
+        lights: light_reports(setup, stats),
+    }
+}
+
+fn split_report(split: &SplitStats) -> SplitReport {
+    SplitReport {
+        near: split.near,
+        far: split.far,
+        texel_m: split.texel_m,
+        warped: split.warped,
+        casters: split.casters as u64,
+        draws: u64::from(split.draws),
+        triangles: split.triangles,
+        bytes: split.bytes,
+    }
+}
+
+/// The adapter for reports: its name, its interface and its driver.
+#[must_use]
+pub fn adapter_description(gpu: &Gpu) -> String {
+    let info = &gpu.adapter_info;
+    let driver = [info.driver.as_str(), info.driver_info.as_str()];
+    let driver: Vec<&str> = driver.into_iter().filter(|part| !part.is_empty()).collect();
+    if driver.is_empty() {
+        format!("{} ({})", info.name, info.backend)
+    } else {
+        format!("{} ({}, {})", info.name, info.backend, driver.join(" "))
+    }
+}

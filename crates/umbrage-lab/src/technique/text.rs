@@ -1,0 +1,405 @@
+//! Techniques by name: `pssm:4:512:lambda=0.9` and the like.
+//!
+//! ```text
+//! LIST      = TECHNIQUE { "," TECHNIQUE }
+//! TECHNIQUE = "pssm" ":" SPLITS ":" SIZES { ":" SETTING }  |  KIND ":" SIZE { ":" SETTING }
+//! SIZES     = SIZE { "/" SIZE }                 one, or one for each split
+//! SETTING   = KEY "=" VALUE { "/" VALUE }       a shadow option of `umbrage render` without its dashes
+//!           | "label" "=" TEXT
+//! ```
+//!
+//! A technique is translated into options of `umbrage render` and read by the very parser that reads those, so everything that
+//! command can do can be compared, with the same defaults and the same messages, and each row of a comparison can be drawn
+//! alone.
+
+use std::path::Path;
+
+use clap::{Args as _, Command, FromArgMatches as _, ValueEnum as _, error::ErrorKind};
+use toml::{Table, Value};
+
+use super::{
+    args::{ShadowArgs, Technique as Kind, typed_name},
+    job::ShadowJob,
+};
+use crate::failure::{Failure, Result};
+
+/// Kinds that are spoken of and do not exist yet.
+const PLANNED: [&str; 1] = ["sdsm"];
+
+/// Options that say what is looked at rather than how shadows are made: they hold for the whole comparison, or not at all.
+const NOT_SETTINGS: [(&str, &str); 2] = [
+    ("shadow-range", "it decides which pixels are scored and is one for all; give --shadow-range beside --techniques"),
+    ("shadows", "a technique without shadows has no score; leave it away"),
+];
+
+/// The options that the short form has places for.
+const SHAPE: [&str; 3] = ["technique", "splits", "map-size"];
+
+/// A technique with all its settings, checked.
+#[derive(Debug, PartialEq)]
+pub struct Technique {
+    /// As it stands in tables and on sheets.
+    pub label: String,
+    /// The short form, settings for all included.
+    pub spec: String,
+    /// The same technique at other map sizes has the same family.
+    pub family: String,
+    /// The options of `umbrage render` that draw it.
+    pub options: Vec<String>,
+    /// What they mean.
+    pub job: ShadowJob,
+}
+
+impl Technique {
+    /// Texels of all maps.
+    #[must_use]
+    pub fn texels(&self) -> u64 {
+        self.job.settings.map_sizes.iter().map(|&edge| u64::from(edge) * u64::from(edge)).sum()
+    }
+}
+
+/// A technique as it was written down, not yet checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TechniqueSource {
+    /// For messages.
+    source: String,
+    label: Option<String>,
+    settings: Settings,
+}
+
+/// Options of `umbrage render` and their values, in the order they were written.
+pub type Settings = Vec<(String, String)>;
+
+/// Why a source cannot be a technique.
+#[derive(Debug, PartialEq)]
+pub enum Rejected {
+    /// A kind that does not exist yet: presets leave it out.
+    NotBuilt(Failure),
+    /// A mistake.
+    Wrong(Failure),
+}
+
+impl From<Rejected> for Failure {
+    fn from(rejected: Rejected) -> Self {
+        match rejected {
+            Rejected::NotBuilt(failure) | Rejected::Wrong(failure) => failure,
+        }
+    }
+}
+
+/// Reads the short form of one technique.
+///
+/// # Errors
+/// [`Failure::Input`] naming the technique and what is wrong with it.
+pub fn parse(text: &str) -> Result<TechniqueSource> {
+    let source = text.trim();
+    let wrong = |what: String| Failure::input(format!("technique {source:?}: {what}"));
+    let (shape, settings) = split_settings(source);
+    let (kind, numbers) = shape.split_first().map_or(("", &[][..]), |(kind, numbers)| (kind.trim(), numbers));
+    if kind.is_empty() {
+        return Err(wrong("nothing says which; write for example pssm:4:1024 or ssm:2048".into()));
+    }
+    let mut options = vec![("technique".to_owned(), kind.to_owned())];
+    match (kind, numbers) {
+        ("pssm", [splits, sizes]) => {
+            options.push(("splits".into(), splits.trim().into()));
+            options.push(("map-size".into(), list(sizes)));
+        }
+        ("pssm", _) => {
+            return Err(wrong(
+                "write pssm:SPLITS:SIZE, then settings as KEY=VALUE, for example pssm:4:1024:lambda=0.9".into(),
+            ));
+        }
+        (_, [size]) => options.push(("map-size".into(), list(size))),
+        _ => {
+            return Err(wrong(format!(
+                "write {kind}:SIZE, then settings as KEY=VALUE, for example {kind}:1024:filter=hard"
+            )));
+        }
+    }
+    let (label, settings) = read_settings(&settings).map_err(wrong)?;
+    if let Some((key, _)) = settings.iter().find(|(key, _)| SHAPE.contains(&key.as_str())) {
+        return Err(wrong(format!("{key} is said before the settings, as in pssm:4:1024; leave {key}= away")));
+    }
+    options.extend(settings);
+    Ok(TechniqueSource { source: source.to_owned(), label, settings: options })
+}
+
+/// Reads settings for all techniques, `filter=hard:blend=0`.
+///
+/// # Errors
+/// [`Failure::Input`] naming the setting.
+pub fn parse_with(text: &str) -> Result<Settings> {
+    let wrong = |what: String| Failure::input(format!("--with {text:?}: {what}"));
+    if text.trim().is_empty() {
+        return Ok(Vec::new());
+    }
+    let parts: Vec<&str> = text.split(':').collect();
+    let (label, settings) = read_settings(&parts).map_err(wrong)?;
+    if label.is_some() {
+        return Err(wrong("a label belongs to one technique".into()));
+    }
+    if let Some((key, _)) = settings.iter().find(|(key, _)| SHAPE.contains(&key.as_str())) {
+        return Err(wrong(format!("{key} belongs to one technique, as in pssm:4:1024")));
+    }
+    Ok(settings)
+}
+
+/// Reads a file of techniques: `[[technique]]` tables, and one `[with]` for all of them.
+///
+/// # Errors
+/// [`Failure::Input`] naming the file, the technique and what is wrong with it.
+pub fn load(path: &Path) -> Result<(Settings, Vec<TechniqueSource>)> {
+    let text = std::fs::read_to_string(path).map_err(|error| Failure::file("read", path, &error))?;
+    parse_file(&path.display().to_string(), &text)
+}
+
+fn parse_file(file: &str, text: &str) -> Result<(Settings, Vec<TechniqueSource>)> {
+    let wrong = |what: String| Failure::input(format!("{file}: {what}"));
+    let mut root: Table = text.parse().map_err(|error: toml::de::Error| wrong(format!("is no TOML: {error}")))?;
+    let with = match root.remove("with") {
+        None => Vec::new(),
+        Some(Value::Table(table)) => options_of(table).map_err(|what| wrong(format!("[with]: {what}")))?,
+        Some(_) => return Err(wrong("with is no table; write [with] and settings below it".into())),
+    };
+    if let Some((key, _)) = with.iter().find(|(key, _)| key == "label" || SHAPE.contains(&key.as_str())) {
+        return Err(wrong(format!("[with]: {key} belongs to one [[technique]]")));
+    }
+    let Some(Value::Array(tables)) = root.remove("technique") else {
+        return Err(wrong("has no [[technique]]; write one for each technique".into()));
+    };
+    if let Some(key) = root.keys().next() {
+        return Err(wrong(format!("{key} is none of the things a file of techniques has: [with], [[technique]]")));
+    }
+    let mut sources = Vec::new();
+    for (number, table) in (1..).zip(tables) {
+        let source = format!("{file}, technique {number}");
+        let Value::Table(table) = table else { return Err(wrong(format!("technique {number} is no table"))) };
+        let mut settings = options_of(table).map_err(|what| Failure::input(format!("{source}: {what}")))?;
+        let label = settings.iter().position(|(key, _)| key == "label").map(|at| settings.remove(at).1);
+        if !settings.iter().any(|(key, _)| key == "technique") {
+            return Err(Failure::input(format!("{source}: nothing says which; write technique = \"pssm\"")));
+        }
+        sources.push(TechniqueSource { source, label, settings });
+    }
+    Ok((with, sources))
+}
+
+/// Reads techniques in the short form, `with` holding for all that do not say otherwise.
+///
+/// # Errors
+/// [`Failure::Input`] naming the technique or setting.
+pub fn parse_all(texts: &[String], with: &str, size: [u32; 2]) -> Result<Vec<Technique>> {
+    let sources = texts.iter().map(|text| parse(text)).collect::<Result<Vec<_>>>()?;
+    Ok(finish(&sources, &parse_with(with)?, None, size)?)
+}
+
+/// Checks sources and makes techniques of them. `with` holds for all that do not say otherwise, the last entry of a key wins.
+/// Techniques of one name are numbered.
+///
+/// # Errors
+/// What [`TechniqueSource::finish`] refuses.
+pub fn finish(
+    sources: &[TechniqueSource],
+    with: &Settings,
+    range: Option<(f64, f64)>,
+    size: [u32; 2],
+) -> Result<Vec<Technique>, Rejected> {
+    let mut techniques: Vec<Technique> = Vec::new();
+    for source in sources {
+        let mut technique = source.finish(with, range, size)?;
+        let taken = |label: &str| techniques.iter().any(|other| other.label == label);
+        if taken(&technique.label) {
+            let free = (2..).map(|n| format!("{} #{n}", technique.label)).find(|label| !taken(label));
+            technique.label = free.unwrap_or_default();
+        }
+        techniques.push(technique);
+    }
+    Ok(techniques)
+}
+
+impl TechniqueSource {
+    /// Checks all settings by the parser of `umbrage render`.
+    ///
+    /// # Errors
+    /// [`Rejected::NotBuilt`] for a kind that is planned, else [`Rejected::Wrong`], both naming the technique and the setting.
+    pub fn finish(&self, with: &Settings, range: Option<(f64, f64)>, size: [u32; 2]) -> Result<Technique, Rejected> {
+        let wrong = |what: String| Rejected::Wrong(Failure::input(format!("technique {:?}: {what}", self.source)));
+        self.check_kind()?;
+        let mut settings = self.settings.clone();
+        for (key, value) in with {
+            if self.settings.iter().any(|(own, _)| own == key) {
+                continue;
+            }
+            match settings.iter_mut().find(|(known, _)| known == key) {
+                Some(known) => known.1.clone_from(value),
+                None => settings.push((key.clone(), value.clone())),
+            }
+        }
+        let parser = ShadowArgs::augment_args(Command::new("technique").no_binary_name(true).disable_help_flag(true));
+        let known: Vec<&str> = parser.get_arguments().filter_map(|option| option.get_long()).collect();
+        for (key, _) in &settings {
+            if let Some((_, why)) = NOT_SETTINGS.iter().find(|(not, _)| not == key) {
+                return Err(wrong(format!("{key}: {why}")));
+            }
+            if !known.contains(&key.as_str()) {
+                let there: Vec<&str> = known
+                    .iter()
+                    .copied()
+                    .filter(|key| !SHAPE.contains(key) && NOT_SETTINGS.iter().all(|(not, _)| not != key))
+                    .collect();
+                return Err(wrong(format!("there is no setting {key}; there are label, {}", there.join(", "))));
+            }
+        }
+        let mut options: Vec<String> = settings.iter().map(|(key, value)| format!("--{key}={value}")).collect();
+        if let Some((near, far)) = range {
+            options.push(format!("--shadow-range={near}..{far}"));
+        }
+        let args = parser
+            .try_get_matches_from(&options)
+            .and_then(|matches| ShadowArgs::from_arg_matches(&matches))
+            .map_err(|error| wrong(first_line(&error)))?;
+        let job = ShadowJob::new(&args, size).map_err(|failure| wrong(failure.to_string()))?;
+        let without_sizes: Vec<String> =
+            settings.iter().filter(|(key, _)| key != "map-size").map(|(key, value)| format!("{key}={value}")).collect();
+        Ok(Technique {
+            label: self.label.clone().unwrap_or_else(|| self.default_label(&job)),
+            spec: spec(&settings),
+            family: without_sizes.join(":"),
+            options,
+            job,
+        })
+    }
+
+    fn check_kind(&self) -> Result<(), Rejected> {
+        let kind = self.settings.iter().find(|(key, _)| key == "technique").map_or("", |(_, kind)| kind);
+        let built: Vec<String> = Kind::value_variants().iter().map(|&kind| typed_name(kind)).collect();
+        if built.iter().any(|name| name == kind) {
+            return Ok(());
+        }
+        let there = built.join(", ");
+        let message = |what: &str| Failure::input(format!("technique {:?}: {what}; there are {there}", self.source));
+        Err(if PLANNED.contains(&kind) {
+            Rejected::NotBuilt(message(&format!("{kind} is not built yet")))
+        } else {
+            Rejected::Wrong(message(&format!("there is no technique {kind}")))
+        })
+    }
+
+    /// `PSSM(4; 512²) λ 0.9`: the shape, then what the technique itself says beyond it.
+    fn default_label(&self, job: &ShadowJob) -> String {
+        let sizes = &job.settings.map_sizes;
+        let size = match &sizes[..] {
+            [first, rest @ ..] if rest.iter().all(|size| size == first) => format!("{first}²"),
+            _ => sizes.iter().map(|size| format!("{size}²")).collect::<Vec<_>>().join("+"),
+        };
+        let kind = typed_name(job.technique).to_uppercase();
+        let mut label = if job.technique == Kind::Pssm {
+            format!("{kind}({}; {size})", sizes.len())
+        } else {
+            format!("{kind}({size})")
+        };
+        for (key, value) in self.settings.iter().filter(|(key, _)| !SHAPE.contains(&key.as_str())) {
+            let text = match key.as_str() {
+                "lambda" => format!("λ {value}"),
+                "stabilize" if value == "exact" => "still".into(),
+                "stabilize" if value == "approximate" => "almost still".into(),
+                "stabilize" => "tight".into(),
+                "extent-steps" => format!("2^(1/{value})"),
+                "extent-levels" => format!("1/{value} levels"),
+                "selection" => format!("by {value}"),
+                "bands" => format!("{value} bands"),
+                "coordinates" | "scheme" | "fit" | "filter" | "depth-format" => value.clone(),
+                _ => format!("{key} {value}"),
+            };
+            label += &format!(" {text}");
+        }
+        label
+    }
+}
+
+/// The short form of settings that begin with the shape.
+fn spec(settings: &Settings) -> String {
+    let part = |(key, value): &(String, String)| {
+        let value = value.replace(',', "/");
+        if SHAPE.contains(&key.as_str()) { value } else { format!("{key}={value}") }
+    };
+    let in_order = SHAPE.iter().filter_map(|shape| settings.iter().find(|(key, _)| key == shape));
+    let rest = settings.iter().filter(|(key, _)| !SHAPE.contains(&key.as_str()));
+    in_order.chain(rest).map(part).collect::<Vec<_>>().join(":")
+}
+
+/// The parts before the first setting, and the settings.
+fn split_settings(text: &str) -> (Vec<&str>, Vec<&str>) {
+    let parts: Vec<&str> = text.split(':').collect();
+    let first = parts.iter().position(|part| part.contains('=')).unwrap_or(parts.len());
+    (parts[..first].to_vec(), parts[first..].to_vec())
+}
+
+/// Label and settings of `KEY=VALUE` parts.
+fn read_settings(parts: &[&str]) -> Result<(Option<String>, Settings), String> {
+    let (mut label, mut settings) = (None, Settings::new());
+    for part in parts {
+        let Some((key, value)) = part.split_once('=') else {
+            return Err(format!("{part:?} is no setting; write KEY=VALUE, with sizes before all settings"));
+        };
+        let (key, value) = (key.trim(), value.trim());
+        if value.is_empty() {
+            return Err(format!("{key} has no value"));
+        }
+        if key == "label" {
+            if label.replace(value.to_owned()).is_some() {
+                return Err("label is said twice".into());
+            }
+        } else if settings.iter().any(|(known, _)| known == key) {
+            return Err(format!("{key} is said twice"));
+        } else {
+            settings.push((key.to_owned(), list(value)));
+        }
+    }
+    Ok((label, settings))
+}
+
+/// A list as `umbrage render` wants it.
+fn list(text: &str) -> String {
+    text.trim().replace('/', ",")
+}
+
+/// The options that a table's entries stand for.
+fn options_of(table: Table) -> Result<Settings, String> {
+    fn scalar(key: &str, value: Value) -> Result<String, String> {
+        match value {
+            Value::String(text) => Ok(text),
+            Value::Integer(number) => Ok(number.to_string()),
+            Value::Float(number) => Ok(number.to_string()),
+            _ => Err(format!("{key} is neither text nor a number nor a list of numbers")),
+        }
+    }
+    table
+        .into_iter()
+        .map(|(key, value)| {
+            let value = match value {
+                Value::Array(values) => {
+                    values.into_iter().map(|value| scalar(&key, value)).collect::<Result<Vec<_>, _>>()?.join(",")
+                }
+                value => scalar(&key, value)?,
+            };
+            Ok((key, value))
+        })
+        .collect()
+}
+
+/// What clap has to say, without its usage.
+fn first_line(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let first = lines.next().unwrap_or_default().trim_start_matches("error: ").to_owned();
+    let possible = (error.kind() == ErrorKind::InvalidValue)
+        .then(|| lines.find(|line| line.starts_with("[possible values")))
+        .flatten();
+    possible.map_or(first.clone(), |possible| format!("{first} {possible}"))
+}
+
+#[cfg(test)]
+#[path = "text_tests.rs"]
+mod tests;

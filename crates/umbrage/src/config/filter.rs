@@ -1,0 +1,252 @@
+//! How a map is looked up, and how soft edges become.
+
+use super::names::{Word, named};
+
+/// How a map is looked up.
+///
+/// Widths are full widths across the light in metres, equal in every split; `None` leaves the width
+/// to the filter, in texels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Filter {
+    /// One nearest texel, one comparison: answers are 0 or 1.
+    Hard,
+    /// One bilinear comparison of 2×2 texels.
+    Pcf2,
+    /// A tent of three texels.
+    Pcf3 {
+        /// Full width in metres.
+        width_m: Option<f64>,
+    },
+    /// A tent of five texels.
+    Pcf5 {
+        /// Full width in metres.
+        width_m: Option<f64>,
+    },
+    /// A tent of seven texels.
+    Pcf7 {
+        /// Full width in metres.
+        width_m: Option<f64>,
+    },
+    /// A disc of 32 bilinear comparisons, of a radius of 3 texels if no width is given.
+    Disc {
+        /// Full width in metres.
+        width_m: Option<f64>,
+        /// Rotates the kernel from pixel to pixel: noise instead of bands.
+        rotated: bool,
+    },
+    /// Percentage-closer soft shadows: a disc as wide as the sun's penumbra, which a search of 32
+    /// texels for blockers finds.
+    Pcss {
+        /// Angle across the sun in degrees, 0 to 90.
+        sun_degrees: f64,
+        /// Rotates the kernel from pixel to pixel: noise instead of bands.
+        rotated: bool,
+    },
+    /// Moments of depth, blurred before they are asked.
+    Moments(Moments),
+}
+
+/// A filter that stores moments of depth and blurs them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moments {
+    /// Which moments.
+    pub kind: MomentKind,
+    /// Full width of the blur across the light in metres; `None` for 8 texels of the finest map.
+    pub width_m: Option<f64>,
+    /// Samples of depth in a texel, 1 or 4.
+    pub samples: u32,
+    /// Share of light that counts as a leak and becomes shadow, 0 to 0.9. More hides leaks and
+    /// widens shadows.
+    pub bleeding: f64,
+    /// How the filter knows what a pixel covers where splits meet.
+    pub derivatives: Derivatives,
+}
+
+impl Moments {
+    /// The kind with everything else at its default.
+    #[must_use]
+    pub const fn new(kind: MomentKind) -> Self {
+        Self { kind, width_m: None, samples: 1, bleeding: 0.2, derivatives: Derivatives::Analytic }
+    }
+}
+
+named! {
+    /// Which moments of depth a texel stores.
+    pub enum MomentKind as "moment filter" {
+        /// An exponential of depth: one moment
+        Esm = "esm",
+        /// Variance shadow maps: two moments of depth
+        #[default]
+        Vsm = "vsm",
+        /// Variance of an exponential: two moments
+        Evsm2 = "evsm2",
+        /// Variance of two exponentials: four moments
+        Evsm4 = "evsm4",
+        /// Moment shadow maps: four moments of depth
+        Msm = "msm",
+    }
+}
+
+named! {
+    /// How a filter of moments knows what a pixel covers where neighbouring pixels use different
+    /// splits.
+    pub enum Derivatives as "way of derivatives" {
+        /// By the change of position from pixel to pixel, which no border interrupts
+        #[default]
+        Analytic = "analytic",
+        /// One split for all four pixels of a quad ([PSVSM07])
+        Quad = "quad",
+    }
+}
+
+/// Angle across the sun as seen from the earth, degrees.
+pub const SUN_DEGREES: f64 = 0.53;
+
+/// Texels that a disc of no given width reaches: its radius of 3 and a tap's own.
+const DISC_REACH: f64 = 4.0;
+
+/// Metres from a surface within which casters give it a penumbra as wide as the sun asks for; equal to
+/// `MOST_BLOCKER_M` of `filter.wesl`.
+const MOST_BLOCKER_M: f64 = 200.0;
+
+impl Filter {
+    /// The word of each filter.
+    pub const WORDS: &'static [Word] = &[
+        Word { word: "hard", help: "One nearest texel, one comparison" },
+        Word { word: "pcf2", help: "One bilinear comparison of 2×2 texels" },
+        Word { word: "pcf3", help: "A tent of 3×3 texels" },
+        Word { word: "pcf5", help: "A tent of 5×5 texels" },
+        Word { word: "pcf7", help: "A tent of 7×7 texels" },
+        Word { word: "disc", help: "A disc of 32 taps" },
+        Word { word: "pcss", help: "As wide as the sun's penumbra" },
+        Word { word: "esm", help: "An exponential of depth, blurred" },
+        Word { word: "vsm", help: "Two moments of depth, blurred" },
+        Word { word: "evsm2", help: "Two moments of an exponential, blurred" },
+        Word { word: "evsm4", help: "Four moments of two exponentials, blurred" },
+        Word { word: "msm", help: "Four moments of depth, blurred" },
+    ];
+
+    /// Every filter with its data at the defaults, in the order of [`Filter::WORDS`].
+    pub const ALL: [Self; 12] = [
+        Self::Hard,
+        Self::Pcf2,
+        Self::Pcf3 { width_m: None },
+        Self::Pcf5 { width_m: None },
+        Self::Pcf7 { width_m: None },
+        Self::Disc { width_m: None, rotated: false },
+        Self::Pcss { sun_degrees: SUN_DEGREES, rotated: false },
+        Self::Moments(Moments::new(MomentKind::Esm)),
+        Self::Moments(Moments::new(MomentKind::Vsm)),
+        Self::Moments(Moments::new(MomentKind::Evsm2)),
+        Self::Moments(Moments::new(MomentKind::Evsm4)),
+        Self::Moments(Moments::new(MomentKind::Msm)),
+    ];
+
+    /// The filter's word in config files and on the command line.
+    #[must_use]
+    pub const fn word(&self) -> &'static str {
+        match self {
+            Self::Hard => "hard",
+            Self::Pcf2 => "pcf2",
+            Self::Pcf3 { .. } => "pcf3",
+            Self::Pcf5 { .. } => "pcf5",
+            Self::Pcf7 { .. } => "pcf7",
+            Self::Disc { .. } => "disc",
+            Self::Pcss { .. } => "pcss",
+            Self::Moments(moments) => moments.kind.word(),
+        }
+    }
+
+    /// Farthest that the filter reads from the sample, in texels: the margin that every map keeps.
+    #[must_use]
+    pub const fn radius_texels(&self) -> f64 {
+        match self {
+            Self::Hard => 0.5,
+            Self::Pcf2 => 1.0,
+            Self::Pcf3 { .. } => 1.5,
+            Self::Pcf5 { .. } => 2.5,
+            Self::Pcf7 { .. } => 3.5,
+            Self::Disc { width_m: None, .. } => DISC_REACH,
+            // The widest disc or blur, 15 texels, and the reach of a tap on its rim.
+            Self::Disc { width_m: Some(_), .. } | Self::Pcss { .. } | Self::Moments(_) => 16.0,
+        }
+    }
+
+    /// Half the width of the filter's kernel in metres, where it is known: maps whose texels are
+    /// large keep a margin of so many metres instead of [`Filter::radius_texels`].
+    #[must_use]
+    pub fn half_width_m(&self) -> Option<f64> {
+        match *self {
+            Self::Disc { width_m, .. } => width_m.map(|width| 0.5 * width),
+            Self::Pcss { sun_degrees, .. } => Some((0.5 * sun_degrees).to_radians().tan() * MOST_BLOCKER_M),
+            _ => None,
+        }
+    }
+
+    /// The full width in metres, for filters that have one to choose.
+    #[must_use]
+    pub const fn width_m(&self) -> Option<f64> {
+        match *self {
+            Self::Pcf3 { width_m } | Self::Pcf5 { width_m } | Self::Pcf7 { width_m } => width_m,
+            Self::Disc { width_m, .. } => width_m,
+            Self::Moments(moments) => moments.width_m,
+            Self::Hard | Self::Pcf2 | Self::Pcss { .. } => None,
+        }
+    }
+
+    /// The place of the width, for filters that have one to choose.
+    pub(crate) fn width_mut(&mut self) -> Option<&mut Option<f64>> {
+        match self {
+            Self::Pcf3 { width_m } | Self::Pcf5 { width_m } | Self::Pcf7 { width_m } => Some(width_m),
+            Self::Disc { width_m, .. } => Some(width_m),
+            Self::Moments(moments) => Some(&mut moments.width_m),
+            Self::Hard | Self::Pcf2 | Self::Pcss { .. } => None,
+        }
+    }
+
+    /// What a fragment reads of one map: texels, or one filtered sample of moments. A pixel in a
+    /// blend band reads two maps.
+    #[must_use]
+    pub const fn texels_read(&self) -> u32 {
+        match self {
+            Self::Hard | Self::Moments(_) => 1,
+            Self::Pcf2 => 4,
+            Self::Pcf3 { .. } => 16,
+            Self::Pcf5 { .. } => 36,
+            Self::Pcf7 { .. } => 64,
+            Self::Disc { .. } => 4 * 32,
+            Self::Pcss { .. } => 4 * 32 + 32,
+        }
+    }
+
+    /// Edge in texels of the smallest map that holds the filter once.
+    #[must_use]
+    pub const fn least_map_size(&self) -> u32 {
+        match self {
+            Self::Hard => 1,
+            Self::Pcf2 => 3,
+            Self::Pcf3 { .. } => 4,
+            Self::Pcf5 { .. } => 6,
+            Self::Pcf7 { .. } => 8,
+            Self::Disc { .. } | Self::Pcss { .. } | Self::Moments(_) => 33,
+        }
+    }
+
+    /// Whether maps are turned into moments between drawing casters and asking for visibility.
+    #[must_use]
+    pub const fn is_prefiltered(&self) -> bool {
+        matches!(self, Self::Moments(_))
+    }
+}
+
+impl std::str::FromStr for Filter {
+    type Err = String;
+
+    /// The filter of this word with its data at the defaults.
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::ALL
+            .into_iter()
+            .find(|filter| filter.word() == text)
+            .ok_or_else(|| super::names::unknown("filter", text, Self::WORDS))
+    }
+}

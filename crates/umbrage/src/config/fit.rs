@@ -1,0 +1,77 @@
+//! What each map's rectangle is fitted to, and whether it stands still.
+
+use super::names::named;
+use crate::Warp;
+
+named! {
+    /// What a map is cropped to. Source: [GG3-10] section 10.3.
+    pub enum Crop as "crop" {
+        /// The slice, its receivers and its casters: scene-dependent
+        #[default]
+        SceneDependent = "dependent",
+        /// The slice alone: scene-independent
+        SceneIndependent = "independent",
+    }
+}
+
+/// Whether shadows stand still while the camera moves.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stability {
+    /// The tightest map in every frame; edges crawl when the camera moves.
+    Tight {
+        /// How maps spread their texels: empty for evenly, one for all, or one for each split.
+        warps: Vec<Warp>,
+    },
+    /// The tight rectangle, its extent rounded up to steps and moved in whole texels.
+    ///
+    /// Static shadows change only in frames in which a step is taken. Source: [PCSM],
+    /// "Approximated solution".
+    Approximate {
+        /// The steps of the extent.
+        steps: ExtentSteps,
+    },
+    /// A rectangle that depends on the lens and the scene's bounds alone, moved in whole texels:
+    /// static shadows do not change at all.
+    Exact,
+}
+
+impl Stability {
+    /// The word of each kind of stability.
+    pub const WORDS: &'static [super::Word] = &[
+        super::Word { word: "exact", help: "Static shadows do not change at all" },
+        super::Word { word: "approximate", help: "Static shadows change in rare steps; sharper" },
+        super::Word { word: "none", help: "The tightest map in every frame; edges crawl" },
+    ];
+
+    /// Maps that are tight and not warped.
+    #[must_use]
+    pub const fn tight() -> Self {
+        Self::Tight { warps: Vec::new() }
+    }
+
+    /// The word in config files and on the command line.
+    #[must_use]
+    pub const fn word(&self) -> &'static str {
+        match self {
+            Self::Tight { .. } => "none",
+            Self::Approximate { .. } => "approximate",
+            Self::Exact => "exact",
+        }
+    }
+}
+
+/// The steps in which an approximately stabilised map changes its extent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExtentSteps {
+    /// Geometric steps of the extent in metres, this many to a doubling: 4 to 64. Ours.
+    PerDoubling(u32),
+    /// This many equal steps of the unsplit light frustum: 8 to 4096. `s_q = 64 / ceil(64 / s)` for
+    /// 64 of them, as in [PCSM], Listing 4.1.2.
+    Levels(u32),
+}
+
+impl Default for ExtentSteps {
+    fn default() -> Self {
+        Self::PerDoubling(24)
+    }
+}

@@ -1,0 +1,326 @@
+//! A technique as a value: everything that can be chosen about shadows, in one type.
+//!
+//! [`ShadowConfig`] is plain data. Choices that exclude each other inside one field cannot be
+//! written; the exclusions that are left between fields are [`RULES`]. Each choice also has a
+//! *setting*: a key and words, listed by [`SETTINGS`], which config files, the command line and
+//! reports share.
+
+mod apply;
+mod filter;
+mod fit;
+mod layout;
+mod look;
+mod names;
+mod presets;
+mod rules;
+#[cfg(feature = "serde")]
+mod serialize;
+mod settings;
+mod splits;
+
+pub use apply::Given;
+pub use filter::{Derivatives, Filter, MomentKind, Moments, SUN_DEGREES};
+pub use fit::{Crop, ExtentSteps, Stability};
+pub use layout::{Coordinates, DepthFormat, Fallbacks, Generation, Layout, Storage};
+pub use look::{Look, ReceiverBias, Translucent};
+pub use names::Word;
+pub(crate) use names::unknown;
+pub use presets::Preset;
+pub use rules::{Choice, Conflict, RULES, Rule};
+pub use settings::{Kind, Rebuilds, SETTINGS, Setting, Value};
+pub use splits::{Range, Selection, SplitMetric, SplitScheme, Transition};
+
+use crate::{Error, MAX_SPLITS, Result, Warp};
+
+/// What kind of light throws shadows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum LightKind {
+    /// A sun: parallel light.
+    #[default]
+    Directional,
+    /// A cone of light from a point.
+    Spot,
+    /// Light from a point in all directions: six faces of a cube.
+    Point,
+}
+
+impl LightKind {
+    /// How many times the maps of [`ShadowConfig::map_sizes`] the light has.
+    #[must_use]
+    pub const fn faces(self) -> usize {
+        match self {
+            Self::Directional | Self::Spot => 1,
+            Self::Point => 6,
+        }
+    }
+}
+
+/// Everything that can be chosen about shadows.
+///
+/// The default is [`Preset::Balanced`]. Lengths are metres, angles degrees.
+///
+/// ```
+/// use umbrage::config::{Filter, ShadowConfig};
+///
+/// let config = ShadowConfig { filter: Filter::Pcf5 { width_m: None }, ..ShadowConfig::default() };
+/// assert!(config.validate().is_ok());
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShadowConfig {
+    /// Edge of each split's map in texels, nearest split first: 1 to [`MAX_SPLITS`] entries.
+    pub map_sizes: Vec<u32>,
+    /// Where the planes between splits stand.
+    pub scheme: SplitScheme,
+    /// The view depths that shadows cover.
+    pub range: Range,
+    /// Which split answers for a point.
+    pub selection: Selection,
+    /// How one split goes over into the next.
+    pub transition: Transition,
+    /// Share of the shadowed range over which shadows fade to lit at its far end, 0 to 1. Nothing
+    /// fades where nothing is seen beyond the range.
+    pub far_fade: f64,
+    /// What each map is cropped to.
+    pub crop: Crop,
+    /// Whether shadows stand still while the camera moves.
+    pub stability: Stability,
+    /// How a map is looked up.
+    pub filter: Filter,
+    /// What a texel of a map stores.
+    pub depth_format: DepthFormat,
+    /// Where maps are kept and how they are drawn.
+    pub layout: Layout,
+    /// Whether what the device cannot do is replaced by what it can.
+    pub fallbacks: Fallbacks,
+    /// Where receivers take a map's coordinates from.
+    pub coordinates: Coordinates,
+    /// What a shadow looks like.
+    pub look: Look,
+}
+
+impl Default for ShadowConfig {
+    fn default() -> Self {
+        Preset::Balanced.config()
+    }
+}
+
+impl ShadowConfig {
+    /// The number of splits.
+    #[must_use]
+    pub fn splits(&self) -> usize {
+        self.map_sizes.len()
+    }
+
+    /// Texels of all maps of one sun or spot light.
+    #[must_use]
+    pub fn texels(&self) -> u64 {
+        self.map_sizes.iter().map(|&edge| u64::from(edge) * u64::from(edge)).sum()
+    }
+
+    /// The warp of split `index`; [`Warp::None`] for stabilised maps.
+    #[must_use]
+    pub fn warp(&self, index: usize) -> Warp {
+        match &self.stability {
+            Stability::Tight { warps } => match warps[..] {
+                [for_all] => for_all,
+                _ => warps.get(index).copied().unwrap_or_default(),
+            },
+            Stability::Approximate { .. } | Stability::Exact => Warp::None,
+        }
+    }
+
+    /// The first warp that is not [`Warp::None`].
+    #[must_use]
+    pub fn first_warp(&self) -> Option<Warp> {
+        (0..self.splits()).map(|index| self.warp(index)).find(|warp| *warp != Warp::None)
+    }
+
+    /// Whether maps keep their texels while the camera moves, exactly or approximately.
+    #[must_use]
+    pub fn is_stabilised(&self) -> bool {
+        !matches!(self.stability, Stability::Tight { .. })
+    }
+
+    /// Share of each split over which it blends into the next; 0 for hard borders.
+    #[must_use]
+    pub fn blend(&self) -> f64 {
+        if self.splits() > 1 { self.transition.share() } else { 0.0 }
+    }
+
+    /// Checks every field and every rule, for one directional light.
+    ///
+    /// # Errors
+    /// [`Error::InvalidSetting`] naming the first setting that is out of range,
+    /// [`Error::Conflict`] naming two that exclude each other.
+    pub fn validate(&self) -> Result<()> {
+        self.validate_for(&[LightKind::Directional])
+    }
+
+    /// Checks every field and every rule, for these lights.
+    ///
+    /// # Errors
+    /// [`Error::InvalidSetting`] naming the first setting that is out of range,
+    /// [`Error::Conflict`] naming two that exclude each other.
+    pub fn validate_for(&self, lights: &[LightKind]) -> Result<()> {
+        self.check_sizes()?;
+        self.check_splits()?;
+        self.check_fit()?;
+        self.check_filter()?;
+        self.check_look()?;
+        match self.conflict(lights) {
+            Some(conflict) => Err(Error::Conflict(Box::new(conflict))),
+            None => Ok(()),
+        }
+    }
+
+    /// The first rule of [`RULES`] that the config breaks for these lights.
+    #[must_use]
+    pub fn conflict(&self, lights: &[LightKind]) -> Option<Conflict> {
+        RULES.iter().find(|rule| rule.is_broken_by(self, lights)).map(|rule| rule.conflict(self))
+    }
+
+    /// The config that a light of this kind gets: what excludes the kind of light is replaced by the
+    /// usual choice. The second value names what was replaced.
+    #[must_use]
+    pub fn for_lights(&self, lights: &[LightKind]) -> (Self, Vec<String>) {
+        let (mut config, mut notes) = (self.clone(), Vec::new());
+        for rule in RULES.iter().filter(|rule| rule.is_about_lights()) {
+            if rule.is_broken_by(&config, lights) {
+                let said = rule.first.say(&config);
+                if rule.first.relax(&mut config) {
+                    notes.push(format!("{said} is left away: {}", rule.reason));
+                }
+            }
+        }
+        (config, notes)
+    }
+
+    fn check_sizes(&self) -> Result<()> {
+        let splits = self.splits();
+        if !(1..=MAX_SPLITS).contains(&splits) {
+            return Err(Error::setting("splits", format!("{splits} maps; there may be 1 to {MAX_SPLITS}")));
+        }
+        // One texel beside the margins, and one for moving in whole texels.
+        let moving = if self.is_stabilised() { 5.0 } else { 4.0 };
+        let margins = (2.0 * self.filter.radius_texels() + moving).ceil() as u32;
+        let least = self.filter.least_map_size().max(margins);
+        for (split, &size) in self.map_sizes.iter().enumerate() {
+            if !(least..=1 << 16).contains(&size) {
+                let filter = self.filter.word();
+                return Err(Error::setting(
+                    "map-size",
+                    format!("map {split} is {size} texels wide; give {least} to 65536 with the filter {filter}"),
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_splits(&self) -> Result<()> {
+        share("blend", self.transition.share(), 1.0)?;
+        share("far-fade", self.far_fade, 1.0)?;
+        if let Range::Metres { near, far } = self.range {
+            crate::settings::check_range(near, far)?;
+        }
+        let inner = self.splits() - 1;
+        match &self.scheme {
+            SplitScheme::Uniform | SplitScheme::Logarithmic | SplitScheme::Optimal => Ok(()),
+            SplitScheme::Practical { lambda, delta } => {
+                share("lambda", *lambda, 1.0)?;
+                if !(delta.len() <= 1 || delta.len() == inner) {
+                    let count = delta.len();
+                    let reason = format!("{count} offsets for {inner} inner planes; give one, or one for each");
+                    return Err(Error::setting("delta", reason));
+                }
+                match delta.iter().find(|offset| !offset.is_finite()) {
+                    Some(bad) => Err(Error::setting("delta", format!("{bad} is not a finite number of metres"))),
+                    None => Ok(()),
+                }
+            }
+            SplitScheme::Manual { planes } if planes.len() != inner => {
+                let (count, splits) = (planes.len(), self.splits());
+                Err(Error::setting("planes", format!("{count} inner planes for {splits} splits; give {inner}")))
+            }
+            SplitScheme::Manual { planes } => {
+                let rise = planes.iter().all(|plane| plane.is_finite()) && planes.windows(2).all(|p| p[0] < p[1]);
+                if rise {
+                    return Ok(());
+                }
+                Err(Error::setting("planes", format!("{planes:?} do not rise strictly")))
+            }
+        }
+    }
+
+    fn check_fit(&self) -> Result<()> {
+        match &self.stability {
+            Stability::Exact => Ok(()),
+            Stability::Approximate { steps: ExtentSteps::PerDoubling(count) } => {
+                whole("extent-steps", *count, 4, 64, "steps to a doubling")
+            }
+            Stability::Approximate { steps: ExtentSteps::Levels(count) } => {
+                whole("extent-levels", *count, 8, 4096, "levels")
+            }
+            Stability::Tight { warps } => {
+                let (count, splits) = (warps.len(), self.splits());
+                if !(count <= 1 || count == splits) {
+                    let reason = format!("{count} warps for {splits} splits; give none, one for all, or one for each");
+                    return Err(Error::setting("warp", reason));
+                }
+                let focus = warps.iter().find_map(|warp| match *warp {
+                    Warp::Tsm { focus } if !(focus > 0.0 && focus < 1.0) => Some(focus),
+                    _ => None,
+                });
+                match focus {
+                    Some(focus) => Err(Error::setting("tsm-focus", format!("{focus} is not between 0 and 1"))),
+                    None => Ok(()),
+                }
+            }
+        }
+    }
+
+    fn check_filter(&self) -> Result<()> {
+        if let Some(width) = self.filter.width_m()
+            && !(width > 0.0 && width <= 1e6)
+        {
+            return Err(Error::setting("filter-width", format!("{width} m; give a width above 0, up to 1000 km")));
+        }
+        match self.filter {
+            Filter::Pcss { sun_degrees, .. } => {
+                if (0.0..=90.0).contains(&sun_degrees) {
+                    return Ok(());
+                }
+                Err(Error::setting("sun-angle", format!("{sun_degrees}°; give 0 to 90 degrees")))
+            }
+            Filter::Moments(Moments { samples, bleeding, .. }) => {
+                share("bleeding", bleeding, 0.9)?;
+                if matches!(samples, 1 | 4) {
+                    return Ok(());
+                }
+                Err(Error::setting("msaa", format!("{samples} samples; a texel has 1 sample or 4, as on every device")))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn check_look(&self) -> Result<()> {
+        share("shadow-strength", self.look.strength, 1.0)?;
+        self.look.colour.iter().try_for_each(|&part| share("shadow-colour", part, 1.0))
+    }
+}
+
+/// Checks that a share lies between 0 and `most`.
+fn share(key: &'static str, value: f64, most: f64) -> Result<()> {
+    if (0.0..=most).contains(&value) {
+        Ok(())
+    } else {
+        Err(Error::setting(key, format!("{value} is not in 0..={most}")))
+    }
+}
+
+/// Checks that a count lies within its bounds.
+fn whole(key: &'static str, value: u32, least: u32, most: u32, what: &str) -> Result<()> {
+    if (least..=most).contains(&value) {
+        return Ok(());
+    }
+    Err(Error::setting(key, format!("{value} {what}; give {least} to {most}")))
+}

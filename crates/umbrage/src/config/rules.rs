@@ -1,0 +1,337 @@
+//! Which choices exclude each other, as data: messages, the documented table and the test of all
+//! pairs come from it.
+
+use std::fmt;
+
+use super::{
+    Coordinates, Filter, Layout, LightKind, Range, Selection, ShadowConfig, SplitMetric, SplitScheme, Stability,
+    Transition,
+};
+use crate::Warp;
+
+/// A choice that excludes others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Choice {
+    /// A map that spreads its texels unevenly.
+    Warp,
+    /// The first map that contains a point answers.
+    MapSelection,
+    /// Split planes measure the distance from the eye.
+    DistanceMetric,
+    /// The range follows the receivers in view.
+    VisibleRange,
+    /// The planes of least predicted error.
+    OptimalScheme,
+    /// Two splits or more go over into each other in a band.
+    Band,
+    /// A filter that blurs moments of depth.
+    MomentFilter,
+    /// A filter that goes by depths of parallel light.
+    SunFilter,
+    /// One map is used for one split after the other.
+    OneMap,
+    /// Maps are not plain layers of one texture.
+    NotLayers,
+    /// Maps are not drawn one by one.
+    NotPerSplit,
+    /// Maps are faces of a cube.
+    CubeFaces,
+    /// More splits than a cube has faces.
+    MoreThanSixSplits,
+    /// Maps of different sizes.
+    UnequalSizes,
+    /// Vertices make the coordinates of maps.
+    VertexCoordinates,
+    /// More splits than vertices hand on coordinates of.
+    MoreThanFourSplits,
+    /// A spot or point light.
+    LocalLight,
+    /// Several lights, or a light of several faces.
+    SeveralFaces,
+}
+
+/// Two choices that exclude each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rule {
+    /// The choice that gives way where nobody asked for either.
+    pub first: Choice,
+    /// The other choice.
+    pub second: Choice,
+    /// Why they exclude each other.
+    pub reason: &'static str,
+    /// What to do.
+    pub remedy: &'static str,
+}
+
+/// All pairs of choices that exclude each other.
+pub const RULES: &[Rule] = &[
+    rule(
+        Choice::Warp,
+        Choice::MapSelection,
+        "the first map that contains a point need not be the finest there if maps are warped",
+        "use selection depth, or no warp",
+    ),
+    rule(
+        Choice::VisibleRange,
+        Choice::DistanceMetric,
+        "radial bands stand still while the camera turns and a visible range does not",
+        "use range-fit camera, or bands planar",
+    ),
+    rule(
+        Choice::Band,
+        Choice::OneMap,
+        "there is one map at a time and none to blend with",
+        "use transition hard (or blend 0), or another storage",
+    ),
+    rule(
+        Choice::MapSelection,
+        Choice::OneMap,
+        "there is one map at a time and none to choose from",
+        "use selection depth, or another storage",
+    ),
+    rule(
+        Choice::DistanceMetric,
+        Choice::OneMap,
+        "the picture is drawn in slices of view depth",
+        "use bands planar, or another storage",
+    ),
+    rule(
+        Choice::NotLayers,
+        Choice::MomentFilter,
+        "moments are kept as layers of one texture",
+        "use storage array, or a filter that compares depth, such as pcf5",
+    ),
+    rule(
+        Choice::Warp,
+        Choice::MomentFilter,
+        "moments need depth that is linear along the light, which a warped map has not",
+        "use no warp, or a filter that compares depth, such as pcf5",
+    ),
+    rule(
+        Choice::CubeFaces,
+        Choice::MoreThanSixSplits,
+        "a cube has six faces",
+        "use 6 splits at most, or storage array",
+    ),
+    rule(
+        Choice::CubeFaces,
+        Choice::UnequalSizes,
+        "the faces of a cube are alike",
+        "give one size for all maps, or use storage atlas",
+    ),
+    rule(
+        Choice::VertexCoordinates,
+        Choice::Warp,
+        "coordinates in a warped map are quotients, which cannot be interpolated",
+        "use coordinates world, or no warp",
+    ),
+    rule(
+        Choice::VertexCoordinates,
+        Choice::MoreThanFourSplits,
+        "vertices hand on the coordinates of at most 4 splits",
+        "use fewer splits, or coordinates world",
+    ),
+    rule(
+        Choice::Warp,
+        Choice::LocalLight,
+        "a warp needs light that is parallel in the world",
+        "use no warp, or a directional light",
+    ),
+    rule(
+        Choice::MapSelection,
+        Choice::LocalLight,
+        "maps of a local light lie in its perspective and are chosen by view depth",
+        "use selection depth, or a directional light",
+    ),
+    rule(
+        Choice::DistanceMetric,
+        Choice::LocalLight,
+        "splits of a local light are chosen by view depth",
+        "use bands planar, or a directional light",
+    ),
+    rule(
+        Choice::OptimalScheme,
+        Choice::LocalLight,
+        "optimal planes are chosen for light that is parallel in the world",
+        "use scheme log or practical, or a directional light",
+    ),
+    rule(
+        Choice::SunFilter,
+        Choice::LocalLight,
+        "the filter goes by depths of parallel light",
+        "use another filter, such as pcf5, or a directional light",
+    ),
+    rule(
+        Choice::VertexCoordinates,
+        Choice::SeveralFaces,
+        "vertices hand on the coordinates of one sun's maps",
+        "use coordinates world, or one sun",
+    ),
+    rule(
+        Choice::MomentFilter,
+        Choice::SeveralFaces,
+        "moments are kept for one sun",
+        "use a filter that compares depth, such as pcf5, or one sun",
+    ),
+    rule(
+        Choice::NotLayers,
+        Choice::SeveralFaces,
+        "several lights and point lights share the layers of one texture",
+        "use storage array, or one sun or spot light",
+    ),
+    rule(
+        Choice::NotPerSplit,
+        Choice::SeveralFaces,
+        "several lights and point lights are drawn one map at a time",
+        "use generation per-split, or one sun or spot light",
+    ),
+];
+
+const fn rule(first: Choice, second: Choice, reason: &'static str, remedy: &'static str) -> Rule {
+    Rule { first, second, reason, remedy }
+}
+
+impl Rule {
+    /// Whether a config for these lights makes both choices.
+    #[must_use]
+    pub fn is_broken_by(&self, config: &ShadowConfig, lights: &[LightKind]) -> bool {
+        self.first.holds(config, lights) && self.second.holds(config, lights)
+    }
+
+    /// Whether one of both choices is one of lights, which a config does not hold.
+    #[must_use]
+    pub const fn is_about_lights(&self) -> bool {
+        matches!(self.second, Choice::LocalLight | Choice::SeveralFaces)
+    }
+
+    /// The rule in the words of a config that breaks it.
+    #[must_use]
+    pub fn conflict(&self, config: &ShadowConfig) -> Conflict {
+        Conflict { rule: *self, first: self.first.say(config), second: self.second.say(config) }
+    }
+}
+
+/// Two settings that exclude each other.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Conflict {
+    /// The rule that is broken.
+    pub rule: Rule,
+    /// The first choice as `key value`.
+    pub first: String,
+    /// The second choice as `key value`.
+    pub second: String,
+}
+
+impl fmt::Display for Conflict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { rule, first, second } = self;
+        write!(f, "{first} and {second} exclude each other: {}; {}", rule.reason, rule.remedy)
+    }
+}
+
+impl Choice {
+    /// All choices that a rule may name.
+    pub const ALL: [Self; 18] = [
+        Self::Warp,
+        Self::MapSelection,
+        Self::DistanceMetric,
+        Self::VisibleRange,
+        Self::OptimalScheme,
+        Self::Band,
+        Self::MomentFilter,
+        Self::SunFilter,
+        Self::OneMap,
+        Self::NotLayers,
+        Self::NotPerSplit,
+        Self::CubeFaces,
+        Self::MoreThanSixSplits,
+        Self::UnequalSizes,
+        Self::VertexCoordinates,
+        Self::MoreThanFourSplits,
+        Self::LocalLight,
+        Self::SeveralFaces,
+    ];
+
+    /// Whether a config for these lights makes this choice.
+    #[must_use]
+    pub fn holds(self, config: &ShadowConfig, lights: &[LightKind]) -> bool {
+        match self {
+            Self::Warp => config.first_warp().is_some(),
+            Self::MapSelection => config.selection == Selection::Map,
+            Self::DistanceMetric => config.selection == Selection::Interval(SplitMetric::Distance),
+            Self::VisibleRange => config.range == Range::Visible,
+            Self::OptimalScheme => config.scheme == SplitScheme::Optimal,
+            Self::Band => config.blend() > 0.0,
+            Self::MomentFilter => config.filter.is_prefiltered(),
+            Self::SunFilter => config.filter.is_prefiltered() || matches!(config.filter, Filter::Pcss { .. }),
+            Self::OneMap => config.layout == Layout::Reused,
+            Self::NotLayers => config.layout.storage() != super::Storage::Array,
+            Self::NotPerSplit => config.layout.generation() != super::Generation::PerSplit,
+            Self::CubeFaces => config.layout.storage() == super::Storage::Cube,
+            Self::MoreThanSixSplits => config.splits() > 6,
+            Self::UnequalSizes => config.map_sizes.windows(2).any(|pair| pair[0] != pair[1]),
+            Self::VertexCoordinates => config.coordinates == Coordinates::Vertex,
+            Self::MoreThanFourSplits => config.splits() > 4,
+            Self::LocalLight => lights.iter().any(|light| *light != LightKind::Directional),
+            Self::SeveralFaces => lights.iter().map(|light| light.faces()).sum::<usize>() > 1,
+        }
+    }
+
+    /// The settings that make this choice, the most telling one first.
+    #[must_use]
+    pub const fn keys(self) -> &'static [&'static str] {
+        match self {
+            Self::Warp => &["warp", "technique", "tsm-focus"],
+            Self::MapSelection => &["selection"],
+            Self::DistanceMetric => &["bands"],
+            Self::VisibleRange => &["range-fit"],
+            Self::OptimalScheme => &["scheme"],
+            Self::Band => &["blend", "transition"],
+            Self::MomentFilter | Self::SunFilter => &["filter", "msaa", "bleeding", "derivatives"],
+            Self::OneMap | Self::NotLayers | Self::CubeFaces => &["storage", "generation"],
+            Self::NotPerSplit => &["generation", "storage"],
+            Self::MoreThanSixSplits | Self::MoreThanFourSplits => &["splits", "map-size", "planes"],
+            Self::UnequalSizes => &["map-size"],
+            Self::VertexCoordinates => &["coordinates"],
+            Self::LocalLight | Self::SeveralFaces => &["light"],
+        }
+    }
+
+    /// The choice as `key value`, in the words of a config that makes it.
+    #[must_use]
+    pub fn say(self, config: &ShadowConfig) -> String {
+        match self {
+            Self::LocalLight => "light spot or point".to_owned(),
+            Self::SeveralFaces => "several lights or faces".to_owned(),
+            Self::OneMap => "storage reused (generation multipass)".to_owned(),
+            Self::Warp => format!("warp {}", config.first_warp().map_or("none", Warp::word)),
+            _ => {
+                let key = self.keys()[0];
+                match super::settings::find(key).and_then(|setting| setting.get(config)) {
+                    Some(value) => format!("{key} {value}"),
+                    None => key.to_owned(),
+                }
+            }
+        }
+    }
+
+    /// Takes the choice back to what excludes nothing. False where there is no such choice.
+    pub fn relax(self, config: &mut ShadowConfig) -> bool {
+        match self {
+            Self::Warp => config.stability = Stability::tight(),
+            Self::MapSelection | Self::DistanceMetric => config.selection = Selection::default(),
+            Self::VisibleRange => config.range = Range::Camera,
+            Self::OptimalScheme => config.scheme = SplitScheme::practical(),
+            Self::Band => config.transition = Transition::Hard,
+            Self::MomentFilter | Self::SunFilter => config.filter = Filter::Pcf3 { width_m: None },
+            Self::OneMap | Self::NotLayers | Self::NotPerSplit | Self::CubeFaces => config.layout = Layout::Array,
+            Self::VertexCoordinates => config.coordinates = Coordinates::World,
+            Self::MoreThanSixSplits
+            | Self::UnequalSizes
+            | Self::MoreThanFourSplits
+            | Self::LocalLight
+            | Self::SeveralFaces => return false,
+        }
+        true
+    }
+}

@@ -1,0 +1,608 @@
+//! Every choice of a [`ShadowConfig`] as a setting with a key: what config files, the command line,
+//! reports and a viewer's controls share.
+
+use std::fmt;
+
+use super::apply::{self, Given, Wrong};
+use super::names::Word;
+use super::{
+    Coordinates, Crop, DepthFormat, Derivatives, ExtentSteps, Fallbacks, Filter, Generation, Range, ReceiverBias,
+    Selection, ShadowConfig, SplitMetric, SplitScheme, Stability, Storage, Transition, Translucent,
+};
+use crate::Warp;
+
+/// One choice of a [`ShadowConfig`].
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    /// The key in config files; the command's option is the key behind two dashes.
+    pub key: &'static str,
+    /// One line of explanation.
+    pub help: &'static str,
+    /// What values it takes.
+    pub kind: Kind,
+    /// What an application's maps have to be made anew for when the setting changes.
+    pub rebuilds: Rebuilds,
+    pub(super) set: fn(&mut ShadowConfig, &str, &Given<'_>) -> Result<(), Wrong>,
+    pub(super) get: fn(&ShadowConfig) -> Option<Value>,
+}
+
+impl Setting {
+    /// The setting's value in a config; `None` where the config's other choices leave no room for it.
+    #[must_use]
+    pub fn get(&self, config: &ShadowConfig) -> Option<Value> {
+        (self.get)(config)
+    }
+}
+
+/// What values a setting takes.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    /// One of a list of words.
+    Words(&'static [Word]),
+    /// Words with commas between, one for all splits or one for each.
+    WordList(&'static [Word]),
+    /// A number from 0 to the given most.
+    Share(f64),
+    /// Metres, above 0.
+    Metres,
+    /// Metres with commas between.
+    MetresList,
+    /// Two view depths in metres, `N..F`.
+    Range,
+    /// Degrees, from 0 to the given most.
+    Degrees(f64),
+    /// A whole number between two bounds.
+    Count(u32, u32),
+    /// Texels with commas between, one for all splits or one for each.
+    Texels,
+    /// Linear red, green and blue, 0 to 1 each.
+    Colour,
+    /// `true` or `false`.
+    Switch,
+}
+
+impl Kind {
+    /// Checks a value alone, without regard to other settings.
+    ///
+    /// # Errors
+    /// What is wrong with the value and what to give instead.
+    pub fn check(&self, text: &str) -> Result<(), String> {
+        let within = |value: f64, most: f64| {
+            if (0.0..=most).contains(&value) { Ok(()) } else { Err(format!("{value} is not in 0..{most}")) }
+        };
+        let positive = |text: &str| {
+            apply::number(text).and_then(|v| if v > 0.0 { Ok(v) } else { Err(format!("{v} is not greater than 0")) })
+        };
+        match *self {
+            Self::Words(words) => apply::one_of(text, words),
+            Self::WordList(words) => text.split(',').try_for_each(|word| apply::one_of(word.trim(), words)),
+            Self::Share(most) | Self::Degrees(most) => apply::number(text).and_then(|value| within(value, most)),
+            Self::Metres => positive(text).map(|_| ()),
+            Self::MetresList => text.split(',').try_for_each(|metres| apply::number(metres).map(|_| ())),
+            Self::Range => apply::range(text).map(|_| ()),
+            Self::Count(least, most) => match apply::count(text)? {
+                count if (least..=most).contains(&count) => Ok(()),
+                count => Err(format!("{count}; give {least} to {most}")),
+            },
+            Self::Texels => apply::map_sizes(text).map(|_| ()),
+            Self::Colour => match text.split(',').count() {
+                3 => text.split(',').try_for_each(|part| apply::number(part).and_then(|part| within(part, 1.0))),
+                count => Err(format!("{count} numbers; give red, green and blue from 0 to 1")),
+            },
+            Self::Switch => apply::switch(text).map(|_| ()),
+        }
+    }
+
+    /// What stands for a value in a line of help, such as `TEXELS,…`.
+    #[must_use]
+    pub const fn placeholder(&self) -> &'static str {
+        match self {
+            Self::Words(_) => "WORD",
+            Self::WordList(_) => "WORD,…",
+            Self::Share(_) => "SHARE",
+            Self::Metres => "M",
+            Self::MetresList => "M,…",
+            Self::Range => "N..F",
+            Self::Degrees(_) => "DEGREES",
+            Self::Count(..) => "N",
+            Self::Texels => "TEXELS,…",
+            Self::Colour => "R,G,B",
+            Self::Switch => "SWITCH",
+        }
+    }
+}
+
+/// What a change of a setting makes anew.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Rebuilds {
+    /// Nothing: the next frame has it.
+    Nothing,
+    /// Textures and bind groups. Pipelines stay valid.
+    Maps,
+    /// Shader texts, and with them the pipelines that use them.
+    Pipelines,
+}
+
+/// A setting's value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A word or words.
+    Word(String),
+    /// A number.
+    Number(f64),
+    /// A whole number.
+    Count(u32),
+    /// Numbers.
+    Numbers(Vec<f64>),
+    /// Whole numbers.
+    Counts(Vec<u32>),
+    /// Yes or no.
+    Switch(bool),
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fn list<T: fmt::Display>(f: &mut fmt::Formatter<'_>, values: &[T]) -> fmt::Result {
+            values.iter().enumerate().try_for_each(|(i, value)| write!(f, "{}{value}", if i > 0 { "," } else { "" }))
+        }
+        match self {
+            Self::Word(word) => f.write_str(word),
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Count(count) => write!(f, "{count}"),
+            Self::Numbers(numbers) => list(f, numbers),
+            Self::Counts(counts) => list(f, counts),
+            Self::Switch(on) => write!(f, "{on}"),
+        }
+    }
+}
+
+/// The setting of this key.
+pub(super) fn find(key: &str) -> Option<&'static Setting> {
+    SETTINGS.iter().find(|setting| setting.key == key)
+}
+
+fn word(word: &'static str) -> Option<Value> {
+    Some(Value::Word(word.to_owned()))
+}
+
+/// The words of techniques: splits, or one map with a warp.
+const TECHNIQUES: &[Word] = &[
+    Word { word: "pssm", help: "Parallel-split shadow maps" },
+    Word { word: "ssm", help: "One map over the whole range" },
+    Word { word: "psm", help: "One perspective shadow map" },
+    Word { word: "lispsm", help: "One light space perspective shadow map" },
+    Word { word: "tsm", help: "One trapezoidal shadow map" },
+];
+
+const RANGE_FITS: &[Word] = &[
+    Word { word: "camera", help: "The camera's near and far, far capped by the scene" },
+    Word { word: "visible", help: "The nearest and the farthest thing in view" },
+];
+
+const SELECTIONS: &[Word] = &[
+    Word { word: "depth", help: "Interval-based: by the planes between splits" },
+    Word { word: "map", help: "Map-based: the first map that contains the point" },
+];
+
+const TRANSITIONS: &[Word] = &[
+    Word { word: "blend", help: "Both splits are mixed over a band" },
+    Word { word: "dither", help: "Each pixel of a band takes one of both, by noise" },
+    Word { word: "hard", help: "No band" },
+];
+
+const GENERATIONS: &[Word] = &[
+    Word { word: "auto", help: "What goes with the storage" },
+    Word { word: "multipass", help: "Map and picture slice by slice, one map for all" },
+    Word { word: "per-split", help: "One pass for each split" },
+    Word { word: "layered", help: "As many splits at once as the device has views" },
+    Word { word: "instanced", help: "All splits at once, by instancing into tiles" },
+    Word { word: "mixed", help: "All splits at once: tiles in layers" },
+];
+
+const STORAGES: &[Word] = &[
+    Word { word: "auto", help: "What goes with the generation" },
+    Word { word: "array", help: "Layers of one texture" },
+    Word { word: "atlas", help: "Tiles of one texture" },
+    Word { word: "separate", help: "A texture for each map" },
+    Word { word: "cube", help: "Faces of a cube: six maps of one size at most" },
+    Word { word: "reused", help: "One map, used for one split after the other" },
+];
+
+/// All settings, in the order in which they are applied.
+pub const SETTINGS: &[Setting] = &[
+    Setting {
+        key: "technique",
+        help: "How the shadow maps share the view",
+        kind: Kind::Words(TECHNIQUES),
+        rebuilds: Rebuilds::Pipelines,
+        set: |config, _, given| apply::shape(config, given),
+        get: |config| {
+            word(match (config.splits(), config.warp(0)) {
+                (1, Warp::None) => "ssm",
+                (1, warp) => warp.word(),
+                _ => "pssm",
+            })
+        },
+    },
+    Setting {
+        key: "splits",
+        help: "Number of splits (cascades)",
+        kind: Kind::Count(1, crate::MAX_SPLITS as u32),
+        rebuilds: Rebuilds::Pipelines,
+        set: |config, _, given| apply::shape(config, given),
+        get: |config| Some(Value::Count(config.splits() as u32)),
+    },
+    Setting {
+        key: "map-size",
+        help: "Edge of each map in texels: one size, or one per split",
+        kind: Kind::Texels,
+        rebuilds: Rebuilds::Maps,
+        set: |config, _, given| apply::shape(config, given),
+        get: |config| Some(Value::Counts(config.map_sizes.clone())),
+    },
+    Setting {
+        key: "scheme",
+        help: "Where the planes between splits stand",
+        kind: Kind::Words(SplitScheme::WORDS),
+        rebuilds: Rebuilds::Nothing,
+        set: apply::scheme,
+        get: |config| word(config.scheme.word()),
+    },
+    Setting {
+        key: "lambda",
+        help: "Share of the logarithmic scheme in the practical one",
+        kind: Kind::Share(1.0),
+        rebuilds: Rebuilds::Nothing,
+        set: apply::lambda,
+        get: |config| match config.scheme {
+            SplitScheme::Practical { lambda, .. } => Some(Value::Number(lambda)),
+            _ => None,
+        },
+    },
+    Setting {
+        key: "delta",
+        help: "Metres added to the inner planes of the practical scheme: one for all, or one for each",
+        kind: Kind::MetresList,
+        rebuilds: Rebuilds::Nothing,
+        set: apply::delta,
+        get: |config| match &config.scheme {
+            SplitScheme::Practical { delta, .. } if !delta.is_empty() => Some(Value::Numbers(delta.clone())),
+            _ => None,
+        },
+    },
+    Setting {
+        key: "planes",
+        help: "The inner planes of the manual scheme: view depths in metres, rising",
+        kind: Kind::MetresList,
+        rebuilds: Rebuilds::Nothing,
+        set: apply::planes,
+        get: |config| match &config.scheme {
+            SplitScheme::Manual { planes } if !planes.is_empty() => Some(Value::Numbers(planes.clone())),
+            _ => None,
+        },
+    },
+    Setting {
+        key: "range-fit",
+        help: "What the shadowed range is fitted to where no shadow-range is given",
+        kind: Kind::Words(RANGE_FITS),
+        rebuilds: Rebuilds::Nothing,
+        set: apply::range_fit,
+        get: |config| match config.range {
+            Range::Camera => word("camera"),
+            Range::Visible => word("visible"),
+            Range::Metres { .. } => None,
+        },
+    },
+    Setting {
+        key: "shadow-range",
+        help: "View depths in metres that shadows cover",
+        kind: Kind::Range,
+        rebuilds: Rebuilds::Nothing,
+        set: apply::shadow_range,
+        get: |config| match config.range {
+            Range::Metres { near, far } => Some(Value::Word(format!("{near}..{far}"))),
+            Range::Camera | Range::Visible => None,
+        },
+    },
+    Setting {
+        key: "fit",
+        help: "What each map is cropped to",
+        kind: Kind::Words(Crop::WORDS),
+        rebuilds: Rebuilds::Nothing,
+        set: |config, text, _| text.parse().map(|crop| config.crop = crop).map_err(Wrong::from),
+        get: |config| word(config.crop.word()),
+    },
+    Setting {
+        key: "selection",
+        help: "Which map answers for a point",
+        kind: Kind::Words(SELECTIONS),
+        rebuilds: Rebuilds::Pipelines,
+        set: apply::selection,
+        get: |config| {
+            word(match config.selection {
+                Selection::Interval(_) => "depth",
+                Selection::Map => "map",
+            })
+        },
+    },
+    Setting {
+        key: "bands",
+        help: "What the planes between splits measure",
+        kind: Kind::Words(SplitMetric::WORDS),
+        rebuilds: Rebuilds::Pipelines,
+        set: apply::bands,
+        get: |config| match config.selection {
+            Selection::Interval(metric) => word(metric.word()),
+            Selection::Map => None,
+        },
+    },
+    Setting {
+        key: "stabilize",
+        help: "Whether shadows stand still while the camera moves",
+        kind: Kind::Words(Stability::WORDS),
+        rebuilds: Rebuilds::Nothing,
+        set: apply::stabilize,
+        get: |config| word(config.stability.word()),
+    },
+    Setting {
+        key: "extent-steps",
+        help: "Approximately stable maps: steps to a doubling of a map's extent",
+        kind: Kind::Count(4, 64),
+        rebuilds: Rebuilds::Nothing,
+        set: |config, text, given| apply::extent(config, given, ExtentSteps::PerDoubling(apply::count(text)?)),
+        get: |config| match config.stability {
+            Stability::Approximate { steps: ExtentSteps::PerDoubling(count) } => Some(Value::Count(count)),
+            _ => None,
+        },
+    },
+    Setting {
+        key: "extent-levels",
+        help: "Approximately stable maps: equal steps of so many to the whole range instead",
+        kind: Kind::Count(8, 4096),
+        rebuilds: Rebuilds::Nothing,
+        set: |config, text, given| apply::extent(config, given, ExtentSteps::Levels(apply::count(text)?)),
+        get: |config| match config.stability {
+            Stability::Approximate { steps: ExtentSteps::Levels(count) } => Some(Value::Count(count)),
+            _ => None,
+        },
+    },
+    Setting {
+        key: "warp",
+        help: "How each split's map spreads its texels: one, or one per split",
+        kind: Kind::WordList(Warp::WORDS),
+        rebuilds: Rebuilds::Pipelines,
+        set: apply::warp,
+        get: |config| match &config.stability {
+            Stability::Tight { warps } if !warps.is_empty() => {
+                Some(Value::Word(warps.iter().map(|warp| warp.word()).collect::<Vec<_>>().join(",")))
+            }
+            _ => None,
+        },
+    },
+    Setting {
+        key: "tsm-focus",
+        help: "Share of the depth range that trapezoidal maps give four fifths of their texels",
+        kind: Kind::Share(1.0),
+        rebuilds: Rebuilds::Nothing,
+        set: apply::tsm_focus,
+        get: |config| match &config.stability {
+            Stability::Tight { warps } => warps.iter().find_map(|warp| match *warp {
+                Warp::Tsm { focus } => Some(Value::Number(focus)),
+                _ => None,
+            }),
+            _ => None,
+        },
+    },
+    Setting {
+        key: "filter",
+        help: "How a map is looked up",
+        kind: Kind::Words(Filter::WORDS),
+        rebuilds: Rebuilds::Pipelines,
+        set: |config, text, _| text.parse().map(|filter| config.filter = filter).map_err(Wrong::from),
+        get: |config| word(config.filter.word()),
+    },
+    Setting {
+        key: "filter-width",
+        help: "Full width of the filter in metres, equal in every split",
+        kind: Kind::Metres,
+        rebuilds: Rebuilds::Nothing,
+        set: apply::filter_width,
+        get: |config| config.filter.width_m().map(Value::Number),
+    },
+    Setting {
+        key: "sun-angle",
+        help: "Angle across the sun in degrees, for pcss",
+        kind: Kind::Degrees(90.0),
+        rebuilds: Rebuilds::Nothing,
+        set: apply::sun_angle,
+        get: |config| match config.filter {
+            Filter::Pcss { sun_degrees, .. } => Some(Value::Number(sun_degrees)),
+            _ => None,
+        },
+    },
+    Setting {
+        key: "rotate-kernel",
+        help: "Rotates the kernel of disc and pcss from pixel to pixel: noise instead of bands",
+        kind: Kind::Switch,
+        rebuilds: Rebuilds::Nothing,
+        set: apply::rotate_kernel,
+        get: |config| match config.filter {
+            Filter::Disc { rotated, .. } | Filter::Pcss { rotated, .. } => Some(Value::Switch(rotated)),
+            _ => None,
+        },
+    },
+    Setting {
+        key: "msaa",
+        help: "Samples of depth in a texel, for esm to msm: 1 or 4",
+        kind: Kind::Count(1, 4),
+        rebuilds: Rebuilds::Pipelines,
+        set: |config, text, _| {
+            apply::moments(config, "msaa")?.samples = apply::count(text)?;
+            Ok(())
+        },
+        get: |config| match config.filter {
+            Filter::Moments(moments) => Some(Value::Count(moments.samples)),
+            _ => None,
+        },
+    },
+    Setting {
+        key: "bleeding",
+        help: "Share of light that esm to msm take for a leak",
+        kind: Kind::Share(0.9),
+        rebuilds: Rebuilds::Nothing,
+        set: |config, text, _| {
+            apply::moments(config, "bleeding")?.bleeding = apply::number(text)?;
+            Ok(())
+        },
+        get: |config| match config.filter {
+            Filter::Moments(moments) => Some(Value::Number(moments.bleeding)),
+            _ => None,
+        },
+    },
+    Setting {
+        key: "derivatives",
+        help: "How esm to msm know what a pixel covers where splits meet",
+        kind: Kind::Words(Derivatives::WORDS),
+        rebuilds: Rebuilds::Nothing,
+        set: |config, text, _| {
+            apply::moments(config, "derivatives")?.derivatives = text.parse()?;
+            Ok(())
+        },
+        get: |config| match config.filter {
+            Filter::Moments(moments) => word(moments.derivatives.word()),
+            _ => None,
+        },
+    },
+    Setting {
+        key: "fallbacks",
+        help: "Whether what the device lacks is replaced",
+        kind: Kind::Words(Fallbacks::WORDS),
+        rebuilds: Rebuilds::Pipelines,
+        set: |config, text, _| text.parse().map(|fallbacks| config.fallbacks = fallbacks).map_err(Wrong::from),
+        get: |config| word(config.fallbacks.word()),
+    },
+    Setting {
+        key: "transition",
+        help: "How one split goes over into the next",
+        kind: Kind::Words(TRANSITIONS),
+        rebuilds: Rebuilds::Pipelines,
+        set: apply::transition,
+        get: |config| {
+            word(match config.transition {
+                Transition::Hard => "hard",
+                Transition::Blend { .. } => "blend",
+                Transition::Dither { .. } => "dither",
+            })
+        },
+    },
+    Setting {
+        key: "blend",
+        help: "Share of each split over which it blends into the next; 0 is off",
+        kind: Kind::Share(1.0),
+        rebuilds: Rebuilds::Nothing,
+        set: apply::blend,
+        get: |config| Some(Value::Number(config.transition.share())),
+    },
+    Setting {
+        key: "far-fade",
+        help: "Share of the shadowed range over which shadows fade out at its far end; 0 is off",
+        kind: Kind::Share(1.0),
+        rebuilds: Rebuilds::Nothing,
+        set: |config, text, _| apply::number(text).map(|share| config.far_fade = share).map_err(Wrong::from),
+        get: |config| Some(Value::Number(config.far_fade)),
+    },
+    Setting {
+        key: "coordinates",
+        help: "Where receivers take a map's coordinates from",
+        kind: Kind::Words(Coordinates::WORDS),
+        rebuilds: Rebuilds::Pipelines,
+        set: |config, text, _| text.parse().map(|coordinates| config.coordinates = coordinates).map_err(Wrong::from),
+        get: |config| word(config.coordinates.word()),
+    },
+    Setting {
+        key: "depth-format",
+        help: "What a map stores",
+        kind: Kind::Words(DepthFormat::WORDS),
+        rebuilds: Rebuilds::Pipelines,
+        set: |config, text, _| text.parse().map(|format| config.depth_format = format).map_err(Wrong::from),
+        get: |config| word(config.depth_format.word()),
+    },
+    Setting {
+        key: "generation",
+        help: "How maps are drawn",
+        kind: Kind::Words(GENERATIONS),
+        rebuilds: Rebuilds::Pipelines,
+        set: |config, _, given| apply::layout(config, given),
+        get: |config| word(config.layout.generation().word()),
+    },
+    Setting {
+        key: "storage",
+        help: "Where maps are kept",
+        kind: Kind::Words(STORAGES),
+        rebuilds: Rebuilds::Pipelines,
+        set: |config, _, given| apply::layout(config, given),
+        get: |config| word(config.layout.storage().word()),
+    },
+    Setting {
+        key: "bias",
+        help: "How surfaces are kept from shading themselves",
+        kind: Kind::Words(ReceiverBias::WORDS),
+        rebuilds: Rebuilds::Nothing,
+        set: |config, text, _| text.parse().map(|bias| config.look.bias = bias).map_err(Wrong::from),
+        get: |config| word(config.look.bias.word()),
+    },
+    Setting {
+        key: "shadow-strength",
+        help: "How dark shadows are, 0 (not at all) to 1 (no sun)",
+        kind: Kind::Share(1.0),
+        rebuilds: Rebuilds::Nothing,
+        set: |config, text, _| apply::number(text).map(|strength| config.look.strength = strength).map_err(Wrong::from),
+        get: |config| Some(Value::Number(config.look.strength)),
+    },
+    Setting {
+        key: "shadow-colour",
+        help: "Factor of the sun's light in full shadow: linear red, green, blue",
+        kind: Kind::Colour,
+        rebuilds: Rebuilds::Nothing,
+        set: apply::colour,
+        get: |config| Some(Value::Numbers(config.look.colour.to_vec())),
+    },
+    Setting {
+        key: "translucent",
+        help: "Whether translucent surfaces throw shadows",
+        kind: Kind::Words(Translucent::WORDS),
+        rebuilds: Rebuilds::Pipelines,
+        set: |config, text, _| {
+            text.parse().map(|translucent| config.look.translucent = translucent).map_err(Wrong::from)
+        },
+        get: |config| word(config.look.translucent.word()),
+    },
+    Setting {
+        key: "contact-shadows",
+        help: "Whether the picture's own depth is searched for casters too close for the maps",
+        kind: Kind::Words(super::look::SWITCH),
+        rebuilds: Rebuilds::Pipelines,
+        set: |config, text, _| apply::switch(text).map(|on| config.look.contact = on).map_err(Wrong::from),
+        get: |config| word(if config.look.contact { "on" } else { "off" }),
+    },
+];
+
+/// Generation of a word; `None` for `auto`.
+pub(super) fn generation(text: &str) -> Result<Option<Generation>, String> {
+    match text {
+        "auto" => Ok(None),
+        _ => text.parse().map(Some).map_err(|_: String| super::names::unknown("generation", text, GENERATIONS)),
+    }
+}
+
+/// Storage of a word; `None` for `auto`.
+pub(super) fn storage(text: &str) -> Result<Option<Storage>, String> {
+    match text {
+        "auto" => Ok(None),
+        _ => text.parse().map(Some).map_err(|_: String| super::names::unknown("storage", text, STORAGES)),
+    }
+}
+
+/// Word lists that the appliers check against.
+pub(super) const WORDS: [(&str, &[Word]); 4] =
+    [("technique", TECHNIQUES), ("range-fit", RANGE_FITS), ("selection", SELECTIONS), ("transition", TRANSITIONS)];

@@ -1,0 +1,140 @@
+//! Where the shadowed range lies, where it is divided, and which split answers for a point.
+
+use super::names::named;
+
+/// Where the planes between splits stand.
+///
+/// `n` and `f` are the ends of the shadowed range, `m` is the number of splits. Source: [PSSM06]
+/// section 3.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SplitScheme {
+    /// `C_i = n + (f − n) i/m`: slices of equal depth.
+    Uniform,
+    /// `C_i = n (f/n)^(i/m)`: slices of equal ratio.
+    Logarithmic,
+    /// `λ C_i^log + (1 − λ) C_i^uni + δ_i`.
+    Practical {
+        /// Share of the logarithmic scheme, 0 to 1.
+        lambda: f64,
+        /// Metres added to the inner planes `C_1 .. C_{m−1}`: none, one for all, or one for each.
+        /// The source adds δ to all planes, which would move near and far.
+        delta: Vec<f64>,
+    },
+    /// Inner planes `C_1 .. C_{m−1}` as view depths in metres, rising strictly.
+    Manual {
+        /// One plane fewer than there are splits.
+        planes: Vec<f64>,
+    },
+    /// The planes of least predicted error, among some forty depths of the view.
+    ///
+    /// The prediction goes by the boxes of casters and receivers, the map sizes and the fit.
+    /// Stabilised maps keep their planes until others promise an error smaller by a third.
+    /// Needs a directional light. Ours.
+    Optimal,
+}
+
+impl SplitScheme {
+    /// The word of each scheme.
+    pub const WORDS: &'static [super::Word] = &[
+        super::Word { word: "uniform", help: "Slices of equal depth" },
+        super::Word { word: "log", help: "Slices of equal ratio" },
+        super::Word { word: "practical", help: "A mix of both, by lambda" },
+        super::Word { word: "manual", help: "The planes that are given" },
+        super::Word { word: "optimal", help: "The planes of least predicted error" },
+        super::Word { word: "fitted", help: "The former word for optimal" },
+    ];
+
+    /// The scheme's word in config files and on the command line.
+    #[must_use]
+    pub const fn word(&self) -> &'static str {
+        match self {
+            Self::Uniform => "uniform",
+            Self::Logarithmic => "log",
+            Self::Practical { .. } => "practical",
+            Self::Manual { .. } => "manual",
+            Self::Optimal => "optimal",
+        }
+    }
+
+    /// The practical scheme at its usual mix, λ = 0.5.
+    #[must_use]
+    pub const fn practical() -> Self {
+        Self::Practical { lambda: 0.5, delta: Vec::new() }
+    }
+}
+
+/// The view depths that shadows cover.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Range {
+    /// The camera's near and far; far is capped by the receivers.
+    #[default]
+    Camera,
+    /// The nearest and the farthest receiver in view, by the boxes of receivers.
+    Visible,
+    /// View depths in metres. Receivers nearer than the first use split 0; beyond the second they
+    /// are lit.
+    Metres {
+        /// Where the first split begins.
+        near: f64,
+        /// Where the last split ends.
+        far: f64,
+    },
+}
+
+/// Which split answers for a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Selection {
+    /// Interval-based: the split between whose planes the point lies.
+    Interval(SplitMetric),
+    /// Map-based: the first (finest) split whose map contains the point. Source: [PCSM],
+    /// "Non-optimized split selection". Deviations: the filter's margin and the depth are part of
+    /// the question, and the blend band lies along the map's edge.
+    Map,
+}
+
+impl Default for Selection {
+    fn default() -> Self {
+        Self::Interval(SplitMetric::ViewDepth)
+    }
+}
+
+named! {
+    /// What the planes between splits measure.
+    pub enum SplitMetric as "split metric" {
+        /// View depth: planes across the line of sight
+        #[default]
+        ViewDepth = "planar",
+        /// Distance from the eye: spheres, which a turning camera leaves alone
+        Distance = "radial",
+    }
+}
+
+/// How one split goes over into the next.
+///
+/// The share is of the split's depth, or with [`Selection::Map`] of the map's half edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Transition {
+    /// No band: each point asks one split.
+    Hard,
+    /// Both splits are asked in a band and mixed.
+    Blend {
+        /// Width of the band as a share, above 0 and at most 1.
+        share: f64,
+    },
+    /// Each pixel of a band asks one of both splits, chosen by noise, for half the samples.
+    Dither {
+        /// Width of the band as a share, above 0 and at most 1.
+        share: f64,
+    },
+}
+
+impl Transition {
+    /// Width of the band as a share; 0 for [`Transition::Hard`].
+    #[must_use]
+    pub const fn share(self) -> f64 {
+        match self {
+            Self::Hard => 0.0,
+            Self::Blend { share } | Self::Dither { share } => share,
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! What stands still, and why: everything that a planner keeps from one frame to the next.
+//!
+//! A static shadow does not move while its map's texels lie on one grid, which is given by the map's axes, its texel's
+//! size and its offset in whole texels. Axes are the light's. Offsets are rounded by every plan. Sizes follow from the
+//! lens, the range, the planes and what a slice needs, and each of those is held here:
+//!
+//! | held | until |
+//! |---|---|
+//! | lens ([`size::HeldLens`]) | the camera's is wider, or narrower by √2 |
+//! | range ([`ends::HeldEnds`]) | the scene ends elsewhere by a step |
+//! | planes ([`Held::row`]) | the range changes; optimal ones: others promise an error smaller by a third |
+//! | map sizes ([`size::HeldHalf`]) | a slice needs more, or less by two steps of 9 % |
+//! | rectangles ([`rectangle::HeldRectangle`]) | as map sizes, in steps of the setting |
+//! | depth range ([`depths::HeldDepths`]) | a caster or receiver lies outside |
+//! | local maps' sizes ([`Held::local`]) | as map sizes |
+//!
+//! While the camera stands still all of that recovers to what a fresh planner would choose: [`recovery`].
+
+pub(crate) mod depths;
+pub(crate) mod ends;
+pub(crate) mod recovery;
+pub(crate) mod rectangle;
+pub(crate) mod size;
+
+use glam::{DVec2, DVec3};
+
+use crate::{MAX_SPLITS, View};
+use depths::HeldDepths;
+use ends::{HeldEnds, Range};
+use recovery::{Recovery, Row, Standing, Standstill};
+use rectangle::HeldRectangle;
+use size::{HeldHalf, HeldLens, HeldSize};
+
+/// Faces of a point light's cube.
+const FACES: usize = 6;
+
+/// What a planner holds on to between frames so that shadows stand still: a value, a pure function of the frames that were
+/// planned with it.
+///
+/// A default one holds nothing: the plan made with it is a fresh planner's. Without stabilisation nothing is held. A frame
+/// that the planner refuses leaves it as it was.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Held {
+    pub(crate) standstill: Standstill,
+    pub(crate) recovery: Recovery,
+    pub(crate) light_direction: Option<DVec3>,
+    pub(crate) ends: HeldEnds,
+    pub(crate) lens: HeldLens,
+    pub(crate) whole: HeldSize,
+    /// The planes of the last frame and the range that they were placed for.
+    pub(crate) row: Option<(Range, [f64; MAX_SPLITS + 1])>,
+    pub(crate) half: [HeldHalf; MAX_SPLITS],
+    pub(crate) rectangle: [HeldRectangle; MAX_SPLITS],
+    pub(crate) depths: HeldDepths,
+    pub(crate) local: LocalSizes,
+}
+
+/// One size for each map of a local light.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LocalSizes(pub [HeldSize; MAX_SPLITS * FACES]);
+
+impl Default for LocalSizes {
+    fn default() -> Self {
+        Self([HeldSize::default(); MAX_SPLITS * FACES])
+    }
+}
+
+impl Held {
+    /// Takes the view and the light of the next frame, and says what the camera does.
+    pub(crate) fn begin(&mut self, view: &View, direction: DVec3) -> Standing {
+        if self.light_direction.replace(direction) != Some(direction) {
+            self.rectangle = Default::default();
+        }
+        let reach = self.row.map_or(view.frustum().near.abs(), |(_, planes)| planes[1]);
+        let standing = self.standstill.follow(view, reach);
+        if standing == Standing::Moving {
+            self.recovery = Recovery::default();
+        }
+        standing
+    }
+
+    /// The same, but with nothing held of the range and the lens: what a fresh planner would see.
+    pub(crate) fn released(&self) -> Self {
+        Self { standstill: self.standstill, ..Self::default() }
+    }
+
+    /// Takes over the range and the lens of `fresh`. Planes and sizes are left to follow step by step.
+    pub(crate) fn adopt(&mut self, fresh: &Self) {
+        (self.ends, self.lens, self.whole) = (fresh.ends, fresh.lens, fresh.whole);
+    }
+
+    /// The planes and sizes of the last frame.
+    pub(crate) fn current_row(&self, splits: usize) -> Option<Row> {
+        let (_, planes) = self.row?;
+        let mut half = [DVec2::ONE; MAX_SPLITS];
+        for (half, held) in half.iter_mut().zip(&self.half).take(splits) {
+            *half = held.get()?;
+        }
+        Some(Row { planes, half, splits })
+    }
+
+    /// Holds these planes, placed for `range`, and sizes from now on.
+    pub(crate) fn keep(&mut self, range: Range, row: &Row) {
+        self.row = Some((range, row.planes));
+        for (held, &half) in self.half.iter_mut().zip(&row.half).take(row.splits) {
+            held.set(half);
+        }
+    }
+}

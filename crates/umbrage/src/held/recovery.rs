@@ -1,0 +1,180 @@
+//! How held sizes recover: back to what a fresh planner would choose, while the camera stands still.
+//!
+//! A held size is never smaller than what a frame needs, but it may be larger for as long as the camera moves: following
+//! every change would move every texel. A camera that stands still shows no reason to wait, and one split's step of a
+//! few per cent a frame is not seen as a jump.
+
+use glam::DVec2;
+
+use crate::{MAX_SPLITS, View};
+
+/// Frames for which the camera stands before anything recovers: a pause between two steps is not a standstill.
+const PATIENCE: u32 = 10;
+
+/// Frames in which a recovery ends. With [`PATIENCE`] and one round of slack less than 60.
+const DURATION: u32 = 42;
+
+/// The step by which one split's size changes, at least: 9 %. Larger only where [`DURATION`] frames would not do.
+const STEP: f64 = 1.090_507_732_665_257_7;
+
+/// Sizes that exceed those of a fresh planner by no more than this share stay: a step would be seen and gain nothing.
+const ENOUGH: f64 = 1.05;
+
+/// Share of the eye's distance to the first plane, and radians, by which a camera that stands still may tremble.
+const TREMOR: f64 = 1e-5;
+
+/// What the camera does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Standing {
+    /// It moves, or has not stood still for long.
+    #[default]
+    Moving,
+    /// It has just stood still for long enough to look whether anything should recover.
+    Due,
+    /// It stands still and sizes recover.
+    Recovering,
+    /// It stands still and sizes have recovered.
+    Settled,
+}
+
+/// Watches the camera.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Standstill {
+    /// The view that the camera has kept since it stands.
+    anchor: Option<View>,
+    frames: u32,
+    standing: Standing,
+}
+
+impl Standstill {
+    /// Takes the view of the next frame. A camera trembles within `reach` metres times [`TREMOR`].
+    pub fn follow(&mut self, view: &View, reach: f64) -> Standing {
+        let stands = self.anchor.is_some_and(|anchor| {
+            let (a, b) = (anchor.world_from_view_rotation(), view.world_from_view_rotation());
+            anchor.eye().distance(view.eye()) <= TREMOR * reach
+                && a.abs_diff_eq(b, TREMOR)
+                && anchor.frustum() == view.frustum()
+        });
+        if !stands {
+            *self = Self { anchor: Some(*view), ..Self::default() };
+            return Standing::Moving;
+        }
+        self.frames = self.frames.saturating_add(1);
+        if self.standing == Standing::Moving && self.frames >= PATIENCE {
+            self.standing = Standing::Due;
+        }
+        self.standing
+    }
+
+    /// Begins a recovery, goes on with it, or ends it.
+    pub fn set(&mut self, standing: Standing) {
+        self.standing = standing;
+    }
+
+    /// Frames that are left for a recovery.
+    pub fn frames_left(&self) -> u32 {
+        (PATIENCE + DURATION).saturating_sub(self.frames)
+    }
+
+    /// Those of `count` independent sizes whose turn it is in this frame of a recovery, and the step that each may take.
+    pub fn turn(&self, count: usize) -> Option<(std::ops::Range<usize>, f64)> {
+        let frame = self.frames.checked_sub(PATIENCE).filter(|frame| *frame < DURATION)? as usize;
+        let at_once = count.div_ceil(DURATION as usize);
+        let turns = count.div_ceil(at_once);
+        let begin = frame % turns * at_once;
+        // A held size is two steps above its need at most.
+        let step = if 2 * turns <= DURATION as usize { STEP } else { STEP * STEP };
+        (self.standing == Standing::Recovering).then_some((begin..begin + at_once, step))
+    }
+}
+
+/// Planes and, for each map, half its edges: what a stabilised plan holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Row {
+    /// `C_0 ..= C_m`.
+    pub planes: [f64; MAX_SPLITS + 1],
+    /// Half the edges of each map along u and v, metres.
+    pub half: [DVec2; MAX_SPLITS],
+    /// The number of splits.
+    pub splits: usize,
+}
+
+impl Row {
+    /// Whether any map is larger than that of `fresh` by more than is worth holding on to.
+    pub fn exceeds(&self, fresh: &Self) -> bool {
+        (0..self.splits).any(|i| (self.half[i] / fresh.half[i]).max_element() > ENOUGH)
+    }
+
+    /// The largest ratio of any size to that of `target`, either way.
+    fn ratio(&self, target: &Self) -> f64 {
+        let either = |ratio: f64| ratio.max(1.0 / ratio);
+        let planes = (1..=self.splits).map(|j| either(self.planes[j] / target.planes[j]));
+        let halves = (0..self.splits).map(|i| (self.half[i] / target.half[i]).max_element());
+        planes.chain(halves).fold(1.0, f64::max)
+    }
+}
+
+/// A recovery under way: planes move from the last to the first, each with the map before it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Recovery {
+    /// Planes that are left in this round.
+    left: usize,
+    step: f64,
+    /// Visits since anything changed.
+    idle: usize,
+}
+
+impl Recovery {
+    /// Moves one plane of `row` towards `target`, and the size of the map that ends there, by a step. `need` is half the
+    /// edges that a map needs, by its split and a row of planes. Returns the split, also where nothing is left to change if
+    /// it `visits_all`; `None` once all sizes are the target's.
+    pub fn step(
+        &mut self,
+        row: &mut Row,
+        target: &Row,
+        (frames_left, visits_all): (u32, bool),
+        need: impl Fn(usize, &[f64]) -> DVec2,
+    ) -> Option<usize> {
+        while self.idle < row.splits {
+            if self.left == 0 {
+                self.left = row.splits;
+                let rounds = (frames_left / row.splits as u32).max(1);
+                self.step = row.ratio(target).powf(1.0 / f64::from(rounds)).max(STEP);
+            }
+            let plane = self.left;
+            self.left -= 1;
+            if self.visit(plane, row, target, &need) {
+                self.idle = 0;
+                return Some(plane - 1);
+            }
+            self.idle += 1;
+            if visits_all {
+                return Some(plane - 1);
+            }
+        }
+        None
+    }
+
+    /// Says whether anything changed.
+    fn visit(&self, plane: usize, row: &mut Row, target: &Row, need: impl Fn(usize, &[f64]) -> DVec2) -> bool {
+        let before = *row;
+        let m = row.splits;
+        let towards = |j: usize| target.planes[j].clamp(row.planes[j] / self.step, row.planes[j] * self.step);
+        let moved = towards(plane);
+        let ahead = if plane > 1 { towards(plane - 1) } else { target.planes[0] };
+        let below = plane == m || moved < row.planes[plane + 1];
+        if moved > row.planes[plane - 1] && below {
+            row.planes[plane] = moved;
+        }
+        if plane == 1 && target.planes[0] < row.planes[1] {
+            row.planes[0] = target.planes[0];
+        }
+        // The next visit moves the plane before: room for that, or two maps would change at once.
+        let mut with_room = row.planes;
+        with_room[plane - 1] = with_room[plane - 1].min(ahead);
+        let split = plane - 1;
+        let least = need(split, &row.planes[..=m]).max(need(split, &with_room[..=m]));
+        row.half[split] = least.max(row.half[split] / self.step);
+        *row != before
+    }
+}

@@ -1,0 +1,490 @@
+//! Planes that find themselves: of many candidates those between which the maps are expected to err least.
+//!
+//! The papers place planes by a formula of near, far and m alone, the optimum for a scene that fills the view evenly. Scenes do not: a
+//! plane in the gap between two rows of casters leaves both maps small, one through a row makes both as wide as the row.
+//! Here the row of planes of least expected error is found exactly, by dynamic programming over a few dozen candidates. Ours;
+//! *Sample Distribution Shadow Maps* (Lauritzen et al. 2010) place planes by the depths that a frame shows, which needs the frame.
+
+use glam::DVec2;
+
+use super::cells::{Cells, Sight};
+use super::scheme::{coverage, split_planes};
+use super::visible::visible_range;
+use crate::geometry::region::{Fan, Region};
+use crate::geometry::sphere::slice_sphere;
+use crate::held::ends::Range;
+use crate::{Error, ExtentSteps, Fit, Frustum, Projection, Result, ShadowSettings, SplitScheme, Stabilize, View};
+
+/// Candidates between the ends, besides those of the fixed schemes and those that are held.
+const CANDIDATES: usize = 32;
+
+/// Depths that show anything are taken for a single one below this ratio of the last to the first.
+const LEAST_RATIO: f64 = 1.01;
+
+/// By how much the best planes have to beat those that are held, where maps have to stand still: less than this share of what the held
+/// ones cost.
+const WORTH_MOVING: f64 = 2.0 / 3.0;
+
+/// How the edge of a map follows from what it has to show.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Maps<'a> {
+    pub settings: &'a ShadowSettings,
+    /// Pixels across the picture.
+    pub image_size: [u32; 2],
+    /// Texels that each map keeps free around what it serves.
+    pub margin: f64,
+    /// Across everything that is shadowed, metres: what the source's steps are fractions of.
+    pub whole_width: f64,
+    /// Half the edges that no still map exceeds, metres.
+    pub most_half: DVec2,
+}
+
+impl Maps<'_> {
+    /// Metres across a still map around a sphere, the mean of its edges.
+    fn still_edge(&self, radius: f64) -> f64 {
+        radius.min(self.most_half.x) + radius.min(self.most_half.y)
+    }
+
+    /// Metres across a map that shows a region, the mean of its edges.
+    fn edge(&self, region: &Region, fan: &Fan) -> f64 {
+        let (_, _, lo, hi) = region.least_rectangle(fan);
+        let extent = match self.settings.stabilize {
+            Stabilize::Approximate(ExtentSteps::Levels(count)) => {
+                let level = self.whole_width / f64::from(count);
+                ((hi - lo) / level).ceil().max(DVec2::ONE) * level
+            }
+            // Steps of equal ratio add the same share to all on average.
+            _ => hi - lo,
+        };
+        0.5 * (extent.x + extent.y)
+    }
+
+    /// Texels across map `i` that serve its slice.
+    fn texels(&self, i: usize) -> f64 {
+        let rounding = if self.settings.stabilize == Stabilize::None { 0.0 } else { 1.0 };
+        (f64::from(self.settings.map_sizes[i]) - 2.0 * self.margin - rounding).max(1.0)
+    }
+}
+
+/// What every slice between two candidates would cost.
+#[derive(Clone, Debug, Default)]
+struct Costs {
+    /// Number of candidates, ends included.
+    len: usize,
+    /// Metres across the map of slice (i, j), at `i * len + j`.
+    edges: Vec<f64>,
+    /// Where the map of the slice from j begins if the one before begins at i: blending and pixel quads reach back over the border. The
+    /// candidate at or before, and the share of the way to the next.
+    begins: Vec<(usize, f64)>,
+    /// Sums of the cells' weights before each candidate.
+    weights_before: Vec<f64>,
+    /// Texels across each map.
+    texels: Vec<f64>,
+}
+
+impl Costs {
+    /// Expected error of map `split` over the slice from candidate `j` to `k`; `before` is where the slice before it begins.
+    fn slice(&self, split: usize, before: Option<usize>, j: usize, k: usize) -> f64 {
+        let weight = self.weights_before[k] - self.weights_before[j];
+        if weight <= 0.0 {
+            return 0.0;
+        }
+        let edge = |i: usize| self.edges[i * self.len + k];
+        let edge = match before.map(|i| self.begins[i * self.len + j]) {
+            Some((begin, share)) if share > 0.0 => edge(begin) + share * (edge(begin + 1) - edge(begin)),
+            Some((begin, _)) => edge(begin),
+            None => edge(j),
+        };
+        weight * edge / self.texels[split]
+    }
+
+    /// Expected error with planes at these candidates, ends included.
+    fn total(&self, planes: &[usize]) -> f64 {
+        (0..planes.len() - 1)
+            .map(|split| self.slice(split, split.checked_sub(1).map(|i| planes[i]), planes[split], planes[split + 1]))
+            .sum()
+    }
+}
+
+/// The best rows of slices, by the two candidates between which the last of them lies.
+#[derive(Clone, Debug, Default)]
+struct Search {
+    costs: Vec<f64>,
+    costs_before: Vec<f64>,
+    /// Where the slice before the last begins, for each split.
+    parents: Vec<u8>,
+}
+
+impl Search {
+    /// Writes the candidates of least cost into `planes`, ends included. Needs as many candidates as planes, at least.
+    ///
+    /// A slice's map reaches back over its border by a share of the slice before, so that what it costs depends on three planes: the states
+    /// are pairs of candidates, the work is m K³ / 6.
+    fn cheapest(&mut self, costs: &Costs, planes: &mut Vec<usize>) {
+        let (n, m) = (costs.len, costs.texels.len());
+        let at = |i: usize, j: usize| i * n + j;
+        self.costs.clear();
+        self.costs.resize(n * n, f64::INFINITY);
+        self.parents.clear();
+        self.parents.resize(m * n * n, 0);
+        for k in 1..n {
+            self.costs[at(0, k)] = costs.slice(0, None, 0, k);
+        }
+        for split in 1..m {
+            std::mem::swap(&mut self.costs, &mut self.costs_before);
+            self.costs.clear();
+            self.costs.resize(n * n, f64::INFINITY);
+            for j in split..n {
+                for k in j + 1..n {
+                    let (mut best, mut parent) = (f64::INFINITY, 0);
+                    for i in 0..j {
+                        let before = self.costs_before[at(i, j)];
+                        if before < best {
+                            let cost = before + costs.slice(split, Some(i), j, k);
+                            if cost < best {
+                                (best, parent) = (cost, i);
+                            }
+                        }
+                    }
+                    self.costs[at(j, k)] = best;
+                    self.parents[split * n * n + at(j, k)] = parent as u8;
+                }
+            }
+        }
+        let last = n - 1;
+        let mut j =
+            (0..last).fold(0, |best, j| if self.costs[at(j, last)] < self.costs[at(best, last)] { j } else { best });
+        let mut k = last;
+        planes.clear();
+        planes.push(k);
+        for split in (0..m).rev() {
+            planes.push(j);
+            (j, k) = (usize::from(self.parents[split * n * n + at(j, k)]), j);
+        }
+        planes.reverse();
+    }
+}
+
+/// Finds planes; keeps its buffers.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Placement {
+    candidates: Vec<f64>,
+    cells: Cells,
+    weights: Vec<f64>,
+    /// The view across each candidate, in the light's plane.
+    faces: Vec<Region>,
+    costs: Costs,
+    search: Search,
+    best: Vec<usize>,
+    scheme: Vec<f64>,
+}
+
+impl Placement {
+    /// Writes the `m + 1` planes of a range into `planes`, the last at its inner far end: the inner ones that are held, if
+    /// there are any and none promise an error much smaller, or those that promise the least.
+    ///
+    /// # Errors
+    /// [`Error::InvalidSetting`] naming `range` if it is too short to be divided.
+    pub fn place(
+        &mut self,
+        sight: &Sight,
+        maps: &Maps,
+        range: Range,
+        held: Option<&[f64]>,
+        planes: &mut Vec<f64>,
+    ) -> Result<()> {
+        let (near, far) = (range.near, range.inner_far);
+        let m = maps.settings.splits();
+        split_planes(&SplitScheme::Logarithmic, near, far, m, planes)?;
+        if m == 1 {
+            return Ok(());
+        }
+        let inside = |inner: &&[f64]| inner.first() > Some(&near) && inner.last() < Some(&far);
+        self.choose_candidates(sight, (near, far), m, held.unwrap_or_default())?;
+        self.cells.gather(sight, &self.candidates);
+        self.cells.weigh(sight.view.frustum().projection, &self.candidates, &mut self.weights);
+        if self.weights.iter().sum::<f64>() <= 0.0 {
+            // Nothing throws a shadow that is seen: planes that are held stay, others stand where they do for an even scene.
+            if let Some(inner) = held.filter(inside) {
+                planes[1..m].copy_from_slice(inner);
+            }
+            return Ok(());
+        }
+        self.measure(sight, maps, range.far);
+        self.search.cheapest(&self.costs, &mut self.best);
+        match held.filter(inside) {
+            Some(inner) if self.is_good_enough(inner) => planes[1..m].copy_from_slice(inner),
+            _ => {
+                for (plane, &index) in planes[1..m].iter_mut().zip(&self.best[1..m]) {
+                    *plane = self.candidates[index];
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn is_good_enough(&self, held: &[f64]) -> bool {
+        let index = |depth: &f64| self.candidates.partition_point(|candidate| candidate < depth);
+        let mut planes = [0; crate::MAX_SPLITS + 1];
+        let m = held.len() + 1;
+        for (plane, held) in planes[1..m].iter_mut().zip(held) {
+            *plane = index(held);
+        }
+        planes[m] = self.costs.len - 1;
+        self.costs.total(&self.best) >= WORTH_MOVING * self.costs.total(&planes[..=m])
+    }
+
+    /// Rising depths from near to far: evenly spaced on the picture over the depths that show anything, with the planes of
+    /// the fixed schemes and those that are held among them.
+    fn choose_candidates(&mut self, sight: &Sight, (near, far): (f64, f64), m: usize, held: &[f64]) -> Result<()> {
+        let scheme = match sight.view.frustum().projection {
+            Projection::Perspective => SplitScheme::Logarithmic,
+            Projection::Orthographic => SplitScheme::Uniform,
+        };
+        let visible = sight.visible.iter().map(|&index| &sight.receivers[index as usize]);
+        let (first, last) = visible_range(sight.view, near, far, visible)
+            .map(|(first, last)| (first.max(near), last.min(far)))
+            .filter(|(first, last)| *last > LEAST_RATIO * first)
+            .unwrap_or((near, far));
+        let Self { candidates, scheme: planes, .. } = self;
+        candidates.clear();
+        candidates.extend([near, far]);
+        let fixed = [SplitScheme::Logarithmic, SplitScheme::default()].map(|scheme| (scheme, near, far, m));
+        for (scheme, from, to, splits) in [(scheme, first, last, CANDIDATES)].into_iter().chain(fixed) {
+            // A range with room for the splits may be too short for all the candidates: those that it has no room for are
+            // left out.
+            if split_planes(&scheme, from, to, splits, planes).is_ok() {
+                candidates.extend(planes.iter().filter(|&&plane| plane > near && plane < far));
+            }
+        }
+        candidates.extend(held.iter().filter(|&&held| held > near && held < far));
+        candidates.sort_unstable_by(f64::total_cmp);
+        candidates.dedup();
+        if candidates.len() <= m {
+            return Err(Error::setting(
+                "range",
+                format!("{near} m to {far} m has no room for {m} splits; give a longer range or fewer splits"),
+            ));
+        }
+        Ok(())
+    }
+
+    /// Fills the costs of all slices.
+    fn measure(&mut self, sight: &Sight, maps: &Maps, far: f64) {
+        let Self { candidates, cells, weights, faces, costs, .. } = self;
+        let settings = maps.settings;
+        let n = candidates.len();
+        costs.len = n;
+        costs.texels.clear();
+        costs.texels.extend((0..settings.splits()).map(|i| maps.texels(i)));
+        costs.weights_before.clear();
+        costs.weights_before.push(0.0);
+        let mut sum = 0.0;
+        costs.weights_before.extend(weights.iter().map(|weight| {
+            sum += weight;
+            sum
+        }));
+        costs.edges.clear();
+        costs.edges.resize(n * n, 0.0);
+        costs.begins.clear();
+        costs.begins.resize(n * n, (0, 0.0));
+        for i in 0..n {
+            for j in i + 1..n {
+                costs.begins[i * n + j] = begin(sight.view, maps, candidates, i, j);
+            }
+        }
+        // The last slice may be stretched beyond the depths that the planes are placed for.
+        let end = |j: usize| if j == n - 1 { far } else { candidates[j] };
+        let edges = |i: usize| (i + 1..n).map(move |j| (j, i * n + j));
+        match (settings.stabilize, settings.fit) {
+            (Stabilize::Exact, _) => {
+                let frustum = around(sight.view.frustum());
+                for (i, &from) in candidates.iter().enumerate() {
+                    for (j, at) in edges(i) {
+                        costs.edges[at] = maps.still_edge(slice_sphere(&frustum, from, end(j)).radius);
+                    }
+                }
+            }
+            (_, Fit::Independent) => {
+                faces.clear();
+                faces.extend((0..n).map(|j| face(sight.view, sight.fan, end(j))));
+                for i in 0..n {
+                    for (j, at) in edges(i) {
+                        let mut region = faces[i];
+                        region.include_region(&faces[j]);
+                        costs.edges[at] = maps.edge(&region, sight.fan);
+                    }
+                }
+            }
+            (_, Fit::Dependent) => {
+                for i in 0..n {
+                    let (mut receivers, mut casters, mut edge) = (Region::EMPTY, Region::EMPTY, 0.0);
+                    for (j, at) in edges(i) {
+                        let cell = &cells.cells[j - 1];
+                        if !cell.receivers.is_empty() {
+                            receivers.include_region(&cell.receivers);
+                            casters.include_region(&cell.casters);
+                            if !casters.is_empty() {
+                                edge = maps.edge(&casters.within(&receivers), sight.fan);
+                            }
+                        }
+                        costs.edges[at] = edge;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A symmetric frustum around another: its spheres have a closed form.
+fn around(frustum: &Frustum) -> Frustum {
+    let (right, top) = (frustum.left.abs().max(frustum.right.abs()), frustum.bottom.abs().max(frustum.top.abs()));
+    Frustum { left: -right, right, bottom: -top, top, ..*frustum }
+}
+
+/// The view across a depth, in the light's plane.
+fn face(view: &View, fan: &Fan, depth: f64) -> Region {
+    let mut region = Region::EMPTY;
+    for corner in view.frustum().corners_at(depth) {
+        region.include_point(fan, view.world_from_view_point(corner));
+    }
+    region
+}
+
+/// Where the map of a slice from candidate `j` begins, if the slice before begins at `i`.
+fn begin(view: &View, maps: &Maps, candidates: &[f64], i: usize, j: usize) -> (usize, f64) {
+    // The far plane has no say in where a slice begins.
+    let planes = [candidates[i], candidates[j], f64::INFINITY];
+    let (from, _) = coverage(view, &planes, 1, maps.settings.blend, maps.image_size, maps.settings.bands);
+    let after = candidates.partition_point(|&candidate| candidate <= from);
+    match after.checked_sub(1) {
+        None => (0, 0.0),
+        Some(before) if before >= j => (j, 0.0),
+        Some(before) => (before, (from - candidates[before]) / (candidates[after] - candidates[before])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Candidates at even ratios between 1 and `far`, maps as wide as the far ends of their slices and a picture that is filled evenly: the
+    /// papers' own setting. `power` is that of depth in the density of weights; theirs is −2.
+    fn even(len: usize, far: f64, texels: &[f64], power: i32) -> (Vec<f64>, Costs) {
+        let depths: Vec<f64> = (0..len).map(|i| far.powf(i as f64 / (len - 1) as f64)).collect();
+        let integral = |depth: f64| depth.powi(power + 1) / f64::from(power + 1);
+        let mut edges = vec![0.0; len * len];
+        let mut begins = vec![(0, 0.0); len * len];
+        for i in 0..len {
+            for j in i + 1..len {
+                edges[i * len + j] = depths[j];
+                begins[i * len + j] = (j, 0.0);
+            }
+        }
+        let weights_before = depths.iter().map(|&depth| integral(depth) - integral(1.0)).collect();
+        (depths, Costs { len, edges, begins, weights_before, texels: texels.to_vec() })
+    }
+
+    fn cheapest(costs: &Costs) -> Vec<usize> {
+        let (mut search, mut planes) = (Search::default(), Vec::new());
+        search.cheapest(costs, &mut planes);
+        planes
+    }
+
+    #[test]
+    fn an_even_scene_gets_the_logarithmic_planes_and_another_cost_gets_others() {
+        for m in 1..=6 {
+            let (_, costs) = even(61, 1000.0, &vec![512.0; m], -2);
+            let planes = cheapest(&costs);
+            assert_eq!(planes, (0..=m).map(|i| i * 60 / m).collect::<Vec<_>>());
+            let closed_form = m as f64 * (1000f64.powf(1.0 / m as f64) - 1.0) / 512.0;
+            assert!((costs.total(&planes) - closed_form).abs() < 1e-12 * closed_form);
+        }
+        let (_, wrong) = even(61, 1000.0, &[512.0; 3], -3);
+        assert_ne!(cheapest(&wrong), [0, 20, 40, 60]);
+    }
+
+    #[test]
+    fn a_larger_map_takes_a_longer_slice() {
+        let first = |texels: &[f64]| cheapest(&even(61, 1000.0, texels, -2).1)[1];
+        let same = first(&[512.0, 512.0]);
+        assert!(first(&[2048.0, 512.0]) > same + 5);
+        assert!(first(&[512.0, 2048.0]) < same - 5);
+    }
+
+    #[test]
+    fn a_slice_without_weight_costs_nothing() {
+        // All that throws shadows stands between candidates 7 and 9 and 20 and 22: planes in the gap leave two small maps.
+        let len = 30;
+        let occupied = |i: usize| (7..9).contains(&i) || (20..22).contains(&i);
+        let (mut edges, mut begins, mut weights_before) = (vec![0.0; len * len], vec![(0, 0.0); len * len], vec![0.0]);
+        for i in 0..len {
+            for j in i + 1..len {
+                let held: Vec<usize> = (i..j).filter(|&k| occupied(k)).collect();
+                edges[i * len + j] = held.first().map_or(0.0, |first| (held[held.len() - 1] + 1 - first) as f64);
+                begins[i * len + j] = (j, 0.0);
+            }
+            weights_before.push(weights_before[i] + f64::from(u8::from(occupied(i))));
+        }
+        let costs = Costs { len, edges, begins, weights_before, texels: vec![1.0; 2] };
+        let planes = cheapest(&costs);
+        assert!((9..=20).contains(&planes[1]), "{planes:?}");
+        assert_eq!(costs.total(&planes), 8.0);
+    }
+
+    /// Random costs with bands that reach back.
+    fn any_costs() -> impl Strategy<Value = Costs> {
+        (3usize..9, 1usize..5).prop_filter("room for the splits", |(len, m)| len > m).prop_flat_map(|(len, m)| {
+            let edge = prop_oneof![Just(0.0), 0.0..100.0];
+            let weight = prop_oneof![2 => Just(0.0), 3 => 0.0..1.0];
+            let edges = proptest::collection::vec(edge, len * len);
+            let back = proptest::collection::vec((0usize..3, prop_oneof![Just(0.0), 0.0..1.0]), len * len);
+            let weights = proptest::collection::vec(weight, len - 1);
+            let texels = proptest::collection::vec(1.0..2000.0, m);
+            (edges, back, weights, texels).prop_map(move |(edges, back, weights, texels)| {
+                let mut begins = vec![(0, 0.0); len * len];
+                for i in 0..len {
+                    for j in i + 1..len {
+                        let (back, share) = back[i * len + j];
+                        let begin = j.saturating_sub(back);
+                        begins[i * len + j] = (begin, if begin < j { share } else { 0.0 });
+                    }
+                }
+                let sum = |sum: &mut f64, weight: &f64| {
+                    *sum += weight;
+                    Some(*sum)
+                };
+                let weights_before = std::iter::once(0.0).chain(weights.iter().scan(0.0, sum)).collect();
+                Costs { len, edges, begins, weights_before, texels }
+            })
+        })
+    }
+
+    /// All rows of planes.
+    fn all_rows(len: usize, m: usize) -> Vec<Vec<usize>> {
+        let mut rows = vec![vec![0]];
+        for split in 1..=m {
+            let next = |row: Vec<usize>| {
+                let from = row[split - 1] + 1;
+                let to = if split == m { len - 1 } else { len - 2 };
+                (from.max(if split == m { len - 1 } else { from })..=to).map(move |i| [&row[..], &[i]].concat())
+            };
+            rows = rows.into_iter().flat_map(next).collect();
+        }
+        rows
+    }
+
+    proptest! {
+        #[test]
+        fn the_search_finds_what_trying_all_finds(costs in any_costs()) {
+            let m = costs.texels.len();
+            let planes = cheapest(&costs);
+            prop_assert_eq!(planes.len(), m + 1);
+            prop_assert!(planes[0] == 0 && planes[m] == costs.len - 1 && planes.windows(2).all(|p| p[0] < p[1]));
+            let least = all_rows(costs.len, m).iter().map(|row| costs.total(row)).fold(f64::INFINITY, f64::min);
+            prop_assert!((costs.total(&planes) - least).abs() <= 1e-12 * least.max(1e-300), "{} {least}", costs.total(&planes));
+        }
+    }
+}

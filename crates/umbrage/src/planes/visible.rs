@@ -1,0 +1,45 @@
+//! The view depths between which a view shows anything.
+
+use crate::View;
+use crate::bounds::Placed;
+use crate::geometry::volume::{Lies, Slice};
+
+/// Share of a depth by which the range exceeds the receivers, so that rounding to `f32` on the way to a shader leaves none
+/// outside.
+const ROOM: f64 = 1e-4;
+
+/// The view depths between which the view shows any of `receivers`, with a little room; `None` if it shows none. Boxes are clipped to
+/// the frustum between `near` and `far`, the range to `near`.
+///
+/// Source: \[GG3-10\] section 10.2.1, which only says that near and far might be
+/// adjusted "so that the view frustum contains the visible objects as tightly as possible". What stands behind something
+/// else counts as visible: boxes hide nothing.
+pub(crate) fn visible_range<'a>(
+    view: &View,
+    near: f64,
+    far: f64,
+    receivers: impl IntoIterator<Item = &'a Placed>,
+) -> Option<(f64, f64)> {
+    let room = |depth: f64| ROOM * depth.abs();
+    let whole = Slice::new(view, near - 0.5 * room(near), far + room(far));
+    let forward = view.forward();
+    let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut include = |depth: f64| (first, last) = (first.min(depth), last.max(depth));
+    for receiver in receivers {
+        match whole.classify(receiver.center, receiver.half) {
+            Lies::Outside => {}
+            Lies::Inside => {
+                let (depth, reach) = (view.view_depth(receiver.center), forward.abs().dot(receiver.half));
+                include(depth - reach);
+                include(depth + reach);
+            }
+            Lies::Across => {
+                whole.clip_box(&receiver.bounds(), |point| include(view.view_depth(point)));
+            }
+        }
+    }
+    if first > last {
+        return None;
+    }
+    Some(((first - room(first)).max(near), last + room(last)))
+}

@@ -1,0 +1,93 @@
+//! What a map covers, for maps that are chosen by what they contain: its square along the light, less what earlier maps take.
+
+use glam::{DVec2, DVec3};
+
+use super::casters::{InView, first_depth};
+use super::frame::{Frame, Sun};
+use crate::bounds::Placed;
+use crate::coverage::CoverageVolume;
+use crate::geometry::volume::lies_below;
+use crate::{ShadowPlan, Split};
+
+/// Texels beyond the filter's reach by which a caster may be off, for the rounding of a sample's place.
+const ROUNDING_TEXELS: f64 = 1.0;
+
+/// The rectangle of a box in a plain map, in texels.
+fn rectangle(split: &Split, center: DVec3, half: DVec3) -> (DVec2, DVec2) {
+    let middle = DVec2::new(split.u_axis.dot(center), split.v_axis.dot(center)) / split.texel_m - split.min_texel;
+    let reach = DVec2::new(split.u_axis.abs().dot(half), split.v_axis.abs().dot(half)) / split.texel_m;
+    (middle - reach, middle + reach)
+}
+
+/// Whether a box can leave a mark on the map.
+fn reaches(split: &Split, center: DVec3, half: DVec3) -> bool {
+    let (lo, hi) = rectangle(split, center, half);
+    lo.cmple(DVec2::splat(f64::from(split.size) + ROUNDING_TEXELS)).all()
+        && hi.cmpge(DVec2::splat(-ROUNDING_TEXELS)).all()
+}
+
+/// What the maps before one take away from it.
+struct Taken<'a> {
+    earlier: &'a [Split],
+    /// Texels that a filter reaches around a sample of the map that is planned, rounding included.
+    margin: f64,
+    /// Share of a map's half edge over which it asks the next one, too.
+    blend: f64,
+    /// The same margin in the map that is planned, metres.
+    reach_m: f64,
+}
+
+impl<'a> Taken<'a> {
+    fn new(split: &Split, earlier: &'a [Split], blend: f64) -> Self {
+        let margin = split.filter_reach + ROUNDING_TEXELS;
+        Self { earlier, margin, blend, reach_m: margin * split.texel_m.max_element() }
+    }
+
+    /// Whether all points that a box can shade belong to one earlier map, filter and blend band included: what shades them lies at
+    /// the same place of that map.
+    fn holds(&self, center: DVec3, half: DVec3) -> bool {
+        self.earlier.iter().filter(|split| !split.casters.is_empty()).any(|split| {
+            let (lo, hi) = rectangle(split, center, half);
+            let size = f64::from(split.size);
+            let room = split.filter_reach
+                + ROUNDING_TEXELS
+                + 0.5 * self.blend * size
+                + self.reach_m / split.texel_m.min_element();
+            lo.cmpge(DVec2::splat(room)).all() && hi.cmple(DVec2::splat(size - room)).all()
+        })
+    }
+}
+
+/// The split with a list and a depth range for everything that its map covers and no earlier one takes, and the depth of its
+/// first caster. `shown` and its depths are of all that any map may be asked about.
+pub(super) fn serving_all_it_covers(
+    frame: &Frame<'_>,
+    sun: &Sun<'_>,
+    (mut split, mut first): (Split, f64),
+    shown: (&CoverageVolume, (f64, f64)),
+    in_view: &InView,
+    plan: &mut ShadowPlan,
+) -> (Split, f64) {
+    let direction = sun.direction;
+    plan.caster_indices.truncate(split.casters.start);
+    let taken = Taken::new(&split, &plan.splits, frame.settings.blend);
+    let margin = taken.margin * split.texel_m.max_element();
+    let (volume, depths) = shown;
+    for &index in &in_view.casters {
+        let placed @ Placed { center, half } = frame.casters[index as usize];
+        let can_shade = volume.receivers.as_ref().is_none_or(|(region, bounds)| {
+            !lies_below(center, half, bounds, direction, margin)
+                && region.can_be_shadowed_by(&sun.fan, center, half, margin)
+        });
+        if can_shade && reaches(&split, center, half) && !taken.holds(center, half) {
+            plan.caster_indices.push(index);
+            first = first.min(first_depth(&placed, direction));
+        }
+    }
+    split.casters.end = plan.caster_indices.len();
+    split.depth_near = split.depth_near.min(depths.0);
+    split.depth_far = split.depth_far.max(depths.1);
+    // Any of it may be looked up in this map.
+    split.receiver_depths = (split.receiver_depths.0.min(depths.0), split.receiver_depths.1.max(depths.1));
+    (split, first)
+}

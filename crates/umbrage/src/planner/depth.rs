@@ -1,0 +1,59 @@
+//! Stage 6 of a sun's plan: depth ranges.
+
+use super::casters::first_depth;
+use super::fit::MapSize;
+use super::frame::{Frame, Sun};
+use crate::{Split, Stabilize};
+
+/// Depths along the light between which still maps lie whose depth is not clamped, metres; `None` if nothing says so.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WorldDepths(Option<(f64, f64)>);
+
+impl WorldDepths {
+    /// From the first caster to the last receiver of all.
+    pub fn measure(frame: &Frame<'_>, sun: &Sun<'_>) -> Self {
+        if !frame.stands_still() || frame.settings.depth_clamp {
+            return Self(None);
+        }
+        let direction = sun.direction;
+        let last = |placed| -first_depth(placed, -direction);
+        let near = frame.casters.iter().map(|c| first_depth(c, direction)).fold(f64::INFINITY, f64::min);
+        let far = frame.receivers.iter().map(last).fold(f64::NEG_INFINITY, f64::max);
+        Self((near.is_finite() && far > near).then_some((near, far)))
+    }
+}
+
+/// The split with its depth range: before the first caster and behind the last receiver, with room for the bias. Where depth
+/// is clamped near lies at the first receiver. A stabilised split takes the world's bounds (or, clamped, its own block's) in
+/// whole steps, so that what it stores does not depend on where the camera stands.
+pub(super) fn ranged(frame: &Frame<'_>, mut split: Split, first: f64, size: &MapSize, world: WorldDepths) -> Split {
+    let (texel, radius) = (split.texel_m.max_element(), size.half.max_element());
+    let own = (split.depth_near, split.depth_far);
+    let ((near, far), step) = match (frame.stands_still(), frame.settings.depth_clamp) {
+        (false, true) => (own, None),
+        (false, false) => ((own.0.min(first), own.1), None),
+        (true, true) => (own, Some(0.5 * radius)),
+        (true, false) => {
+            let (near, far) = world.0.unwrap_or(own);
+            ((near, far), Some((far - near) / 16.0))
+        }
+    };
+    let receivers = match frame.settings.stabilize {
+        Stabilize::None => None,
+        // Finer steps would move more often, and with them what leaks.
+        _ => Some(radius / 8.0),
+    };
+    let (begin, end) = split.receiver_depths;
+    split.receiver_depths = with_room(begin, end, texel, receivers);
+    (split.depth_near, split.depth_far) = with_room(near, far, texel, step);
+    split
+}
+
+/// A range of depths with room for the bias, in whole steps if there is one.
+fn with_room(near: f64, far: f64, texel: f64, step: Option<f64>) -> (f64, f64) {
+    let room = 4.0 * texel + 1e-4 * (far - near);
+    let (near, far) = (near - room, far + room);
+    let Some(step) = step else { return (near, far) };
+    let step = 2f64.powf(step.log2().round());
+    ((near / step).floor() * step, (far / step).ceil() * step)
+}

@@ -1,0 +1,98 @@
+//! A sun's plan, stage by stage: range → planes → casters → fit → snap → depth. Each stage is a value that the next ones
+//! read; nothing goes back.
+
+use super::casters::{InView, Listed, Scene};
+use super::covered;
+use super::depth::{self, WorldDepths};
+use super::fit::MapSize;
+use super::frame::{Frame, Sun};
+use super::layout::{Layout, LayoutBuffers, SplitFrame};
+use super::snap;
+use super::warped::WarpPoints;
+use crate::held::Held;
+use crate::{Bands, DirectionalLight, Fit, Result, Selection, ShadowPlan, Split, Warp};
+
+/// Memory of one call that the next one uses again.
+#[derive(Clone, Debug, Default)]
+pub(super) struct SunBuffers {
+    in_view: InView,
+    layout: LayoutBuffers,
+    warp_points: WarpPoints,
+}
+
+/// Fills a plan that has begun.
+pub(super) fn plan(
+    frame: &Frame<'_>,
+    light: &DirectionalLight,
+    held: &mut Held,
+    buffers: &mut SunBuffers,
+    plan: &mut ShadowPlan,
+) -> Result<()> {
+    frame.settings.bands.check_view(frame.view)?;
+    let SunBuffers { in_view, layout: layout_buffers, warp_points } = buffers;
+    let sun = Sun::new(light, frame);
+    let layout = Layout::new(frame, &sun, held, in_view, layout_buffers)?;
+    let world = WorldDepths::measure(frame, &sun);
+    describe(frame, &sun, &layout, plan);
+    let by_map = frame.settings.selection == Selection::Map;
+    let shown = by_map.then(|| Scene::of_view(frame, &sun, &layout, in_view));
+    for index in 0..frame.settings.splits() {
+        let split = SplitFrame { frame, sun: &sun, layout: &layout, index };
+        let mut scene = Scene::of_split(&split, in_view);
+        let size = MapSize::new(&split);
+        let listed = Listed::new(&split, &size, &mut scene, in_view, plan);
+        let map = snap::placed(&split, &scene, &size, &listed, &mut held.rectangle[index]);
+        let (map, first) = match &shown {
+            Some(all) if !map.casters.is_empty() => {
+                let all = (&all.volume, all.depths());
+                covered::serving_all_it_covers(frame, &sun, (map, listed.first), all, in_view, plan)
+            }
+            _ => (map, listed.first),
+        };
+        let mut map = depth::ranged(frame, map, first, &size, world);
+        warp(&split, &scene, in_view, warp_points, &mut map, plan);
+        plan.add(map);
+        plan.coverage.volumes.push(scene.volume);
+    }
+    plan.coverage.shown = shown.map(|scene| scene.volume);
+    Ok(())
+}
+
+/// What a plan says of all its splits.
+fn describe(frame: &Frame<'_>, sun: &Sun<'_>, layout: &Layout, plan: &mut ShadowPlan) {
+    let (settings, view) = (frame.settings, frame.view);
+    plan.planes.clear();
+    plan.planes.extend(layout.planes());
+    plan.selection = settings.selection;
+    plan.blend = settings.blend;
+    plan.radial_eye = (settings.bands == Bands::Radial).then(|| view.eye());
+    // Behind the last receiver and beyond the camera's far plane there is nothing to fade into.
+    let last_shown = view.frustum().far / settings.bands.least_depth_share(view);
+    let fades = settings.range.is_some_and(|(_, end)| end < last_shown);
+    let (near, far) = (layout.range.near, layout.range.far);
+    plan.fade_begin = if fades { far - settings.far_fade * (far - near) } else { plan.planes[layout.row.splits] };
+    plan.coverage.fan = Some(sun.fan);
+}
+
+/// Warps the map of a split that is to be warped and has casters.
+fn warp(
+    split: &SplitFrame<'_>,
+    scene: &Scene,
+    in_view: &InView,
+    points: &mut WarpPoints,
+    map: &mut Split,
+    plan: &ShadowPlan,
+) {
+    let (frame, warp) = (split.frame, split.warp());
+    if warp == Warp::None || map.casters.is_empty() {
+        return;
+    }
+    let boxes = match frame.settings.fit {
+        Fit::Independent => None,
+        Fit::Dependent => Some((frame.receivers, &in_view.receivers[..])),
+    };
+    points.receivers_of(&scene.volume.slice, boxes);
+    let casters = plan.caster_indices[map.casters.clone()].iter().map(|&index| &frame.casters[index as usize]);
+    points.casters_of(&scene.volume.swept, scene.volume.margin, casters);
+    points.warp(map, warp, frame.view, frame.margin, frame.settings.fit);
+}

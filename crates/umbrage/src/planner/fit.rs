@@ -1,0 +1,69 @@
+//! Stage 4 of a sun's plan: how large a split's map has to be, and the margin that its filter needs.
+
+use glam::DVec2;
+
+use super::frame::Frame;
+use super::layout::{Layout, SplitFrame};
+use crate::geometry::sphere::stable_texel;
+use crate::held::rectangle::longest_edge;
+use crate::margin::{EDGE_TEXELS, Reach};
+use crate::{RangeFit, Stabilize, Warp};
+
+/// The view depths that a split serves.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SliceEnds {
+    pub from: f64,
+    pub to: f64,
+    /// Whether the camera shows any of them. Others still get a valid matrix.
+    pub is_visible: bool,
+}
+
+impl SliceEnds {
+    /// Of split `i` between `planes`.
+    pub fn new(frame: &Frame<'_>, layout: &Layout, planes: &[f64], i: usize) -> Self {
+        let (from, to) = layout.coverage(frame, frame.view, planes, i);
+        // Where the range holds all that is visible, nothing before it asks.
+        let fitted_begin = i == 0 && frame.settings.range_fit == RangeFit::Visible;
+        let from = if fitted_begin { from.max(planes[i]) } else { from };
+        let is_visible = to > from;
+        let (from, to) = if is_visible { (from, to) } else { (planes[i], planes[i + 1]) };
+        Self { from, to, is_visible }
+    }
+}
+
+/// The size of a still map and how far filters reach in it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MapSize {
+    /// How far the split's filter reaches, by the map's size.
+    pub reach: Reach,
+    /// Half the edges of a still map without its margin, metres.
+    pub half: DVec2,
+    /// The filter's reach in a still map, texels.
+    pub still_reach: f64,
+    /// Metres per texel of a still map.
+    pub still_texel: DVec2,
+}
+
+impl MapSize {
+    pub fn new(split: &SplitFrame<'_>) -> Self {
+        let settings = split.frame.settings;
+        let (half, size) = (split.layout.row.half[split.index], split.size());
+        // A warped map's texels differ in size.
+        let reach = if split.warp() == Warp::None { Reach::of(settings) } else { Reach::most(settings) };
+        let still_reach = reach.texels(2.0 * half.min_element(), size, 2.0 * EDGE_TEXELS + 1.0);
+        let texel = |half| stable_texel(half, size, still_reach + EDGE_TEXELS);
+        Self { reach, half, still_reach, still_texel: DVec2::new(texel(half.x), texel(half.y)) }
+    }
+
+    /// Metres around what the split serves that filters ask about, if that is `widest` metres wide: at most.
+    pub fn margin(&self, split: &SplitFrame<'_>, widest: f64) -> f64 {
+        let (margin, size) = (split.frame.margin, f64::from(split.size()));
+        match split.frame.settings.stabilize {
+            Stabilize::Exact => (self.still_reach + EDGE_TEXELS) * self.still_texel.max_element(),
+            Stabilize::Approximate(steps) => {
+                margin * longest_edge(steps, widest, split.layout.whole_width) / (size - 2.0 * margin - 1.0)
+            }
+            Stabilize::None => widest * margin / (size - 2.0 * margin).max(1.0),
+        }
+    }
+}

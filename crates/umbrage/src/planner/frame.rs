@@ -1,0 +1,78 @@
+//! What is the same for all maps of a frame.
+
+use glam::DVec3;
+
+use super::inputs::PlanInputs;
+use crate::bounds::Placed;
+use crate::geometry::region::Fan;
+use crate::margin::EDGE_TEXELS;
+use crate::{DirectionalLight, ShadowSettings, Stabilize, View};
+
+/// One frame's inputs, checked.
+#[derive(Clone, Copy)]
+pub(super) struct Frame<'a> {
+    pub settings: &'a ShadowSettings,
+    pub view: &'a View,
+    pub image_size: [u32; 2],
+    pub casters: &'a [Placed],
+    pub receivers: &'a [Placed],
+    /// Texels that a map keeps free around what it serves, at most.
+    pub margin: f64,
+}
+
+impl<'a> Frame<'a> {
+    pub fn new(
+        settings: &'a ShadowSettings,
+        inputs: &PlanInputs<'a>,
+        casters: &'a [Placed],
+        receivers: &'a [Placed],
+    ) -> Self {
+        Self {
+            settings,
+            view: inputs.view,
+            image_size: inputs.image_size,
+            casters,
+            receivers: if receivers.is_empty() { casters } else { receivers },
+            margin: settings.filter_radius + EDGE_TEXELS,
+        }
+    }
+
+    /// Whether maps stand still, exactly or almost.
+    pub fn stands_still(&self) -> bool {
+        self.settings.stabilize != Stabilize::None
+    }
+
+    /// The largest share of a map's width that its margin can be.
+    pub fn margin_share(&self) -> f64 {
+        let smallest = self.settings.map_sizes.iter().copied().min().unwrap_or(1);
+        2.0 * self.margin / f64::from(smallest).max(2.0 * self.margin + 2.0)
+    }
+}
+
+/// A sun, and directions across its light to measure bounds along.
+#[derive(Clone, Copy)]
+pub(super) struct Sun<'a> {
+    pub light: &'a DirectionalLight,
+    pub direction: DVec3,
+    pub fan: Fan,
+}
+
+/// A view that looks along the light more closely than this (the sine of the angle between them) has no direction of its
+/// own across the light.
+const LEAST_SINE: f64 = 1e-3;
+
+impl<'a> Sun<'a> {
+    /// The first direction is the view's across the light, so that tight maps turn with it; approximately still ones need a
+    /// direction that is fixed to the light.
+    pub fn new(light: &'a DirectionalLight, frame: &Frame<'_>) -> Self {
+        let direction = light.direction();
+        let forward = frame.view.forward();
+        let across = forward - forward.dot(direction) * direction;
+        let (map_u, _) = light.map_axes();
+        let first = match frame.settings.stabilize {
+            Stabilize::None | Stabilize::Exact if across.length() > LEAST_SINE => across.normalize(),
+            _ => map_u,
+        };
+        Self { light, direction, fan: Fan::new(first, direction) }
+    }
+}

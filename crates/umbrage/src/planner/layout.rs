@@ -1,0 +1,239 @@
+//! Stage 2 of a sun's plan: the lens that maps are made for, the planes between splits and the sizes of still maps.
+//!
+//! All that is held between frames is settled here, but for rectangles and depths.
+
+use glam::DVec2;
+
+use super::casters::InView;
+use super::frame::{Frame, Sun};
+use super::range;
+use super::snap::Block;
+use crate::geometry::sphere::slice_sphere;
+use crate::held::Held;
+use crate::held::ends::Range;
+use crate::held::recovery::{Row, Standing};
+use crate::planes::cells::Sight;
+use crate::planes::optimal::{Maps, Placement};
+use crate::planes::scheme::{coverage, split_planes};
+use crate::{MAX_SPLITS, Result, SplitScheme, Stabilize, View, Warp};
+
+/// Where maps begin and end, and how large still ones are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layout {
+    pub range: Range,
+    pub row: Row,
+    /// The view through the lens that maps are made for: the camera's, or one around it.
+    pub lens: View,
+    /// Stabilised: across the sphere around everything that is shadowed, metres. 0 otherwise.
+    pub whole_width: f64,
+    /// Exactly stabilised: around all receivers, which no map has to exceed along any axis.
+    pub around_all: Option<Block>,
+    /// The split whose rectangle may be chosen anew in this frame though the held one serves.
+    pub refits: Option<usize>,
+}
+
+/// What the stages of one split share.
+#[derive(Clone, Copy)]
+pub(super) struct SplitFrame<'a> {
+    pub frame: &'a Frame<'a>,
+    pub sun: &'a Sun<'a>,
+    pub layout: &'a Layout,
+    /// The split.
+    pub index: usize,
+}
+
+impl SplitFrame<'_> {
+    /// Edge of the split's map in texels.
+    pub fn size(&self) -> u32 {
+        self.frame.settings.map_sizes[self.index]
+    }
+
+    pub fn warp(&self) -> Warp {
+        self.frame.settings.warp(self.index)
+    }
+
+    /// What the still map has to show.
+    pub fn block(&self) -> Block {
+        self.layout.block(self.frame, self.sun, self.layout.planes(), self.index)
+    }
+}
+
+/// Memory of the stage.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LayoutBuffers {
+    placement: Placement,
+    planes: Vec<f64>,
+}
+
+impl Layout {
+    /// `C_0 ..= C_m`.
+    pub fn planes(&self) -> &[f64] {
+        &self.row.planes[..=self.row.splits]
+    }
+
+    /// # Errors
+    /// [`crate::Error::InvalidSetting`] for a range or planes that do not fit this camera.
+    pub fn new(
+        frame: &Frame<'_>,
+        sun: &Sun<'_>,
+        held: &mut Held,
+        in_view: &mut InView,
+        buffers: &mut LayoutBuffers,
+    ) -> Result<Self> {
+        if !frame.stands_still() {
+            return Self::holding(frame, sun, &mut Held::default(), 0.0, in_view, buffers);
+        }
+        let standing = held.begin(frame.view, sun.direction);
+        let now = held.current_row(frame.settings.splits());
+        let (Standing::Due | Standing::Recovering, Some(row)) = (standing, now) else {
+            return Self::holding(frame, sun, held, 0.0, in_view, buffers);
+        };
+        let mut fresh = held.released();
+        if standing == Standing::Recovering {
+            fresh.adopt(held);
+        }
+        let shown = row.planes[row.splits];
+        let target = Self::holding(frame, sun, &mut fresh, shown, in_view, buffers)?;
+        if standing == Standing::Due {
+            let is_exact = frame.settings.stabilize == Stabilize::Exact;
+            if is_exact && !row.exceeds(&target.row) {
+                held.standstill.set(Standing::Settled);
+                return Self::holding(frame, sun, held, 0.0, in_view, buffers);
+            }
+            held.adopt(&fresh);
+            held.standstill.set(Standing::Recovering);
+        }
+        Ok(target.approached(frame, sun, row, held))
+    }
+
+    /// A layout one step nearer to this one than `row`, which is held from now on.
+    fn approached(self, frame: &Frame<'_>, sun: &Sun<'_>, mut row: Row, held: &mut Held) -> Self {
+        let need = |i: usize, planes: &[f64]| self.block(frame, sun, planes, i).half.truncate();
+        // Rectangles that are almost still are chosen by the stage that places them, one a frame.
+        let has_rectangles = frame.settings.stabilize != Stabilize::Exact;
+        let pace = (held.standstill.frames_left(), has_rectangles);
+        let refits = held.recovery.step(&mut row, &self.row, pace, need);
+        if refits.is_none() {
+            held.standstill.set(Standing::Settled);
+        }
+        // Things that move while the camera stands may need more.
+        for i in 0..row.splits {
+            row.half[i] = row.half[i].max(need(i, &row.planes[..=row.splits]));
+        }
+        held.keep(self.range, &row);
+        Self { row, refits, ..self }
+    }
+
+    /// Holds on to whatever serves. `shown` is the view depth up to which casters are looked for, at least.
+    fn holding(
+        frame: &Frame<'_>,
+        sun: &Sun<'_>,
+        held: &mut Held,
+        shown: f64,
+        in_view: &mut InView,
+        buffers: &mut LayoutBuffers,
+    ) -> Result<Self> {
+        let range = range::shadowed(frame, &mut held.ends)?;
+        let stands_still = frame.stands_still();
+        let lens = if stands_still { hold_lens(frame, held)? } else { *frame.view };
+        let mut layout = Self { range, lens, ..Self::empty(frame) };
+        if stands_still {
+            let sphere = slice_sphere(lens.frustum(), frame.view.frustum().near, range.far);
+            layout.whole_width = 2.0 * held.whole.hold(sphere.radius);
+        }
+        if frame.settings.stabilize == Stabilize::Exact {
+            layout.around_all = Block::around(frame.receivers, sun.light);
+        }
+        in_view.cull(frame, sun, range.far.max(shown), layout.whole_width);
+        layout.place_planes(frame, sun, held, in_view, buffers)?;
+        if stands_still {
+            for i in 0..layout.row.splits {
+                let need = layout.block(frame, sun, layout.planes(), i).half.truncate();
+                layout.row.half[i] = held.half[i].hold(need);
+            }
+            held.row = Some((range, layout.row.planes));
+        }
+        Ok(layout)
+    }
+
+    fn empty(frame: &Frame<'_>) -> Self {
+        let splits = frame.settings.splits();
+        let row = Row { planes: [0.0; MAX_SPLITS + 1], half: [DVec2::ONE; MAX_SPLITS], splits };
+        Self { range: Range::new(0.0, 0.0), row, lens: *frame.view, whole_width: 0.0, around_all: None, refits: None }
+    }
+
+    /// Writes `C_0 ..= C_m`: those that are held while they were placed for the same range, or new ones.
+    fn place_planes(
+        &mut self,
+        frame: &Frame<'_>,
+        sun: &Sun<'_>,
+        held: &mut Held,
+        in_view: &InView,
+        buffers: &mut LayoutBuffers,
+    ) -> Result<()> {
+        let settings = frame.settings;
+        let (m, range) = (settings.splits(), self.range);
+        let LayoutBuffers { placement, planes } = buffers;
+        if settings.scheme == SplitScheme::Fitted {
+            let sight = Sight {
+                view: frame.view,
+                fan: &sun.fan,
+                receivers: frame.receivers,
+                visible: &in_view.receivers,
+                casters: frame.casters,
+                candidates: &in_view.casters,
+            };
+            let most_half = self.around_all.map_or(DVec2::INFINITY, |all| all.half.truncate());
+            let (margin, whole_width, image_size) = (frame.margin, self.whole_width, frame.image_size);
+            let maps = Maps { settings, image_size, margin, whole_width, most_half };
+            let inner = held.row.as_ref().map(|(_, planes)| &planes[1..m]);
+            placement.place(&sight, &maps, range, inner, planes)?;
+            if inner != Some(&planes[1..m]) {
+                // Other slices have other sizes: none is worth holding on to.
+                held.half = Default::default();
+            }
+        } else {
+            split_planes(&settings.scheme, range.near, range.inner_far, m, planes)?;
+        }
+        planes[m] = range.far;
+        match held.row {
+            // Between two ranges planes are on their way, and stay as far as they came.
+            Some((placed_for, row))
+                if settings.scheme != SplitScheme::Fitted && placed_for == range && row[m] >= range.far =>
+            {
+                self.row.planes = row;
+            }
+            _ => self.row.planes[..=m].copy_from_slice(planes),
+        }
+        Ok(())
+    }
+
+    /// The view depths that split `i` serves, as [`coverage`] has them, through a lens.
+    pub fn coverage(&self, frame: &Frame<'_>, view: &View, planes: &[f64], i: usize) -> (f64, f64) {
+        coverage(view, planes, i, frame.settings.blend, frame.image_size, frame.settings.bands)
+    }
+
+    /// What the still map of split `i` has to show: a block around its slice, and no longer than all receivers.
+    pub fn block(&self, frame: &Frame<'_>, sun: &Sun<'_>, planes: &[f64], i: usize) -> Block {
+        let slice = super::fit::SliceEnds::new(frame, self, planes, i);
+        // A wider lens has wider pixels, and its slices reach back farther.
+        let begin = if slice.is_visible && i > 0 {
+            self.coverage(frame, &self.lens, planes, i).0.min(slice.from)
+        } else {
+            slice.from
+        };
+        let sphere = slice_sphere(self.lens.frustum(), begin, slice.to);
+        let block = Block::around_sphere(frame.view.world_from_view_point(sphere.center), sphere.radius, sun.light);
+        self.around_all.map_or(block, |all| block.no_longer_than(&all))
+    }
+}
+
+fn hold_lens(frame: &Frame<'_>, held: &mut Held) -> Result<View> {
+    let before = held.lens;
+    let lens = held.lens.hold(frame.view.frustum());
+    if held.lens != before {
+        // All maps change with the lens: none's size is worth holding on to.
+        held.half = Default::default();
+    }
+    frame.view.with_frustum(lens)
+}

@@ -1,0 +1,341 @@
+//! Lights that stand somewhere: parallel splits in the post-perspective space of a spot light, or of the six faces of a point
+//! light.
+//!
+//! Behind its perspective divide a light's frustum is a cube in which light is parallel: a place is `(u/w, v/w)` in units of
+//! the tangent, `w` the depth along the frustum's axis, and whatever lies on one ray from the light has one place. There a
+//! slice's map is planned in a sun's stages: range → planes → casters → fit → snap → depth. Everything is clipped to the
+//! light's frustum *before* the divide, slices as well as boxes, as either may straddle the light's plane, where w changes
+//! its sign. What can throw a shadow is asked by planes through the light, which divide by nothing.
+
+use glam::{DVec2, DVec3};
+
+use super::frame::Frame;
+use crate::bounds::Placed;
+use crate::coverage::LocalVolume;
+use crate::geometry::light_frustum::{LightFrustum, Part};
+use crate::geometry::volume::{BELOW_ALL, Lies, Slice};
+use crate::held::Held;
+use crate::held::recovery::Standing;
+use crate::held::size::HeldSize;
+use crate::planes::scheme::{blend_begin, coverage, split_planes};
+use crate::{
+    Bands, Error, Fit, Light, Result, Selection, ShadowPlan, ShadowSettings, Split, SplitScheme, Stabilize, Warp,
+};
+
+/// Share of its depths that a map keeps free before its first caster and behind its last receiver, for rounding.
+const DEPTH_ROOM: f64 = 1e-3;
+
+/// Share by which the shadowed range goes on behind the last receiver: a wall across the view is all at that depth.
+const RANGE_ROOM: f64 = 1e-3;
+
+/// Memory of one call that the next one uses again.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LocalBuffers {
+    receivers: Vec<u32>,
+    casters: Vec<u32>,
+}
+
+/// A split of one of the light's frusta.
+#[derive(Clone, Copy)]
+struct LocalSplit<'a> {
+    frame: &'a Frame<'a>,
+    /// Within the frustum.
+    index: usize,
+    /// View depths that sample the map.
+    coverage: (f64, f64),
+    volume: LocalVolume,
+}
+
+/// The casters of a split and what its map has to show with them.
+struct Listed {
+    casters: std::ops::Range<usize>,
+    target: Part,
+}
+
+/// Fills a plan that has begun, frustum after frustum.
+pub(super) fn plan(
+    frame: &Frame<'_>,
+    (light, position): (&Light, DVec3),
+    frusta: &[LightFrustum],
+    held: &mut Held,
+    buffers: &mut LocalBuffers,
+    plan: &mut ShadowPlan,
+) -> Result<()> {
+    let settings = frame.settings;
+    check_settings(settings)?;
+    let m = settings.splits();
+    let (near, far, fades) = shadowed_range(frame, light, position);
+    split_planes(&settings.scheme, near, far, m, &mut plan.planes)?;
+    plan.fade_begin = if fades { far - settings.far_fade * (far - near) } else { far };
+    let recovering = recovering(frame, light, held, frusta.len() * m);
+    for frustum in frusta {
+        buffers.cull(frame, frustum);
+        for index in 0..m {
+            let split = LocalSplit::new(frame, frustum, index, &plan.planes, buffers);
+            let listed = split.list_casters(buffers, plan);
+            let at = plan.splits.len();
+            let step = recovering.as_ref().filter(|(maps, _)| maps.contains(&at)).map(|&(_, step)| step);
+            let map = split.map(listed, &plan.planes, &mut held.local.0[at], step);
+            plan.add(map);
+            plan.coverage.local.push(split.volume);
+        }
+    }
+    Ok(())
+}
+
+/// The maps, of `count`, that may be made smaller in this frame though the held size serves, and the step that they may take.
+fn recovering(
+    frame: &Frame<'_>,
+    light: &Light,
+    held: &mut Held,
+    count: usize,
+) -> Option<(std::ops::Range<usize>, f64)> {
+    if !frame.stands_still() {
+        return None;
+    }
+    let axis = match light {
+        Light::Spot(spot) => spot.direction(),
+        _ => DVec3::ZERO,
+    };
+    if held.begin(frame.view, axis) == Standing::Due {
+        held.standstill.set(Standing::Recovering);
+    }
+    held.standstill.turn(count)
+}
+
+/// What a local light cannot be combined with.
+fn check_settings(settings: &ShadowSettings) -> Result<()> {
+    let conflict =
+        |first, reason: &str| Err(Error::ConflictingSettings { first, second: "light", reason: reason.to_owned() });
+    if settings.warps.iter().any(|&warp| warp != Warp::None) {
+        return conflict(
+            "warps",
+            "a warp needs light that is parallel in the world; leave warps away, or use a directional light",
+        );
+    }
+    if settings.selection != Selection::Depth {
+        return conflict(
+            "selection",
+            "maps of a local light lie in its perspective and are chosen by view depth; \
+             set selection to Depth, or use a directional light",
+        );
+    }
+    if settings.bands != Bands::Planar {
+        return conflict(
+            "bands",
+            "splits of a local light are chosen by view depth; set bands to Planar, or use a directional light",
+        );
+    }
+    if settings.scheme == SplitScheme::Fitted {
+        return conflict(
+            "scheme",
+            "fitted planes are chosen for light that is parallel in the world; \
+             set scheme to Logarithmic or another of near and far alone, or use a directional light",
+        );
+    }
+    Ok(())
+}
+
+impl LocalBuffers {
+    /// Keeps the receivers and casters that the light reaches in this frustum.
+    fn cull(&mut self, frame: &Frame<'_>, frustum: &LightFrustum) {
+        let keep = |list: &mut Vec<u32>, boxes: &[Placed], margin: f64| {
+            list.clear();
+            let kept = boxes.iter().enumerate().filter(|(_, placed)| frustum.may_meet(placed, margin));
+            list.extend(kept.map(|(index, _)| index as u32));
+        };
+        keep(&mut self.receivers, frame.receivers, 0.0);
+        // The margin around a map is a few of its texels: at most this share of the frustum's width.
+        keep(&mut self.casters, frame.casters, frame.margin_share() * 2.0 * frustum.slope * frustum.range);
+    }
+}
+
+impl<'a> LocalSplit<'a> {
+    /// The slice, and the part of the light's frustum that it shows.
+    fn new(frame: &'a Frame<'a>, frustum: &LightFrustum, index: usize, planes: &[f64], buffers: &LocalBuffers) -> Self {
+        let settings = frame.settings;
+        let (from, to) = coverage(frame.view, planes, index, settings.blend, frame.image_size, Bands::Planar);
+        let is_visible = to > from;
+        let (from, to) = if is_visible { (from, to) } else { (planes[index], planes[index + 1]) };
+        let slice = Slice::new(frame.view, from, to);
+        let part = if is_visible { part_in(frame, frustum, &slice, &buffers.receivers) } else { Part::EMPTY };
+        let swept = slice.swept_towards_point(frustum.position);
+        let volume = LocalVolume { swept, frustum: *frustum, part };
+        Self { frame, index, coverage: (from, to), volume }
+    }
+
+    /// Edge of the map in texels.
+    fn size(&self) -> u32 {
+        self.frame.settings.map_sizes[self.index]
+    }
+
+    /// Texels across the map that serve its slice.
+    fn texels(&self) -> f64 {
+        (f64::from(self.size()) - 2.0 * self.frame.margin).max(2.0)
+    }
+
+    /// Appends the casters of a split to the plan's list: boxes that meet the hull of the light and what the map has to show.
+    fn list_casters(&self, buffers: &LocalBuffers, plan: &mut ShadowPlan) -> Listed {
+        let LocalVolume { frustum, part, .. } = &self.volume;
+        let begin = plan.caster_indices.len();
+        if part.is_empty() {
+            return Listed { casters: begin..begin, target: frustum.whole() };
+        }
+        let casters = |index: &u32| &self.frame.casters[*index as usize];
+        let casts = self.casts();
+        plan.caster_indices.extend(buffers.casters.iter().filter(|index| casts(casters(index))));
+        // Where casters lie, seen from the light, and the depth of the first.
+        let mut target = *part;
+        let listed = &plan.caster_indices[begin..];
+        if !listed.is_empty() {
+            let (mut lo, mut hi, mut first) = (DVec2::INFINITY, DVec2::NEG_INFINITY, f64::INFINITY);
+            for caster in listed.iter().map(casters) {
+                let (caster_lo, caster_hi, depth) = frustum.seen(caster, part);
+                (lo, hi, first) = (lo.min(caster_lo), hi.max(caster_hi), first.min(depth));
+            }
+            target.near = first;
+            if (self.frame.settings.fit, self.frame.settings.stabilize) == (Fit::Dependent, Stabilize::None) {
+                (target.lo, target.hi) = (lo, hi);
+            }
+        }
+        Listed { casters: begin..plan.caster_indices.len(), target }
+    }
+
+    /// Whether a box can shade the part of the frustum that the map shows.
+    fn casts(&self) -> impl Fn(&Placed) -> bool {
+        let LocalVolume { swept, frustum, part } = self.volume;
+        // A tangent per texel, of the whole part: what the margin around it may be at most.
+        let widest = part.extent().max_element() / self.texels();
+        let margin = self.frame.margin * widest * part.far;
+        let sides = part.sides(&frustum);
+        let hull = part.bounds.including(frustum.position);
+        // Rounding in the bounds.
+        let slack = BELOW_ALL * (hull.max - hull.min).max_element();
+        move |placed| {
+            let (bounds, Placed { center, half }) = (placed.bounds(), *placed);
+            let beside = bounds.max.cmplt(hull.min - margin).any() || bounds.min.cmpgt(hull.max + margin).any();
+            // A ground under everything is one of its own receivers; it throws its shadow on nothing.
+            let below = |axis: usize| {
+                let (lo, hi) = (part.bounds.min[axis], part.bounds.max[axis]);
+                let light = frustum.position[axis];
+                (light > lo + slack && bounds.max[axis] <= lo + slack)
+                    || (light < hi - slack && bounds.min[axis] >= hi - slack)
+            };
+            !beside
+                && !(0..3).any(below)
+                && frustum.nearest_depth(placed) <= part.far
+                && swept.meets(center, half, margin)
+                && sides.iter().all(|side| side.nearest(center, half) <= margin)
+        }
+    }
+
+    /// Tangents per texel, and the map's corner in texels; `held` holds the size of a map that stands still.
+    fn snapped(&self, target: &Part, held: &mut HeldSize, step: Option<f64>) -> (DVec2, DVec2) {
+        let (size, texels) = (f64::from(self.size()), self.texels());
+        if !self.frame.stands_still() {
+            let texel = target.extent() / texels;
+            return (texel, 0.5 * (target.lo + target.hi) / texel - 0.5 * size);
+        }
+        let need = target.extent().max_element();
+        let extent = match step {
+            _ if self.volume.part.is_empty() => need,
+            Some(step) => held.shrink(need, step),
+            None => held.hold(need),
+        };
+        let texel = DVec2::splat(extent / (texels - 1.0));
+        (texel, (0.5 * (target.lo + target.hi) / texel - 0.5 * size).round())
+    }
+
+    /// The split's map.
+    fn map(&self, listed: Listed, planes: &[f64], held: &mut HeldSize, step: Option<f64>) -> Split {
+        let LocalVolume { frustum, part, .. } = &self.volume;
+        let settings = self.frame.settings;
+        let (texel, min_texel) = self.snapped(&listed.target, held, step);
+        let (w_near, w_far) = depths(&listed.target, frustum.near, settings.stabilize);
+        let axis_offset = frustum.axis.dot(frustum.position);
+        let (size, depths) = (self.size(), (axis_offset + w_near, axis_offset + w_far));
+        Split {
+            near: planes[self.index],
+            far: planes[self.index + 1],
+            blend_begin: blend_begin(planes, self.index, settings.blend),
+            coverage: self.coverage,
+            size,
+            u_axis: frustum.u,
+            v_axis: frustum.v,
+            depth_axis: frustum.axis,
+            texel_m: texel * (0.5 * (part.near.min(w_far) + w_far)),
+            min_texel,
+            depth_near: depths.0,
+            depth_far: depths.1,
+            receiver_depths: depths,
+            filter_reach: settings.filter_radius,
+            warp: Some(frustum.shadow_from_world(texel, min_texel, size, (w_near, w_far))),
+            light_position: Some(frustum.position),
+            casters: listed.casters,
+        }
+    }
+}
+
+/// What a slice shows of the light's frustum: all of it, or its receivers.
+fn part_in(frame: &Frame<'_>, frustum: &LightFrustum, slice: &Slice, receivers: &[u32]) -> Part {
+    let mut part = Part::EMPTY;
+    if frame.settings.fit == Fit::Independent {
+        slice.clip_slice(&frustum.volume, |point| part.include(frustum, point));
+        return part;
+    }
+    for &index in receivers {
+        let placed @ Placed { center, half } = frame.receivers[index as usize];
+        let bounds = placed.bounds();
+        match (slice.classify(center, half), frustum.volume.classify(center, half)) {
+            (Lies::Outside, _) | (_, Lies::Outside) => {}
+            (Lies::Inside, Lies::Inside) => bounds.corners().iter().for_each(|&p| part.include(frustum, p)),
+            _ => slice.clip_box_with(&frustum.volume, &bounds, |point| part.include(frustum, point)),
+        }
+    }
+    part
+}
+
+/// Depths along the axis at 0 and 1: before the first caster and behind the last receiver; in whole steps where the map is to stand
+/// still.
+fn depths(target: &Part, least: f64, stabilize: Stabilize) -> (f64, f64) {
+    let far = target.far * (1.0 + DEPTH_ROOM);
+    let near = (target.near.max(least) * (1.0 - DEPTH_ROOM)).min(0.5 * far);
+    match stabilize {
+        Stabilize::None => (near, far),
+        _ => (2f64.powf(near.log2().floor()), 2f64.powf(far.log2().ceil())),
+    }
+}
+
+/// View depths that shadows cover, `C_0` and `C_m`, and whether they fade at the end: the setting; or the camera's near and far, far
+/// capped by the receivers that the light reaches, both narrowed to where it reaches. Shadows fade only where they end though
+/// the light goes on.
+fn shadowed_range(frame: &Frame<'_>, light: &Light, position: DVec3) -> (f64, f64, bool) {
+    let Frame { settings, view, receivers, .. } = *frame;
+    let range = light.range();
+    if let Some((near, far)) = settings.range {
+        return (near, far, true);
+    }
+    let forward = view.forward();
+    let (camera_near, camera_far) = (view.frustum().near, view.frustum().far);
+    let deepest = receivers
+        .iter()
+        .filter(|r| position.clamp(r.center - r.half, r.center + r.half).distance(position) <= range)
+        .map(|r| view.view_depth(r.center) + forward.abs().dot(r.half))
+        .fold(f64::NEG_INFINITY, f64::max);
+    let at = view.view_depth(position);
+    let reach = (at - range, at + range);
+    let nothing = (camera_near, 2.0 * camera_near.abs() + 1.0, false);
+    let far = deepest.min(reach.1) * (1.0 + RANGE_ROOM);
+    if far <= camera_near || !far.is_finite() || reach.0 >= camera_far {
+        // The light reaches nothing that is seen: any short range will do.
+        return nothing;
+    }
+    // Planes that were given in metres mean those of the whole view.
+    let free = match &settings.scheme {
+        SplitScheme::Uniform | SplitScheme::Logarithmic | SplitScheme::Fitted => true,
+        SplitScheme::Practical { delta, .. } => delta.is_empty(),
+        SplitScheme::Manual(_) => false,
+    };
+    let near = if free { camera_near.max(reach.0) } else { camera_near };
+    if near >= far { nothing } else { (near, far.min(camera_far), camera_far < far) }
+}

@@ -1,0 +1,167 @@
+//! The planner: from a view, a light and bounds to a [`ShadowPlan`].
+//!
+//! [`plan`] is the core: values in, values out, with what is held between frames as a value of its own. A sun's plan is
+//! made in the stages of [`directional`], a local light's in those of [`local`].
+
+mod casters;
+mod covered;
+mod depth;
+mod directional;
+mod fit;
+mod frame;
+mod inputs;
+mod layout;
+mod local;
+mod range;
+mod snap;
+mod warped;
+
+use crate::bounds::Placed;
+use crate::geometry::light_frustum::LightFrustum;
+use crate::held::Held;
+use crate::{Aabb, Light, Result, ShadowPlan, ShadowSettings, View};
+use directional::SunBuffers;
+use frame::Frame;
+pub use inputs::PlanInputs;
+use local::LocalBuffers;
+
+/// Plans shadow maps frame after frame.
+///
+/// Holds the settings, what is held between frames ([`Held`]) and buffers, so that only the first frames allocate. Each
+/// light of each view has a planner of its own.
+#[derive(Clone, Debug)]
+pub struct Planner {
+    settings: ShadowSettings,
+    held: Held,
+    buffers: Buffers,
+    plan: ShadowPlan,
+}
+
+/// Memory of one call that the next one uses again. Holds nothing that a plan depends on.
+#[derive(Clone, Debug, Default)]
+struct Buffers {
+    casters: Vec<Placed>,
+    receivers: Vec<Placed>,
+    sun: SunBuffers,
+    local: LocalBuffers,
+    held: Held,
+}
+
+impl Planner {
+    /// A planner for these settings.
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidSetting`] naming the field that is wrong, [`crate::Error::ConflictingSettings`] naming two that
+    /// exclude each other.
+    pub fn new(settings: ShadowSettings) -> Result<Self> {
+        settings.validate()?;
+        Ok(Self { settings, held: Held::default(), buffers: Buffers::default(), plan: ShadowPlan::default() })
+    }
+
+    /// What the planner was made with.
+    #[must_use]
+    pub fn settings(&self) -> &ShadowSettings {
+        &self.settings
+    }
+
+    /// What is held between frames.
+    #[must_use]
+    pub fn held(&self) -> &Held {
+        &self.held
+    }
+
+    /// Replaces what is held between frames: to go on from another frame than the last one, or afresh.
+    pub fn set_held(&mut self, held: Held) {
+        self.held = held;
+    }
+
+    /// Plans the maps of one frame for one light, for a picture of [`ShadowSettings::image_size`]; see
+    /// [`Planner::plan_frame`].
+    ///
+    /// # Errors
+    /// As [`Planner::plan_into`].
+    pub fn plan(
+        &mut self,
+        view: &View,
+        light: &(impl Copy + Into<Light>),
+        casters: &[Aabb],
+        receivers: &[Aabb],
+    ) -> Result<&ShadowPlan> {
+        let inputs =
+            PlanInputs { image_size: self.settings.image_size, ..PlanInputs::new(view, *light, casters, receivers) };
+        self.plan_frame(&inputs)
+    }
+
+    /// Plans the maps of one frame for one light and keeps the plan until the next one.
+    ///
+    /// # Errors
+    /// As [`Planner::plan_into`].
+    pub fn plan_frame(&mut self, inputs: &PlanInputs<'_>) -> Result<&ShadowPlan> {
+        let mut kept = std::mem::take(&mut self.plan);
+        let result = self.plan_into(inputs, &mut kept);
+        self.plan = kept;
+        result.map(|()| &self.plan)
+    }
+
+    /// Plans the maps of one frame for one light into a plan of the caller's, whose buffers are used again.
+    ///
+    /// A point light's plan has six times as many splits as the settings: those of its first face, then those of the next
+    /// ([`Light::FACE_AXES`]). Splits that the light does not reach have no casters.
+    ///
+    /// A local light's default range is narrowed to where it reaches. Its stabilised maps stand on whole texels, of a size
+    /// that changes in steps: between two steps a shadow's texels stay where they are.
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidBounds`] naming a box that is inverted or not finite; [`crate::Error::InvalidSetting`] if the
+    /// range or the planes do not fit this camera; [`crate::Error::ConflictingSettings`] for a warp or radial bands with a
+    /// local light, and for radial bands with an orthographic camera. What is held is left as it was; the plan is of no use.
+    pub fn plan_into(&mut self, inputs: &PlanInputs<'_>, plan: &mut ShadowPlan) -> Result<()> {
+        plan_with(&self.settings, inputs, &mut self.held, &mut self.buffers, plan)
+    }
+}
+
+/// One frame's plan: a function of the settings, the inputs and what is held from the frames before.
+///
+/// # Errors
+/// As [`Planner::plan_into`], and as [`Planner::new`] for the settings.
+pub fn plan(settings: &ShadowSettings, inputs: &PlanInputs<'_>, held: &mut Held) -> Result<ShadowPlan> {
+    settings.validate()?;
+    let mut plan = ShadowPlan::default();
+    plan_with(settings, inputs, held, &mut Buffers::default(), &mut plan)?;
+    Ok(plan)
+}
+
+/// The same with checked settings and memory of before.
+fn plan_with(
+    settings: &ShadowSettings,
+    inputs: &PlanInputs<'_>,
+    held: &mut Held,
+    buffers: &mut Buffers,
+    plan: &mut ShadowPlan,
+) -> Result<()> {
+    inputs.check()?;
+    inputs::place(inputs.casters, "casters", &mut buffers.casters)?;
+    inputs::place(inputs.receivers, "receivers", &mut buffers.receivers)?;
+    plan.begin(inputs.view, inputs.light);
+    plan.split_range.resize(inputs.casters.len(), None);
+    // A frame that is refused leaves what is held as it was.
+    let Buffers { casters, receivers, sun, local, held: next } = buffers;
+    next.clone_from(held);
+    let frame = Frame::new(settings, inputs, casters, receivers);
+    match &inputs.light {
+        Light::Directional(light) => directional::plan(&frame, light, next, sun, plan)?,
+        Light::Spot(spot) => {
+            let at = (&inputs.light, spot.position());
+            local::plan(&frame, at, &[LightFrustum::of_spot(spot)], next, local, plan)?;
+        }
+        Light::Point(point) => {
+            let frusta = Light::FACE_AXES.map(|axis| LightFrustum::of_face(point, axis));
+            local::plan(&frame, (&inputs.light, point.position()), &frusta, next, local, plan)?;
+        }
+    }
+    if let Some(clusters) = inputs.receiver_clusters {
+        plan.coverage.mask(clusters);
+    }
+    std::mem::swap(held, next);
+    Ok(())
+}

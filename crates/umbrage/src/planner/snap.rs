@@ -1,0 +1,134 @@
+//! Stage 5 of a sun's plan: where a plain map lies; tight, held or still.
+
+use glam::{DVec2, DVec3};
+
+use super::casters::{Listed, Scene};
+use super::fit::MapSize;
+use super::layout::SplitFrame;
+use crate::bounds::Placed;
+use crate::geometry::region::{Fan, Region};
+use crate::held::rectangle::{HeldRectangle, Rectangle};
+use crate::margin::{EDGE_TEXELS, Reach};
+use crate::planes::scheme::blend_begin;
+use crate::{DirectionalLight, Split, Stabilize};
+
+/// The map of a split: its axes, its texels and where they lie. Depths are those of what it shows, until the next stage.
+pub(super) fn placed(
+    split: &SplitFrame<'_>,
+    scene: &Scene,
+    size: &MapSize,
+    listed: &Listed,
+    held: &mut HeldRectangle,
+) -> Split {
+    let SplitFrame { frame, sun, layout, index: i } = *split;
+    let planes = layout.planes();
+    let block = split.block();
+    let split = Split {
+        near: planes[i],
+        far: planes[i + 1],
+        blend_begin: blend_begin(planes, i, frame.settings.blend),
+        coverage: (scene.ends.from, scene.ends.to),
+        size: frame.settings.map_sizes[i],
+        u_axis: DVec3::ZERO,
+        v_axis: DVec3::ZERO,
+        depth_axis: sun.direction,
+        texel_m: DVec2::ONE,
+        min_texel: DVec2::ZERO,
+        depth_near: listed.target.depth.0,
+        depth_far: listed.target.depth.1,
+        receiver_depths: listed.target.depth,
+        filter_reach: size.still_reach,
+        warp: None,
+        light_position: None,
+        casters: listed.casters.clone(),
+    };
+    match frame.settings.stabilize {
+        Stabilize::None => fitted(split, &listed.target, &sun.fan, size.reach),
+        Stabilize::Exact => snapped(split, sun.light, &block, size.still_texel),
+        Stabilize::Approximate(steps) => {
+            // A split without casters is lit, whatever its rectangle; it changes nothing that is held.
+            let mut unheld = HeldRectangle::default();
+            let held = if split.casters.is_empty() { &mut unheld } else { held };
+            let refits = layout.refits == Some(i);
+            let rectangle = held.hold(&listed.target, steps, layout.whole_width, refits);
+            let radius = size.half.max_element();
+            let depth = (block.center.z - radius, block.center.z + radius);
+            stepped(split, &listed.target, &sun.fan, size.reach, rectangle, depth)
+        }
+    }
+}
+
+/// The smallest rectangle around `target`, widened by the filter's reach.
+fn fitted(mut split: Split, target: &Region, fan: &Fan, reach: Reach) -> Split {
+    let (u, v, lo, hi) = target.least_rectangle(fan);
+    (split.u_axis, split.v_axis) = (u, v);
+    let longest = (hi - lo).max_element();
+    // A target without width (a wall seen edge-on by the light) still gets texels of some size.
+    let extent = (hi - lo).max(DVec2::splat(1e-3 * longest.max(1e-3)));
+    split.filter_reach = reach.texels(extent.min_element(), split.size, 2.0 * EDGE_TEXELS);
+    split.texel_m = extent / (f64::from(split.size) - 2.0 * (split.filter_reach + EDGE_TEXELS));
+    split.min_texel = 0.5 * (lo + hi) / split.texel_m - 0.5 * f64::from(split.size);
+    split
+}
+
+/// A rectangle that is held, moved to whole texels of a grid that is fixed to the light.
+fn stepped(mut split: Split, target: &Region, fan: &Fan, reach: Reach, held: Rectangle, depth: (f64, f64)) -> Split {
+    (split.u_axis, split.v_axis) = fan.axes(held.direction);
+    let size = f64::from(split.size);
+    split.filter_reach = reach.texels(held.extent.min_element(), split.size, 2.0 * EDGE_TEXELS + 1.0);
+    split.texel_m = held.extent / (size - 2.0 * (split.filter_reach + EDGE_TEXELS) - 1.0);
+    split.min_texel = (held.center(target) / split.texel_m - 0.5 * size).round();
+    (split.depth_near, split.depth_far) = depth;
+    split
+}
+
+/// A block on the light's own axes: along the map's two and along the light, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Block {
+    pub center: DVec3,
+    pub half: DVec3,
+}
+
+impl Block {
+    /// Around a sphere of the world.
+    pub fn around_sphere(center: DVec3, radius: f64, light: &DirectionalLight) -> Self {
+        Self { center: axes(light).map(|axis| axis.dot(center)).into(), half: DVec3::splat(radius) }
+    }
+
+    /// Around boxes; `None` of none, and of such without any extent.
+    pub fn around(boxes: &[Placed], light: &DirectionalLight) -> Option<Self> {
+        let axes = axes(light);
+        let (lo, hi) = boxes.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), placed| {
+            let at = DVec3::from(axes.map(|axis| axis.dot(placed.center)));
+            let reach = DVec3::from(axes.map(|axis| axis.abs().dot(placed.half)));
+            (lo.min(at - reach), hi.max(at + reach))
+        });
+        let half = 0.5 * (hi - lo);
+        // What has no width (a wall seen edge-on by the light) still gets texels of some size.
+        let half = half.max(DVec3::splat(1e-3 * half.max_element()));
+        (half.max_element() > 0.0).then(|| Self { center: 0.5 * (lo + hi), half })
+    }
+
+    /// The same, but along each axis no longer than `other`, whose place it takes there.
+    pub fn no_longer_than(self, other: &Self) -> Self {
+        let longer = self.half.cmpge(other.half);
+        Self {
+            center: DVec3::select(longer, other.center, self.center),
+            half: DVec3::select(longer, other.half, self.half),
+        }
+    }
+}
+
+fn axes(light: &DirectionalLight) -> [DVec3; 3] {
+    let (u, v) = light.map_axes();
+    [u, v, light.direction()]
+}
+
+/// A block, moved to whole texels of a grid that is fixed to the light.
+fn snapped(mut split: Split, light: &DirectionalLight, block: &Block, texel_m: DVec2) -> Split {
+    (split.u_axis, split.v_axis) = light.map_axes();
+    split.texel_m = texel_m;
+    split.min_texel = (block.center.truncate() / texel_m - 0.5 * f64::from(split.size)).round();
+    (split.depth_near, split.depth_far) = (block.center.z - block.half.z, block.center.z + block.half.z);
+    split
+}

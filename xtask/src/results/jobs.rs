@@ -1,0 +1,180 @@
+//! The list of jobs: what is run, what it may cost, and in which file its figures are kept.
+
+/// The program that measures, as a subcommand of `umbrage`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// `umbrage compare … --json FILE`.
+    Compare,
+    /// `umbrage bench … --json FILE`.
+    Bench,
+}
+
+/// How much of a job is run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Everything that docs/results.md shows.
+    Full,
+    /// The least that has every key: it proves that the jobs and the page fit each other, and its figures mean nothing.
+    Tiny,
+}
+
+/// One run of `umbrage`.
+#[derive(Clone, Copy, Debug)]
+pub struct Job {
+    /// Names the kept file, `docs/results/NAME.json`.
+    pub name: &'static str,
+    /// The subcommand.
+    pub kind: Kind,
+    /// What is typed at either scale.
+    options: &'static str,
+    /// What is typed beside it for docs/results.md.
+    full: &'static str,
+    /// What is typed instead of that to prove the job.
+    tiny: &'static str,
+    /// Minutes that the full job may take on two cores and Mesa's software driver; the sum is bounded by a test.
+    pub minutes: u32,
+}
+
+impl Job {
+    /// The words after `umbrage`, without the file that the figures go to.
+    pub fn words(&self, scale: Scale) -> Vec<&'static str> {
+        let kind = match self.kind {
+            Kind::Compare => "compare --image-metrics off",
+            Kind::Bench => "bench",
+        };
+        let by_scale = match scale {
+            Scale::Full => self.full,
+            Scale::Tiny => self.tiny,
+        };
+        [kind, self.options, by_scale].into_iter().flat_map(str::split_whitespace).collect()
+    }
+
+    /// The command line, as docs/results.md shows it.
+    pub fn shown(&self, scale: Scale) -> String {
+        format!("umbrage {}", self.words(scale).join(" "))
+    }
+}
+
+/// Minutes that all jobs may take together.
+#[cfg(test)]
+const MOST_MINUTES: u32 = 40;
+
+const ONE_VIEW: &str = "chessboard --camera middle --size 96x72 --least-edges 1";
+
+/// All jobs, in the order of the page.
+pub const JOBS: [Job; 12] = [
+    Job {
+        name: "table",
+        kind: Kind::Compare,
+        options: "--preset table --with fit=dependent",
+        full: "",
+        tiny: ONE_VIEW,
+        minutes: 4,
+    },
+    Job { name: "figure8", kind: Kind::Compare, options: "--preset figure8", full: "", tiny: ONE_VIEW, minutes: 2 },
+    Job {
+        name: "figure8-dependent",
+        kind: Kind::Compare,
+        options: "--preset figure8 --with fit=dependent",
+        full: "",
+        tiny: ONE_VIEW,
+        minutes: 2,
+    },
+    Job {
+        name: "dueling",
+        kind: Kind::Compare,
+        options: "--preset dueling",
+        full: "",
+        tiny: "chessboard --size 96x72 --least-edges 1",
+        minutes: 2,
+    },
+    Job {
+        name: "dueling-dependent",
+        kind: Kind::Compare,
+        options: "--preset dueling --with fit=dependent",
+        full: "",
+        tiny: "chessboard --size 96x72 --least-edges 1",
+        minutes: 2,
+    },
+    Job {
+        name: "ladder-city",
+        kind: Kind::Compare,
+        options: "assets/city_candela.glb --preset ladder --path assets/city_candela.path.json",
+        full: "--frames 3",
+        tiny: "--frames 1 --suns own --size 96x72 --least-edges 1",
+        minutes: 5,
+    },
+    Job {
+        name: "suns",
+        kind: Kind::Compare,
+        options: "--preset suns",
+        full: "",
+        tiny: "chessboard --camera middle --suns 80,5 --size 96x72 --least-edges 1",
+        minutes: 7,
+    },
+    Job {
+        name: "suns-city",
+        kind: Kind::Compare,
+        options: "assets/city_candela.glb --preset suns --path assets/city_candela.path.json",
+        full: "--frames 3 --suns own,80,43,20,11,5",
+        tiny: "--frames 1 --suns own --size 96x72 --least-edges 1",
+        minutes: 3,
+    },
+    Job {
+        name: "stillness",
+        kind: Kind::Compare,
+        options: "--preset stillness --shadow-range 1..400",
+        full: "robot-war chessboard --camera near --size 400x300 --least-edges 400 --frames 24",
+        tiny: "chessboard --camera near --size 96x72 --least-edges 1 --frames 3",
+        minutes: 4,
+    },
+    Job {
+        name: "filters-soft",
+        kind: Kind::Compare,
+        options: concat!(
+            "--camera near --sun-angle 3 --techniques ",
+            "pssm:4:1024:filter=pcf2:label=pcf2,pssm:4:1024:filter=hard:label=hard,pssm:4:1024:filter=pcf3:label=pcf3,",
+            "pssm:4:1024:filter=pcf5:label=pcf5,pssm:4:1024:filter=pcf7:label=pcf7,pssm:4:1024:filter=disc:label=disc,",
+            "pssm:4:1024:filter=pcss:label=pcss,pssm:4:1024:filter=esm:label=esm,pssm:4:1024:filter=vsm:label=vsm,",
+            "pssm:4:1024:filter=evsm2:label=evsm2,pssm:4:1024:filter=evsm4:label=evsm4,pssm:4:1024:filter=msm:label=msm"
+        ),
+        full: "robot-war chessboard knights mining-terrain --size 320x240 --least-edges 300",
+        tiny: "chessboard --size 64x48 --least-edges 1",
+        minutes: 4,
+    },
+    Job {
+        name: "bench",
+        kind: Kind::Bench,
+        options: "--paths off --objects 10",
+        full: "--rounds 3",
+        tiny: "chessboard --rounds 1 --size 96x72",
+        minutes: 3,
+    },
+    Job {
+        name: "bench-filters",
+        kind: Kind::Bench,
+        options: "--filters",
+        full: "--rounds 3 --size 480x360",
+        tiny: "chessboard --rounds 1 --size 64x48",
+        minutes: 2,
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_whole_run_is_bounded() {
+        let sum: u32 = JOBS.iter().map(|job| job.minutes).sum();
+        assert!(sum <= MOST_MINUTES, "{sum} minutes");
+    }
+
+    #[test]
+    fn names_are_file_names_and_unique() {
+        for (index, job) in JOBS.iter().enumerate() {
+            assert!(job.name.chars().all(|letter| letter.is_ascii_lowercase() || "-0123456789".contains(letter)));
+            assert!(JOBS[..index].iter().all(|earlier| earlier.name != job.name), "{}", job.name);
+        }
+    }
+}
