@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use umbrage::config::SplitMetric;
 use umbrage_lab::{
     failure::{Failure, Result},
     output::{self, Staged, numbered_file, numbered_folder},
@@ -11,11 +12,10 @@ use umbrage_lab::{
     scene_setup::SceneSetup,
     session::{Session, beside_report},
     split_views,
-    technique::{ShadowArgs, ShadowJob},
 };
 use umbrage_render::{Frame, Outputs};
 
-use crate::scene_args::SceneArgs;
+use crate::{scene_args::SceneArgs, shadow_args::ShadowArgs};
 
 /// `umbrage render`.
 #[derive(Debug, clap::Args)]
@@ -47,7 +47,7 @@ pub struct RenderArgs {
 /// Runs the subcommand.
 pub fn run(args: &RenderArgs) -> Result<()> {
     let request = args.scene.request()?;
-    let shadows = ShadowJob::new(&args.shadows, request.size)?;
+    let shadows = args.shadows.request(request.sun_angle)?;
     let files: Vec<&Path> =
         [&args.picture, &args.visibility, &args.report].into_iter().flatten().map(AsRef::as_ref).collect();
     let folders: Vec<&Path> = args.maps.iter().chain(&args.split_views).map(AsRef::as_ref).collect();
@@ -62,7 +62,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     if args.maps.is_some() && setup.shots.iter().any(|shot| !shot.beside.is_empty()) {
         return Err(Failure::input("--maps and several cameras: maps are of one view; name one --camera"));
     }
-    if args.split_views.is_some() && shadows.settings.bands == umbrage::Bands::Radial {
+    if args.split_views.is_some() && shadows.config.selection.metric() == SplitMetric::Distance {
         return Err(Failure::input(
             "--split-views and --bands radial exclude each other: each picture lies between two planes; leave one of them away",
         ));

@@ -262,7 +262,7 @@ pub(super) fn scheme(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -
         "manual" if given.has("planes") || config.splits() == 1 => SplitScheme::Manual { planes: Vec::new() },
         "manual" => {
             let (inner, splits) = (config.splits() - 1, config.splits());
-            return refuse(format!("manual needs planes with the {inner} inner planes of {splits} splits"));
+            return refuse(format!("it needs planes A,B,… with the {inner} inner planes of {splits} splits"));
         }
         _ => return refuse(unknown("scheme", text, SplitScheme::WORDS)),
     };
