@@ -7,7 +7,7 @@ use umbrage::config::{Filter, LightKind, Preset, RULES, SETTINGS};
 use umbrage_render::{LightMaps, RenderSettings, Samples};
 
 use crate::{
-    failure::{Failure, Result},
+    failure::{Failure, Result, in_options},
     lights::{self, NamedLight},
 };
 
@@ -59,6 +59,7 @@ impl ShadowRequest {
             (None, preset) => preset.unwrap_or_default().config(),
         };
         let notes = config.apply(&options.given).map_err(|error| Failure::of_settings(&error, &options.given))?;
+        let notes = notes.iter().map(|note| in_options(note)).collect();
         Ok(Self { config, options, notes })
     }
 
@@ -93,7 +94,7 @@ impl ShadowRequest {
                     rule.remedy
                 )));
             }
-            request.notes.push(format!("{said} is left away: {}", rule.reason));
+            request.notes.push(in_options(&format!("{said} is left away: {}", rule.reason)));
         }
         request.config.validate_for(&kinds).map_err(|error| Failure::of_settings(&error, &self.options.given))?;
         Ok(request)
