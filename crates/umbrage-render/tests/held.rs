@@ -22,7 +22,7 @@ fn splits(gpu: &Gpu, between: Option<bool>) -> Vec<Vec<Split>> {
         let target = DVec3::new(0.4 * f64::from(turn), 1.0, -8.0);
         let view = look(DVec3::new(0.0, 2.5, 4.0), target);
         let frame = Stage::frame(&stage.pose, &view, sun(SUN));
-        all.push(stage.renderer.render(&frame, wanted).expect("a picture").stats.plan.splits);
+        all.push(stage.renderer.render(&frame, wanted).expect("a picture").stats.plan.splits.clone());
         if let Some(shadows_on) = between {
             let other = Frame { shadows_on, ..Stage::frame(&stage.pose, &view, sun(-SUN)) };
             stage.renderer.render(&other, wanted).expect("a picture");

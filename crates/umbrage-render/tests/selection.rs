@@ -78,7 +78,7 @@ fn decisions_differ_at_edges_alone_and_get_no_worse() {
             [(Crop::SceneIndependent, Stability::tight(), 0.3), (Crop::SceneDependent, Stability::Exact, 0.0)]
         {
             let [by_depth, by_map] = [Selection::default(), Selection::Map].map(|selection| {
-                wrong(&mask(&gpu, &chosen(selection, fit, stabilize, blend), &view, light), &truth, 2)
+                wrong(&mask(&gpu, &chosen(selection, fit, stabilize.clone(), blend), &view, light), &truth, 2)
             });
             let case =
                 format!("sun {light}, {fit:?}, {stabilize:?}, blend {blend}: {by_depth:?} by depth, {by_map:?} by map");

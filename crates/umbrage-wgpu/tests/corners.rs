@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Gpu, PCF3, PCF5, World, ask, config, cuboid, ground, plan, with};
+use common::{Gpu, PCF3, PCF5, World, ask, config, cuboid, ground, plan};
 use glam::{DVec3, Vec3};
 use umbrage::config::ReceiverBias;
 use umbrage_wgpu::FrameOptions;

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{EVSM4, Gpu, VSM, World, config, cuboid, ground, plan, with};
+use common::{EVSM4, Gpu, VSM, World, config, cuboid, ground, plan};
 use glam::{DVec3, Vec3};
 use umbrage::ShadowPlan;
 use umbrage::config::{Derivatives, Filter};

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Gpu, PCF3, PCF7, PCSS, World, ask, config, cuboid, ground, plan, with};
+use common::{Gpu, PCF3, PCF7, PCSS, World, ask, config, cuboid, ground, plan};
 use glam::{DVec3, Quat, Vec3};
 use umbrage::ShadowPlan;
 use umbrage::config::{Filter, ReceiverBias};

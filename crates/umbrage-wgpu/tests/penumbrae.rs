@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{DISC, ESM, EVSM2, EVSM4, Gpu, IN_SPLIT, MSM, PCF7, PCSS, VSM, World, ask, config, plan, quad, with};
+use common::{DISC, ESM, EVSM2, EVSM4, Gpu, IN_SPLIT, MSM, PCF7, PCSS, VSM, World, ask, config, plan, quad};
 use glam::{DVec3, Vec3};
 use umbrage::config::Filter;
 use umbrage_wgpu::FrameOptions;

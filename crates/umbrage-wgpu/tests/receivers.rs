@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Ask, DISC, Gpu, PCF3, PCF5, PCF7, PCSS, World, ask, config, cuboid, ground, plan, with};
+use common::{Ask, DISC, Gpu, PCF3, PCF5, PCF7, PCSS, World, ask, config, cuboid, ground, plan};
 use glam::{DVec3, Vec3};
 use umbrage::ShadowPlan;
 use umbrage::config::{DepthFormat, Filter};

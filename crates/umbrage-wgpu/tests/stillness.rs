@@ -7,7 +7,7 @@
 
 mod common;
 
-use common::{Gpu, PCF3, PCF5, World, ask, config, plan, with};
+use common::{Gpu, PCF3, PCF5, World, ask, config, plan};
 use glam::{DVec2, DVec3, Vec3};
 use umbrage::config::Filter;
 use umbrage_wgpu::FrameOptions;

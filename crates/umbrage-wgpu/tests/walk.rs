@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{Gpu, PCF3, World, config, cuboid, with};
+use common::{Gpu, PCF3, World, config, cuboid};
 use glam::{DQuat, DVec2, DVec3, IVec2, Vec3};
 use umbrage::{
     Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, ShadowPlan, ShadowSettings, Split, Stabilize,

@@ -336,6 +336,11 @@ impl ShadowMaps {
             && self.multiview_mask == other.multiview_mask
     }
 
+    /// The device that they live on.
+    pub(crate) fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
     /// The number of lights.
     #[must_use]
     pub fn light_count(&self) -> usize {
