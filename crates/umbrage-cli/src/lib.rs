@@ -9,6 +9,7 @@ pub mod bench;
 pub mod compare;
 pub mod environment;
 pub mod failure;
+pub mod gallery;
 pub mod plan;
 mod print;
 pub mod probe;
@@ -34,6 +35,7 @@ pub fn run(args: &Args) -> Result<()> {
         Command::Plan(args) => plan::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Bench(args) => bench::run(args),
+        Command::Gallery(args) => gallery::run(args),
         Command::Theory(args) => theory::run(args),
         Command::Worlds { command } => worlds::run(command),
         Command::Adapter => adapter::run(),

@@ -189,6 +189,19 @@ pub enum Error {
         /// How many lights the maps were made for.
         lights: usize,
     },
+    /// A plan was made by a choice that the shaders of these maps were not made for.
+    #[error(
+        "the plan has {setting} {given}, but these maps and their shaders were made for {setting} {made_for}; plan with the config \
+         that the maps were made with"
+    )]
+    PlanOfOtherConfig {
+        /// Key of the setting.
+        setting: &'static str,
+        /// What the maps were made for.
+        made_for: String,
+        /// What the plan has.
+        given: String,
+    },
     /// The maps of a light serve another kind of light.
     #[error(
         "light {light} is {given:?}, but its maps were made for LightKind::{made_for:?}; make maps for LightKind::{given:?} there"

@@ -3,7 +3,7 @@
 use std::f32::consts::TAU;
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
-use umbrage::config::{Filter, LightKind, ShadowConfig};
+use umbrage::config::{self, Filter, LightKind, ShadowConfig, SplitMetric};
 use umbrage::{Selection, ShadowPlan};
 use umbrage_shaders::layout::{self, SelectionKind};
 
@@ -76,6 +76,7 @@ pub(crate) fn frames(
     for (light, (plan, slot)) in plans.iter().zip(slots).enumerate() {
         let given = plan.light.map_or(LightKind::Directional, LightKind::from);
         LightMaps::from(slot.kind).check(light, given)?;
+        check_choices(plan, config)?;
         for face in 0..slot.kind.faces() {
             let first = slot.first_map + face * slot.sizes.len();
             frames.push(match face < plan.faces() {
@@ -87,6 +88,31 @@ pub(crate) fn frames(
     }
     local::number(&mut frames, slots, plans);
     Ok(frames)
+}
+
+/// A sun's plan is made by the choices that receivers' text was made for: the text does not look.
+fn check_choices(plan: &ShadowPlan, config: &ShadowConfig) -> Result<()> {
+    if plan.light.is_some_and(|light| light.position().is_some()) {
+        return Ok(());
+    }
+    let mismatch = |setting, made_for: &str, given: &str| {
+        Err(Error::PlanOfOtherConfig { setting, made_for: made_for.to_owned(), given: given.to_owned() })
+    };
+    let by_map = config.selection == config::Selection::Map;
+    if by_map != (plan.selection == Selection::Map) {
+        let word = |by_map| if by_map { "map" } else { "depth" };
+        return mismatch("selection", word(by_map), word(!by_map));
+    }
+    let radial = config.selection == config::Selection::Interval(SplitMetric::Distance);
+    if radial != plan.radial_eye.is_some() {
+        let word = |radial| if radial { "radial" } else { "planar" };
+        return mismatch("bands", word(radial), word(!radial));
+    }
+    let has_warp = plan.splits.iter().any(|split| split.light_position.is_none() && split.warp.is_some());
+    if has_warp && config.first_warp().is_none() {
+        return mismatch("warp", "none", "a warped map");
+    }
+    Ok(())
 }
 
 /// One face of one light. `places` are those of its splits.

@@ -11,8 +11,12 @@ mod targets;
 use std::num::NonZeroU32;
 
 use umbrage::ShadowPlan;
-use umbrage::config::{Coordinates, DepthFormat, Filter, Generation, Layout, Rebuilds, ShadowConfig, Storage};
-use umbrage_shaders::{Bound, Casters, Maps};
+use umbrage::config::{
+    Coordinates, DepthFormat, Filter, Generation, Layout, LightKind, Rebuilds, Selection, ShadowConfig, SplitMetric,
+    Storage,
+};
+use umbrage_shaders::layout::{MetricKind, SelectionKind};
+use umbrage_shaders::{Bound, Casters, Lights, Maps, Projection, ReceiverText};
 
 use choose::{Abilities, Chosen};
 use groups::{Received, Uniforms};
@@ -23,7 +27,7 @@ use storage::{Arrangement, Tile};
 use targets::Targets;
 
 use crate::moments::{MomentStorage, Moments};
-use crate::options::texture_format;
+use crate::options::{bias_kind, filter_kind, texture_format, transition_kind};
 use crate::uniforms::{Place, Viewport};
 use crate::{Error, FrameOptions, LightMaps, Result, device};
 
@@ -293,7 +297,37 @@ impl ShadowMaps {
     /// cannot be loaded from, [`Filter::Pcss`] is [`Filter::Disc`], unless the format is [`DepthFormat::R32Float`].
     #[must_use]
     pub fn receiver_wgsl(&self, group: u32) -> String {
-        umbrage_shaders::receiver(group, self.receiver_maps())
+        umbrage_shaders::receiver(group, self.receiver_text())
+    }
+
+    /// What receivers' text is made for: what the config settles, and nothing else.
+    fn receiver_text(&self) -> ReceiverText {
+        let config = &self.config;
+        let kinds = || self.slots.iter().map(|slot| slot.kind);
+        let lights = match () {
+            () if kinds().all(|kind| kind == LightKind::Directional) => Lights::Suns,
+            () if kinds().all(|kind| kind.faces() == 1) => Lights::Single,
+            () => Lights::Any,
+        };
+        // Splits of local lights are chosen by view depth, whatever a sun's are chosen by.
+        let of_suns = lights == Lights::Suns;
+        let (selection, metric) = match config.selection {
+            Selection::Map => (SelectionKind::Map, None),
+            Selection::Interval(SplitMetric::ViewDepth) => (SelectionKind::Depth, Some(MetricKind::ViewDepth)),
+            Selection::Interval(SplitMetric::Distance) => (SelectionKind::Depth, Some(MetricKind::Distance)),
+        };
+        ReceiverText {
+            filter: Some(filter_kind(&config.filter)),
+            selection: of_suns.then_some(selection),
+            metric: metric.filter(|_| of_suns).or((of_suns).then_some(MetricKind::ViewDepth)),
+            transition: Some(transition_kind(config.transition)),
+            bias: Some(bias_kind(config.look.bias)),
+            // A split whose warp has nothing to gain has a plain map.
+            projection: if config.first_warp().is_some() { Projection::Any } else { Projection::Plain },
+            lights,
+            sliced: self.layout.storage() == Storage::Reused,
+            ..self.receiver_maps().into()
+        }
     }
 
     /// How receivers read these maps.
