@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use common::{Stage, gpu, ground, quad, scene, settings, sun};
 use glam::{DQuat, DVec2, DVec3, IVec2, Vec2};
 use image::GrayImage;
@@ -37,7 +39,7 @@ fn view(place: DVec3, frame: u32) -> View {
 }
 
 /// How a frame was planned, and its maps.
-type Frame = (ShadowPlan, Vec<GrayImage>);
+type Frame = (Arc<ShadowPlan>, Vec<GrayImage>);
 
 /// What a walk came to.
 #[derive(Debug, Default)]
