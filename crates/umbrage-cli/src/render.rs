@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use umbrage::config::SplitMetric;
 use umbrage_lab::{
     failure::{Failure, Result},
+    notes,
     output::{self, Staged, numbered_file, numbered_folder},
     picture::{png, side_by_side},
     progress,
@@ -80,6 +81,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     for shot in &setup.shots {
         let frames: Vec<Frame<'_>> = shot.views().map(|(_, view)| session.frame(&setup, shot, view)).collect();
         let mut views = session.renderer.render_views(&frames, shot.shown.as_ref(), outputs)?;
+        notes::say(shadows.notes.iter().chain(&views[0].stats.notes));
         let pictures: Vec<_> = views.iter_mut().filter_map(|view| view.picture.take()).collect();
         if let (Some(path), false) = (&args.picture, pictures.is_empty()) {
             staged.file(&numbered_file(path, shot.frame), png(&side_by_side(pictures))?)?;

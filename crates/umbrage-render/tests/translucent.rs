@@ -25,7 +25,7 @@ fn panes(place: DVec3) -> Scene {
         let alpha = AlphaMode::Blend;
         scene.materials.push(Material { alpha, base_color, double_sided: true, ..Material::default() });
         scene.nodes.push(umbrage_scene::Node { mesh: Some(i + 1), ..Default::default() });
-        scene.meshes.push(umbrage_scene::Mesh { name: String::new(), primitives: vec![pane] });
+        scene.meshes.push(umbrage_scene::Mesh { primitives: vec![pane], ..Default::default() });
     }
     scene.moved(place)
 }

@@ -14,7 +14,7 @@ use umbrage_lab::{
         text::{self, Rejected},
     },
 };
-use umbrage_scene::HeightMapOptions;
+use umbrage_scene::{HeightMapOptions, OpenOptions};
 
 use super::args::CompareArgs;
 use crate::{args::Switch, scene_args::light_choice};
@@ -110,10 +110,14 @@ fn shot_request(args: &CompareArgs, scenes: usize) -> Result<ShotRequest> {
         _ => None,
     };
     let base = SceneRequest {
-        height_map: HeightMapOptions {
-            metres_per_post: args.metres_per_post,
-            metres_per_unit: args.metres_per_unit,
-            height_offset: args.height_offset,
+        files: OpenOptions {
+            height_map: HeightMapOptions {
+                metres_per_post: args.metres_per_post,
+                metres_per_unit: args.metres_per_unit,
+                height_offset: args.height_offset,
+                ..HeightMapOptions::default()
+            },
+            ..OpenOptions::default()
         },
         move_scene: args.move_scene,
         time_s: args.time,
