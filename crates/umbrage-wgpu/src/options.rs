@@ -439,13 +439,14 @@ impl From<umbrage::Light> for LightSlot {
     }
 }
 
-/// What receivers' text is made for. `None`: the text has all of it, and every frame or plan may say otherwise. What is fixed makes a
-/// shader that compiles faster and runs faster; a frame or a plan that says otherwise is then an error
-/// ([`Error::ConflictingOptions`]). The filter, the storage and the kinds of lights are fixed always.
+/// What receivers' text is made for. `None`: the text has all of it, and every frame or plan may
+/// say otherwise. What is fixed makes a shader that compiles faster and runs faster; a frame or a
+/// plan that says otherwise is then an error ([`Error::ConflictingOptions`]). The filter, the
+/// storage and the kinds of lights are fixed always.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fixed {
-    /// How a sun's splits are chosen: `umbrage::ShadowSettings::selection`. Left out of the text where all lights are
-    /// [`LightSlot::Sun`].
+    /// How a sun's splits are chosen: `umbrage::ShadowSettings::selection`. Left out of the text
+    /// where all lights are [`LightSlot::Sun`].
     pub selection: Option<Selection>,
     /// What a sun's splits are counted by: `umbrage::ShadowSettings::bands`. Likewise.
     pub bands: Option<Bands>,

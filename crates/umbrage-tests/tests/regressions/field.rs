@@ -1,5 +1,5 @@
-//! What people reported of their own scenes: speckled faces that the light runs along, lit walls through narrow lenses. At the
-//! defaults, against rays.
+//! What people reported of their own scenes: speckled faces that the light runs along, lit walls
+//! through narrow lenses. At the defaults, against rays.
 
 use glam::DVec3;
 use image::GrayAlphaImage;
@@ -72,7 +72,8 @@ fn judged(scene: &Scene, views: &[View], sun: DVec3, edge: u32) -> Option<Vec<(G
     Some(views.iter().map(each).collect())
 }
 
-/// Pixels that are false light or false shadow with no edge of the true shadow within two pixels, and how many of those there are.
+/// Pixels that are false light or false shadow with no edge of the true shadow within two pixels,
+/// and how many of those there are.
 fn away_from_edges(mask: &GrayAlphaImage, hits: &[Option<Hit>], counts: impl Fn(&Hit) -> bool) -> [usize; 3] {
     let [width, height] = SIZE.map(|size| size as i32);
     let lit = |x: i32, y: i32| {
