@@ -1,6 +1,6 @@
 //! Joins `shaders/lib` and `shaders/pass` into one plain WGSL text per root, with names that an app can live beside.
 
-use wesl::{CompileOptions, Mangler, ModulePath, Wesl};
+use wesl::{CompileOptions, Feature, Mangler, ModulePath, Wesl};
 
 /// The root in `shaders` of a text, the features that it is built with, and the file that it becomes in `OUT_DIR`.
 type Text = (&'static str, Vec<String>, String);
@@ -60,6 +60,35 @@ const FEATURES: [&str; 10] = [
     "coordinates",
 ];
 
+/// What a receiver's text may be made without, at run time: `ReceiverText` of `src/receiver.rs` says what each stands for. Conditions on
+/// these stay in the texts of receivers; every other text has all of them.
+const CHOICES: [&str; 24] = [
+    "any_filter",
+    "hard",
+    "pcf2",
+    "tent",
+    "disc",
+    "pcss",
+    "texels",
+    "vsm",
+    "msm",
+    "by_depth",
+    "by_map",
+    "planar",
+    "radial",
+    "any_transition",
+    "blended",
+    "dithered",
+    "plane_bias",
+    "slope_bias",
+    "plain",
+    "warped",
+    "local",
+    "faces",
+    "sliced",
+    "linear",
+];
+
 fn main() {
     let mut compiler = Wesl::new("shaders");
     compiler.set_custom_mangler(HouseNames);
@@ -76,6 +105,10 @@ fn main() {
     for (root, features, file) in texts() {
         for feature in FEATURES.into_iter().chain(counts.iter().map(String::as_str)) {
             compiler.set_feature(feature, features.iter().any(|wanted| wanted == feature));
+        }
+        for choice in CHOICES {
+            let is_receiver = root == "receiver::api";
+            compiler.set_feature(choice, if is_receiver { Feature::Keep } else { Feature::Enable });
         }
         let path: ModulePath = format!("package::{root}").parse().expect("a root's name is a module path");
         compiler.build_artifact(&path, &file);

@@ -1,4 +1,4 @@
-//! `cargo xtask demo | test | package | bless | results`: the project's automation, so that a machine that has Rust needs nothing else.
+//! `cargo xtask demo | test | package | bless | results | fuzz`: the project's automation, so that a machine that has Rust needs nothing else.
 
 mod adapter;
 mod check;
@@ -20,6 +20,7 @@ Usage: cargo xtask COMMAND
   test [--quick]
           formatting, lints, documentation, features, packages, the build for the browser and all tests, as CI runs them;
           --quick: formatting and the tests of what needs no graphics adapter, in under two minutes once it is built
+  fuzz    load 100,000 mutated files; UMBRAGE_FUZZ_FILES and UMBRAGE_FUZZ_SEED choose others
   package pack every crate that is published and build each from its package
   bless   draw the reference pictures of the tests anew
   results [--resume | --render | --tiny]
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         ["test", "--quick"] => check::quick(),
         ["package"] => check::package(),
         ["bless"] => check::bless(),
+        ["fuzz"] => check::fuzz(),
         ["results"] => results::results(Ask::All),
         ["results", "--resume"] => results::results(Ask::Resume),
         ["results", "--render"] => results::results(Ask::Render),

@@ -1,4 +1,4 @@
-//! Where pictures and masks take their map coordinates from: both methods of Listing 4.1.4 of source 003.
+//! Where pictures and masks take their map coordinates from: both methods of Listing 4.1.4 of \[PCSM\].
 
 use umbrage::{ShadowPlan, ShadowSettings, Warp};
 use umbrage_wgpu::{Error, ShadowMaps};

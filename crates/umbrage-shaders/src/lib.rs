@@ -7,9 +7,9 @@
 //!   and the two functions that read them. `wesl` joins them when this crate is built; what comes out is ordinary WGSL, and
 //!   every name in it begins with `umbrage`, in one case or another.
 //! * A root is text to put before one's own shader. It declares no entry point and no override, so it adds nothing to a
-//!   pipeline's constants. What varies (filter, number of splits, strength) is a value in the [`layout::Frame`] uniform:
-//!   an override would become a constant of the *app's* pipeline, to be repeated wherever it makes one, and one text per
-//!   filter would make the filter part of every pipeline's key. A branch on a uniform value costs next to nothing.
+//!   pipeline's constants: an override would become a constant of the *app's* pipeline, to be repeated wherever it makes one.
+//! * What varies (filter, selection, strength) is a value in the [`layout::Frame`] uniform, unless [`ReceiverText`] fixes it:
+//!   a text is then made without the rest, which compiles faster and runs faster. Another choice is another text.
 //! * The index of the bind group is the app's choice: [`caster`] and [`receiver`] declare it as a WGSL constant.
 //!
 //! | binding of [`receiver`] | what |
@@ -25,45 +25,18 @@
 //! |---|---|
 //! | 0 | uniform [`layout::Split`]; where several splits are drawn at once, [`layout::CasterPass`] |
 
-pub mod layout;
-pub mod twin;
-
 macro_rules! text {
     ($file:literal) => {
         include_str!(concat!(env!("OUT_DIR"), "/", $file, ".wgsl"))
     };
 }
 
-const SEPARATE: [&str; layout::MAX_SPLITS] = [
-    text!("separate_1"),
-    text!("separate_2"),
-    text!("separate_3"),
-    text!("separate_4"),
-    text!("separate_5"),
-    text!("separate_6"),
-    text!("separate_7"),
-    text!("separate_8"),
-];
-const SEPARATE_WITHOUT_LOADS: [&str; layout::MAX_SPLITS] = [
-    text!("separate_1_without_loads"),
-    text!("separate_2_without_loads"),
-    text!("separate_3_without_loads"),
-    text!("separate_4_without_loads"),
-    text!("separate_5_without_loads"),
-    text!("separate_6_without_loads"),
-    text!("separate_7_without_loads"),
-    text!("separate_8_without_loads"),
-];
-const SEPARATE_R32F: [&str; layout::MAX_SPLITS] = [
-    text!("separate_1_r32f"),
-    text!("separate_2_r32f"),
-    text!("separate_3_r32f"),
-    text!("separate_4_r32f"),
-    text!("separate_5_r32f"),
-    text!("separate_6_r32f"),
-    text!("separate_7_r32f"),
-    text!("separate_8_r32f"),
-];
+pub mod layout;
+mod receiver;
+pub mod twin;
+mod variant;
+
+pub use receiver::{Lights, Projection, ReceiverText, receiver};
 
 /// How a receiver's maps are bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -170,46 +143,4 @@ pub fn mask(group: u32, normals: bool) -> String {
 #[must_use]
 pub fn contact(group: u32) -> String {
     format!("const UMBRAGE_CONTACT_GROUP = {group}u;\n{}\n", text!("contact"))
-}
-
-/// Text to put before a shader that asks what is lit.
-///
-/// | WGSL | what it answers |
-/// |---|---|
-/// | `umbrage_visibility(position: vec3f, normal: vec3f) -> f32` | how much of the first light reaches a surface, 0 to 1 |
-/// | `umbrage_shadow(query: UmbrageQuery) -> UmbrageShadow` | the same of any light, with the split that answered |
-/// | `umbrage_shadow_from_coordinates(query, coordinates) -> UmbrageShadow` | the same from what vertices made ([`Maps::coordinates`]) |
-///
-/// `umbrage_query(position, normal)` makes a query in any stage; `umbrage_fragment_query(position, normal, dx, dy, pixel)` makes one
-/// that knows its pixel, in uniform control flow. Set a query's `light`, `pixel` or `split` to ask something else.
-///
-/// # Panics
-/// If there are fewer than 1 or more than [`layout::MAX_SPLITS`] separate maps.
-#[must_use]
-pub fn receiver(group: u32, maps: Maps) -> String {
-    let frames = maps.frames.max(1);
-    let loads = maps.r32f || !maps.without_loads;
-    let receiver = match (maps.moments, loads, maps.coordinates) {
-        (Some(_), _, false) => text!("receiver_of_moments"),
-        (Some(_), _, true) => text!("receiver_with_coordinates_of_moments"),
-        (None, true, false) => text!("receiver"),
-        (None, true, true) => text!("receiver_with_coordinates"),
-        (None, false, false) => text!("receiver_without_loads"),
-        (None, false, true) => text!("receiver_with_coordinates_without_loads"),
-    };
-    let maps = match (maps.moments, maps.bound, maps.r32f, loads) {
-        (Some(MomentMaps::Sampled), ..) => text!("moments"),
-        (Some(MomentMaps::Taps), ..) => text!("moments_by_taps"),
-        (Some(MomentMaps::ByHand), ..) => text!("moments_by_hand"),
-        (None, Bound::Array, true, _) => text!("array_r32f"),
-        (None, Bound::Array, false, true) => text!("array"),
-        (None, Bound::Array, false, false) => text!("array_without_loads"),
-        (None, Bound::Cube, true, _) => text!("cube_r32f"),
-        (None, Bound::Cube, false, true) => text!("cube"),
-        (None, Bound::Cube, false, false) => text!("cube_without_loads"),
-        (None, Bound::Separate(count), true, _) => SEPARATE_R32F[count - 1],
-        (None, Bound::Separate(count), false, true) => SEPARATE[count - 1],
-        (None, Bound::Separate(count), false, false) => SEPARATE_WITHOUT_LOADS[count - 1],
-    };
-    format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\nconst UMBRAGE_FRAMES = {frames}u;\n{maps}\n{receiver}\n")
 }

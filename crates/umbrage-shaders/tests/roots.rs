@@ -2,7 +2,8 @@
 
 use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use umbrage_shaders::{Bound, Casters, Maps, MomentMaps};
+use umbrage_shaders::layout::{BiasKind, FilterKind, MetricKind, SelectionKind, TransitionKind};
+use umbrage_shaders::{Bound, Casters, Lights, Maps, MomentMaps, Projection, ReceiverText};
 
 const WITHOUT_LOADS: Maps =
     Maps { bound: Bound::Array, r32f: false, without_loads: true, frames: 7, moments: None, coordinates: false };
@@ -246,4 +247,53 @@ fn vertices_make_the_coordinates_of_every_split() {
     to_webgl2(&source, naga::ShaderStage::Fragment, "fragment");
     // Without the choice nobody has the functions, and nobody pays for them.
     assert!(!umbrage_shaders::receiver(0, Maps::default()).contains("UmbrageShadowCoordinates"));
+}
+
+/// What `ReceiverText` leaves to choose, one after the other; each with the value at `pick`, counted around.
+fn chosen(pick: [usize; 8], maps: Maps) -> ReceiverText {
+    use FilterKind::{Disc, Esm, Evsm4, Hard, Msm, Pcf2, Pcf3, Pcf7, Pcss, Vsm};
+    fn of<T: Copy>(values: &[T], at: usize) -> T {
+        values[at % values.len()]
+    }
+    let filters: &[Option<FilterKind>] = match maps.moments {
+        None => &[None, Some(Hard), Some(Pcf2), Some(Pcf3), Some(Pcf7), Some(Disc), Some(Pcss)],
+        Some(_) => &[None, Some(Esm), Some(Vsm), Some(Evsm4), Some(Msm)],
+    };
+    ReceiverText {
+        filter: of(filters, pick[0]),
+        selection: of(&[None, Some(SelectionKind::Depth), Some(SelectionKind::Map)], pick[1]),
+        metric: of(&[None, Some(MetricKind::ViewDepth), Some(MetricKind::Distance)], pick[2]),
+        transition: of(
+            &[None, Some(TransitionKind::Blend), Some(TransitionKind::Dither), Some(TransitionKind::Hard)],
+            pick[3],
+        ),
+        bias: of(&[None, Some(BiasKind::Plane), Some(BiasKind::Slope)], pick[4]),
+        projection: of(&[Projection::Any, Projection::Plain, Projection::Warped], pick[5]),
+        lights: of(&[Lights::Any, Lights::Single, Lights::Suns], pick[6]),
+        sliced: pick[7] % 2 == 0,
+        ..maps.into()
+    }
+}
+
+/// Every pair of values of two choices stands in some text, whatever the maps.
+#[test]
+fn every_pair_of_choices_is_valid_wgsl() {
+    for maps in [
+        Maps::default(),
+        Maps { r32f: true, ..Maps::default() },
+        Maps { bound: Bound::Cube, ..WITHOUT_LOADS },
+        Maps { coordinates: true, ..Maps::default() },
+        MOMENTS,
+    ] {
+        for (first, second) in (0..8).flat_map(|first| (first + 1..8).map(move |second| (first, second))) {
+            for (a, b) in (0..7).flat_map(|a| (0..4).map(move |b| (a, b))) {
+                // The others change along, so that no choice is looked at in one text alone.
+                let mut pick = [a + b; 8];
+                (pick[first], pick[second]) = (a, b);
+                let source = umbrage_shaders::receiver(1, chosen(pick, maps)) + FRAGMENT;
+                assert!(!source.contains("@if") && !source.contains("@else"), "{pick:?}");
+                validated(&source);
+            }
+        }
+    }
 }

@@ -69,7 +69,7 @@ pub use maps::{MapPass, ShadowMaps, Slice, optional_features};
 pub use mask::{MaskFrame, MaskNormals, ShadowMask};
 pub use moments::MomentStorage;
 pub use options::{
-    DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, ReceiverBias, ShadowMapsOptions, Softness,
-    Storage, Transition,
+    DepthFormat, Derivatives, Filter, Fixed, FrameOptions, Generation, LightSlot, ReceiverBias, ShadowMapsOptions,
+    Softness, Storage, Transition,
 };
 pub use umbrage_shaders::layout::MAX_COORDINATES;

@@ -10,8 +10,9 @@ mod targets;
 
 use std::num::NonZeroU32;
 
-use umbrage::{MAX_SPLITS, ShadowPlan, ShadowSettings};
-use umbrage_shaders::{Bound, Casters, Maps};
+use umbrage::{Bands, MAX_SPLITS, Selection, ShadowPlan, ShadowSettings};
+use umbrage_shaders::layout::{MetricKind, SelectionKind};
+use umbrage_shaders::{Bound, Casters, Lights, Maps, Projection, ReceiverText};
 
 use choose::{Abilities, Chosen};
 use groups::Uniforms;
@@ -22,7 +23,7 @@ use targets::Targets;
 
 use crate::moments::{MomentStorage, Moments};
 use crate::uniforms::{Place, Viewport};
-use crate::{Error, FrameOptions, Generation, Result, ShadowMapsOptions, Storage};
+use crate::{Error, FrameOptions, Generation, LightSlot, Result, ShadowMapsOptions, Storage};
 
 /// Features that make shadows better where an adapter has them: request `adapter.features() & optional_features()`.
 ///
@@ -217,7 +218,7 @@ impl ShadowMaps {
     /// then [`crate::Filter::Disc`], unless the format is [`crate::DepthFormat::R32Float`].
     #[must_use]
     pub fn receiver_wgsl(&self, group: u32) -> String {
-        umbrage_shaders::receiver(group, self.receiver_maps())
+        umbrage_shaders::receiver(group, self.receiver_text())
     }
 
     /// [`ShadowMaps::receiver_wgsl`] for apps whose vertex shaders make the shadow coordinates of every split (`umbrage_shadow_coordinates` and
@@ -243,7 +244,39 @@ impl ShadowMaps {
                 "vertices hand on the coordinates of one sun; use one sun or coordinates world",
             );
         }
-        Ok(umbrage_shaders::receiver(group, Maps { coordinates: true, ..self.receiver_maps() }))
+        let text = self.receiver_text();
+        Ok(umbrage_shaders::receiver(group, ReceiverText { maps: Maps { coordinates: true, ..text.maps }, ..text }))
+    }
+
+    /// What receivers' text is made for.
+    fn receiver_text(&self) -> ReceiverText {
+        let ShadowMapsOptions { filter, storage, fixed, lights, .. } = &self.options;
+        let lights = match () {
+            () if lights.iter().all(|slot| *slot == LightSlot::Sun) => Lights::Suns,
+            () if lights.iter().all(|slot| slot.faces() == 1) => Lights::Single,
+            () => Lights::Any,
+        };
+        ReceiverText {
+            filter: Some(filter.kind()),
+            selection: fixed.selection.filter(|_| lights == Lights::Suns).map(|selection| match selection {
+                Selection::Depth => SelectionKind::Depth,
+                Selection::Map => SelectionKind::Map,
+            }),
+            metric: fixed.bands.filter(|_| lights == Lights::Suns).map(|bands| match bands {
+                Bands::Planar => MetricKind::ViewDepth,
+                Bands::Radial => MetricKind::Distance,
+            }),
+            transition: fixed.transition.map(|transition| transition.kind()),
+            bias: fixed.bias.map(|bias| bias.kind()),
+            projection: match fixed.warped {
+                None => Projection::Any,
+                Some(true) => Projection::Warped,
+                Some(false) => Projection::Plain,
+            },
+            lights,
+            sliced: *storage == Storage::Reused,
+            ..self.receiver_maps().into()
+        }
     }
 
     /// How receivers read these maps.

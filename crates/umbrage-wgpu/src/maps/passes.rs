@@ -51,8 +51,8 @@ impl MapPass {
         self.views
     }
 
-    /// Whether every draw has to begin with an instance of a code that draws nothing, the one before the first of [`MapPass::copies`]' own,
-    /// which is part of that range then. An app that draws many copies in one call needs one of them in each call.
+    /// Whether every draw has to begin with an instance of a code that draws nothing, the one before the first of [`MapPass::instances`]' own,
+    /// which is part of that range then. An app that draws many instances in one call needs one of them in each call.
     ///
     /// Mesa's software driver (seen with 22.3) remembers which layer it draws into when it draws a batch that needs no clipping, and
     /// draws batches that do into the layer it remembers. Each instance is a batch, so an empty one makes it remember the right layer.

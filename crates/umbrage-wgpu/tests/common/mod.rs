@@ -401,8 +401,8 @@ impl World {
                 pass.set_pipeline(&self.pipeline);
                 pass.set_bind_group(0, self.maps.caster_bind_group(index), &[]);
                 pass.set_vertex_buffer(0, vertices.slice(..));
-                for (caster, copies) in map_pass.casters(plan) {
-                    pass.draw(begins[caster as usize]..begins[caster as usize + 1], copies);
+                for (caster, instances) in map_pass.casters(plan) {
+                    pass.draw(begins[caster as usize]..begins[caster as usize + 1], instances);
                 }
             }
             self.maps.filter(&mut encoder);
