@@ -10,7 +10,8 @@ pub type Result<T, E = Failure> = std::result::Result<T, E>;
 /// Why a command ended without its outputs. No output file is left behind in either case.
 #[derive(Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
-    /// The user can mend it: an option, a file, a full disk. The message names the culprit and what to do.
+    /// The user can mend it: an option, a file, a full disk. The message names the culprit and what
+    /// to do.
     #[error("{0}")]
     Input(String),
     /// Everything else: no adapter, a lost device, an internal error.
@@ -64,7 +65,8 @@ impl Failure {
     }
 }
 
-/// Names the option behind a field of the planner's, so that the message speaks the language of the command line.
+/// Names the option behind a field of the planner's, so that the message speaks the language of the
+/// command line.
 impl From<umbrage::Error> for Failure {
     fn from(error: umbrage::Error) -> Self {
         let option = match &error {
@@ -85,7 +87,8 @@ impl From<umbrage::Error> for Failure {
     }
 }
 
-/// No adapter and a failing device are nobody's bad input; everything else names an option or the scene.
+/// No adapter and a failing device are nobody's bad input; everything else names an option or the
+/// scene.
 impl From<umbrage_render::Error> for Failure {
     fn from(error: umbrage_render::Error) -> Self {
         use umbrage_render::Error as E;

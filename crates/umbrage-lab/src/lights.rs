@@ -92,7 +92,8 @@ pub fn chosen(
     sun("invented", direction)
 }
 
-/// The lights that `--light` names: one by its name, whatever is in it; `all`; or several between commas.
+/// The lights that `--light` names: one by its name, whatever is in it; `all`; or several between
+/// commas.
 fn indices(wanted: &str, scene: &Scene) -> Result<Vec<usize>> {
     let names: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
     if wanted != "all" || names.contains(&wanted) {

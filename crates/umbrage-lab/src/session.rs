@@ -1,4 +1,5 @@
-//! A device with a scene loaded onto it: what `render` and `probe` draw with, and what their reports say of it.
+//! A device with a scene loaded onto it: what `render` and `probe` draw with, and what their
+//! reports say of it.
 
 use umbrage::config::Filter;
 use umbrage::{ShadowConfig, ShadowPlan, View};

@@ -23,7 +23,8 @@ struct Rounds {
     wall_without: Vec<f64>,
 }
 
-/// Measures `techniques` on the first shot of the setup; the first technique is the baseline of all ratios.
+/// Measures `techniques` on the first shot of the setup; the first technique is the baseline of all
+/// ratios.
 pub fn measure(
     gpu: &Gpu,
     setup: &SceneSetup,

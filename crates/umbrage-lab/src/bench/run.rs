@@ -23,8 +23,8 @@ use crate::{
     technique::text,
 };
 
-/// Figure 10-9's paths, four splits: filtered in the shader from one nearest texel's comparison, and compared and filtered in
-/// hardware; multipass, and everything in a single submission.
+/// Figure 10-9's paths, four splits: filtered in the shader from one nearest texel's comparison,
+/// and compared and filtered in hardware; multipass, and everything in a single submission.
 const CROWD: [&str; 5] = [
     "pssm:4:1024:filter=hard:label=per split, one texel",
     "pssm:4:1024:filter=pcf2:label=per split, hardware comparison",

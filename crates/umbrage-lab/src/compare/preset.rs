@@ -9,7 +9,8 @@ pub struct Preset {
     pub name: &'static str,
     /// What it is, in a few words.
     pub about: &'static str,
-    /// Techniques, in the grammar of [`crate::technique::text`]; kinds that do not exist yet are left out with a note.
+    /// Techniques, in the grammar of [`crate::technique::text`]; kinds that do not exist yet are
+    /// left out with a note.
     pub techniques: &'static [&'static str],
     /// Settings of all of them.
     pub with: &'static str,
@@ -31,12 +32,12 @@ pub struct Preset {
     pub tint: bool,
 }
 
-/// One map or slice, one nearest texel, one comparison, no blend, no fade, fitted to the slice alone: what the papers measured, and
-/// what the project's ladder was measured with.
+/// One map or slice, one nearest texel, one comparison, no blend, no fade, fitted to the slice
+/// alone: what the papers measured, and what the project's ladder was measured with.
 const PLAIN: &str = "preset=papers:filter=hard:blend=0:far-fade=0:fit=independent:stabilize=none";
 
-/// The same over the depths that are visible, for all techniques alike. Splits stand where the boxes in view promise the least error, and
-/// maps are chosen by what they contain.
+/// [`PLAIN`] over the depths that are visible, for all techniques alike. Splits stand where the
+/// boxes in view promise the least error, and maps are chosen by what they contain.
 const VISIBLE: &str = "preset=papers:filter=hard:blend=0:far-fade=0:fit=independent:stabilize=none:range-fit=visible";
 
 const LADDER: Preset = Preset {
@@ -90,8 +91,9 @@ const FIGURE_8: Preset = Preset {
     tint: false,
 };
 
-/// The same figure, column (e): light and eye nearly opposite; single maps of 2048², splits of 1024². The cameras look 5° to 20° down
-/// and the sun stands 5° up before them, so that light and view oppose each other by all but 10° to 25°.
+/// Figure 8, column (e): light and eye nearly opposite; single maps of 2048², splits of 1024². The
+/// cameras look 5° to 20° down and the sun stands 5° up before them, so that light and view oppose
+/// each other by all but 10° to 25°.
 const DUELING: Preset = Preset {
     name: "dueling",
     about: "The paper's Figure 8, column (e): the dueling frusta",
@@ -169,7 +171,8 @@ const GEMS_FIGURE: Preset = Preset {
     ..FIGURE_8
 };
 
-/// The same chapter's section 10.5: three and four splits of 1024² at 1280 × 1024 pixels, in a city that has to be given.
+/// Section 10.5 of that chapter: three and four splits of 1024² at 1280 × 1024 pixels, in a city
+/// that has to be given.
 const GEMS_RESULTS: Preset = Preset {
     name: "gems-results",
     about: "PSSM(3; 1024) and PSSM(4; 1024) at 1280 × 1024 pixels: GPU Gems 3, section 10.5, in a scene of your choice",

@@ -38,7 +38,8 @@ pub struct Job {
     pub folder: PathBuf,
 }
 
-/// Draws every shot, then writes the page and, below it, full-size pictures, masks, maps and reports. Answers where the page is.
+/// Draws every shot, then writes the page and, below it, full-size pictures, masks, maps and
+/// reports. Answers where the page is.
 ///
 /// # Errors
 /// [`Failure`] naming the scene that cannot be drawn or the file that cannot be written.

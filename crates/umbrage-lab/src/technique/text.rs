@@ -49,7 +49,7 @@ pub struct Technique {
     pub label: String,
     /// The short form, settings for all included.
     pub spec: String,
-    /// The same technique at other map sizes has the same family.
+    /// What the technique shares with itself at other map sizes.
     pub family: String,
     /// The options of `umbrage render` that draw it.
     pub options: Vec<String>,
