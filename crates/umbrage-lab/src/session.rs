@@ -77,8 +77,8 @@ impl<'a> Session<'a> {
 
 /// All lights with their splits.
 fn light_reports(setup: &SceneSetup, stats: &FrameStats) -> Vec<LightReport> {
-    let others = stats.more_lights.iter().map(|light| (&light.plan, &light.splits));
-    let all = [(&stats.plan, &stats.splits)].into_iter().chain(others);
+    let others = stats.more_lights.iter().map(|light| (&*light.plan, &light.splits));
+    let all = [(&*stats.plan, &stats.splits)].into_iter().chain(others);
     let report = |(light, (plan, splits)): (&NamedLight, (&ShadowPlan, &Vec<SplitStats>))| LightReport {
         planes_m: plan.planes.clone(),
         splits: splits.iter().map(split_report).collect(),

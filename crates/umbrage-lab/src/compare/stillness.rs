@@ -1,6 +1,8 @@
 //! Flicker of one technique along a walk: over all points, over those that keep their split, and over those of them whose map takes no
 //! step.
 
+use std::sync::Arc;
+
 use umbrage::ShadowPlan;
 use umbrage_render::ProbePoint;
 use umbrage_truth::scores::{Domain, Flicker, FramePair};
@@ -24,7 +26,7 @@ pub struct Stillness {
 /// The frame before.
 #[derive(Debug)]
 struct Before {
-    plan: ShadowPlan,
+    plan: Arc<ShadowPlan>,
     /// At the points that this frame and the next have in common.
     answers: Vec<f32>,
 }
@@ -33,7 +35,7 @@ struct Before {
 #[derive(Debug)]
 pub struct Answered<'a> {
     /// How it planned the frame.
-    pub plan: ShadowPlan,
+    pub plan: Arc<ShadowPlan>,
     /// At the points that the frame before shares with this one.
     pub shared: &'a [f32],
     /// At those that this frame shares with the next.
