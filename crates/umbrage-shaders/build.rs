@@ -1,6 +1,6 @@
 //! Joins `shaders/lib` and `shaders/pass` into one plain WGSL text per root, with names that an app can live beside.
 
-use wesl::{CompileOptions, Mangler, ModulePath, Wesl};
+use wesl::{CompileOptions, Feature, Mangler, ModulePath, Wesl};
 
 /// The root in `shaders` of a text, the features that it is built with, and the file that it becomes in `OUT_DIR`.
 type Text = (&'static str, Vec<String>, String);
@@ -18,12 +18,12 @@ fn texts() -> Vec<Text> {
         text("pass::contact", &[], "contact".into()),
         text("pass::mask", &[], "mask".into()),
         text("pass::mask", &["normals"], "mask_with_normals".into()),
-        text("pass::receiver", &["depth_loads"], "receiver".into()),
-        text("pass::receiver", &[], "receiver_without_loads".into()),
-        text("pass::receiver", &["moments"], "receiver_of_moments".into()),
-        text("pass::receiver", &["depth_loads", "places"], "receiver_at_places".into()),
-        text("pass::receiver", &["places"], "receiver_at_places_without_loads".into()),
-        text("pass::receiver", &["moments", "places"], "receiver_at_places_of_moments".into()),
+        text("receiver::api", &["depth_loads"], "receiver".into()),
+        text("receiver::api", &[], "receiver_without_loads".into()),
+        text("receiver::api", &["moments"], "receiver_of_moments".into()),
+        text("receiver::api", &["depth_loads", "coordinates"], "receiver_with_coordinates".into()),
+        text("receiver::api", &["coordinates"], "receiver_with_coordinates_without_loads".into()),
+        text("receiver::api", &["moments", "coordinates"], "receiver_with_coordinates_of_moments".into()),
         text("pass::moments", &[], "moment_passes".into()),
         text("pass::moments", &["multisampled"], "moment_passes_of_samples".into()),
         text("maps::moments", &[], "moments".into()),
@@ -46,9 +46,48 @@ fn texts() -> Vec<Text> {
 /// `depth_loads`: depth textures can be loaded from. `r32f`: maps are colours. `views`, `tiles`: casters are drawn into several layers or tiles.
 /// `moments`: maps hold moments of depth. `multisampled`: depth has four samples a texel. `own_taps`: the shader takes an anisotropic
 /// sample's taps. `by_hand`: and no sampler filters moments. `normals`: a mask has a
-/// buffer of normals. `places`: receivers take map coordinates that vertex shaders made. `maps_2` to `maps_8` come beside these.
-const FEATURES: [&str; 10] =
-    ["depth_loads", "r32f", "views", "tiles", "normals", "moments", "multisampled", "own_taps", "by_hand", "places"];
+/// buffer of normals. `coordinates`: receivers take shadow coordinates that vertex shaders made. `maps_2` to `maps_8` come beside these.
+const FEATURES: [&str; 10] = [
+    "depth_loads",
+    "r32f",
+    "views",
+    "tiles",
+    "normals",
+    "moments",
+    "multisampled",
+    "own_taps",
+    "by_hand",
+    "coordinates",
+];
+
+/// What a receiver's text may be made without, at run time: `ReceiverText` of `src/receiver.rs` says what each stands for. Conditions on
+/// these stay in the texts of receivers; every other text has all of them.
+const CHOICES: [&str; 24] = [
+    "any_filter",
+    "hard",
+    "pcf2",
+    "tent",
+    "disc",
+    "pcss",
+    "texels",
+    "vsm",
+    "msm",
+    "by_depth",
+    "by_map",
+    "planar",
+    "radial",
+    "any_transition",
+    "blended",
+    "dithered",
+    "plane_bias",
+    "slope_bias",
+    "plain",
+    "warped",
+    "local",
+    "faces",
+    "sliced",
+    "linear",
+];
 
 fn main() {
     let mut compiler = Wesl::new("shaders");
@@ -67,6 +106,10 @@ fn main() {
         for feature in FEATURES.into_iter().chain(counts.iter().map(String::as_str)) {
             compiler.set_feature(feature, features.iter().any(|wanted| wanted == feature));
         }
+        for choice in CHOICES {
+            let is_receiver = root == "receiver::api";
+            compiler.set_feature(choice, if is_receiver { Feature::Keep } else { Feature::Enable });
+        }
         let path: ModulePath = format!("package::{root}").parse().expect("a root's name is a module path");
         compiler.build_artifact(&path, &file);
     }
@@ -74,13 +117,16 @@ fn main() {
 }
 
 /// Turns the path of an item in `lib` into a name in our own namespace: `lib::filter::tent` is `umbrage_filter_tent`,
-/// `lib::bias::MAX_SLOPE` is `UMBRAGE_BIAS_MAX_SLOPE` and `lib::layout::Split` is `UmbrageSplit`. Items of a root keep
-/// their names. The default of `wesl` counts underscores (`package_lib_filter_tent`, `__1` …), which reads worse in an
+/// `lib::bias::MAX_SLOPE` is `UMBRAGE_BIAS_MAX_SLOPE` and `lib::layout::Split` is `UmbrageSplit`. Items of a root, and those
+/// that are in the namespace already, keep their names. The default of `wesl` counts underscores (`package_lib_filter_tent`, `__1` …), which reads worse in an
 /// error message of the app's shader.
 struct HouseNames;
 
 impl Mangler for HouseNames {
     fn mangle(&self, path: &ModulePath, item: &str) -> String {
+        if item.to_lowercase().starts_with("umbrage_") || item.starts_with("Umbrage") {
+            return item.to_owned();
+        }
         let module = path.components.last().map_or("root", String::as_str);
         let is_constant = item.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');
         if is_constant {

@@ -2,11 +2,12 @@
 
 use std::{env, path::Path, process::Command};
 
-use anyhow::Result;
+use anyhow::{Context, Result};
+use serde::Deserialize;
 
 use crate::{
     adapter,
-    run::{build_umbrage, cargo, run},
+    run::{build_umbrage, cargo, output, run, succeeds},
 };
 
 /// Tests that need an adapter fail without one, rather than skip, where this is 1.
@@ -18,13 +19,21 @@ const BLESS: &str = "UMBRAGE_BLESS";
 const WASM_TARGET: &str = "wasm32-unknown-unknown";
 /// The crates that must build for it.
 const WASM_CRATES: [&str; 4] = ["umbrage", "umbrage-shaders", "umbrage-wgpu", "umbrage-render"];
+/// The crates whose tests need no adapter and are done in a minute: what `--quick` runs.
+const QUICK_CRATES: [&str; 4] = ["umbrage", "umbrage-shaders", "umbrage-scene", "xtask"];
+/// Features that build C++; they are checked where there is a compiler for it.
+const CPP_FEATURES: [&str; 1] = ["flip"];
 
-/// Formatting, lints, the browser's build, all tests.
+/// Formatting, lints, documentation, features, packages, the browser's build, all tests.
 pub fn test() -> Result<()> {
     run(cargo().args(["fmt", "--all", "--check"]))?;
     run(cargo().args(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
     check_wasm()?;
+    run(cargo().args(["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))?;
+    check_features()?;
+    check_packages()?;
     let has_adapter = has_adapter()?;
+    // Documentation's examples are among the tests.
     let mut tests = cargo();
     tests.args(["test", "--workspace"]);
     if has_adapter {
@@ -33,12 +42,34 @@ pub fn test() -> Result<()> {
     run(&mut tests)
 }
 
+/// Formatting, and the tests of what needs no adapter.
+pub fn quick() -> Result<()> {
+    run(cargo().args(["fmt", "--all", "--check"]))?;
+    run(cargo().arg("test").args(of(&QUICK_CRATES)))
+}
+
+/// Packs every crate that is published, in the order of their dependencies, and builds each from its package alone.
+pub fn package() -> Result<()> {
+    run(cargo().args(["package", "--workspace", "--allow-dirty"]).args(unpublished()?))
+}
+
 /// The tests of pictures, accepting what they see as the new reference. Ceilings of scores are constants and stay as they are.
 pub fn bless() -> Result<()> {
     adapter::ensure(&build_umbrage(false)?)?;
     run(cargo().args(["test", "--package", "umbrage-tests"]).env(BLESS, "1").env(REQUIRE_GPU, "1"))?;
     eprintln!("xtask: look at what `git diff` says before you commit it");
     Ok(())
+}
+
+/// The fuzzer of loaders, long enough to find what CI's short run does not.
+pub fn fuzz() -> Result<()> {
+    const FILES: &str = "UMBRAGE_FUZZ_FILES";
+    let mut tests = cargo();
+    tests.args(["test", "--release", "--package", "umbrage-scene", "--test", "mutated", "--", "--nocapture"]);
+    if !is_set(FILES) {
+        tests.env(FILES, "100000");
+    }
+    run(&mut tests)
 }
 
 /// Whether there is an adapter, after trying to install one. None is an error where the environment demands one.
@@ -56,6 +87,78 @@ fn has_adapter() -> Result<bool> {
     }
 }
 
+/// Packs every crate that is published without building it: manifests, versions of siblings, files.
+fn check_packages() -> Result<()> {
+    run(cargo().args(["package", "--workspace", "--allow-dirty", "--no-verify", "--quiet"]).args(unpublished()?))
+}
+
+/// Options that leave out the crates that are not published.
+fn unpublished() -> Result<Vec<String>> {
+    let unpublished = packages()?.into_iter().filter(|package| !package.is_published());
+    Ok(unpublished.flat_map(|package| ["--exclude".to_owned(), package.name]).collect())
+}
+
+/// Checks every crate that has features without all of them, and without each of them.
+fn check_features() -> Result<()> {
+    let has_cpp = succeeds(Command::new("c++").arg("--version"));
+    if !has_cpp {
+        eprintln!("xtask: SKIPPED: no C++ compiler `c++`; features that build C++ are not checked: {CPP_FEATURES:?}");
+    }
+    for package in packages()? {
+        let skipped = |feature: &str| feature == "default" || !has_cpp && CPP_FEATURES.contains(&feature);
+        let features: Vec<&str> = package.features.keys().map(String::as_str).filter(|name| !skipped(name)).collect();
+        if features.is_empty() {
+            continue;
+        }
+        let check = |features: &[&str]| {
+            let mut command = cargo();
+            command.args(["check", "--all-targets", "--no-default-features", "--package", &package.name]);
+            if !features.is_empty() {
+                command.args(["--features", &features.join(",")]);
+            }
+            run(&mut command)
+        };
+        check(&[])?;
+        for without in &features {
+            let others: Vec<&str> = features.iter().copied().filter(|feature| feature != without).collect();
+            // Without the only one there is none, which was checked.
+            if !others.is_empty() {
+                check(&others)?;
+            }
+        }
+        check(&features)?;
+    }
+    if has_cpp {
+        run(cargo().args(["test", "--package", "umbrage-truth", "--features", "flip", "--lib", "scores"]))?;
+    }
+    Ok(())
+}
+
+/// A crate of the workspace, as `cargo metadata` tells of it.
+#[derive(Deserialize)]
+struct Package {
+    name: String,
+    features: std::collections::BTreeMap<String, Vec<String>>,
+    /// The registries that it may be published to; all where there is no list.
+    publish: Option<Vec<String>>,
+}
+
+impl Package {
+    fn is_published(&self) -> bool {
+        self.publish.as_ref().is_none_or(|registries| !registries.is_empty())
+    }
+}
+
+fn packages() -> Result<Vec<Package>> {
+    #[derive(Deserialize)]
+    struct Metadata {
+        packages: Vec<Package>,
+    }
+    let text = output(cargo().args(["metadata", "--no-deps", "--format-version", "1"]))?;
+    let metadata: Metadata = serde_json::from_str(&text).context("cargo metadata says something unknown")?;
+    Ok(metadata.packages)
+}
+
 /// Checks the crates that a browser runs, where the compiler has that target.
 fn check_wasm() -> Result<()> {
     if !has_target(WASM_TARGET) {
@@ -64,7 +167,12 @@ fn check_wasm() -> Result<()> {
         );
         return Ok(());
     }
-    run(cargo().args(["check", "--target", WASM_TARGET]).args(WASM_CRATES.iter().flat_map(|name| ["--package", name])))
+    run(cargo().args(["check", "--target", WASM_TARGET]).args(of(&WASM_CRATES)))
+}
+
+/// Options that choose crates.
+fn of(names: &[&'static str]) -> Vec<&'static str> {
+    names.iter().flat_map(|&name| ["--package", name]).collect()
 }
 
 fn has_target(target: &str) -> bool {

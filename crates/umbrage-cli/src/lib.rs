@@ -7,7 +7,9 @@ mod adapter;
 pub mod args;
 pub mod bench;
 pub mod compare;
+pub mod environment;
 pub mod failure;
+pub mod gallery;
 pub mod plan;
 mod print;
 pub mod probe;
@@ -32,6 +34,7 @@ pub fn run(args: &Args) -> Result<()> {
         Command::Plan(args) => plan::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Bench(args) => bench::run(args),
+        Command::Gallery(args) => gallery::run(args),
         Command::Theory(args) => theory::run(args),
         Command::Worlds { command } => worlds::run(command),
         Command::Adapter => adapter::run(),

@@ -17,6 +17,8 @@ fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(DEFECT));
         }
     };
+    umbrage_cli::environment::restart_with_runtime_folder();
+    umbrage_lab::output::clean_up_on_signals();
     match panic::catch_unwind(|| umbrage_cli::run(&args)) {
         Ok(Ok(())) => ExitCode::SUCCESS,
         Ok(Err(failure)) => {

@@ -71,6 +71,7 @@ pub fn run(args: &ProbeArgs) -> Result<()> {
             report.probe = Some(ProbeReport { split: answers.iter().map(|answer| answer.split).collect() });
             staged.file(&numbered_file(path, shot.frame), to_json(&report)?)?;
         }
+        staged.finish_frame();
         bar.inc(1);
     }
     bar.finish_and_clear();

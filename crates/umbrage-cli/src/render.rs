@@ -107,6 +107,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
             report.beside = beside.map(|((camera, view), of)| beside_report(&setup, camera, view, &of.stats)).collect();
             staged.file(&numbered_file(path, shot.frame), to_json(&report)?)?;
         }
+        staged.finish_frame();
         bar.inc(1);
     }
     bar.finish_and_clear();

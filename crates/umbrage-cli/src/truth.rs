@@ -69,6 +69,7 @@ pub fn run(args: &TruthArgs) -> Result<()> {
             };
             staged.file(&numbered_file(path, shot.frame), to_json(&report)?)?;
         }
+        staged.finish_frame();
     }
     bar.finish_and_clear();
     staged.commit()

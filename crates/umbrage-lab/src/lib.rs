@@ -2,7 +2,8 @@
 //!
 //! * [`technique`]: how shadows are made, as options, as settings and under a name;
 //! * [`scene_request`] and [`scene_setup`]: what is looked at, asked for and opened; [`session`]: a device with the scene on it;
-//! * [`compare`] judges techniques by rays, [`bench`] measures what they cost, [`theory`] draws what the papers derive;
+//! * [`compare`] judges techniques by rays, [`bench`] measures what they cost, [`theory`] draws what the papers derive, [`gallery`] what
+//!   the defaults draw;
 //! * [`page`]: report pages and their charts;
 //! * [`output`] makes files appear whole or not at all, [`failure`] says whose fault it is that there are none.
 //!
@@ -12,6 +13,7 @@ pub mod bench;
 pub mod choose;
 pub mod compare;
 pub mod failure;
+pub mod gallery;
 pub mod lights;
 pub mod output;
 pub mod page;

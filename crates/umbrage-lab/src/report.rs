@@ -1,6 +1,6 @@
 //! The report: what was drawn, with what, and what it cost. Field names are the contract of the command line.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The report of one frame of `render` or `probe`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -127,7 +127,7 @@ pub struct SunShown {
 }
 
 /// The eye: metres and degrees.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct CameraReport {
     /// Where the camera comes from: its name, or how it was chosen.
     pub name: String,

@@ -1,5 +1,7 @@
 //! A device with a scene loaded onto it: what `render` and `probe` draw with, and what their reports say of it.
 
+use std::sync::Arc;
+
 use umbrage::{ShadowPlan, View};
 use umbrage_render::{Frame, FrameStats, Gpu, GpuOptions, Renderer, Samples, SplitStats};
 
@@ -77,9 +79,9 @@ impl<'a> Session<'a> {
 
 /// All lights with their splits.
 fn light_reports(setup: &SceneSetup, stats: &FrameStats) -> Vec<LightReport> {
-    let others = stats.more_lights.iter().map(|light| (&*light.plan, &light.splits));
-    let all = [(&*stats.plan, &stats.splits)].into_iter().chain(others);
-    let report = |(light, (plan, splits)): (&NamedLight, (&ShadowPlan, &Vec<SplitStats>))| LightReport {
+    let others = stats.more_lights.iter().map(|light| (&light.plan, &light.splits));
+    let all = [(&stats.plan, &stats.splits)].into_iter().chain(others);
+    let report = |(light, (plan, splits)): (&NamedLight, (&Arc<ShadowPlan>, &Vec<SplitStats>))| LightReport {
         planes_m: plan.planes.clone(),
         splits: splits.iter().map(split_report).collect(),
         ..light.report()

@@ -1,6 +1,6 @@
 //! `--split-views`: the scene as each split's slice of the camera sees it, and as the light sees it through each split's map.
 //!
-//! An OpenGL implementation of the GPU Gems chapter (seed 004) shows the same of each of its splits.
+//! An OpenGL implementation of the GPU Gems chapter (\[PSSM-GL\]) shows the same of each of its splits.
 
 use glam::{DMat4, DVec2};
 use umbrage::{Frustum, Projection, Split, View};

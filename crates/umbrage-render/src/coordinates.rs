@@ -1,4 +1,4 @@
-//! Where pictures and masks take their map coordinates from: both methods of Listing 4.1.4 of source 003.
+//! Where pictures and masks take their map coordinates from: both methods of Listing 4.1.4 of \[PCSM\].
 
 use umbrage::{ShadowPlan, ShadowSettings, Warp};
 use umbrage_wgpu::{Error, ShadowMaps};
@@ -19,7 +19,7 @@ pub enum Coordinates {
 
 impl Coordinates {
     /// The most splits of [`Coordinates::Split`].
-    pub const MOST_SPLITS: usize = umbrage_wgpu::MAX_PLACES;
+    pub const MOST_SPLITS: usize = umbrage_wgpu::MAX_COORDINATES;
 
     /// # Errors
     /// [`Error::ConflictingOptions`] where maps are warped and their coordinates therefore not to be interpolated.
@@ -52,11 +52,11 @@ impl Coordinates {
     /// The library's text for the bind group `group`.
     ///
     /// # Errors
-    /// Those of [`ShadowMaps::receiver_wgsl_at_places`].
+    /// Those of [`ShadowMaps::receiver_wgsl_with_coordinates`].
     pub(crate) fn receiver_wgsl(self, maps: &ShadowMaps, group: u32) -> Result<String> {
         Ok(match self {
             Self::World => maps.receiver_wgsl(group),
-            Self::Split => maps.receiver_wgsl_at_places(group)?,
+            Self::Split => maps.receiver_wgsl_with_coordinates(group)?,
         })
     }
 }

@@ -1,7 +1,7 @@
 //! A sun that moves in steps: while one is faded, a frame is drawn under both suns and mixed.
 //!
-//! An app that draws its own shading needs no second frame: it gives both suns to one set of maps and mixes what
-//! `umbrage_visibility_faded` says.
+//! An app that draws its own shading needs no second frame: it gives both suns to one set of maps and mixes what `umbrage_shadow` says of
+//! each by the fade's weight.
 
 use image::{GrayAlphaImage, RgbaImage};
 use umbrage::{DirectionalLight, SunFade};

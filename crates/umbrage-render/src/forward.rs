@@ -385,7 +385,8 @@ impl PictureTarget {
             Some(samples) => (samples, turn.last.then_some(&self.resolved)),
             None => (&self.resolved, None),
         };
-        begin("PictureTarget::pass", encoder, color, resolve_target, (&self.depth, false), turn, timestamp_writes)
+        let target = Target { label: "PictureTarget::pass", color, resolve_target, clear: wgpu::Color::BLACK };
+        begin(encoder, target, (&self.depth, false), turn, timestamp_writes)
     }
 }
 
@@ -413,7 +414,9 @@ impl MaskTarget {
         turn: Turn,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'e> {
-        begin("MaskTarget::pass", encoder, &self.color, None, (&self.depth, true), turn, timestamp_writes)
+        let clear = wgpu::Color::TRANSPARENT;
+        let target = Target { label: "MaskTarget::pass", color: &self.color, resolve_target: None, clear };
+        begin(encoder, target, (&self.depth, true), turn, timestamp_writes)
     }
 }
 
@@ -442,25 +445,33 @@ fn target_texture(
     })
 }
 
+/// The colours that a pass draws.
+struct Target<'a> {
+    label: &'static str,
+    color: &'a wgpu::TextureView,
+    resolve_target: Option<&'a wgpu::TextureView>,
+    /// What is there before anything is drawn.
+    clear: wgpu::Color,
+}
+
 fn begin<'e>(
-    label: &str,
     encoder: &'e mut wgpu::CommandEncoder,
-    color: &wgpu::TextureView,
-    resolve_target: Option<&wgpu::TextureView>,
+    target: Target<'_>,
     (depth, keep_depth): (&wgpu::TextureView, bool),
     turn: Turn,
     timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
 ) -> wgpu::RenderPass<'e> {
+    let Target { label, color, resolve_target, clear } = target;
     let keep_samples = if resolve_target.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
     let keep_depth = if turn.last && !keep_depth { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
-    let clear = |color| if turn.first { wgpu::LoadOp::Clear(color) } else { wgpu::LoadOp::Load };
+    let load = if turn.first { wgpu::LoadOp::Clear(clear) } else { wgpu::LoadOp::Load };
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(label),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
             view: color,
             depth_slice: None,
             resolve_target,
-            ops: wgpu::Operations { load: clear(wgpu::Color::TRANSPARENT), store: keep_samples },
+            ops: wgpu::Operations { load, store: keep_samples },
         })],
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: depth,
@@ -544,7 +555,8 @@ impl Builder<'_> {
         let targets = [surface.format.map(|format| wgpu::ColorTargetState {
             format,
             blend: surface.blend.then_some(wgpu::BlendState::ALPHA_BLENDING),
-            write_mask: wgpu::ColorWrites::ALL,
+            // A picture is opaque: what a shader calls alpha there is coverage.
+            write_mask: if format == PICTURE_FORMAT { wgpu::ColorWrites::COLOR } else { wgpu::ColorWrites::ALL },
         })];
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(surface.label),

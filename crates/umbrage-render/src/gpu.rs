@@ -2,7 +2,8 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::{Error, Result};
+use crate::forward::{DEPTH_FORMAT, MASK_FORMAT, PICTURE_FORMAT};
+use crate::{Error, Result, probe};
 
 /// What the device is asked for.
 #[derive(Clone, Copy, Debug, Default)]
@@ -164,6 +165,27 @@ fn wanted_features() -> wgpu::Features {
         | wgpu::Features::FLOAT32_FILTERABLE
 }
 
+/// What an adapter that is not told by name has to be able to do.
+const TEXTURES: [(wgpu::TextureFormat, wgpu::TextureUsages); 6] = [
+    (PICTURE_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
+    (MASK_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
+    (DEPTH_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
+    (DEPTH_FORMAT, wgpu::TextureUsages::TEXTURE_BINDING),
+    (probe::POINTS_FORMAT, wgpu::TextureUsages::TEXTURE_BINDING),
+    (probe::ANSWERS_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
+];
+
+/// What an adapter lacks that every renderer needs; `None` if nothing.
+fn lacking(usages: impl Fn(wgpu::TextureFormat) -> wgpu::TextureUsages) -> Option<String> {
+    let missing = TEXTURES.into_iter().find(|(format, usage)| !usages(*format).contains(*usage));
+    missing.map(|(format, usage)| match usage {
+        wgpu::TextureUsages::RENDER_ATTACHMENT => format!("cannot draw into {format:?} textures"),
+        _ => format!("cannot read {format:?} textures"),
+    })
+}
+
+/// The adapter that is asked for by name, or else the best one that can draw everything. An adapter that cannot is passed over: a system
+/// without a Vulkan driver often has one for OpenGL that draws into too few formats.
 async fn choose_adapter(instance: &wgpu::Instance) -> Result<wgpu::Adapter> {
     #[cfg(not(target_arch = "wasm32"))]
     if let Ok(wanted) = std::env::var("WGPU_ADAPTER_NAME")
@@ -183,5 +205,39 @@ async fn choose_adapter(instance: &wgpu::Instance) -> Result<wgpu::Adapter> {
         power_preference: wgpu::PowerPreference::from_env().unwrap_or(wgpu::PowerPreference::HighPerformance),
         ..Default::default()
     };
-    instance.request_adapter(&options).await.map_err(|error| Error::NoAdapter { reason: error.to_string() })
+    let best = instance.request_adapter(&options).await;
+    let best = best.map_err(|error| Error::NoAdapter { reason: error.to_string() })?;
+    let lacking =
+        |adapter: &wgpu::Adapter| lacking(|format| adapter.get_texture_format_features(format).allowed_usages);
+    let Some(reason) = lacking(&best) else { return Ok(best) };
+    #[cfg(not(target_arch = "wasm32"))]
+    {
+        let others = instance.enumerate_adapters(wgpu::Backends::all()).await;
+        // A graphics card before a processor.
+        let is_slow = |adapter: &wgpu::Adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+        if let Some(other) = others.into_iter().filter(|other| lacking(other).is_none()).min_by_key(is_slow) {
+            return Ok(other);
+        }
+    }
+    let info = best.get_info();
+    Err(Error::NoAdapter { reason: format!("{} ({}) {reason}", info.name, info.backend) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_adapter_that_cannot_draw_is_told_from_one_that_can() {
+        assert_eq!(lacking(|_| wgpu::TextureUsages::all()), None);
+        let as_opengl_without_extensions = |format| match format {
+            probe::ANSWERS_FORMAT => wgpu::TextureUsages::TEXTURE_BINDING,
+            _ => wgpu::TextureUsages::all(),
+        };
+        assert_eq!(lacking(as_opengl_without_extensions).as_deref(), Some("cannot draw into Rg32Float textures"));
+        assert_eq!(
+            lacking(|_| wgpu::TextureUsages::RENDER_ATTACHMENT).as_deref(),
+            Some("cannot read Depth32Float textures")
+        );
+    }
 }

@@ -1,9 +1,12 @@
 //! Textures, samplers and one bind group per material.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
 use umbrage_scene::{AlphaMode, Material, Scene, Texture, Wrap};
 use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
 
-use crate::mipmaps;
+use crate::mipmaps::{self, Alpha};
 use crate::{Error, Gpu, Result};
 
 /// Material parameters as the shaders see them, `Material` in `scene.wgsl`.
@@ -60,34 +63,43 @@ impl Materials {
             ],
         });
         let mut bytes = 0;
-        let mut views = Vec::with_capacity(scene.textures.len());
-        for (index, texture) in scene.textures.iter().enumerate() {
-            let (view, size) = upload_texture(gpu, index, texture)?;
-            views.push(view);
-            bytes += size;
+        // A texture's levels depend on what is made of its alpha. Few textures serve materials of both kinds.
+        let mut views = HashMap::new();
+        for (index, material) in scene.materials.iter().enumerate() {
+            let Some(of) = material.base_color_texture else { continue };
+            let texture = scene.textures.get(of).ok_or_else(|| Error::Scene {
+                what: "material",
+                index,
+                reason: format!("there is no texture {of}, only {}", scene.textures.len()),
+            })?;
+            if let Entry::Vacant(vacant) = views.entry((of, use_of_alpha(material))) {
+                let (view, size) = upload_texture(gpu, of, texture, use_of_alpha(material))?;
+                vacant.insert(view);
+                bytes += size;
+            }
         }
         let white = Texture { width: 1, height: 1, rgba: vec![255; 4], wrap: [Wrap::Repeat; 2] };
-        let (white_view, _) = upload_texture(gpu, usize::MAX, &white)?;
+        let (white_view, _) = upload_texture(gpu, usize::MAX, &white, Alpha::Ignored)?;
         let list = scene
             .materials
             .iter()
-            .enumerate()
-            .map(|(index, material)| {
-                let (view, wrap) = match material.base_color_texture {
-                    None => (&white_view, white.wrap),
-                    Some(texture) => {
-                        let view = views.get(texture).ok_or_else(|| Error::Scene {
-                            what: "material",
-                            index,
-                            reason: format!("there is no texture {texture}, only {}", views.len()),
-                        })?;
-                        (view, scene.textures[texture].wrap)
-                    }
-                };
-                Ok(gpu_material(gpu, &layout, material, view, wrap))
+            .map(|material| {
+                let found = material.base_color_texture.and_then(|of| {
+                    let view = views.get(&(of, use_of_alpha(material)))?;
+                    Some((view, &scene.textures[of]))
+                });
+                let (view, texture) = found.unwrap_or((&white_view, &white));
+                gpu_material(gpu, &layout, material, view, texture)
             })
-            .collect::<Result<Vec<_>>>()?;
+            .collect();
         Ok(Self { layout, list, bytes })
+    }
+}
+
+fn use_of_alpha(material: &Material) -> Alpha {
+    match material.alpha {
+        AlphaMode::Opaque => Alpha::Ignored,
+        AlphaMode::Mask { .. } | AlphaMode::Blend => Alpha::Used,
     }
 }
 
@@ -95,7 +107,7 @@ fn layout_entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEnt
     wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None }
 }
 
-fn upload_texture(gpu: &Gpu, index: usize, texture: &Texture) -> Result<(wgpu::TextureView, u64)> {
+fn upload_texture(gpu: &Gpu, index: usize, texture: &Texture, alpha: Alpha) -> Result<(wgpu::TextureView, u64)> {
     let (width, height) = (texture.width, texture.height);
     let limit = gpu.device.limits().max_texture_dimension_2d;
     if width == 0 || height == 0 || texture.rgba.len() as u64 != 4 * u64::from(width) * u64::from(height) {
@@ -108,7 +120,7 @@ fn upload_texture(gpu: &Gpu, index: usize, texture: &Texture) -> Result<(wgpu::T
     if width > limit || height > limit {
         return Err(Error::TextureSize { index, width, height, limit });
     }
-    let data = mipmaps::all_levels(texture).concat();
+    let data = mipmaps::all_levels(texture, alpha).concat();
     let on_gpu = gpu.device.create_texture_with_data(
         &gpu.queue,
         &wgpu::TextureDescriptor {
@@ -132,7 +144,7 @@ fn gpu_material(
     layout: &wgpu::BindGroupLayout,
     material: &Material,
     view: &wgpu::TextureView,
-    wrap: [Wrap; 2],
+    texture: &Texture,
 ) -> GpuMaterial {
     let uniform = MaterialUniform {
         base_color: material.base_color,
@@ -144,7 +156,7 @@ fn gpu_material(
         contents: bytemuck::bytes_of(&uniform),
         usage: wgpu::BufferUsages::UNIFORM,
     });
-    let address = wrap.map(|wrap| match wrap {
+    let address = texture.wrap.map(|wrap| match wrap {
         Wrap::Repeat => wgpu::AddressMode::Repeat,
         Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
         Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,

@@ -9,6 +9,11 @@ use wgpu::util::{DeviceExt, TextureDataOrder};
 use crate::capture::Capture;
 use crate::{Error, Gpu, Result, shaders};
 
+/// Points with what answers for them.
+pub(crate) const POINTS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+/// What comes back for each point.
+pub(crate) const ANSWERS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
+
 /// A point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProbePoint {
@@ -20,6 +25,7 @@ pub struct ProbePoint {
 
 /// What the maps say of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ProbeAnswer {
     /// 1 lit to 0 in shadow; 0 where the surface is turned away from the light.
     pub visibility: f32,
@@ -99,7 +105,7 @@ impl Probe {
                 module: &module,
                 entry_point: Some("fs_probe"),
                 compilation_options: Default::default(),
-                targets: &[Some(wgpu::TextureFormat::Rg32Float.into())],
+                targets: &[Some(ANSWERS_FORMAT.into())],
             }),
             multiview_mask: None,
             cache: None,
@@ -143,7 +149,7 @@ impl Probe {
             view_formats: &[],
         };
         let input = |label, data: &[[f32; 4]]| {
-            let descriptor = descriptor(label, wgpu::TextureFormat::Rgba32Float, wgpu::TextureUsages::TEXTURE_BINDING);
+            let descriptor = descriptor(label, POINTS_FORMAT, wgpu::TextureUsages::TEXTURE_BINDING);
             let data = bytemuck::cast_slice(data);
             let texture =
                 gpu.device.create_texture_with_data(&gpu.queue, &descriptor, TextureDataOrder::LayerMajor, data);
@@ -152,7 +158,7 @@ impl Probe {
         let (positions, normals) = (input("Probe::points", &positions), input("Probe::normals", &normals));
         let answers = gpu.device.create_texture(&descriptor(
             "Probe::answers",
-            wgpu::TextureFormat::Rg32Float,
+            ANSWERS_FORMAT,
             wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
         ));
         let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
-use umbrage::{Aabb, Bands, PlanInputs, Selection, ShadowPlan, ShadowSettings, View};
+use umbrage::{Aabb, Bands, PlanInputs, Selection, ShadowPlan, ShadowSettings, View, Warp};
 use umbrage_scene::{AlphaMode, Pose, Scene};
 use umbrage_wgpu::{
-    DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, MaskFrame, MaskNormals, ShadowMaps,
+    DepthFormat, Derivatives, Filter, Fixed, FrameOptions, Generation, LightSlot, MaskFrame, MaskNormals, ShadowMaps,
     ShadowMapsOptions, ShadowMask, Slice, Softness, Storage, Transition,
 };
 use web_time::Instant;
@@ -177,6 +177,14 @@ impl Renderer {
                     storage: settings.storage,
                     generation: settings.generation,
                     lights: settings.lights.clone(),
+                    // All of it is settled here, so that no shader is made for anything else.
+                    fixed: Fixed {
+                        selection: Some(shadows.selection),
+                        bands: Some(shadows.bands),
+                        warped: shadows.warps.iter().all(|warp| *warp == Warp::None).then_some(false),
+                        transition: Some(settings.transition),
+                        bias: Some(settings.look.bias),
+                    },
                 },
             )?;
             let blends = shadows.blend > 0.0 && settings.transition != Transition::Hard;

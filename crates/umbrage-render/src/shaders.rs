@@ -35,7 +35,7 @@ pub(crate) fn forward(library: &str, coordinates: Coordinates, contact: bool) ->
     let contact = if contact { umbrage_wgpu::contact_wgsl(3) + WITH } else { WITHOUT.to_owned() };
     let surface = match coordinates {
         Coordinates::World => include_str!("shaders/surface.wgsl"),
-        Coordinates::Split => include_str!("shaders/surface_at_places.wgsl"),
+        Coordinates::Split => include_str!("shaders/surface_with_coordinates.wgsl"),
     };
     [library, &contact, include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl"), surface].join("\n")
 }
@@ -90,10 +90,10 @@ mod tests {
             assert_eq!(parsed(&masked_casters(&library(MASKED_MEMBERS))).entry_points.len(), 2);
         }
         for maps in [Maps::default(), Maps { without_loads: true, ..Maps::default() }] {
-            let at_places = receiver(2, Maps { places: true, ..maps });
+            let with_coordinates = receiver(2, Maps { coordinates: true, ..maps });
             for source in [
                 forward(&receiver(2, maps), Coordinates::World, true),
-                forward(&at_places, Coordinates::Split, true),
+                forward(&with_coordinates, Coordinates::Split, true),
                 probe(&receiver(1, maps)),
             ] {
                 assert!(!parsed(&source).entry_points.is_empty());

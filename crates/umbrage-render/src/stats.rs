@@ -8,6 +8,7 @@ use crate::timing::PassCounts;
 
 /// One split of a frame.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SplitStats {
     /// View depth in metres where it begins.
     pub near: f64,
@@ -29,6 +30,7 @@ pub struct SplitStats {
 
 /// One light of a frame beside the first.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct LightStats {
     /// The plan that its maps were drawn by.
     pub plan: Arc<ShadowPlan>,
@@ -38,6 +40,7 @@ pub struct LightStats {
 
 /// What a frame was made of and what it cost.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct FrameStats {
     /// The plan that the first light's maps were drawn by.
     pub plan: Arc<ShadowPlan>,

@@ -1,4 +1,4 @@
-//! Both methods of Listing 4.1.4 of source 003 decide alike: map coordinates that fragments make of a position, and those that vertices
+//! Both methods of Listing 4.1.4 of \[PCSM\] decide alike: map coordinates that fragments make of a position, and those that vertices
 //! make for every split.
 
 mod common;

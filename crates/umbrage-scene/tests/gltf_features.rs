@@ -326,3 +326,18 @@ fn morph_targets_are_left_out_with_a_note() {
     assert_eq!(scene.placed_triangles(), 1);
     assert!(scene.notes[0].contains("morph"), "{:?}", scene.notes);
 }
+
+#[test]
+fn nodes_keep_the_digits_of_their_numbers() {
+    // In f32 a metre is lost at 100,000 km, and with it where a camera stands beside what it sees.
+    let mut glb = Glb::triangle();
+    glb.json["nodes"] = json!([
+        { "mesh": 0, "translation": [100_000_000.125, 0.1, -999_999_999.75] },
+        { "mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 100_000_000.125, 0.1, -999_999_999.75, 1] },
+    ]);
+    glb.json["scenes"] = json!([{ "nodes": [0, 1] }]);
+    let scene = glb.scene();
+    for node in &scene.nodes {
+        assert_eq!(node.local.translation.to_array(), [100_000_000.125, 0.1, -999_999_999.75]);
+    }
+}

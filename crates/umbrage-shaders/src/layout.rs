@@ -5,11 +5,12 @@ use bytemuck::{Pod, Zeroable};
 /// The most splits a [`Frame`] holds.
 pub const MAX_SPLITS: usize = 8;
 
-/// The most splits whose coordinates vertex shaders hand on: four `vec3f` beside what a shader hands on anyway, of the 15 that every device has.
-pub const MAX_PLACES: usize = 4;
+/// The most splits whose shadow coordinates vertex shaders hand on: four `vec3f` beside what a shader hands on anyway, of the 15 that
+/// every device has.
+pub const MAX_COORDINATES: usize = 4;
 
 /// How one map answers, in [`Frame::filter_kind`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum FilterKind {
     /// One nearest texel, one comparison.
@@ -38,8 +39,18 @@ pub enum FilterKind {
     Msm = 11,
 }
 
+/// What splits are chosen by, in [`Frame::is_radial`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum MetricKind {
+    /// View depth.
+    ViewDepth = 0,
+    /// Distance from the eye.
+    Distance = 1,
+}
+
 /// Which map answers for a point, in [`Frame::selection`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum SelectionKind {
     /// That of the slice in which its view depth lies.
@@ -49,7 +60,7 @@ pub enum SelectionKind {
 }
 
 /// How one split goes over into the next, in [`Frame::transition`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum TransitionKind {
     /// A mix of both over the band.
@@ -61,7 +72,7 @@ pub enum TransitionKind {
 }
 
 /// How a receiver is kept from shading itself, in [`Frame::bias_kind`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum BiasKind {
     /// Every texel is compared with the receiver's plane at its centre.
@@ -188,7 +199,7 @@ pub struct Frame {
     pub bias_kind: u32,
     /// Where the eye stands, relative to the frame's origin, metres; read with `is_radial`.
     pub eye: [f32; 3],
-    /// 1: splits are chosen by distance from the eye, and all view depths of the frame are distances.
+    /// A [`MetricKind`]: with [`MetricKind::Distance`] all view depths of the frame are distances.
     pub is_radial: u32,
     /// A [`SelectionKind`].
     pub selection: u32,

@@ -7,9 +7,9 @@
 //!   and the two functions that read them. `wesl` joins them when this crate is built; what comes out is ordinary WGSL, and
 //!   every name in it begins with `umbrage`, in one case or another.
 //! * A root is text to put before one's own shader. It declares no entry point and no override, so it adds nothing to a
-//!   pipeline's constants. What varies (filter, number of splits, strength) is a value in the [`layout::Frame`] uniform:
-//!   an override would become a constant of the *app's* pipeline, to be repeated wherever it makes one, and one text per
-//!   filter would make the filter part of every pipeline's key. A branch on a uniform value costs next to nothing.
+//!   pipeline's constants: an override would become a constant of the *app's* pipeline, to be repeated wherever it makes one.
+//! * What varies (filter, selection, strength) is a value in the [`layout::Frame`] uniform, unless [`ReceiverText`] fixes it:
+//!   a text is then made without the rest, which compiles faster and runs faster. Another choice is another text.
 //! * The index of the bind group is the app's choice: [`caster`] and [`receiver`] declare it as a WGSL constant.
 //!
 //! | binding of [`receiver`] | what |
@@ -25,45 +25,18 @@
 //! |---|---|
 //! | 0 | uniform [`layout::Split`]; where several splits are drawn at once, [`layout::CasterPass`] |
 
-pub mod layout;
-pub mod twin;
-
 macro_rules! text {
     ($file:literal) => {
         include_str!(concat!(env!("OUT_DIR"), "/", $file, ".wgsl"))
     };
 }
 
-const SEPARATE: [&str; layout::MAX_SPLITS] = [
-    text!("separate_1"),
-    text!("separate_2"),
-    text!("separate_3"),
-    text!("separate_4"),
-    text!("separate_5"),
-    text!("separate_6"),
-    text!("separate_7"),
-    text!("separate_8"),
-];
-const SEPARATE_WITHOUT_LOADS: [&str; layout::MAX_SPLITS] = [
-    text!("separate_1_without_loads"),
-    text!("separate_2_without_loads"),
-    text!("separate_3_without_loads"),
-    text!("separate_4_without_loads"),
-    text!("separate_5_without_loads"),
-    text!("separate_6_without_loads"),
-    text!("separate_7_without_loads"),
-    text!("separate_8_without_loads"),
-];
-const SEPARATE_R32F: [&str; layout::MAX_SPLITS] = [
-    text!("separate_1_r32f"),
-    text!("separate_2_r32f"),
-    text!("separate_3_r32f"),
-    text!("separate_4_r32f"),
-    text!("separate_5_r32f"),
-    text!("separate_6_r32f"),
-    text!("separate_7_r32f"),
-    text!("separate_8_r32f"),
-];
+pub mod layout;
+mod receiver;
+pub mod twin;
+mod variant;
+
+pub use receiver::{Lights, Projection, ReceiverText, receiver};
 
 /// How a receiver's maps are bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -97,17 +70,17 @@ pub struct Maps {
     pub frames: u32,
     /// Maps hold moments of depth, of one light.
     pub moments: Option<MomentMaps>,
-    /// Vertex shaders may make the coordinates of every split's map: `umbrage_places(position: vec3f) -> UmbragePlaces`, four members
-    /// `first` to `fourth`, each a `vec3f` to be interpolated; fragments ask with them,
-    /// `umbrage_shadow_at_places(places, position, normal, pixel)` or a footprint that went through `umbrage_at_places(footprint, places)`.
-    /// For one sun without warps, at most [`layout::MAX_PLACES`] splits; what is asked without places has those of its position.
-    pub places: bool,
+    /// Vertex shaders may make the shadow coordinates of every split: `umbrage_shadow_coordinates(position: vec3f)` returns an
+    /// `UmbrageShadowCoordinates` of four members `first` to `fourth`, each a `vec3f` to be interpolated; fragments ask
+    /// `umbrage_shadow_from_coordinates(query, coordinates)`. For one sun without warps and at most
+    /// [`layout::MAX_COORDINATES`] splits. `umbrage_shadow(query)` makes those of the query's position.
+    pub coordinates: bool,
 }
 
 impl Default for Maps {
     /// One light, read with everything that a device can have.
     fn default() -> Self {
-        Self { bound: Bound::Array, r32f: false, without_loads: false, frames: 1, moments: None, places: false }
+        Self { bound: Bound::Array, r32f: false, without_loads: false, frames: 1, moments: None, coordinates: false }
     }
 }
 
@@ -122,7 +95,7 @@ pub enum MomentMaps {
     ByHand,
 }
 
-/// How casters are copied into the maps of several splits in one pass; neither: each pass draws one split.
+/// How casters are instanced into the maps of several splits in one pass; neither: each pass draws one split.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Casters {
     /// By multiview, into layers.
@@ -132,8 +105,11 @@ pub struct Casters {
 }
 
 /// Text to put before a vertex shader that draws casters, and before everything else in its module. The vertex shader takes an
-/// `UmbrageCopy` and returns the `UmbrageCast` that `umbrage_cast(position: vec3f, copy: UmbrageCopy)` makes; `members` is WGSL for what
-/// else it has to return, for example `"@location(0) uv: vec2f,"`.
+/// `UmbrageInstance` and returns the `UmbrageCast` that `umbrage_cast(position: vec3f, instance: UmbrageInstance)` makes; `members` is
+/// WGSL for what else it has to return, for example `"@location(0) uv: vec2f,"`.
+///
+/// A vertex shader that takes `@builtin(instance_index)` itself calls `umbrage_cast_at(position, code: u32)`, which asks for no built-in;
+/// with [`Casters::views`] it is `umbrage_cast_at(position, code, view: u32)`, and `view` is the shader's own `@builtin(view_index)`.
 #[must_use]
 pub fn caster(group: u32, casters: Casters, members: &str) -> String {
     let Casters { views, tiles } = casters;
@@ -148,7 +124,7 @@ pub fn caster(group: u32, casters: Casters, members: &str) -> String {
     };
     format!(
         "{enable}const UMBRAGE_CASTER_GROUP = {group}u;\n\
-         struct UmbrageCopy {{\n    @builtin(instance_index) code: u32,\n{view}}}\n\
+         struct UmbrageInstance {{\n    @builtin(instance_index) code: u32,\n{view}}}\n\
          struct UmbrageCast {{\n    @builtin(position) position: vec4f,\n{distances}    {members}\n}}\n{root}\n"
     )
 }
@@ -167,38 +143,4 @@ pub fn mask(group: u32, normals: bool) -> String {
 #[must_use]
 pub fn contact(group: u32) -> String {
     format!("const UMBRAGE_CONTACT_GROUP = {group}u;\n{}\n", text!("contact"))
-}
-
-/// Text to put before a shader that asks what is lit: `fn umbrage_visibility(position: vec3f, normal: vec3f) -> f32`,
-/// `umbrage_shadow` and `umbrage_visibility_in_split`, and the same of one of several lights: `umbrage_visibility_of(light: u32, …)`.
-///
-/// # Panics
-/// If there are fewer than 1 or more than [`layout::MAX_SPLITS`] separate maps.
-#[must_use]
-pub fn receiver(group: u32, maps: Maps) -> String {
-    let frames = maps.frames.max(1);
-    let loads = maps.r32f || !maps.without_loads;
-    let receiver = match (maps.moments, loads, maps.places) {
-        (Some(_), _, false) => text!("receiver_of_moments"),
-        (Some(_), _, true) => text!("receiver_at_places_of_moments"),
-        (None, true, false) => text!("receiver"),
-        (None, true, true) => text!("receiver_at_places"),
-        (None, false, false) => text!("receiver_without_loads"),
-        (None, false, true) => text!("receiver_at_places_without_loads"),
-    };
-    let maps = match (maps.moments, maps.bound, maps.r32f, loads) {
-        (Some(MomentMaps::Sampled), ..) => text!("moments"),
-        (Some(MomentMaps::Taps), ..) => text!("moments_by_taps"),
-        (Some(MomentMaps::ByHand), ..) => text!("moments_by_hand"),
-        (None, Bound::Array, true, _) => text!("array_r32f"),
-        (None, Bound::Array, false, true) => text!("array"),
-        (None, Bound::Array, false, false) => text!("array_without_loads"),
-        (None, Bound::Cube, true, _) => text!("cube_r32f"),
-        (None, Bound::Cube, false, true) => text!("cube"),
-        (None, Bound::Cube, false, false) => text!("cube_without_loads"),
-        (None, Bound::Separate(count), true, _) => SEPARATE_R32F[count - 1],
-        (None, Bound::Separate(count), false, true) => SEPARATE[count - 1],
-        (None, Bound::Separate(count), false, false) => SEPARATE_WITHOUT_LOADS[count - 1],
-    };
-    format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\nconst UMBRAGE_FRAMES = {frames}u;\n{maps}\n{receiver}\n")
 }

@@ -1,7 +1,7 @@
 //! The filters' weights, by property; `umbrage-wgpu` runs the same functions on a GPU and compares.
 
 use proptest::prelude::*;
-use umbrage_shaders::twin::{gradient_noise, half_width, tent_integral, tent_tap, vogel};
+use umbrage_shaders::twin::{DISC_RADIUS, MOST_BLOCKER_M, gradient_noise, half_width, tent_integral, tent_tap, vogel};
 
 /// A sample's place, biased to texel edges and centres.
 fn place() -> impl Strategy<Value = f32> {
@@ -92,9 +92,20 @@ fn a_disc_stands_evenly_around_its_middle() {
 #[test]
 fn widths_become_texels_within_their_limits() {
     assert_eq!(half_width(0.0, 0.1, 2.5, 2.5), 2.5);
+    assert_eq!(half_width(0.0, 0.1, 3.0, 2.0), 2.0, "nor in a map that keeps less free");
     assert_eq!(half_width(0.4, 0.1, 2.5, 15.0), 2.0);
     assert_eq!(half_width(0.4, 1.0, 2.5, 15.0), 1.0, "never less than a texel");
     assert_eq!(half_width(40.0, 0.1, 2.5, 15.0), 15.0, "never more than the taps reach");
+}
+
+/// Rust plans with the numbers that WGSL filters with.
+#[test]
+fn constants_agree() {
+    let text = umbrage_shaders::receiver(0, umbrage_shaders::Maps::default());
+    for (name, value) in [("MOST_BLOCKER_M", MOST_BLOCKER_M), ("DISC_RADIUS", DISC_RADIUS)] {
+        let declared = format!("const UMBRAGE_FILTER_{name}: f32 = {value:?};");
+        assert!(text.contains(&declared), "{declared} is not in the text");
+    }
 }
 
 #[test]

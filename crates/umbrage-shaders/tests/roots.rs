@@ -2,10 +2,11 @@
 
 use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use umbrage_shaders::{Bound, Casters, Maps, MomentMaps};
+use umbrage_shaders::layout::{BiasKind, FilterKind, MetricKind, SelectionKind, TransitionKind};
+use umbrage_shaders::{Bound, Casters, Lights, Maps, MomentMaps, Projection, ReceiverText};
 
 const WITHOUT_LOADS: Maps =
-    Maps { bound: Bound::Array, r32f: false, without_loads: true, frames: 7, moments: None, places: false };
+    Maps { bound: Bound::Array, r32f: false, without_loads: true, frames: 7, moments: None, coordinates: false };
 
 /// Every way to bind maps and to read them.
 fn all_maps() -> Vec<Maps> {
@@ -31,7 +32,7 @@ const MOMENTS: Maps = Maps {
     without_loads: false,
     frames: 1,
     moments: Some(MomentMaps::Sampled),
-    places: false,
+    coordinates: false,
 };
 const MOMENTS_BY_TAPS: Maps = Maps { moments: Some(MomentMaps::Taps), ..MOMENTS };
 const MOMENTS_BY_HAND: Maps = Maps { moments: Some(MomentMaps::ByHand), ..MOMENTS };
@@ -59,15 +60,15 @@ fn to_webgl2(source: &str, stage: naga::ShaderStage, entry_point: &str) -> Strin
 fn vertex_shader(group: u32) -> String {
     umbrage_shaders::caster(group, Casters::default(), "")
         + "@vertex fn vertex(@location(0) position: vec3f) -> @builtin(position) vec4f {
-               return umbrage_caster_position(position);
+               return umbrage_cast_at(position, 0u).position;
            }"
 }
 
 /// A vertex shader that is the same for every way to draw casters.
 fn copying_shader(casters: Casters) -> String {
     umbrage_shaders::caster(0, casters, "@location(0) uv: vec2f,")
-        + "@vertex fn vertex(@location(0) position: vec3f, copy: UmbrageCopy) -> UmbrageCast {
-               var result = umbrage_cast(position, copy);
+        + "@vertex fn vertex(@location(0) position: vec3f, instance: UmbrageInstance) -> UmbrageCast {
+               var result = umbrage_cast(position, instance);
                result.uv = position.xy;
                return result;
            }
@@ -97,13 +98,17 @@ fn compute_shader_of_moments(group: u32) -> String {
 
 const FRAGMENT: &str =
     "@fragment fn fragment(@location(0) position: vec3f, @builtin(position) pixel: vec4f) -> @location(0) vec4f {
-               let footprint = umbrage_footprint(position, dpdx(position), dpdy(position), pixel.xy);
+               let up = vec3f(0.0, 1.0, 0.0);
+               var query = umbrage_fragment_query(position, up, dpdx(position), dpdy(position), pixel.xy);
                if pixel.x > 100.0 {
-                   return vec4f(umbrage_shadow_with(position, vec3f(0.0, 1.0, 0.0), footprint).visibility);
+                   return vec4f(umbrage_shadow(query).visibility);
                }
-               let shadow = umbrage_shadow(position, vec3f(0.0, 1.0, 0.0));
-               let one = umbrage_visibility_in_split(position, vec3f(0.0, 1.0, 0.0), 1u);
-               let other = umbrage_visibility_of(u32(position.x), position, vec3f(0.0, 1.0, 0.0));
+               let shadow = umbrage_shadow(umbrage_query(position, up));
+               query.split = 1;
+               let one = umbrage_shadow(query).visibility;
+               query.split = -1;
+               query.light = u32(position.x);
+               let other = umbrage_shadow(query).visibility;
                return vec4f(shadow.tint * shadow.visibility, one * other * f32(shadow.split));
            }";
 
@@ -223,21 +228,72 @@ fn vertices_make_the_coordinates_of_every_split() {
             @location(4) fourth: vec3f,
         }
         @vertex fn vertex(@location(0) position: vec3f) -> Pixel {
-            let at = umbrage_places(position);
+            let at = umbrage_shadow_coordinates(position);
             return Pixel(vec4f(position, 1.0), position, at.first, at.second, at.third, at.fourth);
         }
         @fragment fn fragment(in: Pixel) -> @location(0) vec4f {
-            let places = UmbragePlaces(in.first, in.second, in.third, in.fourth);
-            let shadow = umbrage_shadow_at_places(places, in.position, vec3f(0.0, 1.0, 0.0), in.clip.xy);
+            let coordinates = UmbrageShadowCoordinates(in.first, in.second, in.third, in.fourth);
+            var query = umbrage_query(in.position, vec3f(0.0, 1.0, 0.0));
+            query.pixel = in.clip.xy;
+            let shadow = umbrage_shadow_from_coordinates(query, coordinates);
             return vec4f(shadow.visibility + umbrage_visibility(in.position, vec3f(0.0, 1.0, 0.0)));
         }";
     for maps in all_maps() {
-        let source = umbrage_shaders::receiver(0, Maps { places: true, ..maps }) + SHADER;
+        let source = umbrage_shaders::receiver(0, Maps { coordinates: true, ..maps }) + SHADER;
         validated(&source);
     }
-    let source = umbrage_shaders::receiver(0, Maps { places: true, frames: 1, ..WITHOUT_LOADS }) + SHADER;
-    assert!(to_webgl2(&source, naga::ShaderStage::Vertex, "vertex").contains("umbrage_places"));
+    let source = umbrage_shaders::receiver(0, Maps { coordinates: true, frames: 1, ..WITHOUT_LOADS }) + SHADER;
+    assert!(to_webgl2(&source, naga::ShaderStage::Vertex, "vertex").contains("umbrage_shadow_coordinates"));
     to_webgl2(&source, naga::ShaderStage::Fragment, "fragment");
     // Without the choice nobody has the functions, and nobody pays for them.
-    assert!(!umbrage_shaders::receiver(0, Maps::default()).contains("UmbragePlaces"));
+    assert!(!umbrage_shaders::receiver(0, Maps::default()).contains("UmbrageShadowCoordinates"));
+}
+
+/// What `ReceiverText` leaves to choose, one after the other; each with the value at `pick`, counted around.
+fn chosen(pick: [usize; 8], maps: Maps) -> ReceiverText {
+    use FilterKind::{Disc, Esm, Evsm4, Hard, Msm, Pcf2, Pcf3, Pcf7, Pcss, Vsm};
+    fn of<T: Copy>(values: &[T], at: usize) -> T {
+        values[at % values.len()]
+    }
+    let filters: &[Option<FilterKind>] = match maps.moments {
+        None => &[None, Some(Hard), Some(Pcf2), Some(Pcf3), Some(Pcf7), Some(Disc), Some(Pcss)],
+        Some(_) => &[None, Some(Esm), Some(Vsm), Some(Evsm4), Some(Msm)],
+    };
+    ReceiverText {
+        filter: of(filters, pick[0]),
+        selection: of(&[None, Some(SelectionKind::Depth), Some(SelectionKind::Map)], pick[1]),
+        metric: of(&[None, Some(MetricKind::ViewDepth), Some(MetricKind::Distance)], pick[2]),
+        transition: of(
+            &[None, Some(TransitionKind::Blend), Some(TransitionKind::Dither), Some(TransitionKind::Hard)],
+            pick[3],
+        ),
+        bias: of(&[None, Some(BiasKind::Plane), Some(BiasKind::Slope)], pick[4]),
+        projection: of(&[Projection::Any, Projection::Plain, Projection::Warped], pick[5]),
+        lights: of(&[Lights::Any, Lights::Single, Lights::Suns], pick[6]),
+        sliced: pick[7] % 2 == 0,
+        ..maps.into()
+    }
+}
+
+/// Every pair of values of two choices stands in some text, whatever the maps.
+#[test]
+fn every_pair_of_choices_is_valid_wgsl() {
+    for maps in [
+        Maps::default(),
+        Maps { r32f: true, ..Maps::default() },
+        Maps { bound: Bound::Cube, ..WITHOUT_LOADS },
+        Maps { coordinates: true, ..Maps::default() },
+        MOMENTS,
+    ] {
+        for (first, second) in (0..8).flat_map(|first| (first + 1..8).map(move |second| (first, second))) {
+            for (a, b) in (0..7).flat_map(|a| (0..4).map(move |b| (a, b))) {
+                // The others change along, so that no choice is looked at in one text alone.
+                let mut pick = [a + b; 8];
+                (pick[first], pick[second]) = (a, b);
+                let source = umbrage_shaders::receiver(1, chosen(pick, maps)) + FRAGMENT;
+                assert!(!source.contains("@if") && !source.contains("@else"), "{pick:?}");
+                validated(&source);
+            }
+        }
+    }
 }

@@ -8,7 +8,7 @@ use image::{GrayAlphaImage, LumaA};
 use rayon::prelude::*;
 use umbrage::{Light, View};
 
-use crate::truth::sun;
+use crate::truth::{Seen, sun};
 use crate::{Error, Hit, Result, Truth};
 
 /// Pixels of a block that is traced together, along each side, so that neighbouring rays find the tree in the cache.
@@ -19,6 +19,8 @@ const BLOCK: usize = 8;
 pub struct TruthMask {
     size: [usize; 2],
     light: Light,
+    /// `None` where hits are not from rays.
+    view: Option<View>,
     hits: Vec<Option<Hit>>,
 }
 
@@ -59,24 +61,34 @@ impl Truth {
         let rows = AtomicUsize::new(0);
         hits.par_chunks_mut(width * BLOCK).enumerate().for_each_init(Vec::new, |stack, (band, pixels)| {
             for (x, y) in in_blocks(width, pixels.len() / width) {
-                let at_x = (x as f64 + 0.5) / width as f64;
-                let at_y = ((band * BLOCK + y) as f64 + 0.5) / height as f64;
-                pixels[y * width + x] = self.look(view, light, (at_x, at_y), stack);
+                let pixel = [x, band * BLOCK + y];
+                pixels[y * width + x] = self.look(view, light, (pixel, [width, height]), stack);
             }
             let done = rows.fetch_add(pixels.len() / width, Ordering::Relaxed) + pixels.len() / width;
             progress(done as f32 / height as f32);
         });
-        Ok(TruthMask { size: [width, height], light: *light, hits })
+        Ok(TruthMask { size: [width, height], light: *light, view: Some(*view), hits })
     }
 
-    /// What the view sees at one point of its image, both coordinates in `[0, 1]` from the upper left corner.
-    fn look(&self, view: &View, light: &Light, (x, y): (f64, f64), stack: &mut Vec<u32>) -> Option<Hit> {
-        let (origin, direction) = view.ray_through(x, y);
+    /// What the view sees through the centre of one pixel of an image of a size.
+    fn look(
+        &self,
+        view: &View,
+        light: &Light,
+        (pixel, size): ([usize; 2], [usize; 2]),
+        stack: &mut Vec<u32>,
+    ) -> Option<Hit> {
+        let (origin, direction) = ray_of(view, pixel, size);
         let frustum = view.frustum();
         let mut hit = self.first_hit(origin, direction, (frustum.near, frustum.far), stack)?;
-        hit.lit = self.is_lit((hit.position, hit.normal), light, Some(hit.triangle), stack);
+        hit.lit = self.is_lit(&self.seen(origin, direction, &hit), hit.position, light, stack);
         Some(hit)
     }
+}
+
+/// The ray through a pixel's centre: origin in the world, and direction.
+fn ray_of(view: &View, pixel: [usize; 2], size: [usize; 2]) -> (DVec3, DVec3) {
+    view.ray_through((pixel[0] as f64 + 0.5) / size[0] as f64, (pixel[1] as f64 + 0.5) / size[1] as f64)
 }
 
 impl TruthMask {
@@ -92,7 +104,7 @@ impl TruthMask {
                 expected: [size[0] * size[1], 1],
             });
         }
-        Ok(Self { size, light: sun(-to_light)?, hits })
+        Ok(Self { size, light: sun(-to_light)?, view: None, hits })
     }
 
     /// Width and height in pixels.
@@ -111,6 +123,13 @@ impl TruthMask {
     #[must_use]
     pub fn hits(&self) -> &[Option<Hit>] {
         &self.hits
+    }
+
+    /// What was hit at a pixel as a point to ask light from, by the truth that the mask is of.
+    pub(crate) fn seen(&self, truth: &Truth, pixel: usize, hit: &Hit) -> Seen {
+        let Some(view) = &self.view else { return truth.probed(hit.position, hit.normal) };
+        let (origin, direction) = ray_of(view, [pixel % self.size[0], pixel / self.size[0]], self.size);
+        truth.seen(origin, direction, hit)
     }
 
     /// As a mask image: 255 lit, 0 shadowed or turned away from the light; alpha 255, or 0 where nothing was hit.

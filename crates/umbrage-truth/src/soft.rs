@@ -8,6 +8,7 @@ use image::GrayAlphaImage;
 use rayon::prelude::*;
 
 use crate::mask::mask_image;
+use crate::truth::Seen;
 use crate::{Error, Result, Truth, TruthMask};
 
 /// Fewest and most directions of a set.
@@ -96,17 +97,14 @@ impl Truth {
         let [width, height] = mask.size();
         let mut visibility = vec![None; width * height];
         let rows = AtomicUsize::new(0);
-        visibility.par_chunks_mut(width).zip(mask.hits().par_chunks(width)).for_each_init(
-            Vec::new,
-            |stack, (answers, hits)| {
-                for (answer, hit) in answers.iter_mut().zip(hits) {
-                    *answer = hit.map(|hit| {
-                        self.visible_share((hit.position, hit.normal), Some(hit.triangle), &directions, stack)
-                    });
-                }
-                progress((rows.fetch_add(1, Ordering::Relaxed) + 1) as f32 / height as f32);
-            },
-        );
+        visibility.par_chunks_mut(width).enumerate().for_each_init(Vec::new, |stack, (y, answers)| {
+            for (x, answer) in answers.iter_mut().enumerate() {
+                let pixel = y * width + x;
+                *answer = mask.hits()[pixel]
+                    .map(|hit| self.visible_share(&mask.seen(self, pixel, &hit), hit.normal, &directions, stack));
+            }
+            progress((rows.fetch_add(1, Ordering::Relaxed) + 1) as f32 / height as f32);
+        });
         Ok(SoftTruth { size: [width, height], visibility })
     }
 
@@ -126,22 +124,16 @@ impl Truth {
         }
         Ok(points
             .par_iter()
-            .map_init(Vec::new, |stack, &point| self.visible_share(point, None, &directions, stack))
+            .map_init(Vec::new, |stack, &(point, normal)| {
+                self.visible_share(&self.probed(point, normal), normal, &directions, stack)
+            })
             .collect())
     }
 
-    fn visible_share(
-        &self,
-        (position, normal): (DVec3, DVec3),
-        own: Option<u32>,
-        directions: &[DVec3],
-        stack: &mut Vec<u32>,
-    ) -> f32 {
+    fn visible_share(&self, point: &Seen, normal: DVec3, directions: &[DVec3], stack: &mut Vec<u32>) -> f32 {
         let seen = directions
             .iter()
-            .filter(|&&to_light| {
-                normal.dot(to_light) > 0.0 && self.sees_light(position, to_light, f64::INFINITY, own, stack)
-            })
+            .filter(|&&to_light| normal.dot(to_light) > 0.0 && self.sees_light(point, to_light, f64::INFINITY, stack))
             .count();
         seen as f32 / directions.len() as f32
     }

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use umbrage_scene::{AlphaMode, Pose, Primitive, Scene};
 
 use crate::alpha::{AlphaPicture, AlphaTest};
+use crate::trace::EDGE_ERROR;
 use crate::{Error, Result};
 
 /// Farther than this from the origin, in metres, `f32` boxes and their inverse directions would overflow.
@@ -135,7 +136,9 @@ impl Triangles {
                 }
                 let low = corners[0].min(corners[1]).min(corners[2]);
                 let high = corners[0].max(corners[1]).max(corners[2]);
-                *bounds = Aabb::new(rounded(low, round_down), rounded(high, round_up));
+                // Room for rays that pass an edge within its rounding.
+                let room = 2.0 * EDGE_ERROR * low.abs().max(high.abs()).max_element();
+                *bounds = Aabb::new(rounded(low - room, round_down), rounded(high + room, round_up));
                 Ok(())
             })
         })?;

@@ -6,12 +6,15 @@ use umbrage::{DirectionalLight, Light};
 use umbrage_scene::{Pose, Scene};
 
 use crate::bvh::Tree;
+use crate::contact::{Contact, F64_ERROR};
 use crate::trace::{Crossing, Ray};
 use crate::triangles::{Surface, Triangle, Triangles};
 use crate::{Error, Result};
 
-/// Least distance in metres at which a triangle throws a shadow on a point: surfaces lie on each other in real scenes.
-const LEAST_OCCLUDER_DISTANCE: f64 = 0.002;
+/// How far a shadow ray's start is lifted off its surface, towards where the surface is seen from, as a share of the numbers that
+/// the point is made of. The start then lies in the eye's own part of space, whatever edge or crease the point is on: 2^-40
+/// is some thousand times what `f64` rounds a point by, and a ten-thousandth of what a vertex in `f32` is rounded by.
+const LIFT: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// The exact geometry of a posed scene. It borrows nothing; build it once per pose and ask as often as needed.
 ///
@@ -21,6 +24,29 @@ pub struct Truth {
     /// In the order of the tree's leaves.
     leaves: Vec<Triangle>,
     tree: Tree,
+    contact: Contact,
+}
+
+/// Least cosine between the normals of surfaces that can lie on each other: 0.6°, more than rounding turns all but the smallest triangles.
+const PARALLEL: f64 = 0.999_95;
+
+/// How far behind its start a shadow ray begins, in lifts: as much as rounding moves crossings with planes that light meets at a
+/// millionth.
+const BEHIND: f64 = 1e6;
+
+/// A point that is looked at, from which the light is asked for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen {
+    /// The point, relative to [`Triangles::origin`].
+    point: DVec3,
+    /// Geometric unit normal, turned towards the eye.
+    normal: DVec3,
+    /// Unit vector from the point to where it is seen from.
+    to_eye: DVec3,
+    /// Bound on how far the numbers that the point is made of reach, in metres: its rounding follows from it.
+    reach: f64,
+    /// The number of the triangle that it lies on, if that is known.
+    own: Option<u32>,
 }
 
 /// The first thing that a primary ray meets.
@@ -54,7 +80,8 @@ impl Truth {
         let triangles = Triangles::gather(scene, pose, near_point)?;
         let (tree, order) = Tree::build(&triangles.boxes(scene, pose)?);
         let leaves = triangles.in_order(scene, pose, &order);
-        Ok(Self { triangles, leaves, tree })
+        let contact = Contact::new(scene, pose);
+        Ok(Self { triangles, leaves, tree, contact })
     }
 
     /// How many triangles rays can meet.
@@ -70,8 +97,8 @@ impl Truth {
     }
 
     /// Hard visibility of world points: 1 if nothing stands between the point and the light, else 0; 0 where the normal is
-    /// turned away from the light. `light_travel` is the way the light travels. No triangle is known to be the point's own,
-    /// so only distance tells: occluders count beyond τ (see [the crate's page](crate)).
+    /// turned away from the light. `light_travel` is the way the light travels. No triangle is known to be the point's own, and no eye
+    /// looks at it: it is taken as seen along its normal, and what it lies on within τ (see [the crate's page](crate)) is its own surface.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] if the light has no direction or a point is not finite.
@@ -92,7 +119,7 @@ impl Truth {
             .par_iter()
             .with_min_len(64)
             .map_init(Vec::new, |stack, &(point, normal)| {
-                f32::from(u8::from(self.is_lit((point, normal), light, None, stack)))
+                f32::from(u8::from(self.is_lit(&self.probed(point, normal), point, light, stack)))
             })
             .collect())
     }
@@ -122,38 +149,73 @@ impl Truth {
         best.map(|(crossing, triangle)| self.hit(origin, direction, &crossing, triangle))
     }
 
-    /// Whether a surface faces the light and nothing stands between.
-    pub(crate) fn is_lit(
-        &self,
-        (point, normal): (DVec3, DVec3),
-        light: &Light,
-        own: Option<u32>,
-        stack: &mut Vec<u32>,
-    ) -> bool {
-        let to_light = light.to_light(point);
-        let distance = light.position().map_or(f64::INFINITY, |position| position.distance(point));
-        normal.dot(to_light) > 0.0 && (!light.reaches(point) || self.sees_light(point, to_light, distance, own, stack))
+    /// A world point with its normal that nobody is known to look at.
+    pub(crate) fn probed(&self, point: DVec3, normal: DVec3) -> Seen {
+        let relative = point - self.triangles.origin;
+        // The point was rounded in the world, its caller's arithmetic included.
+        let reach = relative.length() + point.length() * F64_ERROR / LIFT;
+        Seen { point: relative, normal, to_eye: normal.normalize_or_zero(), reach, own: None }
     }
 
-    /// Whether nothing but triangle `own` stands between a world point and a light `distance` metres away, beyond τ.
-    pub(crate) fn sees_light(
-        &self,
-        point: DVec3,
-        to_light: DVec3,
-        distance: f64,
-        own: Option<u32>,
-        stack: &mut Vec<u32>,
-    ) -> bool {
-        let ray = shadow_ray(point, self.triangles.origin, to_light, distance);
+    /// What a primary ray met, `origin` in the world.
+    pub(crate) fn seen(&self, origin: DVec3, direction: DVec3, hit: &Hit) -> Seen {
+        // As exact as the ray itself, where the hit's own position is rounded in the world.
+        let eye = origin - self.triangles.origin;
+        let way = direction * hit.depth;
+        let reach = eye.length() + way.length();
+        Seen { point: eye + way, normal: hit.normal, to_eye: -direction.normalize(), reach, own: Some(hit.triangle) }
+    }
+
+    /// Whether a surface faces the light and nothing stands between; `point` is the seen point in the world.
+    pub(crate) fn is_lit(&self, seen: &Seen, point: DVec3, light: &Light, stack: &mut Vec<u32>) -> bool {
+        let to_light = light.to_light(point);
+        let distance = light.position().map_or(f64::INFINITY, |position| position.distance(point));
+        seen.normal.dot(to_light) > 0.0 && (!light.reaches(point) || self.sees_light(seen, to_light, distance, stack))
+    }
+
+    /// Whether nothing stands between a point and a light `distance` metres away. `to_light` is a unit vector.
+    pub(crate) fn sees_light(&self, seen: &Seen, to_light: DVec3, distance: f64, stack: &mut Vec<u32>) -> bool {
+        let ray = seen.shadow_ray(to_light, distance);
         let mut free = true;
         self.tree.walk(&ray.boxes, ray.t_max, stack, |range, _| {
-            free = !self.leaves[range].iter().any(|triangle| {
-                Some(triangle.number) != own
-                    && ray.meets(&triangle.corners, ray.t_max).is_some_and(|at| self.blocks(triangle, &at))
-            });
+            free = !self.leaves[range].iter().any(|triangle| self.is_between(triangle, &ray, seen, to_light));
             free
         });
         free
+    }
+
+    /// Whether a triangle stops the light on its way to a point.
+    fn is_between(&self, triangle: &Triangle, ray: &Ray, seen: &Seen, to_light: DVec3) -> bool {
+        if Some(triangle.number) == seen.own {
+            return false;
+        }
+        let Some(crossing) = ray.meets(&triangle.corners, ray.t_max) else { return false };
+        self.blocks(triangle, &crossing) && !self.is_own_surface(triangle, &crossing, seen, to_light)
+    }
+
+    /// Whether a triangle that the shadow ray meets is one with the surface that the ray starts from.
+    ///
+    /// A parallel one is if the point lies in its plane, as far as the scene's data can tell: a decal, the other face of a leaf, the
+    /// neighbour across a seam. Any other is none: the wall beside a crease stops light however near the crease the point is. Only where
+    /// rounding hides on which side of the wall the point is, light counts as stopped if the wall parts it from the eye.
+    fn is_own_surface(&self, triangle: &Triangle, crossing: &Crossing, seen: &Seen, to_light: DVec3) -> bool {
+        let Some(normal) = area_normal(triangle).try_normalize() else { return true };
+        let from_plane = (crossing.t * normal.dot(to_light)).abs();
+        let rounding = (F64_ERROR + LIFT) * seen.reach;
+        if crossing.t < 0.0 && from_plane > rounding {
+            // Behind the point.
+            return true;
+        }
+        if normal.dot(seen.normal).abs() < PARALLEL {
+            return from_plane <= rounding && normal.dot(seen.to_eye) * normal.dot(to_light) > 0.0;
+        }
+        let own = seen.own.map(|number| &self.triangles.surfaces[self.triangles.surface_of(number)]);
+        let there = self.surface(triangle);
+        if from_plane > rounding + self.contact.most(there) + self.contact.most(own.unwrap_or(there)) {
+            return false;
+        }
+        let (there, here) = ((there, &triangle.corners), (own, seen.point));
+        from_plane <= rounding + self.contact.tolerance(there, here, normal, self.triangles.origin)
     }
 
     fn hit(&self, origin: DVec3, direction: DVec3, crossing: &Crossing, triangle: &Triangle) -> Hit {
@@ -215,18 +277,18 @@ impl Truth {
 
     /// The same visibility without the tree.
     #[cfg(test)]
-    pub(crate) fn sees_light_by_brute_force(
-        &self,
-        point: DVec3,
-        to_light: DVec3,
-        distance: f64,
-        own: Option<u32>,
-    ) -> bool {
-        let ray = shadow_ray(point, self.triangles.origin, to_light, distance);
-        !self.leaves.iter().any(|triangle| {
-            Some(triangle.number) != own
-                && ray.meets(&triangle.corners, ray.t_max).is_some_and(|at| self.blocks(triangle, &at))
-        })
+    pub(crate) fn sees_light_by_brute_force(&self, seen: &Seen, to_light: DVec3, distance: f64) -> bool {
+        let ray = seen.shadow_ray(to_light, distance);
+        !self.leaves.iter().any(|triangle| self.is_between(triangle, &ray, seen, to_light))
+    }
+}
+
+impl Seen {
+    fn shadow_ray(&self, to_light: DVec3, distance: f64) -> Ray {
+        // It begins a little behind its start: on a crease whose wall the eye looks along, the start is in the wall itself, and where light
+        // runs along that wall, too, rounding moves the crossing far.
+        let lift = LIFT * self.reach;
+        Ray::new(self.point + lift * self.to_eye, to_light, -BEHIND * lift, distance)
     }
 }
 
@@ -236,20 +298,10 @@ impl std::fmt::Debug for Truth {
     }
 }
 
-fn shadow_ray(point: DVec3, origin: DVec3, to_light: DVec3, distance: f64) -> Ray {
-    Ray::new(point - origin, to_light, least_occluder_distance(point).next_up(), distance)
-}
-
 /// Twice the triangle's area along its normal, by the right-hand rule.
 fn area_normal(triangle: &Triangle) -> DVec3 {
     let [a, b, c] = triangle.corners;
     (b - a).cross(c - a)
-}
-
-/// τ: occluders count beyond max(2 mm, 4 ulp(|p|)), with the ulp of `f32`, in which scenes are stored and drawn.
-pub(crate) fn least_occluder_distance(point: DVec3) -> f64 {
-    let length = point.length() as f32;
-    LEAST_OCCLUDER_DISTANCE.max(4.0 * f64::from(length.next_up() - length))
 }
 
 /// A sun whose light travels along `light_travel`.

@@ -18,8 +18,8 @@ struct Varying { @builtin(position) clip: vec4f, @location(0) position: vec3f, @
     let light = sun * umbrage_visibility(in.position, in.normal); // ◐ the one call
     return vec4f(vec3f(0.10, 0.13, 0.2) + light * vec3f(0.8, 0.72, 0.6), 1.0);
 }";
-const CASTER: &str = "@vertex fn vertex(@location(0) position: vec3f, copy: UmbrageCopy) -> UmbrageCast {
-    return umbrage_cast(position, copy); // ◐ all that a caster's shader does
+const CASTER: &str = "@vertex fn vertex(@location(0) position: vec3f, instance: UmbrageInstance) -> UmbrageCast {
+    return umbrage_cast(position, instance); // ◐ all that a caster's shader does
 }";
 
 /// Appends a box of 36 vertices, a position and a normal each, and returns its bounds.
@@ -116,7 +116,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         pass.set_pipeline(&casters);
         pass.set_bind_group(0, maps.caster_bind_group(index), &[]);
         pass.set_vertex_buffer(0, vertex_buffer.slice(..));
-        maps_of.casters(plan).for_each(|(caster, copies)| pass.draw(36 * caster..36 * (caster + 1), copies));
+        maps_of.casters(plan).for_each(|(caster, instances)| pass.draw(36 * caster..36 * (caster + 1), instances));
     }
 
     // The app's own pass, with the maps bound.

@@ -224,7 +224,8 @@ pub enum Error {
     },
     /// The plan has more faces than its light's slot.
     #[error(
-        "lights[{light}] is {slot:?}, but its plan has {faces} faces; create the ShadowMaps with LightSlot::Cube there"
+        "lights[{light}] is {slot:?}, but its plan is of another kind of light, with {faces} faces; create the ShadowMaps with \
+         LightSlot::from(that light) there"
     )]
     LightSlot {
         /// Index into [`crate::ShadowMapsOptions::lights`].

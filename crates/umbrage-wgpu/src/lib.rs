@@ -8,8 +8,8 @@
 //! 1. Request the device with `adapter.features() & umbrage_wgpu::optional_features()`, then make the maps once:
 //!    `ShadowMaps::new(&device, &ShadowMapsOptions::default())`, and a planner that knows them:
 //!    `Planner::new(ShadowSettings { image_size, ..maps.matching_settings() })`.
-//! 2. **Cast.** Put [`ShadowMaps::caster_wgsl`] before everything else in your vertex shader's module; it takes an `UmbrageCopy` and
-//!    returns `umbrage_cast(position, copy)`. The pipeline has [`ShadowMaps::caster_layout`] in that group,
+//! 2. **Cast.** Put [`ShadowMaps::caster_wgsl`] before everything else in your vertex shader's module; it takes an `UmbrageInstance` and
+//!    returns `umbrage_cast(position, instance)`. The pipeline has [`ShadowMaps::caster_layout`] in that group,
 //!    [`ShadowMaps::caster_depth_stencil`], [`ShadowMaps::caster_primitive`], [`ShadowMaps::caster_multiview_mask`] and the colour
 //!    targets of [`ShadowMaps::caster_targets`]: none, and a fragment shader only if it discards, but where maps are colours.
 //! 3. **Receive.** Put [`ShadowMaps::receiver_wgsl`] before your shading and multiply the sun's light by
@@ -31,20 +31,28 @@
 //!
 //! | function | answer |
 //! |---|---|
-//! | `umbrage_cast(position: vec3f, copy: UmbrageCopy) -> UmbrageCast` | what a caster's vertex shader returns |
-//! | `umbrage_cast_copy(position, copy, code: u32) -> UmbrageCast` | the same for apps that keep the code of each copy among their own instances |
+//! | `umbrage_cast(position: vec3f, instance: UmbrageInstance) -> UmbrageCast` | what a caster's vertex shader returns |
+//! | `umbrage_cast_at(position: vec3f, code: u32) -> UmbrageCast` | the same for a shader that takes `@builtin(instance_index)` itself; drawn into several layers at once it also takes `view: u32` |
 //! | `umbrage_caster_depth(position: vec4f) -> f32` | what a caster's fragment shader returns where maps are colours |
 //! | `umbrage_in_slice(position) -> bool` | whether a fragment belongs to the slice that is drawn, where one map is reused |
-//! | `umbrage_visibility(position: vec3f, normal: vec3f) -> f32` | 1 lit, 0 in shadow or turned away |
-//! | `umbrage_shadow(position, normal) -> UmbrageShadow` | the same with `split: i32` (−1: none), `tint: vec3f` and `light: vec3f`, what to multiply the light by ([`FrameOptions::shadow_colour`]) |
-//! | `umbrage_shadow_at_pixel(position, normal, pixel: vec2f) -> UmbrageShadow` | the same for a fragment's `@builtin(position).xy`: for dithered borders and turned discs |
-//! | `umbrage_footprint(position, dx: vec3f, dy: vec3f, pixel: vec2f) -> UmbrageFootprint` | what a fragment covers, from `dpdx` and `dpdy` of its position: in fragment shaders, in uniform control flow |
-//! | `umbrage_shadow_with(position, normal, footprint) -> UmbrageShadow` | the same for a fragment with that footprint: what filters of moments want |
-//! | `umbrage_visibility_in_split(position, normal, split: u32) -> f32` | what one map alone says, for points off screen |
+//! | `umbrage_visibility(position: vec3f, normal: vec3f) -> f32` | of the first light: 1 lit, 0 in shadow or turned away |
+//! | `umbrage_shadow(query: UmbrageQuery) -> UmbrageShadow` | of any light: `visibility: f32`, `split: i32` (−1: none), `tint: vec3f` and `light: vec3f`, what to multiply the light by ([`FrameOptions::shadow_colour`]) |
+//! | `umbrage_shadow_from_coordinates(query, coordinates) -> UmbrageShadow` | the same from coordinates that vertices made ([`ShadowMaps::receiver_wgsl_with_coordinates`]) |
 //!
-//! All but `umbrage_footprint` need no derivatives and work in any control flow and in every stage; filters of moments
-//! ([`Filter::is_prefiltered`], with [`ShadowMaps::filter`] between steps 4 and 5) then look at their finest level, which shimmers far away. The two texts belong into two shader modules:
-//! both declare what they share.
+//! A query is a struct that one of two functions fills:
+//!
+//! ```wgsl
+//! var query = umbrage_query(position, normal);                                  // in any stage
+//! var query = umbrage_fragment_query(position, normal, dpdx(position), dpdy(position), pixel.xy);
+//! query.light = 1u;   // another of several lights
+//! query.split = 2;    // one split alone, for points off screen
+//! ```
+//!
+//! `umbrage_fragment_query` belongs in uniform control flow. It knows the fragment's pixel, which dithered borders and turned discs need,
+//! and what the pixel covers, which filters of moments want ([`Filter::is_prefiltered`], with [`ShadowMaps::filter`] between steps 4 and
+//! 5); without it they look at their finest level, which shimmers far away. Everything else works in any control flow and in every stage.
+//!
+//! Casters' and receivers' texts belong into two shader modules: both declare what they share.
 
 mod contact;
 mod error;
@@ -61,7 +69,7 @@ pub use maps::{MapPass, ShadowMaps, Slice, optional_features};
 pub use mask::{MaskFrame, MaskNormals, ShadowMask};
 pub use moments::MomentStorage;
 pub use options::{
-    DepthFormat, Derivatives, Filter, FrameOptions, Generation, LightSlot, ReceiverBias, ShadowMapsOptions, Softness,
-    Storage, Transition,
+    DepthFormat, Derivatives, Filter, Fixed, FrameOptions, Generation, LightSlot, ReceiverBias, ShadowMapsOptions,
+    Softness, Storage, Transition,
 };
-pub use umbrage_shaders::layout::MAX_PLACES;
+pub use umbrage_shaders::layout::MAX_COORDINATES;

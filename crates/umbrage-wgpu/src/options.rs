@@ -1,7 +1,9 @@
 //! What is settled when the maps are made, and what may change with every frame.
 
 use glam::DVec3;
+use umbrage::{Bands, Selection};
 use umbrage_shaders::layout::{BiasKind, FilterKind, TransitionKind};
+use umbrage_shaders::twin;
 
 use crate::{Error, Result};
 
@@ -86,15 +88,11 @@ pub enum Filter {
     Msm,
 }
 
-/// Texels that a disc of no given width reaches: its radius of 3 and a tap's own.
-const DISC_REACH: f64 = 4.0;
+/// Texels that a disc of no given width reaches: its radius and a tap's own.
+const DISC_REACH: f64 = twin::DISC_RADIUS as f64 + 1.0;
 
 /// Texels that the narrowest disc reaches: that of one tap, and the tap's own.
 const LEAST_REACH: f64 = 2.0;
-
-/// Metres from a surface within which casters give it a penumbra as wide as the sun asks for; see `MOST_BLOCKER_M` in
-/// shaders/lib/filter.wesl.
-const MOST_BLOCKER_M: f64 = 200.0;
 
 impl Filter {
     /// How far the filter reaches from the sample at most, in texels: what `umbrage::ShadowSettings::filter_radius` wants.
@@ -121,9 +119,10 @@ impl Filter {
         match (self, softness.width_m) {
             (Self::Disc, None) => (DISC_REACH, None),
             (Self::Disc, Some(width)) => (self.radius_texels(), Some(0.5 * f64::from(width))),
-            (Self::Pcss, _) => {
-                (self.radius_texels(), Some((0.5 * f64::from(softness.sun_angle)).tan() * MOST_BLOCKER_M))
-            }
+            (Self::Pcss, _) => (
+                self.radius_texels(),
+                Some((0.5 * f64::from(softness.sun_angle)).tan() * f64::from(twin::MOST_BLOCKER_M)),
+            ),
             _ => (self.radius_texels(), None),
         }
     }
@@ -236,7 +235,7 @@ pub struct Softness {
     /// Angle in radians across the sun, for [`Filter::Pcss`]: 0 to a right angle. The real one is 0.0093 (0.53°) wide.
     pub sun_angle: f32,
     /// Whether the pattern of a disc turns from pixel to pixel, which makes noise out of bands. Needs
-    /// `umbrage_shadow_at_pixel`.
+    /// a query that knows its pixel (`umbrage_fragment_query`).
     pub turned: bool,
     /// Share of light that filters of moments take for a leak, 0 to 0.9: what is less is shadow. More hides leaks and widens shadows.
     pub bleeding: f32,
@@ -286,7 +285,8 @@ pub enum Transition {
     /// Both are asked and mixed.
     #[default]
     Blend,
-    /// Each pixel asks one of both, chosen by noise: half the samples. Needs `umbrage_shadow_at_pixel`.
+    /// Each pixel asks one of both, chosen by noise: half the samples. Needs a query that knows its
+    /// pixel (`umbrage_fragment_query`).
     Dither,
     /// Each pixel asks the split of its view depth.
     Hard,
@@ -309,7 +309,7 @@ pub enum Derivatives {
     /// From how the position changes from pixel to pixel, which no split's border interrupts, by each pixel's own split.
     #[default]
     Analytic,
-    /// All four pixels of a quad use the split of the farthest, so that differences between them mean something (source 002's way,
+    /// All four pixels of a quad use the split of the farthest, so that differences between them mean something (\[PSVSM07\]'s way,
     /// right for any four splits).
     Quad,
 }
@@ -412,6 +412,8 @@ pub enum LightSlot {
     /// A sun or a spot light: one map for each split.
     #[default]
     Single,
+    /// A sun alone: receivers' text has no local lights in it.
+    Sun,
     /// A point light: six maps for each split, one for each face of a cube. Takes a sun or a spot light, too.
     Cube,
 }
@@ -421,7 +423,7 @@ impl LightSlot {
     #[must_use]
     pub const fn faces(self) -> usize {
         match self {
-            Self::Single => 1,
+            Self::Single | Self::Sun => 1,
             Self::Cube => 6,
         }
     }
@@ -429,7 +431,55 @@ impl LightSlot {
 
 impl From<umbrage::Light> for LightSlot {
     fn from(light: umbrage::Light) -> Self {
-        if light.faces() == 1 { Self::Single } else { Self::Cube }
+        match light {
+            umbrage::Light::Directional(_) => Self::Sun,
+            umbrage::Light::Spot(_) => Self::Single,
+            umbrage::Light::Point(_) => Self::Cube,
+        }
+    }
+}
+
+/// What receivers' text is made for. `None`: the text has all of it, and every frame or plan may say otherwise. What is fixed makes a
+/// shader that compiles faster and runs faster; a frame or a plan that says otherwise is then an error
+/// ([`Error::ConflictingOptions`]). The filter, the storage and the kinds of lights are fixed always.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Fixed {
+    /// How a sun's splits are chosen: `umbrage::ShadowSettings::selection`. Left out of the text where all lights are
+    /// [`LightSlot::Sun`].
+    pub selection: Option<Selection>,
+    /// What a sun's splits are counted by: `umbrage::ShadowSettings::bands`. Likewise.
+    pub bands: Option<Bands>,
+    /// Whether a sun's maps are warped: all of them, or none.
+    pub warped: Option<bool>,
+    /// [`FrameOptions::transition`].
+    pub transition: Option<Transition>,
+    /// [`FrameOptions::bias`].
+    pub bias: Option<ReceiverBias>,
+}
+
+impl Fixed {
+    /// Whether a plan and a frame say what the text was made for.
+    pub(crate) fn check(&self, plan: &umbrage::ShadowPlan, options: &FrameOptions) -> Result<()> {
+        fn agree<T: PartialEq + std::fmt::Debug>(name: &str, fixed: Option<T>, said: T) -> Result<()> {
+            match fixed {
+                Some(fixed) if fixed != said => Err(Error::ConflictingOptions {
+                    first: format!("{name} fixed to {fixed:?}"),
+                    second: format!("{name} {said:?}"),
+                    reason: "the receivers' text was made without it; change ShadowMapsOptions::fixed or what says otherwise",
+                }),
+                _ => Ok(()),
+            }
+        }
+        let bands = if plan.radial_eye.is_some() { Bands::Radial } else { Bands::Planar };
+        // A local light's maps are chosen by depth, whatever suns do; texts that know local lights have both.
+        if plan.light.is_none_or(|light| light.position().is_none()) {
+            agree("selection", self.selection, plan.selection)?;
+            agree("bands", self.bands, bands)?;
+        }
+        agree("transition", self.transition, options.transition)?;
+        agree("bias", self.bias, options.bias)?;
+        let suns = plan.splits.iter().filter(|split| split.light_position.is_none());
+        suns.map(|split| split.warp.is_some()).try_for_each(|warped| agree("warped", self.warped, warped))
     }
 }
 
@@ -455,6 +505,8 @@ pub struct ShadowMapsOptions {
     /// The lights that throw shadows at once: one sun or spot light by default. Each has maps of its own, of the same sizes, in the same
     /// texture. Several lights and point lights need [`Storage::Array`] and [`Generation::PerSplit`].
     pub lights: Vec<LightSlot>,
+    /// What receivers' text is made for.
+    pub fixed: Fixed,
 }
 
 impl ShadowMapsOptions {
@@ -479,6 +531,7 @@ impl Default for ShadowMapsOptions {
             storage: Storage::default(),
             generation: Generation::default(),
             lights: vec![LightSlot::Single],
+            fixed: Fixed::default(),
         }
     }
 }

@@ -7,7 +7,7 @@ use umbrage::{Selection, ShadowPlan};
 use umbrage_shaders::layout::{self, SelectionKind};
 
 use crate::maps::storage::Tile;
-use crate::{Error, Filter, FrameOptions, Result, ShadowMapsOptions, local};
+use crate::{Error, Filter, FrameOptions, LightSlot, Result, ShadowMapsOptions, local};
 
 /// The square of texels that clip space covers when a split is drawn: the map and a guard band around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,7 +70,9 @@ pub(crate) fn frames(
     }
     let mut frames = Vec::new();
     for (light, (plan, slot)) in plans.iter().zip(&maps.lights).enumerate() {
-        if plan.faces() > slot.faces() {
+        maps.fixed.check(plan, options)?;
+        let is_local = plan.light.is_some_and(|light| light.position().is_some());
+        if plan.faces() > slot.faces() || (is_local && *slot == LightSlot::Sun) {
             return Err(Error::LightSlot { light, faces: plan.faces(), slot: *slot });
         }
         let for_suns = maps.filter == Filter::Pcss || maps.filter.is_prefiltered();
@@ -413,7 +415,7 @@ mod tests {
         }
     }
 
-    /// Source 003, Listings 4.1.4 and 4.1.5: map coordinates that a vertex shader hands on, and those that a fragment makes of an
+    /// \[PCSM\], Listings 4.1.4 and 4.1.5: map coordinates that a vertex shader hands on, and those that a fragment makes of an
     /// interpolated position. The source calls the second wrong; perspective-correct interpolation is exact for both, as both are affine
     /// in the position, and in `f32` they differ by rounding alone.
     #[test]

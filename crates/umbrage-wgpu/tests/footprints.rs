@@ -18,8 +18,8 @@ fn drawn(world: &World, expression: &str) -> Vec<[f32; 4]> {
 }
 @fragment fn fs(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
     let position = vec3f(pixel.x, 0.0, pixel.y - 32.0);
-    let footprint = umbrage_footprint(position, dpdx(position), dpdy(position), pixel.xy);
-    let shadow = umbrage_shadow_with(position, vec3f(0.0, 1.0, 0.0), footprint);
+    let up = vec3f(0.0, 1.0, 0.0);
+    let shadow = umbrage_shadow(umbrage_fragment_query(position, up, dpdx(position), dpdy(position), pixel.xy));
     return vec4f(shadow.visibility, f32(shadow.split), "
         + expression
         + ");

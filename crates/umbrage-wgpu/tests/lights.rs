@@ -49,7 +49,7 @@ fn lights() -> [Light; 4] {
     ]
 }
 
-/// What `umbrage_visibility_of` and `umbrage_shadow_of` said of four lights.
+/// What `umbrage_shadow` said of four lights.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 struct Answers {
@@ -68,8 +68,11 @@ struct Answers { visibility: vec4f, split: vec4i }
     let n = asks[id.x].normal.xyz;
     var it: Answers;
     for (var light = 0u; light < 4u; light++) {
-        it.visibility[light] = umbrage_visibility_of(light, p, n);
-        it.split[light] = umbrage_shadow_of(light, p, n).split;
+        var query = umbrage_query(p, n);
+        query.light = light;
+        let shadow = umbrage_shadow(query);
+        it.visibility[light] = shadow.visibility;
+        it.split[light] = shadow.split;
     }
     answers[id.x] = it;
 }";

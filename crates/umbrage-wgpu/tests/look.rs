@@ -30,7 +30,7 @@ fn shadows_have_the_colour_and_the_strength_that_they_are_given() {
                @group(0) @binding(1) var<storage, read_write> answers: array<vec4f>;
                @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
                    if id.x >= arrayLength(&asks) { return; }
-                   let shadow = umbrage_shadow(asks[id.x].position.xyz, asks[id.x].normal.xyz);
+                   let shadow = umbrage_shadow(umbrage_query(asks[id.x].position.xyz, asks[id.x].normal.xyz));
                    answers[id.x] = vec4f(shadow.light, shadow.visibility);
                }";
         world.gpu.compute(&source, &asks, Some(&world.maps))

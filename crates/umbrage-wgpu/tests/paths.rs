@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Ask, Gpu, World, ask, cuboid, ground, plan};
+use common::{Ask, Gpu, IN_SPLIT, World, ask, cuboid, ground, plan};
 use glam::{DVec3, Vec3};
 use umbrage::ShadowPlan;
 use umbrage_wgpu::{
@@ -172,6 +172,7 @@ fn filters_never_see_a_neighbour() {
             }
             let only: Vec<Ask> = asks.iter().map(|(_, ask)| *ask).collect();
             let source = world.maps.receiver_wgsl(1)
+                + IN_SPLIT
                 + "struct Ask { position: vec4f, normal: vec4f }
                    @group(0) @binding(0) var<storage, read> asks: array<Ask>;
                    @group(0) @binding(1) var<storage, read_write> answers: array<vec4f>;
@@ -179,8 +180,7 @@ fn filters_never_see_a_neighbour() {
                        if id.x >= arrayLength(&asks) { return; }
                        let p = asks[id.x].position.xyz;
                        let n = asks[id.x].normal.xyz;
-                       answers[id.x] = vec4f(umbrage_visibility_in_split(p, n, 0u), umbrage_visibility_in_split(p, n, 1u),
-                           umbrage_visibility_in_split(p, n, 2u), umbrage_visibility_in_split(p, n, 3u));
+                       answers[id.x] = vec4f(in_split(p, n, 0), in_split(p, n, 1), in_split(p, n, 2), in_split(p, n, 3));
                    }";
             let answers: Vec<[f32; 4]> = world.gpu.compute(&source, &only, Some(&world.maps));
             for ((split, ask), answer) in asks.iter().zip(&answers) {

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Gpu, World, ask, plan, quad};
+use common::{Gpu, IN_SPLIT, World, ask, plan, quad};
 use glam::{DVec3, Vec3};
 use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions, Softness};
 
@@ -35,12 +35,10 @@ fn softness_of(values: impl Iterator<Item = f64>, step: f64) -> f64 {
 /// A program that asks the first `splits` splits, four at most.
 fn ask_splits(splits: usize) -> String {
     let each: String = (0..splits)
-        .map(|split| {
-            format!("    answer[{split}] = umbrage_visibility_in_split(ask.position.xyz, ask.normal.xyz, {split}u);\n")
-        })
+        .map(|split| format!("    answer[{split}] = in_split(ask.position.xyz, ask.normal.xyz, {split});\n"))
         .collect();
     format!(
-        "struct Ask {{ position: vec4f, normal: vec4f }}
+        "{IN_SPLIT}struct Ask {{ position: vec4f, normal: vec4f }}
 @group(0) @binding(0) var<storage, read> asks: array<Ask>;
 @group(0) @binding(1) var<storage, read_write> answers: array<vec4f>;
 @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {{

@@ -99,15 +99,18 @@ fn plan(filter: Filter, boxes: &[Aabb]) -> ShadowPlan {
 
 /// Derivatives of the place in each pixel's own map, as hardware would take them: metres that make them.
 const NAIVE: &str = "
-fn umbrage_footprint(position: vec3f, dx: vec3f, dy: vec3f, pixel: vec2f) -> UmbrageFootprint {
-    let own = umbrage_split_at(0u, umbrage_view_depth(0u, position));
+fn umbrage_fragment_query(position: vec3f, normal: vec3f, dx: vec3f, dy: vec3f, pixel: vec2f) -> UmbrageQuery {
+    let own = umbrage_select_split_at(0u, umbrage_frame_view_depth(0u, position));
     let split = umbrage_frames[0].splits[min(own, 7u)];
     let texel = umbrage_map_from_world(split, position).xy;
     let u = split.u_row.xyz / dot(split.u_row.xyz, split.u_row.xyz);
     let v = split.v_row.xyz / dot(split.v_row.xyz, split.v_row.xyz);
     let x = dpdx(texel);
     let y = dpdy(texel);
-    return UmbrageFootprint(x.x * u + x.y * v, y.x * u + y.y * v, 0.5, -1);
+    var query = umbrage_query(position, normal);
+    query.dx = x.x * u + x.y * v;
+    query.dy = y.x * u + y.y * v;
+    return query;
 }";
 
 struct Scene {
@@ -131,7 +134,7 @@ impl Scene {
         world.draw(&plan, &FrameOptions { derivatives, ..FrameOptions::default() }, &triangles);
         let mut source = world.maps.receiver_wgsl(2);
         if naive {
-            source = source.replace("fn umbrage_footprint(", "fn umbrage_other_footprint(") + NAIVE;
+            source = source.replace("fn umbrage_fragment_query(", "fn umbrage_other_query(") + NAIVE;
         }
         source += &format!(
             "
@@ -142,8 +145,9 @@ impl Scene {
     let ndc = (2.0 * pixel.xy / {SIZE}.0 - 1.0) * {HALF};
     let depth = {EYE_HEIGHT}.0 / max(0.1 + 0.5 * (ndc.y + {HALF}) + 0.1 * ndc.x, 0.01);
     let position = vec3f(depth, 0.0, depth * ndc.x);
-    let footprint = umbrage_footprint(position, dpdx(position), dpdy(position), pixel.xy);
-    return vec4f(umbrage_shadow_with(position, vec3f(0.0, 1.0, 0.0), footprint).visibility);
+    let up = vec3f(0.0, 1.0, 0.0);
+    let query = umbrage_fragment_query(position, up, dpdx(position), dpdy(position), pixel.xy);
+    return vec4f(umbrage_shadow(query).visibility);
 }}"
         );
         let pixels = world.gpu.fragments(&source, SIZE, &world.maps);

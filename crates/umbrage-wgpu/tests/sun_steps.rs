@@ -22,7 +22,10 @@ const FADED: &str = "
 @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= arrayLength(&asks) { return; }
     let ask = asks[id.x];
-    answers[id.x] = umbrage_visibility_faded(vec2u(0u, 1u), ask.w, ask.xyz, vec3f(0.0, 1.0, 0.0));
+    var query = umbrage_query(ask.xyz, vec3f(0.0, 1.0, 0.0));
+    let from_before = umbrage_shadow(query).visibility;
+    query.light = 1u;
+    answers[id.x] = mix(from_before, umbrage_shadow(query).visibility, ask.w);
 }";
 
 const FADE: f64 = 5.0;

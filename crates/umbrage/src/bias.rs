@@ -10,7 +10,7 @@ use crate::Split;
 /// `depth + min(depth_per_texel · offset − |corner_per_texel ∘ offset|, 0) − constant_m`, in metres along the light.
 ///
 /// umbrage's WGSL also asks of a texel that is nearer than that, or nearer than the receiver but far behind its plane, where its surface
-/// leads (`leads_behind` in `bias.wesl`).
+/// leads (`meets_receiver` in `bias.wesl`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bias {
     /// Metres of depth per texel along u and v on the receiver's plane.

@@ -6,7 +6,7 @@ use crate::{Bands, Error, Result, Warp};
 /// The most splits a light can have.
 pub const MAX_SPLITS: usize = 8;
 
-/// Where the planes between splits stand. Source: *Parallel-Split Shadow Maps* (seed 000) section 3.
+/// Where the planes between splits stand. Source: \[PSSM06\] section 3.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SplitScheme {
     /// `C_i = n + (f − n) i/m`: equal slices.
@@ -74,7 +74,7 @@ pub enum Selection {
     Depth,
     /// The first (finest) whose map contains it, filter and depth included: sharper where maps reach beyond their slices, and most
     /// so where view and light are nearly parallel. Lists hold all that can shade what a map covers and no earlier one takes.
-    /// Source: *Practical Cascaded Shadow Maps* (seed 003), "Non-optimized split selection"; our deviations: the filter's
+    /// Source: \[PCSM\], "Non-optimized split selection"; our deviations: the filter's
     /// margin and the depth are part of the question, and the band that blends one map into the next lies along the map's edge.
     Map,
 }
@@ -88,8 +88,8 @@ pub enum Stabilize {
     #[default]
     Exact,
     /// The tight rectangle on axes that are fixed to the light, its extent rounded up to steps, moved in whole texels: tighter than
-    /// [`Stabilize::Exact`], and as still but for the frames in which a step is taken. Source: *Practical Cascaded Shadow
-    /// Maps* (seed 003), "Approximated solution".
+    /// [`Stabilize::Exact`], and as still but for the frames in which a step is taken. Source: \[PCSM\],
+    /// "Approximated solution".
     Approximate(ExtentSteps),
 }
 
@@ -111,7 +111,7 @@ pub enum ExtentSteps {
     /// the rectangle may stand on any of 16 directions that are fixed to the light. Ours. Finer steps are sharper and taken more
     /// often.
     PerDoubling(u32),
-    /// So many equal steps of the unsplit light frustum, 8 to 4096: `s_q = 64 / ceil(64 / s)` for 64 of them, as in seed 003, Listing
+    /// So many equal steps of the unsplit light frustum, 8 to 4096: `s_q = 64 / ceil(64 / s)` for 64 of them, as in \[PCSM\], Listing
     /// 4.1.2, to compare with. A near split of a long range falls to the first levels. The unsplit frustum has to stand
     /// still itself; the source does not say how, ours is the sphere around the whole range.
     Levels(u32),

@@ -46,7 +46,7 @@ pub fn job(args: &CompareArgs) -> Result<Job> {
         image_metrics: args.image_metrics == Switch::On,
     };
     let command = ["umbrage".to_owned()].into_iter().chain(std::env::args().skip(1)).collect();
-    Ok(Job { techniques, scenes, settings, outputs, notes, command })
+    Ok(Job { techniques, scenes, settings, outputs, notes, resume: args.resume.clone(), command })
 }
 
 fn size(args: &CompareArgs) -> [u32; 2] {

@@ -25,6 +25,8 @@ pub struct Job {
     pub outputs: Outputs,
     /// What was left out.
     pub notes: Vec<String>,
+    /// Where finished views are kept while the run goes on, and are taken from if one was cut off.
+    pub resume: Option<PathBuf>,
     /// What was typed, for the report.
     pub command: Vec<String>,
 }

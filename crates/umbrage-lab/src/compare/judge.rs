@@ -2,7 +2,7 @@
 
 use glam::{DMat2, DVec2, DVec3};
 use image::{GrayAlphaImage, Rgb, RgbImage};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use umbrage::{ShadowPlan, Split, View};
 use umbrage_render::FrameStats;
 use umbrage_scene::Pose;
@@ -83,7 +83,7 @@ fn range_of(view: &View, pose: &Pose) -> (f64, f64) {
 }
 
 /// What a technique scores in a view. Rates are shares in 0..=1; nothing is there where nothing could be counted.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct Scores {
     /// E, the share of wrong decisions.
     pub e: Option<f64>,
@@ -128,7 +128,7 @@ pub struct Scores {
 }
 
 /// Counts of [`Seams`], to be pooled over views.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct SeamScores {
     /// Within 2 px of a border.
     pub pixels: usize,
@@ -156,7 +156,7 @@ impl From<Seams> for SeamScores {
 }
 
 /// Pixels per texel over a view.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct TexelPixels {
     /// Median of m, the whole footprint.
     pub m_p50: f64,
@@ -169,7 +169,7 @@ pub struct TexelPixels {
 }
 
 /// One of eight equal bins of ln z.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct DepthScores {
     /// Where it begins, metres.
     pub near_m: f64,
@@ -186,7 +186,7 @@ pub struct DepthScores {
 }
 
 /// What a frame cost, in counts that do not depend on the machine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct Cost {
     /// Bytes of all maps.
     pub bytes: u64,

@@ -7,6 +7,7 @@
 mod columns;
 mod inset;
 pub mod job;
+pub mod journal;
 pub mod judge;
 mod page;
 mod pen;

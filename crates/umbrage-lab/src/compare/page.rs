@@ -78,7 +78,7 @@ fn grid(labels: &[Label], columns: &[Shot]) -> Result<Sheet> {
             let cell = &shot.cells[row];
             let least = if cell.is_best { ", the least" } else { "" };
             let alt = format!("{}, {}", shot.title, label.title);
-            Ok(Figure::png(&png(&cell.picture)?, &alt, format!("{}{least}", cell.caption)))
+            Ok(Figure::picture(&png(&cell.picture)?, &alt, format!("{}{least}", cell.caption)))
         });
         Ok((label.title.clone(), figures.collect::<Result<_>>()?))
     });

@@ -1,6 +1,6 @@
 //! Everything that was measured, as the JSON has it.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use umbrage_truth::scores::{MemoryAt, Seams, memory_at, paired};
 
 use super::judge::{Cost, Scores, TexelPixels};
@@ -105,7 +105,7 @@ pub struct DepthMeans {
 }
 
 /// A view.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct ViewReport {
     /// The scene as it was named.
     pub scene: String,
@@ -133,7 +133,7 @@ pub struct ViewReport {
 }
 
 /// A walk: one camera's frames under one sun.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct WalkReport {
     /// The scene as it was named.
     pub scene: String,
@@ -150,7 +150,7 @@ pub struct WalkReport {
 }
 
 /// Flicker of one technique along one walk.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct FlickerReport {
     /// F.
     pub rate: Option<f64>,

@@ -1,6 +1,7 @@
 //! Draws, asks, scores, writes.
 
 use indicatif::ProgressBar;
+use serde_json::{Value, json};
 use umbrage::Light;
 use umbrage_render::{Frame, Gpu, GpuOptions, Lamp, Outputs, ProbePoint, Renderer, Samples};
 use umbrage_truth::{Truth, scores::shared_points};
@@ -8,6 +9,7 @@ use umbrage_truth::{Truth, scores::shared_points};
 use super::{
     columns::{self, Answer, Place, Plain, columns},
     job::{Job, Settings},
+    journal::{Finished, Journal},
     judge::{ViewTruth, score},
     page,
     report::{self, Comparison, TechniqueReport, ViewReport, WalkReport},
@@ -33,8 +35,10 @@ const REPRODUCE: &str = "umbrage render OPTIONS-OF-THE-VIEW OPTIONS-OF-THE-TECHN
 /// # Errors
 /// [`Failure`] naming the technique that cannot be drawn, or the file that cannot be written.
 pub fn run(job: Job) -> Result<()> {
-    let Job { techniques, scenes, settings, outputs, notes, command } = job;
+    let Job { techniques, scenes, settings, outputs, notes, resume, command } = job;
     let gpu = Gpu::new(&GpuOptions::default())?;
+    let of = description(&techniques, &scenes, &settings, &adapter_description(&gpu));
+    let journal = resume.as_deref().map(|path| Journal::open(path, &of)).transpose()?;
     let shown = columns::chosen(&scenes, settings.columns);
     let views: usize = scenes.iter().flat_map(|scene| &scene.series).map(|series| series.views.len()).sum();
     let mut run = Run {
@@ -48,13 +52,21 @@ pub fn run(job: Job) -> Result<()> {
         views: Vec::new(),
         walks: Vec::new(),
         columns: [Vec::new(), Vec::new()],
+        journal,
     };
     let mut all_notes = notes;
+    if settings.image_metrics && !cfg!(feature = "flip") {
+        all_notes.push("FLIP is left out: it needs a build with the feature flip and a C++ compiler".into());
+    }
+    if let Some(journal) = run.journal.as_ref().filter(|journal| !journal.finished.is_empty() || journal.dropped > 0) {
+        all_notes.push(journal.note());
+    }
     for (number, scene) in scenes.iter().enumerate() {
         all_notes.extend(scene.notes.iter().map(|note| format!("{}: {note}", scene.name)));
         run.scene(number, scene)?;
     }
     run.bar.finish_and_clear();
+    let journal = run.journal.take();
     let (comparison, columns) = run.finish(all_notes)?;
 
     let labels = labels(&comparison, &techniques);
@@ -74,7 +86,8 @@ pub fn run(job: Job) -> Result<()> {
     ];
     let mut staged = Staged::default();
     outputs.stage(contents, &mut staged)?;
-    staged.commit()
+    staged.commit()?;
+    journal.map_or(Ok(()), Journal::remove)
 }
 
 /// What grows while scenes are gone through.
@@ -89,6 +102,7 @@ struct Run<'a> {
     views: Vec<ViewReport>,
     walks: Vec<WalkReport>,
     columns: [Vec<Column>; 2],
+    journal: Option<Journal>,
 }
 
 /// A frame whose points the next one is asked about again.
@@ -101,6 +115,12 @@ struct Before {
 impl Run<'_> {
     fn scene(&mut self, number: usize, set: &SceneShots) -> Result<()> {
         let Some(first) = set.series.first() else { return Ok(()) };
+        let mut take = |of| self.journal.as_mut().and_then(|journal| journal.take([number, of]));
+        let before: Vec<Option<Finished>> = (0..set.series.len()).map(&mut take).collect();
+        if before.iter().all(Option::is_some) {
+            before.into_iter().flatten().for_each(|finished| self.restore(finished));
+            return Ok(());
+        }
         let truth = Truth::build(&set.scene, &set.pose, first.views[0].eye())?;
         let mut renderers = Vec::new();
         for technique in self.techniques {
@@ -110,10 +130,38 @@ impl Run<'_> {
             let renderer = Renderer::new(self.gpu, &set.scene, &settings);
             renderers.push(renderer.map_err(|error| in_technique(technique, error))?);
         }
-        for (of, series) in set.series.iter().enumerate() {
-            self.series(set, series, [number, of], &truth, &mut renderers)?;
+        for (of, (series, finished)) in set.series.iter().zip(before).enumerate() {
+            match finished {
+                Some(finished) => self.restore(finished),
+                None => {
+                    let begin = [self.views.len(), self.walks.len(), self.columns[0].len()];
+                    self.series(set, series, [number, of], &truth, &mut renderers)?;
+                    self.keep([number, of], begin)?;
+                }
+            }
         }
         Ok(())
+    }
+
+    /// Takes over a series that an earlier run finished.
+    fn restore(&mut self, finished: Finished) {
+        self.bar.inc((finished.views.len() * (self.techniques.len() + 1)) as u64);
+        self.views.extend(finished.views);
+        self.walks.extend(finished.walk);
+        for (sheet, columns) in self.columns.iter_mut().zip(finished.columns) {
+            sheet.extend(columns);
+        }
+    }
+
+    /// Keeps the series that begins at these numbers of views, walks and columns.
+    fn keep(&mut self, series: [usize; 2], [views, walks, columns]: [usize; 3]) -> Result<()> {
+        let Some(journal) = &mut self.journal else { return Ok(()) };
+        journal.keep(&Finished {
+            series,
+            views: self.views[views..].to_vec(),
+            walk: self.walks.get(walks).cloned(),
+            columns: [self.columns[0][columns..].to_vec(), self.columns[1][columns..].to_vec()],
+        })
     }
 
     fn series(
@@ -284,6 +332,28 @@ impl Run<'_> {
         };
         Ok((comparison, self.columns))
     }
+}
+
+/// Everything that decides what a series comes to, for the journal.
+fn description(techniques: &[Technique], scenes: &[SceneShots], settings: &Settings, adapter: &str) -> Value {
+    let series = |scene: &SceneShots| {
+        let of = |series: &Series| json!([series.camera, series.sun_name, series.options]);
+        json!({ "scene": scene.name, "series": scene.series.iter().map(of).collect::<Vec<_>>() })
+    };
+    let technique = |technique: &Technique| json!([technique.label, technique.options]);
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "adapter": adapter,
+        "techniques": techniques.iter().map(technique).collect::<Vec<_>>(),
+        "scenes": scenes.iter().map(series).collect::<Vec<_>>(),
+        "size": settings.size,
+        "shadow-range": settings.shadow_range,
+        "sun-angle": settings.sun_angle,
+        "least-edges": settings.least_edges,
+        "columns": settings.columns,
+        "tint": settings.tint,
+        "image-metrics": settings.image_metrics,
+    })
 }
 
 /// Where a point is in the picture.

@@ -1,5 +1,5 @@
-//! The three split schemes over depth and the aliasing that they yield: *Parallel-Split Shadow Maps* (000) Figure 4, GPU Gems 3
-//! chapter 10 (001) Figure 10-4.
+//! The three split schemes over depth and the aliasing that they yield: \[PSSM06\] Figure 4, \[GG3-10\]
+//! Figure 10-4.
 
 use glam::DVec3;
 use umbrage::{DirectionalLight, Fit, Planner, ShadowPlan, ShadowSettings, SplitScheme, Stabilize, View, split_planes};
@@ -44,14 +44,14 @@ pub(super) fn s_of(planes: &[f64], z: f64) -> f64 {
     (i as f64 + (z - planes[i]) / (planes[i + 1] - planes[i])) / m
 }
 
-/// Perspective aliasing at view depth `z` in split `i`: 000 eq. (1) without its angles, `dp/ds = n/z · dz/ds`, with
+/// Perspective aliasing at view depth `z` in split `i`: \[PSSM06\] eq. (1) without its angles, `dp/ds = n/z · dz/ds`, with
 /// `dz/ds = m (C_{i+1} − C_i)`. (The source says that a split gets i/m of the resolution; 1/m is meant.)
 pub(super) fn dp_ds(planes: &[f64], i: usize, z: f64) -> f64 {
     let m = (planes.len() - 1) as f64;
     planes[0] / z * m * (planes[i + 1] - planes[i])
 }
 
-/// What no scheme can go below over the whole range: 000 eq. (2), `dp/ds = n ln(f/n)` at every depth.
+/// What no scheme can go below over the whole range: \[PSSM06\] eq. (2), `dp/ds = n ln(f/n)` at every depth.
 pub(super) fn optimum(near: f64, far: f64) -> f64 {
     near * (far / near).ln()
 }
@@ -186,7 +186,7 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
         .figure(&Figure::svg(
             strips(setting, &all)?,
             format!(
-                "The slices of the view over depth, {near} to {far} m, m = {SPLITS} (000 Figure 4, 001 Figure 10-4). The first \
+                "The slices of the view over depth, {near} to {far} m, m = {SPLITS} ([PSSM06] Figure 4, [GG3-10] Figure 10-4). The first \
                  two logarithmic slices are so short that hardly an object fits in: that is what is wrong with this scheme.",
             ),
         ))
@@ -198,7 +198,7 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
             ),
             Figure::svg(
                 aliasing.to_svg()?,
-                "dp/ds = n/z · dz/ds (000 eq. 1, perspective part): how many pixels one texel spans, but for a constant. \
+                "dp/ds = n/z · dz/ds ([PSSM06] eq. 1, perspective part): how many pixels one texel spans, but for a constant. \
                  Uniform falls as 1/z however many splits there are. Logarithmic is the same saw tooth in every split, about \
                  the optimum.",
             ),

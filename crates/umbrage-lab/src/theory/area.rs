@@ -1,4 +1,4 @@
-//! Σ Area(B_i)/Area(B) over the light's direction: *Parallel-Split Shadow Maps* (000) Figure 5 and section 3.4, which says
+//! Σ Area(B_i)/Area(B) over the light's direction: \[PSSM06\] Figure 5 and section 3.4, which says
 //! that the sum is never more than the whole. It can be.
 
 use glam::{DVec2, DVec3};
@@ -33,7 +33,7 @@ pub(super) enum Turn {
 /// What encloses a slice in the light's plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Enclosure {
-    /// The axis-aligned box in a light space whose u follows the view, as 000 Figure 5 draws it.
+    /// The axis-aligned box in a light space whose u follows the view, as \[PSSM06\] Figure 5 draws it.
     Box,
     /// The rectangle of least area, as the planner fits it.
     Least,
@@ -187,7 +187,7 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
     Ok(Section::new("Area of the parts against the whole")
         .text(
             "The paper holds that the boxes Bᵢ around the slices are together never larger than the box B around the whole view \
-             (000 section 3.4, Figure 5). That is so when the light comes across the view, the case it draws. When light and \
+             ([PSSM06] section 3.4, Figure 5). That is so when the light comes across the view, the case it draws. When light and \
              view are nearly parallel every slice's box is as wide as the slice's far end, the boxes lie over each other, and the \
              sum exceeds the whole.",
         )

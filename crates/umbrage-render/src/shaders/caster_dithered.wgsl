@@ -6,12 +6,13 @@ fn vs_dithered(
     @location(1) uv: vec2f,
     @location(2) color: vec4f,
     instance: Instance,
-    copy: UmbrageCopy,
+    own: UmbrageInstance,
 ) -> UmbrageCast {
-    var result = umbrage_cast_copy(position_from_local(instance, local), copy, instance.code);
+    let drawn = with_code(instance, own);
+    var result = umbrage_cast(position_from_local(instance, local), drawn);
     result.uv = uv;
     result.alpha = color.a;
-    result.offset = umbrage_caster_offset(copy, instance.code);
+    result.offset = umbrage_caster_offset(drawn);
     return result;
 }
 
@@ -27,4 +28,11 @@ fn fs_dithered(
         discard;
     }
     return umbrage_caster_depth(at);
+}
+
+// The built-ins of what is drawn, with the code that lies among the instances' own data.
+fn with_code(instance: Instance, own: UmbrageInstance) -> UmbrageInstance {
+    var result = own;
+    result.code = instance.code;
+    return result;
 }

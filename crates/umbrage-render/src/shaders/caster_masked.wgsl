@@ -6,9 +6,9 @@ fn vs_masked(
     @location(1) uv: vec2f,
     @location(2) color: vec4f,
     instance: Instance,
-    copy: UmbrageCopy,
+    own: UmbrageInstance,
 ) -> UmbrageCast {
-    var result = umbrage_cast_copy(position_from_local(instance, local), copy, instance.code);
+    var result = umbrage_cast(position_from_local(instance, local), with_code(instance, own));
     result.uv = uv;
     result.alpha = color.a;
     return result;
@@ -21,4 +21,11 @@ fn fs_masked(@builtin(position) at: vec4f, @location(0) uv: vec2f, @location(1) 
         discard;
     }
     return umbrage_caster_depth(at);
+}
+
+// The built-ins of what is drawn, with the code that lies among the instances' own data.
+fn with_code(instance: Instance, own: UmbrageInstance) -> UmbrageInstance {
+    var result = own;
+    result.code = instance.code;
+    return result;
 }

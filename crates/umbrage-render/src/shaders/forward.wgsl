@@ -30,6 +30,11 @@ fn geometric_normal(from_eye: vec3f) -> vec3f {
     return normalize(turned / largest);
 }
 
+// The pixel's question to the first light. Call in uniform control flow.
+fn query_of(in: Surface, normal: vec3f) -> UmbrageQuery {
+    return umbrage_fragment_query(in.position, normal, dpdx(in.from_eye), dpdy(in.from_eye), in.clip.xy);
+}
+
 // The picture is drawn slice by slice, and triangles are not cut at the slices' borders, nor at the camera's own planes.
 override SLICED: bool = false;
 
@@ -43,29 +48,28 @@ fn is_drawn(in: Surface) -> bool {
 @fragment
 fn fs_mask_opaque(in: Surface) -> @location(0) vec2f {
     let normal = geometric_normal(in.from_eye);
-    let footprint = footprint_of(in);
+    let query = query_of(in, normal);
     if !is_drawn(in) {
         discard;
     }
-    return mask_at(in, normal, footprint);
+    return mask_at(in, query);
 }
 
 @fragment
 fn fs_mask_masked(in: Surface) -> @location(0) vec2f {
     let normal = geometric_normal(in.from_eye);
-    let footprint = footprint_of(in);
+    let query = query_of(in, normal);
     if tested_alpha(in.uv, in.color.a) < material.alpha_cutoff || !is_drawn(in) {
         discard;
     }
-    return mask_at(in, normal, footprint);
+    return mask_at(in, query);
 }
 
-fn mask_at(in: Surface, normal: vec3f, footprint: UmbrageFootprint) -> vec2f {
-    if dot(normal, towards(frame.lamps[0], in.position)) <= 0.0 {
+fn mask_at(in: Surface, query: UmbrageQuery) -> vec2f {
+    if dot(query.normal, towards(frame.lamps[0], in.position)) <= 0.0 {
         return vec2f(0.0, 1.0);
     }
-    let visibility = umbrage_shadow_with(in.position, normal, footprint).visibility;
-    return vec2f(with_contact(visibility, in.position, normal), 1.0);
+    return vec2f(with_contact(shadow_of(in, query).visibility, in.position, query.normal), 1.0);
 }
 
 // Contact shadows are the first light's, as dark as its others, and off where they are.
@@ -99,11 +103,11 @@ fn fs_depth_masked(in: Outline) {
 fn fs_picture_opaque(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let base = base_color(in);
     let geometric = geometric_normal(in.from_eye);
-    let footprint = footprint_of(in);
+    let query = query_of(in, geometric);
     if !is_drawn(in) {
         discard;
     }
-    return vec4f(shaded(in, front, base, geometric, footprint), 1.0);
+    return vec4f(shaded(in, front, base, query), 1.0);
 }
 
 // Alpha becomes coverage: a step one pixel wide around the cutoff. With one sample a pixel it is all or nothing: 0.5.
@@ -114,22 +118,22 @@ fn fs_picture_masked(in: Surface, @builtin(front_facing) front: bool) -> @locati
     let color = base_color(in);
     let coverage = (color.a - material.alpha_cutoff) / max(fwidth(color.a), 1e-4) + 0.5;
     let geometric = geometric_normal(in.from_eye);
-    let footprint = footprint_of(in);
+    let query = query_of(in, geometric);
     if coverage <= LEAST_COVERAGE || !is_drawn(in) {
         discard;
     }
-    return vec4f(shaded(in, front, color, geometric, footprint), min(coverage, 1.0));
+    return vec4f(shaded(in, front, color, query), min(coverage, 1.0));
 }
 
 @fragment
 fn fs_picture_blend(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let color = base_color(in);
     let geometric = geometric_normal(in.from_eye);
-    let footprint = footprint_of(in);
+    let query = query_of(in, geometric);
     if !is_drawn(in) {
         discard;
     }
-    return vec4f(shaded(in, front, color, geometric, footprint), clamp(color.a, 0.0, 1.0));
+    return vec4f(shaded(in, front, color, query), clamp(color.a, 0.0, 1.0));
 }
 
 fn base_color(in: Surface) -> vec4f {
@@ -153,7 +157,8 @@ fn falloff(lamp: Lamp, position: vec3f) -> f32 {
 }
 
 // Lambert's law for each light, a sky from above and light from the ground below. Display light, tone mapped.
-fn shaded(in: Surface, front: bool, base: vec4f, geometric: vec3f, footprint: UmbrageFootprint) -> vec3f {
+fn shaded(in: Surface, front: bool, base: vec4f, asked: UmbrageQuery) -> vec3f {
+    let geometric = asked.normal;
     let smooth_normal = normalize(select(-in.normal, in.normal, front));
     var light = vec3f(0.0);
     var tint = vec3f(1.0);
@@ -162,7 +167,10 @@ fn shaded(in: Surface, front: bool, base: vec4f, geometric: vec3f, footprint: Um
     for (var i = 0u; i < frame.lamp_count + umbrage_zero(in.position.x); i++) {
         let lamp = frame.lamps[i];
         let to_light = towards(lamp, in.position);
-        let shadow = umbrage_shadow_of_with(i, in.position, lookup_normal(geometric, smooth_normal, to_light), footprint);
+        var query = asked;
+        query.light = i;
+        query.normal = lookup_normal(geometric, smooth_normal, to_light);
+        let shadow = shadow_of(in, query);
         let facing = max(dot(smooth_normal, to_light), 0.0) * falloff(lamp, in.position);
         let visibility = min(shadow.visibility, select(1.0, contact, i == 0u));
         light += SUN * lamp.color * facing * umbrage_light_of(i, visibility);

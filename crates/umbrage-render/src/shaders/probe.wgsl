@@ -16,10 +16,8 @@ fn fs_probe(@builtin(position) pixel: vec4f) -> @location(0) vec2f {
     let at = vec2i(pixel.xy);
     let point = textureLoad(points, at, 0);
     let normal = textureLoad(normals, at, 0).xyz;
-    if point.w == 0.0 {
-        let shadow = umbrage_shadow(point.xyz, normal);
-        return vec2f(shadow.visibility, f32(shadow.split));
-    }
-    let split = u32(point.w) - 1u;
-    return vec2f(umbrage_visibility_in_split(point.xyz, normal, split), f32(split));
+    var query = umbrage_query(point.xyz, normal);
+    query.split = i32(point.w) - 1;
+    let shadow = umbrage_shadow(query);
+    return vec2f(shadow.visibility, f32(shadow.split));
 }

@@ -59,7 +59,7 @@ struct Instance {
     @location(4) row_x: vec4f,
     @location(5) row_y: vec4f,
     @location(6) row_z: vec4f,
-    // Which copy of a caster it is; see `umbrage_cast_copy`.
+    // Which splits and which tile a caster's instance is for; see `umbrage_cast`.
     @location(7) code: u32,
 }
 

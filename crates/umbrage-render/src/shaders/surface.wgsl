@@ -19,7 +19,6 @@ fn vs_main(vertex: Vertex, instance: Instance) -> Surface {
     return Surface(clip_of(from_eye), position, from_eye, normal, vertex.uv, vertex.color);
 }
 
-// What the pixel covers. Call in uniform control flow.
-fn footprint_of(in: Surface) -> UmbrageFootprint {
-    return umbrage_footprint(in.position, dpdx(in.from_eye), dpdy(in.from_eye), in.clip.xy);
+fn shadow_of(in: Surface, query: UmbrageQuery) -> UmbrageShadow {
+    return umbrage_shadow(query);
 }

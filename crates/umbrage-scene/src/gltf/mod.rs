@@ -9,6 +9,7 @@ mod budget;
 mod buffers;
 mod container;
 mod decompose;
+mod exact;
 mod hierarchy;
 mod images;
 mod materials;
@@ -21,6 +22,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use budget::Used;
+use exact::Exact;
 use gltf::json;
 
 use crate::error::read_file;
@@ -92,7 +94,8 @@ fn load(file: &str, bytes: &[u8], external: External<'_>) -> Result<Scene> {
         return Err(Error::UnsupportedExtension { file: file.to_owned(), extension: extension.clone() });
     }
     let (used, notes) = (Used::default(), Notes::default());
-    let mut document = Document { file, root, buffers: Vec::new(), external, used, notes };
+    let exact = Exact::of(chunks.json);
+    let mut document = Document { file, root, exact, buffers: Vec::new(), external, used, notes };
     document.buffers = buffers::load(&document, chunks.binary)?;
 
     let (materials, textures, texture_coordinates) = materials::load(&mut document)?;
@@ -131,6 +134,7 @@ fn list<'v>(object: &'v mut serde_json::Value, name: &str) -> Option<&'v mut Vec
 struct Document<'a> {
     file: &'a str,
     root: json::Root,
+    exact: Exact,
     buffers: Vec<Cow<'a, [u8]>>,
     external: External<'a>,
     used: Used,

@@ -9,6 +9,7 @@ use gltf::json::validation::Checked;
 use super::budget::Part;
 use super::buffers::{self, Integers};
 use super::decompose::decompose;
+use super::exact::{ExactNode, or_rounded};
 use super::hierarchy::{self, Hierarchy, node_name};
 use super::{Document, Notes};
 use crate::error::element;
@@ -58,7 +59,7 @@ fn add_node(
 ) -> Result<()> {
     let json = &document.root.nodes[index];
     let user = node_name(document, index);
-    let (local, inner) = transform(document, json, &user)?;
+    let (local, inner) = transform(document, json, document.exact.node(index), &user)?;
     let parent = hierarchy.parent[index].map(|parent| places.of_file_node[parent]);
     let mut node = Node { name: json.name.clone().unwrap_or_default(), parent, local, ..Node::default() };
     if let Some(inner) = inner {
@@ -98,13 +99,14 @@ fn add_node(
 }
 
 /// The local transform of a node, in two parts if its matrix shears.
-fn transform(document: &Document<'_>, json: &json::Node, user: &str) -> Result<(Trs, Option<Trs>)> {
+fn transform(document: &Document<'_>, json: &json::Node, exact: ExactNode, user: &str) -> Result<(Trs, Option<Trs>)> {
     if let Some(m) = json.matrix {
         document.finite(user, "matrix", &m)?;
         if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] {
             return Err(document.invalid(user, "has a matrix whose last row is not 0 0 0 1"));
         }
-        let column = |i: usize| DVec3::new(m[i].into(), m[i + 1].into(), m[i + 2].into());
+        let m = or_rounded(exact.matrix, m);
+        let column = |i: usize| DVec3::new(m[i], m[i + 1], m[i + 2]);
         let matrix = DMat3::from_cols(column(0), column(4), column(8));
         return Ok(decompose(DAffine3 { matrix3: matrix, translation: column(12) }));
     }
@@ -114,15 +116,16 @@ fn transform(document: &Document<'_>, json: &json::Node, user: &str) -> Result<(
     let rotation = json.rotation.unwrap_or_default().0;
     document.finite(user, "rotation", &rotation)?;
     let local = Trs {
-        translation: translation.map(f64::from).into(),
-        rotation: unit_quaternion(rotation).ok_or_else(|| document.invalid(user, "has a rotation of length 0"))?,
-        scale: scale.map(f64::from).into(),
+        translation: or_rounded(exact.translation, translation).into(),
+        rotation: unit_quaternion(or_rounded(exact.rotation, rotation))
+            .ok_or_else(|| document.invalid(user, "has a rotation of length 0"))?,
+        scale: or_rounded(exact.scale, scale).into(),
     };
     Ok((local, None))
 }
 
-fn unit_quaternion(xyzw: [f32; 4]) -> Option<DQuat> {
-    let q = DQuat::from_array(xyzw.map(f64::from));
+fn unit_quaternion(xyzw: [f64; 4]) -> Option<DQuat> {
+    let q = DQuat::from_array(xyzw);
     (q.length() > 0.0 && q.length().is_finite()).then(|| q.normalize())
 }
 
@@ -162,7 +165,7 @@ fn instances(document: &Document<'_>, extension: &serde_json::Value, user: &str)
     (0..count.unwrap_or_default() as usize)
         .map(|i| {
             let rotation = match rotations.as_ref().and_then(|list| list.get(i)) {
-                Some(&q) => unit_quaternion(q).ok_or_else(|| {
+                Some(&q) => unit_quaternion(q.map(f64::from)).ok_or_else(|| {
                     document.invalid(user.as_str(), format!("instance {i} has a rotation of length 0"))
                 })?,
                 None => DQuat::IDENTITY,

@@ -1,6 +1,8 @@
 //! Small glTF files made by hand, for tests that bend them.
 #![expect(dead_code, reason = "each test binary uses a part of this")]
 
+pub mod rich;
+
 use serde_json::{Value, json};
 use umbrage_scene::{Error, Scene, load_gltf_slice};
 

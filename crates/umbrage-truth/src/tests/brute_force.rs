@@ -114,6 +114,7 @@ proptest! {
         let mut stack = Vec::new();
         for aim in aims {
             let (from, direction) = ray(&stage, aim);
+            let other = aim.1;
             for range in [(0.0, f64::INFINITY), (0.1, 1e3), (1.0, 5.0)] {
                 let by_tree = truth.first_hit(from, direction, range, &mut stack);
                 let by_all = truth.first_hit_by_brute_force(from, direction, range);
@@ -123,12 +124,17 @@ proptest! {
                     prop_assert!((range.0..=range.1).contains(&hit.depth));
                 }
             }
-            let own = (aim.2 % 7) as u32;
-            for own in [None, Some(own)] {
+            let mut seen = vec![truth.probed(from, DVec3::X)];
+            if let Some(hit) = truth.first_hit(from, direction, (0.0, f64::INFINITY), &mut stack) {
+                seen.push(truth.seen(from, direction, &hit));
+            }
+            for seen in seen {
                 for distance in [f64::INFINITY, 3.0] {
-                    let by_tree = truth.sees_light(from, direction, distance, own, &mut stack);
-                    let by_all = truth.sees_light_by_brute_force(from, direction, distance, own);
-                    prop_assert_eq!(by_tree, by_all, "from {} along {}", from, direction);
+                    for to_light in [direction, other.try_normalize().unwrap_or(DVec3::Z)] {
+                        let by_tree = truth.sees_light(&seen, to_light, distance, &mut stack);
+                        let by_all = truth.sees_light_by_brute_force(&seen, to_light, distance);
+                        prop_assert_eq!(by_tree, by_all, "{:?} along {}", seen, to_light);
+                    }
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 mod brute_force;
 mod closed_forms;
+mod precision;
 pub(crate) mod scenes;
 mod soft;
 mod surfaces;

@@ -157,19 +157,6 @@ fn orthographic_rays_run_in_parallel() {
 }
 
 #[test]
-fn surfaces_that_lie_on_each_other_do_not_shadow() {
-    // A decal 1 mm above the road is no occluder; 5 mm above it is.
-    for (height, lit) in [(0.001, true), (0.005, false)] {
-        let mut stage = Stage::default();
-        stage.add(Shape::floor(20.0, 0.0), DAffine3::IDENTITY);
-        stage.add(Shape::floor(2.0, height), DAffine3::IDENTITY);
-        let truth = stage.truth(DVec3::ZERO);
-        let answer = truth.visibility_at(&[(DVec3::new(0.5, 0.0, 0.0), DVec3::Y)], DVec3::NEG_Y).unwrap();
-        assert_eq!(answer, [f32::from(u8::from(lit))], "{height}");
-    }
-}
-
-#[test]
 fn skinned_vertices_stand_where_the_pose_puts_them() {
     let mut stage = Stage::default();
     stage.add(Shape::floor(20.0, 0.0), DAffine3::IDENTITY);

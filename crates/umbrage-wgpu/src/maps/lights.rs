@@ -41,7 +41,7 @@ impl ShadowMaps {
     /// As [`ShadowMaps::prepare`], for several lights: a plan for each of [`ShadowMapsOptions::lights`]. All of them are for one view.
     ///
     /// Split `i` of light `l`'s plan is drawn as map `first_map(l) + i`: see [`ShadowMaps::first_map`]. Shaders ask with
-    /// `umbrage_visibility_of(l, …)`.
+    /// `umbrage_shadow(query)` of a query whose `light` is `l`.
     ///
     /// # Errors
     /// Those of [`ShadowMaps::prepare`]; [`Error::LightCount`] if there is not one plan for each light, [`Error::LightSlot`] if a

@@ -10,8 +10,9 @@ mod targets;
 
 use std::num::NonZeroU32;
 
-use umbrage::{MAX_SPLITS, ShadowPlan, ShadowSettings};
-use umbrage_shaders::{Bound, Casters, Maps};
+use umbrage::{Bands, MAX_SPLITS, Selection, ShadowPlan, ShadowSettings};
+use umbrage_shaders::layout::{MetricKind, SelectionKind};
+use umbrage_shaders::{Bound, Casters, Lights, Maps, Projection, ReceiverText};
 
 use choose::{Abilities, Chosen};
 use groups::Uniforms;
@@ -22,7 +23,7 @@ use targets::Targets;
 
 use crate::moments::{MomentStorage, Moments};
 use crate::uniforms::{Place, Viewport};
-use crate::{Error, FrameOptions, Generation, Result, ShadowMapsOptions, Storage};
+use crate::{Error, FrameOptions, Generation, LightSlot, Result, ShadowMapsOptions, Storage};
 
 /// Features that make shadows better where an adapter has them: request `adapter.features() & optional_features()`.
 ///
@@ -190,8 +191,8 @@ impl ShadowMaps {
     /// [`ShadowMaps::caster_bind_group`]. It stands before everything else in its module. The vertex shader is the same for every path:
     ///
     /// ```wgsl
-    /// @vertex fn vertex(@location(0) position: vec3f, copy: UmbrageCopy) -> UmbrageCast {
-    ///     return umbrage_cast(position, copy);
+    /// @vertex fn vertex(@location(0) position: vec3f, instance: UmbrageInstance) -> UmbrageCast {
+    ///     return umbrage_cast(position, instance);
     /// }
     /// ```
     #[must_use]
@@ -217,20 +218,21 @@ impl ShadowMaps {
     /// then [`crate::Filter::Disc`], unless the format is [`crate::DepthFormat::R32Float`].
     #[must_use]
     pub fn receiver_wgsl(&self, group: u32) -> String {
-        umbrage_shaders::receiver(group, self.receiver_maps())
+        umbrage_shaders::receiver(group, self.receiver_text())
     }
 
-    /// [`ShadowMaps::receiver_wgsl`] for apps whose vertex shaders make the coordinates of every split's map (`umbrage_places` and `umbrage_shadow_at_places`, see `umbrage_shaders::Maps::places`). Plans have to be of a
-    /// sun, without warps: others have coordinates that cannot be interpolated.
+    /// [`ShadowMaps::receiver_wgsl`] for apps whose vertex shaders make the shadow coordinates of every split (`umbrage_shadow_coordinates` and
+    /// `umbrage_shadow_from_coordinates`, see `umbrage_shaders::Maps::coordinates`). Plans have to be of a sun, without warps: others have
+    /// coordinates that cannot be interpolated.
     ///
     /// # Errors
-    /// [`Error::ConflictingOptions`] with more than [`crate::MAX_PLACES`] splits, with several lights and with
+    /// [`Error::ConflictingOptions`] with more than [`crate::MAX_COORDINATES`] splits, with several lights and with
     /// [`crate::LightSlot::Cube`].
-    pub fn receiver_wgsl_at_places(&self, group: u32) -> Result<String> {
+    pub fn receiver_wgsl_with_coordinates(&self, group: u32) -> Result<String> {
         let conflict =
             |second, reason| Err(Error::ConflictingOptions { first: "coordinates split".to_owned(), second, reason });
         let lights = &self.options.lights;
-        if self.options.map_sizes.len() > umbrage_shaders::layout::MAX_PLACES {
+        if self.options.map_sizes.len() > umbrage_shaders::layout::MAX_COORDINATES {
             return conflict(
                 format!("{} splits", self.options.map_sizes.len()),
                 "vertices hand on the coordinates of at most 4 splits; use fewer splits or coordinates world",
@@ -242,7 +244,39 @@ impl ShadowMaps {
                 "vertices hand on the coordinates of one sun; use one sun or coordinates world",
             );
         }
-        Ok(umbrage_shaders::receiver(group, Maps { places: true, ..self.receiver_maps() }))
+        let text = self.receiver_text();
+        Ok(umbrage_shaders::receiver(group, ReceiverText { maps: Maps { coordinates: true, ..text.maps }, ..text }))
+    }
+
+    /// What receivers' text is made for.
+    fn receiver_text(&self) -> ReceiverText {
+        let ShadowMapsOptions { filter, storage, fixed, lights, .. } = &self.options;
+        let lights = match () {
+            () if lights.iter().all(|slot| *slot == LightSlot::Sun) => Lights::Suns,
+            () if lights.iter().all(|slot| slot.faces() == 1) => Lights::Single,
+            () => Lights::Any,
+        };
+        ReceiverText {
+            filter: Some(filter.kind()),
+            selection: fixed.selection.filter(|_| lights == Lights::Suns).map(|selection| match selection {
+                Selection::Depth => SelectionKind::Depth,
+                Selection::Map => SelectionKind::Map,
+            }),
+            metric: fixed.bands.filter(|_| lights == Lights::Suns).map(|bands| match bands {
+                Bands::Planar => MetricKind::ViewDepth,
+                Bands::Radial => MetricKind::Distance,
+            }),
+            transition: fixed.transition.map(|transition| transition.kind()),
+            bias: fixed.bias.map(|bias| bias.kind()),
+            projection: match fixed.warped {
+                None => Projection::Any,
+                Some(true) => Projection::Warped,
+                Some(false) => Projection::Plain,
+            },
+            lights,
+            sliced: *storage == Storage::Reused,
+            ..self.receiver_maps().into()
+        }
     }
 
     /// How receivers read these maps.
@@ -258,7 +292,7 @@ impl ShadowMaps {
             without_loads: !self.depth_loads,
             frames: lights::frame_count(&self.options) as u32,
             moments: self.moments.as_ref().map(Moments::maps),
-            places: false,
+            coordinates: false,
         }
     }
 

@@ -51,8 +51,8 @@ impl MapPass {
         self.views
     }
 
-    /// Whether every draw has to begin with an instance of a code that draws nothing, the one before the first of [`MapPass::copies`]' own,
-    /// which is part of that range then. An app that draws many copies in one call needs one of them in each call.
+    /// Whether every draw has to begin with an instance of a code that draws nothing, the one before the first of [`MapPass::instances`]' own,
+    /// which is part of that range then. An app that draws many instances in one call needs one of them in each call.
     ///
     /// Mesa's software driver (seen with 22.3) remembers which layer it draws into when it draws a batch that needs no clipping, and
     /// draws batches that do into the layer it remembers. Each instance is a batch, so an empty one makes it remember the right layer.
@@ -67,9 +67,9 @@ impl MapPass {
     }
 
     /// The instances that a caster of the splits in `mask` (bit `i`: split `i`) is drawn with; none if none of them is drawn here. A
-    /// caster that is an instance of the app's own gets one copy for each number of the range, with that number as its code.
+    /// caster that is an instance of the app's own is drawn once for each number of the range, with that number as its code.
     #[must_use]
-    pub fn copies(&self, mask: u8) -> Range<u32> {
+    pub fn instances(&self, mask: u8) -> Range<u32> {
         if self.alone {
             // With several lights there are more maps than bits, and the app knows which plan and which split are drawn.
             let here = self.splits.start >= 8 || mask & (1 << self.splits.start) != 0;
@@ -82,7 +82,7 @@ impl MapPass {
         let (first, last) = (mask.trailing_zeros() as usize, mask.ilog2() as usize);
         let tile = |split: usize| ((split - self.splits.start) / self.views) as u32;
         let code = mask << 3;
-        // The code before the first is no copy's: its tile holds none of these splits.
+        // The code before the first is no instance's: its tile holds none of these splits.
         code + tile(first) - u32::from(self.leads)..code + tile(last) + 1
     }
 
@@ -100,7 +100,7 @@ impl MapPass {
             }
         }
         let pass = self.clone();
-        order.into_iter().map(move |caster| (caster, pass.copies(masks[caster as usize])))
+        order.into_iter().map(move |caster| (caster, pass.instances(masks[caster as usize])))
     }
 }
 
@@ -124,7 +124,7 @@ mod tests {
                     for mask in 0..1u32 << splits {
                         let mut drawn = Vec::new();
                         for pass in &passes {
-                            for code in pass.copies(mask as u8) {
+                            for code in pass.instances(mask as u8) {
                                 if pass.alone {
                                     drawn.push(pass.splits.start);
                                 } else {

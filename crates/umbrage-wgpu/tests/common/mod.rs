@@ -268,7 +268,7 @@ pub fn ask(position: Vec3, normal: Vec3) -> Ask {
     Ask { position: position.extend(0.0).to_array(), normal: normal.extend(0.0).to_array() }
 }
 
-/// What `umbrage_shadow` answered, and `umbrage_visibility_in_split` for splits 0 and 1.
+/// What `umbrage_shadow` answered, and splits 0 and 1 alone.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Answer {
@@ -279,6 +279,15 @@ pub struct Answer {
     pub short: f32,
 }
 
+/// Visibility in one split alone, for any shader that asks.
+pub const IN_SPLIT: &str = "
+fn in_split(position: vec3f, normal: vec3f, split: i32) -> f32 {
+    var query = umbrage_query(position, normal);
+    query.split = split;
+    return umbrage_shadow(query).visibility;
+}
+";
+
 pub const ASK: &str = "
 struct Ask { position: vec4f, normal: vec4f }
 struct Answer { visibility: f32, split: i32, in_split: vec2f, tint: vec3f, short: f32 }
@@ -288,8 +297,12 @@ struct Answer { visibility: f32, split: i32, in_split: vec2f, tint: vec3f, short
     if id.x >= arrayLength(&asks) { return; }
     let p = asks[id.x].position.xyz;
     let n = asks[id.x].normal.xyz;
-    let shadow = umbrage_shadow(p, n);
-    let in_split = vec2f(umbrage_visibility_in_split(p, n, 0u), umbrage_visibility_in_split(p, n, 1u));
+    let shadow = umbrage_shadow(umbrage_query(p, n));
+    var query = umbrage_query(p, n);
+    query.split = 0;
+    let first = umbrage_shadow(query).visibility;
+    query.split = 1;
+    let in_split = vec2f(first, umbrage_shadow(query).visibility);
     answers[id.x] = Answer(shadow.visibility, shadow.split, in_split, shadow.tint, umbrage_visibility(p, n));
 }";
 
@@ -305,8 +318,8 @@ impl World {
         let (maps, pipeline) = gpu.checked(|| {
             let maps = ShadowMaps::new(&gpu.device, options).expect("valid options");
             let source = maps.caster_wgsl(0)
-                + "@vertex fn vertex(@location(0) position: vec3f, copy: UmbrageCopy) -> UmbrageCast {
-                       return umbrage_cast(position, copy);
+                + "@vertex fn vertex(@location(0) position: vec3f, instance: UmbrageInstance) -> UmbrageCast {
+                       return umbrage_cast(position, instance);
                    }
                    @fragment fn fragment(@builtin(position) at: vec4f) -> @location(0) f32 {
                        return umbrage_caster_depth(at);
@@ -365,7 +378,7 @@ impl World {
                 pass.set_pipeline(&self.pipeline);
                 pass.set_bind_group(0, self.maps.caster_bind_group(index), &[]);
                 pass.set_vertex_buffer(0, vertices.slice(..));
-                pass.draw(0..triangles.len() as u32, map_pass.copies(u8::MAX));
+                pass.draw(0..triangles.len() as u32, map_pass.instances(u8::MAX));
             }
             self.maps.filter(&mut encoder);
             self.gpu.queue.submit([encoder.finish()]);
@@ -388,8 +401,8 @@ impl World {
                 pass.set_pipeline(&self.pipeline);
                 pass.set_bind_group(0, self.maps.caster_bind_group(index), &[]);
                 pass.set_vertex_buffer(0, vertices.slice(..));
-                for (caster, copies) in map_pass.casters(plan) {
-                    pass.draw(begins[caster as usize]..begins[caster as usize + 1], copies);
+                for (caster, instances) in map_pass.casters(plan) {
+                    pass.draw(begins[caster as usize]..begins[caster as usize + 1], instances);
                 }
             }
             self.maps.filter(&mut encoder);

@@ -25,6 +25,36 @@ impl<'a> Given<'a> {
     }
 }
 
+/// Why a setting's value was refused.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Wrong {
+    /// The setting at fault, if it is not the one whose value is read.
+    key: Option<&'static str>,
+    reason: String,
+}
+
+impl From<String> for Wrong {
+    fn from(reason: String) -> Self {
+        Self { key: None, reason }
+    }
+}
+
+impl From<&str> for Wrong {
+    fn from(reason: &str) -> Self {
+        reason.to_owned().into()
+    }
+}
+
+/// Refuses a value for a reason.
+fn refuse<T>(reason: impl Into<Wrong>) -> Result<T, Wrong> {
+    Err(reason.into())
+}
+
+/// Refuses a value of another setting for a reason.
+fn refuse_other<T>(key: &'static str, reason: String) -> Result<T, Wrong> {
+    Err(Wrong { key: Some(key), reason })
+}
+
 /// Share of a split that blends where nothing says another.
 const USUAL_BLEND: f64 = 0.1;
 
@@ -44,7 +74,8 @@ impl ShadowConfig {
         let mut config = self.clone();
         for setting in SETTINGS {
             if let Some(value) = given.value(setting.key) {
-                (setting.set)(&mut config, value.trim(), &given).map_err(|why| Error::setting(setting.key, why))?;
+                (setting.set)(&mut config, value.trim(), &given)
+                    .map_err(|Wrong { key, reason }| Error::setting(key.unwrap_or(setting.key), reason))?;
             }
         }
         let notes = config.give_way(&given);
@@ -131,30 +162,15 @@ fn known(key: &str, text: &str) -> Result<(), String> {
 }
 
 /// Number and sizes of maps, from `technique`, `splits`, `map-size` and `planes` together.
-pub(super) fn shape(config: &mut ShadowConfig, given: &Given<'_>) -> Result<(), String> {
-    let technique = given.value("technique").map(str::trim);
-    technique.map_or(Ok(()), |technique| known("technique", technique))?;
-    let single = technique.filter(|technique| *technique != "pssm");
-    let typed = given.value("map-size").map(map_sizes).transpose()?;
-    let splits = match (given.value("splits").map(count).transpose()?, single) {
-        (Some(splits), _) if !(1..=MAX_SPLITS as u32).contains(&splits) => {
-            return Err(format!("{splits} splits; there may be 1 to {MAX_SPLITS}"));
-        }
-        (Some(splits), Some(single)) if splits != 1 => {
-            return Err(format!(
-                "{splits} splits: technique {single} is one map over the whole range; leave splits away, or use pssm"
-            ));
-        }
-        (Some(splits), _) => splits as usize,
-        (None, Some(_)) => 1,
-        (None, None) => match (&typed, given.value("planes")) {
-            (Some(typed), _) if typed.len() > 1 => typed.len(),
-            (_, Some(planes)) => planes.split(',').count() + 1,
-            _ => config.splits(),
-        },
+pub(super) fn shape(config: &mut ShadowConfig, given: &Given<'_>) -> Result<(), Wrong> {
+    let single = single_map(given)?;
+    let typed = match given.value("map-size").map(map_sizes).transpose() {
+        Ok(typed) => typed,
+        Err(reason) => return refuse_other("map-size", reason),
     };
-    if splits > MAX_SPLITS {
-        return Err(format!("{splits} splits; there may be 1 to {MAX_SPLITS}"));
+    let (key, splits) = split_count(config, given, single, typed.as_deref())?;
+    if !(1..=MAX_SPLITS).contains(&splits) {
+        return refuse_other(key, format!("{splits} splits; there may be 1 to {MAX_SPLITS}"));
     }
     let sizes = typed.unwrap_or_else(|| config.map_sizes.clone());
     config.map_sizes = match sizes[..] {
@@ -162,25 +178,65 @@ pub(super) fn shape(config: &mut ShadowConfig, given: &Given<'_>) -> Result<(), 
         _ if sizes.len() == splits => sizes,
         [edge, ..] if !given.has("map-size") && sizes.iter().all(|size| *size == edge) => vec![edge; splits],
         _ => {
-            let (maps, are) = (sizes.len(), if splits == 1 { "is 1 split" } else { "are several splits" });
-            return Err(format!("lists {maps} maps, but there {are} ({splits}); give one size, or one for each split"));
+            let (maps, there) = (sizes.len(), if splits == 1 { "is 1 split" } else { "are" });
+            let there = if splits == 1 { there.to_owned() } else { format!("{there} {splits} splits") };
+            return refuse_other(
+                "map-size",
+                format!("lists {maps} maps, but there {there}; give one size, or one for each split"),
+            );
         }
     };
-    if let Some(single) = single {
-        let warp = single.parse::<Warp>().unwrap_or(Warp::None);
-        if let Some(other) = given.value("warp").filter(|other| *other != warp.word()) {
-            return Err(format!(
-                "technique {single} says how its one map is warped, and warp {other} says otherwise; leave warp away, \
-                 or use pssm with splits 1"
-            ));
-        }
-        if warp != Warp::None {
-            set_warps(config, given, vec![warp], &format!("technique {single}"))?;
-        } else if config.first_warp().is_some() {
+    let Some(single) = single else { return Ok(()) };
+    let warp = single.parse::<Warp>().unwrap_or(Warp::None);
+    if let Some(other) = given.value("warp").filter(|other| *other != warp.word()) {
+        return refuse(format!(
+            "technique {single} says how its one map is warped, and warp {other} says otherwise; leave warp away, \
+             or use technique pssm with splits 1"
+        ));
+    }
+    if warp != Warp::None {
+        set_warps(config, given, vec![warp], &format!("technique {single}"))
+    } else {
+        if config.first_warp().is_some() {
             config.stability = Stability::tight();
         }
+        Ok(())
     }
-    Ok(())
+}
+
+/// The technique, if it is one map over the whole range.
+fn single_map<'a>(given: &Given<'a>) -> Result<Option<&'a str>, Wrong> {
+    let Some(technique) = given.value("technique").map(str::trim) else { return Ok(None) };
+    known("technique", technique)?;
+    Ok(Some(technique).filter(|technique| *technique != "pssm"))
+}
+
+/// The number of splits, and the setting that says so.
+fn split_count(
+    config: &ShadowConfig,
+    given: &Given<'_>,
+    single: Option<&str>,
+    sizes: Option<&[u32]>,
+) -> Result<(&'static str, usize), Wrong> {
+    let typed = match given.value("splits").map(count).transpose() {
+        Ok(typed) => typed,
+        Err(reason) => return refuse_other("splits", reason),
+    };
+    Ok(match (typed, single) {
+        (Some(splits), Some(single)) if splits != 1 => {
+            return refuse_other(
+                "splits",
+                format!("technique {single} is one map over the whole range; leave splits away, or use technique pssm"),
+            );
+        }
+        (Some(splits), _) => ("splits", splits as usize),
+        (None, Some(_)) => ("technique", 1),
+        (None, None) => match (sizes, given.value("planes")) {
+            (Some(sizes), _) if sizes.len() > 1 => ("map-size", sizes.len()),
+            (_, Some(planes)) => ("planes", planes.split(',').count() + 1),
+            _ => ("splits", config.splits()),
+        },
+    })
 }
 
 /// Edges of maps in texels.
@@ -194,7 +250,7 @@ pub(super) fn map_sizes(text: &str) -> Result<Vec<u32>, String> {
         .collect()
 }
 
-pub(super) fn scheme(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), String> {
+pub(super) fn scheme(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
     if config.scheme.word() == text {
         return Ok(());
     }
@@ -206,9 +262,9 @@ pub(super) fn scheme(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -
         "manual" if given.has("planes") || config.splits() == 1 => SplitScheme::Manual { planes: Vec::new() },
         "manual" => {
             let (inner, splits) = (config.splits() - 1, config.splits());
-            return Err(format!("manual needs planes with the {inner} inner planes of {splits} splits"));
+            return refuse(format!("manual needs planes with the {inner} inner planes of {splits} splits"));
         }
-        _ => return Err(unknown("scheme", text, SplitScheme::WORDS)),
+        _ => return refuse(unknown("scheme", text, SplitScheme::WORDS)),
     };
     Ok(())
 }
@@ -218,65 +274,71 @@ fn practical<'a>(
     config: &'a mut ShadowConfig,
     given: &Given<'_>,
     key: &str,
-) -> Result<(&'a mut f64, &'a mut Vec<f64>), String> {
+) -> Result<(&'a mut f64, &'a mut Vec<f64>), Wrong> {
     let is_practical = matches!(config.scheme, SplitScheme::Practical { .. });
     let other = match is_practical {
         _ if given.has("planes") => Some("manual"),
-        false if given.has("scheme") => Some(config.scheme.word()),
-        _ => None,
+        false => given.value("scheme"),
+        true => None,
     };
     if let Some(scheme) = other {
-        return Err(format!("{key} belongs to scheme practical, but the scheme is {scheme}; leave one of them away"));
+        return refuse(format!(
+            "{key} belongs to scheme practical, but the scheme is {scheme}; leave one of them away"
+        ));
     }
     if !is_practical {
         config.scheme = SplitScheme::practical();
     }
     match &mut config.scheme {
         SplitScheme::Practical { lambda, delta } => Ok((lambda, delta)),
-        _ => Err(format!("{key} belongs to scheme practical")),
+        _ => refuse(format!("{key} belongs to scheme practical")),
     }
 }
 
-pub(super) fn lambda(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), String> {
+pub(super) fn lambda(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
     let value = number(text)?;
     practical(config, given, "lambda").map(|(lambda, _)| *lambda = value)
 }
 
-pub(super) fn delta(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), String> {
+pub(super) fn delta(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
     let values = numbers(text)?;
     practical(config, given, "delta").map(|(_, delta)| *delta = values)
 }
 
-pub(super) fn planes(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), String> {
+pub(super) fn planes(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
     let planes = numbers(text)?;
     if planes.iter().any(|plane| *plane <= 0.0) {
-        return Err("a plane is a view depth in metres, above 0".to_owned());
+        return refuse("a plane is a view depth in metres, above 0".to_owned());
     }
     match given.value("scheme") {
         Some(scheme) if scheme.trim() != "manual" => {
-            return Err(format!("planes belongs to scheme manual, but the scheme is {scheme}; leave one of them away"));
+            return refuse(format!(
+                "planes belongs to scheme manual, but the scheme is {scheme}; leave one of them away"
+            ));
         }
         _ => config.scheme = SplitScheme::Manual { planes },
     }
     shape(config, given)
 }
 
-pub(super) fn range_fit(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), String> {
+pub(super) fn range_fit(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
     known("range-fit", text)?;
     config.range = if text == "visible" { Range::Visible } else { Range::Camera };
     Ok(())
 }
 
-pub(super) fn shadow_range(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), String> {
+pub(super) fn shadow_range(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
     if given.value("range-fit") == Some("visible") {
-        return Err("shadow-range and range-fit visible both choose the shadowed range; give one of them".to_owned());
+        return refuse(
+            "shadow-range and range-fit visible both choose the shadowed range; give one of them".to_owned(),
+        );
     }
     let (near, far) = range(text)?;
     config.range = Range::Metres { near, far };
     Ok(())
 }
 
-pub(super) fn selection(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), String> {
+pub(super) fn selection(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
     known("selection", text)?;
     match (text, config.selection) {
         ("map", _) => config.selection = Selection::Map,
@@ -286,12 +348,13 @@ pub(super) fn selection(config: &mut ShadowConfig, text: &str, _: &Given<'_>) ->
     Ok(())
 }
 
-pub(super) fn bands(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), String> {
+pub(super) fn bands(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
     let metric: SplitMetric = text.parse()?;
     if metric == SplitMetric::Distance && given.value("selection") == Some("map") {
-        return Err("bands radial and selection map exclude each other: maps that are chosen by what they contain \
-                    have no bands; leave one of them away"
-            .to_owned());
+        return refuse(
+            "bands radial and selection map exclude each other: maps that are chosen by what they contain \
+                    have no bands; leave one of them away",
+        );
     }
     if metric == SplitMetric::Distance || config.selection != Selection::Map {
         config.selection = Selection::Interval(metric);
@@ -299,7 +362,7 @@ pub(super) fn bands(config: &mut ShadowConfig, text: &str, given: &Given<'_>) ->
     Ok(())
 }
 
-pub(super) fn stabilize(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), String> {
+pub(super) fn stabilize(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
     if config.stability.word() == text {
         return Ok(());
     }
@@ -307,18 +370,18 @@ pub(super) fn stabilize(config: &mut ShadowConfig, text: &str, _: &Given<'_>) ->
         "exact" => Stability::Exact,
         "approximate" => Stability::Approximate { steps: ExtentSteps::default() },
         "none" => Stability::tight(),
-        _ => return Err(unknown("stability", text, Stability::WORDS)),
+        _ => return refuse(unknown("stability", text, Stability::WORDS)),
     };
     Ok(())
 }
 
-pub(super) fn extent(config: &mut ShadowConfig, given: &Given<'_>, steps: ExtentSteps) -> Result<(), String> {
+pub(super) fn extent(config: &mut ShadowConfig, given: &Given<'_>, steps: ExtentSteps) -> Result<(), Wrong> {
     if given.has("extent-steps") && given.has("extent-levels") {
-        return Err("extent-steps and extent-levels both choose the steps of a map's extent; give one".to_owned());
+        return refuse("extent-steps and extent-levels both choose the steps of a map's extent; give one".to_owned());
     }
     match given.value("stabilize") {
         Some(stability) if stability.trim() != "approximate" => {
-            Err(format!("belongs to stabilize approximate, but it is {stability}; leave one of them away"))
+            refuse(format!("belongs to stabilize approximate, but it is {stability}; leave one of them away"))
         }
         _ => {
             config.stability = Stability::Approximate { steps };
@@ -327,7 +390,7 @@ pub(super) fn extent(config: &mut ShadowConfig, given: &Given<'_>, steps: Extent
     }
 }
 
-pub(super) fn warp(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), String> {
+pub(super) fn warp(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
     let warps: Vec<Warp> = text.split(',').map(|warp| warp.trim().parse()).collect::<Result<_, _>>()?;
     if warps.iter().all(|warp| *warp == Warp::None) {
         if config.first_warp().is_some() {
@@ -339,9 +402,9 @@ pub(super) fn warp(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> 
     set_warps(config, given, warps, &typed)
 }
 
-fn set_warps(config: &mut ShadowConfig, given: &Given<'_>, warps: Vec<Warp>, typed: &str) -> Result<(), String> {
+fn set_warps(config: &mut ShadowConfig, given: &Given<'_>, warps: Vec<Warp>, typed: &str) -> Result<(), Wrong> {
     match given.value("stabilize") {
-        Some(stability) if stability.trim() != "none" => Err(format!(
+        Some(stability) if stability.trim() != "none" => refuse(format!(
             "{typed} and stabilize {stability} exclude each other: a warped map follows the camera; \
              leave one of them away"
         )),
@@ -352,7 +415,7 @@ fn set_warps(config: &mut ShadowConfig, given: &Given<'_>, warps: Vec<Warp>, typ
     }
 }
 
-pub(super) fn tsm_focus(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), String> {
+pub(super) fn tsm_focus(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
     let value = number(text)?;
     let mut is_used = false;
     if let Stability::Tight { warps } = &mut config.stability {
@@ -362,10 +425,10 @@ pub(super) fn tsm_focus(config: &mut ShadowConfig, text: &str, _: &Given<'_>) ->
             }
         }
     }
-    if is_used { Ok(()) } else { Err("belongs to warp tsm, and no map has it; leave it away".to_owned()) }
+    if is_used { Ok(()) } else { refuse("belongs to warp tsm, and no map has it; leave it away") }
 }
 
-pub(super) fn filter_width(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), String> {
+pub(super) fn filter_width(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
     let value = number(text)?;
     let filter = config.filter.word();
     match config.filter.width_mut() {
@@ -373,46 +436,50 @@ pub(super) fn filter_width(config: &mut ShadowConfig, text: &str, _: &Given<'_>)
             *width = Some(value);
             Ok(())
         }
-        None => Err(format!(
+        None => refuse(format!(
             "filter {filter} has no width to choose; leave it away, or use pcf3, pcf5, pcf7, disc, esm, vsm, evsm2, \
              evsm4 or msm"
         )),
     }
 }
 
-pub(super) fn sun_angle(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), String> {
+pub(super) fn sun_angle(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
     let value = number(text)?;
     match &mut config.filter {
         Filter::Pcss { sun_degrees, .. } => {
             *sun_degrees = value;
             Ok(())
         }
-        other => Err(format!("belongs to filter pcss, but the filter is {}; leave one of them away", other.word())),
+        other => refuse(format!("belongs to filter pcss, but the filter is {}; leave one of them away", other.word())),
     }
 }
 
-pub(super) fn rotate_kernel(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), String> {
+pub(super) fn rotate_kernel(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
     let on = switch(text)?;
     match &mut config.filter {
         Filter::Disc { rotated, .. } | Filter::Pcss { rotated, .. } => {
             *rotated = on;
             Ok(())
         }
-        other => Err(format!("belongs to filters disc and pcss, but the filter is {}; leave one away", other.word())),
-    }
-}
-
-pub(super) fn moments<'a>(config: &'a mut ShadowConfig, key: &str) -> Result<&'a mut Moments, String> {
-    match &mut config.filter {
-        Filter::Moments(moments) => Ok(moments),
         other => {
-            let filter = other.word();
-            Err(format!("{key} belongs to filters esm to msm, but the filter is {filter}; leave one of them away"))
+            refuse(format!("belongs to filters disc and pcss, but the filter is {}; leave one away", other.word()))
         }
     }
 }
 
-pub(super) fn transition(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), String> {
+pub(super) fn moments<'a>(config: &'a mut ShadowConfig, key: &str) -> Result<&'a mut Moments, Wrong> {
+    match &mut config.filter {
+        Filter::Moments(moments) => Ok(moments),
+        other => {
+            let filter = other.word();
+            refuse(format!(
+                "{key} belongs to filters esm, vsm, evsm2, evsm4 and msm, but the filter is {filter}; leave one of them away"
+            ))
+        }
+    }
+}
+
+pub(super) fn transition(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
     known("transition", text)?;
     let before = config.transition.share();
     let share = if before > 0.0 { before } else { USUAL_BLEND };
@@ -424,10 +491,10 @@ pub(super) fn transition(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -
     Ok(())
 }
 
-pub(super) fn blend(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), String> {
+pub(super) fn blend(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
     let share = number(text)?;
     if !(0.0..=1.0).contains(&share) {
-        return Err(format!("{share} is not in 0..=1"));
+        return refuse(format!("{share} is not in 0..=1"));
     }
     config.transition = match config.transition {
         _ if share == 0.0 => Transition::Hard,
@@ -437,16 +504,16 @@ pub(super) fn blend(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Res
     Ok(())
 }
 
-pub(super) fn colour(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), String> {
+pub(super) fn colour(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
     match numbers(text)?[..] {
         [red, green, blue] => config.look.colour = [red, green, blue],
-        ref other => return Err(format!("{} numbers; give red, green and blue from 0 to 1", other.len())),
+        ref other => return refuse(format!("{} numbers; give red, green and blue from 0 to 1", other.len())),
     }
     Ok(())
 }
 
 /// The layout of `generation` and `storage` together; either may be `auto`.
-pub(super) fn layout(config: &mut ShadowConfig, given: &Given<'_>) -> Result<(), String> {
+pub(super) fn layout(config: &mut ShadowConfig, given: &Given<'_>) -> Result<(), Wrong> {
     let generation = given.value("generation").map(settings::generation).transpose()?.flatten();
     let storage = given.value("storage").map(settings::storage).transpose()?.flatten();
     let (generation, storage) = match (generation, storage) {
@@ -461,7 +528,7 @@ pub(super) fn layout(config: &mut ShadowConfig, given: &Given<'_>) -> Result<(),
             config.layout = layout;
             Ok(())
         }
-        None => Err(format!(
+        None => refuse(format!(
             "generation {generation} and storage {storage} exclude each other: multipass goes with reused; per-split \
              with array, atlas, separate or cube; layered with array or cube; instanced with atlas; mixed with array; \
              leave one of them to auto"

@@ -296,7 +296,7 @@ impl ShadowConfig {
                 if matches!(samples, 1 | 4) {
                     return Ok(());
                 }
-                Err(Error::setting("msaa", format!("{samples} samples; a texel has 1 or 4, as on every device")))
+                Err(Error::setting("msaa", format!("{samples} samples; a texel has 1 sample or 4, as on every device")))
             }
             _ => Ok(()),
         }

@@ -303,6 +303,7 @@ impl Choice {
         match self {
             Self::LocalLight => "light spot or point".to_owned(),
             Self::SeveralFaces => "several lights or faces".to_owned(),
+            Self::OneMap => "storage reused (generation multipass)".to_owned(),
             Self::Warp => format!("warp {}", config.first_warp().map_or("none", Warp::word)),
             _ => {
                 let key = self.keys()[0];

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use super::apply::{self, Given};
+use super::apply::{self, Given, Wrong};
 use super::names::Word;
 use super::{
     Coordinates, Crop, DepthFormat, Derivatives, ExtentSteps, Fallbacks, Filter, Generation, Range, ReceiverBias,
@@ -22,7 +22,7 @@ pub struct Setting {
     pub kind: Kind,
     /// What an application's maps have to be made anew for when the setting changes.
     pub rebuilds: Rebuilds,
-    pub(super) set: fn(&mut ShadowConfig, &str, &Given<'_>) -> Result<(), String>,
+    pub(super) set: fn(&mut ShadowConfig, &str, &Given<'_>) -> Result<(), Wrong>,
     pub(super) get: fn(&ShadowConfig) -> Option<Value>,
 }
 
@@ -309,7 +309,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "What each map is cropped to",
         kind: Kind::Words(Crop::WORDS),
         rebuilds: Rebuilds::Nothing,
-        set: |config, text, _| text.parse().map(|crop| config.crop = crop),
+        set: |config, text, _| text.parse().map(|crop| config.crop = crop).map_err(Wrong::from),
         get: |config| word(config.crop.word()),
     },
     Setting {
@@ -398,7 +398,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "How a map is looked up",
         kind: Kind::Words(Filter::WORDS),
         rebuilds: Rebuilds::Pipelines,
-        set: |config, text, _| text.parse().map(|filter| config.filter = filter),
+        set: |config, text, _| text.parse().map(|filter| config.filter = filter).map_err(Wrong::from),
         get: |config| word(config.filter.word()),
     },
     Setting {
@@ -436,7 +436,10 @@ pub const SETTINGS: &[Setting] = &[
         help: "Samples of depth in a texel, for esm to msm: 1 or 4",
         kind: Kind::Count(1, 4),
         rebuilds: Rebuilds::Pipelines,
-        set: |config, text, _| apply::moments(config, "msaa").and_then(|m| apply::count(text).map(|n| m.samples = n)),
+        set: |config, text, _| {
+            apply::moments(config, "msaa")?.samples = apply::count(text)?;
+            Ok(())
+        },
         get: |config| match config.filter {
             Filter::Moments(moments) => Some(Value::Count(moments.samples)),
             _ => None,
@@ -448,7 +451,8 @@ pub const SETTINGS: &[Setting] = &[
         kind: Kind::Share(0.9),
         rebuilds: Rebuilds::Nothing,
         set: |config, text, _| {
-            apply::moments(config, "bleeding").and_then(|m| apply::number(text).map(|n| m.bleeding = n))
+            apply::moments(config, "bleeding")?.bleeding = apply::number(text)?;
+            Ok(())
         },
         get: |config| match config.filter {
             Filter::Moments(moments) => Some(Value::Number(moments.bleeding)),
@@ -461,7 +465,8 @@ pub const SETTINGS: &[Setting] = &[
         kind: Kind::Words(Derivatives::WORDS),
         rebuilds: Rebuilds::Nothing,
         set: |config, text, _| {
-            apply::moments(config, "derivatives").and_then(|m| text.parse().map(|way| m.derivatives = way))
+            apply::moments(config, "derivatives")?.derivatives = text.parse()?;
+            Ok(())
         },
         get: |config| match config.filter {
             Filter::Moments(moments) => word(moments.derivatives.word()),
@@ -473,7 +478,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Whether what the device lacks is replaced",
         kind: Kind::Words(Fallbacks::WORDS),
         rebuilds: Rebuilds::Pipelines,
-        set: |config, text, _| text.parse().map(|fallbacks| config.fallbacks = fallbacks),
+        set: |config, text, _| text.parse().map(|fallbacks| config.fallbacks = fallbacks).map_err(Wrong::from),
         get: |config| word(config.fallbacks.word()),
     },
     Setting {
@@ -503,7 +508,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Share of the shadowed range over which shadows fade out at its far end; 0 is off",
         kind: Kind::Share(1.0),
         rebuilds: Rebuilds::Nothing,
-        set: |config, text, _| apply::number(text).map(|share| config.far_fade = share),
+        set: |config, text, _| apply::number(text).map(|share| config.far_fade = share).map_err(Wrong::from),
         get: |config| Some(Value::Number(config.far_fade)),
     },
     Setting {
@@ -511,7 +516,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Where receivers take a map's coordinates from",
         kind: Kind::Words(Coordinates::WORDS),
         rebuilds: Rebuilds::Pipelines,
-        set: |config, text, _| text.parse().map(|coordinates| config.coordinates = coordinates),
+        set: |config, text, _| text.parse().map(|coordinates| config.coordinates = coordinates).map_err(Wrong::from),
         get: |config| word(config.coordinates.word()),
     },
     Setting {
@@ -519,7 +524,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "What a map stores",
         kind: Kind::Words(DepthFormat::WORDS),
         rebuilds: Rebuilds::Pipelines,
-        set: |config, text, _| text.parse().map(|format| config.depth_format = format),
+        set: |config, text, _| text.parse().map(|format| config.depth_format = format).map_err(Wrong::from),
         get: |config| word(config.depth_format.word()),
     },
     Setting {
@@ -543,7 +548,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "How surfaces are kept from shading themselves",
         kind: Kind::Words(ReceiverBias::WORDS),
         rebuilds: Rebuilds::Nothing,
-        set: |config, text, _| text.parse().map(|bias| config.look.bias = bias),
+        set: |config, text, _| text.parse().map(|bias| config.look.bias = bias).map_err(Wrong::from),
         get: |config| word(config.look.bias.word()),
     },
     Setting {
@@ -551,7 +556,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "How dark shadows are, 0 (not at all) to 1 (no sun)",
         kind: Kind::Share(1.0),
         rebuilds: Rebuilds::Nothing,
-        set: |config, text, _| apply::number(text).map(|strength| config.look.strength = strength),
+        set: |config, text, _| apply::number(text).map(|strength| config.look.strength = strength).map_err(Wrong::from),
         get: |config| Some(Value::Number(config.look.strength)),
     },
     Setting {
@@ -567,7 +572,9 @@ pub const SETTINGS: &[Setting] = &[
         help: "Whether translucent surfaces throw shadows",
         kind: Kind::Words(Translucent::WORDS),
         rebuilds: Rebuilds::Pipelines,
-        set: |config, text, _| text.parse().map(|translucent| config.look.translucent = translucent),
+        set: |config, text, _| {
+            text.parse().map(|translucent| config.look.translucent = translucent).map_err(Wrong::from)
+        },
         get: |config| word(config.look.translucent.word()),
     },
     Setting {
@@ -575,7 +582,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Whether the picture's own depth is searched for casters too close for the maps",
         kind: Kind::Words(super::look::SWITCH),
         rebuilds: Rebuilds::Pipelines,
-        set: |config, text, _| apply::switch(text).map(|on| config.look.contact = on),
+        set: |config, text, _| apply::switch(text).map(|on| config.look.contact = on).map_err(Wrong::from),
         get: |config| word(if config.look.contact { "on" } else { "off" }),
     },
 ];

@@ -2,8 +2,6 @@
 
 use std::fmt::Write;
 
-use plotters::style::RGBColor;
-
 /// A colour by its meaning. Each has a form for light paper, which is what the SVG says, and one for dark paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colour {
@@ -76,15 +74,10 @@ impl Colour {
         }
     }
 
-    /// As `#RRGGBB`, on light paper.
+    /// As `#rrggbb`, on light paper.
     #[must_use]
     pub fn hex(self) -> String {
-        format!("#{:06X}", self.pair().0)
-    }
-
-    pub(super) fn rgb(self) -> RGBColor {
-        let [_, r, g, b] = self.pair().0.to_be_bytes();
-        RGBColor(r, g, b)
+        format!("#{:06x}", self.pair().0)
     }
 }
 
@@ -95,7 +88,7 @@ pub fn dark_style(selector: &str) -> String {
     for (light, dark) in [INK, QUIET, GRID, PAPER].iter().chain(&SERIES).chain(&SPLITS).chain(&RAMP) {
         for attribute in ["fill", "stroke"] {
             // Writing to a string cannot fail.
-            let _ = writeln!(css, "{selector} [{attribute}=\"#{light:06X}\"]{{{attribute}:#{dark:06X}}}");
+            let _ = writeln!(css, "{selector} [{attribute}=\"#{light:06x}\"]{{{attribute}:#{dark:06x}}}");
         }
     }
     css

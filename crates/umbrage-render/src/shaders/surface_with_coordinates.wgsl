@@ -21,14 +21,13 @@ fn vs_main(vertex: Vertex, instance: Instance) -> Surface {
     let position = position_from_local(instance, vertex.local);
     let from_eye = position - frame.eye;
     let normal = normal_from_local(instance, vertex.normal);
-    let at = umbrage_places(position);
+    let at = umbrage_shadow_coordinates(position);
     return Surface(
         clip_of(from_eye), position, from_eye, normal, vertex.uv, vertex.color, at.first, at.second, at.third, at.fourth,
     );
 }
 
-// What the pixel covers. Call in uniform control flow.
-fn footprint_of(in: Surface) -> UmbrageFootprint {
-    let footprint = umbrage_footprint(in.position, dpdx(in.from_eye), dpdy(in.from_eye), in.clip.xy);
-    return umbrage_at_places(footprint, UmbragePlaces(in.first, in.second, in.third, in.fourth));
+fn shadow_of(in: Surface, query: UmbrageQuery) -> UmbrageShadow {
+    let coordinates = UmbrageShadowCoordinates(in.first, in.second, in.third, in.fourth);
+    return umbrage_shadow_from_coordinates(query, coordinates);
 }

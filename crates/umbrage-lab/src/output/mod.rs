@@ -1,20 +1,27 @@
 //! Files appear whole or not at all.
 //!
-//! Every output is first written in full to a temporary file in its target's own folder; only when all of them are there
-//! are they renamed into place. Whatever goes wrong before that (a full disk, a lost device, a bad frame) leaves nothing.
+//! Every output is first written in full into a hidden folder of the run, in its target's own folder; only when all of them are there
+//! are they renamed into place. Whatever goes wrong before that (a full disk, a lost device, a bad frame) leaves nothing. An
+//! interrupted run leaves its finished frames ([`clean_up_on_signals`]), and what a killed one leaves goes with the next.
 
 use std::{
-    collections::HashSet,
+    collections::{HashMap, HashSet},
     fs,
     io::{self, Write},
     path::{Path, PathBuf},
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
-
-use tempfile::{NamedTempFile, TempDir, TempPath};
 
 use crate::failure::{Failure, Result};
 
-const TEMPORARY_PREFIX: &str = ".umbrage-";
+mod run_folder;
+mod signals;
+
+use run_folder::RunFolder;
+pub use signals::clean_up_on_signals;
+
+/// Links that are followed, one to the next; systems give up at as many.
+const MOST_LINKS: usize = 40;
 
 /// `NAME.png` of frame 7 is `NAME.0007.png`; a name without extension gets the number at its end. Without a frame the
 /// name stays.
@@ -70,8 +77,8 @@ pub fn check(files: &[&Path], folders: &[&Path], inputs: &[&Path]) -> Result<()>
             return Err(Failure::input(format!("{} is an input; write the output elsewhere", path.display())));
         }
         let folder = folder_of(&target);
-        // The only sure way to learn whether a folder can be written to. The probe vanishes at once.
-        temporary_file(folder).map_err(|error| Failure::file("write", path, &error))?;
+        // The only sure way to learn whether a folder can be written to. The probe has no name where systems allow it.
+        tempfile::tempfile_in(folder).map_err(|error| Failure::file("write", path, &error))?;
         if !seen.insert(target) {
             return Err(Failure::input(format!("{} is named for two outputs; give each its own", path.display())));
         }
@@ -80,28 +87,34 @@ pub fn check(files: &[&Path], folders: &[&Path], inputs: &[&Path]) -> Result<()>
 }
 
 /// Outputs that are written but not yet in place. Dropped without [`Staged::commit`], they vanish.
+#[derive(Debug)]
+pub struct Staged(Arc<Mutex<Pending>>);
+
+/// Shared with whoever waits for signals.
 #[derive(Debug, Default)]
-pub struct Staged {
+struct Pending {
     entries: Vec<Entry>,
+    /// As many of them, from the first on, belong to frames that are finished.
+    finished: usize,
     targets: HashSet<PathBuf>,
+    /// This run's hidden folder in each place that something is to appear in.
+    folders: HashMap<PathBuf, RunFolder>,
 }
 
 #[derive(Debug)]
 enum Entry {
-    File {
-        /// Written and closed: a long path of frames must not run out of open files.
-        file: TempPath,
-        target: PathBuf,
-    },
-    Folder {
-        folder: TempDir,
-        target: PathBuf,
-    },
+    /// A file, written and closed, or a folder of such files.
+    Written { path: PathBuf, target: PathBuf },
     /// A pipe, a terminal, a device: nothing to rename, so it is written when everything else is ready.
-    Special {
-        bytes: Vec<u8>,
-        target: PathBuf,
-    },
+    Special { bytes: Vec<u8>, target: PathBuf },
+}
+
+impl Default for Staged {
+    fn default() -> Self {
+        let staged = Self(Arc::default());
+        signals::watch(&staged.0);
+        staged
+    }
 }
 
 impl Staged {
@@ -110,19 +123,7 @@ impl Staged {
     /// # Errors
     /// [`Failure::Input`] naming the target: it is a folder, its folder is missing, the disk is full, …
     pub fn file(&mut self, target: &Path, bytes: Vec<u8>) -> Result<()> {
-        if is_special(target) {
-            self.entries.push(Entry::Special { bytes, target: target.to_path_buf() });
-            return Ok(());
-        }
-        if target.is_dir() {
-            return Err(is_a_folder(target));
-        }
-        let resolved = self.claim(target)?;
-        let failed = |error: io::Error| Failure::file("write", target, &error);
-        let mut file = temporary_file(folder_of(&resolved)).map_err(failed)?;
-        write_whole(file.as_file_mut(), &bytes).map_err(failed)?;
-        self.entries.push(Entry::File { file: file.into_temp_path(), target: resolved });
-        Ok(())
+        self.pending().file(target, bytes)
     }
 
     /// Writes a folder of files that is to appear at `target`. If that folder exists already, the files appear in it.
@@ -130,22 +131,13 @@ impl Staged {
     /// # Errors
     /// As [`Staged::file`].
     pub fn folder(&mut self, target: &Path, files: Vec<(String, Vec<u8>)>) -> Result<()> {
-        if target.is_dir() {
-            return files.into_iter().try_for_each(|(name, bytes)| self.file(&target.join(name), bytes));
-        }
-        if target.exists() {
-            return Err(is_no_folder(target));
-        }
-        let resolved = self.claim(target)?;
-        let failed = |error: io::Error| Failure::file("write", target, &error);
-        let folder = temporary_folder(folder_of(&resolved)).map_err(failed)?;
-        for (name, bytes) in files {
-            fs::File::create(folder.path().join(name))
-                .and_then(|mut file| write_whole(&mut file, &bytes))
-                .map_err(failed)?;
-        }
-        self.entries.push(Entry::Folder { folder, target: resolved });
-        Ok(())
+        self.pending().folder(target, files)
+    }
+
+    /// Says that what was written so far is whole frames, which are worth keeping if the run is interrupted.
+    pub fn finish_frame(&mut self) {
+        let mut pending = self.pending();
+        pending.finished = pending.entries.len();
     }
 
     /// Puts everything in place. A reader of a pipe who has left is no error.
@@ -154,15 +146,82 @@ impl Staged {
     /// [`Failure::Input`] naming the target that refused; those that came before it are taken back, except that a file that was
     /// replaced stays replaced.
     pub fn commit(self) -> Result<()> {
+        // Locked to the end: a signal waits until everything is in place.
+        self.pending().commit()
+    }
+
+    fn pending(&self) -> MutexGuard<'_, Pending> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Pending {
+    fn file(&mut self, target: &Path, bytes: Vec<u8>) -> Result<()> {
+        if is_special(target) {
+            self.entries.push(Entry::Special { bytes, target: target.to_path_buf() });
+            return Ok(());
+        }
+        if target.is_dir() {
+            return Err(is_a_folder(target));
+        }
+        let resolved = self.claim(target)?;
+        let path = self
+            .run_folder(&resolved)
+            .and_then(|folder| folder.write(&bytes))
+            .map_err(|error| Failure::file("write", target, &error))?;
+        self.entries.push(Entry::Written { path, target: resolved });
+        Ok(())
+    }
+
+    fn folder(&mut self, target: &Path, files: Vec<(String, Vec<u8>)>) -> Result<()> {
+        if target.is_dir() {
+            return files.into_iter().try_for_each(|(name, bytes)| self.file(&target.join(name), bytes));
+        }
+        if target.exists() {
+            return Err(is_no_folder(target));
+        }
+        let resolved = self.claim(target)?;
+        let path = self
+            .run_folder(&resolved)
+            .and_then(|folder| folder.write_folder(&files))
+            .map_err(|error| Failure::file("write", target, &error))?;
+        self.entries.push(Entry::Written { path, target: resolved });
+        Ok(())
+    }
+
+    fn commit(&mut self) -> Result<()> {
         let (special, renamed): (Vec<_>, Vec<_>) =
-            self.entries.into_iter().partition(|entry| matches!(entry, Entry::Special { .. }));
+            std::mem::take(&mut self.entries).into_iter().partition(|entry| matches!(entry, Entry::Special { .. }));
         let mut created = Vec::new();
-        special.into_iter().chain(renamed).try_for_each(|entry| place(entry, &mut created)).inspect_err(|_| {
+        let placed = special.into_iter().chain(renamed).try_for_each(|entry| place(entry, &mut created));
+        self.folders.clear();
+        placed.inspect_err(|_| {
             for path in &created {
                 // Best effort: the error that is already on its way says what went wrong.
                 drop(if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) });
             }
         })
+    }
+
+    /// Puts finished frames in place, forgets everything else, and answers how many files or folders that were.
+    #[cfg(unix)]
+    fn keep_finished(&mut self) -> usize {
+        let entries = std::mem::take(&mut self.entries);
+        // A pipe may have no reader who would end the wait for one.
+        let written = entries.into_iter().take(self.finished).filter(|entry| matches!(entry, Entry::Written { .. }));
+        // What cannot be put in place goes with the rest: there is nobody left to tell.
+        let kept = written.filter_map(|entry| place(entry, &mut Vec::new()).ok()).count();
+        self.folders.clear();
+        kept
+    }
+
+    /// This run's hidden folder beside a target.
+    fn run_folder(&mut self, target: &Path) -> io::Result<&mut RunFolder> {
+        let place = folder_of(target);
+        if !self.folders.contains_key(place) {
+            self.folders.insert(place.to_path_buf(), RunFolder::new(place)?);
+        }
+        self.folders.get_mut(place).ok_or_else(|| io::ErrorKind::NotFound.into())
     }
 
     /// Resolves `target` and makes sure that nothing else is staged for it.
@@ -197,28 +256,15 @@ fn place(entry: Entry, created: &mut Vec<PathBuf>) -> Result<()> {
                 _ => Ok(()),
             }
         }
-        Entry::File { file, target } => {
+        Entry::Written { path, target } => {
             let is_new = !target.exists();
-            file.persist(&target).map_err(|error| Failure::file("write", &target, &error.error))?;
+            fs::rename(&path, &target).map_err(|error| Failure::file("write", &target, &error))?;
             if is_new {
                 created.push(target);
             }
             Ok(())
         }
-        Entry::Folder { folder, target } => {
-            fs::rename(folder.path(), &target).map_err(|error| Failure::file("write", &target, &error))?;
-            // Nothing is left under the temporary name, so there is nothing to clean up there.
-            drop(folder.keep());
-            created.push(target);
-            Ok(())
-        }
     }
-}
-
-fn write_whole(file: &mut fs::File, bytes: &[u8]) -> io::Result<()> {
-    file.write_all(bytes)?;
-    // Some file systems find out that they are full only now.
-    file.sync_all()
 }
 
 /// Whether the path leads to something that is neither a file nor a folder.
@@ -226,15 +272,25 @@ fn is_special(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|meta| !meta.is_file() && !meta.is_dir())
 }
 
-/// The path with links followed and `.` and `..` gone; its last part need not exist.
+/// The path with links followed and `.` and `..` gone; its last part need not exist, nor what a link at its end leads to.
 fn resolve(path: &Path) -> Result<PathBuf> {
-    if let Ok(existing) = path.canonicalize() {
-        return Ok(existing);
+    let failed = |error: io::Error| Failure::file("write", path, &error);
+    let mut target = path.to_path_buf();
+    for _ in 0..MOST_LINKS {
+        match target.canonicalize() {
+            Ok(existing) => return Ok(existing),
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(failed(error)),
+            Err(_) => {}
+        }
+        match target.read_link() {
+            Ok(link) => target = folder_of(&target).join(link),
+            Err(_) => break,
+        }
     }
-    let name = path.file_name().ok_or_else(|| {
+    let name = target.file_name().ok_or_else(|| {
         Failure::input(format!("{:?} is not the name of a file to write", path.display().to_string()))
     })?;
-    let folder = folder_of(path).canonicalize().map_err(|error| Failure::file("write", path, &error))?;
+    let folder = folder_of(&target).canonicalize().map_err(failed)?;
     Ok(folder.join(name))
 }
 
@@ -243,28 +299,6 @@ fn folder_of(path: &Path) -> &Path {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     }
-}
-
-fn temporary_file(folder: &Path) -> io::Result<NamedTempFile> {
-    builder(0o666).tempfile_in(folder)
-}
-
-fn temporary_folder(folder: &Path) -> io::Result<TempDir> {
-    builder(0o777).tempdir_in(folder)
-}
-
-/// Temporary names with the rights that an ordinary file or folder gets: the user's mask applies to `mode`.
-fn builder(mode: u32) -> tempfile::Builder<'static, 'static> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(TEMPORARY_PREFIX);
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(mode));
-    }
-    #[cfg(not(unix))]
-    let _ = mode;
-    builder
 }
 
 #[cfg(test)]
@@ -299,6 +333,7 @@ mod tests {
         staged.file(&at("new.txt"), b"new".to_vec()).expect("staged");
         staged.file(&at("old.txt"), b"newer".to_vec()).expect("staged");
         staged.folder(&at("maps"), vec![("0.png".into(), vec![1]), ("1.png".into(), vec![2])]).expect("staged");
+        assert_eq!(names(folder.path()).len(), 2, "the old file and one hidden folder");
         assert!(!at("new.txt").exists() && !at("maps").exists(), "nothing is in place yet");
         assert_eq!(fs::read(at("old.txt")).expect("readable"), b"old");
         staged.commit().expect("committed");
@@ -353,6 +388,42 @@ mod tests {
         let mut staged = Staged::default();
         staged.file(&a, vec![1]).expect("staged");
         assert!(staged.file(&other_a, vec![2]).is_err(), "staged twice");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_followed_though_it_leads_to_nothing_yet() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("other")).expect("a folder");
+        symlink("other/new.txt", at("relative")).expect("a link");
+        symlink(at("relative"), at("twice")).expect("a link to a link");
+        symlink("round", at("round")).expect("a link to itself");
+        symlink("missing/new.txt", at("lost")).expect("a link into a folder that is not there");
+        assert!(check(&[&at("twice")], &[], &[]).is_ok());
+        assert!(check(&[&at("twice"), &at("relative")], &[], &[]).is_err(), "one place by two names");
+        assert!(check(&[&at("round")], &[], &[]).is_err() && check(&[&at("lost")], &[], &[]).is_err());
+        let mut staged = Staged::default();
+        staged.file(&at("twice"), b"new".to_vec()).expect("staged");
+        staged.commit().expect("committed");
+        assert_eq!(fs::read(at("other/new.txt")).expect("where the links lead"), b"new");
+        assert!(at("twice").is_symlink() && at("relative").is_symlink(), "links stay links");
+        assert_eq!(names(&at("other")), ["new.txt"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn an_interrupted_run_keeps_its_finished_frames() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let at = |name: &str| folder.path().join(name);
+        let mut staged = Staged::default();
+        staged.file(&at("a.0.png"), vec![1]).expect("staged");
+        staged.folder(&at("maps.0"), vec![("0.png".into(), vec![1])]).expect("staged");
+        staged.finish_frame();
+        staged.file(&at("a.1.png"), vec![2]).expect("staged");
+        assert_eq!(staged.pending().keep_finished(), 2);
+        assert_eq!(names(folder.path()), ["a.0.png", "maps.0"]);
     }
 
     #[cfg(target_os = "linux")]

@@ -1,0 +1,48 @@
+//! What a run leaves when it is interrupted: its finished frames, and nothing hidden.
+
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+
+use super::Pending;
+
+/// The outputs of this process that are not in place yet.
+static PENDING: Mutex<Vec<Weak<Mutex<Pending>>>> = Mutex::new(Vec::new());
+
+/// Has the outputs looked after when a signal comes.
+pub(super) fn watch(pending: &Arc<Mutex<Pending>>) {
+    let mut all = PENDING.lock().unwrap_or_else(PoisonError::into_inner);
+    all.retain(|other| other.strong_count() > 0);
+    all.push(Arc::downgrade(pending));
+}
+
+/// From now on SIGINT (Ctrl-C), SIGTERM and SIGHUP put finished frames in place and remove everything hidden, before they end the process
+/// as they would have. Other systems than Unix end it at once.
+pub fn clean_up_on_signals() {
+    #[cfg(unix)]
+    {
+        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+        // Without a handler signals end the process as ever, and the next run cleans up.
+        let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGHUP, SIGINT, SIGTERM]) else { return };
+        std::thread::spawn(move || {
+            if let Some(signal) = signals.forever().next() {
+                interrupted(signal);
+            }
+        });
+    }
+}
+
+#[cfg(unix)]
+fn interrupted(signal: i32) {
+    let all = PENDING.lock().unwrap_or_else(PoisonError::into_inner);
+    let live: Vec<_> = all.iter().filter_map(Weak::upgrade).collect();
+    // Held until the process ends: nothing more is written.
+    let mut held: Vec<_> = live.iter().map(|pending| pending.lock().unwrap_or_else(PoisonError::into_inner)).collect();
+    for pending in &mut held {
+        let kept = pending.keep_finished();
+        if kept > 0 {
+            eprintln!("umbrage: interrupted; {kept} finished files were kept");
+        }
+    }
+    drop(signal_hook::low_level::emulate_default_handler(signal));
+    // A signal whose default does not end the process, which none of these is.
+    std::process::exit(1);
+}

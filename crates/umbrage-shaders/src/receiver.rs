@@ -1,0 +1,241 @@
+//! The receivers' text, made of what is used.
+
+use crate::layout::{BiasKind, FilterKind, MetricKind, SelectionKind, TransitionKind};
+use crate::{Bound, Maps, MomentMaps, layout, variant};
+
+const SEPARATE: [&str; layout::MAX_SPLITS] = [
+    text!("separate_1"),
+    text!("separate_2"),
+    text!("separate_3"),
+    text!("separate_4"),
+    text!("separate_5"),
+    text!("separate_6"),
+    text!("separate_7"),
+    text!("separate_8"),
+];
+const SEPARATE_WITHOUT_LOADS: [&str; layout::MAX_SPLITS] = [
+    text!("separate_1_without_loads"),
+    text!("separate_2_without_loads"),
+    text!("separate_3_without_loads"),
+    text!("separate_4_without_loads"),
+    text!("separate_5_without_loads"),
+    text!("separate_6_without_loads"),
+    text!("separate_7_without_loads"),
+    text!("separate_8_without_loads"),
+];
+const SEPARATE_R32F: [&str; layout::MAX_SPLITS] = [
+    text!("separate_1_r32f"),
+    text!("separate_2_r32f"),
+    text!("separate_3_r32f"),
+    text!("separate_4_r32f"),
+    text!("separate_5_r32f"),
+    text!("separate_6_r32f"),
+    text!("separate_7_r32f"),
+    text!("separate_8_r32f"),
+];
+
+/// Lights that receivers may be asked about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Lights {
+    /// Suns alone.
+    Suns,
+    /// Suns and spot lights: one frame for each light.
+    Single,
+    /// Point lights, too.
+    #[default]
+    Any,
+}
+
+/// Maps that a sun may have. A local light's maps are perspective, whatever this says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Projection {
+    /// Plain ones, in which a texel is as large everywhere.
+    Plain,
+    /// Warped ones.
+    Warped,
+    /// Either, split by split.
+    #[default]
+    Any,
+}
+
+/// What a receiver's text is made for; everything else is not in it. Where a choice is `None` the text has all of them, and the
+/// [`layout::Frame`] says which is meant. What the text was made for and what the frame says have to agree: the text does not look.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ReceiverText {
+    /// How maps are bound and read.
+    pub maps: Maps,
+    /// [`layout::Frame::filter_kind`].
+    pub filter: Option<FilterKind>,
+    /// [`layout::Frame::selection`].
+    pub selection: Option<SelectionKind>,
+    /// [`layout::Frame::is_radial`].
+    pub metric: Option<MetricKind>,
+    /// [`layout::Frame::transition`].
+    pub transition: Option<TransitionKind>,
+    /// [`layout::Frame::bias_kind`].
+    pub bias: Option<BiasKind>,
+    /// Which maps a sun has.
+    pub projection: Projection,
+    /// Which lights there are.
+    pub lights: Lights,
+    /// One map may be used for one split after the other: [`layout::Frame::slice`] is looked at.
+    pub sliced: bool,
+}
+
+impl Default for ReceiverText {
+    /// Everything is in the text.
+    fn default() -> Self {
+        Self::from(Maps::default())
+    }
+}
+
+impl From<Maps> for ReceiverText {
+    fn from(maps: Maps) -> Self {
+        Self {
+            maps,
+            filter: None,
+            selection: None,
+            metric: None,
+            transition: None,
+            bias: None,
+            projection: Projection::Any,
+            lights: Lights::Any,
+            sliced: true,
+        }
+    }
+}
+
+impl ReceiverText {
+    /// Whether the text has what stands behind a condition of that name: the `CHOICES` of `build.rs`.
+    fn has(&self, name: &str) -> bool {
+        /// Whether a choice is this one, or open.
+        fn may<T: Copy + PartialEq>(choice: Option<T>, these: &[T]) -> bool {
+            choice.is_none_or(|choice| these.contains(&choice))
+        }
+        use FilterKind::{Disc, Hard, Msm, Pcf2, Pcf3, Pcf5, Pcf7, Pcss, Vsm};
+        let suns_alone = self.lights == Lights::Suns;
+        match name {
+            "any_filter" => self.filter.is_none(),
+            "hard" => may(self.filter, &[Hard]),
+            "pcf2" => may(self.filter, &[Pcf2]),
+            "tent" => may(self.filter, &[Pcf3, Pcf5, Pcf7]),
+            "disc" => may(self.filter, &[Disc, Pcss]),
+            "pcss" => may(self.filter, &[Pcss]),
+            "texels" => may(self.filter, &[Pcf2, Pcf3, Pcf5, Pcf7, Disc, Pcss]),
+            "vsm" => may(self.filter, &[Vsm]),
+            "msm" => may(self.filter, &[Msm]),
+            "by_depth" => may(self.selection, &[SelectionKind::Depth]),
+            "by_map" => may(self.selection, &[SelectionKind::Map]),
+            "planar" => may(self.metric, &[MetricKind::ViewDepth]),
+            "radial" => may(self.metric, &[MetricKind::Distance]),
+            "any_transition" => self.transition.is_none(),
+            "blended" => may(self.transition, &[TransitionKind::Blend]),
+            "dithered" => may(self.transition, &[TransitionKind::Dither]),
+            "plane_bias" => may(self.bias, &[BiasKind::Plane]),
+            "slope_bias" => may(self.bias, &[BiasKind::Slope]),
+            "plain" => self.projection != Projection::Warped,
+            "warped" => !self.maps.coordinates && !(suns_alone && self.projection == Projection::Plain),
+            "local" => !suns_alone,
+            "faces" => self.lights == Lights::Any,
+            "sliced" => self.sliced,
+            "linear" => !suns_alone && self.maps.r32f,
+            _ => unreachable!("{name} is one of the choices of build.rs"),
+        }
+    }
+}
+
+/// Text to put before a shader that asks what is lit.
+///
+/// | WGSL | what it answers |
+/// |---|---|
+/// | `umbrage_visibility(position: vec3f, normal: vec3f) -> f32` | how much of the first light reaches a surface, 0 to 1 |
+/// | `umbrage_shadow(query: UmbrageQuery) -> UmbrageShadow` | the same of any light, with the split that answered |
+/// | `umbrage_shadow_from_coordinates(query, coordinates) -> UmbrageShadow` | the same from what vertices made ([`Maps::coordinates`]) |
+///
+/// `umbrage_query(position, normal)` makes a query in any stage; `umbrage_fragment_query(position, normal, dx, dy, pixel)` makes one
+/// that knows its pixel, in uniform control flow. Set a query's `light`, `pixel` or `split` to ask something else.
+///
+/// # Panics
+/// If there are fewer than 1 or more than [`layout::MAX_SPLITS`] separate maps.
+#[must_use]
+pub fn receiver(group: u32, text: impl Into<ReceiverText>) -> String {
+    let text: ReceiverText = text.into();
+    let ReceiverText { maps, filter, .. } = text;
+    let frames = maps.frames.max(1);
+    let loads = maps.r32f || !maps.without_loads;
+    let root = match (maps.moments, loads, maps.coordinates) {
+        (Some(_), _, false) => text!("receiver_of_moments"),
+        (Some(_), _, true) => text!("receiver_with_coordinates_of_moments"),
+        (None, true, false) => text!("receiver"),
+        (None, true, true) => text!("receiver_with_coordinates"),
+        (None, false, false) => text!("receiver_without_loads"),
+        (None, false, true) => text!("receiver_with_coordinates_without_loads"),
+    };
+    let maps = match (maps.moments, maps.bound, maps.r32f, loads) {
+        (Some(MomentMaps::Sampled), ..) => text!("moments"),
+        (Some(MomentMaps::Taps), ..) => text!("moments_by_taps"),
+        (Some(MomentMaps::ByHand), ..) => text!("moments_by_hand"),
+        (None, Bound::Array, true, _) => text!("array_r32f"),
+        (None, Bound::Array, false, true) => text!("array"),
+        (None, Bound::Array, false, false) => text!("array_without_loads"),
+        (None, Bound::Cube, true, _) => text!("cube_r32f"),
+        (None, Bound::Cube, false, true) => text!("cube"),
+        (None, Bound::Cube, false, false) => text!("cube_without_loads"),
+        (None, Bound::Separate(count), true, _) => SEPARATE_R32F[count - 1],
+        (None, Bound::Separate(count), false, true) => SEPARATE[count - 1],
+        (None, Bound::Separate(count), false, false) => SEPARATE_WITHOUT_LOADS[count - 1],
+    };
+    let filter = filter.map_or_else(String::new, |kind| format!("const UMBRAGE_FILTER = {}u;\n", kind as u32));
+    let root = variant::resolved(root, |name| text.has(name));
+    format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\nconst UMBRAGE_FRAMES = {frames}u;\n{filter}{maps}\n{root}\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lines of code, to see that a text is made of less.
+    fn lines(text: &ReceiverText) -> usize {
+        receiver(0, *text).lines().count()
+    }
+
+    #[test]
+    fn what_is_not_used_is_not_in_the_text() {
+        let all = ReceiverText::default();
+        let least = ReceiverText {
+            filter: Some(FilterKind::Hard),
+            selection: Some(SelectionKind::Depth),
+            metric: Some(MetricKind::ViewDepth),
+            transition: Some(TransitionKind::Hard),
+            bias: Some(BiasKind::Plane),
+            projection: Projection::Plain,
+            lights: Lights::Suns,
+            sliced: false,
+            ..all
+        };
+        let (text, full) = (receiver(0, least), receiver(0, all));
+        for gone in [
+            "fn umbrage_filter_disc",
+            "fn umbrage_filter_penumbra",
+            "fn umbrage_filter_tent",
+            "fn umbrage_filter_texel_lit",
+            "fn umbrage_bias_warped_point",
+            "fn umbrage_bias_meets_receiver",
+            "fn umbrage_bias_without_plane",
+            "fn umbrage_select_choose_by_map",
+            "distance(",
+            "frame_count",
+            ".transition",
+            ".selection",
+            ".filter_kind",
+            ".slice",
+        ] {
+            assert!(!text.contains(gone), "{gone} is in the text");
+        }
+        for there in ["fn umbrage_filter_disc", "fn umbrage_select_choose_by_map", ".transition", ".slice"] {
+            assert!(full.contains(there), "{there} is not in the full text");
+        }
+        assert!(5 * lines(&least) < 4 * lines(&all), "{} of {}", lines(&least), lines(&all));
+        assert!(!text.contains("@if") && !full.contains("@if"));
+    }
+}

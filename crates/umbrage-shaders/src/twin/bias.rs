@@ -1,0 +1,264 @@
+//! `lib/bias.wesl` on the CPU: whether the surface that a map's texel holds shades a receiver.
+
+use crate::layout::Split;
+
+/// `bias::MAX_SLOPE`: tangent of the steepest angle between light and normal that a plane is followed to.
+pub const MAX_SLOPE: f32 = 50.0;
+/// `bias::TEXEL_BIAS`: constant bias in texels.
+pub const TEXEL_BIAS: f32 = 0.25;
+/// `bias::CORNER_SLOPE`: least rise of a surface before its plane, in texels per texel aside.
+pub const CORNER_SLOPE: f32 = 0.5;
+/// `bias::FOLD`: radians by which ground may bend within the filter's reach.
+pub const FOLD: f32 = 0.03;
+/// `bias::MOST_CORNER_SLOPE`: most rise of a surface before its plane, in texels per texel aside.
+pub const MOST_CORNER_SLOPE: f32 = 12.0;
+/// `bias::MOST_STEEP`: most slope of another surface that is continued to the receiver.
+pub const MOST_STEEP: f32 = 12.0;
+/// `bias::PAST`: how far behind its plane a surface may round off.
+pub const PAST: f32 = 2.0;
+/// `bias::PAST_TEXELS`: how far before the receiver a surface from past the plane has to arrive to shade, in texels.
+pub const PAST_TEXELS: f32 = 8.0;
+/// `bias::ROUNDING`: share of the numbers involved that `f32` may have lost.
+pub const ROUNDING: f32 = 1.907_348_6e-6;
+/// `bias::SNAP_TEXELS`: texels by which casters are snapped.
+pub const SNAP_TEXELS: f32 = 0.003_906_25;
+
+/// `bias::Tolerance`: what a lookup forgives, in depth.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tolerance {
+    /// How far the receiver's own surface may rise before its plane, per texel aside.
+    pub bend: f32,
+    /// How far it may round off behind its plane.
+    pub past: f32,
+    /// How far before the plane another surface may lie to be continued to the receiver, per metre aside.
+    pub steep: f32,
+    /// How far before the receiver a surface from past the plane has to arrive to shade.
+    pub arrival: f32,
+}
+
+/// `bias::Receiver`: what a filter needs to know of a receiver.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Receiver {
+    /// Place in texels of the light's plane.
+    pub texel: [f32; 2],
+    /// Depth in `[0, 1]`, with every constant bias taken off.
+    pub depth: f32,
+    /// Change of depth per texel along u and v on the receiver's plane.
+    pub slope: [f32; 2],
+    /// Change of the map's own depth per texel along u and v at one distance from the light.
+    pub tilt: [f32; 2],
+    /// Metres per texel along u and v.
+    pub texel_m: [f32; 2],
+    /// Metres along the light between depth 0 and depth 1.
+    pub range_m: f32,
+    /// A and B of a local light's depth where its map stores depth that is linear in w; `depth` is then −B/w. 0 elsewhere.
+    pub linear: [f32; 2],
+    /// What the lookup forgives.
+    pub tolerance: Tolerance,
+}
+
+/// `bias::MapPoint`: where a point lies in a map, and what the map is like there.
+#[derive(Clone, Copy, Debug)]
+struct MapPoint {
+    texel: [f32; 2],
+    depth: f32,
+    along_u: [f32; 3],
+    along_v: [f32; 3],
+    texel_m: [f32; 2],
+    tilt: [f32; 2],
+    range_m: f32,
+    rounding_m: f32,
+    linear: [f32; 2],
+}
+
+/// `bias::receiver`: `position` in metres from the frame's origin, `normal` the unit normal of the surface, `to_light` the unit vector
+/// towards the light.
+#[must_use]
+pub fn receiver(split: &Split, position: [f32; 3], normal: [f32; 3], to_light: [f32; 3]) -> Receiver {
+    let at =
+        if split.w_row == [0.0; 4] { plain_point(split, position) } else { warped_point(split, position, to_light) };
+    let cosine = dot(normal, to_light);
+    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+    let steepness = 1.0 / cosine.max(sine / MAX_SLOPE);
+    let tangent = sine * steepness;
+    let slope = [dot(normal, at.along_u) * steepness, dot(normal, at.along_v) * steepness];
+    let longer = at.texel_m[0].max(at.texel_m[1]);
+    let bias_m = longer * (TEXEL_BIAS + SNAP_TEXELS * tangent) + at.rounding_m;
+    Receiver {
+        texel: at.texel,
+        depth: at.depth - bias_m / at.range_m,
+        slope: [0, 1].map(|i| slope[i] * at.texel_m[i] / at.range_m),
+        tilt: at.tilt,
+        texel_m: at.texel_m,
+        range_m: at.range_m,
+        linear: at.linear,
+        tolerance: tolerance(tangent, at.texel_m, at.range_m),
+    }
+}
+
+/// `bias::tolerance`: of the tangent between the receiver's normal and the light.
+#[must_use]
+pub fn tolerance(tangent: f32, texel_m: [f32; 2], range_m: f32) -> Tolerance {
+    let corner = (FOLD * (1.0 + tangent * tangent)).clamp(CORNER_SLOPE, MOST_CORNER_SLOPE);
+    let [shorter, longer] = [texel_m[0].min(texel_m[1]), texel_m[0].max(texel_m[1])];
+    Tolerance {
+        bend: corner * shorter / range_m,
+        past: PAST * (1.0 + corner) * longer / range_m,
+        steep: (MOST_STEEP - tangent).max(0.0) / range_m,
+        arrival: PAST_TEXELS * longer / range_m,
+    }
+}
+
+fn plain_point(split: &Split, position: [f32; 3]) -> MapPoint {
+    let [u, v, depth] = [split.u_row, split.v_row, split.depth_row].map(|row| along(row, position));
+    MapPoint {
+        texel: [u, v],
+        depth,
+        along_u: xyz(split.u_row).map(|x| x * split.texel_m[0]),
+        along_v: xyz(split.v_row).map(|x| x * split.texel_m[1]),
+        texel_m: split.texel_m,
+        tilt: [0.0; 2],
+        range_m: split.depth_range_m,
+        rounding_m: ROUNDING * (largest(position) + split.depth_range_m) + split.depth_step_m,
+        linear: [0.0; 2],
+    }
+}
+
+fn warped_point(split: &Split, position: [f32; 3], to_light: [f32; 3]) -> MapPoint {
+    let w = along(split.w_row, position);
+    let texel = [along(split.u_row, position) / w, along(split.v_row, position) / w];
+    let quotient = along(split.depth_row, position) / w;
+    let gradient = |row: [f32; 4], value: f32| -> [f32; 3] {
+        std::array::from_fn(|axis| (row[axis] - value * split.w_row[axis]) / w)
+    };
+    let u = gradient(split.u_row, texel[0]);
+    let v = gradient(split.v_row, texel[1]);
+    let z = gradient(split.depth_row, quotient);
+    let across_v = cross(v, to_light);
+    let across_u = cross(to_light, u);
+    let (by_u, by_v) = (dot(u, across_v), dot(v, across_u));
+    let step_u = across_v.map(|x| x / by_u);
+    let step_v = across_u.map(|x| x / by_v);
+    let texel_m = [length(step_u), length(step_v)];
+    let range_m = if split.depth_offset > 0.0 { -1.0 / dot(z, to_light) } else { split.depth_range_m * w };
+    let lost_z = length(xyz(split.depth_row)) * largest(position) + split.depth_row[3].abs();
+    let lost_w = length(xyz(split.w_row)) * largest(position) + split.w_row[3].abs();
+    let steps_m = split.depth_step_m / split.depth_range_m * range_m;
+    let is_linear = split.is_linear != 0;
+    MapPoint {
+        texel,
+        depth: if is_linear { quotient } else { quotient + split.depth_offset },
+        along_u: step_u.map(|x| x / texel_m[0]),
+        along_v: step_v.map(|x| x / texel_m[1]),
+        texel_m,
+        tilt: [dot(z, step_u), dot(z, step_v)],
+        range_m,
+        rounding_m: ROUNDING * range_m / w * (lost_z + quotient.abs() * lost_w + w) + steps_m,
+        linear: if is_linear { [split.depth_offset, -split.depth_row[3]] } else { [0.0; 2] },
+    }
+}
+
+impl Receiver {
+    /// `bias::without_plane`: the receiver without its plane, for filters that read up to `reach` texels from it along each axis.
+    #[must_use]
+    pub fn without_plane(mut self, reach: [f32; 2]) -> Self {
+        self.depth -= self.slope[0].abs() * reach[0] + self.slope[1].abs() * reach[1];
+        self.slope = [0.0; 2];
+        self.tolerance.bend = 0.0;
+        self.tolerance.steep = 0.0;
+        self
+    }
+
+    /// Whether what a texel stores, `offset` texels from the receiver, shades it: all of the decision. `beyond` is what the next texels on
+    /// u and on v store, away from the receiver.
+    #[must_use]
+    pub fn is_shaded(&self, offset: [f32; 2], stored: f32, beyond: [f32; 2]) -> bool {
+        !self.lies_behind(offset, stored)
+            && !self.same_surface(offset, stored)
+            && !self.meets_receiver(offset, stored, beyond)
+    }
+
+    /// `bias::lies_behind`: the texel lies behind the receiver.
+    #[must_use]
+    pub fn lies_behind(&self, offset: [f32; 2], stored: f32) -> bool {
+        stored >= self.as_stored(self.level(offset))
+    }
+
+    /// `bias::same_surface`: the texel is of the receiver's own surface.
+    #[must_use]
+    pub fn same_surface(&self, offset: [f32; 2], stored: f32) -> bool {
+        !self.is_past(offset, stored) && self.reference(offset, [0.0; 2]) <= stored
+    }
+
+    /// `bias::meets_receiver`: the texel is of a surface that meets the receiver, or arrives behind it.
+    #[must_use]
+    pub fn meets_receiver(&self, offset: [f32; 2], stored: f32, beyond: [f32; 2]) -> bool {
+        let past = self.is_past(offset, stored);
+        let arrives = stored - dot2(beyond.map(|next| next - stored), offset.map(f32::abs));
+        let before = if past { self.tolerance.arrival } else { 0.0 };
+        let aside_m = (offset[0] * self.texel_m[0]).hypot(offset[1] * self.texel_m[1]);
+        let steepest = self.bent(offset, [0.0; 2], self.tolerance.steep * aside_m);
+        (past || stored >= steepest) && arrives >= self.as_stored(self.depth - before)
+    }
+
+    /// `bias::is_past`: the texel lies so far behind the receiver's plane that the receiver's surface has ended before it.
+    #[must_use]
+    pub fn is_past(&self, offset: [f32; 2], stored: f32) -> bool {
+        stored > self.as_stored(self.level(offset) + dot2(self.slope, offset) + self.tolerance.past)
+    }
+
+    /// `bias::reference`: the least depth of the receiver's own surface at `offset` texels, or up to `reach` texels from there.
+    #[must_use]
+    pub fn reference(&self, offset: [f32; 2], reach: [f32; 2]) -> f32 {
+        self.bent(offset, reach, self.tolerance.bend * offset[0].hypot(offset[1]))
+    }
+
+    fn bent(&self, offset: [f32; 2], reach: [f32; 2], nearer: f32) -> f32 {
+        let lowest = dot2(self.slope, offset) - dot2(self.slope.map(f32::abs), reach);
+        let level = self.level(offset) - dot2(self.tilt.map(f32::abs), reach);
+        self.as_stored(level + (lowest - nearer).min(0.0))
+    }
+
+    fn level(&self, offset: [f32; 2]) -> f32 {
+        self.depth + dot2(self.tilt, offset)
+    }
+
+    fn as_stored(&self, depth: f32) -> f32 {
+        let held = depth.clamp(-self.linear[0], 1.0 - self.linear[0]);
+        if self.linear[1] > 0.0 { linear_depth(self.linear, self.linear[1] / (-held).max(1e-30)) } else { held }
+    }
+}
+
+/// `bias::linear_depth`: what a map of linear depth stores `w` metres along the light's axis.
+#[must_use]
+pub fn linear_depth([a, b]: [f32; 2], w: f32) -> f32 {
+    ((w - b / a) * (a * (a - 1.0) / b)).clamp(0.0, 1.0)
+}
+
+fn along(row: [f32; 4], position: [f32; 3]) -> f32 {
+    dot(xyz(row), position) + row[3]
+}
+
+fn xyz([x, y, z, _]: [f32; 4]) -> [f32; 3] {
+    [x, y, z]
+}
+
+fn largest(position: [f32; 3]) -> f32 {
+    position.into_iter().fold(0.0, |most, x| x.abs().max(most))
+}
+
+fn dot2(a: [f32; 2], b: [f32; 2]) -> f32 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn length(a: [f32; 3]) -> f32 {
+    dot(a, a).sqrt()
+}

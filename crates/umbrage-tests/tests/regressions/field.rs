@@ -1,0 +1,217 @@
+//! What people reported of their own scenes: light along the creases of closed rooms, stripes on wheels, speckled faces that the light
+//! grazes, wedges through narrow lenses. At the defaults, against rays.
+
+use glam::DVec3;
+use image::GrayAlphaImage;
+use umbrage::{DirectionalLight, Frustum, View};
+use umbrage_render::{Frame, Outputs, RenderSettings, Renderer};
+use umbrage_scene::{Material, Mesh, Node, Primitive, Scene};
+use umbrage_tests::stage::{Technique, gpu};
+use umbrage_truth::{Hit, Truth};
+
+const SIZE: [u32; 2] = [240, 180];
+
+/// A scene with a material of each kind: 0 is seen from its front, 1 from both sides.
+fn scene() -> Scene {
+    let double_sided = Material { double_sided: true, ..Material::default() };
+    Scene { materials: vec![Material::default(), double_sided], ..Scene::default() }
+}
+
+fn add(scene: &mut Scene, primitive: Primitive) {
+    scene.nodes.push(Node { mesh: Some(scene.meshes.len()), ..Node::default() });
+    scene.meshes.push(Mesh { primitives: vec![primitive], ..Mesh::default() });
+}
+
+/// A rectangle from `corner` along `a` and `b`, its front where `a × b` points.
+fn rectangle(into: &mut Primitive, corner: DVec3, a: DVec3, b: DVec3) {
+    let first = into.positions.len() as u32;
+    let normal = a.cross(b).normalize().as_vec3().to_array();
+    for at in [corner, corner + a, corner + a + b, corner + b] {
+        into.positions.push(at.as_vec3().to_array());
+        into.normals.push(normal);
+    }
+    into.indices.extend([0, 1, 2, 0, 2, 3].map(|i| first + i));
+}
+
+/// A box of six rectangles, their fronts outside.
+fn cuboid(into: &mut Primitive, min: DVec3, size: DVec3) {
+    let [x, y, z] = [DVec3::X * size.x, DVec3::Y * size.y, DVec3::Z * size.z];
+    for (corner, a, b) in [(min, z, y), (min + x, y, z), (min, x, z), (min + y, z, x), (min, y, x), (min + z, x, y)] {
+        rectangle(into, corner, a, b);
+    }
+}
+
+fn ground(y: f64, half: f64) -> Primitive {
+    let mut primitive = Primitive::default();
+    rectangle(&mut primitive, DVec3::new(-half, y, half), DVec3::X * 2.0 * half, DVec3::NEG_Z * 2.0 * half);
+    primitive
+}
+
+fn look(eye: [f64; 3], target: [f64; 3], fov: f64, near: f64) -> View {
+    let aspect = f64::from(SIZE[0]) / f64::from(SIZE[1]);
+    let frustum = Frustum::perspective(fov.to_radians(), aspect, near, 800.0).expect("a lens");
+    View::look_at_upright(eye.into(), target.into(), frustum).expect("a view")
+}
+
+/// Masks at the defaults with maps of an edge, and the truth about each pixel.
+fn judged(scene: &Scene, views: &[View], sun: DVec3, edge: u32) -> Option<Vec<(GrayAlphaImage, Vec<Option<Hit>>)>> {
+    let gpu = gpu()?;
+    let settings = Technique::default_of_the_command().settings;
+    let shadows = umbrage::ShadowSettings { map_sizes: vec![edge; 4], range: None, ..settings.shadows.clone() };
+    let settings = RenderSettings { size: SIZE, shadows, ..settings };
+    let mut renderer = Renderer::new(gpu, scene, &settings).expect("a renderer");
+    let pose = scene.pose(0.0).expect("a pose");
+    let sun = DirectionalLight::new(sun).expect("a direction");
+    let truth = Truth::build(scene, &pose, views[0].eye()).expect("rays can meet it");
+    let each = |view: &View| {
+        renderer.restart().expect("accepted before");
+        let frame = Frame { pose: &pose, view, light: sun.into(), more_lights: &[], shadows_on: true, tint: false };
+        let rendered = renderer.render(&frame, Outputs { mask: true, ..Outputs::default() }).expect("a frame");
+        let truth = truth.mask(view, sun.direction(), SIZE, &|_| {}).expect("a truth");
+        (rendered.mask.expect("a mask"), truth.hits().to_vec())
+    };
+    Some(views.iter().map(each).collect())
+}
+
+/// Pixels that are false light or false shadow with no edge of the true shadow within two pixels, and how many of those there are.
+fn away_from_edges(mask: &GrayAlphaImage, hits: &[Option<Hit>], counts: impl Fn(&Hit) -> bool) -> [usize; 3] {
+    let [width, height] = SIZE.map(|size| size as i32);
+    let lit = |x: i32, y: i32| {
+        let inside = (0..width).contains(&x) && (0..height).contains(&y);
+        inside.then(|| hits[(y * width + x) as usize].as_ref().map(|hit| hit.lit)).flatten()
+    };
+    let mut found = [0; 3];
+    for (x, y) in (0..width).flat_map(|x| (0..height).map(move |y| (x, y))) {
+        let Some(hit) = hits[(y * width + x) as usize].as_ref().filter(|hit| counts(hit)) else { continue };
+        let around = (-2..=2).flat_map(|i| (-2..=2).map(move |j| (i, j)));
+        if around.into_iter().any(|(i, j)| lit(x + i, y + j) != Some(hit.lit)) {
+            continue;
+        }
+        let share = mask.get_pixel(x as u32, y as u32).0[0];
+        found[0] += usize::from(!hit.lit && share >= 128);
+        found[1] += usize::from(hit.lit && share < 128);
+        found[2] += 1;
+    }
+    found
+}
+
+/// A room of two-sided walls without thickness on a ground that lies a millimetre lower.
+fn room() -> Scene {
+    let mut scene = scene();
+    add(&mut scene, ground(-0.001, 40.0));
+    let mut walls = Primitive { material: 1, ..Primitive::default() };
+    cuboid(&mut walls, DVec3::new(-4.0, 0.0, -3.0), DVec3::new(8.0, 3.0, 6.0));
+    add(&mut scene, walls);
+    scene
+}
+
+#[test]
+fn closed_rooms_are_dark_along_their_creases() {
+    let views = [
+        look([3.4, 1.6, 2.4], [-1.0, 1.2, -1.0], 80.0, 0.05),
+        look([-3.7, 2.8, -2.7], [2.0, 0.0, 2.0], 90.0, 0.05),
+        look([-3.0, 2.2, -2.2], [-4.0, 3.0, -3.0], 60.0, 0.05),
+    ];
+    for sun in [DVec3::new(-0.5, -0.7, -0.4), DVec3::new(0.6, -0.4, -0.3), DVec3::new(0.1, -1.0, 0.3)] {
+        let Some(judged) = judged(&room(), &views, sun, 1024) else { return };
+        for (i, (mask, _)) in judged.iter().enumerate() {
+            let lit = mask.pixels().filter(|pixel| pixel.0[0] > 5).count();
+            let most = mask.pixels().map(|pixel| pixel.0[0]).max();
+            eprintln!("sun {sun}, view {i}: {lit} pixels are more than 2 % lit, at most {most:?}");
+            assert_eq!(lit, 0, "sun {sun}, view {i}: at most {most:?}");
+        }
+    }
+}
+
+/// A wheel around the x axis, standing on the ground, with a rounded tread; smooth normals are of no consequence to masks.
+fn wheel(x: f64) -> Primitive {
+    let (radius, half, around) = (0.6, 0.3, 64_u32);
+    let profile = [(-1.0, 0.55), (-1.0, 0.9), (-0.7, 1.0), (0.7, 1.0), (1.0, 0.9), (1.0, 0.55)];
+    let mut primitive = Primitive::default();
+    for i in 0..around {
+        let angle = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(around);
+        for pair in profile.windows(2) {
+            let at = |(along, share): (f64, f64), i: u32| {
+                let (sin, cos) = angle(i).sin_cos();
+                DVec3::new(x + half * along, radius * (1.0 + share * sin), radius * share * cos)
+            };
+            let [a, b, c, d] = [at(pair[0], i), at(pair[0], i + 1), at(pair[1], i + 1), at(pair[1], i)];
+            let first = primitive.positions.len() as u32;
+            let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3().to_array();
+            for corner in [a, b, c, d] {
+                primitive.positions.push(corner.as_vec3().to_array());
+                primitive.normals.push(normal);
+            }
+            primitive.indices.extend([0, 1, 3, 3, 1, 2].map(|i| first + i));
+        }
+    }
+    primitive
+}
+
+#[test]
+fn wheels_under_light_along_their_axles_have_no_stripes() {
+    let mut scene = scene();
+    add(&mut scene, ground(0.0, 30.0));
+    add(&mut scene, wheel(0.0));
+    add(&mut scene, wheel(2.0));
+    let views = [
+        look([1.0, 1.6, 4.0], [0.0, 0.6, 0.0], 45.0, 0.1),
+        look([1.0, 1.6, -4.0], [0.0, 0.6, 0.0], 45.0, 0.1),
+        look([0.5, 1.2, 1.6], [0.0, 0.6, 0.0], 45.0, 0.1),
+    ];
+    let Some(judged) = judged(&scene, &views, DVec3::new(-0.98, -0.15, -0.1), 1024) else { return };
+    for (i, (mask, hits)) in judged.iter().enumerate() {
+        let [light, shadow, all] = away_from_edges(mask, hits, |_| true);
+        eprintln!("view {i}: {light} false light, {shadow} false shadow of {all}");
+        assert!(light * 5000 <= all && shadow * 1000 <= all, "view {i}: {light} and {shadow} of {all}");
+    }
+}
+
+#[test]
+fn faces_that_the_light_runs_along_are_dark() {
+    let mut scene = scene();
+    add(&mut scene, ground(0.0, 40.0));
+    let mut towers = Primitive::default();
+    for (i, [x, z]) in [[0.0, 0.0], [6.0, -4.0], [-7.0, -9.0], [3.0, -18.0]].into_iter().enumerate() {
+        cuboid(&mut towers, DVec3::new(x, 0.0, z), DVec3::new(3.0, 3.0 + i as f64, 2.0));
+    }
+    add(&mut scene, towers);
+    let views =
+        [look([8.0, 7.0, 16.0], [0.0, 1.0, -4.0], 60.0, 1.0), look([-18.0, 3.0, 9.0], [0.0, 1.0, -4.0], 50.0, 1.0)];
+    for sun in [DVec3::NEG_Y, DVec3::new(1e-9, -1.0, 0.0), DVec3::new(0.0, -1.0, 1e-7)] {
+        let Some(judged) = judged(&scene, &views, sun, 512) else { return };
+        for (mask, hits) in &judged {
+            let grazed = |hit: &Hit| hit.normal.dot(sun).abs() < 1e-6;
+            let of_faces = || mask.pixels().zip(hits).filter(|(_, hit)| hit.as_ref().is_some_and(grazed));
+            let speckles = of_faces().filter(|(pixel, _)| pixel.0[0] > 0).count();
+            assert_eq!(speckles, 0, "sun {sun}: of {}", of_faces().count());
+            assert!(of_faces().count() > 1000, "the view shows such faces");
+        }
+    }
+}
+
+#[test]
+fn narrow_lenses_show_lit_walls_lit() {
+    let mut scene = scene();
+    add(&mut scene, ground(0.0, 1500.0));
+    let mut posts = Primitive::default();
+    for k in 0..9 {
+        let k = f64::from(k);
+        cuboid(
+            &mut posts,
+            DVec3::new(3.0 * k - 13.0, 0.0, -600.0 - 5.0 * (k % 3.0)),
+            DVec3::new(0.4, 1.0 + 0.3 * k, 0.4),
+        );
+    }
+    add(&mut scene, posts);
+    let views = [2.0, 0.5, 0.1].map(|fov| look([0.0, 30.0, 0.0], [-0.8, 0.8, -600.0], fov, 1.0));
+    let Some(judged) = judged(&scene, &views, DVec3::new(-0.6, -0.7, -0.35), 1024) else { return };
+    for (i, (mask, hits)) in judged.iter().enumerate() {
+        let grey = |hit: &Hit| hit.normal.y < 0.5;
+        let [light, shadow, all] = away_from_edges(mask, hits, grey);
+        let lit_walls = mask.pixels().zip(hits).filter(|(_, hit)| hit.as_ref().is_some_and(|hit| hit.lit && grey(hit)));
+        let greyed = lit_walls.filter(|(pixel, _)| pixel.0[0] < 250).count();
+        eprintln!("view {i}: {light} false light, {shadow} false shadow of {all}, {greyed} grey");
+        assert!(shadow * 200 <= all && light * 200 <= all, "view {i}: {light} and {shadow} of {all}");
+    }
+}

@@ -1,0 +1,137 @@
+//! What must hold of the documents: links lead somewhere, and papers are cited by keys that are explained.
+
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use crate::run::root;
+
+/// Folders whose files are no sources.
+const LEFT_OUT: [&str; 4] = ["target", "out", ".git", "assets"];
+
+/// All files below `folder` with one of these endings.
+fn files(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display())) {
+        let path = entry.expect("an entry of a folder can be read").path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if path.is_dir() {
+            if !LEFT_OUT.contains(&name.as_str()) {
+                files(&path, endings, found);
+            }
+        } else if path.extension().is_some_and(|ending| endings.iter().any(|wanted| ending == *wanted)) {
+            found.push(path);
+        }
+    }
+}
+
+fn sources(endings: &[&str]) -> Vec<(PathBuf, String)> {
+    let mut found = Vec::new();
+    files(&root(), endings, &mut found);
+    found.sort();
+    found.into_iter().map(|path| (path.clone(), fs::read_to_string(path).expect("sources are text"))).collect()
+}
+
+/// Targets of the links and pictures of a Markdown text that lie in the repository.
+fn local_links(text: &str) -> Vec<String> {
+    let mut code = false;
+    let lines = text.lines().filter(|line| {
+        if line.starts_with("```") {
+            code = !code;
+        }
+        !code && !line.starts_with("    ")
+    });
+    let mut links = Vec::new();
+    for line in lines {
+        for (at, _) in line.match_indices("](") {
+            if let Some((target, _)) = line[at + 2..].split_once(')') {
+                links.push(target.to_owned());
+            }
+        }
+    }
+    links.retain(|link| !link.contains("://"));
+    links
+}
+
+/// What GitHub makes of headings.
+fn anchors(text: &str) -> BTreeSet<String> {
+    let headings =
+        text.lines().filter_map(|line| line.strip_prefix('#')).map(|line| line.trim_start_matches('#').trim());
+    headings
+        .map(|heading| {
+            let kept = heading.chars().filter(|letter| letter.is_alphanumeric() || " -_".contains(*letter));
+            kept.collect::<String>().to_lowercase().replace(' ', "-")
+        })
+        .collect()
+}
+
+/// The keys of papers in a text, as docs/papers.md forms them: a capital first and two digits last, or one of the two without.
+fn cited(text: &str) -> BTreeSet<String> {
+    let mut keys = BTreeSet::new();
+    for part in text.split('[').skip(1) {
+        let Some((key, _)) = part.split_once(']') else { continue };
+        // rustdoc wants brackets that are no links to be escaped.
+        let key = key.trim_end_matches('\\');
+        let letters = key.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '-');
+        let year = key.len() >= 5 && key.bytes().rev().take(2).all(|letter| letter.is_ascii_digit());
+        let begins = key.starts_with(|letter: char| letter.is_ascii_uppercase());
+        if letters && begins && (year || ["PCSM", "PSSM-GL"].contains(&key)) {
+            keys.insert(key.to_owned());
+        }
+    }
+    keys
+}
+
+/// The keys that docs/papers.md explains: first cells of its tables.
+fn explained(papers: &str) -> BTreeSet<String> {
+    let rows = papers.lines().filter_map(|line| line.strip_prefix("| [")?.split_once("] |"));
+    rows.map(|(key, _)| key.to_owned()).collect()
+}
+
+#[test]
+fn links_lead_somewhere() {
+    let mut broken = Vec::new();
+    for (path, text) in sources(&["md"]) {
+        for link in local_links(&text) {
+            let (file, anchor) = link.split_once('#').unwrap_or((&link, ""));
+            let target = if file.is_empty() { path.clone() } else { path.with_file_name("").join(file) };
+            if !target.exists() {
+                broken.push(format!("{}: no {link}", path.display()));
+            } else if !anchor.is_empty() {
+                // Anchors of a page that is rendered later cannot be looked up before.
+                let is_results = target.ends_with("docs/results.md");
+                let text = fs::read_to_string(&target).expect("anchors are in texts");
+                if !is_results && !anchors(&text).contains(anchor) {
+                    broken.push(format!("{}: no heading {link}", path.display()));
+                }
+            }
+        }
+    }
+    assert!(broken.is_empty(), "{}", broken.join("\n"));
+}
+
+#[test]
+fn papers_are_cited_by_keys_that_are_explained() {
+    let papers = fs::read_to_string(root().join("docs/papers.md")).expect("docs/papers.md");
+    let explained = explained(&papers);
+    assert!(explained.len() > 20, "{explained:?}");
+    let mut unknown = Vec::new();
+    for (path, text) in sources(&["md", "rs", "wesl", "wgsl"]) {
+        unknown.extend(cited(&text).difference(&explained).map(|key| format!("{}: [{key}]", path.display())));
+    }
+    unknown.retain(|entry| !entry.contains("xtask/src/documents.rs"));
+    assert!(unknown.is_empty(), "not in docs/papers.md:\n{}", unknown.join("\n"));
+}
+
+#[test]
+fn links_and_keys_are_found() {
+    let text = "a [b](c.md#d) ![e](f.png) [g](https://h)\n```\n[i](j)\n```\n    [k](l)\n";
+    assert_eq!(local_links(text), ["c.md#d", "f.png"]);
+    assert!(
+        anchors("# Acne and leaks\n## `Code`, too")
+            .is_superset(&BTreeSet::from(["acne-and-leaks", "code-too"].map(str::to_owned)))
+    );
+    assert_eq!(cited("[PSSM06] eq. 1, [Self], [0], [x86], &[DVec3], [PCSM]").len(), 2);
+    assert_eq!(explained("| key | paper |\n| [GG3-10] | F. Zhang |\n"), BTreeSet::from(["GG3-10".to_owned()]));
+}
