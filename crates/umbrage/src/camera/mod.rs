@@ -56,8 +56,7 @@ impl View {
     ///
     /// # Errors
     /// [`Error::InvalidCamera`] if the matrix is not finite or its axes are degenerate.
-    pub fn from_world_from_view(world_from_view: impl Into<Matrix>, frustum: Frustum) -> Result<Self> {
-        let world_from_view = world_from_view.into().0;
+    pub fn from_world_from_view(world_from_view: DMat4, frustum: Frustum) -> Result<Self> {
         let bad = || Error::camera("transform", f64::NAN, "a rotation and a translation");
         if !world_from_view.is_finite() {
             return Err(bad());
@@ -86,7 +85,7 @@ impl View {
         if clip_from_view.without_rounding().row(3).z > 0.0 {
             return Self::from_clip_from_world(clip_from_view.0 * world_from_view.0.inverse(), depth);
         }
-        Self::from_world_from_view(world_from_view, Frustum::from_projection_matrix(clip_from_view, depth)?)
+        Self::from_world_from_view(world_from_view.0, Frustum::from_projection_matrix(clip_from_view, depth)?)
     }
 
     /// A view from its view-projection matrix alone: perspective or orthographic, right- or left-handed, reversed or not,
