@@ -284,7 +284,7 @@ impl ShadowSettings {
                         format!("{} offsets for {} inner planes; give one, or one for each", delta.len(), m - 1),
                     ));
                 }
-                if let Some(bad) = delta.iter().find(|d| !(d.abs() <= MOST_METRES)) {
+                if let Some(bad) = delta.iter().find(|d| !(-MOST_METRES..=MOST_METRES).contains(*d)) {
                     return Err(Error::setting("delta", format!("{bad} m; give metres within ±10^12")));
                 }
             }

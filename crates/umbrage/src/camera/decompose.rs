@@ -29,7 +29,7 @@ pub(super) fn camera(matrix: Matrix, depth: DepthConvention) -> Result<(DVec3, D
     let along = rows[3].truncate().length();
     let is_perspective = along > ROUNDING * rows[0].truncate().length();
     let scale = if is_perspective { along } else { rows[3].w };
-    if !(scale.abs() > 0.0) {
+    if scale == 0.0 {
         return Err(foreign());
     }
     let [x, y, z, w] = rows.map(|row| row / scale);

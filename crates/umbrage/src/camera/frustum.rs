@@ -172,19 +172,19 @@ impl Frustum {
             Projection::Orthographic => (MOST_METRES, "metres between −10^12 and 10^12"),
         };
         for (name, value) in [("left", self.left), ("right", self.right), ("bottom", self.bottom), ("top", self.top)] {
-            if !(value.abs() <= widest) {
+            if !(-widest..=widest).contains(&value) {
                 return Err(Error::camera(name, value, expected));
             }
         }
         for (name, extent) in [("width", self.right - self.left), ("height", self.top - self.bottom)] {
-            if !(extent >= NARROWEST) {
+            if !(NARROWEST..).contains(&extent) {
                 return Err(Error::camera(name, extent, "greater than 0 (at least 10^-9)"));
             }
         }
         if is_perspective && !(LEAST_METRES..=MOST_METRES).contains(&self.near) {
             return Err(Error::camera("near", self.near, "a distance of 10^-9 to 10^12 m"));
         }
-        if !is_perspective && !(self.near.abs() <= MOST_METRES) {
+        if !is_perspective && !(-MOST_METRES..=MOST_METRES).contains(&self.near) {
             return Err(Error::camera("near", self.near, "a view depth between −10^12 and 10^12 m"));
         }
         let is_endless = is_perspective && self.far == f64::INFINITY;

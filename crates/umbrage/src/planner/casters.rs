@@ -156,7 +156,8 @@ impl Scene {
             Some((_, bounds)) if !bounds.is_empty() => bounds.center(),
             _ => self.volume.slice.corners.iter().sum::<DVec3>() / 8.0,
         };
-        let shaft = Shaft::new(middle, widest, sun.light);
+        // Twice as wide: the middle of a box need not be that of what it bounds.
+        let shaft = Shaft::new(middle, 2.0 * widest, sun.light);
         casters().filter_map(|c| shaft.passage(c)).map(|it| it.0).fold(self.depths().0, f64::min)
     }
 }
