@@ -114,8 +114,8 @@ impl SceneRequest {
         }
     }
 
-    /// Chooses the camera. One of the scene keeps its own near and far where the request has none; any other gets
-    /// [`DEFAULT_NEAR`] and [`DEFAULT_FAR`].
+    /// Chooses the camera. One of the scene keeps its own near and far where the request has none;
+    /// any other gets [`DEFAULT_NEAR`] and [`DEFAULT_FAR`].
     ///
     /// # Errors
     /// [`Failure::Input`] if near is not less than far.

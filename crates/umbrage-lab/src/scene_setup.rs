@@ -1,4 +1,5 @@
-//! The scene of a request, opened and posed, with its views and its lights: what `render`, `probe` and `truth` have in common.
+//! The scene of a request, opened and posed, with its views and its lights: what `render`, `probe`
+//! and `truth` have in common.
 
 use glam::DQuat;
 use umbrage::{DirectionalLight, Frustum, Light, Projection, SunFade, View};
@@ -57,7 +58,8 @@ pub struct Shot {
     pub beside: Vec<(String, View)>,
     /// The first light in this frame.
     pub light: Light,
-    /// If it is a sun, the suns whose shadows are shown: the same, or one or two that follow it in steps.
+    /// If it is a sun, the suns whose shadows are shown: the same, or one or two that follow it in
+    /// steps.
     pub shown: Option<SunFade>,
 }
 
@@ -92,7 +94,7 @@ impl SceneSetup {
         Ok(setup)
     }
 
-    /// The same for those that show several cameras side by side.
+    /// Reads the files that the request names, for subcommands that show several cameras side by side.
     ///
     /// # Errors
     /// [`Failure::Input`] naming the file or option at fault.
