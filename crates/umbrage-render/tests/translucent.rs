@@ -68,7 +68,7 @@ fn walk(stability: Stability, place: DVec3, moved: Moved) -> Option<Tally> {
     for k in 0..FRAMES {
         let outputs = Outputs { maps: true, ..Outputs::default() };
         let rendered = stage.render(&view(place, k), sun(DVec3::new(0.3, -1.0, 0.2)), outputs);
-        let now = (ShadowPlan::clone(&rendered.stats.plan), rendered.maps);
+        let now = (Arc::clone(&rendered.stats.plan), rendered.maps);
         if let Some(before) = &before {
             (0..2).for_each(|split| compare(&mut tally, before, &now, split, moved));
         }
