@@ -61,6 +61,17 @@ pub fn bless() -> Result<()> {
     Ok(())
 }
 
+/// The fuzzer of loaders, long enough to find what CI's short run does not.
+pub fn fuzz() -> Result<()> {
+    const FILES: &str = "UMBRAGE_FUZZ_FILES";
+    let mut tests = cargo();
+    tests.args(["test", "--release", "--package", "umbrage-scene", "--test", "mutated", "--", "--nocapture"]);
+    if !is_set(FILES) {
+        tests.env(FILES, "100000");
+    }
+    run(&mut tests)
+}
+
 /// Whether there is an adapter, after trying to install one. None is an error where the environment demands one.
 fn has_adapter() -> Result<bool> {
     match adapter::ensure(&build_umbrage(false)?) {
@@ -161,7 +172,7 @@ fn check_wasm() -> Result<()> {
 
 /// Options that choose crates.
 fn of(names: &[&'static str]) -> Vec<&'static str> {
-    names.iter().flat_map(|name| ["--package", name]).collect()
+    names.iter().flat_map(|&name| ["--package", name]).collect()
 }
 
 fn has_target(target: &str) -> bool {

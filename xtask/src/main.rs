@@ -1,11 +1,10 @@
-//! `cargo xtask demo | test | package | bless | results`: the project's automation, so that a machine that has Rust needs nothing else.
+//! `cargo xtask demo | test | package | bless | results | fuzz`: the project's automation, so that a machine that has Rust needs nothing else.
 
 mod adapter;
 mod check;
 mod demo;
 #[cfg(test)]
 mod documents;
-mod page;
 mod results;
 mod run;
 
@@ -21,6 +20,7 @@ Usage: cargo xtask COMMAND
   test [--quick]
           formatting, lints, documentation, features, packages, the build for the browser and all tests, as CI runs them;
           --quick: formatting and the tests of what needs no graphics adapter, in under two minutes once it is built
+  fuzz    load 100,000 mutated files; UMBRAGE_FUZZ_FILES and UMBRAGE_FUZZ_SEED choose others
   package pack every crate that is published and build each from its package
   bless   draw the reference pictures of the tests anew
   results [--resume | --render | --tiny]
@@ -32,11 +32,12 @@ Usage: cargo xtask COMMAND
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let result = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["demo"] => demo::run(),
+        ["demo"] => demo::run_demo(),
         ["test"] => check::test(),
         ["test", "--quick"] => check::quick(),
         ["package"] => check::package(),
         ["bless"] => check::bless(),
+        ["fuzz"] => check::fuzz(),
         ["results"] => results::results(Ask::All),
         ["results", "--resume"] => results::results(Ask::Resume),
         ["results", "--render"] => results::results(Ask::Render),

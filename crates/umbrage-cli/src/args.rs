@@ -6,8 +6,8 @@
 use clap::{Parser, Subcommand};
 
 use crate::{
-    bench::BenchArgs, compare::CompareArgs, plan::PlanArgs, probe::ProbeArgs, render::RenderArgs, theory::TheoryArgs,
-    truth::TruthArgs, worlds::WorldsCommand,
+    bench::BenchArgs, compare::CompareArgs, gallery::GalleryArgs, plan::PlanArgs, probe::ProbeArgs, render::RenderArgs,
+    theory::TheoryArgs, truth::TruthArgs, worlds::WorldsCommand,
 };
 
 /// Sunlight and its shadows over large worlds: pictures, visibility masks, probes, and the exact truth to compare with.
@@ -36,6 +36,8 @@ pub enum Command {
     Compare(Box<CompareArgs>),
     /// Measure what shadows cost: times and counts of techniques in turn, ratios to the first, one page
     Bench(Box<BenchArgs>),
+    /// Draw the worlds and a city from near and far with the defaults, as one page
+    Gallery(GalleryArgs),
     /// The procedural worlds
     Worlds {
         /// What to do with them.
@@ -45,4 +47,14 @@ pub enum Command {
     /// Say which graphics adapter would be used, or fail if there is none
     #[command(hide = true)]
     Adapter,
+}
+
+/// `--shadows`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Switch {
+    /// With
+    #[default]
+    On,
+    /// Without
+    Off,
 }

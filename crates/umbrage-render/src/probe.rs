@@ -25,6 +25,7 @@ pub struct ProbePoint {
 
 /// What the maps say of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ProbeAnswer {
     /// 1 lit to 0 in shadow; 0 where the surface is turned away from the light.
     pub visibility: f32,

@@ -8,6 +8,7 @@ use crate::timing::PassCounts;
 
 /// One split of a frame.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SplitStats {
     /// View depth in metres where it begins.
     pub near: f64,
@@ -29,6 +30,7 @@ pub struct SplitStats {
 
 /// One light of a frame beside the first.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct LightStats {
     /// The plan that its maps were drawn by.
     pub plan: Arc<ShadowPlan>,
@@ -38,10 +40,11 @@ pub struct LightStats {
 
 /// What a frame was made of and what it cost.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct FrameStats {
     /// The plan that the first light's maps were drawn by.
     pub plan: Arc<ShadowPlan>,
-    /// Milliseconds of the planner on the CPU.
+    /// Milliseconds on the CPU of `umbrage_wgpu::Shadows::prepare`: planning, listing casters, handing both to the GPU.
     pub plan_ms: f64,
     /// Milliseconds from the beginning of the first map to the end of the last, on the GPU; 0 if none was drawn.
     pub shadow_ms: f64,

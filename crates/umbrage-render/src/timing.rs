@@ -17,6 +17,7 @@ const STATISTICS: wgpu::PipelineStatisticsTypes = wgpu::PipelineStatisticsTypes:
 
 /// What a pass has cost, in counts that depend little on the machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct PassCounts {
     /// Runs of a vertex shader.
     pub vertices: u64,

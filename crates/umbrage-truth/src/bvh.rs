@@ -14,6 +14,7 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 
+use crate::trace::EDGE_ERROR;
 use crate::triangles::{round_down, round_up};
 
 /// Bound on the relative error of a slab's distance: rounding of direction, inverse, difference and product, half an
@@ -43,14 +44,16 @@ pub(crate) struct BoxRay {
 
 impl BoxRay {
     pub(crate) fn new(origin: DVec3, direction: DVec3, t_min: f64) -> Self {
+        // A ray meets what it passes within the rounding of its own coordinates and of the corners', for which boxes have room.
+        let blur = ORIGIN_BLUR + 2.0 * EDGE_ERROR * origin.abs().max_element();
         let each = |f: &dyn Fn(f64) -> f32, v: DVec3| Vec3A::new(f(v.x), f(v.y), f(v.z));
         let inverse = |d: f64| {
             let away_from_zero = if d.abs() < LEAST_DIRECTION { LEAST_DIRECTION.copysign(d) } else { d };
             (1.0 / away_from_zero) as f32
         };
         Self {
-            origin_high: each(&|x| round_up(x + ORIGIN_BLUR).next_up(), origin),
-            origin_low: each(&|x| round_down(x - ORIGIN_BLUR).next_down(), origin),
+            origin_high: each(&|x| round_up(x + blur).next_up(), origin),
+            origin_low: each(&|x| round_down(x - blur).next_down(), origin),
             inverse: each(&inverse, direction),
             t_min: round_down(t_min),
         }

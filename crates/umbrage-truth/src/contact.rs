@@ -68,7 +68,7 @@ impl Contact {
         }
     }
 
-    /// At least what [`Contact::tolerance`] adds for a surface, in metres, cheaply.
+    /// At least what a surface adds to [`Contact::tolerance`], in metres, cheaply.
     pub(crate) fn most(&self, surface: &Surface) -> f64 {
         let placed = &self.placed[surface.object as usize];
         // Vertices, at most √3 times a corner's distance, and transforms, at most √3 times it again.

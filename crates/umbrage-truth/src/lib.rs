@@ -41,11 +41,11 @@
 //! of every triangle; alpha-tested triangles count where alpha ≥ cutoff (level 0, bilinear on 8-bit alpha, times base colour and vertex
 //! alpha); translucent ones never; objects that do not cast are seen but stop no light. A surface with `n_g·l ≤ 0` is dark.
 //!
-//! p's own surface is its triangle, skipped by its number, and every triangle in whose plane p lies within **τ** while eye and
-//! light are on one side of that plane. Surfaces that lie on each other thus count as one, and the wall beside a crease stops
-//! light however near the crease p is. τ is a bound on the rounding of both surfaces along the plane's normal: a few ulp, in the
-//! `f32` of the file, of the vertices' local coordinates and of rotations and scales below the node that both hang from, and a few in
-//! `f64` of the rest. A scene that is scaled or moved with its camera keeps its decisions, and one box of 1 mm its shadow.
+//! p's own surface is its triangle, skipped by its number, and every triangle parallel to it in whose plane p lies within **τ**: surfaces
+//! that lie on each other count as one. τ is a bound on the rounding of both surfaces along the plane's normal: a few ulp, in the `f32`
+//! of the file, of the vertices' local coordinates and of the transforms below the node that both hang from, and a few in `f64` of
+//! the rest. A scene that is scaled or moved with its camera keeps its decisions, and one box of 1 mm its shadow. The wall beside a
+//! crease is no part of the surface, however near the crease p is.
 //!
 //! Under a light that stands somewhere `l` points to it, rays end at it, and what its range and cone do not reach is not shadowed.
 //!

@@ -2,11 +2,16 @@
 //!
 //! The test is the watertight one of Woop, Benthin and Wald (JCGT 2013): a ray through an edge or a corner that two
 //! triangles share meets at least one of them, because both compute the very same edge function. All of it is in `f64`; the
-//! paper's fallback to higher precision where an edge function is 0 is replaced by counting such a point as inside.
+//! paper's fallback to higher precision where an edge function is 0 is replaced by counting such a point as inside. Edges of two objects
+//! share no corner bit for bit, so a point counts as inside, too, where an edge function is 0 within its rounding.
 
 use glam::DVec3;
 
 use crate::bvh::BoxRay;
+
+/// How far from an edge a ray may pass and still meet it, as a share of the coordinates of both: a corner that was placed, moved and
+/// sheared is rounded so often.
+pub(crate) const EDGE_ERROR: f64 = 16.0 * f64::EPSILON;
 
 /// A ray with everything that its tests share. `t` is in units of the direction's length.
 pub(crate) struct Ray {
@@ -18,6 +23,8 @@ pub(crate) struct Ray {
     /// Axes x, y, z of the sheared space; z is where the direction is longest.
     axes: [usize; 3],
     shear: [f64; 3],
+    /// The largest coordinate of the origin.
+    reach: f64,
 }
 
 /// Where a ray meets a triangle.
@@ -48,6 +55,7 @@ impl Ray {
             origin,
             axes: [x, y, z],
             shear: [direction[x] / along, direction[y] / along, 1.0 / along],
+            reach: origin.abs().max_element(),
         }
     }
 
@@ -65,16 +73,43 @@ impl Ray {
         let u = c.0 * b.1 - c.1 * b.0;
         let v = a.0 * c.1 - a.1 * c.0;
         let w = b.0 * a.1 - b.1 * a.0;
-        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
-            return None;
-        }
         let determinant = u + v + w;
+        let (least, most) = (u.min(v).min(w), u.max(v).max(w));
+        if least < 0.0 && most > 0.0 {
+            let aside = [a.0, a.1, b.0, b.1, c.0, c.1].into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+            let ahead = a.2.abs().max(b.2.abs()).max(c.2.abs()) / sz.abs();
+            let tolerance = EDGE_ERROR * (aside + ahead + self.reach);
+            // An edge is at most √8 times as long as its corners are aside, and its function is its length times its distance.
+            let error = 3.0 * tolerance * aside;
+            // A triangle that is no larger than its rounding has no edges to speak of.
+            if determinant.abs() <= 8.0 * error || (least < -error && most > error) {
+                return None;
+            }
+            return self.meets_edge([a, b, c], tolerance, t_max);
+        }
         if determinant == 0.0 {
             return None;
         }
         let weights = [u / determinant, v / determinant, w / determinant];
         let t = weights[0] * a.2 + weights[1] * b.2 + weights[2] * c.2;
         (t >= self.t_min && t <= t_max).then_some(Crossing { t, weights })
+    }
+
+    /// Where the ray passes an edge of a triangle within `tolerance`; corners are sheared, the ray being their third axis.
+    #[cold]
+    fn meets_edge(&self, corners: [(f64, f64, f64); 3], tolerance: f64, t_max: f64) -> Option<Crossing> {
+        (0..3).find_map(|first| {
+            let second = (first + 1) % 3;
+            let (p, q) = (corners[first], corners[second]);
+            let (dx, dy) = (q.0 - p.0, q.1 - p.1);
+            let squared = dx * dx + dy * dy;
+            let share = if squared > 0.0 { (-(p.0 * dx + p.1 * dy) / squared).clamp(0.0, 1.0) } else { 0.0 };
+            let t = p.2 + share * (q.2 - p.2);
+            let mut weights = [0.0; 3];
+            (weights[first], weights[second]) = (1.0 - share, share);
+            let is_near = (p.0 + share * dx).hypot(p.1 + share * dy) <= tolerance;
+            (is_near && t >= self.t_min && t <= t_max).then_some(Crossing { t, weights })
+        })
     }
 }
 
@@ -101,6 +136,22 @@ mod tests {
                     assert!(met, "axis {axis}, edge {i}, share {share}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn edges_that_agree_up_to_rounding_are_closed() {
+        // Two walls that meet along z = 1 at y = 1, one ulp apart; rays through the edge from all over.
+        let edge = 1.0_f64;
+        let above = edge.next_up();
+        let roof = [DVec3::new(-1.0, above, -1.0), DVec3::new(1.0, above, -1.0), DVec3::new(0.0, above, above)];
+        let wall = [DVec3::new(-1.0, edge, edge), DVec3::new(1.0, edge, edge), DVec3::new(0.0, -1.0, edge)];
+        for i in 0..200 {
+            let from = DVec3::new(0.0, f64::from(i) * 0.009 - 0.9, -0.7);
+            let ray = Ray::new(from, DVec3::new(0.0, edge, edge) - from, 0.0, f64::INFINITY);
+            assert!([roof, wall].iter().any(|corners| ray.meets(corners, f64::INFINITY).is_some()), "from {from}");
+            let beside = Ray::new(from, DVec3::new(0.0, 1.0 + 1e-12, 1.0) - from, 0.0, f64::INFINITY);
+            assert!(beside.meets(&wall, f64::INFINITY).is_none(), "1e-12 above the wall, from {from}");
         }
     }
 

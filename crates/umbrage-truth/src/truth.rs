@@ -27,6 +27,13 @@ pub struct Truth {
     contact: Contact,
 }
 
+/// Least cosine between the normals of surfaces that can lie on each other: 0.6°, more than rounding turns all but the smallest triangles.
+const PARALLEL: f64 = 0.999_95;
+
+/// How far behind its start a shadow ray begins, in lifts: as much as rounding moves crossings with planes that light meets at a
+/// millionth.
+const BEHIND: f64 = 1e6;
+
 /// A point that is looked at, from which the light is asked for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
@@ -188,22 +195,27 @@ impl Truth {
 
     /// Whether a triangle that the shadow ray meets is one with the surface that the ray starts from.
     ///
-    /// It is if the point lies in the triangle's plane, as far as the scene's data can tell, and light and eye are on one side of that
-    /// plane: a decal, the other face of a leaf, the neighbour across a seam. If the plane parts them, light would have to pass through the
-    /// triangle to be seen: the wall beside a crease stops light however near the crease the point is.
+    /// A parallel one is if the point lies in its plane, as far as the scene's data can tell: a decal, the other face of a leaf, the
+    /// neighbour across a seam. Any other is none: the wall beside a crease stops light however near the crease the point is. Only where
+    /// rounding hides on which side of the wall the point is, light counts as stopped if the wall parts it from the eye.
     fn is_own_surface(&self, triangle: &Triangle, crossing: &Crossing, seen: &Seen, to_light: DVec3) -> bool {
         let Some(normal) = area_normal(triangle).try_normalize() else { return true };
         let from_plane = (crossing.t * normal.dot(to_light)).abs();
-        let rounding = F64_ERROR * seen.reach + LIFT * seen.reach;
+        let rounding = (F64_ERROR + LIFT) * seen.reach;
+        if crossing.t < 0.0 && from_plane > rounding {
+            // Behind the point.
+            return true;
+        }
+        if normal.dot(seen.normal).abs() < PARALLEL {
+            return from_plane <= rounding && normal.dot(seen.to_eye) * normal.dot(to_light) > 0.0;
+        }
         let own = seen.own.map(|number| &self.triangles.surfaces[self.triangles.surface_of(number)]);
         let there = self.surface(triangle);
-        if from_plane > rounding + self.contact.most(there) + own.map_or(0.0, |own| self.contact.most(own)) {
+        if from_plane > rounding + self.contact.most(there) + self.contact.most(own.unwrap_or(there)) {
             return false;
         }
-        let corners = &triangle.corners;
-        let tolerance =
-            rounding + self.contact.tolerance((there, corners), (own, seen.point), normal, self.triangles.origin);
-        from_plane <= tolerance && normal.dot(seen.to_eye) * normal.dot(to_light) > 0.0
+        let (there, here) = ((there, &triangle.corners), (own, seen.point));
+        from_plane <= rounding + self.contact.tolerance(there, here, normal, self.triangles.origin)
     }
 
     fn hit(&self, origin: DVec3, direction: DVec3, crossing: &Crossing, triangle: &Triangle) -> Hit {
@@ -273,9 +285,10 @@ impl Truth {
 
 impl Seen {
     fn shadow_ray(&self, to_light: DVec3, distance: f64) -> Ray {
-        // It begins a little behind its start: on a crease whose wall the eye looks along, the start is in the wall itself.
+        // It begins a little behind its start: on a crease whose wall the eye looks along, the start is in the wall itself, and where light
+        // runs along that wall, too, rounding moves the crossing far.
         let lift = LIFT * self.reach;
-        Ray::new(self.point + lift * self.to_eye, to_light, -lift, distance)
+        Ray::new(self.point + lift * self.to_eye, to_light, -BEHIND * lift, distance)
     }
 }
 

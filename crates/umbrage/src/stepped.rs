@@ -6,7 +6,7 @@ use crate::{DirectionalLight, Error, Result};
 ///
 /// A map drawn for a sun that moves a little every frame shows every edge in other texels every frame, whatever stands still of it. A sun
 /// that stays where it is until it has fallen `step` behind, and is then cross-faded to its true place, changes nothing in between, and
-/// costs a second set of maps while it fades. Ours: source 003 (*Practical Cascaded Shadow Maps*) has a static light.
+/// costs a second set of maps while it fades. Ours: \[PCSM\] has a static light.
 ///
 /// ```
 /// # use umbrage::{DirectionalLight, SteppedSun};

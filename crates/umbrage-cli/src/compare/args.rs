@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::args::Switch;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use umbrage_lab::{
@@ -10,7 +11,6 @@ use umbrage_lab::{
         shots::{SunSpec, sun_spec},
     },
     parse,
-    technique::args::Switch,
 };
 
 const TECHNIQUES_HELP: &str = "\
@@ -155,6 +155,10 @@ pub struct CompareArgs {
     /// Write one page with sheets, tables and plots here (HTML)
     #[arg(long, value_name = "HTML", help_heading = "Output")]
     pub html: Option<PathBuf>,
+    /// Keep what is finished in this file while the run goes on; if it is cut off, the same command goes on from there. The file goes away
+    /// in the end
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub resume: Option<PathBuf>,
     /// Columns of the sheets; of more shots, evenly chosen ones are shown
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=64), help_heading = "Output")]
     pub columns: u32,

@@ -143,7 +143,7 @@ fn crowds(crowds: &[CrowdReport]) -> Result<Section> {
             let name = crowds[0].rows[index].technique.clone();
             chart = chart.series(Series::new(name, Style::LineAndPoints, points));
         }
-        Ok(Figure::svg(drawn(chart.to_svg())?, title.to_owned()))
+        Ok(Figure::svg(drawn(chart.to_svg())?, ""))
     };
     let frame = lines("Frame time over the number of objects", "frame, ms", &|row| median(row.frame_ms))?;
     let maps = lines("Time of the maps over the number of objects", "maps, ms", &|row| median(row.shadow_ms))?;

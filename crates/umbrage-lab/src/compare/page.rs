@@ -14,7 +14,8 @@ use crate::{
 /// Series with colours of their own; further ones are dashed.
 const COLOURS: usize = 8;
 
-/// The page's text. `labels` and `columns` are those of the contact sheet and of the sheet of errors.
+/// The page's text. `labels` and `columns` are those of the contact sheet and of the sheet of
+/// errors.
 ///
 /// # Errors
 /// [`Failure::Other`] if a chart or picture cannot be made, which would be a mistake of ours.
@@ -78,7 +79,7 @@ fn grid(labels: &[Label], columns: &[Shot]) -> Result<Sheet> {
             let cell = &shot.cells[row];
             let least = if cell.is_best { ", the least" } else { "" };
             let alt = format!("{}, {}", shot.title, label.title);
-            Ok(Figure::png(&png(&cell.picture)?, &alt, format!("{}{least}", cell.caption)))
+            Ok(Figure::picture(&png(&cell.picture)?, &alt, format!("{}{least}", cell.caption)))
         });
         Ok((label.title.clone(), figures.collect::<Result<_>>()?))
     });

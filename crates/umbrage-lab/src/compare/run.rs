@@ -1,6 +1,7 @@
 //! Draws, asks, scores, writes.
 
 use indicatif::ProgressBar;
+use serde_json::{Value, json};
 use umbrage::Light;
 use umbrage_render::{Frame, Gpu, GpuOptions, Lamp, Outputs, ProbePoint, Renderer, Samples};
 use umbrage_truth::{Truth, scores::shared_points};
@@ -8,6 +9,7 @@ use umbrage_truth::{Truth, scores::shared_points};
 use super::{
     columns::{self, Answer, Place, Plain, columns},
     job::{Job, Settings},
+    journal::{Finished, Journal},
     judge::{ViewTruth, score},
     page,
     report::{self, Comparison, TechniqueReport, ViewReport, WalkReport},
@@ -17,13 +19,14 @@ use super::{
 };
 use crate::{
     failure::{Failure, Result},
+    lights::NamedLight,
     output::Staged,
     picture::png,
     progress,
     report::to_json,
     scene_setup,
     session::adapter_description,
-    technique::{Technique, typed_name},
+    technique::Technique,
 };
 
 const REPRODUCE: &str = "umbrage render OPTIONS-OF-THE-VIEW OPTIONS-OF-THE-TECHNIQUE --visibility MASK.png; truth: umbrage truth OPTIONS-OF-THE-VIEW -o TRUTH.png";
@@ -33,8 +36,10 @@ const REPRODUCE: &str = "umbrage render OPTIONS-OF-THE-VIEW OPTIONS-OF-THE-TECHN
 /// # Errors
 /// [`Failure`] naming the technique that cannot be drawn, or the file that cannot be written.
 pub fn run(job: Job) -> Result<()> {
-    let Job { techniques, scenes, settings, outputs, notes, command } = job;
+    let Job { techniques, scenes, settings, outputs, notes, resume, command } = job;
     let gpu = Gpu::new(&GpuOptions::default())?;
+    let of = description(&techniques, &scenes, &settings, &adapter_description(&gpu));
+    let journal = resume.as_deref().map(|path| Journal::open(path, &of)).transpose()?;
     let shown = columns::chosen(&scenes, settings.columns);
     let views: usize = scenes.iter().flat_map(|scene| &scene.series).map(|series| series.views.len()).sum();
     let mut run = Run {
@@ -48,16 +53,21 @@ pub fn run(job: Job) -> Result<()> {
         views: Vec::new(),
         walks: Vec::new(),
         columns: [Vec::new(), Vec::new()],
+        journal,
     };
     let mut all_notes = notes;
     if settings.image_metrics && !cfg!(feature = "flip") {
         all_notes.push("FLIP is left out: it needs a build with the feature flip and a C++ compiler".into());
+    }
+    if let Some(journal) = run.journal.as_ref().filter(|journal| !journal.finished.is_empty() || journal.dropped > 0) {
+        all_notes.push(journal.note());
     }
     for (number, scene) in scenes.iter().enumerate() {
         all_notes.extend(scene.notes.iter().map(|note| format!("{}: {note}", scene.name)));
         run.scene(number, scene)?;
     }
     run.bar.finish_and_clear();
+    let journal = run.journal.take();
     let (comparison, columns) = run.finish(all_notes)?;
 
     let labels = labels(&comparison, &techniques);
@@ -77,7 +87,8 @@ pub fn run(job: Job) -> Result<()> {
     ];
     let mut staged = Staged::default();
     outputs.stage(contents, &mut staged)?;
-    staged.commit()
+    staged.commit()?;
+    journal.map_or(Ok(()), Journal::remove)
 }
 
 /// What grows while scenes are gone through.
@@ -92,6 +103,7 @@ struct Run<'a> {
     views: Vec<ViewReport>,
     walks: Vec<WalkReport>,
     columns: [Vec<Column>; 2],
+    journal: Option<Journal>,
 }
 
 /// A frame whose points the next one is asked about again.
@@ -104,19 +116,55 @@ struct Before {
 impl Run<'_> {
     fn scene(&mut self, number: usize, set: &SceneShots) -> Result<()> {
         let Some(first) = set.series.first() else { return Ok(()) };
+        let mut take = |of| self.journal.as_mut().and_then(|journal| journal.take([number, of]));
+        let before: Vec<Option<Finished>> = (0..set.series.len()).map(&mut take).collect();
+        if before.iter().all(Option::is_some) {
+            before.into_iter().flatten().for_each(|finished| self.restore(finished));
+            return Ok(());
+        }
         let truth = Truth::build(&set.scene, &set.pose, first.views[0].eye())?;
         let mut renderers = Vec::new();
         for technique in self.techniques {
-            let lights = vec![first.light.light.into()];
+            let shadows = technique.shadows.clone().under_sun(self.settings.sun_angle);
+            let light = NamedLight { name: first.sun_name.clone(), lamp: first.light };
+            let shadows = shadows.for_lights(&[light])?;
             let settings =
-                technique.job.render_settings(self.settings.size, Samples::default(), self.settings.sun_angle, lights);
+                shadows.render_settings(self.settings.size, Samples::default(), vec![first.light.light.into()]);
             let renderer = Renderer::new(self.gpu, &set.scene, &settings);
             renderers.push(renderer.map_err(|error| in_technique(technique, error))?);
         }
-        for (of, series) in set.series.iter().enumerate() {
-            self.series(set, series, [number, of], &truth, &mut renderers)?;
+        for (of, (series, finished)) in set.series.iter().zip(before).enumerate() {
+            match finished {
+                Some(finished) => self.restore(finished),
+                None => {
+                    let begin = [self.views.len(), self.walks.len(), self.columns[0].len()];
+                    self.series(set, series, [number, of], &truth, &mut renderers)?;
+                    self.keep([number, of], begin)?;
+                }
+            }
         }
         Ok(())
+    }
+
+    /// Takes over a series that an earlier run finished.
+    fn restore(&mut self, finished: Finished) {
+        self.bar.inc((finished.views.len() * (self.techniques.len() + 1)) as u64);
+        self.views.extend(finished.views);
+        self.walks.extend(finished.walk);
+        for (sheet, columns) in self.columns.iter_mut().zip(finished.columns) {
+            sheet.extend(columns);
+        }
+    }
+
+    /// Keeps the series that begins at these numbers of views, walks and columns.
+    fn keep(&mut self, series: [usize; 2], [views, walks, columns]: [usize; 3]) -> Result<()> {
+        let Some(journal) = &mut self.journal else { return Ok(()) };
+        journal.keep(&Finished {
+            series,
+            views: self.views[views..].to_vec(),
+            walk: self.walks.get(walks).cloned(),
+            columns: [self.columns[0][columns..].to_vec(), self.columns[1][columns..].to_vec()],
+        })
     }
 
     fn series(
@@ -128,11 +176,11 @@ impl Run<'_> {
         renderers: &mut [Renderer],
     ) -> Result<()> {
         for renderer in renderers.iter_mut() {
-            renderer.restart()?;
+            renderer.restart();
         }
         let first_view = self.views.len();
         let mut walks: Vec<Stillness> =
-            self.techniques.iter().map(|technique| Stillness::new(technique.job.transition())).collect();
+            self.techniques.iter().map(|technique| Stillness::new(technique.shadows.config.transition)).collect();
         let mut before: Option<Before> = None;
         for (k, view) in series.views.iter().enumerate() {
             let range = self.settings.shadow_range;
@@ -156,8 +204,8 @@ impl Run<'_> {
             let both: Vec<ProbePoint> = old_points.iter().chain(&points).copied().collect();
             let (mut scores, mut shown) = (Vec::new(), Vec::new());
             for (number, (technique, renderer)) in self.techniques.iter().zip(renderers.iter_mut()).enumerate() {
-                let wanted = Outputs { picture: is_shown, mask: true, maps: false, deferred: technique.job.deferred };
-                let coloured = Frame { tint: frame.tint || technique.job.tint, ..frame };
+                let wanted = Outputs { picture: is_shown, mask: true, maps: false };
+                let coloured = Frame { tint: frame.tint || technique.shadows.options.tint, ..frame };
                 let rendered = renderer.render(&coloured, wanted).map_err(|error| in_technique(technique, error))?;
                 let mask = rendered.mask.ok_or_else(|| Failure::other("the renderer gave no mask"))?;
                 let image_metrics = is_shown && self.settings.image_metrics;
@@ -229,7 +277,7 @@ impl Run<'_> {
         };
         let mut plain = |light| -> Result<_> {
             let frame = Frame { light, shadows_on: false, ..*frame };
-            let wanted = Outputs { picture: true, mask: false, maps: false, deferred: false };
+            let wanted = Outputs { picture: true, mask: false, maps: false };
             renderer.render(&frame, wanted)?.picture.ok_or_else(|| Failure::other("the renderer gave no picture"))
         };
         let plain = Plain { lit: plain(frame.light)?, dark: plain(against)? };
@@ -289,6 +337,28 @@ impl Run<'_> {
     }
 }
 
+/// Everything that decides what a series comes to, for the journal.
+fn description(techniques: &[Technique], scenes: &[SceneShots], settings: &Settings, adapter: &str) -> Value {
+    let series = |scene: &SceneShots| {
+        let of = |series: &Series| json!([series.camera, series.sun_name, series.options]);
+        json!({ "scene": scene.name, "series": scene.series.iter().map(of).collect::<Vec<_>>() })
+    };
+    let technique = |technique: &Technique| json!([technique.label, technique.options]);
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "adapter": adapter,
+        "techniques": techniques.iter().map(technique).collect::<Vec<_>>(),
+        "scenes": scenes.iter().map(series).collect::<Vec<_>>(),
+        "size": settings.size,
+        "shadow-range": settings.shadow_range,
+        "sun-angle": settings.sun_angle,
+        "least-edges": settings.least_edges,
+        "columns": settings.columns,
+        "tint": settings.tint,
+        "image-metrics": settings.image_metrics,
+    })
+}
+
 /// Where a point is in the picture.
 fn pixel_of(view: &umbrage::View, size: [u32; 2], point: glam::DVec3) -> Option<[u32; 2]> {
     let (at, lens) = (view.view_from_world_point(point), view.frustum());
@@ -326,7 +396,7 @@ fn labels(comparison: &Comparison, techniques: &[Technique]) -> Vec<Label> {
     let of = |(report, technique): (&TechniqueReport, &Technique)| {
         let [texels, bytes] = [report.texels, report.bytes].map(|count| count as f64 / f64::from(1 << 20));
         let mut lines =
-            vec![format!("{texels:.2} Mtexel, {bytes:.1} MiB"), format!("filter {}", typed_name(technique.job.filter))];
+            vec![format!("{texels:.2} Mtexel, {bytes:.1} MiB"), format!("filter {}", technique.shadows.word("filter"))];
         if let Some(e) = report.mean.e {
             lines.push(format!("mean E {:.2} %, {} views", 100.0 * e, report.mean.views));
         }

@@ -1,34 +1,27 @@
 //! Report pages: one HTML file with everything inside, no script, nothing fetched.
 //!
-//! A [`Page`] holds [`Section`]s, a section holds blocks in order: [text](Section::text), [figures](Section::figure),
-//! [tables](Section::table), [sheets of pictures](Section::sheet). Every text that comes in is plain and is escaped;
-//! in running text and captions `` `backticks` `` set code. Pictures go in as PNG bytes, charts as the `<svg>` of [`super::plot`].
+//! A [`Page`] holds [`Section`]s, a section holds blocks in order: [text](Section::text),
+//! [figures](Section::figure), [tables](Section::table), [sheets of pictures](Section::sheet).
+//! Every text that comes in is plain and is escaped; in running text and captions `` `backticks` ``
+//! set code. Pictures go in as PNG or JPEG bytes, charts as the `<svg>` of [`super::plot`].
 //! Readable on a phone and on a desktop, light or dark as the reader's system is.
 
 use base64::{Engine, engine::general_purpose::STANDARD};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::{escape::escape, plot::dark_style};
+use super::plot::dark_style;
 
 const STYLE: &str = include_str!("html.css");
-/// What every PNG begins with: its signature, the length and the name of its first chunk.
-const PNG_HEAD: [u8; 16] = *b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR";
 
-/// Escaped, with `` `code` `` set as code. A backtick without its partner stays.
-fn running(text: &str) -> String {
+/// Plain text with `` `code` `` set as code. A backtick without its partner stays.
+fn running(text: &str) -> Markup {
     let parts: Vec<&str> = text.split('`').collect();
-    let mut html = String::new();
-    for (i, part) in parts.iter().enumerate() {
-        let is_code = i % 2 == 1;
-        if is_code && i + 1 < parts.len() {
-            html += &format!("<code>{}</code>", escape(part));
-        } else {
-            if is_code {
-                html.push('`');
-            }
-            html += &escape(part);
+    let last = parts.len() - 1;
+    html! {
+        @for (i, part) in parts.iter().enumerate() {
+            @if i % 2 == 0 { (part) } @else if i < last { code { (part) } } @else { "`" (part) }
         }
     }
-    html
 }
 
 /// A name as an anchor: lower case letters, digits and hyphens.
@@ -58,29 +51,37 @@ impl Page {
     /// The file's text.
     #[must_use]
     pub fn html(&self) -> String {
-        let title = escape(&self.title);
-        let lead: String = self.lead.iter().map(|text| format!("<p>{}</p>\n", running(text))).collect();
-        let mut nav = String::new();
-        let mut body = String::new();
-        for (index, section) in self.sections.iter().enumerate() {
-            let (heading, id) = (escape(&section.title), section.id(index));
-            nav += &format!("<a href=\"#{id}\">{heading}</a>\n");
-            body += &format!("<section id=\"{id}\">\n<h2>{heading}</h2>\n{}</section>\n", section.body);
-        }
-        let nav = if self.sections.len() > 1 { format!("<nav>\n{nav}</nav>\n") } else { String::new() };
-        let footer = if self.footer.is_empty() {
-            String::new()
-        } else {
-            format!("<footer>{}</footer>\n", running(&self.footer))
+        let dark = dark_style("svg.plot");
+        let style = format!("{STYLE}@media (prefers-color-scheme: dark) {{\n{dark}}}\n");
+        let ids: Vec<String> = self.sections.iter().enumerate().map(|(index, section)| section.id(index)).collect();
+        let page = html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    meta name="color-scheme" content="light dark";
+                    title { (self.title) }
+                    style { (PreEscaped(style)) }
+                }
+                body {
+                    main {
+                        header {
+                            h1 { (self.title) }
+                            @for text in &self.lead { p { (running(text)) } }
+                        }
+                        @if self.sections.len() > 1 {
+                            nav { @for (section, id) in self.sections.iter().zip(&ids) { a href={ "#" (id) } { (section.title) } " " } }
+                        }
+                        @for (section, id) in self.sections.iter().zip(&ids) {
+                            section id=(id) { h2 { (section.title) } @for block in &section.blocks { (block) "\n" } }
+                        }
+                        @if !self.footer.is_empty() { footer { (running(&self.footer)) } }
+                    }
+                }
+            }
         };
-        format!(
-            "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <meta name=\"color-scheme\" content=\"light dark\">\n<title>{title}</title>\n<style>\n{STYLE}\
-             @media (prefers-color-scheme: dark) {{\n{dark}}}\n</style>\n</head>\n<body>\n<main>\n\
-             <header>\n<h1>{title}</h1>\n{lead}</header>\n{nav}{body}{footer}</main>\n</body>\n</html>\n",
-            dark = dark_style("svg.plot"),
-        )
+        page.into_string()
     }
 }
 
@@ -88,14 +89,14 @@ impl Page {
 #[derive(Clone, Debug, Default)]
 pub struct Section {
     title: String,
-    body: String,
+    blocks: Vec<Markup>,
 }
 
 impl Section {
     /// An empty section.
     #[must_use]
     pub fn new(title: impl Into<String>) -> Self {
-        Self { title: title.into(), body: String::new() }
+        Self { title: title.into(), blocks: Vec::new() }
     }
 
     /// Its heading.
@@ -108,76 +109,76 @@ impl Section {
         format!("s{}-{}", index + 1, anchor(&self.title))
     }
 
+    fn with(mut self, block: Markup) -> Self {
+        self.blocks.push(block);
+        self
+    }
+
     /// A smaller heading.
     #[must_use]
-    pub fn heading(mut self, text: &str) -> Self {
-        self.body += &format!("<h3>{}</h3>\n", escape(text));
-        self
+    pub fn heading(self, text: &str) -> Self {
+        self.with(html! { h3 { (text) } })
     }
 
     /// A paragraph.
     #[must_use]
-    pub fn text(mut self, text: &str) -> Self {
-        self.body += &format!("<p>{}</p>\n", running(text));
-        self
+    pub fn text(self, text: &str) -> Self {
+        self.with(html! { p { (running(text)) } })
     }
 
     /// A paragraph of the second rank: conditions, sources.
     #[must_use]
-    pub fn note(mut self, text: &str) -> Self {
-        self.body += &format!("<p class=\"quiet\">{}</p>\n", running(text));
-        self
+    pub fn note(self, text: &str) -> Self {
+        self.with(html! { p.quiet { (running(text)) } })
     }
 
     /// A list of remarks.
     #[must_use]
-    pub fn list(mut self, items: &[String]) -> Self {
-        let items: String = items.iter().map(|item| format!("<li>{}</li>\n", running(item))).collect();
-        self.body += &format!("<ul>\n{items}</ul>\n");
-        self
+    pub fn list(self, items: &[String]) -> Self {
+        self.with(html! { ul { @for item in items { li { (running(item)) } } } })
     }
 
     /// One figure over the whole width.
     #[must_use]
-    pub fn figure(mut self, figure: &Figure) -> Self {
-        self.body += &figure.html();
-        self
+    pub fn figure(self, figure: &Figure) -> Self {
+        self.with(figure.html())
     }
 
     /// Figures side by side, as many in a row as there is room for.
     #[must_use]
-    pub fn figures(mut self, figures: &[Figure]) -> Self {
-        let inner: String = figures.iter().map(Figure::html).collect();
-        self.body += &format!("<div class=\"beside\">\n{inner}</div>\n");
-        self
+    pub fn figures(self, figures: &[Figure]) -> Self {
+        self.with(html! { div.beside { @for figure in figures { (figure.html()) } } })
+    }
+
+    /// Small figures side by side: maps, masks.
+    #[must_use]
+    pub fn small_figures(self, figures: &[Figure]) -> Self {
+        self.with(html! { div.beside.small { @for figure in figures { (figure.html()) } } })
     }
 
     /// A table.
     #[must_use]
-    pub fn table(mut self, table: &Table) -> Self {
-        self.body += &table.html();
-        self
+    pub fn table(self, table: &Table) -> Self {
+        self.with(table.html())
     }
 
     /// Pictures in rows and columns under headings.
     #[must_use]
-    pub fn sheet(mut self, sheet: &Sheet) -> Self {
-        self.body += &sheet.html();
-        self
+    pub fn sheet(self, sheet: &Sheet) -> Self {
+        self.with(sheet.html())
     }
 
     /// A long plain text to unfold, such as a report in JSON.
     #[must_use]
-    pub fn folded(mut self, summary: &str, text: &str) -> Self {
-        self.body += &format!("<details><summary>{}</summary><pre>{}</pre></details>\n", escape(summary), escape(text));
-        self
+    pub fn folded(self, summary: &str, text: &str) -> Self {
+        self.with(html! { details { summary { (summary) } pre { (text) } } })
     }
 }
 
 /// A picture or chart with its caption.
 #[derive(Clone, Debug)]
 pub struct Figure {
-    content: String,
+    content: Markup,
     caption: String,
     /// Pixels across at which a chart is drawn; pictures fill their column.
     width: Option<u32>,
@@ -189,51 +190,42 @@ impl Figure {
     pub fn svg(svg: String, caption: impl Into<String>) -> Self {
         let width =
             svg.split_once(" width=\"").and_then(|(_, rest)| rest.split_once('"')).and_then(|(w, _)| w.parse().ok());
-        Self { content: svg, caption: caption.into(), width }
+        Self { content: PreEscaped(svg), caption: caption.into(), width }
     }
 
-    /// A picture; `alt` is what is said where it cannot be seen.
+    /// A picture (PNG or JPEG); `alt` is what is said where it cannot be seen.
     #[must_use]
-    pub fn png(png: &[u8], alt: &str, caption: impl Into<String>) -> Self {
-        Self { content: picture(png, alt, ""), caption: caption.into(), width: None }
+    pub fn picture(file: &[u8], alt: &str, caption: impl Into<String>) -> Self {
+        Self { content: picture(file, alt, false), caption: caption.into(), width: None }
     }
 
     /// A picture whose pixels stay squares when it is enlarged: masks, insets.
     #[must_use]
-    pub fn pixels(png: &[u8], alt: &str, caption: impl Into<String>) -> Self {
-        Self { content: picture(png, alt, " class=\"pixels\""), caption: caption.into(), width: None }
+    pub fn pixels(file: &[u8], alt: &str, caption: impl Into<String>) -> Self {
+        Self { content: picture(file, alt, true), caption: caption.into(), width: None }
     }
 
-    fn html(&self) -> String {
-        let caption = if self.caption.is_empty() {
-            String::new()
-        } else {
-            format!("<figcaption>{}</figcaption>", running(&self.caption))
-        };
+    fn html(&self) -> Markup {
+        let caption = html! { @if !self.caption.is_empty() { figcaption { (running(&self.caption)) } } };
         match self.width {
-            // A chart may grow by a quarter where there is room; on a narrow screen it scrolls rather than shrink beyond reading.
-            Some(width) => format!(
-                "<figure class=\"chart\" style=\"max-width:{}px\"><div class=\"scroll\">{}</div>{caption}</figure>\n",
-                width + width / 4 + 42,
-                self.content
-            ),
-            None => format!("<figure>{}{caption}</figure>\n", self.content),
+            // A chart may grow by a quarter where there is room; on a narrow screen it scrolls
+            // rather than shrink beyond reading.
+            Some(width) => html! {
+                figure.chart style={ "max-width:" (width + width / 4 + 42) "px" } { div.scroll { (self.content) } (caption) }
+            },
+            None => html! { figure { (self.content) (caption) } },
         }
     }
 }
 
-/// An `<img>` with the picture inside. Its size is read from the file, so that the page does not jump.
-fn picture(png: &[u8], alt: &str, attributes: &str) -> String {
-    let number = |at: usize| png.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_be_bytes);
-    let size = match (png.starts_with(&PNG_HEAD), number(16), number(20)) {
-        (true, Some(width), Some(height)) => format!(" width=\"{width}\" height=\"{height}\""),
-        _ => String::new(),
-    };
-    format!(
-        "<img loading=\"lazy\"{attributes}{size} alt=\"{}\" src=\"data:image/png;base64,{}\">",
-        escape(alt),
-        STANDARD.encode(png)
-    )
+/// An `<img>` with the picture inside. Its size is read from the file, so that the page does not
+/// jump.
+fn picture(file: &[u8], alt: &str, pixelated: bool) -> Markup {
+    let reader = image::ImageReader::new(std::io::Cursor::new(file)).with_guessed_format().ok();
+    let kind = reader.as_ref().and_then(|reader| reader.format()).map_or("image/png", |format| format.to_mime_type());
+    let size = reader.and_then(|reader| reader.into_dimensions().ok());
+    let source = format!("data:{kind};base64,{}", STANDARD.encode(file));
+    html! { img.pixels[pixelated] loading="lazy" width=[size.map(|size| size.0)] height=[size.map(|size| size.1)] alt=(alt) src=(source); }
 }
 
 /// Pictures in a grid, as a contact sheet: rows and columns have names.
@@ -246,17 +238,19 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    fn html(&self) -> String {
-        let head: String = self.columns.iter().map(|name| format!("<th scope=\"col\">{}</th>", escape(name))).collect();
-        let mut rows = String::new();
-        for (name, figures) in &self.rows {
-            let cells: String = figures.iter().map(|figure| format!("<td>{}</td>", figure.html())).collect();
-            rows += &format!("<tr><th scope=\"row\">{}</th>{cells}</tr>\n", escape(name));
+    fn html(&self) -> Markup {
+        html! {
+            div.scroll {
+                table.sheet {
+                    thead { tr { td {} @for name in &self.columns { th scope="col" { (name) } } } }
+                    tbody {
+                        @for (name, figures) in &self.rows {
+                            tr { th scope="row" { (name) } @for figure in figures { td { (figure.html()) } } }
+                        }
+                    }
+                }
+            }
         }
-        format!(
-            "<div class=\"scroll\"><table class=\"sheet\">\n<thead><tr><td></td>{head}</tr></thead>\n<tbody>\n{rows}</tbody>\n\
-             </table></div>\n"
-        )
     }
 }
 
@@ -321,16 +315,16 @@ impl From<String> for Cell {
 }
 
 impl Cell {
-    fn shown(&self) -> String {
+    fn shown(&self) -> Markup {
         match self {
             Self::Text(text) => running(text),
             Self::Number(value, decimals) if value.is_finite() => {
                 let text = format!("{value:.decimals$}");
                 // "-0.00" is a rounding, not a result.
                 let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.'));
-                if zero { text.trim_start_matches('-').into() } else { text.replace('-', "−") }
+                html! { (if zero { text.trim_start_matches('-').to_owned() } else { text.replace('-', "−") }) }
             }
-            Self::Number(..) | Self::Missing => "–".into(),
+            Self::Number(..) | Self::Missing => html! { "–" },
         }
     }
 
@@ -361,7 +355,7 @@ impl Table {
         Self { caption: caption.into(), columns, rows: Vec::new() }
     }
 
-    /// The same table with one more row.
+    /// Adds a row.
     #[must_use]
     pub fn row(mut self, cells: Vec<Cell>) -> Self {
         self.rows.push(cells);
@@ -377,34 +371,32 @@ impl Table {
         (lowest < highest).then_some(if best == Best::Lowest { lowest } else { highest })
     }
 
-    fn html(&self) -> String {
-        let class = |column: &Column| if column.numeric { " class=\"n\"" } else { "" };
-        let head: String = self
-            .columns
-            .iter()
-            .map(|column| format!("<th scope=\"col\"{}>{}</th>", class(column), running(&column.title)))
-            .collect();
+    fn html(&self) -> Markup {
         let best: Vec<Option<f64>> = (0..self.columns.len()).map(|index| self.best_of(index)).collect();
-        let mut rows = String::new();
-        for row in &self.rows {
-            rows += "<tr>";
-            for (index, column) in self.columns.iter().enumerate() {
-                let cell = row.get(index).unwrap_or(&Cell::Missing);
-                let shown = cell.shown();
-                let is_best = best[index].is_some() && cell.value() == best[index];
-                let shown = if is_best { format!("<strong>{shown}</strong>") } else { shown };
-                rows += &format!("<td{}>{shown}</td>", class(column));
+        let is_best = |index: usize, cell: &Cell| best[index].is_some() && cell.value() == best[index];
+        html! {
+            div.scroll {
+                table {
+                    @if !self.caption.is_empty() { caption { (running(&self.caption)) } }
+                    thead {
+                        tr { @for column in &self.columns { th.n[column.numeric] scope="col" { (running(&column.title)) } } }
+                    }
+                    tbody {
+                        @for row in &self.rows {
+                            tr {
+                                @for (index, column) in self.columns.iter().enumerate() {
+                                    @let cell = row.get(index).unwrap_or(&Cell::Missing);
+                                    td.n[column.numeric] {
+                                        @if is_best(index, cell) { strong { (cell.shown()) } } @else { (cell.shown()) }
+                                    }
+                                }
+                            }
+                            "\n"
+                        }
+                    }
+                }
             }
-            rows += "</tr>\n";
         }
-        let caption = if self.caption.is_empty() {
-            String::new()
-        } else {
-            format!("<caption>{}</caption>\n", running(&self.caption))
-        };
-        format!(
-            "<div class=\"scroll\"><table>\n{caption}<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n"
-        )
     }
 }
 
@@ -415,7 +407,7 @@ mod tests {
     #[test]
     fn no_text_becomes_markup() {
         let evil = "<script>alert('x')</script> & \"q\" `<b>`";
-        let figure = Figure::png(&[1, 2, 3], evil, evil);
+        let figure = Figure::picture(&[1, 2, 3], evil, evil);
         let sheet = Sheet { columns: vec![evil.into()], rows: vec![(evil.into(), vec![figure.clone()])] };
         let section = Section::new(evil)
             .heading(evil)
@@ -443,9 +435,9 @@ mod tests {
 
     #[test]
     fn an_unpaired_backtick_stays() {
-        assert_eq!(running("a `b` c"), "a <code>b</code> c");
-        assert_eq!(running("a ` c"), "a ` c");
-        assert_eq!(running("`b`"), "<code>b</code>");
+        assert_eq!(running("a `b` c").into_string(), "a <code>b</code> c");
+        assert_eq!(running("a ` c").into_string(), "a ` c");
+        assert_eq!(running("`b`").into_string(), "<code>b</code>");
     }
 
     #[test]
@@ -456,35 +448,37 @@ mod tests {
             .row(vec!["c".into(), Cell::Number(3.0, 2)])
             .row(vec!["d".into(), Cell::Number(f64::NAN, 2)])
             .row(vec!["e".into()]);
-        let html = table.html();
+        let html = table.html().into_string();
         assert_eq!(html.matches("<strong>1.20</strong>").count(), 2, "{html}");
         assert_eq!(html.matches("<strong>").count(), 2);
         assert_eq!(html.matches('–').count(), 2);
         let highest = Table::new("", vec![Column::best("q", Best::Highest)])
             .row(vec![Cell::Number(1.0, 0)])
             .row(vec![Cell::Number(2.0, 0)]);
-        assert!(highest.html().contains("<strong>2</strong>"));
+        assert!(highest.html().into_string().contains("<strong>2</strong>"));
         let equal = Table::new("", vec![Column::best("q", Best::Highest)])
             .row(vec![Cell::Number(2.0, 0)])
             .row(vec![Cell::Number(2.0, 0)]);
-        assert!(!equal.html().contains("<strong>"), "nothing stands out among equals");
+        assert!(!equal.html().into_string().contains("<strong>"), "nothing stands out among equals");
     }
 
     #[test]
     fn small_negative_numbers_do_not_show_as_minus_zero() {
-        assert_eq!(Cell::Number(-0.001, 2).shown(), "0.00");
-        assert_eq!(Cell::Number(-1.5, 1).shown(), "−1.5");
+        assert_eq!(Cell::Number(-0.001, 2).shown().into_string(), "0.00");
+        assert_eq!(Cell::Number(-1.5, 1).shown().into_string(), "−1.5");
     }
 
     #[test]
-    fn a_picture_says_its_size() {
-        let mut png = PNG_HEAD.to_vec();
-        png.extend([0, 0, 3, 32, 0, 0, 2, 88, 8, 2, 0, 0, 0]);
-        let html = picture(&png, "a", "");
+    fn a_picture_says_its_size_and_kind() {
+        let mut png = std::io::Cursor::new(Vec::new());
+        image::RgbImage::new(8, 6).write_to(&mut png, image::ImageFormat::Png).expect("a picture");
+        let html = picture(&png.into_inner(), "a", false).into_string();
         assert!(
-            html.contains("width=\"800\" height=\"600\"") && html.contains("data:image/png;base64,iVBORw0KGgo"),
+            html.contains("width=\"8\" height=\"6\"") && html.contains("data:image/png;base64,iVBORw0KGgo"),
             "{html}"
         );
+        let broken = picture(&[1, 2, 3], "a", false).into_string();
+        assert!(!broken.contains("width"), "{broken}");
     }
 
     #[test]

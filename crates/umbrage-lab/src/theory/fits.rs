@@ -1,4 +1,4 @@
-//! The scene-independent against the scene-dependent fit: GPU Gems 3 chapter 10 (001) Figures 10-5 and 10-6.
+//! The scene-independent against the scene-dependent fit: \[GG3-10\] Figures 10-5 and 10-6.
 
 use glam::DVec3;
 use umbrage::{Aabb, DirectionalLight, Fit, Planner, ShadowPlan, ShadowSettings, Stabilize};
@@ -90,9 +90,9 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
 
     let section = Section::new("Scene-independent against scene-dependent fit")
         .text(
-            "The independent fit lays the map around the slice alone, sky and gaps included (001 Figure 10-5). The dependent one \
+            "The independent fit lays the map around the slice alone, sky and gaps included ([GG3-10] Figure 10-5). The dependent one \
              asks what is there: it cuts the slice down to its receivers, then to the part of them that some caster can \
-             shade, and puts the near and far planes before the first caster and behind the last receiver (001 Figure 10-6).",
+             shade, and puts the near and far planes before the first caster and behind the last receiver ([GG3-10] Figure 10-6).",
         )
         .figures(&[
             Figure::svg(

@@ -1,4 +1,4 @@
-//! Which mip level a pixel reads where splits meet: *Practical Cascaded Shadow Maps* (003) Figures 4.1.10 to 4.1.14, on a plane.
+//! Which mip level a pixel reads where splits meet: \[PCSM\] Figures 4.1.10 to 4.1.14, on a plane.
 
 use glam::{DVec2, DVec3};
 use image::{Rgb, RgbImage};
@@ -28,9 +28,9 @@ const LIGHT: DVec3 = DVec3::new(0.6, -1.0, -0.35);
 pub(super) enum Way {
     /// Each pixel of a quad its own: what the hardware does unasked.
     Naive,
-    /// The last one of the quad: source 002's way.
+    /// The last one of the quad: \[PSVSM07\]'s way.
     Quad,
-    /// The pixel's own for all of its neighbours: source 003's analytic way.
+    /// The pixel's own for all of its neighbours: \[PCSM\]'s analytic way.
     Analytic,
 }
 
@@ -77,7 +77,8 @@ impl Ground {
         split.map_from_world(place).truncate()
     }
 
-    /// The level of a pixel; `None` above the horizon, beyond the last split, and in quads that are.
+    /// The level of a pixel; `None` above the horizon, beyond the last split, and in quads that
+    /// are.
     pub fn level(&self, way: Way, [x, y]: [u32; 2]) -> Option<f64> {
         let [left, top] = [x & !1, y & !1];
         let quad = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| self.at(left + i, top + j));
@@ -162,7 +163,7 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
     }
     Ok(Section::new("The mip level across a border of splits")
         .text(
-            "Hardware chooses a level by how far a place in the map moves from pixel to pixel (003 Figure 4.1.10), which it finds by \
+            "Hardware chooses a level by how far a place in the map moves from pixel to pixel ([PCSM] Figure 4.1.10), which it finds by \
              subtracting neighbours in a quad of four. A plane 3 m below a tilted eye, 96 × 72 pixels, four splits up to 60 m; blue is level 0, red \
              level 7.",
         )

@@ -1,14 +1,14 @@
-//! `umbrage theory`: the papers' theory as data and plots, computed by the crate `umbrage`; nothing is typed in.
+//! `umbrage theory`: the papers' theory as data and plots, computed by the crate `umbrage`; nothing
+//! is typed in.
 //!
-//! * [`aliasing`]: the three split schemes over depth and dp/ds (000 Figure 4, 001 Figure 10-4);
-//! * [`area`]: Σ Area(B_i)/Area(B) over the light's direction (000 Figure 5);
-//! * [`fits`]: independent against dependent fit (001 Figures 10-5 and 10-6);
+//! * [`aliasing`]: the three split schemes over depth and dp/ds (\[PSSM06\] Figure 4, \[GG3-10\] Figure 10-4);
+//! * [`area`]: Σ Area(B_i)/Area(B) over the light's direction (\[PSSM06\] Figure 5);
+//! * [`fits`]: independent against dependent fit (\[GG3-10\] Figures 10-5 and 10-6);
 //! * [`wireframe`]: slices and light frusta in space;
-//! * [`levels`]: the mip level across a border of splits (003 Figures 4.1.10 to 4.1.14);
-//! * [`stillness`]: why shadows flicker, and what keeps them still (003 Figures 4.1.3, 4.1.4 and 4.1.6).
+//! * [`levels`]: the mip level across a border of splits (\[PCSM\] Figures 4.1.10 to 4.1.14);
+//! * [`stillness`]: why shadows flicker, and what keeps them still (\[PCSM\] Figures 4.1.3, 4.1.4 and 4.1.6).
 //!
-//! 000 is *Parallel-Split Shadow Maps for Large-scale Virtual Environments* (Zhang, Sun, Xu, Lun 2006), 001 chapter 10 of
-//! *GPU Gems 3* (Zhang, Sun, Nyman 2007), 003 *Practical Cascaded Shadow Maps* (Zhang, Zaprjagaev, Bentham 2009).
+//! Papers by key: `docs/papers.md`.
 
 mod aliasing;
 mod area;
@@ -88,9 +88,9 @@ pub fn page() -> Result<Page> {
             format!("Unless said otherwise: {}, maps of {}².", setting.describe(), setting.map_size),
         ],
         sections: sections(&setting)?,
-        footer: "Written by `umbrage theory`. 000: Zhang, Sun, Xu, Lun, Parallel-Split Shadow Maps for Large-scale Virtual \
-                 Environments, VRCIA 2006. 001: Zhang, Sun, Nyman, Parallel-Split Shadow Maps on Programmable GPUs, GPU Gems 3, \
-                 chapter 10, 2007. 003: Zhang, Zaprjagaev, Bentham, Practical Cascaded Shadow Maps, ShaderX7, 2009."
+        footer: "Written by `umbrage theory`. [PSSM06]: Zhang, Sun, Xu, Lun, Parallel-Split Shadow Maps for Large-scale Virtual \
+                 Environments, VRCIA 2006. [GG3-10]: Zhang, Sun, Nyman, Parallel-Split Shadow Maps on Programmable GPUs, GPU \
+                 Gems 3, chapter 10, 2007. [PCSM]: Zhang, Zaprjagaev, Bentham, Practical Cascaded Shadow Maps, ShaderX7, 2009."
             .into(),
     })
 }

@@ -1,4 +1,4 @@
-//! Why shadows flicker and what keeps them still: *Practical Cascaded Shadow Maps* (003) Figures 4.1.3, 4.1.4 and 4.1.6.
+//! Why shadows flicker and what keeps them still: \[PCSM\] Figures 4.1.3, 4.1.4 and 4.1.6.
 
 use glam::{DQuat, DVec2, DVec3};
 use umbrage::{DirectionalLight, ExtentSteps, Fit, Planner, ShadowPlan, ShadowSettings, Split, Stabilize, View};
@@ -77,7 +77,7 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
             texels_around(&format!("Texels, {}", name.split(',').next().unwrap_or(name)), &walk[0], &walk[1], colour)?,
             match grids.len() {
                 0 => "Two frames, 0.15 m and 0.003 rad apart: scale, place and direction of the texels change, and the point of interest \
-                      with the texel that it lies in (003 Figure 4.1.3, bottom row).",
+                      with the texel that it lies in ([PCSM] Figure 4.1.3, bottom row).",
                 1 => "The second frame's texels are the first one's.",
                 _ => "Here, too, until a step is taken.",
             },
@@ -114,20 +114,20 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
     Ok(Section::new("Flicker, and what keeps shadows still")
         .text(
             "A tight map is another map in every frame, so every edge of a shadow falls into other texels, though neither the sun nor \
-             anything else moved. Two things must stand still: how large a texel is (the scale problem of 003) and where its corners lie \
+             anything else moved. Two things must stand still: how large a texel is (the scale problem of [PCSM]) and where its corners lie \
              (the offset problem).",
         )
         .figures(&grids)
         .figure(&Figure::svg(
             fits(&walks)?,
             format!(
-                "Split {SHOWN} as the light sees it (003 Figure 4.1.4). The sphere's square is the same from wherever one looks, and wastes \
+                "Split {SHOWN} as the light sees it ([PCSM] Figure 4.1.4). The sphere's square is the same from wherever one looks, and wastes \
                  what lies outside the slice. The approximate rectangle stands on one of 16 directions that are fixed to the light."
             ),
         ))
         .figure(&Figure::svg(
             sizes.to_svg()?,
-            "The tight map follows every turn; the sphere never does; the others take steps (003 Figure 4.1.6). The source's levels are equal \
+            "The tight map follows every turn; the sphere never does; the others take steps ([PCSM] Figure 4.1.6). The source's levels are equal \
              parts of the whole range's sphere, without hysteresis.",
         ))
         .table(&table))

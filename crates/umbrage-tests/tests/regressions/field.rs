@@ -56,14 +56,18 @@ fn look(eye: [f64; 3], target: [f64; 3], fov: f64, near: f64) -> View {
 fn judged(scene: &Scene, views: &[View], sun: DVec3, edge: u32) -> Option<Vec<(GrayAlphaImage, Vec<Option<Hit>>)>> {
     let gpu = gpu()?;
     let settings = Technique::default_of_the_command().settings;
-    let shadows = umbrage::ShadowSettings { map_sizes: vec![edge; 4], range: None, ..settings.shadows.clone() };
-    let settings = RenderSettings { size: SIZE, shadows, ..settings };
+    let config = umbrage::ShadowConfig {
+        map_sizes: vec![edge; 4],
+        range: umbrage::config::Range::Camera,
+        ..settings.config.clone()
+    };
+    let settings = RenderSettings { size: SIZE, config, ..settings };
     let mut renderer = Renderer::new(gpu, scene, &settings).expect("a renderer");
     let pose = scene.pose(0.0).expect("a pose");
     let sun = DirectionalLight::new(sun).expect("a direction");
     let truth = Truth::build(scene, &pose, views[0].eye()).expect("rays can meet it");
     let each = |view: &View| {
-        renderer.restart().expect("accepted before");
+        renderer.restart();
         let frame = Frame { pose: &pose, view, light: sun.into(), more_lights: &[], shadows_on: true, tint: false };
         let rendered = renderer.render(&frame, Outputs { mask: true, ..Outputs::default() }).expect("a frame");
         let truth = truth.mask(view, sun.direction(), SIZE, &|_| {}).expect("a truth");

@@ -16,6 +16,7 @@ pub const EDGE_TEXELS: f64 = 1.5;
 
 /// Wrong decisions farther from every true edge than the map's resolution explains.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct AcneAndLeak {
     /// |Ω_f|.
     pub pixels: usize,

@@ -4,6 +4,7 @@ use crate::{Error, Result};
 
 /// One technique against another over the same views: the first's score minus the second's, so less than 0 is better.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Paired {
     /// Mean of the differences.
     pub mean_difference: f64,

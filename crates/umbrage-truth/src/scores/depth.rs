@@ -10,6 +10,7 @@ const BINS: usize = 8;
 
 /// E between two depths.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct DepthBin {
     /// View depth in metres at which the bin begins.
     pub near: f64,
@@ -21,6 +22,7 @@ pub struct DepthBin {
 
 /// E in eight equal bins of ln z.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ByDepth {
     /// From near to far.
     pub bins: [DepthBin; BINS],

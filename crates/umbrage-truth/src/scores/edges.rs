@@ -12,6 +12,7 @@ const SAME_SURFACE: f64 = 0.05;
 
 /// Distance between the true edges and the technique's, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct EdgeDistance {
     /// D, the mean over both sets.
     pub mean: f64,

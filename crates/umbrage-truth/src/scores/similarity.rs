@@ -8,6 +8,7 @@ use crate::{Error, Result};
 
 /// How alike two pictures look.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Similarity {
     /// Mean ꟻLIP error in `[0, 1]`, 0 for equal pictures (Andersson et al., "FLIP: A Difference Evaluator for Alternating
     /// Images", 2020), at its authors' default of 67 pixels per degree. `None` if the feature `flip` is off.

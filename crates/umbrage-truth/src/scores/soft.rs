@@ -9,6 +9,7 @@ const PENUMBRA: f32 = 0.02;
 
 /// Mean differences of visibility, in `[0, 1]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SoftError {
     /// E_soft, over Ω_f.
     pub whole: f64,

@@ -213,7 +213,7 @@ fn faces_in_two_nodes_that_were_meant_to_coincide_count_as_one() {
             let mut add = |shape: Shape| {
                 let normals = vec![[0.0, 1.0, 0.0]; shape.positions.len()];
                 let primitive = Primitive { normals, ..shape.with_material(0) };
-                scene.meshes.push(Mesh { name: String::new(), primitives: vec![primitive] });
+                scene.meshes.push(Mesh { primitives: vec![primitive], ..Mesh::default() });
             };
             add(Shape::floor((2.0 * unit) as f32, (height * unit) as f32));
             let mut down = Shape::floor((2.0 * unit) as f32, 0.0);
@@ -251,6 +251,36 @@ fn faces_in_two_nodes_that_were_meant_to_coincide_count_as_one() {
             }
         }
     }
+}
+
+#[test]
+fn a_turn_that_two_objects_share_takes_no_shadow() {
+    // Z up in the files, as tools write it: the root's quaternion is rounded to f32, which tilts 5 km of ground by 0.1 mm. But it tilts the
+    // box of 1 mm as well, which has a turn of its own besides.
+    let up = DQuat::from_xyzw(f64::from(-0.707_107_f32), 0.0, 0.0, f64::from(0.707_1_f32)).normalize();
+    let edge = 1e-3_f32;
+    let mut scene = Scene { materials: vec![Material::default()], ..Scene::default() };
+    let ground = Shape::quad([[-5e3, -5e3, 0.0], [5e3, -5e3, 0.0], [5e3, 5e3, 0.0], [-5e3, 5e3, 0.0]]);
+    for shape in [ground, Shape::cuboid([-0.5 * edge, -0.5 * edge, 0.0], [0.5 * edge, 0.5 * edge, edge])] {
+        let normals = vec![[0.0, 0.0, 1.0]; shape.positions.len()];
+        let primitive = Primitive { normals, ..shape.with_material(0) };
+        scene.meshes.push(Mesh { primitives: vec![primitive], ..Mesh::default() });
+    }
+    let at = DVec3::new(3000.0, 2000.0, 0.0);
+    let yaw = DQuat::from_rotation_z(0.4);
+    let child = |local, mesh| Node { parent: Some(0), local, mesh: Some(mesh), ..Node::default() };
+    scene.nodes.push(Node { local: Trs { rotation: up, ..Trs::IDENTITY }, ..Node::default() });
+    scene.nodes.push(child(Trs::IDENTITY, 0));
+    scene.nodes.push(child(Trs { translation: at, rotation: yaw, ..Trs::IDENTITY }, 1));
+    let pose = scene.pose(0.0).unwrap();
+    let foot = up * at;
+    let frustum = Frustum::perspective(1.0, 4.0 / 3.0, 1e-4, 0.1).unwrap();
+    let view = View::look_at_upright(foot + DVec3::new(0.002, 0.005, 0.003), foot, frustum).unwrap();
+    let truth = Truth::build(&scene, &pose, view.eye()).unwrap();
+    let mask = truth.mask(&view, DVec3::new(1.0, -1.0, 0.5), [160, 120], &|_| {}).unwrap();
+    let on_ground: Vec<_> = mask.hits().iter().flatten().filter(|hit| hit.object == 0).collect();
+    let dark = on_ground.iter().filter(|hit| !hit.lit).count();
+    assert!(dark > 300 && on_ground.len() - dark > 3000, "{dark} of {}", on_ground.len());
 }
 
 /// A box without thickness from -1 to 1: as one mesh, or with each wall an object that is turned into its place.
@@ -298,7 +328,13 @@ fn a_closed_box_without_thickness_is_dark() {
                     let mask = stage.mask(&view, sun, [33, 33]);
                     let seen = mask.hits().iter().flatten().count();
                     // A wall that light or eye run along may face either way: its turn is rounded.
-                    let faces = |hit: &&crate::Hit| hit.normal.dot(-sun) > 1e-9;
+                    let faces = |hit: &&crate::Hit| {
+                        let sight = match view.frustum().projection {
+                            umbrage::Projection::Perspective => hit.position - view.eye(),
+                            umbrage::Projection::Orthographic => view.forward(),
+                        };
+                        hit.normal.dot(-sun) > 1e-9 && hit.normal.dot(sight.normalize()) < -1e-9
+                    };
                     let lit: Vec<_> = mask.hits().iter().flatten().filter(|hit| hit.lit).filter(faces).collect();
                     assert!(seen >= 31 * 31, "{seen}, scale {scale}, objects {as_objects}, {view:?}");
                     assert!(lit.is_empty(), "scale {scale}, objects {as_objects}, sun {sun}, {view:?}: {lit:?}");

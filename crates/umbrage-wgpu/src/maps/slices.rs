@@ -3,8 +3,8 @@
 use glam::{DMat4, DVec4};
 use umbrage::{ShadowPlan, View};
 
-/// One slice of the picture: what of clip space it takes, and which part of the depth buffer is its own. Sources 000 and 001 draw slices
-/// front to back, each with the viewport's depth range of its own; source 001's Listing 10-3 gives that range in view depths where clip
+/// One slice of the picture: what of clip space it takes, and which part of the depth buffer is its own. \[PSSM06\] and \[GG3-10\] draw slices
+/// front to back, each with the viewport's depth range of its own; \[GG3-10\]'s Listing 10-3 gives that range in view depths where clip
 /// depths are meant. Depth is reversed, so a slice from `C_i` to `C_{i+1}` has `[z(C_{i+1}), z(C_i)]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slice {

@@ -11,7 +11,7 @@ const ROOM: f64 = 1e-4;
 /// The view depths between which the view shows any of `receivers`, with a little room; `None` if it shows none. Boxes are clipped to
 /// the frustum between `near` and `far`, the range to `near`.
 ///
-/// Source: *Parallel-Split Shadow Maps on Programmable GPUs* (seed 001) section 10.2.1, which only says that near and far might be
+/// Source: \[GG3-10\] section 10.2.1, which only says that near and far might be
 /// adjusted "so that the view frustum contains the visible objects as tightly as possible". What stands behind something
 /// else counts as visible: boxes hide nothing.
 pub(crate) fn visible_range<'a>(

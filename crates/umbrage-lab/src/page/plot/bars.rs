@@ -1,16 +1,29 @@
 //! Bars, lying, so that long names can stand beside them.
 
-use plotters::style::text_anchor::{HPos, VPos};
+use kuva::{
+    plot::{
+        BarPlot,
+        annotations::ReferenceLine,
+        legend::{LegendEntry, LegendShape},
+    },
+    render::{
+        layout::ComputedLayout,
+        plots::Plot,
+        render::{Primitive, Scene, TextAnchor},
+    },
+};
 
-use super::canvas::{SMALL, fill, stroke, svg, text_width};
-use super::legend::{Entry, Legend, Look};
-use super::scale::Scale;
-use super::{Axis, Colour, Error, Mark, Result, number};
+use super::{
+    Axis, Colour, Error, Mark, Result, Scale, number,
+    svg::{MARK_DASHES, element, layout, mark_entry, render, with_legend, with_plot_height, with_x},
+};
 
 /// Pixels across one bar.
 const BAR: f64 = 15.0;
-/// Pixels between the bars of two categories.
-const GAP: f64 = 13.0;
+/// Share of a category that its bars take.
+const SHARE: f64 = 0.8;
+/// Pixels of the numbers behind the bars.
+const FIGURES: u32 = 12;
 
 /// One bar per category.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +32,8 @@ pub struct BarSeries {
     pub name: String,
     /// One value per category; NaN where there is none.
     pub values: Vec<f64>,
-    /// How far the values scatter on both sides (a standard deviation, say), one per category; empty if that is not shown.
+    /// How far the values scatter on both sides (a standard deviation, say), one per category;
+    /// empty if that is not shown.
     pub spread: Vec<f64>,
     /// `None`: the palette's next.
     pub colour: Option<Colour>,
@@ -32,13 +46,13 @@ impl BarSeries {
         Self { name: name.into(), values, spread: Vec::new(), colour: None }
     }
 
-    /// The same series with whiskers.
+    /// Adds whiskers: one spread for each category.
     #[must_use]
     pub fn spread(self, spread: Vec<f64>) -> Self {
         Self { spread, ..self }
     }
 
-    /// The same series in this colour.
+    /// Sets the colour.
     #[must_use]
     pub fn colour(self, colour: Colour) -> Self {
         Self { colour: Some(colour), ..self }
@@ -50,7 +64,8 @@ impl BarSeries {
 pub struct BarChart {
     /// What it shows, in a few words.
     pub title: String,
-    /// What the bars' lengths are. Linear, as the length of a bar on a logarithmic axis says nothing.
+    /// What the bars' lengths are. Linear, as the length of a bar on a logarithmic axis says
+    /// nothing.
     pub value: Axis,
     /// Names, top to bottom.
     pub categories: Vec<String>,
@@ -69,21 +84,21 @@ impl BarChart {
         Self { title: title.into(), value, categories, series: Vec::new(), marks: Vec::new(), width: 680.0 }
     }
 
-    /// The same chart with one more series.
+    /// Adds a series.
     #[must_use]
     pub fn series(mut self, series: BarSeries) -> Self {
         self.series.push(series);
         self
     }
 
-    /// The same chart with an upright line.
+    /// Adds an upright line ([`Mark::X`]).
     #[must_use]
     pub fn mark(mut self, mark: Mark) -> Self {
         self.marks.push(mark);
         self
     }
 
-    /// The same chart, `width` pixels across.
+    /// Sets the width in pixels.
     #[must_use]
     pub fn width(self, width: f64) -> Self {
         Self { width, ..self }
@@ -92,9 +107,50 @@ impl BarChart {
     /// The chart as an `<svg>` element.
     ///
     /// # Errors
-    /// [`Error::Empty`] without a value, [`Error::Length`] if a series has not one value per category, [`Error::Value`] for an
-    /// infinite value or a logarithmic axis.
+    /// [`Error::Empty`] without a value, [`Error::Length`] if a series has not one value per
+    /// category, [`Error::Value`] for an infinite value or a logarithmic axis.
     pub fn to_svg(&self) -> Result<String> {
+        self.check()?;
+        let mut bars = BarPlot::new().with_horizontal(true).with_width(SHARE);
+        let (mut errors, mut numbers) = (Vec::new(), Vec::new());
+        // The lowest category and series come first.
+        for (c, name) in self.categories.iter().enumerate().rev() {
+            let of_category = self.series.iter().enumerate().rev().map(|(s, series)| {
+                let value = series.values[c];
+                errors.push(series.spread.get(c).copied().filter(|spread| spread.is_finite()).unwrap_or(0.0).abs());
+                numbers.push(if value.is_nan() { "–".into() } else { number(significant(value)) });
+                (if value.is_nan() { 0.0 } else { value }, self.colour(s).hex())
+            });
+            bars = bars.with_group(name.as_str(), of_category.collect::<Vec<_>>());
+        }
+        let longest = self.values().fold(0.0, f64::max);
+        let whiskers = errors.iter().any(|error| *error > 0.0);
+        let bars = if whiskers { bars.with_error(errors.clone()).with_error_color(Colour::Ink.hex()) } else { bars };
+        let plots: Vec<Plot> = vec![bars.into()];
+        let mut layout = layout(&plots, &self.title, self.width);
+        layout = with_x(layout, &self.value, 0.0);
+        if self.value.range.is_none() {
+            // Room for the number behind the longest bar.
+            layout = layout.with_x_axis_max(1.12 * longest.max(f64::MIN_POSITIVE));
+        }
+        let mut legend = self.legend();
+        for mark in &self.marks {
+            if let Mark::X(value, label) = mark {
+                let line = ReferenceLine::vertical(*value).with_color(Colour::Ink.hex()).with_dasharray(MARK_DASHES);
+                layout = layout.with_reference_line(line);
+                legend.push(mark_entry(label, Colour::Ink));
+            }
+        }
+        layout = with_legend(layout, legend);
+        let rows = (self.series.len() * self.categories.len()) as f64;
+        let layout = with_plot_height(layout, BAR * rows / SHARE);
+        let computed = ComputedLayout::from_layout(&layout);
+        let mut scene = render(plots, layout);
+        write_numbers(&mut scene, &computed, &numbers, whiskers.then_some(&errors));
+        element(&self.title, scene)
+    }
+
+    fn check(&self) -> Result<()> {
         for series in &self.series {
             for list in [Some(&series.values), Some(&series.spread).filter(|s| !s.is_empty())].into_iter().flatten() {
                 if list.len() != self.categories.len() {
@@ -115,68 +171,18 @@ impl BarChart {
                 remedy: "bars start at 0; give them a linear axis",
             });
         }
-        let reach = |series: &BarSeries, i: usize| {
-            let spread = series.spread.get(i).copied().unwrap_or(0.0).abs();
-            [series.values[i], series.values[i] + spread, series.values[i] - spread.min(series.values[i].abs())]
-        };
-        let values = self.series.iter().flat_map(|s| (0..s.values.len()).flat_map(move |i| reach(s, i)));
-        let ruler = self.value.clone().from_zero().ruler(&self.title, values)?;
-
-        let names = self.categories.iter().map(|name| text_width(name, SMALL)).fold(0.0, f64::max);
-        let left = (names + 16.0).min(0.5 * self.width).ceil();
-        // Room for the number behind the longest bar.
-        let right = self.width - 58.0;
-        let legend = Legend::new(&self.title, self.legend(), 4.0, self.width - 4.0);
-        let top = legend.height + 8.0;
-        let row = BAR * self.series.len() as f64 + GAP;
-        let bottom = top + row * self.categories.len() as f64;
-        let height = bottom + 50.0;
-        let along = |value: f64| left + ruler.share(value).clamp(0.0, 1.0) * (right - left);
-        svg(&self.title, (self.width, height), |canvas| {
-            legend.draw(canvas, 4.0)?;
-            let middle = 0.5 * (left + right);
-            canvas.text(&self.value.label, (middle, height - 20.0), SMALL, Colour::Quiet, (HPos::Center, VPos::Top))?;
-            for (share, label) in ruler.ticks() {
-                let x = left + share * (right - left);
-                canvas.line(&[(x, top), (x, bottom)], stroke(Colour::Grid, 1.1, 1.0))?;
-                canvas.text(&label, (x, bottom + 6.0), SMALL, Colour::Ink, (HPos::Center, VPos::Top))?;
-            }
-            for (c, name) in self.categories.iter().enumerate() {
-                let begin = top + row * c as f64 + 0.5 * GAP;
-                let centre = begin + 0.5 * BAR * self.series.len() as f64;
-                canvas.text(name, (left - 8.0, centre), SMALL, Colour::Ink, (HPos::Right, VPos::Center))?;
-                for (s, series) in self.series.iter().enumerate() {
-                    let (value, y) = (series.values[c], begin + BAR * s as f64);
-                    let centre = y + 0.5 * BAR;
-                    if value.is_nan() {
-                        canvas.text("–", (left + 5.0, centre), SMALL, Colour::Quiet, (HPos::Left, VPos::Center))?;
-                        continue;
-                    }
-                    let (zero, end) = (along(0.0), along(value));
-                    let bar = [(zero, y + 1.0), (end, y + 1.0), (end, y + BAR - 1.0), (zero, y + BAR - 1.0)];
-                    canvas.polygon(&bar, fill(self.colour(s), 1.0))?;
-                    let [_, high, low] = reach(series, c);
-                    if high != low {
-                        let pen = stroke(Colour::Ink, 1.2, 1.0);
-                        canvas.line(&[(along(low), centre), (along(high), centre)], pen)?;
-                        for x in [along(low), along(high)] {
-                            canvas.line(&[(x, centre - 3.0), (x, centre + 3.0)], pen)?;
-                        }
-                    }
-                    let behind = along(high).max(zero) + 5.0;
-                    let said = number(significant(value));
-                    canvas.text(&said, (behind, centre), 12.0, Colour::Quiet, (HPos::Left, VPos::Center))?;
-                }
-            }
-            canvas.line(&[(along(0.0), top), (along(0.0), bottom)], stroke(Colour::Quiet, 1.2, 1.0))?;
-            for mark in &self.marks {
-                if let Mark::X(value, label) = mark {
-                    let x = along(*value);
-                    canvas.dashed(&[(x, top), (x, bottom)], stroke(Colour::Ink, 1.2, 1.0), 3.0, 3.0)?;
-                    canvas.text(label, (x + 4.0, top - 8.0), 12.0, Colour::Quiet, (HPos::Left, VPos::Center))?;
-                }
-            }
+        if self.value.check(&self.title, self.values())? {
             Ok(())
+        } else {
+            Err(Error::Empty { title: self.title.clone() })
+        }
+    }
+
+    /// All values with the ends of their whiskers.
+    fn values(&self) -> impl Iterator<Item = f64> {
+        self.series.iter().flat_map(|series| {
+            let spread = series.spread.iter().copied().map(f64::abs).chain(std::iter::repeat(0.0));
+            series.values.iter().zip(spread).map(|(value, spread)| value + if spread.is_nan() { 0.0 } else { spread })
         })
     }
 
@@ -184,13 +190,47 @@ impl BarChart {
         self.series[index].colour.unwrap_or(Colour::Series(index))
     }
 
-    fn legend(&self) -> Vec<Entry> {
-        let entry = |(index, series): (usize, &BarSeries)| Entry {
-            name: series.name.clone(),
-            colour: self.colour(index),
-            look: Look::Area(1.0),
+    fn legend(&self) -> Vec<LegendEntry> {
+        let named = self.series.iter().enumerate().filter(|(_, series)| !series.name.is_empty());
+        let entry = |(index, series): (usize, &BarSeries)| LegendEntry {
+            label: series.name.clone(),
+            color: self.colour(index).hex(),
+            shape: LegendShape::Rect,
+            dasharray: None,
         };
-        self.series.iter().enumerate().filter(|(_, series)| !series.name.is_empty()).map(entry).collect()
+        named.map(entry).collect()
+    }
+}
+
+/// Writes each bar's number behind it and its whisker. The library draws bars without numbers; they
+/// are found by where they begin.
+fn write_numbers(scene: &mut Scene, computed: &ComputedLayout, numbers: &[String], errors: Option<&Vec<f64>>) {
+    let zero = computed.map_x(0.0);
+    let bottom = computed.height - computed.margin_bottom;
+    let is_bar = |x: f64, y: f64| (x - zero).abs() < 0.5 && y > computed.margin_top - 0.5 && y < bottom;
+    let bars: Vec<(f64, f64)> = scene
+        .elements
+        .iter()
+        .filter_map(|element| match element {
+            Primitive::Rect { x, y, width, height, .. } if is_bar(*x, *y) => Some((x + width, y + 0.5 * height)),
+            _ => None,
+        })
+        .collect();
+    if bars.len() != numbers.len() {
+        return;
+    }
+    for (i, ((end, middle), text)) in bars.into_iter().zip(numbers).enumerate() {
+        let whisker = errors.map_or(0.0, |errors| computed.map_x(errors[i]) - zero);
+        scene.add(Primitive::Text {
+            x: end + whisker + 5.0,
+            y: middle + 0.35 * f64::from(FIGURES),
+            content: text.clone(),
+            size: FIGURES,
+            anchor: TextAnchor::Start,
+            rotate: None,
+            bold: false,
+            color: Some(Colour::Quiet.hex().into()),
+        });
     }
 }
 

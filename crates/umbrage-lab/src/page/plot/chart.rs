@@ -1,17 +1,27 @@
 //! Lines and points over two axes.
 
-use plotters::{
-    chart::ChartBuilder,
-    style::text_anchor::{HPos, VPos},
+use kuva::{
+    plot::{
+        LinePlot, ScatterPlot,
+        annotations::ReferenceLine,
+        legend::{LegendEntry, LegendShape},
+        scatter::MarkerShape,
+    },
+    render::plots::Plot,
 };
 
-use super::canvas::{Canvas, Failed, SMALL, fill, stroke, svg, text_width, units};
-use super::legend::{Entry, Legend, Look};
-use super::scale::Ruler;
-use super::{Axis, Colour, Error, Result, clip};
+use super::{
+    Axis, Colour, Error, Result,
+    svg::{MARK_DASHES, element, layout, mark_entry, render, with_legend, with_plot_height, with_x, with_y},
+};
 
 /// Radius of a point, pixels.
 const POINT: f64 = 4.0;
+/// Signs of points; shapes differ so that colour is not all that tells series apart.
+const MARKERS: [MarkerShape; 4] =
+    [MarkerShape::Circle, MarkerShape::Square, MarkerShape::Triangle, MarkerShape::Diamond];
+/// The pattern of dashed lines.
+const DASHES: &str = "7 4.5";
 
 /// How a series is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,31 +37,20 @@ pub enum Style {
     LineAndPoints,
 }
 
-/// What joins the points of a series.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Line {
-    /// Nothing.
-    None,
-    /// An unbroken line.
-    Solid,
-    /// Dashes.
-    Dashed,
-}
-
 impl Style {
-    pub(super) fn line(self) -> Line {
-        match self {
-            Self::Line | Self::LineAndPoints => Line::Solid,
-            Self::Dashed => Line::Dashed,
-            Self::Points => Line::None,
-        }
+    fn has_line(self) -> bool {
+        self != Self::Points
     }
 
-    pub(super) fn has_points(self) -> bool {
+    fn has_points(self) -> bool {
         matches!(self, Self::Points | Self::LineAndPoints)
     }
 
-    pub(super) fn width(self) -> f64 {
+    fn dashes(self) -> Option<&'static str> {
+        (self == Self::Dashed).then_some(DASHES)
+    }
+
+    fn width(self) -> f64 {
         if self == Self::Dashed { 1.6 } else { 2.2 }
     }
 }
@@ -76,7 +75,7 @@ impl Series {
         Self { name: name.into(), points, style, colour: None }
     }
 
-    /// The same series in this colour.
+    /// Sets the colour.
     #[must_use]
     pub fn colour(self, colour: Colour) -> Self {
         Self { colour: Some(colour), ..self }
@@ -118,21 +117,21 @@ impl Chart {
         Self { title: title.into(), x, y, series: Vec::new(), marks: Vec::new(), width: 680.0, plot_height: 300.0 }
     }
 
-    /// The same chart with one more series.
+    /// Adds a series.
     #[must_use]
     pub fn series(mut self, series: Series) -> Self {
         self.series.push(series);
         self
     }
 
-    /// The same chart with one more line across.
+    /// Adds a line across.
     #[must_use]
     pub fn mark(mut self, mark: Mark) -> Self {
         self.marks.push(mark);
         self
     }
 
-    /// The same chart, `width` pixels across and its plot `plot_height` pixels high.
+    /// Sets the width in pixels, and the height of the plot itself.
     #[must_use]
     pub fn size(self, width: f64, plot_height: f64) -> Self {
         Self { width, plot_height, ..self }
@@ -141,40 +140,53 @@ impl Chart {
     /// The chart as an `<svg>` element.
     ///
     /// # Errors
-    /// [`Error::Empty`] without a finite point, [`Error::Value`] for an infinite one, or one at or below 0 on a logarithmic
-    /// axis.
+    /// [`Error::Empty`] without a finite point, [`Error::Value`] for an infinite one, or one at or
+    /// below 0 on a logarithmic axis.
     pub fn to_svg(&self) -> Result<String> {
         let points = || self.series.iter().flat_map(|series| &series.points);
-        if !points().any(|(x, y)| !x.is_nan() && !y.is_nan()) {
+        let any = points().any(|(x, y)| !x.is_nan() && !y.is_nan());
+        if !any
+            || !self.x.check(&self.title, points().map(|p| p.0))?
+            || !self.y.check(&self.title, points().map(|p| p.1))?
+        {
             return Err(Error::Empty { title: self.title.clone() });
         }
-        let x = self.x.ruler(&self.title, points().map(|p| p.0))?;
-        let y = self.y.ruler(&self.title, points().map(|p| p.1))?;
+        let plots: Vec<Plot> = (0..self.series.len()).flat_map(|index| self.plots(index)).collect();
+        let lowest = |of: fn(&(f64, f64)) -> f64| points().map(of).fold(f64::INFINITY, f64::min);
+        let mut layout = layout(&plots, &self.title, self.width);
+        layout = with_x(layout, &self.x, lowest(|p| p.0));
+        layout = with_y(layout, &self.y, lowest(|p| p.1));
+        let mut legend = self.legend();
+        for mark in &self.marks {
+            let (line, label) = match mark {
+                Mark::X(value, label) => (ReferenceLine::vertical(*value), label),
+                Mark::Y(value, label) => (ReferenceLine::horizontal(*value), label),
+            };
+            layout = layout.with_reference_line(line.with_color(Colour::Quiet.hex()).with_dasharray(MARK_DASHES));
+            legend.push(mark_entry(label, Colour::Quiet));
+        }
+        layout = with_legend(layout, legend);
+        element(&self.title, render(plots, with_plot_height(layout, self.plot_height)))
+    }
 
-        let tick_width = y.labels().map(|label| text_width(&label, SMALL)).fold(0.0, f64::max);
-        let (left, right) = (tick_width.ceil() + 16.0, self.width - 22.0);
-        let legend = Legend::new(&self.title, self.legend(), 4.0, self.width - 4.0);
-        // The label of the y axis stands on top of it, level, where it can be read.
-        let top = legend.height + 26.0;
-        let bottom = top + self.plot_height;
-        let height = bottom + 50.0;
-        svg(&self.title, (self.width, height), |canvas| {
-            legend.draw(canvas, 4.0)?;
-            canvas.text(&self.y.label, (4.0, legend.height + 4.0), SMALL, Colour::Quiet, (HPos::Left, VPos::Top))?;
-            let middle = 0.5 * (left + right);
-            canvas.text(&self.x.label, (middle, height - 20.0), SMALL, Colour::Quiet, (HPos::Center, VPos::Top))?;
-            axes(canvas, (left, top), (right, bottom), &x, &y)?;
-            let frame = Frame { x: &x, y: &y, left, right, top, bottom };
-            let mut taken = Vec::new();
-            let curves: Vec<(f64, f64)> = self.series.iter().flat_map(|series| frame.trace(series)).collect();
-            for mark in &self.marks {
-                frame.mark(canvas, mark, &curves, &mut taken)?;
+    /// A line for each run of points without a gap, and the points themselves.
+    fn plots(&self, index: usize) -> Vec<Plot> {
+        let series = &self.series[index];
+        let (style, colour) = (series.style, self.colour(index).hex());
+        let mut plots = Vec::new();
+        for run in series.points.split(|(x, y)| x.is_nan() || y.is_nan()).filter(|run| !run.is_empty()) {
+            if style.has_line() {
+                let line = LinePlot::new().with_data(run.iter().copied()).with_color(colour.as_str());
+                let line = line.with_stroke_width(style.width());
+                let dashes = style.dashes().map(|dashes| kuva::plot::line::LineStyle::Custom(dashes.into()));
+                plots.push(line.with_line_style(dashes.unwrap_or_default()).into());
             }
-            for (index, series) in self.series.iter().enumerate() {
-                frame.series(canvas, series, self.colour(index), index)?;
+            if style.has_points() {
+                let points = ScatterPlot::new().with_data(run.iter().copied()).with_color(colour.as_str());
+                plots.push(points.with_size(POINT).with_marker(MARKERS[index % MARKERS.len()]).into());
             }
-            Ok(())
-        })
+        }
+        plots
     }
 
     fn colour(&self, index: usize) -> Colour {
@@ -183,190 +195,18 @@ impl Chart {
         own(&self.series[index]).unwrap_or(Colour::Series(earlier))
     }
 
-    fn legend(&self) -> Vec<Entry> {
-        self.series
-            .iter()
-            .enumerate()
-            .filter(|(_, series)| !series.name.is_empty())
-            .map(|(index, series)| Entry {
-                name: series.name.clone(),
-                colour: self.colour(index),
-                look: Look::Line(series.style, index),
-            })
-            .collect()
-    }
-}
-
-/// Grid, axes and the labels of their ticks.
-pub(super) fn axes(
-    canvas: &Canvas<'_>,
-    (left, top): (f64, f64),
-    (right, bottom): (f64, f64),
-    x: &Ruler,
-    y: &Ruler,
-) -> Result<(), Failed> {
-    let area = canvas.part((0.0, top), (right, bottom));
-    let mut chart = ChartBuilder::on(&area);
-    chart.set_all_label_area_size(0).margin_left(units(left));
-    let mut chart = chart.build_cartesian_2d(x.clone(), y.clone())?;
-    chart
-        .configure_mesh()
-        .bold_line_style(stroke(Colour::Grid, 1.1, 1.0))
-        .light_line_style(stroke(Colour::Grid, 0.6, 1.0))
-        .disable_axes()
-        .draw()?;
-    let pen = stroke(Colour::Quiet, 1.2, 1.0);
-    canvas.line(&[(left, bottom), (right, bottom)], pen)?;
-    let mut last_end = f64::NEG_INFINITY;
-    for (share, label) in x.ticks() {
-        let at = left + share * (right - left);
-        canvas.line(&[(at, bottom), (at, bottom + 4.0)], pen)?;
-        let half = 0.5 * text_width(&label, SMALL);
-        if at - half > last_end + 4.0 {
-            canvas.text(&label, (at, bottom + 7.0), SMALL, Colour::Ink, (HPos::Center, VPos::Top))?;
-            last_end = at + half;
-        }
-    }
-    let mut last = f64::INFINITY;
-    for (share, label) in y.ticks() {
-        let at = bottom - share * (bottom - top);
-        if last - at > SMALL {
-            canvas.text(&label, (left - 8.0, at), SMALL, Colour::Ink, (HPos::Right, VPos::Center))?;
-            last = at;
-        }
-    }
-    Ok(())
-}
-
-/// A point's sign; shapes differ so that colour is not all that tells series apart.
-pub(super) fn marker(canvas: &Canvas<'_>, (x, y): (f64, f64), shape: usize, colour: Colour) -> Result<(), Failed> {
-    let ring = |corners: usize, turn: f64, radius: f64| -> Vec<(f64, f64)> {
-        (0..corners)
-            .map(|i| {
-                let angle = std::f64::consts::TAU * (i as f64 + turn) / corners as f64;
-                (x + radius * angle.sin(), y - radius * angle.cos())
-            })
-            .collect()
-    };
-    let paint = |radius: f64, colour: Colour| match shape % 4 {
-        0 => canvas.disc((x, y), radius, fill(colour, 1.0)),
-        1 => canvas.polygon(&ring(4, 0.5, radius * 1.25), fill(colour, 1.0)),
-        2 => canvas.polygon(&ring(3, 0.0, radius * 1.4), fill(colour, 1.0)),
-        _ => canvas.polygon(&ring(4, 0.0, radius * 1.35), fill(colour, 1.0)),
-    };
-    paint(POINT + 1.2, Colour::Paper)?;
-    paint(POINT, colour)
-}
-
-/// The plot's rectangle and its rulers.
-struct Frame<'a> {
-    x: &'a Ruler,
-    y: &'a Ruler,
-    left: f64,
-    right: f64,
-    top: f64,
-    bottom: f64,
-}
-
-impl Frame<'_> {
-    fn place(&self, (u, v): (f64, f64)) -> (f64, f64) {
-        (self.left + u * (self.right - self.left), self.bottom - v * (self.bottom - self.top))
-    }
-
-    /// In shares of the frame.
-    fn shares(&self, (x, y): (f64, f64)) -> (f64, f64) {
-        (self.x.share(x), self.y.share(y))
-    }
-
-    fn series(&self, canvas: &Canvas<'_>, series: &Series, colour: Colour, shape: usize) -> Result<(), Failed> {
-        let shares: Vec<(f64, f64)> = series.points.iter().map(|&point| self.shares(point)).collect();
-        let pen = stroke(colour, series.style.width(), 1.0);
-        if series.style.line() != Line::None {
-            for piece in clip::line(&shares) {
-                let piece: Vec<_> = piece.into_iter().map(|share| self.place(share)).collect();
-                match series.style.line() {
-                    Line::Dashed => canvas.dashed(&piece, pen, 7.0, 4.5)?,
-                    _ => canvas.line(&piece, pen)?,
-                }
-            }
-        }
-        if series.style.has_points() {
-            let inside = |share: f64| (-1e-9..=1.0 + 1e-9).contains(&share);
-            for &(u, v) in shares.iter().filter(|(u, v)| inside(*u) && inside(*v)) {
-                marker(canvas, self.place((u, v)), shape, colour)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Points along a series, in pixels, close enough together to tell where its line passes.
-    fn trace(&self, series: &Series) -> Vec<(f64, f64)> {
-        const STEPS: u32 = 24;
-        let shares: Vec<(f64, f64)> = series.points.iter().map(|&point| self.shares(point)).collect();
-        let between = |pair: &[(f64, f64)]| {
-            let ((x0, y0), (x1, y1)) = (pair[0], pair[1]);
-            (0..=STEPS).map(move |k| {
-                let t = f64::from(k) / f64::from(STEPS);
-                (x0 + t * (x1 - x0), y0 + t * (y1 - y0))
-            })
+    fn legend(&self) -> Vec<LegendEntry> {
+        let named = self.series.iter().enumerate().filter(|(_, series)| !series.name.is_empty());
+        let entry = |(index, series): (usize, &Series)| LegendEntry {
+            label: series.name.clone(),
+            color: self.colour(index).hex(),
+            shape: match series.style {
+                Style::Line | Style::Dashed => LegendShape::Line,
+                Style::Points | Style::LineAndPoints => LegendShape::Marker(MARKERS[index % MARKERS.len()]),
+            },
+            dasharray: series.style.dashes().map(str::to_owned),
         };
-        let along: Vec<(f64, f64)> = match series.style.line() {
-            Line::None => shares,
-            _ => clip::line(&shares).iter().flat_map(|piece| piece.windows(2).flat_map(between)).collect(),
-        };
-        along.into_iter().map(|share| self.place(share)).collect()
-    }
-
-    /// `curves` are points that labels should keep clear of; `taken` holds where labels stand already, so that the next
-    /// one moves aside.
-    fn mark(
-        &self,
-        canvas: &Canvas<'_>,
-        mark: &Mark,
-        curves: &[(f64, f64)],
-        taken: &mut Vec<(f64, f64, f64)>,
-    ) -> Result<(), Failed> {
-        let pen = stroke(Colour::Quiet, 1.1, 1.0);
-        match mark {
-            Mark::X(value, label) => {
-                let share = self.x.share(*value);
-                if !(0.0..=1.0).contains(&share) {
-                    return Ok(());
-                }
-                let (x, _) = self.place((share, 0.0));
-                canvas.dashed(&[(x, self.bottom), (x, self.top)], pen, 3.0, 3.0)?;
-                let width = text_width(label, SMALL);
-                let left = if x + 5.0 + width > self.right { x - 5.0 - width } else { x + 5.0 };
-                let mut y = self.top + 3.0;
-                while taken.iter().any(|&(from, to, at)| left < to && left + width > from && (y - at).abs() < 15.0) {
-                    y += 16.0;
-                }
-                taken.push((left, left + width, y));
-                canvas.text(label, (left, y), SMALL, Colour::Quiet, (HPos::Left, VPos::Top))
-            }
-            Mark::Y(value, label) => {
-                let share = self.y.share(*value);
-                if !(0.0..=1.0).contains(&share) {
-                    return Ok(());
-                }
-                let (_, y) = self.place((0.0, share));
-                canvas.dashed(&[(self.left, y), (self.right, y)], pen, 3.0, 3.0)?;
-                let width = text_width(label, SMALL);
-                // At one of the line's ends, above or below it: where the fewest points of curves are in the way.
-                let ends = [self.right - 3.0 - width, self.left + 4.0];
-                let places = ends.into_iter().flat_map(|x| [(x, y - 18.0), (x, y + 3.0)]);
-                let best = places
-                    .filter(|(_, top)| *top >= self.top && top + 15.0 <= self.bottom)
-                    .min_by_key(|&(x, top)| {
-                        let hit = |p: &&(f64, f64)| {
-                            (x - 2.0..x + width + 2.0).contains(&p.0) && (top..top + 15.0).contains(&p.1)
-                        };
-                        curves.iter().filter(hit).count()
-                    })
-                    .unwrap_or((ends[0], y - 18.0));
-                canvas.text(label, best, SMALL, Colour::Quiet, (HPos::Left, VPos::Top))
-            }
-        }
+        named.map(entry).collect()
     }
 }
 

@@ -2,9 +2,8 @@
 
 use std::fmt::Write;
 
-use plotters::style::RGBColor;
-
-/// A colour by its meaning. Each has a form for light paper, which is what the SVG says, and one for dark paper.
+/// A colour by its meaning. Each has a form for light paper, which is what the SVG says, and one
+/// for dark paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colour {
     /// Text and outlines of the first rank.
@@ -15,7 +14,8 @@ pub enum Colour {
     Grid,
     /// What is behind everything, to cut lines where they cross.
     Paper,
-    /// Things that are told apart, such as techniques. Eight, then they repeat; readable for the colour-blind (after Okabe and Ito).
+    /// Things that are told apart, such as techniques. Eight, then they repeat; readable for the
+    /// colour-blind (after Okabe and Ito).
     Series(usize),
     /// A split, nearest first: the order of the renderer's tints (red, green, blue, yellow, …).
     Split(usize),
@@ -76,26 +76,22 @@ impl Colour {
         }
     }
 
-    /// As `#RRGGBB`, on light paper.
+    /// As `#rrggbb`, on light paper.
     #[must_use]
     pub fn hex(self) -> String {
-        format!("#{:06X}", self.pair().0)
-    }
-
-    pub(super) fn rgb(self) -> RGBColor {
-        let [_, r, g, b] = self.pair().0.to_be_bytes();
-        RGBColor(r, g, b)
+        format!("#{:06x}", self.pair().0)
     }
 }
 
-/// CSS rules that repaint the charts below `selector` for dark paper; they stand over the SVG's own attributes.
+/// CSS rules that repaint the charts below `selector` for dark paper; they stand over the SVG's own
+/// attributes.
 #[must_use]
 pub fn dark_style(selector: &str) -> String {
     let mut css = String::new();
     for (light, dark) in [INK, QUIET, GRID, PAPER].iter().chain(&SERIES).chain(&SPLITS).chain(&RAMP) {
         for attribute in ["fill", "stroke"] {
             // Writing to a string cannot fail.
-            let _ = writeln!(css, "{selector} [{attribute}=\"#{light:06X}\"]{{{attribute}:#{dark:06X}}}");
+            let _ = writeln!(css, "{selector} [{attribute}=\"#{light:06x}\"]{{{attribute}:#{dark:06x}}}");
         }
     }
     css

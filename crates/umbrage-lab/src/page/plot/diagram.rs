@@ -1,11 +1,22 @@
 //! Shapes to scale: maps, sections, wireframes.
 
-use plotters::style::text_anchor::{HPos, VPos};
+use kuva::render::render::{PathData, Primitive, Scene, TextAnchor};
 
-use super::canvas::{Canvas, Failed, SMALL, fill, stroke, svg};
-use super::legend::{Entry, Legend, Look};
-use super::scale::nice_step;
-use super::{Colour, Error, Result, Style, clip, number};
+use super::{
+    Colour, Error, Result,
+    axis::nice_step,
+    number,
+    svg::{HEADING_LEFT, LARGE, SMALL, element},
+};
+
+/// Pixels around the drawing.
+const EDGE: f64 = 14.0;
+/// Pixels from one row of the legend to the next.
+const ROW: f64 = 21.0;
+/// Pixels of a legend's sign and the room behind it.
+const SWATCH: f64 = 30.0;
+/// Pixels between two entries of a legend.
+const GAP: f64 = 20.0;
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,108 +141,174 @@ impl Diagram {
         if !(x1 > x0 && y1 > y0) {
             return Err(Error::Empty { title: self.title.clone() });
         }
-        let edge = 14.0;
-        let scale = (self.width - 2.0 * edge) / (x1 - x0);
-        let entries = self.legend.iter().map(|(name, colour, area)| Entry {
-            name: name.clone(),
-            colour: *colour,
-            look: area.map_or(Look::Line(Style::Dashed, 0), Look::Area),
-        });
-        let legend = Legend::new(&self.title, entries.collect(), 4.0, self.width - 4.0);
-        let top = legend.height + edge;
+        let scale = (self.width - 2.0 * EDGE) / (x1 - x0);
+        let legend = self.legend_places();
+        let top = legend.last().map_or(f64::from(LARGE) + 14.0, |(_, y)| y + ROW) + EDGE;
         let bottom = top + scale * (y1 - y0);
-        let bar = if self.unit.is_some() { 34.0 } else { edge };
-        // Shares of the frame, in which shapes are cut, and pixels.
-        let share = |&(x, y): &(f64, f64)| ((x - x0) / (x1 - x0), (y - y0) / (y1 - y0));
-        let place = |(u, v): (f64, f64)| (edge + u * (x1 - x0) * scale, bottom - v * (y1 - y0) * scale);
-        svg(&self.title, (self.width, bottom + bar), |canvas| {
-            legend.draw(canvas, 4.0)?;
-            for shape in &self.shapes {
-                draw(canvas, shape, &share, &place)?;
+        let place = |&(x, y): &(f64, f64)| (EDGE + (x - x0) * scale, bottom - (y - y0) * scale);
+        let mut scene = Scene::new(self.width, bottom + if self.unit.is_some() { 34.0 } else { EDGE });
+        let heading = (HEADING_LEFT, 4.0 + f64::from(LARGE));
+        scene.add(text(&self.title, heading, TextAnchor::Start, Colour::Ink, LARGE));
+        self.draw_legend(&mut scene, &legend);
+        let (id, width, height) = (self.clip_id(), self.width - 2.0 * EDGE, bottom - top);
+        scene.defs.push(format!(
+            "<clipPath id=\"{id}\"><rect x=\"{EDGE}\" y=\"{top:.2}\" width=\"{width:.2}\" height=\"{height:.2}\"/></clipPath>"
+        ));
+        scene.add(Primitive::ClipStart { x: EDGE, y: top, width, height, id });
+        self.shapes.iter().for_each(|shape| draw(&mut scene, shape, &place));
+        scene.add(Primitive::ClipEnd);
+        self.shapes.iter().for_each(|shape| write(&mut scene, shape, &place));
+        if let Some(unit) = &self.unit {
+            let length = nice_step(0.16 * (x1 - x0));
+            let (from, y) = (EDGE, bottom + 20.0);
+            let to = from + length * scale;
+            let pen = Stroke::new(Colour::Quiet, 1.4);
+            for ends in [[(from, y), (to, y)], [(from, y - 4.0), (from, y + 4.0)], [(to, y - 4.0), (to, y + 4.0)]] {
+                scene.add(line(ends.to_vec(), pen));
             }
-            if let Some(unit) = &self.unit {
-                let length = nice_step(0.16 * (x1 - x0));
-                let (from, y) = (edge, bottom + 20.0);
-                let to = from + length * scale;
-                let pen = stroke(Colour::Quiet, 1.4, 1.0);
-                canvas.line(&[(from, y), (to, y)], pen)?;
-                for x in [from, to] {
-                    canvas.line(&[(x, y - 4.0), (x, y + 4.0)], pen)?;
+            let said = format!("{} {unit}", number(length));
+            scene.add(text(&said, (to + 8.0, y + 0.35 * f64::from(SMALL)), TextAnchor::Start, Colour::Quiet, SMALL));
+        }
+        element(&self.title, scene)
+    }
+
+    /// Where the entries of the legend stand: in rows, from left to right.
+    fn legend_places(&self) -> Vec<(f64, f64)> {
+        let (mut x, mut y) = (4.0, f64::from(LARGE) + 14.0);
+        let place = |(name, _, _): &(String, Colour, Option<f64>)| {
+            let width = SWATCH + text_width(name);
+            if x > 4.0 && x + width > self.width - 4.0 {
+                (x, y) = (4.0, y + ROW);
+            }
+            let at = (x, y);
+            x += width + GAP;
+            at
+        };
+        self.legend.iter().map(place).collect()
+    }
+
+    fn draw_legend(&self, scene: &mut Scene, places: &[(f64, f64)]) {
+        for ((name, colour, area), (x, y)) in self.legend.iter().zip(places) {
+            let middle = y + 0.5 * ROW;
+            match area {
+                None => scene.add(line(vec![(*x, middle), (x + 24.0, middle)], Stroke::dashed(*colour, 1.6))),
+                Some(opacity) => {
+                    let (x0, x1, y0, y1) = (x + 5.0, x + 19.0, middle - 6.5, middle + 6.5);
+                    let corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)];
+                    let outline = (*opacity < 1.0).then_some(Stroke::new(*colour, 1.2));
+                    area_of(scene, &corners, Some((*colour, *opacity)), outline);
                 }
-                let said = format!("{} {unit}", number(length));
-                canvas.text(&said, (to + 8.0, y), SMALL, Colour::Quiet, (HPos::Left, VPos::Center))?;
             }
-            Ok(())
-        })
+            let at = (x + SWATCH, middle + 0.35 * f64::from(SMALL));
+            scene.add(text(name, at, TextAnchor::Start, Colour::Ink, SMALL));
+        }
+    }
+
+    /// The name of the frame as a clip. It holds across a whole page, so it is made of all that is
+    /// drawn.
+    fn clip_id(&self) -> String {
+        use std::hash::{DefaultHasher, Hash, Hasher};
+        let mut hasher = DefaultHasher::new();
+        format!("{self:?}").hash(&mut hasher);
+        format!("frame-{:x}", hasher.finish())
     }
 }
 
-fn draw(
-    canvas: &Canvas<'_>,
-    shape: &Shape,
-    share: &impl Fn(&(f64, f64)) -> (f64, f64),
-    place: &impl Fn((f64, f64)) -> (f64, f64),
-) -> Result<(), Failed> {
-    let shares = |points: &[(f64, f64)]| -> Vec<(f64, f64)> { points.iter().map(share).collect() };
-    let placed = |shares: Vec<(f64, f64)>| -> Vec<(f64, f64)> { shares.into_iter().map(place).collect() };
-    let cut = |points: &[(f64, f64)], pen: Stroke| {
-        clip::line(points).into_iter().try_for_each(|piece| line(canvas, &placed(piece), pen))
-    };
+/// What a shape draws inside the frame.
+fn draw(scene: &mut Scene, shape: &Shape, place: &impl Fn(&(f64, f64)) -> (f64, f64)) {
     match shape {
-        Shape::Polygon { corners, fill: inside, outline } => {
-            let mut ring = shares(corners);
-            if let Some((colour, opacity)) = inside {
-                let inside = clip::polygon(&ring);
-                if !inside.is_empty() {
-                    canvas.polygon(&placed(inside), fill(*colour, *opacity))?;
-                }
+        Shape::Polygon { corners, fill, outline } => {
+            let corners: Vec<(f64, f64)> = corners.iter().map(place).collect();
+            area_of(scene, &corners, *fill, *outline);
+        }
+        Shape::Line { points, stroke, arrow } => {
+            let points: Vec<(f64, f64)> = points.iter().map(place).collect();
+            if let ([.., from, to], true) = (&points[..], *arrow) {
+                head(scene, *from, *to, *stroke);
             }
-            ring.extend(ring.first().copied());
-            outline.map_or(Ok(()), |pen| cut(&ring, pen))
+            scene.add(line(points, *stroke));
         }
-        Shape::Line { points, stroke: pen, arrow } => {
-            let path = shares(points);
-            cut(&path, *pen)?;
-            match placed(path)[..] {
-                [.., from, to] if *arrow => head(canvas, from, to, *pen),
-                _ => Ok(()),
-            }
-        }
-        Shape::Text { at, text, colour, anchor } => {
-            let (x, y) = place(share(at));
-            let (at, hang) = match anchor {
-                Anchor::Left => ((x - 5.0, y), (HPos::Right, VPos::Center)),
-                Anchor::Right => ((x + 5.0, y), (HPos::Left, VPos::Center)),
-                Anchor::Above => ((x, y - 4.0), (HPos::Center, VPos::Bottom)),
-                Anchor::Below => ((x, y + 4.0), (HPos::Center, VPos::Top)),
-                Anchor::Centre => ((x, y), (HPos::Center, VPos::Center)),
-            };
-            canvas.text(text, at, SMALL, *colour, hang)
-        }
+        Shape::Text { .. } => {}
     }
 }
 
-fn line(canvas: &Canvas<'_>, points: &[(f64, f64)], pen: Stroke) -> Result<(), Failed> {
-    let style = stroke(pen.colour, pen.width, 1.0);
-    if pen.dashed { canvas.dashed(points, style, 6.0, 4.0) } else { canvas.line(points, style) }
+/// What a shape writes, over the frame's edge if need be.
+fn write(scene: &mut Scene, shape: &Shape, place: &impl Fn(&(f64, f64)) -> (f64, f64)) {
+    if let Shape::Text { at, text: said, colour, anchor } = shape {
+        let (x, y) = place(at);
+        let (height, middle) = (f64::from(SMALL), 0.35 * f64::from(SMALL));
+        let (at, hang) = match anchor {
+            Anchor::Left => ((x - 5.0, y + middle), TextAnchor::End),
+            Anchor::Right => ((x + 5.0, y + middle), TextAnchor::Start),
+            Anchor::Above => ((x, y - 6.0), TextAnchor::Middle),
+            Anchor::Below => ((x, y + 4.0 + height), TextAnchor::Middle),
+            Anchor::Centre => ((x, y + middle), TextAnchor::Middle),
+        };
+        scene.add(text(said, at, hang, *colour, SMALL));
+    }
 }
 
-fn head(canvas: &Canvas<'_>, from: (f64, f64), to: (f64, f64), pen: Stroke) -> Result<(), Failed> {
+fn text(said: &str, (x, y): (f64, f64), anchor: TextAnchor, colour: Colour, size: u32) -> Primitive {
+    let color = Some(colour.hex().into());
+    Primitive::Text { x, y, content: said.to_owned(), size, anchor, rotate: None, bold: size == LARGE, color }
+}
+
+fn line(points: Vec<(f64, f64)>, pen: Stroke) -> Primitive {
+    Primitive::PolyLine {
+        points,
+        stroke: pen.colour.hex().into(),
+        stroke_width: pen.width,
+        stroke_dasharray: pen.dashed.then(|| "6 4".to_owned()),
+    }
+}
+
+/// A filled area and its outline, each with an opacity of its own.
+fn area_of(scene: &mut Scene, corners: &[(f64, f64)], fill: Option<(Colour, f64)>, outline: Option<Stroke>) {
+    let mut path: String = corners
+        .iter()
+        .enumerate()
+        .map(|(i, (x, y))| format!("{}{x:.2} {y:.2}", if i == 0 { "M" } else { "L" }))
+        .collect();
+    path.push('Z');
+    let shape = |fill: Option<Colour>, stroke: Option<Stroke>, opacity| {
+        Primitive::Path(Box::new(PathData {
+            d: path.clone(),
+            fill: Some(fill.map_or("none".into(), |colour| colour.hex().into())),
+            stroke: stroke.map_or("none".into(), |pen| pen.colour.hex().into()),
+            stroke_width: stroke.map_or(0.0, |pen| pen.width),
+            opacity,
+            stroke_dasharray: stroke.and_then(|pen| pen.dashed.then(|| "6 4".to_owned())),
+        }))
+    };
+    if let Some((colour, opacity)) = fill {
+        scene.add(shape(Some(colour), None, Some(opacity)));
+    }
+    if outline.is_some() {
+        scene.add(shape(None, outline, None));
+    }
+}
+
+/// The head of an arrow.
+fn head(scene: &mut Scene, from: (f64, f64), to: (f64, f64), pen: Stroke) {
     let length = (to.0 - from.0).hypot(to.1 - from.1);
     if length == 0.0 {
-        return Ok(());
+        return;
     }
     let (x, y) = ((to.0 - from.0) / length, (to.1 - from.1) / length);
     let (long, half) = (4.0 + 3.0 * pen.width, 2.0 + 1.4 * pen.width);
     let foot = (to.0 - long * x, to.1 - long * y);
     let tip = (to.0 + 0.5 * pen.width * x, to.1 + 0.5 * pen.width * y);
-    canvas.polygon(
-        &[tip, (foot.0 - half * y, foot.1 + half * x), (foot.0 + half * y, foot.1 - half * x)],
-        fill(pen.colour, 1.0),
-    )
+    let corners = [tip, (foot.0 - half * y, foot.1 + half * x), (foot.0 + half * y, foot.1 - half * x)];
+    area_of(scene, &corners, Some((pen.colour, 1.0)), None);
 }
 
-/// The corners of the smallest convex outline around `points`, counter-clockwise (Andrew's monotone chain).
+/// About how wide a small text is, in pixels; fonts differ.
+fn text_width(text: &str) -> f64 {
+    0.56 * f64::from(SMALL) * text.chars().count() as f64
+}
+
+/// The corners of the smallest convex outline around `points`, counter-clockwise (Andrew's monotone
+/// chain).
 #[must_use]
 pub fn convex_hull(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut sorted = points.to_vec();
@@ -280,8 +357,8 @@ mod tests {
         let corners = vec![(0.0, 0.0), (10.0, 0.0), (10.0, 5.0), (0.0, 5.0)];
         diagram.shapes.push(Shape::Polygon { corners, fill: Some((Colour::Split(0), 0.5)), outline: None });
         let svg = diagram.to_svg().expect("drawable");
-        // 200 pixels across, 100 down, in tenths.
-        assert!(svg.contains("points=\"140,1430 2140,1430 2140,430 140,430"), "{svg}");
+        // 200 pixels across, 100 down.
+        assert!(svg.contains("M14.00 143.00L214.00 143.00L214.00 43.00L14.00 43.00Z"), "{svg}");
     }
 
     #[test]

@@ -1,26 +1,25 @@
 //! Charts and diagrams as SVG text, from plain data.
 //!
-//! [`Chart`] draws lines and points over two axes, linear or logarithmic; [`BarChart`] draws bars; [`Diagram`] draws shapes to
-//! scale. What comes out is one `<svg>` element for a page of [`super::html`], complete in itself: it can be read as a
-//! file too. Colours are plain attributes in the light palette; [`dark_style`] is the CSS that repaints them for dark pages.
+//! [`Chart`] draws lines and points over two axes, linear or logarithmic; [`BarChart`] draws bars;
+//! [`Diagram`] draws shapes to scale. What comes out is one `<svg>` element for a page of
+//! [`super::html`], complete in itself: it can be read as a file too. Colours are plain attributes
+//! in the light palette; [`dark_style`] is the CSS that repaints them for dark pages.
 //!
-//! Drawn with `plotters`, whose SVG backend works in whole pixels: everything here is drawn ten times too large and
-//! scaled down by the `viewBox`, so that curves are smooth.
+//! `kuva` draws them: axes, ticks, legends and the SVG itself are its own. What is ours is the
+//! palette, what is refused, and shapes to scale, which no library of charts has.
 
+mod axis;
 mod bars;
-mod canvas;
 mod chart;
-mod clip;
 mod colour;
 mod diagram;
-mod legend;
-mod scale;
+mod svg;
 
+pub use axis::{Axis, Scale, number};
 pub use bars::{BarChart, BarSeries};
-pub use chart::{Chart, Line, Mark, Series, Style};
+pub use chart::{Chart, Mark, Series, Style};
 pub use colour::{Colour, dark_style};
 pub use diagram::{Anchor, Diagram, Shape, Stroke, convex_hull};
-pub use scale::{Axis, Scale, number};
 
 /// [`std::result::Result`] with this module's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;

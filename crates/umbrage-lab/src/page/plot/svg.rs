@@ -1,0 +1,159 @@
+//! What all drawings have in common: their theme, and the `<svg>` element around them.
+
+use kuva::{
+    Theme,
+    backend::svg::SvgBackend,
+    plot::legend::{LegendEntry, LegendPosition, LegendShape},
+    render::{
+        layout::{ComputedLayout, Layout, TickFormat},
+        plots::Plot,
+        render::{Primitive, Scene, TextAnchor, render_multiple},
+    },
+};
+use maud::{PreEscaped, html};
+use std::sync::Arc;
+
+use super::{Axis, Colour, Error, Result, Scale, number};
+
+/// The faces of all text, the reader's own first.
+const FONT: &str = "system-ui, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif";
+/// Where titles begin, pixels.
+pub(super) const HEADING_LEFT: f64 = 4.0;
+/// Pixels that a chart keeps free on its right, for half of the last tick's label.
+const RIGHT: f64 = 16.0;
+/// The pattern of lines right across a chart.
+pub(super) const MARK_DASHES: &str = "3 3";
+/// Pixels of a title.
+pub(super) const LARGE: u32 = 15;
+/// Pixels of labels, legends and ticks.
+pub(super) const SMALL: u32 = 13;
+
+/// A layout in the page's colours; axes and sizes are for the caller to add.
+pub(super) fn layout(plots: &[Plot], title: &str, width: f64) -> Layout {
+    let theme = Theme {
+        background: "none".into(),
+        axis_color: Colour::Quiet.hex(),
+        grid_color: Colour::Grid.hex(),
+        tick_color: Colour::Quiet.hex(),
+        text_color: Colour::Ink.hex(),
+        legend_bg: "none".into(),
+        legend_border: Colour::Grid.hex(),
+        ..Theme::light()
+    };
+    Layout::auto_from_plots(plots)
+        .with_theme(theme)
+        .with_title(title)
+        .with_width(width - RIGHT)
+        .with_title_size(LARGE)
+        .with_label_size(SMALL)
+        .with_body_size(SMALL)
+        .with_tick_size(SMALL)
+        .with_legend_box(false)
+        .with_tick_format(TickFormat::Custom(Arc::new(number)))
+}
+
+/// The layout with its horizontal axis.
+pub(super) fn with_x(layout: Layout, axis: &Axis, lowest: f64) -> Layout {
+    let layout = if axis.scale == Scale::Log { layout.with_log_x() } else { layout };
+    let layout = match axis.range {
+        Some((from, to)) => layout.with_x_axis_min(from).with_x_axis_max(to),
+        None if axis.from_zero && lowest >= 0.0 => layout.with_x_axis_min(0.0),
+        None => layout,
+    };
+    layout.with_x_label(axis.label.as_str())
+}
+
+/// The layout with its upright axis.
+pub(super) fn with_y(layout: Layout, axis: &Axis, lowest: f64) -> Layout {
+    let layout = if axis.scale == Scale::Log { layout.with_log_y() } else { layout };
+    let layout = match axis.range {
+        Some((from, to)) => layout.with_y_axis_min(from).with_y_axis_max(to),
+        None if axis.from_zero && lowest >= 0.0 => layout.with_y_axis_min(0.0),
+        None => layout,
+    };
+    layout.with_y_label(axis.label.as_str())
+}
+
+/// The layout with a legend below the plot; none without entries.
+pub(super) fn with_legend(layout: Layout, entries: Vec<LegendEntry>) -> Layout {
+    if entries.is_empty() {
+        return layout;
+    }
+    layout.with_legend_entries(entries).with_legend_position(LegendPosition::OutsideBottomColumns)
+}
+
+/// A line right across. Its word stands in the legend, where no curve is in the way.
+pub(super) fn mark_entry(label: &str, colour: Colour) -> LegendEntry {
+    LegendEntry {
+        label: label.to_owned(),
+        color: colour.hex(),
+        shape: LegendShape::Line,
+        dasharray: Some(MARK_DASHES.to_owned()),
+    }
+}
+
+/// The layout so high that the plot itself takes `plot_height` pixels.
+pub(super) fn with_plot_height(layout: Layout, plot_height: f64) -> Layout {
+    let computed = ComputedLayout::from_layout(&layout);
+    layout.with_height(plot_height + computed.margin_top + computed.margin_bottom)
+}
+
+/// Draws plots with the layout of [`layout`].
+pub(super) fn render(plots: Vec<Plot>, layout: Layout) -> Scene {
+    let mut scene = render_multiple(plots, layout);
+    scene.width += RIGHT;
+    scene
+}
+
+/// The `<svg>` element of a scene. `title` is also what screen readers say.
+pub(super) fn element(title: &str, mut scene: Scene) -> Result<String> {
+    // The page's own paper shows through.
+    scene.background_color = None;
+    // Titles stand where those of the page do: on the left, bold.
+    for element in &mut scene.elements {
+        if let Primitive::Text { x, content, anchor, bold, .. } = element
+            && content == title
+        {
+            (*x, *anchor, *bold) = (HEADING_LEFT, TextAnchor::Start, true);
+        }
+    }
+    let drawn = SvgBackend::new().render_scene(&scene);
+    // The backend's first tag has neither a name for readers nor a size that scales.
+    let body = drawn.split_once('>').and_then(|(_, body)| body.trim_end().strip_suffix("</svg>"));
+    let body = body.ok_or_else(|| Error::Backend { title: title.into(), reason: "it is no svg element".to_owned() })?;
+    let (width, height) = (scene.width.ceil(), scene.height.ceil());
+    let view_box = format!("0 0 {width} {height}");
+    let svg = html! {
+        svg xmlns="http://www.w3.org/2000/svg" class="plot" role="img" aria-label=(title) width=(width) height=(height)
+            viewBox=(view_box) stroke-linejoin="round" {
+            title { (title) }
+            g fill=(Colour::Ink.hex()) font-family=(FONT) { (PreEscaped(body)) }
+        }
+    };
+    Ok(svg.into_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_svg_is_whole_and_escaped() {
+        let mut scene = Scene::new(100.0, 50.0);
+        scene.add(Primitive::Text {
+            x: 1.0,
+            y: 2.0,
+            content: "x < y".into(),
+            size: SMALL,
+            anchor: TextAnchor::Start,
+            rotate: None,
+            bold: false,
+            color: None,
+        });
+        let svg = element("a < b & \"c\"", scene).expect("drawable");
+        assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"), "{svg}");
+        assert_eq!((svg.matches("<svg").count(), svg.matches("</svg>").count()), (1, 1));
+        assert!(svg.contains("viewBox=\"0 0 100 50\"") && svg.contains("width=\"100\""), "{svg}");
+        assert!(svg.contains("a &lt; b &amp; &quot;c&quot;") && svg.contains("x &lt; y"), "{svg}");
+    }
+}
