@@ -15,6 +15,7 @@ mod print;
 pub mod probe;
 pub mod render;
 pub mod scene_args;
+pub mod shadow_args;
 pub mod theory;
 pub mod truth;
 pub mod worlds;

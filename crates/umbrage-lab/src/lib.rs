@@ -19,6 +19,7 @@ pub mod compare;
 pub mod failure;
 pub mod gallery;
 pub mod lights;
+pub mod notes;
 pub mod output;
 pub mod page;
 pub mod parse;

@@ -46,6 +46,8 @@ pub struct Report {
     pub scheme: String,
     /// `none`, `psm`, `lispsm` or `tsm`: one for all splits, or one for each.
     pub warp: Vec<String>,
+    /// Every setting, under its key: what `--config` reads back.
+    pub config: umbrage::ShadowConfig,
     /// `C_0 ..= C_m`: view depths in metres.
     pub planes_m: Vec<f64>,
     /// How long it took.

@@ -10,6 +10,7 @@ use crate::{
     choose::{named, several},
     failure::{Failure, Result},
     lights::{self, NamedLight},
+    notes,
     report::{CameraReport, ShotReport, SunShown},
     scene_request::{CameraChoice, DEFAULT_FAR, DEFAULT_FOV, DEFAULT_NEAR, SceneRequest},
 };
@@ -102,7 +103,9 @@ impl SceneSetup {
             CameraChoice::Path { file, .. } => Some(CameraPath::load(file)?),
             _ => None,
         };
-        let scene = umbrage_scene::open(&request.scene, &request.height_map)?;
+        let scene = umbrage_scene::open(&request.scene, &request.files)?;
+        // At once, for they may say why what follows fails.
+        notes::say(&scene.notes);
         let scene = match request.move_scene {
             Some(by) => scene.moved(by),
             None => scene,
@@ -111,6 +114,7 @@ impl SceneSetup {
         let mut notes = scene.notes.clone();
         let frame_views = frame_views(request, &scene, &pose, path.as_ref(), &mut notes)?;
         let lights = lights::chosen(request, &scene, &pose, path.as_ref(), &mut notes)?;
+        notes::say(&notes);
         let shots = under_the_light(request, frame_views, &lights)?;
         Ok(Self::new(scene, pose, lights, shots, notes))
     }

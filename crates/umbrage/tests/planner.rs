@@ -287,7 +287,7 @@ proptest! {
                     prop_assert!(s.contains(point, s.filter_reach), "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
                     let along = s.depth_axis.dot(point);
                     prop_assert!((s.receiver_depths.0..=s.receiver_depths.1).contains(&along), "{point} at {along} m along the light, outside {:?}", s.receiver_depths);
-                    let caster_begin = direction.dot(bounds.center()) - direction.abs().dot(bounds.half_extent());
+                    let caster_begin = direction.dot(point - direction * end);
                     prop_assert!(case.settings.depth_clamp || s.depth_near <= caster_begin, "the near plane cuts caster {index}");
                     if s.warp.is_some() {
                         let (at, caster) = (s.map_from_world(point), s.map_from_world(point - direction * end));
