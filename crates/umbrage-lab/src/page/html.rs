@@ -7,7 +7,7 @@
 //! Readable on a phone and on a desktop, light or dark as the reader's system is.
 
 use base64::{Engine, engine::general_purpose::STANDARD};
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 
 use super::plot::dark_style;
 
@@ -55,7 +55,7 @@ impl Page {
         let style = format!("{STYLE}@media (prefers-color-scheme: dark) {{\n{dark}}}\n");
         let ids: Vec<String> = self.sections.iter().enumerate().map(|(index, section)| section.id(index)).collect();
         let page = html! {
-            (DOCTYPE)
+            (PreEscaped("<!doctype html>"))
             html lang="en" {
                 head {
                     meta charset="utf-8";
