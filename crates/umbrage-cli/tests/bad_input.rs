@@ -130,7 +130,6 @@ fn shadow_options_that_say_nonsense() {
         ("--technique lispsm --warp tsm", &["--technique lispsm", "--warp tsm"]),
         ("--warp tsm --stabilize exact", &["--warp tsm", "--stabilize exact"]),
         ("--warp tsm --stabilize approximate", &["--warp tsm", "--stabilize approximate"]),
-        ("--extent-steps 8", &["--extent-steps", "--stabilize approximate"]),
         ("--stabilize exact --extent-levels 64", &["--extent-levels", "--stabilize approximate"]),
         ("--stabilize approximate --extent-steps 8 --extent-levels 64", &["--extent-steps", "--extent-levels"]),
         ("--stabilize approximate --extent-steps 2", &["--extent-steps", "4 to 64"]),
@@ -188,8 +187,8 @@ fn shadow_options_that_say_nonsense() {
         ("--bands radial --selection map", &["--bands radial", "--selection map"]),
         ("--bands radial --range-fit visible", &["--bands radial", "--range-fit visible"]),
         ("--bands round", &["--bands", "planar", "radial"]),
-        ("--storage cube --splits 7", &["--storage cube", "--map-size", "7 splits"]),
-        ("--storage cube --map-size 512,256", &["--storage cube", "--map-size", "512, 256"]),
+        ("--storage cube --splits 7", &["--storage cube", "--splits 7"]),
+        ("--storage cube --map-size 512,256", &["--storage cube", "--map-size 512,256"]),
         ("--generation fast", &["--generation", "multipass", "per-split", "layered", "instanced", "mixed", "auto"]),
         ("--storage disk", &["--storage", "array", "atlas", "separate", "cube", "reused", "auto"]),
     ] {

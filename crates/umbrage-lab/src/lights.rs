@@ -3,14 +3,12 @@
 use umbrage::{DirectionalLight, Light};
 use umbrage_render::{Lamp, MOST_LAMPS};
 use umbrage_scene::{CameraPath, LightKind, Pose, Scene};
-use umbrage_wgpu::LightSlot;
 
 use crate::{
     choose::{named, several},
     failure::{Failure, Result},
     report::LightReport,
     scene_request::{LightChoice, SceneRequest},
-    technique::args::{Filter, typed_name, wgpu_filter},
 };
 
 /// A light under the name that people know it by.
@@ -47,53 +45,8 @@ impl NamedLight {
 
 /// What the maps have to be made for.
 #[must_use]
-pub fn slots(lights: &[NamedLight]) -> Vec<LightSlot> {
+pub fn kinds(lights: &[NamedLight]) -> Vec<umbrage::config::LightKind> {
     lights.iter().map(|light| light.lamp.light.into()).collect()
-}
-
-/// Filters that go by metres of depth along parallel light serve suns only.
-///
-/// # Errors
-/// [`Failure::Input`] naming the filter and the light.
-pub fn check_filter(lights: &[NamedLight], filter: Filter) -> Result<()> {
-    let wgpu = wgpu_filter(filter);
-    let serves_suns_only = wgpu == umbrage_wgpu::Filter::Pcss || wgpu.is_prefiltered();
-    let local = lights.iter().find(|light| serves_suns_only && light.lamp.light.position().is_some());
-    match (local, wgpu.is_prefiltered() && lights.len() > 1) {
-        (Some(light), _) => Err(Failure::input(format!(
-            "--filter {}: it goes by depth along parallel light, but --light {} is a spot or point light; \
-             use hard, pcf2, pcf3, pcf5, pcf7 or disc",
-            typed_name(filter),
-            light.name
-        ))),
-        (None, true) => Err(Failure::input(format!(
-            "--filter {}: it serves one sun, but --light names {} lights; name one, or use a filter that compares depth",
-            typed_name(filter),
-            lights.len()
-        ))),
-        (None, false) => Ok(()),
-    }
-}
-
-/// Coordinates that vertices make are those of one sun.
-///
-/// # Errors
-/// [`Failure::Input`] naming both options.
-pub fn check_coordinates(lights: &[NamedLight], coordinates: umbrage_render::Coordinates) -> Result<()> {
-    if coordinates != umbrage_render::Coordinates::Split {
-        return Ok(());
-    }
-    match (lights.iter().find(|light| light.lamp.light.position().is_some()), lights.len()) {
-        (Some(light), _) => Err(Failure::input(format!(
-            "--coordinates split: --light {} is a spot or point light, the places of whose maps are quotients and cannot be \
-             interpolated; use --coordinates world, or a sun",
-            light.name
-        ))),
-        (None, 0 | 1) => Ok(()),
-        (None, count) => Err(Failure::input(format!(
-            "--coordinates split: it serves one sun, but --light names {count} lights; name one, or use --coordinates world"
-        ))),
-    }
 }
 
 /// The lights that a request asks for, one at least.
@@ -139,7 +92,8 @@ pub fn chosen(
     sun("invented", direction)
 }
 
-/// The lights that `--light` names: one by its name, whatever is in it; `all`; or several between commas.
+/// The lights that `--light` names: one by its name, whatever is in it; `all`; or several between
+/// commas.
 fn indices(wanted: &str, scene: &Scene) -> Result<Vec<usize>> {
     let names: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
     if wanted != "all" || names.contains(&wanted) {

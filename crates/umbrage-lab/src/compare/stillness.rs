@@ -1,12 +1,12 @@
-//! Flicker of one technique along a walk: over all points, over those that keep their split, and over those of them whose map takes no
-//! step.
+//! Flicker of one technique along a walk: over all points, over those that keep their split, and
+//! over those of them whose map takes no step.
 
 use std::sync::Arc;
 
 use umbrage::ShadowPlan;
+use umbrage::config::Transition;
 use umbrage_render::ProbePoint;
 use umbrage_truth::scores::{Domain, Flicker, FramePair};
-use umbrage_wgpu::Transition;
 
 use super::report::FlickerReport;
 use crate::failure::Result;
@@ -50,8 +50,8 @@ impl Stillness {
         Self { transition, all, kept, standing, standing_points: 0, steps: 0, before: None }
     }
 
-    /// One more frame. `shared` are the domain of the frame before and the points that it shares with this one; answers which of those
-    /// are decided otherwise now.
+    /// One more frame. `shared` are the domain of the frame before and the points that it shares
+    /// with this one; answers which of those are decided otherwise now.
     ///
     /// # Errors
     /// [`crate::failure::Failure`] if answers are missing or none at all.
@@ -110,13 +110,15 @@ impl Stillness {
 enum Decides {
     /// One split alone.
     Split(usize),
-    /// Two splits that are mixed, or one that fades out: their shares change as the eye moves, and soft edges with them.
+    /// Two splits that are mixed, or one that fades out: their shares change as the eye moves, and
+    /// soft edges with them.
     Several,
     /// It lies beyond the range.
     Nobody,
 }
 
-/// Who decides on a point, by its view depth or its distance. A dithered border lies in the middle of its band for points that are no pixels.
+/// Who decides on a point, by its view depth or its distance. A dithered border lies in the middle
+/// of its band for points that are no pixels.
 fn decides(plan: &ShadowPlan, point: &ProbePoint, transition: Transition) -> Decides {
     let depth = plan.depth_at(point.position);
     let Some(index) = plan.splits.iter().position(|split| depth < split.far) else { return Decides::Nobody };
@@ -127,9 +129,9 @@ fn decides(plan: &ShadowPlan, point: &ProbePoint, transition: Transition) -> Dec
     let next = (index + 1).min(plan.splits.len() - 1);
     match transition {
         Transition::Hard => Decides::Split(index),
-        Transition::Blend if depth > split.blend_begin => Decides::Several,
-        Transition::Dither if depth > 0.5 * (split.blend_begin + split.far) => Decides::Split(next),
-        Transition::Blend | Transition::Dither => Decides::Split(index),
+        Transition::Blend { .. } if depth > split.blend_begin => Decides::Several,
+        Transition::Dither { .. } if depth > 0.5 * (split.blend_begin + split.far) => Decides::Split(next),
+        Transition::Blend { .. } | Transition::Dither { .. } => Decides::Split(index),
     }
 }
 
@@ -170,8 +172,8 @@ mod tests {
             (91.0, Several, Several, Several),
             (101.0, Nobody, Nobody, Nobody),
         ] {
-            assert_eq!(at(depth, Transition::Blend), blend, "{depth}");
-            assert_eq!(at(depth, Transition::Dither), dither, "{depth}");
+            assert_eq!(at(depth, Transition::Blend { share: 0.1 }), blend, "{depth}");
+            assert_eq!(at(depth, Transition::Dither { share: 0.1 }), dither, "{depth}");
             assert_eq!(at(depth, Transition::Hard), hard, "{depth}");
         }
     }

@@ -1,4 +1,5 @@
-//! `umbrage theory`: the papers' theory as data and plots, computed by the crate `umbrage`; nothing is typed in.
+//! `umbrage theory`: the papers' theory as data and plots, computed by the crate `umbrage`; nothing
+//! is typed in.
 //!
 //! * [`aliasing`]: the three split schemes over depth and dp/ds (\[PSSM06\] Figure 4, \[GG3-10\] Figure 10-4);
 //! * [`area`]: Σ Area(B_i)/Area(B) over the light's direction (\[PSSM06\] Figure 5);

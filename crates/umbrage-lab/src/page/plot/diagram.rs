@@ -204,7 +204,8 @@ impl Diagram {
         }
     }
 
-    /// The name of the frame as a clip. It holds across a whole page, so it is made of all that is drawn.
+    /// The name of the frame as a clip. It holds across a whole page, so it is made of all that is
+    /// drawn.
     fn clip_id(&self) -> String {
         use std::hash::{DefaultHasher, Hash, Hasher};
         let mut hasher = DefaultHasher::new();
@@ -306,7 +307,8 @@ fn text_width(text: &str) -> f64 {
     0.56 * f64::from(SMALL) * text.chars().count() as f64
 }
 
-/// The corners of the smallest convex outline around `points`, counter-clockwise (Andrew's monotone chain).
+/// The corners of the smallest convex outline around `points`, counter-clockwise (Andrew's monotone
+/// chain).
 #[must_use]
 pub fn convex_hull(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut sorted = points.to_vec();

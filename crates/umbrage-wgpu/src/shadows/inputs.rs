@@ -1,0 +1,61 @@
+//! What a frame is prepared from.
+
+use glam::DVec3;
+use umbrage::{Aabb, Light, View};
+
+/// What a frame is prepared from. Positions are world metres.
+///
+/// ```no_run
+/// # use umbrage_wgpu::{Inputs, umbrage::{Aabb, Light, View}};
+/// # fn example(view: &View, lights: &[Light], casters: &[Aabb]) {
+/// let inputs = Inputs { casters, image_size: [1280, 720], ..Inputs::new(view, lights) };
+/// # }
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Inputs<'a> {
+    /// The camera.
+    pub view: &'a View,
+    /// One light for each that the maps were made for, in that order.
+    pub lights: &'a [Light],
+    /// Bounds of what throws shadows. [`crate::ShadowMap::casters`] speaks of them by index.
+    pub casters: &'a [Aabb],
+    /// Bounds of what shows shadows, most casters among them. Where the list is empty, or holds nothing
+    /// that is in view, casters serve as receivers.
+    pub receivers: &'a [Aabb],
+    /// Bounds that hold all that is drawn of the receivers in view and leave less air than
+    /// [`Inputs::receivers`]: [`umbrage::ShadowPlan::casts_into`] then rejects more parts of casters. `None`:
+    /// not known.
+    pub receiver_clusters: Option<&'a [Aabb]>,
+    /// World point that positions in the application's shaders are relative to. Keep it within a
+    /// kilometre or two of the eye and move it in whole steps: static shadows stand still between two
+    /// steps.
+    pub origin: DVec3,
+    /// Pixels of the picture, across and down.
+    pub image_size: [u32; 2],
+    /// Which of several views this is; 0 where there is one.
+    pub view_slot: u32,
+    /// Whether there are shadows. Without them there is nothing to draw, every surface that faces a
+    /// light is lit, and what stabilised maps hold stays as it was.
+    pub enabled: bool,
+    /// Whether `umbrage_shadow` answers with a debug colour for each split.
+    pub tint: bool,
+}
+
+impl<'a> Inputs<'a> {
+    /// A frame without casters and receivers, of 1920 × 1080 pixels, relative to the world's origin.
+    #[must_use]
+    pub fn new(view: &'a View, lights: &'a [Light]) -> Self {
+        Self {
+            view,
+            lights,
+            casters: &[],
+            receivers: &[],
+            receiver_clusters: None,
+            origin: DVec3::ZERO,
+            image_size: [1920, 1080],
+            view_slot: 0,
+            enabled: true,
+            tint: false,
+        }
+    }
+}
