@@ -95,7 +95,8 @@ impl ShadowPlan {
     }
 
     /// The first split whose map holds every caster that can shade `point`, for points that the view does not show (points
-    /// that it shows use the split of their view depth). A split without casters answers "lit". `None`: no map answers.
+    /// that it shows use the split of their view depth). A split without casters answers "lit", but not with
+    /// [`Selection::Map`]. `None`: no map answers.
     #[must_use]
     pub fn covering_split(&self, point: DVec3) -> Option<usize> {
         let in_map = |split: &Split| split.contains(point, split.filter_reach);
@@ -111,11 +112,8 @@ impl ShadowPlan {
         let mut covering = self.splits.iter().enumerate().filter(|(i, _)| self.coverage.contains(*i, point));
         match self.selection {
             Selection::Depth => covering.find(|(_, split)| split.casters.is_empty() || in_map(split)),
-            // A map without casters is asked about nothing, and shadows that no map holds there are none.
-            Selection::Map => {
-                let lit = covering.clone().find(|(_, split)| split.casters.is_empty());
-                covering.find(|(_, split)| !split.casters.is_empty() && in_map(split)).or(lit)
-            }
+            // A map has all casters of what it contains, and nobody looked for those of points that no map contains.
+            Selection::Map => covering.find(|(_, split)| !split.casters.is_empty() && in_map(split)),
         }
         .map(|(i, _)| i)
     }

@@ -365,14 +365,12 @@ proptest! {
             });
             let asked = if in_band { 2 } else { 1 };
             for (index, bounds) in case.boxes.iter().enumerate() {
-                if index == owner || !shades(bounds, point, direction) {
-                    continue;
-                }
+                let Some(end) = shading_end(bounds, point, direction).filter(|_| index != owner) else { continue };
                 prop_assert!(!holders.is_empty(), "no map contains {point} at {depth} m, which {index} shades");
                 for &split in holders.iter().take(asked) {
                     let s = &plan.splits[split];
                     prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} of {holders:?} has no caster {index} for {point}");
-                    let begin = direction.dot(bounds.center()) - direction.abs().dot(bounds.half_extent());
+                    let begin = direction.dot(point - direction * end);
                     prop_assert!(case.settings.depth_clamp || s.depth_near <= begin, "the near plane cuts caster {index}");
                     prop_assert!(s.depth_near <= direction.dot(point), "the near plane lies behind {point}");
                 }

@@ -36,9 +36,9 @@ const MOST_SHEETS: usize = 8;
 pub(super) struct Scope {
     /// Metres from the eye beyond which no receiver matters.
     pub distance: f64,
-    /// View depth of the deepest receiver that matters.
+    /// View depth of the deepest receiver of all.
     pub deepest_receiver: f64,
-    /// The same, or that of the deepest shadow with [`SLACK`], whichever is less.
+    /// That of the deepest receiver that matters, or of the deepest shadow with [`SLACK`], whichever is less.
     pub deepest: f64,
     /// As `deepest`, by distance from the eye.
     pub farthest: f64,
@@ -55,6 +55,8 @@ impl Scope {
             bounds = bounds.union(receiver.bounds());
             all.include(frame.view, receiver);
         }
+        let mut every = Reach::NONE;
+        frame.receivers.iter().for_each(|receiver| every.include(frame.view, receiver));
         let nearest = if bounds.is_empty() { 0.0 } else { Placed::from(bounds).distance_to(frame.view.eye()) };
         let shadows = Shadows { frame, direction: sun.direction, distance }.reach(&bounds);
         let (mut deepest, mut farthest) = (all.deepest, all.farthest);
@@ -62,7 +64,7 @@ impl Scope {
             let ahead = (SLACK * shadows.deepest).max(LOOKING_AWAY * shadows.farthest);
             (deepest, farthest) = (deepest.min(ahead), farthest.min(SLACK * shadows.farthest));
         }
-        Self { distance, deepest_receiver: all.deepest, deepest, farthest, nearest }
+        Self { distance, deepest_receiver: every.deepest, deepest, farthest, nearest }
     }
 }
 
