@@ -13,7 +13,7 @@ use umbrage_lab::{
 use umbrage_render::Samples;
 use umbrage_scene::procedural::World;
 
-use crate::args::Switch;
+use crate::switch::Switch;
 
 /// The camera of a world that is taken if none is named: shadows near, in the middle and far in one picture.
 const CAMERA: &str = "middle";

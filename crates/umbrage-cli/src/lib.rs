@@ -16,6 +16,7 @@ pub mod probe;
 pub mod render;
 pub mod scene_args;
 pub mod shadow_args;
+pub mod switch;
 pub mod theory;
 pub mod truth;
 pub mod worlds;

@@ -9,7 +9,7 @@ use umbrage::config::{Kind, Preset, SETTINGS, Setting};
 
 use umbrage_lab::technique::{ShadowOptions, ShadowRequest};
 
-use crate::args::Switch;
+use crate::switch::Switch;
 
 /// The heading of these options in the help.
 const HEADING: &str = "Shadows";

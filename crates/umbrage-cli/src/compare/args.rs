@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::args::Switch;
+use crate::switch::Switch;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use umbrage_lab::{

@@ -17,7 +17,7 @@ use umbrage_lab::{
 use umbrage_scene::{HeightMapOptions, OpenOptions};
 
 use super::args::CompareArgs;
-use crate::{args::Switch, scene_args::light_choice};
+use crate::{scene_args::light_choice, switch::Switch};
 
 /// Pixels across and down where neither the options nor the preset say any.
 const DEFAULT_SIZE: [u32; 2] = [800, 600];

@@ -1,0 +1,11 @@
+//! `on` and `off`.
+
+/// A switch on the command line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Switch {
+    /// With
+    #[default]
+    On,
+    /// Without
+    Off,
+}
