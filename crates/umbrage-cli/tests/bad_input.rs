@@ -240,8 +240,12 @@ fn scenes_that_are_none() {
     infinite[60..64].copy_from_slice(&f32::INFINITY.to_le_bytes());
     let mut not_a_number = tiny_bin();
     not_a_number[60..64].copy_from_slice(&f32::NAN.to_le_bytes());
-    let escaping = r#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":4,"uri":"../secret.bin"}]}"#;
-    let missing = r#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":4,"uri":"gone.bin"}]}"#;
+    let escaping = r#"{"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":36}],
+        "buffers":[{"byteLength":36,"uri":"../secret.bin"}]}"#;
+    let missing = r#"{"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":36}],
+        "buffers":[{"byteLength":36,"uri":"gone.bin"}]}"#;
     for (name, bytes) in [
         ("cut.glb", whole[..whole.len() / 2].to_vec()),
         ("header.glb", whole[..10].to_vec()),
