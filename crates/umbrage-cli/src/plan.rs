@@ -11,7 +11,7 @@ use umbrage_lab::{
     report::{ShotReport, to_json},
     scene_request::SceneRequest,
     scene_setup::{SceneSetup, Shot},
-    technique::{ShadowArgs, ShadowJob, args::wgpu_filter, typed_name},
+    technique::{ShadowArgs, ShadowJob, typed_name},
 };
 
 use crate::{print::print, scene_args::SceneArgs};
@@ -124,10 +124,8 @@ pub fn run(args: &PlanArgs) -> Result<()> {
         output::check(&[path], &[], &request.inputs())?;
     }
     let setup = SceneSetup::open(&request)?;
-    let mut settings = shadows.settings.clone();
-    (settings.filter_radius, settings.filter_half_width_m) =
-        wgpu_filter(shadows.filter).reach(&shadows.softness(request.sun_angle));
-    let mut planner = Planner::new(settings)?;
+    let config = shadows.config(request.sun_angle);
+    let mut planner = Planner::new(config.planner_settings(false, request.size))?;
     let receivers: Vec<Aabb> = setup.pose.objects.iter().map(|object| object.bounds).collect();
     let casters: Vec<Aabb> =
         setup.pose.objects.iter().filter(|object| object.casts).map(|object| object.bounds).collect();

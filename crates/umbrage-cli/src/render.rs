@@ -73,12 +73,8 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     let mut session = Session::open(&request, &shadows, &setup)?;
     // Views of splits are planned one by one and must not disturb what the frames' own maps hold on to.
     let mut beside = args.split_views.as_ref().map(|_| Session::open(&request, &shadows, &setup)).transpose()?;
-    let outputs = Outputs {
-        picture: args.picture.is_some(),
-        mask: args.visibility.is_some(),
-        maps: args.maps.is_some(),
-        deferred: shadows.deferred,
-    };
+    let outputs =
+        Outputs { picture: args.picture.is_some(), mask: args.visibility.is_some(), maps: args.maps.is_some() };
     let mut staged = Staged::default();
     let bar = progress::steps(setup.shots.len() as u64, "frames");
     for shot in &setup.shots {

@@ -188,8 +188,8 @@ fn shadow_options_that_say_nonsense() {
         ("--bands radial --selection map", &["--bands radial", "--selection map"]),
         ("--bands radial --range-fit visible", &["--bands radial", "--range-fit visible"]),
         ("--bands round", &["--bands", "planar", "radial"]),
-        ("--storage cube --splits 7", &["--storage cube", "--map-size", "7 splits"]),
-        ("--storage cube --map-size 512,256", &["--storage cube", "--map-size", "512, 256"]),
+        ("--storage cube --splits 7", &["--storage cube", "--splits 7"]),
+        ("--storage cube --map-size 512,256", &["--storage cube", "--map-size 512,256"]),
         ("--generation fast", &["--generation", "multipass", "per-split", "layered", "instanced", "mixed", "auto"]),
         ("--storage disk", &["--storage", "array", "atlas", "separate", "cube", "reused", "auto"]),
     ] {

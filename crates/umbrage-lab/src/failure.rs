@@ -2,6 +2,8 @@
 
 use std::{io, path::Path};
 
+use umbrage::config::{Conflict, SETTINGS};
+
 /// [`std::result::Result`] with a [`Failure`].
 pub type Result<T, E = Failure> = std::result::Result<T, E>;
 
@@ -44,6 +46,13 @@ impl Failure {
 /// Names the option behind a field of the planner's, so that the message speaks the language of the command line.
 impl From<umbrage::Error> for Failure {
     fn from(error: umbrage::Error) -> Self {
+        match &error {
+            umbrage::Error::Conflict(conflict) => return Self::Input(conflict_in_options(conflict)),
+            umbrage::Error::InvalidSetting { field, .. } if SETTINGS.iter().any(|setting| setting.key == *field) => {
+                return Self::Input(format!("--{field}: {error}"));
+            }
+            _ => {}
+        }
         let option = match &error {
             umbrage::Error::InvalidSetting { field, .. } => match *field {
                 "map_sizes" => "--map-size, --splits",
@@ -87,7 +96,6 @@ impl From<umbrage_render::Error> for Failure {
             }
             E::Plan(error) => error.into(),
             E::ImageSize { .. } => Self::input(format!("--size: {error}")),
-            E::MapSize { .. } => Self::input(format!("--map-size: {error}")),
             E::Shadows(error) => Self::input(in_options(&error)),
             E::Probe { .. } => Self::input(format!("--points: {error}")),
             _ => Self::input(error.to_string()),
@@ -116,11 +124,14 @@ impl From<umbrage_truth::Error> for Failure {
 #[must_use]
 pub fn in_options(error: &umbrage_wgpu::Error) -> String {
     match error {
-        umbrage_wgpu::Error::ConflictingOptions { first, second, reason } => {
-            let option = |name: &str| format!("--{}", name.replace("map_sizes", "map-size"));
-            format!("{} and {} exclude each other: {reason}", option(first), option(second))
-        }
+        umbrage_wgpu::Error::MapTooLarge { .. } => format!("--map-size: {error}"),
         umbrage_wgpu::Error::FilterTooWide { .. } => format!("--filter-width: {error}"),
         other => other.to_string(),
     }
+}
+
+/// A rule of the config that options break, in the language of the command line.
+fn conflict_in_options(conflict: &Conflict) -> String {
+    let Conflict { rule, first, second } = conflict;
+    format!("--{first} and --{second} exclude each other: {}; {}", rule.reason, rule.remedy)
 }

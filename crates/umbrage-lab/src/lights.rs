@@ -3,14 +3,13 @@
 use umbrage::{DirectionalLight, Light};
 use umbrage_render::{Lamp, MOST_LAMPS};
 use umbrage_scene::{CameraPath, LightKind, Pose, Scene};
-use umbrage_wgpu::LightSlot;
 
 use crate::{
     choose::{named, several},
     failure::{Failure, Result},
     report::LightReport,
     scene_request::{LightChoice, SceneRequest},
-    technique::args::{Filter, typed_name, wgpu_filter},
+    technique::args::{Coordinates, Filter, config_filter, typed_name},
 };
 
 /// A light under the name that people know it by.
@@ -47,7 +46,7 @@ impl NamedLight {
 
 /// What the maps have to be made for.
 #[must_use]
-pub fn slots(lights: &[NamedLight]) -> Vec<LightSlot> {
+pub fn kinds(lights: &[NamedLight]) -> Vec<umbrage::config::LightKind> {
     lights.iter().map(|light| light.lamp.light.into()).collect()
 }
 
@@ -56,10 +55,10 @@ pub fn slots(lights: &[NamedLight]) -> Vec<LightSlot> {
 /// # Errors
 /// [`Failure::Input`] naming the filter and the light.
 pub fn check_filter(lights: &[NamedLight], filter: Filter) -> Result<()> {
-    let wgpu = wgpu_filter(filter);
-    let serves_suns_only = wgpu == umbrage_wgpu::Filter::Pcss || wgpu.is_prefiltered();
+    let is_prefiltered = config_filter(filter).is_prefiltered();
+    let serves_suns_only = filter == Filter::Pcss || is_prefiltered;
     let local = lights.iter().find(|light| serves_suns_only && light.lamp.light.position().is_some());
-    match (local, wgpu.is_prefiltered() && lights.len() > 1) {
+    match (local, is_prefiltered && lights.len() > 1) {
         (Some(light), _) => Err(Failure::input(format!(
             "--filter {}: it goes by depth along parallel light, but --light {} is a spot or point light; \
              use hard, pcf2, pcf3, pcf5, pcf7 or disc",
@@ -79,8 +78,8 @@ pub fn check_filter(lights: &[NamedLight], filter: Filter) -> Result<()> {
 ///
 /// # Errors
 /// [`Failure::Input`] naming both options.
-pub fn check_coordinates(lights: &[NamedLight], coordinates: umbrage_render::Coordinates) -> Result<()> {
-    if coordinates != umbrage_render::Coordinates::Split {
+pub fn check_coordinates(lights: &[NamedLight], coordinates: Coordinates) -> Result<()> {
+    if coordinates != Coordinates::Split {
         return Ok(());
     }
     match (lights.iter().find(|light| light.lamp.light.position().is_some()), lights.len()) {

@@ -1,7 +1,6 @@
 //! A device with a scene loaded onto it: what `render` and `probe` draw with, and what their reports say of it.
 
-use std::sync::Arc;
-
+use umbrage::config::SUN_DEGREES;
 use umbrage::{ShadowPlan, View};
 use umbrage_render::{Frame, FrameStats, Gpu, GpuOptions, Renderer, Samples, SplitStats};
 
@@ -28,7 +27,8 @@ impl<'a> Session<'a> {
         lights::check_filter(&setup.lights, shadows.filter)?;
         lights::check_coordinates(&setup.lights, shadows.coordinates)?;
         let gpu = Gpu::new(&GpuOptions::default())?;
-        let lights = lights::slots(&setup.lights);
+        let lights = lights::kinds(&setup.lights);
+        shadows.config(request.sun_angle).validate_for(&lights)?;
         let settings = shadows.render_settings(request.size, Samples::default(), request.sun_angle, lights);
         let renderer = Renderer::new(&gpu, &setup.scene, &settings)?;
         Ok(Self { renderer, shadows, adapter: adapter_description(&gpu) })
@@ -51,8 +51,7 @@ impl<'a> Session<'a> {
             storage: stats.storage.to_string(),
             filter: typed_name(self.shadows.filter),
             filter_width: self.shadows.filter_width,
-            sun_angle: (self.shadows.filter == Filter::Pcss)
-                .then(|| f64::from(self.shadows.softness(request.sun_angle).sun_angle).to_degrees()),
+            sun_angle: (self.shadows.filter == Filter::Pcss).then(|| request.sun_angle.unwrap_or(SUN_DEGREES)),
             transition: typed_name(self.shadows.transition),
             bias: typed_name(self.shadows.bias),
             translucent: typed_name(self.shadows.translucent),
@@ -79,9 +78,9 @@ impl<'a> Session<'a> {
 
 /// All lights with their splits.
 fn light_reports(setup: &SceneSetup, stats: &FrameStats) -> Vec<LightReport> {
-    let others = stats.more_lights.iter().map(|light| (&light.plan, &light.splits));
-    let all = [(&stats.plan, &stats.splits)].into_iter().chain(others);
-    let report = |(light, (plan, splits)): (&NamedLight, (&Arc<ShadowPlan>, &Vec<SplitStats>))| LightReport {
+    let others = stats.more_lights.iter().map(|light| (&*light.plan, &light.splits));
+    let all = [(&*stats.plan, &stats.splits)].into_iter().chain(others);
+    let report = |(light, (plan, splits)): (&NamedLight, (&ShadowPlan, &Vec<SplitStats>))| LightReport {
         planes_m: plan.planes.clone(),
         splits: splits.iter().map(split_report).collect(),
         ..light.report()

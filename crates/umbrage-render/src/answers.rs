@@ -20,7 +20,7 @@ impl Renderer {
             let mut encoder = new_encoder(&gpu);
             self.draw_maps(&mut encoder, passes, &prepared, &mut Recorded::default());
             gpu.queue.submit([encoder.finish()]);
-            let maps = if sliced { self.maps.slice_bind_group(round) } else { self.maps.receiver_bind_group() };
+            let maps = if sliced { self.shadows.maps().slice_bind_group(round) } else { self.shadows.bind_group() };
             for (batch, points) in points.chunks(probe::BATCH).enumerate() {
                 let replies = self.ask(frame, &prepared, maps, points)?;
                 if round == 0 {
@@ -46,8 +46,10 @@ impl Renderer {
         points: &[ProbePoint],
     ) -> Result<Vec<ProbeAnswer>> {
         let gpu = &self.gpu;
-        let asked: Vec<(ProbePoint, Responder)> =
-            points.iter().map(|&point| (point, self.responder(frame, &prepared.plans[0], point.position))).collect();
+        let asked: Vec<(ProbePoint, Responder)> = points
+            .iter()
+            .map(|&point| (point, self.responder(frame, self.shadows.frame().plan(0), point.position)))
+            .collect();
         let mut encoder = new_encoder(gpu);
         let pending = self.probe.record(gpu, &mut encoder, maps, prepared.origin, &asked)?;
         gpu.queue.submit([encoder.finish()]);
@@ -58,7 +60,9 @@ impl Renderer {
             match *responder {
                 Responder::Nobody => *reply = ProbeAnswer { visibility: unshaded, split: -1 },
                 // No caster reaches this split: whatever its map looks like, it is lit.
-                Responder::Split(split) if prepared.plans[0].casters(split).is_empty() || !frame.shadows_on => {
+                Responder::Split(split)
+                    if self.shadows.frame().plan(0).casters(split).is_empty() || !frame.shadows_on =>
+                {
                     *reply = ProbeAnswer { visibility: unshaded, split: split as i32 };
                 }
                 Responder::Split(_) | Responder::View => {}

@@ -1,13 +1,12 @@
 //! What each pass over the maps draws: the casters of its splits, and of large meshes the clusters that reach them.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use glam::DVec3;
 use umbrage::{Aabb, ShadowPlan};
 use umbrage_scene::{Object, Pose};
 
-use crate::draw_list::{Parts, Run, once};
+use crate::draw_list::{Parts, Run};
 use crate::geometry::GpuPrimitive;
 use crate::renderer::{Frame, Renderer};
 use crate::shadow_mesh::{Cluster, descend};
@@ -24,42 +23,29 @@ const PART: u32 = 128;
 
 impl Renderer {
     /// What each pass over the maps draws; nothing where shadows are off.
-    pub(crate) fn caster_runs(
-        &mut self,
-        frame: &Frame<'_>,
-        origin: DVec3,
-        objects: &[usize],
-        plans: &[Arc<ShadowPlan>],
-    ) -> Vec<Vec<Run>> {
+    pub(crate) fn caster_runs(&mut self, frame: &Frame<'_>, origin: DVec3, objects: &[usize]) -> Vec<Vec<Run>> {
         if !frame.shadows_on {
             return Vec::new();
         }
         let pose = frame.pose;
-        let [plan] = plans else {
-            let mut runs = vec![Vec::new(); self.maps.map_count()];
-            for (light, plan) in plans.iter().enumerate() {
-                self.light_runs(frame, origin, objects, light, plan, &mut runs);
-            }
-            return runs;
-        };
-        if self.maps.map_count() > self.maps.splits() {
-            let mut runs = vec![Vec::new(); self.maps.map_count()];
-            self.light_runs(frame, origin, objects, 0, plan, &mut runs);
-            return runs;
-        }
-        let mut all = Vec::new();
-        for pass in self.maps.passes() {
-            let copies = pass.casters(plan).map(|(caster, codes)| (objects[caster as usize], codes));
-            if pass.splits().len() > 1 || pass.leads() {
-                all.push(self.instances.grouped(pose, origin, pass.leads(), copies));
+        // Of several lights or faces, objects are drawn whole.
+        let is_one_light = self.shadows.maps().map_count() == self.shadows.maps().splits();
+        let shown = self.shadows.frame();
+        let passes = self.shadows.maps().passes();
+        let mut all = vec![Vec::new(); passes.len()];
+        for map in shown.maps() {
+            let copies = map.casters().map(|(caster, codes)| (objects[caster as usize], codes));
+            let leads = passes[map.index()].leads();
+            if !is_one_light || map.splits().len() > 1 || leads {
+                all[map.index()] = self.instances.grouped(pose, origin, leads, copies);
                 continue;
             }
-            let split = pass.splits().start;
+            let split = map.splits().start;
             let (mut whole, mut in_part) = (Vec::new(), Vec::new());
             for (index, codes) in copies {
                 let object = &pose.objects[index];
                 let meshes = &self.scene.meshes;
-                let parts = || parts_in(plan, split, object, &meshes[object.mesh]);
+                let parts = || parts_in(shown.plan(0), split, object, &meshes[object.mesh]);
                 match has_parts(object, meshes).then(parts).flatten() {
                     Some(parts) => in_part.push((index, codes, parts)),
                     None => whole.push((index, codes)),
@@ -70,15 +56,15 @@ impl Renderer {
                 let own = self.instances.grouped(pose, origin, false, std::iter::once((index, codes)));
                 runs.extend(own.into_iter().map(|run| Run { parts: Some(parts.clone()), ..run }));
             }
-            all.push(runs);
+            all[map.index()] = runs;
         }
         all
     }
 
     /// What visible objects are made of, for the planner; `None` if no caster may be drawn in part.
     pub(crate) fn receiver_clusters(&self, pose: &Pose, casters: &[usize], visible: &[usize]) -> Option<Vec<Aabb>> {
-        let meshes = &self.scene.meshes;
-        if self.maps.map_count() > self.maps.splits() || !casters.iter().any(|&i| has_parts(&pose.objects[i], meshes)) {
+        let (meshes, maps) = (&self.scene.meshes, self.shadows.maps());
+        if maps.map_count() > maps.splits() || !casters.iter().any(|&i| has_parts(&pose.objects[i], meshes)) {
             return None;
         }
         let mut parts: Vec<Aabb> = Vec::new();
@@ -98,22 +84,6 @@ impl Renderer {
             }
         }
         Some(parts)
-    }
-
-    /// What one of several lights draws into its maps.
-    fn light_runs(
-        &mut self,
-        frame: &Frame<'_>,
-        origin: DVec3,
-        objects: &[usize],
-        light: usize,
-        plan: &ShadowPlan,
-        runs: &mut [Vec<Run>],
-    ) {
-        for (i, runs) in runs[self.maps.first_map(light)..][..plan.splits.len()].iter_mut().enumerate() {
-            let casters = plan.casters(i).iter().map(|&caster| once(objects[caster as usize]));
-            *runs = self.instances.grouped(frame.pose, origin, false, casters);
-        }
     }
 }
 

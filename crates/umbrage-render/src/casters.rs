@@ -2,11 +2,11 @@
 
 use std::borrow::Cow;
 
+use umbrage::config::Translucent;
 use umbrage_scene::AlphaMode;
 use umbrage_wgpu::ShadowMaps;
 
 use crate::draw_list::{Drawable, Drawn, Run, Show, vertex_layouts};
-use crate::look::Translucent;
 use crate::materials::Materials;
 use crate::{Gpu, shaders};
 
@@ -70,16 +70,15 @@ impl Casters {
         }
     }
 
-    /// Draws into map pass `index`, which [`ShadowMaps::begin_pass`] began. Translucent primitives throw a shadow only if they are dithered.
+    /// Draws into a map that was begun. Translucent primitives throw a shadow only if they are dithered.
     pub fn draw(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
-        maps: &ShadowMaps,
-        index: usize,
+        map: &wgpu::BindGroup,
         drawable: &Drawable<'_>,
         runs: &[Run],
     ) -> Drawn {
-        pass.set_bind_group(0, maps.caster_bind_group(index), &[]);
+        pass.set_bind_group(0, map, &[]);
         drawable.draw(pass, runs, Show::Shadows, |material, _| match material.alpha {
             AlphaMode::Opaque => Some(&self.opaque),
             AlphaMode::Mask { .. } => Some(&self.masked),

@@ -34,16 +34,6 @@ pub enum Error {
         /// The device's largest texture.
         limit: u32,
     },
-    /// A shadow map is larger than the device allows.
-    #[error("map size {size} of split {split} is more than this device allows; give at most {limit}")]
-    MapSize {
-        /// Counted from 0.
-        split: usize,
-        /// Texels along an edge.
-        size: u32,
-        /// The device's largest texture.
-        limit: u32,
-    },
     /// Maps of several samples a texel have no picture.
     #[error("maps have {samples} samples a texel and cannot be written; use one sample, or leave the maps away")]
     MapsOfSamples {
@@ -125,7 +115,18 @@ pub enum Error {
     /// The planner refused the camera, the settings or the bounds.
     #[error(transparent)]
     Plan(#[from] umbrage::Error),
-    /// The shadow maps refused their options or the plan.
+    /// The shadow maps refused the config or the plan.
     #[error(transparent)]
-    Shadows(#[from] umbrage_wgpu::Error),
+    Shadows(umbrage_wgpu::Error),
+}
+
+impl From<umbrage_wgpu::Error> for Error {
+    fn from(error: umbrage_wgpu::Error) -> Self {
+        match error {
+            umbrage_wgpu::Error::Config(error) => Self::Plan(error),
+            umbrage_wgpu::Error::OutOfMemory { during } => Self::OutOfMemory { during },
+            umbrage_wgpu::Error::Device { during, message } => Self::Device { during, message },
+            other => Self::Shadows(other),
+        }
+    }
 }

@@ -12,7 +12,7 @@ impl Renderer {
     /// As [`Renderer::render`], under the suns of `fade` in place of the frame's. While two suns are shown, pictures are mixed in linear
     /// display light and masks as they are; maps and numbers are those of the sun that is faded to, times those of both together.
     ///
-    /// Each sun has a planner of its own, so that what stabilisation holds goes on through a fade.
+    /// Maps of each sun are held apart, so that what stabilisation holds goes on through a fade.
     ///
     /// # Errors
     /// Those of [`Renderer::render`].
@@ -58,23 +58,17 @@ impl Renderer {
         Ok(answers)
     }
 
-    /// Runs `body` with the planner of the sun that is faded to.
+    /// Runs `body` with what is held for the sun that is faded to.
     fn as_faded_to<T>(&mut self, body: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
-        let next = match self.planners.next.take() {
-            Some(planners) => planners,
-            None => self.planners.afresh()?.now,
-        };
-        let left = std::mem::replace(&mut self.planners.now, next);
+        self.view_slot += 1;
         let result = body(self);
-        self.planners.next = Some(std::mem::replace(&mut self.planners.now, left));
+        self.view_slot -= 1;
         result
     }
 
     /// The sun that was faded to is the only one now.
     fn end_fade(&mut self) {
-        if let Some(planners) = self.planners.next.take() {
-            self.planners.now = planners;
-        }
+        self.shadows.move_view(self.view_slot + 1, self.view_slot);
     }
 }
 

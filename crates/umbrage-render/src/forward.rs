@@ -3,15 +3,16 @@
 use std::borrow::Cow;
 
 use glam::{DVec3, Vec3};
+use umbrage::config::{Coordinates, Layout};
 use umbrage::{Light, Projection, View};
 use umbrage_scene::AlphaMode;
-use umbrage_wgpu::{ShadowMaps, Slice, Storage};
+use umbrage_wgpu::{ShadowMaps, Slice};
 
 use crate::contact::Contact;
 use crate::draw_list::{Drawable, Drawn, Run, Show, vertex_layouts};
 use crate::lamps::{Lamp, LampUniform, MOST_LAMPS};
 use crate::materials::{GpuMaterial, Materials};
-use crate::{Coordinates, Gpu, Result, shaders};
+use crate::{Gpu, Result, shaders};
 
 /// What the picture is drawn in before it is resolved; the samples of a pixel share one shading.
 pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -163,11 +164,11 @@ impl Forward {
         maps: &ShadowMaps,
         materials: &Materials,
         samples: Samples,
-        coordinates: Coordinates,
         contact: Option<&Contact>,
-    ) -> Result<Self> {
+    ) -> Self {
         let device = &gpu.device;
-        let library = coordinates.receiver_wgsl(maps, 2)?;
+        let coordinates: Coordinates = maps.config().coordinates;
+        let library = maps.receiver_wgsl(2);
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("Forward::shader"),
             source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::forward(&library, coordinates, contact.is_some()))),
@@ -185,7 +186,7 @@ impl Forward {
                 count: None,
             }],
         });
-        let sliced = maps.options().storage == Storage::Reused;
+        let sliced = maps.layout() == Layout::Reused;
         let count = if sliced { 1 + maps.splits() } else { 1 };
         let stride = (size_of::<FrameUniform>() as u64)
             .next_multiple_of(u64::from(device.limits().min_uniform_buffer_offset_alignment));
@@ -228,7 +229,7 @@ impl Forward {
             bind_group_layouts: &[Some(&frame_layout)],
             immediate_size: 0,
         });
-        let unclipped_depth = sliced && maps.depth_clamp();
+        let unclipped_depth = sliced && device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL);
         let builder = Builder { device, module: &module, layout: &surface_layout, samples, sliced, unclipped_depth };
         let picture = builder.pipelines([
             builder.surface("Forward::picture_opaque", "fs_picture_opaque", PICTURE_FORMAT),
@@ -260,7 +261,7 @@ impl Forward {
             let masked = Surface { fragment_entry: Some("fs_depth_masked"), ..bare };
             Builder { layout: &depth_layout, ..builder }.pipelines([bare, masked, bare])
         });
-        Ok(Self { uniform, stride, bind_groups, picture, mask, sky, depth })
+        Self { uniform, stride, bind_groups, picture, mask, sky, depth }
     }
 
     /// Writes the uniform of the whole frame, `index` 0, or of a slice, 1 and so on.

@@ -1,7 +1,7 @@
 //! A split's depth map as a picture.
 
 use image::{GrayImage, Luma};
-use umbrage_wgpu::DepthFormat;
+use umbrage::config::DepthFormat;
 
 /// Stretches the stored depths to 0 (nearest to the light) to 230 (farthest); where nothing is stored it is white.
 /// The map is a square of `size` texels at `corner` of a layer with rows of `row` texels.

@@ -1,10 +1,7 @@
 //! The passes of a frame, in the order in which they are recorded: all maps and then the view, or, where one map is used for one split after
 //! the other, map and view slice by slice.
 
-use std::sync::Arc;
-
 use glam::DVec3;
-use umbrage::ShadowPlan;
 use umbrage_wgpu::Slice;
 use web_time::Instant;
 
@@ -18,8 +15,6 @@ use crate::{Gpu, Result};
 /// A frame that is planned and uploaded, ready to be recorded.
 pub(crate) struct Prepared {
     pub origin: DVec3,
-    /// One for each light.
-    pub plans: Vec<Arc<ShadowPlan>>,
     pub plan_ms: f64,
     /// What each pass over the maps draws; none where shadows are off.
     pub caster_runs: Vec<Vec<Run>>,
@@ -73,15 +68,14 @@ impl Renderer {
         if prepared.slices.is_empty() {
             self.draw_maps(&mut encoder, 0..prepared.caster_runs.len(), prepared, &mut recorded);
             if outputs.maps && !prepared.caster_runs.is_empty() {
-                for split in 0..prepared.plans[0].splits.len() {
+                for split in 0..self.shadows.frame().plan(0).splits.len() {
                     recorded.maps.push(self.capture(&mut encoder, split)?);
                 }
             }
             encoder = clock.after_maps(encoder)?;
             self.record_depth(&mut encoder, prepared, &mut recorded);
             let contact = self.contact.as_ref().map(|contact| &contact.bind_group);
-            let bindings =
-                Bindings { frame: self.forward.bind_group(0), maps: self.maps.receiver_bind_group(), contact };
+            let bindings = Bindings { frame: self.forward.bind_group(0), maps: self.shadows.bind_group(), contact };
             if let Some(target) = mask {
                 let slot = self.timer.next(1);
                 let mut pass = target.begin(&mut encoder, Turn::ONLY, self.timer.timestamp_writes(slot));
@@ -127,12 +121,12 @@ impl Renderer {
         prepared: &Prepared,
         recorded: &mut Recorded,
     ) {
-        let all = prepared.every_map || self.maps.map_count() == self.maps.splits();
+        let all = prepared.every_map || self.shadows.maps().map_count() == self.shadows.maps().splits();
         for pass in passes.filter(|&pass| all || !prepared.caster_runs[pass].is_empty()) {
             self.record_map(encoder, pass, prepared, recorded);
         }
         if !prepared.caster_runs.is_empty() {
-            self.maps.filter(encoder);
+            self.shadows.prefilter(encoder);
         }
     }
 
@@ -144,21 +138,22 @@ impl Renderer {
         prepared: &Prepared,
         recorded: &mut Recorded,
     ) {
-        let slot = self.timer.next(self.maps.passes()[index].views());
-        let mut pass = self.maps.begin_pass(encoder, index, self.timer.timestamp_writes(slot));
+        let slot = self.timer.next(self.shadows.maps().passes()[index].views());
+        let map = self.shadows.frame().map(index);
+        let mut pass = map.begin_timed(encoder, self.timer.timestamp_writes(slot));
         let runs = &prepared.caster_runs[index];
         let drawn = self
             .timer
-            .counted(&mut pass, slot, |pass| self.casters.draw(pass, &self.maps, index, &self.drawable(), runs));
+            .counted(&mut pass, slot, |pass| self.casters.draw(pass, map.bind_group(), &self.drawable(), runs));
         recorded.map_passes.push((index, drawn, slot.pass as usize));
     }
 
     /// Records a map's way back.
     fn capture(&self, encoder: &mut wgpu::CommandEncoder, split: usize) -> Result<MapCapture> {
-        let texture = self.maps.map_texture(split);
+        let texture = self.shadows.maps().map_texture(split);
         // Depth is copied in whole layers only; a smaller map is cut out of its layer afterwards.
         let texels = [texture.width(), texture.height()];
-        let (layer, corner) = self.maps.map_place(split);
+        let (layer, corner) = self.shadows.maps().map_place(split);
         let capture = Capture::record(&self.gpu, encoder, texture, layer, texels)?;
         Ok(MapCapture { split, row: texels[0], corner, capture })
     }
@@ -238,7 +233,7 @@ impl Renderer {
     fn bindings(&self, slice: &Slice) -> Bindings<'_> {
         Bindings {
             frame: self.forward.bind_group(1 + slice.split),
-            maps: self.maps.slice_bind_group(slice.split),
+            maps: self.shadows.maps().slice_bind_group(slice.split),
             contact: self.contact.as_ref().map(|contact| &contact.bind_group),
         }
     }

@@ -1,15 +1,11 @@
 //! The demonstration renderer: a scene, a view and lights in; a picture, a mask, maps and numbers out.
 
-use std::sync::Arc;
-
 use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
-use umbrage::{Aabb, Bands, PlanInputs, Selection, ShadowPlan, ShadowSettings, View, Warp};
+use umbrage::config::{Coordinates, Layout, LightKind, ShadowConfig, Translucent};
+use umbrage::{Aabb, Light, ShadowPlan, View};
 use umbrage_scene::{AlphaMode, Pose, Scene};
-use umbrage_wgpu::{
-    DepthFormat, Derivatives, Filter, Fixed, FrameOptions, Generation, LightSlot, MaskFrame, MaskNormals, ShadowMaps,
-    ShadowMapsOptions, ShadowMask, Slice, Softness, Storage, Transition,
-};
+use umbrage_wgpu::{ContactOptions, Inputs, LightMaps, MaskFrame, MaskNormals, ShadowMask, Shadows};
 use web_time::Instant;
 
 use crate::capture::Capture;
@@ -19,14 +15,12 @@ use crate::draw_list::{Drawable, Instances, once};
 use crate::forward::{Forward, FrameUniform, MASK_FORMAT, MaskTarget, PictureTarget, Samples};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry, check_object};
 use crate::lamps::Lamp;
-use crate::look::{Look, Translucent};
 use crate::materials::{GpuMaterial, Materials};
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint};
 use crate::record::{Clock, MapCapture, Prepared, Recorded, SliceRuns, new_encoder};
 use crate::stats::{FrameStats, LightStats, SplitStats};
 use crate::timing::{PassCounts, Timer};
-use crate::views::Planners;
-use crate::{Coordinates, Error, Gpu, MomentSettings, Result, cull, maps, moments};
+use crate::{Error, Gpu, Result, cull, maps};
 
 /// The frame's origin moves in steps of this many metres, so that positions near the eye are exact to a tenth of a
 /// millimetre in `f32` and yet stay the same from frame to frame, which is what keeps stabilised maps still.
@@ -37,31 +31,23 @@ const ORIGIN_STEP: f64 = 1024.0;
 pub struct RenderSettings {
     /// Pixels across and down.
     pub size: [u32; 2],
-    /// How shadows are planned. `filter_radius`, `filter_half_width_m`, `depth_clamp` and `image_size` are taken from the filter, the device with its
-    /// depth format, and `size` instead.
-    pub shadows: ShadowSettings,
-    /// How maps are looked up.
-    pub filter: Filter,
-    /// What maps store.
-    pub depth_format: DepthFormat,
     /// Samples per pixel of the picture; masks have one always.
     pub samples: Samples,
-    /// How soft edges are.
-    pub softness: Softness,
-    /// How splits meet.
-    pub transition: Transition,
-    /// How shadows look.
-    pub look: Look,
-    /// Where pictures and masks take map coordinates from.
-    pub coordinates: Coordinates,
-    /// Where maps are kept.
-    pub storage: Storage,
-    /// How maps are drawn.
-    pub generation: Generation,
-    /// What filters of moments leave to choose.
-    pub moments: MomentSettings,
-    /// What the lights of a frame may be, the first one first.
-    pub lights: Vec<LightSlot>,
+    /// Shadows. With [`Coordinates::Deferred`] masks are made from the picture's depth ([`umbrage_wgpu::ShadowMask`]).
+    pub config: ShadowConfig,
+    /// The lights of a frame, the first one first: one sun by default.
+    pub lights: Vec<LightMaps>,
+}
+
+impl Default for RenderSettings {
+    fn default() -> Self {
+        Self {
+            size: [800, 600],
+            samples: Samples::default(),
+            config: ShadowConfig::default(),
+            lights: vec![LightKind::Directional.into()],
+        }
+    }
 }
 
 /// What varies from frame to frame.
@@ -90,9 +76,6 @@ pub struct Outputs {
     pub mask: bool,
     /// Each split's depth map.
     pub maps: bool,
-    /// Whether the mask is made from the picture's depth, its positions and normals rebuilt from it ([`umbrage_wgpu::ShadowMask`]), and
-    /// not where surfaces are drawn.
-    pub deferred: bool,
 }
 
 /// What came out of a frame.
@@ -112,17 +95,10 @@ pub struct Rendered {
 pub struct Renderer {
     pub(crate) gpu: Gpu,
     pub(crate) size: [u32; 2],
-    depth_format: DepthFormat,
     samples: Samples,
-    softness: Softness,
-    transition: Transition,
-    derivatives: Derivatives,
-    look: Look,
-    coordinates: Coordinates,
-    pub(crate) planners: Planners,
-    /// The same for each further view.
-    pub(crate) more_views: Vec<Planners>,
-    pub(crate) maps: ShadowMaps,
+    pub(crate) shadows: Shadows,
+    /// Where the shadows of the view that is drawn are held: see [`Renderer::render_views`].
+    pub(crate) view_slot: u32,
     pub(crate) scene: Geometry,
     scene_meshes: SceneMeshes,
     skinned: SkinnedGeometry,
@@ -145,7 +121,7 @@ impl Renderer {
     /// Uploads a scene and makes everything that a frame needs.
     ///
     /// # Errors
-    /// [`Error::ImageSize`], [`Error::MapSize`], [`Error::TextureSize`], [`Error::BufferSize`] or [`Error::OutOfMemory`] if the
+    /// [`Error::ImageSize`], [`Error::TextureSize`], [`Error::BufferSize`] or [`Error::OutOfMemory`] if the
     /// device cannot hold it, [`Error::Scene`] if the scene contradicts itself, [`Error::Plan`] and [`Error::Shadows`] if the
     /// settings are wrong.
     pub fn new(gpu: &Gpu, scene: &Scene, settings: &RenderSettings) -> Result<Self> {
@@ -154,144 +130,52 @@ impl Renderer {
         if width == 0 || height == 0 || width > limit || height > limit {
             return Err(Error::ImageSize { width, height, limit });
         }
-        // The planner's own checks come first: they name a setting where the maps could only name a texture.
-        let mut shadows = settings.shadows.clone();
-        settings.softness.validate()?;
-        (shadows.filter_radius, shadows.filter_half_width_m) = settings.filter.reach(&settings.softness);
-        shadows.image_size = settings.size;
-        shadows.validate()?;
-        settings.coordinates.check_settings(&shadows)?;
-        settings.look.contact.iter().try_for_each(umbrage_wgpu::ContactOptions::validate)?;
-        if let Some((split, &size)) = shadows.map_sizes.iter().enumerate().find(|&(_, &size)| size > limit) {
-            return Err(Error::MapSize { split, size, limit });
-        }
+        let config = &settings.config;
         gpu.guarded("uploading the scene", || {
-            let maps = ShadowMaps::new(
-                &gpu.device,
-                &ShadowMapsOptions {
-                    map_sizes: shadows.map_sizes.clone(),
-                    depth_format: settings.depth_format,
-                    filter: settings.filter,
-                    samples: settings.moments.samples,
-                    fallbacks: settings.moments.fallbacks,
-                    storage: settings.storage,
-                    generation: settings.generation,
-                    lights: settings.lights.clone(),
-                    // All of it is settled here, so that no shader is made for anything else.
-                    fixed: Fixed {
-                        selection: Some(shadows.selection),
-                        bands: Some(shadows.bands),
-                        warped: shadows.warps.iter().all(|warp| *warp == Warp::None).then_some(false),
-                        transition: Some(settings.transition),
-                        bias: Some(settings.look.bias),
-                    },
-                },
-            )?;
-            let blends = shadows.blend > 0.0 && settings.transition != Transition::Hard;
-            if maps.options().storage == Storage::Reused && blends && maps.splits() > 1 {
-                return Err(umbrage_wgpu::Error::ConflictingOptions {
-                    first: "storage reused".to_owned(),
-                    second: format!("blend {}", shadows.blend),
-                    reason: "there is one map at a time and none to blend with; use blend 0, the hard transition or storage array",
-                }
-                .into());
-            }
-            if maps.options().storage == Storage::Reused && shadows.selection == Selection::Map {
-                return Err(umbrage_wgpu::Error::ConflictingOptions {
-                    first: "storage reused".to_owned(),
-                    second: "selection map".to_owned(),
-                    reason: "there is one map at a time and none to choose from; use selection depth or storage array",
-                }
-                .into());
-            }
-            if maps.options().storage == Storage::Reused && shadows.bands == Bands::Radial {
-                return Err(umbrage_wgpu::Error::ConflictingOptions {
-                    first: "storage reused".to_owned(),
-                    second: "bands radial".to_owned(),
-                    reason: "the picture is drawn in slices of view depth; use planar bands or storage array",
-                }
-                .into());
-            }
-            // Floats hold the depth of a whole world; 16 bits want the shorter range that casters flattened onto the near plane
-            // allow, and pay for it with maps that step along the light.
-            shadows.depth_clamp = maps.depth_clamp() && settings.depth_format == DepthFormat::D16Unorm;
+            let shadows = Shadows::with_lights(&gpu.device, config, &settings.lights)?;
+            let maps = shadows.maps();
+            let mut notes = shadows.notes().to_vec();
             let materials = Materials::new(gpu, scene)?;
             let timer = Timer::new(gpu, maps.map_count());
-            let mut notes = maps.notes().to_vec();
-            if settings.depth_format == DepthFormat::D16Unorm && !maps.depth_clamp() {
-                notes.push(
-                    "no depth clip control: near planes of 16-bit maps stand before their first caster".to_owned(),
-                );
-            }
-            if settings.filter == Filter::Pcss && !gpu.depth_loads() && !settings.depth_format.is_colour() {
-                notes.push("no loads from depth textures on GL: pcss is a disc of fixed width".to_owned());
-            }
-            let contact = settings.look.contact.filter(|_| gpu.depth_loads());
-            if settings.look.contact.is_some() && contact.is_none() {
+            let contact = config.look.contact && gpu.depth_loads();
+            if config.look.contact && !contact {
                 notes.push("no loads from depth textures on GL: no contact shadows".to_owned());
             }
-            let contact = contact.map(|options| Contact::new(gpu, settings.size, options));
-            notes.extend(maps.moment_storage().and_then(|storage| moments::note(storage, settings.filter)));
+            let contact = contact.then(|| Contact::new(gpu, settings.size, ContactOptions::default()));
             if !timer.has_timestamps() {
                 notes.push("no timestamp queries: times of the GPU are measured by the CPU's clock".to_owned());
             }
             Ok(Self {
                 size: settings.size,
-                depth_format: settings.depth_format,
-                planners: Planners::new(&shadows, settings.lights.len())?,
-                more_views: Vec::new(),
+                view_slot: 0,
                 scene: Geometry::of_scene(gpu, scene)?,
                 scene_meshes: SceneMeshes::of_scene(scene),
                 skinned: SkinnedGeometry::empty(gpu)?,
                 instances: Instances::new(gpu),
-                casters: Casters::new(gpu, &maps, &materials, settings.look.translucent),
-                forward: Forward::new(
-                    gpu,
-                    &maps,
-                    &materials,
-                    settings.samples,
-                    settings.coordinates,
-                    contact.as_ref(),
-                )?,
+                casters: Casters::new(gpu, maps, &materials, config.look.translucent),
+                forward: Forward::new(gpu, maps, &materials, settings.samples, contact.as_ref()),
                 contact,
-                dithered_nodes: match settings.look.translucent {
+                dithered_nodes: match config.look.translucent {
                     Translucent::None => Vec::new(),
                     Translucent::Dithered => scene.nodes.iter().map(|node| node.cast_shadow).collect(),
                 },
                 samples: settings.samples,
-                softness: settings.softness,
-                transition: settings.transition,
-                derivatives: settings.moments.derivatives,
-                look: settings.look,
-                coordinates: settings.coordinates,
-                probe: Probe::new(gpu, &maps),
+                probe: Probe::new(gpu, maps),
                 timer,
                 picture: None,
                 mask: None,
                 shadow_mask: None,
                 notes,
                 materials,
-                maps,
+                shadows,
                 gpu: gpu.clone(),
             })
         })
     }
 
-    /// The settings that shadows are planned with, including what the filter, the device and the size have decided.
-    #[must_use]
-    pub fn shadow_settings(&self) -> &ShadowSettings {
-        self.planners.now[0].planner.settings()
-    }
-
-    /// Forgets what earlier frames have left behind in the planner (sizes that stabilisation holds), as if nothing had been
-    /// drawn yet: for views that do not follow each other.
-    ///
-    /// # Errors
-    /// Never in practice: the settings were accepted before.
-    pub fn restart(&mut self) -> Result<()> {
-        self.more_views.clear();
-        self.planners = self.planners.afresh()?;
-        Ok(())
+    /// Forgets what stabilised maps hold on to, as if nothing had been drawn yet: for views that do not follow each other.
+    pub fn restart(&mut self) {
+        self.shadows.restart();
     }
 
     /// Bytes of vertices, indices and textures on the GPU.
@@ -300,10 +184,10 @@ impl Renderer {
         self.scene.bytes + self.skinned.geometry.bytes + self.materials.bytes
     }
 
-    /// How maps are kept and drawn, with what the options left open decided.
+    /// How maps are kept and drawn: the config's layout, or what the device can do instead.
     #[must_use]
-    pub fn map_options(&self) -> &ShadowMapsOptions {
-        self.maps.options()
+    pub fn layout(&self) -> Layout {
+        self.shadows.maps().layout()
     }
 
     /// Draws a frame and waits for what was asked for.
@@ -314,7 +198,7 @@ impl Renderer {
     /// [`Error::OutOfMemory`] or [`Error::Device`] if the device fails.
     pub fn render(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
-        self.held_apart(frame, |own| gpu.guarded("drawing a frame", || own.render_unguarded(frame, outputs)))
+        gpu.guarded("drawing a frame", || self.render_unguarded(frame, outputs))
     }
 
     /// Visibility of the first light at given points. A point that the view shows within the shadowed range gets what a pixel there would
@@ -325,7 +209,7 @@ impl Renderer {
     pub fn probe(&mut self, frame: &Frame<'_>, points: &[ProbePoint]) -> Result<Vec<ProbeAnswer>> {
         probe::check(points)?;
         let gpu = self.gpu.clone();
-        self.held_apart(frame, |own| gpu.guarded("answering probes", || own.probe_unguarded(frame, points)))
+        gpu.guarded("answering probes", || self.probe_unguarded(frame, points))
     }
 
     fn render_unguarded(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
@@ -336,18 +220,20 @@ impl Renderer {
         if outputs.mask && self.mask.is_none() {
             self.mask = Some(MaskTarget::new(&gpu, self.size));
         }
-        if outputs.mask && outputs.deferred && self.shadow_mask.is_none() {
-            self.shadow_mask = Some(ShadowMask::new(&gpu.device, &self.maps, MASK_FORMAT, MaskNormals::FromDepth)?);
+        if outputs.mask && self.is_deferred() && self.shadow_mask.is_none() {
+            self.shadow_mask =
+                Some(ShadowMask::new(&gpu.device, self.shadows.maps(), MASK_FORMAT, MaskNormals::FromDepth)?);
         }
         let prepared = Prepared { every_map: outputs.maps, ..self.prepare(frame, true)? };
         let mut clock = Clock::start(&gpu, &self.timer);
-        if outputs.maps && self.maps.options().samples > 1 {
-            return Err(Error::MapsOfSamples { samples: self.maps.options().samples });
+        let samples = self.shadows.maps().config().filter.samples();
+        if outputs.maps && samples > 1 {
+            return Err(Error::MapsOfSamples { samples });
         }
         let (recorded, mut encoder) = self.record(new_encoder(&gpu), &mut clock, &prepared, outputs)?;
         let mask = match &self.mask {
             Some(target) if outputs.mask => {
-                if let Some(shadow_mask) = self.shadow_mask.as_ref().filter(|_| outputs.deferred) {
+                if let Some(shadow_mask) = self.shadow_mask.as_ref() {
                     self.record_deferred_mask(&mut encoder, target, shadow_mask, frame, prepared.origin)?;
                 }
                 Some(Capture::record(&gpu, &mut encoder, &target.texture, 0, self.size)?)
@@ -372,7 +258,7 @@ impl Renderer {
                 sum
             })
         };
-        let is_prefiltered = self.maps.options().filter.is_prefiltered();
+        let is_prefiltered = self.shadows.maps().config().filter.is_prefiltered();
         let (shadow_ms, frame_ms) = match (&measured.spans_ms, wall) {
             (Some(spans), _) if !spans.is_empty() => {
                 let maps = || spans.iter().enumerate().filter(|&(i, _)| over_maps(i)).map(|(_, span)| span);
@@ -389,19 +275,18 @@ impl Renderer {
             (_, Some(wall)) => wall,
             _ => (0.0, 0.0),
         };
+        let shown = self.shadows.frame();
         let stats = FrameStats {
             plan_ms: prepared.plan_ms,
             shadow_ms,
             frame_ms,
-            splits: self.split_stats(0, frame, &prepared.plans[0], &recorded),
+            splits: self.split_stats(0, frame, &recorded),
             shadow_draws: recorded.map_passes.iter().map(|(_, drawn, _)| drawn.draws).sum(),
             shadow_triangles: recorded.map_passes.iter().map(|(_, drawn, _)| drawn.triangles).sum(),
-            more_lights: prepared.plans[1..]
-                .iter()
-                .enumerate()
-                .map(|(i, plan)| LightStats {
-                    splits: self.split_stats(i + 1, frame, plan, &recorded),
-                    plan: Arc::clone(plan),
+            more_lights: (1..self.shadows.lights().len())
+                .map(|light| LightStats {
+                    splits: self.split_stats(light, frame, &recorded),
+                    plan: shown.shared_plan(light),
                 })
                 .collect(),
             objects_in_view: prepared.objects_in_view,
@@ -409,11 +294,11 @@ impl Renderer {
             view_triangles: recorded.view.triangles,
             shadow_counts: counts(true),
             view_counts: counts(false),
-            bytes: self.maps.bytes(),
-            generation: self.maps.options().generation.name(),
-            storage: self.maps.options().storage.name(),
+            bytes: self.shadows.maps().bytes(),
+            generation: self.shadows.maps().layout().generation().word(),
+            storage: self.shadows.maps().layout().storage().word(),
             notes: self.notes.clone(),
-            plan: Arc::clone(&prepared.plans[0]),
+            plan: shown.shared_plan(0),
         };
         let [width, height] = self.size;
         const SIZED: &str = "a capture has as many bytes as its picture";
@@ -453,39 +338,32 @@ impl Renderer {
         let asks_surfaces = surfaces_alone && frame.shadows_on && frame.more_lights.is_empty();
         let clusters = if asks_surfaces { self.receiver_clusters(pose, &caster_objects, &visible) } else { None };
 
-        let begun = Instant::now();
         let lamps: Vec<Lamp> = [frame.light].into_iter().chain(frame.more_lights.iter().copied()).collect();
-        let planners = &mut self.planners.now;
-        if lamps.len() != planners.len() {
-            return Err(Error::LampSlots { frame: lamps.len(), renderer: planners.len() });
+        let made_for = self.shadows.lights().len();
+        if lamps.len() != made_for {
+            return Err(Error::LampSlots { frame: lamps.len(), renderer: made_for });
         }
-        let (receiver_clusters, image_size) = (clusters.as_deref(), self.size);
-        let plans = planners.iter_mut().zip(&lamps).map(|(planner, lamp)| {
-            let inputs = PlanInputs::new(view, lamp.light, &casters, &receivers);
-            planner.plan(&PlanInputs { receiver_clusters, image_size, ..inputs })
-        });
-        let plans = plans.collect::<Result<Vec<Arc<ShadowPlan>>>>()?;
-        plans.iter().try_for_each(|plan| self.coordinates.check_plan(plan))?;
-        let plan_ms = begun.elapsed().as_secs_f64() * 1e3;
-        let options = FrameOptions {
+        let lights: Vec<Light> = lamps.iter().map(|lamp| lamp.light).collect();
+        let begun = Instant::now();
+        let inputs = Inputs {
+            casters: &casters,
+            receivers: &receivers,
+            receiver_clusters: clusters.as_deref(),
             origin,
+            image_size: self.size,
+            view_slot: self.view_slot,
             enabled: frame.shadows_on,
             tint: frame.tint,
-            strength: self.look.strength,
-            shadow_colour: self.look.colour,
-            bias: self.look.bias,
-            softness: self.softness,
-            transition: self.transition,
-            derivatives: self.derivatives,
+            ..Inputs::new(view, &lights)
         };
-        self.maps.prepare_lights(&self.gpu.queue, &plans.iter().map(|plan| &**plan).collect::<Vec<_>>(), &options)?;
+        self.shadows.prepare(&self.gpu.queue, &inputs)?;
+        let plan_ms = begun.elapsed().as_secs_f64() * 1e3;
         self.skinned.update(&self.gpu, &self.scene_meshes, pose)?;
         self.forward.prepare(&self.gpu, 0, &FrameUniform::new(view, &lamps, origin, None)?);
         if let Some(contact) = &self.contact {
             contact.prepare(&self.gpu, view, origin)?;
         }
-        let sliced = frame.shadows_on && self.maps.options().storage == Storage::Reused;
-        let slices = if sliced { Slice::all(&plans[0], view) } else { Vec::new() };
+        let slices = self.shadows.frame().slices(view);
         for slice in &slices {
             let uniform = FrameUniform::new(view, &lamps, origin, Some(slice))?;
             self.forward.prepare(&self.gpu, 1 + slice.split, &uniform);
@@ -493,15 +371,16 @@ impl Renderer {
         self.timer.restart();
 
         self.instances.clear();
-        let caster_runs = self.caster_runs(frame, origin, &caster_objects, &plans);
+        let caster_runs = self.caster_runs(frame, origin, &caster_objects);
         let solid = self.instances.grouped(pose, origin, false, visible.iter().copied().map(once));
         let far_to_near = self.with_translucent_parts(pose, visible.iter().rev().copied());
         let translucent = self.instances.ordered(pose, origin, far_to_near.iter().copied());
-        let last = plans[0].splits.len() - 1;
+        let plan = self.shadows.frame().plan(0);
+        let last = plan.splits.len() - 1;
         let slices = slices
             .into_iter()
             .map(|slice| {
-                let split = &plans[0].splits[slice.split];
+                let split = &plan.splits[slice.split];
                 // What is nearer than the first split or farther than the last one is drawn with them.
                 let near = if slice.split == 0 { f64::NEG_INFINITY } else { split.near };
                 let far = if slice.split == last { f64::INFINITY } else { split.far };
@@ -520,7 +399,6 @@ impl Renderer {
         self.instances.upload(&self.gpu)?;
         Ok(Prepared {
             origin,
-            plans,
             plan_ms,
             caster_runs,
             solid,
@@ -575,19 +453,24 @@ impl Renderer {
             })],
             ..Default::default()
         });
-        shadow_mask.draw(&mut pass, &self.maps, &group);
+        shadow_mask.draw(&mut pass, self.shadows.maps(), &group);
         Ok(())
     }
 
     /// The splits' maps as pictures, nearest first.
     fn map_pictures(&self, mut maps: Vec<MapCapture>) -> Result<Vec<GrayImage>> {
         maps.sort_by_key(|map| map.split);
-        let sizes = &self.maps.options().map_sizes;
+        let format = self.shadows.maps().config().depth_format;
         let picture = |map: MapCapture| {
-            let depths = maps::depths_of(&map.capture.read(&self.gpu)?, self.depth_format);
-            Ok(maps::picture_of(&depths, map.row, map.corner, sizes[map.split % sizes.len()]))
+            let depths = maps::depths_of(&map.capture.read(&self.gpu)?, format);
+            Ok(maps::picture_of(&depths, map.row, map.corner, self.shadows.maps().map_size(map.split)))
         };
         maps.into_iter().map(picture).collect()
+    }
+
+    /// Whether masks are made from the picture's depth.
+    fn is_deferred(&self) -> bool {
+        self.shadows.maps().config().coordinates == Coordinates::Deferred
     }
 
     /// Whether an object is drawn into maps.
@@ -595,21 +478,22 @@ impl Renderer {
         object.casts || self.dithered_nodes.get(object.node) == Some(&true)
     }
 
-    fn split_stats(&self, light: usize, frame: &Frame<'_>, plan: &ShadowPlan, recorded: &Recorded) -> Vec<SplitStats> {
-        let first = self.maps.first_map(light);
+    fn split_stats(&self, light: usize, frame: &Frame<'_>, recorded: &Recorded) -> Vec<SplitStats> {
+        let plan: &ShadowPlan = self.shadows.frame().plan(light);
+        let first = self.shadows.maps().first_map(light);
         let objects: Vec<&umbrage_scene::Object> =
             frame.pose.objects.iter().filter(|object| self.casts(object)).collect();
         let drawable = self.drawable();
-        let dithered = self.look.translucent == Translucent::Dithered;
+        let dithered = self.shadows.maps().config().look.translucent == Translucent::Dithered;
         let triangles = |caster: &u32| {
             let drawn = |material: &GpuMaterial| dithered || material.alpha != AlphaMode::Blend;
             drawable.triangles(objects[*caster as usize], drawn)
         };
         let stats = |(i, split): (usize, &umbrage::Split)| {
-            let draws_it = |pass: usize| self.maps.passes()[pass].splits().contains(&(first + i));
+            let draws_it = |pass: usize| self.shadows.maps().passes()[pass].splits().contains(&(first + i));
             let draws = recorded.map_passes.iter().filter(|&&(pass, ..)| draws_it(pass));
             // Of a map that has a pass of its own, what was drawn: maybe parts of casters.
-            let alone = draws.clone().find(|&&(pass, ..)| self.maps.passes()[pass].splits().len() == 1);
+            let alone = draws.clone().find(|&&(pass, ..)| self.shadows.maps().passes()[pass].splits().len() == 1);
             SplitStats {
                 near: split.near,
                 far: split.far,
@@ -622,7 +506,9 @@ impl Renderer {
                     None if frame.shadows_on => plan.casters(i).iter().map(triangles).sum(),
                     None => 0,
                 },
-                bytes: u64::from(split.size) * u64::from(split.size) * self.depth_format.texel_bytes(),
+                bytes: u64::from(split.size)
+                    * u64::from(split.size)
+                    * self.shadows.maps().config().depth_format.texel_bytes(),
             }
         };
         plan.splits.iter().enumerate().map(stats).collect()

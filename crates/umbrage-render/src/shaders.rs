@@ -1,6 +1,6 @@
 //! The WGSL of every pass: the library's text, what all passes share, and the pass's own.
 
-use crate::Coordinates;
+use umbrage::config::Coordinates;
 
 /// Bind group 0 is what [`umbrage_wgpu::ShadowMaps::caster_wgsl`] declares, 1 the material.
 pub(crate) fn casters(library: &str) -> String {
@@ -24,7 +24,7 @@ pub(crate) fn dithered_casters(library: &str) -> String {
 pub(crate) const DITHERED_MEMBERS: &str =
     "@location(0) uv: vec2f, @location(1) alpha: f32, @location(2) @interpolate(flat) offset: vec2f,";
 
-/// Bind group 0 is the frame, 1 the material, 2 what [`Coordinates::receiver_wgsl`] declares, 3 with contact shadows what
+/// Bind group 0 is the frame, 1 the material, 2 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares, 3 with contact shadows what
 /// [`umbrage_wgpu::contact_wgsl`] declares.
 pub(crate) fn forward(library: &str, coordinates: Coordinates, contact: bool) -> String {
     const WITH: &str = "fn contact_visibility(position: vec3f, normal: vec3f, to_light: vec3f) -> f32 {
@@ -34,8 +34,8 @@ pub(crate) fn forward(library: &str, coordinates: Coordinates, contact: bool) ->
         "fn contact_visibility(position: vec3f, normal: vec3f, to_light: vec3f) -> f32 { return 1.0; }";
     let contact = if contact { umbrage_wgpu::contact_wgsl(3) + WITH } else { WITHOUT.to_owned() };
     let surface = match coordinates {
-        Coordinates::World => include_str!("shaders/surface.wgsl"),
-        Coordinates::Split => include_str!("shaders/surface_with_coordinates.wgsl"),
+        Coordinates::World | Coordinates::Deferred => include_str!("shaders/surface.wgsl"),
+        Coordinates::Vertex => include_str!("shaders/surface_with_coordinates.wgsl"),
     };
     [library, &contact, include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl"), surface].join("\n")
 }
@@ -93,8 +93,9 @@ mod tests {
             let with_coordinates = receiver(2, Maps { coordinates: true, ..maps });
             for source in [
                 forward(&receiver(2, maps), Coordinates::World, true),
-                forward(&with_coordinates, Coordinates::Split, true),
+                forward(&with_coordinates, Coordinates::Vertex, true),
                 probe(&receiver(1, maps)),
+                probe(&receiver(1, Maps { coordinates: true, ..maps })),
             ] {
                 assert!(!parsed(&source).entry_points.is_empty());
             }

@@ -44,7 +44,7 @@ pub struct LightStats {
 pub struct FrameStats {
     /// The plan that the first light's maps were drawn by.
     pub plan: Arc<ShadowPlan>,
-    /// Milliseconds of the planner on the CPU.
+    /// Milliseconds on the CPU of `umbrage_wgpu::Shadows::prepare`: planning, listing casters, handing both to the GPU.
     pub plan_ms: f64,
     /// Milliseconds from the beginning of the first map to the end of the last, on the GPU; 0 if none was drawn.
     pub shadow_ms: f64,

@@ -3,13 +3,15 @@
 
 mod common;
 
-use common::{SIZE, Stage, cuboid, gpu, ground, look, scene, settings, sphere, sun};
+use common::{SIZE, Stage, config, configured, cuboid, gpu, ground, look, scene, sphere, sun};
 use glam::DVec3;
 use image::GrayAlphaImage;
-use umbrage::{Selection, ShadowSettings, SpotLight, Stabilize, Warp};
-use umbrage_render::{Coordinates, Frame, Outputs, RenderSettings, Renderer};
+use umbrage::config::{
+    Coordinates, Filter, Layout, LightKind, MomentKind, Moments, Selection, ShadowConfig, Stability, Transition,
+};
+use umbrage::{SpotLight, Warp};
+use umbrage_render::{Frame, Outputs, RenderSettings, Renderer};
 use umbrage_scene::{Primitive, Scene};
-use umbrage_wgpu::{Filter, LightSlot, Storage};
 
 /// Pixels that two masks decide differently, by more than rounding of a grey, and all that they hit.
 fn differences(a: &GrayAlphaImage, b: &GrayAlphaImage) -> (usize, usize) {
@@ -19,9 +21,7 @@ fn differences(a: &GrayAlphaImage, b: &GrayAlphaImage) -> (usize, usize) {
 }
 
 fn with_splits(splits: usize, coordinates: Coordinates) -> RenderSettings {
-    let plain = settings();
-    let shadows = ShadowSettings { map_sizes: vec![512; splits], ..plain.shadows };
-    RenderSettings { shadows, coordinates, ..plain }
+    configured(ShadowConfig { map_sizes: vec![512; splits], coordinates, ..config() })
 }
 
 /// Rows of boxes and a sphere on a plain of two triangles, each far larger than any map.
@@ -55,7 +55,7 @@ fn vertices_say_what_fragments_say() {
             let rendered = stage.render(&view, light, outputs);
             (rendered.mask.expect("a mask"), rendered.picture.expect("a picture"))
         };
-        let [mut by_fragments, mut by_vertices] = [Coordinates::World, Coordinates::Split]
+        let [mut by_fragments, mut by_vertices] = [Coordinates::World, Coordinates::Vertex]
             .map(|coordinates| Stage::new(&gpu, &world, &with_splits(splits, coordinates)));
         let (of_fragments, picture) = drawn(&mut by_fragments, light);
         let (of_vertices, same) = drawn(&mut by_vertices, light);
@@ -80,20 +80,22 @@ fn so_they_do_with_every_way_to_choose_and_to_filter() {
     let light = sun(DVec3::new(0.6, -0.7, -0.4));
     let view = look(DVec3::new(-2.0, 4.0, 9.0), DVec3::new(1.0, 0.0, -6.0));
     let world = street();
-    for (filter, selection, stabilize, blend, storage) in [
-        (Filter::Pcf5, Selection::Map, Stabilize::Exact, 0.2, Storage::Array),
-        (Filter::Vsm, Selection::Depth, Stabilize::None, 0.2, Storage::Array),
-        (Filter::Hard, Selection::Depth, Stabilize::Exact, 0.0, Storage::Reused),
+    let blend = Transition::Blend { share: 0.2 };
+    let vsm = Filter::Moments(Moments::new(MomentKind::Vsm));
+    for (filter, selection, stability, transition, layout) in [
+        (Filter::Pcf5 { width_m: None }, Selection::Map, Stability::Exact, blend, Layout::Array),
+        (vsm, Selection::default(), Stability::tight(), blend, Layout::Array),
+        (Filter::Hard, Selection::default(), Stability::Exact, Transition::Hard, Layout::Reused),
     ] {
-        let [of_fragments, of_vertices] = [Coordinates::World, Coordinates::Split].map(|coordinates| {
-            let plain = with_splits(3, coordinates);
-            let shadows = ShadowSettings { selection, stabilize, blend, ..plain.shadows };
-            let settings = RenderSettings { filter, storage, shadows, ..plain };
+        let [of_fragments, of_vertices] = [Coordinates::World, Coordinates::Vertex].map(|coordinates| {
+            let plain = with_splits(3, coordinates).config;
+            let stability = stability.clone();
+            let settings = configured(ShadowConfig { selection, stability, transition, filter, layout, ..plain });
             Stage::new(&gpu, &world, &settings).mask(&view, light)
         });
         let (differ, hit) = differences(&of_fragments, &of_vertices);
-        eprintln!("{filter:?}, {selection:?}, {storage:?}: {differ} of {hit} pixels differ");
-        assert!(differ <= 8, "{filter:?}, {selection:?}, {storage:?}: {differ} of {hit} pixels differ");
+        eprintln!("{filter:?}, {selection:?}, {layout:?}: {differ} of {hit} pixels differ");
+        assert!(differ <= 8, "{filter:?}, {selection:?}, {layout:?}: {differ} of {hit} pixels differ");
         assert_eq!(of_vertices.dimensions(), (SIZE[0], SIZE[1]));
     }
 }
@@ -108,16 +110,18 @@ fn what_cannot_be_interpolated_is_refused() {
         let message = message.expect("an error");
         assert!(message.contains("coordinates split") && message.contains(culprit), "{message}");
     };
-    says(refused(&with_splits(5, Coordinates::Split)), "5 splits");
+    says(refused(&with_splits(5, Coordinates::Vertex)), "splits 5");
     assert_eq!(refused(&with_splits(5, Coordinates::World)), None);
-    let plain = with_splits(1, Coordinates::Split);
-    let warps = vec![Warp::Lispsm];
-    says(
-        refused(&RenderSettings { shadows: ShadowSettings { warps, ..plain.shadows.clone() }, ..plain.clone() }),
-        "warp lispsm",
-    );
-    says(refused(&RenderSettings { lights: vec![LightSlot::Single; 2], ..plain.clone() }), "2 lights");
-    says(refused(&RenderSettings { lights: vec![LightSlot::Cube], ..plain.clone() }), "6 faces");
+    let plain = with_splits(1, Coordinates::Vertex);
+    let stability = Stability::Tight { warps: vec![Warp::Lispsm] };
+    says(refused(&configured(ShadowConfig { stability, ..plain.config.clone() })), "warp lispsm");
+    let of = |lights: &[LightKind]| RenderSettings {
+        lights: lights.iter().map(|&light| light.into()).collect(),
+        ..plain.clone()
+    };
+    says(refused(&of(&[LightKind::Directional; 2])), "several lights");
+    says(refused(&of(&[LightKind::Point])), "spot or point");
+    says(refused(&of(&[LightKind::Spot])), "spot or point");
 
     let mut stage = Stage::new(&gpu, &world, &plain);
     let view = look(DVec3::new(0.0, 3.0, 6.0), DVec3::ZERO);
@@ -130,12 +134,6 @@ fn what_cannot_be_interpolated_is_refused() {
         shadows_on: true,
         tint: false,
     };
-    says(
-        stage
-            .renderer
-            .render(&frame, Outputs { mask: true, ..Default::default() })
-            .err()
-            .map(|error| error.to_string()),
-        "spot or point light",
-    );
+    let error = stage.renderer.render(&frame, Outputs { mask: true, ..Default::default() }).err().expect("no sun");
+    assert!(error.to_string().contains("LightKind::Spot"), "{error}");
 }

@@ -2,10 +2,10 @@
 
 mod common;
 
-use common::{SIZE, Stage, cuboid, gpu, ground, look, scene, settings, sphere, sun};
+use common::{SIZE, Stage, config, configured, cuboid, gpu, ground, look, scene, sphere, sun};
 use glam::DVec3;
 use image::GrayAlphaImage;
-use umbrage_render::Outputs;
+use umbrage::config::{Coordinates, ShadowConfig};
 
 /// Pixels that both masks hit and decide differently, and all that they hit.
 fn differences(a: &GrayAlphaImage, b: &GrayAlphaImage) -> (usize, usize) {
@@ -18,17 +18,16 @@ fn depth_says_what_surfaces_say() {
     let Some(gpu) = gpu() else { return };
     let boxes =
         [cuboid(DVec3::new(-1.0, 0.0, -2.0), DVec3::new(1.5, 2.0, 1.0)), sphere(DVec3::new(3.0, 1.0, -6.0), 1.0)];
-    let mut stage = Stage::new(&gpu, &scene(std::iter::once(ground(0.0, 60.0)).chain(boxes).collect()), &settings());
+    let world = scene(std::iter::once(ground(0.0, 60.0)).chain(boxes).collect());
+    let mut stages = [Coordinates::World, Coordinates::Deferred]
+        .map(|coordinates| Stage::new(&gpu, &world, &configured(ShadowConfig { coordinates, ..config() })));
     let light = sun(DVec3::new(0.6, -0.7, -0.4));
     for (eye, target) in [
         (DVec3::new(-2.0, 4.0, 9.0), DVec3::new(1.0, 0.0, -6.0)),
         (DVec3::new(6.0, 1.0, 3.0), DVec3::new(0.0, 1.0, -2.0)),
     ] {
         let view = look(eye, target);
-        let [forward, deferred] = [false, true].map(|deferred| {
-            let outputs = Outputs { mask: true, deferred, ..Outputs::default() };
-            stage.render(&view, light, outputs).mask.expect("a mask")
-        });
+        let [forward, deferred] = stages.each_mut().map(|stage| stage.mask(&view, light));
         let (differ, hit) = differences(&forward, &deferred);
         assert!(hit > 5000, "{hit} pixels are hit");
         // Silhouettes, creases and the sphere's facets, whose normals neighbours cannot tell.

@@ -4,11 +4,11 @@ mod common;
 
 use common::*;
 use glam::DVec3;
+use umbrage::config::{DepthFormat, Filter, ShadowConfig};
 use umbrage_render::{Error, Frame, Gpu, GpuOptions, Outputs, ProbePoint, RenderSettings, Renderer};
 use umbrage_scene::{Pose, Scene, Texture};
-use umbrage_wgpu::{DepthFormat, Filter};
 
-const ALL: Outputs = Outputs { picture: true, mask: true, maps: true, deferred: false };
+const ALL: Outputs = Outputs { picture: true, mask: true, maps: true };
 
 #[test]
 fn an_empty_scene_is_a_picture_of_the_sky() {
@@ -87,7 +87,7 @@ fn fallbacks_and_depth_formats_draw_the_same_shadow() {
     let mut reference = Stage::new(&gpu, &scene, &settings());
     let expected = reference.render(&view, light, ALL);
     let alternatives =
-        [(&bare, settings()), (&gpu, RenderSettings { depth_format: DepthFormat::D16Unorm, ..settings() })];
+        [(&bare, settings()), (&gpu, configured(ShadowConfig { depth_format: DepthFormat::D16Unorm, ..config() }))];
     for (device, settings) in alternatives {
         let mut stage = Stage::new(device, &scene, &settings);
         let rendered = stage.render(&view, light, ALL);
@@ -98,7 +98,7 @@ fn fallbacks_and_depth_formats_draw_the_same_shadow() {
         assert_eq!(rendered.maps.len(), 2);
     }
     // Without timestamps the CPU's clock is read, and 16-bit maps without depth clip control keep their near planes back.
-    let d16 = RenderSettings { depth_format: DepthFormat::D16Unorm, ..settings() };
+    let d16 = configured(ShadowConfig { depth_format: DepthFormat::D16Unorm, ..config() });
     for (settings, notes) in [(settings(), 1), (d16, 2)] {
         let said = Stage::new(&bare, &scene, &settings).render(&view, light, ALL).stats.notes;
         assert_eq!(said.len(), notes, "{said:?}");
@@ -110,10 +110,9 @@ fn maps_of_different_sizes_come_out_in_their_own_size() {
     let Some(gpu) = gpu() else { return };
     let scene = scene(vec![ground(0.0, 30.0), cuboid(DVec3::new(-1.0, 2.0, -1.0), DVec3::new(1.0, 4.0, 1.0))]);
     let view = look(DVec3::new(-6.0, 9.0, 12.0), DVec3::ZERO);
-    let mut mixed = settings();
-    mixed.shadows.map_sizes = vec![128, 256, 64];
+    let mixed = ShadowConfig { map_sizes: vec![128, 256, 64], ..config() };
     for depth_format in [DepthFormat::D32Float, DepthFormat::D16Unorm] {
-        let mut stage = Stage::new(&gpu, &scene, &RenderSettings { depth_format, ..mixed.clone() });
+        let mut stage = Stage::new(&gpu, &scene, &configured(ShadowConfig { depth_format, ..mixed.clone() }));
         let rendered = stage.render(&view, sun(DVec3::new(0.3, -1.0, 0.4)), ALL);
         assert_eq!(rendered.maps.iter().map(|map| map.width()).collect::<Vec<_>>(), [128, 256, 64]);
         let drawn = |map: &image::GrayImage| map.pixels().any(|pixel| pixel.0 != [255]);
@@ -132,17 +131,13 @@ fn bad_sizes_are_named() {
         let message = new(&RenderSettings { size, ..settings() }).expect("an error");
         assert!(message.contains(&format!("{}x{}", size[0], size[1])), "{message}");
     }
-    let mut large = settings();
-    large.shadows.map_sizes = vec![512, 65536];
-    let message = new(&large).expect("an error");
-    assert!(message.contains("65536") && message.contains("split 1"), "{message}");
-    let mut none = settings();
-    none.shadows.map_sizes = vec![];
-    assert!(new(&none).expect("an error").contains("map_sizes"));
-    let mut tiny = settings();
-    tiny.shadows.map_sizes = vec![1];
-    tiny.filter = Filter::Pcf5;
-    assert!(new(&tiny).expect("an error").contains("map"));
+    let of = |map_sizes: &[u32], filter| {
+        new(&configured(ShadowConfig { map_sizes: map_sizes.to_vec(), filter, ..config() })).expect("an error")
+    };
+    let message = of(&[512, 65536], Filter::Hard);
+    assert!(message.contains("65536") && message.contains("[1]"), "{message}");
+    assert!(of(&[], Filter::Hard).contains("0 maps"));
+    assert!(of(&[1], Filter::Pcf5 { width_m: None }).contains("map 0 is 1 texels"));
 }
 
 #[test]

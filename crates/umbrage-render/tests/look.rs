@@ -2,11 +2,10 @@
 
 mod common;
 
-use common::{Stage, gpu, ground, look, quad, scene, settings, sun};
+use common::{Stage, config, configured, gpu, ground, look, quad, scene, sun};
 use glam::DVec3;
-use umbrage_render::{Look, RenderSettings, Translucent};
+use umbrage::config::{Filter, Look, ShadowConfig, Translucent};
 use umbrage_scene::{AlphaMode, Material, Primitive, Scene};
-use umbrage_wgpu::{ContactOptions, Filter};
 
 /// A pane four metres above the ground and its material.
 fn pane(alpha: f32) -> Scene {
@@ -22,7 +21,8 @@ fn pane(alpha: f32) -> Scene {
 /// Mean visibility of the ground under the middle of the pane.
 fn light_below(scene: &Scene, translucent: Translucent, eye: DVec3) -> Option<f64> {
     let look_of = Look { translucent, ..Look::default() };
-    let settings = RenderSettings { filter: Filter::Pcf5, look: look_of, ..settings() };
+    let filter = Filter::Pcf5 { width_m: None };
+    let settings = configured(ShadowConfig { filter, look: look_of, ..config() });
     let mut stage = Stage::new(&gpu()?, scene, &settings);
     let view = look(eye, DVec3::ZERO);
     let mask = stage.mask(&view, sun(DVec3::NEG_Y));
@@ -50,13 +50,12 @@ fn contact_shadows_find_what_a_map_cannot() {
     // A step of 4 cm under a grazing sun, in texels of two metres; and the bare ground, which stays lit.
     let mut step = Primitive::default();
     quad(&mut step, DVec3::new(0.0, 0.02, 0.0), DVec3::X * 3.0, DVec3::Y * 0.02, DVec3::Z);
-    let mut shadows = settings().shadows;
-    shadows.map_sizes = vec![24];
     let view = look(DVec3::new(0.0, 1.2, 2.0), DVec3::new(0.0, 0.0, 0.0));
     let from_behind = sun(DVec3::new(0.0, -0.3, 1.0));
-    let dark = |scene: &Scene, contact: Option<ContactOptions>| {
+    let dark = |scene: &Scene, contact: bool| {
         let look_of = Look { contact, ..Look::default() };
-        let settings = RenderSettings { filter: Filter::Pcf3, look: look_of, shadows: shadows.clone(), ..settings() };
+        let filter = Filter::Pcf3 { width_m: None };
+        let settings = configured(ShadowConfig { map_sizes: vec![24], filter, look: look_of, ..config() });
         let mut stage = Stage::new(&gpu()?, scene, &settings);
         let mask = stage.mask(&view, from_behind);
         let shaded = common::pixels(&view, settings.size).filter(|pixel| {
@@ -67,8 +66,8 @@ fn contact_shadows_find_what_a_map_cannot() {
         Some(shaded.count())
     };
     let both = scene(vec![ground(0.0, 40.0), step]);
-    let Some(by_map) = dark(&both, None) else { return };
-    let with_contact = dark(&both, Some(ContactOptions::default())).unwrap_or(0);
+    let Some(by_map) = dark(&both, false) else { return };
+    let with_contact = dark(&both, true).unwrap_or(0);
     assert!(with_contact > 2 * by_map + 100, "{by_map} pixels by the map, {with_contact} with contact shadows");
-    assert_eq!(dark(&scene(vec![ground(0.0, 40.0)]), Some(ContactOptions::default())), Some(0), "flat ground");
+    assert_eq!(dark(&scene(vec![ground(0.0, 40.0)]), true), Some(0), "flat ground");
 }

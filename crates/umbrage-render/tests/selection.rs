@@ -2,10 +2,11 @@
 
 mod common;
 
-use common::{SIZE, Stage, cuboid, gpu, ground, look, meets_box, pixels, scene, settings, sun};
+use common::{SIZE, Stage, config, configured, cuboid, gpu, ground, look, meets_box, pixels, scene, sun};
 use glam::{DVec3, Vec3Swizzles as _};
 use image::GrayAlphaImage;
-use umbrage::{Bands, Fit, Selection, ShadowSettings, Stabilize, View};
+use umbrage::View;
+use umbrage::config::{Crop, Selection, ShadowConfig, SplitMetric, Stability, Transition};
 use umbrage_render::{Gpu, Outputs, ProbePoint, RenderSettings};
 
 /// Boxes near and far, on both sides of the view.
@@ -15,12 +16,9 @@ const BOXES: [(DVec3, DVec3); 3] = [
     (DVec3::new(-7.0, 0.0, -16.0), DVec3::new(-5.0, 4.0, -14.0)),
 ];
 
-fn chosen(selection: Selection, fit: Fit, stabilize: Stabilize, blend: f64) -> RenderSettings {
-    let plain = settings();
-    RenderSettings {
-        shadows: ShadowSettings { map_sizes: vec![512; 3], selection, fit, stabilize, blend, ..plain.shadows },
-        ..plain
-    }
+fn chosen(selection: Selection, crop: Crop, stability: Stability, blend: f64) -> RenderSettings {
+    let transition = if blend > 0.0 { Transition::Blend { share: blend } } else { Transition::Hard };
+    configured(ShadowConfig { map_sizes: vec![512; 3], selection, crop, stability, transition, ..config() })
 }
 
 fn mask(gpu: &Gpu, settings: &RenderSettings, view: &View, light: DVec3) -> GrayAlphaImage {
@@ -77,10 +75,10 @@ fn decisions_differ_at_edges_alone_and_get_no_worse() {
     for light in [DVec3::new(1.0, -0.4, 0.1), DVec3::new(0.05, -0.25, 1.0)] {
         let truth = truth(&view, light);
         for (fit, stabilize, blend) in
-            [(Fit::Independent, Stabilize::None, 0.3), (Fit::Dependent, Stabilize::Exact, 0.0)]
+            [(Crop::SceneIndependent, Stability::tight(), 0.3), (Crop::SceneDependent, Stability::Exact, 0.0)]
         {
-            let [by_depth, by_map] = [Selection::Depth, Selection::Map].map(|selection| {
-                wrong(&mask(&gpu, &chosen(selection, fit, stabilize, blend), &view, light), &truth, 2)
+            let [by_depth, by_map] = [Selection::default(), Selection::Map].map(|selection| {
+                wrong(&mask(&gpu, &chosen(selection, fit, stabilize.clone(), blend), &view, light), &truth, 2)
             });
             let case =
                 format!("sun {light}, {fit:?}, {stabilize:?}, blend {blend}: {by_depth:?} by depth, {by_map:?} by map");
@@ -90,9 +88,8 @@ fn decisions_differ_at_edges_alone_and_get_no_worse() {
     }
 }
 
-fn banded(bands: Bands) -> RenderSettings {
-    let plain = chosen(Selection::Depth, Fit::Dependent, Stabilize::Exact, 0.3);
-    RenderSettings { shadows: ShadowSettings { bands, ..plain.shadows }, ..plain }
+fn banded(metric: SplitMetric) -> RenderSettings {
+    chosen(Selection::Interval(metric), Crop::SceneDependent, Stability::Exact, 0.3)
 }
 
 #[test]
@@ -103,8 +100,8 @@ fn radial_bands_are_as_right_as_planar_ones() {
     for target in [DVec3::new(0.5, 1.0, -8.0), DVec3::new(9.0, -2.0, -5.0), DVec3::new(-9.0, 6.0, -3.0)] {
         let view = look(DVec3::new(-1.0, 2.5, 9.0), target);
         let truth = truth(&view, light);
-        let [planar, radial] =
-            [Bands::Planar, Bands::Radial].map(|bands| wrong(&mask(&gpu, &banded(bands), &view, light), &truth, 2));
+        let [planar, radial] = [SplitMetric::ViewDepth, SplitMetric::Distance]
+            .map(|metric| wrong(&mask(&gpu, &banded(metric), &view, light), &truth, 2));
         let case = format!("towards {target}: {planar:?} by planar bands, {radial:?} by radial ones");
         eprintln!("{case}");
         assert_eq!(radial.1, 0, "{case}");
@@ -113,11 +110,11 @@ fn radial_bands_are_as_right_as_planar_ones() {
 }
 
 /// How many of the points that a turning camera shows before and after a turn of 15° have changed their split, and how many there are.
-fn changed(gpu: &Gpu, bands: Bands) -> (usize, usize) {
+fn changed(gpu: &Gpu, metric: SplitMetric) -> (usize, usize) {
     let eye = DVec3::new(-1.0, 2.5, 9.0);
     let boxes = BOXES.iter().map(|&(min, max)| cuboid(min, max));
     let primitives = std::iter::once(ground(0.0, 60.0)).chain(boxes).collect();
-    let mut stage = Stage::new(gpu, &scene(primitives), &banded(bands));
+    let mut stage = Stage::new(gpu, &scene(primitives), &banded(metric));
     let views: Vec<View> = (-2..=2)
         .map(|step| {
             let (sin, cos) = (f64::from(step) * 15.0_f64.to_radians()).sin_cos();
@@ -149,7 +146,7 @@ fn changed(gpu: &Gpu, bands: Bands) -> (usize, usize) {
 #[test]
 fn a_turning_camera_changes_splits_of_planar_bands_alone() {
     let Some(gpu) = gpu() else { return };
-    let [planar, radial] = [Bands::Planar, Bands::Radial].map(|bands| changed(&gpu, bands));
+    let [planar, radial] = [SplitMetric::ViewDepth, SplitMetric::Distance].map(|metric| changed(&gpu, metric));
     eprintln!("(changed, asked): {planar:?} by planar bands, {radial:?} by radial ones");
     assert!(radial.1 > 1000 && radial.0 == 0, "{radial:?}");
     // The comparison can say no.

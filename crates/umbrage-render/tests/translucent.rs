@@ -5,8 +5,9 @@ mod common;
 use common::{Stage, gpu, ground, quad, scene, settings, sun};
 use glam::{DQuat, DVec2, DVec3, IVec2, Vec2};
 use image::GrayImage;
-use umbrage::{ExtentSteps, Frustum, ShadowPlan, ShadowSettings, Split, Stabilize, View};
-use umbrage_render::{Look, Outputs, RenderSettings, Translucent};
+use umbrage::config::{ExtentSteps, Look, Range, ShadowConfig, Stability, Translucent};
+use umbrage::{Frustum, ShadowPlan, Split, View};
+use umbrage_render::{Outputs, RenderSettings};
 use umbrage_scene::{AlphaMode, Material, Primitive, Scene};
 
 const FRAMES: u32 = 24;
@@ -55,17 +56,17 @@ struct Tally {
 /// By how many whole texels a map has moved since the other frame, if it has.
 type Moved = fn(&Split, &Split) -> Option<DVec2>;
 
-fn walk(stabilize: Stabilize, place: DVec3, moved: Moved) -> Option<Tally> {
-    let shadows =
-        ShadowSettings { map_sizes: vec![256, 128], range: Some((1.0, 60.0)), stabilize, ..settings().shadows };
+fn walk(stability: Stability, place: DVec3, moved: Moved) -> Option<Tally> {
     let look = Look { translucent: Translucent::Dithered, ..Look::default() };
-    let settings = RenderSettings { size: [32, 24], shadows, look, ..settings() };
+    let range = Range::Metres { near: 1.0, far: 60.0 };
+    let config = ShadowConfig { map_sizes: vec![256, 128], range, stability, look, ..settings().config };
+    let settings = RenderSettings { size: [32, 24], config, ..settings() };
     let mut stage = Stage::new(&gpu()?, &panes(place), &settings);
     let (mut tally, mut before): (Tally, Option<Frame>) = Default::default();
     for k in 0..FRAMES {
         let outputs = Outputs { maps: true, ..Outputs::default() };
         let rendered = stage.render(&view(place, k), sun(DVec3::new(0.3, -1.0, 0.2)), outputs);
-        let now = (rendered.stats.plan, rendered.maps);
+        let now = (ShadowPlan::clone(&rendered.stats.plan), rendered.maps);
         if let Some(before) = &before {
             (0..2).for_each(|split| compare(&mut tally, before, &now, split, moved));
         }
@@ -103,13 +104,13 @@ fn compare(tally: &mut Tally, old: &Frame, new: &Frame, split: usize, moved: Mov
 #[test]
 fn no_texel_of_a_dithered_shadow_changes() {
     for place in [DVec3::ZERO, DVec3::new(9_984.3, 12.7, -470.1), DVec3::new(99_840.0, -31.4, 470.0)] {
-        for stabilize in [Stabilize::Exact, Stabilize::Approximate(ExtentSteps::default())] {
-            let Some(tally) = walk(stabilize, place, Split::texels_moved_since) else { return };
-            eprintln!("{stabilize:?} at {place}: {tally:?}");
-            assert_eq!(tally.changed, 0, "{stabilize:?} at {place}: {tally:?}");
-            assert!(tally.covered > 5_000 && tally.holes > 5_000, "{stabilize:?} at {place}: {tally:?}");
-            let steps = if stabilize == Stabilize::Exact { 0 } else { tally.compared / 2 };
-            assert!(tally.stepped <= steps, "{stabilize:?} at {place}: {tally:?}");
+        for stability in [Stability::Exact, Stability::Approximate { steps: ExtentSteps::default() }] {
+            let Some(tally) = walk(stability.clone(), place, Split::texels_moved_since) else { return };
+            eprintln!("{stability:?} at {place}: {tally:?}");
+            assert_eq!(tally.changed, 0, "{stability:?} at {place}: {tally:?}");
+            assert!(tally.covered > 5_000 && tally.holes > 5_000, "{stability:?} at {place}: {tally:?}");
+            let steps = if stability == Stability::Exact { 0 } else { tally.compared / 2 };
+            assert!(tally.stepped <= steps, "{stability:?} at {place}: {tally:?}");
         }
     }
 }
@@ -118,9 +119,9 @@ fn no_texel_of_a_dithered_shadow_changes() {
 /// knows to the nearest texel how far it has moved.
 #[test]
 fn unstabilised_dither_swims() {
-    let Some(tally) = walk(Stabilize::None, DVec3::ZERO, Split::texels_moved_since) else { return };
+    let Some(tally) = walk(Stability::tight(), DVec3::ZERO, Split::texels_moved_since) else { return };
     assert!(tally.compared > 0 && tally.stepped == tally.compared, "{tally:?}");
     let nearest: Moved = |new, old| Some((new.min_texel - old.min_texel).round());
-    let Some(tally) = walk(Stabilize::None, DVec3::ZERO, nearest) else { return };
+    let Some(tally) = walk(Stability::tight(), DVec3::ZERO, nearest) else { return };
     assert!(tally.changed > tally.covered / 100, "{tally:?}");
 }

@@ -2,11 +2,11 @@
 
 mod common;
 
-use common::{SIZE, Stage, cuboid, gpu, ground, look, meets_box, pixels, scene, settings, sun};
+use common::{SIZE, Stage, config, configured, cuboid, gpu, ground, look, meets_box, pixels, scene, sun};
 use glam::{DVec3, Vec3Swizzles as _};
-use umbrage::{Fit, ShadowSettings, Stabilize, View, Warp};
+use umbrage::config::{Crop, DepthFormat, Filter, ShadowConfig, Stability};
+use umbrage::{View, Warp};
 use umbrage_render::{Outputs, RenderSettings};
-use umbrage_wgpu::{DepthFormat, Filter};
 
 /// Two boxes of one size, near and far.
 const BOXES: [(DVec3, DVec3); 2] = [
@@ -14,20 +14,15 @@ const BOXES: [(DVec3, DVec3); 2] = [
     (DVec3::new(4.0, 0.5, -33.0), DVec3::new(9.0, 5.0, -28.0)),
 ];
 
-fn warped(warps: &[Warp], fit: Fit, filter: Filter, depth_format: DepthFormat) -> RenderSettings {
-    let plain = settings();
-    RenderSettings {
-        shadows: ShadowSettings {
-            map_sizes: vec![if warps.len() == 1 { 1024 } else { 512 }; warps.len()],
-            stabilize: Stabilize::None,
-            fit,
-            warps: warps.to_vec(),
-            ..plain.shadows
-        },
+fn warped(warps: &[Warp], crop: Crop, filter: Filter, depth_format: DepthFormat) -> RenderSettings {
+    configured(ShadowConfig {
+        map_sizes: vec![if warps.len() == 1 { 1024 } else { 512 }; warps.len()],
+        stability: Stability::Tight { warps: warps.to_vec() },
+        crop,
         filter,
         depth_format,
-        ..plain
-    }
+        ..config()
+    })
 }
 
 /// Pixels of the ground whose decision differs from the ray's, and all of them; how many splits were warped.
@@ -62,7 +57,7 @@ fn from_eye_height() -> View {
 }
 
 fn tight(warps: &[Warp]) -> RenderSettings {
-    warped(warps, Fit::Dependent, Filter::Hard, DepthFormat::D32Float)
+    warped(warps, Crop::SceneDependent, Filter::Hard, DepthFormat::D32Float)
 }
 
 #[test]
@@ -85,7 +80,7 @@ fn single_warped_maps_say_what_rays_say() {
 fn filters_formats_and_loose_fits_make_no_acne() {
     let Some(gpu) = gpu() else { return };
     for warp in WARPS {
-        let settings = warped(&[warp], Fit::Independent, Filter::Pcf3, DepthFormat::D16Unorm);
+        let settings = warped(&[warp], Crop::SceneIndependent, Filter::Pcf3 { width_m: None }, DepthFormat::D16Unorm);
         let (decided, all, _) = wrong(&gpu, &settings, &from_eye_height(), SUNS[0]);
         // A map that has to begin at the camera's near plane spends many texels on the first metre and has coarse ones in the
         // distance.

@@ -4,11 +4,11 @@ use std::io::Write;
 use std::sync::OnceLock;
 
 use image::GrayAlphaImage;
-use umbrage::{DirectionalLight, Fit, ShadowSettings, Stabilize, View, Warp};
-use umbrage_render::{Frame, Gpu, GpuOptions, Outputs, RenderSettings, Rendered, Renderer, Samples};
+use umbrage::config::{Crop, DepthFormat, Filter, Preset, Range, ShadowConfig, Stability, Transition};
+use umbrage::{DirectionalLight, View, Warp};
+use umbrage_render::{Frame, Gpu, GpuOptions, Outputs, RenderSettings, Rendered, Renderer};
 use umbrage_scene::procedural::World;
 use umbrage_scene::{Pose, Scene, camera_view, light_direction};
-use umbrage_wgpu::{DepthFormat, Filter, Softness, Transition};
 
 /// The device that all tests of a binary share, or `None`, said loudly, where there is no adapter.
 ///
@@ -77,6 +77,13 @@ impl Stage {
         Frame { pose: &self.pose, view, light: self.sun.into(), more_lights: &[], shadows_on: true, tint }
     }
 
+    /// The view depths that the world's cameras show.
+    #[must_use]
+    pub fn range(&self) -> Range {
+        let (near, far) = self.world.near_far();
+        Range::Metres { near, far }
+    }
+
     /// A technique, ready to draw this world at a size.
     ///
     /// # Panics
@@ -85,7 +92,7 @@ impl Stage {
     pub fn drawer<'a>(&'a self, gpu: &Gpu, technique: &Technique, size: [u32; 2]) -> Drawer<'a> {
         let mut settings = technique.settings.clone();
         settings.size = size;
-        settings.shadows.range = Some(self.world.near_far());
+        settings.config.range = self.range();
         let renderer = Renderer::new(gpu, &self.scene, &settings).expect("the device holds a world");
         Drawer { stage: self, renderer }
     }
@@ -105,7 +112,7 @@ impl Drawer<'_> {
     /// # Panics
     /// If it cannot be drawn.
     pub fn draw(&mut self, view: &View, outputs: Outputs, tint: bool) -> Rendered {
-        self.renderer.restart().expect("the settings were accepted before");
+        self.renderer.restart();
         self.renderer.render(&self.stage.frame(view, tint), outputs).expect("a frame")
     }
 
@@ -133,29 +140,16 @@ impl Technique {
     /// fade, 32-bit depth: the tightest, hardest and most exact that there is, so that nothing hides an error.
     #[must_use]
     pub fn pssm(splits: usize, map_size: u32) -> Self {
-        let shadows = ShadowSettings {
+        let config = ShadowConfig {
             map_sizes: vec![map_size; splits],
-            fit: Fit::Dependent,
-            stabilize: Stabilize::None,
-            blend: 0.0,
+            crop: Crop::SceneDependent,
+            stability: Stability::tight(),
+            transition: Transition::Hard,
             far_fade: 0.0,
-            ..ShadowSettings::default()
-        };
-        let settings = RenderSettings {
-            size: [1, 1],
-            shadows,
             filter: Filter::Hard,
-            depth_format: DepthFormat::D32Float,
-            samples: Samples::Four,
-            softness: Softness::default(),
-            transition: Transition::default(),
-            moments: Default::default(),
-            look: umbrage_render::Look::default(),
-            coordinates: Default::default(),
-            storage: umbrage_wgpu::Storage::default(),
-            generation: umbrage_wgpu::Generation::default(),
-            lights: vec![umbrage_wgpu::LightSlot::Single],
+            ..Preset::Papers.config()
         };
+        let settings = RenderSettings { size: [1, 1], config, ..RenderSettings::default() };
         Self { name: format!("pssm{splits}"), settings }
     }
 
@@ -169,35 +163,21 @@ impl Technique {
     #[must_use]
     pub fn default_of_the_command() -> Self {
         let mut technique = Self::pssm(4, 1024);
-        technique.settings.shadows = ShadowSettings::default();
-        technique.settings.filter = Filter::Pcf3;
+        technique.settings.config = Preset::Papers.config();
         Self { name: "default".to_owned(), ..technique }
     }
 
     /// With another filter.
     #[must_use]
     pub fn filter(mut self, filter: Filter) -> Self {
-        self.settings.filter = filter;
-        self.named(match filter {
-            Filter::Hard => "hard",
-            Filter::Pcf2 => "pcf2",
-            Filter::Pcf3 => "pcf3",
-            Filter::Pcf5 => "pcf5",
-            Filter::Pcf7 => "pcf7",
-            Filter::Disc => "disc",
-            Filter::Pcss => "pcss",
-            Filter::Esm => "esm",
-            Filter::Vsm => "vsm",
-            Filter::Evsm2 => "evsm2",
-            Filter::Evsm4 => "evsm4",
-            Filter::Msm => "msm",
-        })
+        self.settings.config.filter = filter;
+        self.named(filter.word())
     }
 
     /// With all maps warped.
     #[must_use]
     pub fn warped(mut self, warp: Warp) -> Self {
-        self.settings.shadows.warps = vec![warp];
+        self.settings.config.stability = Stability::Tight { warps: vec![warp] };
         self.named(match warp {
             Warp::None => "plain",
             Warp::Psm => "psm",
@@ -209,28 +189,29 @@ impl Technique {
     /// Stabilised.
     #[must_use]
     pub fn exact(mut self) -> Self {
-        self.settings.shadows.stabilize = Stabilize::Exact;
+        self.settings.config.stability = Stability::Exact;
         self.named("exact")
     }
 
     /// Fitted to the slices alone.
     #[must_use]
     pub fn independent(mut self) -> Self {
-        self.settings.shadows.fit = Fit::Independent;
+        self.settings.config.crop = Crop::SceneIndependent;
         self.named("independent")
     }
 
     /// With 16-bit maps.
     #[must_use]
     pub fn d16(mut self) -> Self {
-        self.settings.depth_format = DepthFormat::D16Unorm;
+        self.settings.config.depth_format = DepthFormat::D16Unorm;
         self.named("d16")
     }
 
     /// With splits that blend into each other and shadows that fade at the far end.
     #[must_use]
     pub fn blended(mut self, blend: f64, far_fade: f64) -> Self {
-        (self.settings.shadows.blend, self.settings.shadows.far_fade) = (blend, far_fade);
+        self.settings.config.transition = Transition::Blend { share: blend };
+        self.settings.config.far_fade = far_fade;
         self.named("blend")
     }
 

@@ -1,7 +1,8 @@
 //! Lights that stand somewhere, several at once, and several views: masks against the truth by rays, and against those drawn alone.
 
 use image::GrayAlphaImage;
-use umbrage::{Light, ShadowSettings, Stabilize, View};
+use umbrage::config::{DepthFormat, ShadowConfig, Stability};
+use umbrage::{Light, View};
 use umbrage_render::{Frame, Lamp, Outputs, RenderSettings, Renderer};
 use umbrage_scene::{Pose, Scene, camera_view, scene_light};
 use umbrage_tests::judge::Ceiling;
@@ -9,10 +10,9 @@ use umbrage_tests::room::room;
 use umbrage_tests::stage::{Technique, gpu};
 use umbrage_truth::Truth;
 use umbrage_truth::scores::{Answers, Domain, MisShadowed, mis_shadowed};
-use umbrage_wgpu::DepthFormat;
 
 const SIZE: [u32; 2] = [240, 180];
-const MASK: Outputs = Outputs { picture: false, mask: true, maps: false, deferred: false };
+const MASK: Outputs = Outputs { picture: false, mask: true, maps: false };
 
 struct Room {
     scene: Scene,
@@ -41,11 +41,11 @@ impl Room {
 }
 
 /// Two maps of 512² for each light (and face).
-fn settings(lights: &[Light], stabilize: Stabilize) -> RenderSettings {
+fn settings(lights: &[Light], stability: Stability) -> RenderSettings {
     let any = Technique::pssm(2, 512);
     RenderSettings {
         size: SIZE,
-        shadows: ShadowSettings { stabilize, ..any.settings.shadows },
+        config: ShadowConfig { stability, ..any.settings.config },
         lights: lights.iter().map(|&light| light.into()).collect(),
         ..any.settings
     }
@@ -69,8 +69,9 @@ fn masks_of_lamps_are_nearly_true() {
     let truth = Truth::build(&room.scene, &room.pose, room.view("door").eye()).expect("rays can meet a room");
     for (name, cameras, ceilings) in cases {
         let light = room.light(name);
-        for (stabilize, ceiling) in [Stabilize::None, Stabilize::Exact].into_iter().zip(ceilings) {
-            let mut renderer = Renderer::new(gpu, &room.scene, &settings(&[light], stabilize)).expect("a renderer");
+        for (stability, ceiling) in [Stability::tight(), Stability::Exact].into_iter().zip(ceilings) {
+            let mut renderer =
+                Renderer::new(gpu, &room.scene, &settings(&[light], stability.clone())).expect("a renderer");
             let mut all = MisShadowed::default();
             for camera in cameras {
                 let view = room.view(camera);
@@ -88,8 +89,8 @@ fn masks_of_lamps_are_nearly_true() {
                 all.false_light += score.false_light;
                 all.missing += score.missing;
             }
-            eprintln!("{name} {stabilize:?}: E {:.5} ({all:?})", all.rate());
-            ceiling.check(&all).unwrap_or_else(|error| panic!("{name} {stabilize:?}: {error}"));
+            eprintln!("{name} {stability:?}: E {:.5} ({all:?})", all.rate());
+            ceiling.check(&all).unwrap_or_else(|error| panic!("{name} {stability:?}: {error}"));
         }
     }
 }
@@ -102,7 +103,8 @@ fn linear_depth_decides_as_perspective_depth_does() {
         let light = room.light(name);
         let view = room.view("door");
         let [perspective, linear] = [DepthFormat::D32Float, DepthFormat::R32Float].map(|depth_format| {
-            let settings = RenderSettings { depth_format, ..settings(&[light], Stabilize::None) };
+            let mut settings = settings(&[light], Stability::tight());
+            settings.config.depth_format = depth_format;
             let mut renderer = Renderer::new(gpu, &room.scene, &settings).expect("a renderer");
             mask(&mut renderer, &room.frame(&view, light, &[]))
         });
@@ -120,15 +122,14 @@ fn a_light_among_others_is_as_it_is_alone() {
     let view = room.view("door");
     let all = [reading, pendant, washer];
     let others = [Lamp::from(pendant), Lamp::from(washer)];
-    let mut together = Renderer::new(gpu, &room.scene, &settings(&all, Stabilize::Exact)).expect("a renderer");
-    let mut alone = Renderer::new(gpu, &room.scene, &settings(&[reading], Stabilize::Exact)).expect("a renderer");
+    let mut together = Renderer::new(gpu, &room.scene, &settings(&all, Stability::Exact)).expect("a renderer");
+    let mut alone = Renderer::new(gpu, &room.scene, &settings(&[reading], Stability::Exact)).expect("a renderer");
     let rendered =
         together.render(&room.frame(&view, reading, &others), Outputs { picture: true, ..MASK }).expect("a frame");
     assert_eq!(rendered.mask, Some(mask(&mut alone, &room.frame(&view, reading, &[]))));
     assert_eq!(rendered.stats.more_lights.iter().map(|light| light.splits.len()).collect::<Vec<_>>(), [12, 2]);
     // The picture has the light of all: no pixel is darker than with one, and some are brighter.
-    let one = alone
-        .render(&room.frame(&view, reading, &[]), Outputs { picture: true, mask: false, maps: false, deferred: false });
+    let one = alone.render(&room.frame(&view, reading, &[]), Outputs { picture: true, mask: false, maps: false });
     let (one, all) = (one.expect("a frame").picture.expect("a picture"), rendered.picture.expect("a picture"));
     let brighter = one.pixels().zip(all.pixels()).filter(|(one, all)| all.0[0] > one.0[0].saturating_add(20)).count();
     assert!(one.pixels().zip(all.pixels()).all(|(one, all)| all.0[0] >= one.0[0].saturating_sub(1)));
@@ -143,7 +144,7 @@ fn views_beside_each_other_are_as_they_are_alone() {
     let Some(gpu) = gpu() else { return };
     let room = Room::new();
     let light = room.light("pendant");
-    let settings = settings(&[light], Stabilize::Exact);
+    let settings = settings(&[light], Stability::Exact);
     let mut both = Renderer::new(gpu, &room.scene, &settings).expect("a renderer");
     let mut alone = ["door", "table"].map(|_| Renderer::new(gpu, &room.scene, &settings).expect("a renderer"));
     // Three frames, so that what stabilisation holds of one view could reach the other.

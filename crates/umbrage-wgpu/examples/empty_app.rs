@@ -1,8 +1,8 @@
 //! From an empty wgpu program to good shadows: boxes on a plain, in the app's own vertex format, written as a picture.
 //! The lines marked ◐ are all that shadows add. `cargo run -p umbrage-wgpu --example empty_app -- picture.png`
 use glam::{DVec3, Vec3};
-use umbrage::{Aabb, DirectionalLight, Frustum, Planner, ShadowSettings, View};
-use umbrage_wgpu::{FrameOptions, ShadowMaps, ShadowMapsOptions, optional_features};
+use umbrage::{Aabb, DirectionalLight, Frustum, Planner, View};
+use umbrage_wgpu::{FrameOptions, LightKind, ShadowConfig, ShadowMaps, optional_features};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 const SIZE: u32 = 768;
@@ -95,8 +95,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
 
     // ◐ Maps, a planner that knows them, and the casters' pipeline.
-    let mut maps = ShadowMaps::new(&device, &ShadowMapsOptions::default())?;
-    let mut planner = Planner::new(ShadowSettings { image_size: [SIZE, SIZE], ..maps.matching_settings() })?;
+    let config = ShadowConfig::default();
+    let mut maps = ShadowMaps::new(&device, &config, &[LightKind::Directional])?;
+    let mut planner = Planner::new(config.planner_settings(maps.depth_clamp(), [SIZE, SIZE]))?;
     let (layout, primitive, depth_state) = (maps.caster_layout(), maps.caster_primitive(), maps.caster_depth_stencil());
     let (source, views) = (maps.caster_wgsl(0) + CASTER, maps.caster_multiview_mask());
     let casters = pipeline(source, layout, primitive, depth_state.clone(), None, views);

@@ -7,6 +7,31 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// The config is wrong, or the planner refused its input.
+    #[error(transparent)]
+    Config(#[from] umbrage::Error),
+    /// The config asks for maps that these are not.
+    #[error(
+        "setting {setting} asks for other maps than these; make ShadowMaps anew, or change the config of umbrage_wgpu::Shadows"
+    )]
+    NeedsNewMaps {
+        /// Key of the setting, see [`umbrage::config::SETTINGS`].
+        setting: &'static str,
+    },
+    /// The device ran out of memory.
+    #[error("the graphics device ran out of memory while {during}; use smaller maps")]
+    OutOfMemory {
+        /// What was being done.
+        during: &'static str,
+    },
+    /// The device refused a command.
+    #[error("the graphics device failed while {during}: {message}")]
+    Device {
+        /// What was being done.
+        during: &'static str,
+        /// What the device said.
+        message: String,
+    },
     /// A pass that loads from depth textures, on a device that cannot.
     #[error(
         "depth textures cannot be loaded from on GL and WebGL2; ask for visibility where surfaces are drawn instead of in a mask"
@@ -19,26 +44,6 @@ pub enum Error {
         normals: crate::MaskNormals,
         /// Whether a texture was given.
         given: bool,
-    },
-    /// `map_sizes` is empty or too long.
-    #[error("map_sizes has {count} entries; give one for each split, 1 to {most}")]
-    SplitCount {
-        /// How many there were.
-        count: usize,
-        /// How many there may be.
-        most: usize,
-    },
-    /// A map has no texels, or fewer than its filter reads.
-    #[error("map_sizes[{split}] is {size}; the filter {filter:?} needs maps of at least {least} texels")]
-    MapTooSmall {
-        /// Index into `map_sizes`.
-        split: usize,
-        /// The edge that was asked for, in texels.
-        size: u32,
-        /// The filter that would read it.
-        filter: crate::Filter,
-        /// The smallest edge it can work with, in texels.
-        least: u32,
     },
     /// The device has no texture as large as a map.
     #[error(
@@ -66,57 +71,29 @@ pub enum Error {
     },
     /// The device cannot filter 32-bit floats and fallbacks are forbidden.
     #[error(
-        "filter {filter:?} stores moments in 32-bit floats, but this device was requested without FLOAT32_FILTERABLE and fallbacks \
-         is false; allow fallbacks, request the feature (optional_features), or use a filter that compares depth"
+        "filter {filter} stores moments in 32-bit floats, but this device was requested without FLOAT32_FILTERABLE and fallbacks \
+         are forbidden; allow fallbacks, request the feature (optional_features), or use a filter that compares depth"
     )]
     NoFilterableFloats {
         /// The filter.
-        filter: crate::Filter,
+        filter: &'static str,
     },
     /// Depth cannot become moments where it cannot be loaded.
-    #[error("filter {filter:?} loads from depth maps, which GL cannot; use a filter that compares depth, such as Pcf5")]
+    #[error("filter {filter} loads from depth maps, which GL cannot; use a filter that compares depth, such as pcf5")]
     NoDepthLoads {
         /// The filter.
-        filter: crate::Filter,
-    },
-    /// Moments are layers of an array.
-    #[error("storage {} and filter {filter:?} exclude each other: moments are kept as an array; use storage array, or a filter that compares depth", storage.name())]
-    MomentsNeedArray {
-        /// The storage.
-        storage: crate::Storage,
-        /// The filter.
-        filter: crate::Filter,
-    },
-    /// Moments are kept for one light.
-    #[error(
-        "lights asks for {lights:?}, but filter {filter:?} serves one sun; use one light, or a filter that compares depth"
-    )]
-    MomentsNeedOneSun {
-        /// The lights.
-        lights: Vec<crate::LightSlot>,
-        /// The filter.
-        filter: crate::Filter,
-    },
-    /// Maps cannot have so many samples.
-    #[error(
-        "samples is {samples} with filter {filter:?}; give 1, or 4 for a filter of moments (Esm, Vsm, Evsm2, Evsm4, Msm)"
-    )]
-    Samples {
-        /// What was asked for.
-        samples: u32,
-        /// The filter that would read them.
-        filter: crate::Filter,
+        filter: &'static str,
     },
     /// Moments want depth that is linear.
     #[error(
-        "split {split} of the plan is warped, but filter {filter:?} needs depth that is linear along the light; use warp none, or a \
+        "split {split} of the plan is warped, but filter {filter} needs depth that is linear along the light; use warp none, or a \
          filter that compares depth"
     )]
     WarpedMoments {
         /// Index of the split.
         split: usize,
         /// The filter.
-        filter: crate::Filter,
+        filter: &'static str,
     },
     /// The device has no texture that holds all maps side by side.
     #[error(
@@ -129,19 +106,9 @@ pub enum Error {
         /// The device's limit, in texels.
         limit: u32,
     },
-    /// Two options that exclude each other.
-    #[error("{first} and {second} exclude each other: {reason}")]
-    ConflictingOptions {
-        /// One of them, by name and value.
-        first: String,
-        /// The other.
-        second: String,
-        /// Why, and what to do.
-        reason: &'static str,
-    },
     /// The device lacks a feature that was asked for by name, and fallbacks are forbidden.
     #[error(
-        "generation {generation} needs {feature}, which this device was not requested with, and fallbacks is false; request the \
+        "generation {generation} needs {feature}, which this device was not requested with, and fallbacks are forbidden; request the \
          feature (optional_features), allow fallbacks, or use generation per-split"
     )]
     MissingFeature {
@@ -171,6 +138,15 @@ pub enum Error {
         plan: Vec<u32>,
         /// The sizes given at creation.
         maps: Vec<u32>,
+    },
+    /// The plan makes a choice that the receivers' text was not made for.
+    #[error(
+        "the plan was made with another {setting} than the config of these maps; plan with \
+         ShadowConfig::planner_settings of that config"
+    )]
+    PlanOfOtherConfig {
+        /// Key of the setting, see [`umbrage::config::SETTINGS`].
+        setting: &'static str,
     },
     /// A number of the plan cannot be used.
     #[error("split {split} of the plan: {field} is {value}, but it has to be {expected}")]
@@ -206,58 +182,33 @@ pub enum Error {
     },
     /// A filter so wide that its radius exceeds even the widest map.
     #[error(
-        "frame option width_m is {width_m}, half of which is more than the {map_m:.3} m of the widest map; give less, or leave it to the filter"
+        "the filter is {width_m} m wide, half of which is more than the {map_m:.3} m of the widest map; give less, or leave it to the filter"
     )]
     FilterTooWide {
-        /// [`crate::Softness::width_m`].
+        /// The filter's full width in metres.
         width_m: f64,
         /// The longest edge of any of the light's maps, metres.
         map_m: f64,
     },
     /// More or fewer plans than lights.
-    #[error("{plans} plans, but these ShadowMaps were created for {lights} lights; give one plan for each of `lights`")]
+    #[error("{plans} plans or lights, but these maps were made for {lights}; give one for each light of theirs")]
     LightCount {
         /// How many plans there were.
         plans: usize,
-        /// Length of [`crate::ShadowMapsOptions::lights`].
+        /// How many lights the maps were made for.
         lights: usize,
     },
-    /// The plan has more faces than its light's slot.
+    /// The maps of a light serve another kind of light.
     #[error(
-        "lights[{light}] is {slot:?}, but its plan is of another kind of light, with {faces} faces; create the ShadowMaps with \
-         LightSlot::from(that light) there"
+        "light {light} is {given:?}, but its maps were made for LightKind::{made_for:?}; make maps for LightKind::{given:?} there"
     )]
-    LightSlot {
-        /// Index into [`crate::ShadowMapsOptions::lights`].
+    LightKind {
+        /// Index into the lights.
         light: usize,
-        /// Faces of the plan.
-        faces: usize,
-        /// What was made for it.
-        slot: crate::LightSlot,
-    },
-    /// The filter knows suns only.
-    #[error(
-        "the filter {filter:?} goes by depths of parallel light, but lights[{light}] is a spot or point light; \
-         use another filter, such as Pcf5"
-    )]
-    FilterNeedsSun {
-        /// The filter.
-        filter: crate::Filter,
-        /// Index into [`crate::ShadowMapsOptions::lights`].
-        light: usize,
-    },
-    /// The storage holds one light's maps only.
-    #[error(
-        "lights asks for {maps} maps ({splits} of map_sizes for each), but the storage {storage:?} holds those of one sun or \
-         spot light; use Storage::Array, or one light"
-    )]
-    LightsNeedArray {
-        /// Maps of all lights together.
-        maps: usize,
-        /// Length of `map_sizes`.
-        splits: usize,
-        /// The storage that was asked for.
-        storage: crate::Storage,
+        /// What the plan is of.
+        given: umbrage::config::LightKind,
+        /// What the maps are for.
+        made_for: umbrage::config::LightKind,
     },
     /// The frames of all lights are more than a uniform buffer holds.
     #[error(

@@ -4,8 +4,9 @@ use glam::{DMat4, DVec3, DVec4};
 use umbrage::{Light, ShadowPlan};
 use umbrage_shaders::layout;
 
+use crate::maps::lights::Slot;
 use crate::uniforms::Place;
-use crate::{Error, LightSlot, Result};
+use crate::{Error, Result};
 
 /// The cosine that says a light has no cone.
 const NO_CONE: f32 = -2.0;
@@ -63,12 +64,12 @@ pub(crate) fn place_light(frame: &mut layout::Frame, plan: &ShadowPlan, origin: 
 }
 
 /// Numbers the frames of several lights: what a shader needs to find those of each.
-pub(crate) fn number(frames: &mut [layout::Frame], slots: &[LightSlot], plans: &[&ShadowPlan]) {
-    let mut first = 0;
+pub(crate) fn number(frames: &mut [layout::Frame], slots: &[Slot], plans: &[&ShadowPlan]) {
     for (light, (slot, plan)) in slots.iter().zip(plans).enumerate() {
+        let first = slot.first_frame;
         frames[light].first_frame = first as u32;
-        frames[first..first + slot.faces()].iter_mut().for_each(|frame| frame.face_count = plan.faces() as u32);
-        first += slot.faces();
+        let own = frames[first..first + slot.kind.faces()].iter_mut();
+        own.for_each(|frame| frame.face_count = plan.faces() as u32);
     }
 }
 

@@ -4,8 +4,9 @@ use std::borrow::Cow;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, DVec3};
+use umbrage::config::{Coordinates, ShadowConfig};
 
-use crate::{Error, Result, ShadowMaps, Storage};
+use crate::{Error, Result, ShadowMaps};
 
 /// Where the mask's pass takes its normals from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -85,8 +86,8 @@ impl ShadowMask {
     /// For masks of `format` (`R8Unorm` holds what is lit, `Rg8Unorm` also where something is).
     ///
     /// # Errors
-    /// [`Error::MaskNeedsDepthLoads`] where depth textures cannot be loaded from, [`Error::ConflictingOptions`] with
-    /// [`Storage::Reused`], whose maps are gone when the picture's depth is complete.
+    /// [`Error::MaskNeedsDepthLoads`] where depth textures cannot be loaded from, [`Error::Config`] with
+    /// [`umbrage::config::Layout::Reused`], whose maps are gone when the picture's depth is complete.
     pub fn new(
         device: &wgpu::Device,
         maps: &ShadowMaps,
@@ -96,13 +97,8 @@ impl ShadowMask {
         if device.adapter_info().backend == wgpu::Backend::Gl {
             return Err(Error::MaskNeedsDepthLoads);
         }
-        if maps.options().storage == Storage::Reused {
-            return Err(Error::ConflictingOptions {
-                first: "storage reused".to_owned(),
-                second: "deferred mask".to_owned(),
-                reason: "there is one map at a time, and the picture's depth is complete after the last; use storage array",
-            });
-        }
+        // Where one map is used again and again, all but the last are gone when the picture's depth is complete.
+        ShadowConfig { coordinates: Coordinates::Deferred, ..maps.config().clone() }.validate()?;
         let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::FRAGMENT,

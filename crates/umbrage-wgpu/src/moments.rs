@@ -1,20 +1,22 @@
 //! From depth maps to moments: conversion, blur and mip levels, and the textures that receivers read.
 
+use umbrage::config::{Derivatives, Fallbacks, MomentKind, Moments as MomentFilter};
 use umbrage::{MAX_SPLITS, ShadowPlan};
 use umbrage_shaders::layout::{self, FilterKind};
 use umbrage_shaders::{MOMENT_PASSES, MOMENT_PASSES_OF_SAMPLES, MomentMaps, twin::moments::of_depth};
 
-use crate::{Error, Filter, FrameOptions, Result, ShadowMapsOptions};
+use crate::options::filter_kind;
+use crate::{Error, Filter, Result};
 
 /// What a device keeps moments in. Chosen when the maps are made, the first that it can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MomentStorage {
     /// 32-bit floats through the hardware's sampler: needs `FLOAT32_FILTERABLE` (see [`crate::optional_features`]).
-    Floats,
+    F32,
     /// 16-bit floats, for the exponential filters, with exponents that fit. They leak more light.
-    Halves,
+    F16,
     /// 32-bit floats that the receiver's shader filters itself, for filters that 16 bits are too few for.
-    FloatsByHand,
+    F32Manual,
 }
 
 /// Kernels are this many texels wide at most to each side; maps have as much room around what they serve.
@@ -32,35 +34,48 @@ const ANISOTROPY: u16 = 16;
 
 impl MomentStorage {
     /// What a device with these features has for a filter, or none where fallbacks are forbidden.
-    fn choose(filter: Filter, features: wgpu::Features, fallbacks: bool) -> Result<Self> {
+    fn choose(kind: MomentKind, features: wgpu::Features, fallbacks: Fallbacks) -> Result<Self> {
         if features.contains(wgpu::Features::FLOAT32_FILTERABLE) {
-            return Ok(Self::Floats);
+            return Ok(Self::F32);
         }
-        if !fallbacks {
-            return Err(Error::NoFilterableFloats { filter });
+        if fallbacks == Fallbacks::Forbid {
+            return Err(Error::NoFilterableFloats { filter: kind.word() });
         }
-        Ok(if matches!(filter, Filter::Vsm | Filter::Msm) { Self::FloatsByHand } else { Self::Halves })
+        Ok(if matches!(kind, MomentKind::Vsm | MomentKind::Msm) { Self::F32Manual } else { Self::F16 })
     }
 
     /// Exponents of the rising and the falling exponential, the largest whose squares fit: e^(2·40) of 3e38, e^(2·5.5) of 65504. The
     /// falling one is A. Lauritzen's 5 where there is room, as larger ones only add noise. One moment is no square.
-    fn exponents(self, filter: Filter) -> [f32; 2] {
-        match (self, filter) {
-            (Self::Halves, Filter::Esm) => [9.0, 0.0],
-            (Self::Halves, _) => [5.5, 5.5],
+    fn exponents(self, kind: MomentKind) -> [f32; 2] {
+        match (self, kind) {
+            (Self::F16, MomentKind::Esm) => [9.0, 0.0],
+            (Self::F16, _) => [5.5, 5.5],
             _ => [40.0, 5.0],
         }
     }
 
-    fn format(self, filter: Filter) -> wgpu::TextureFormat {
+    fn format(self, kind: MomentKind) -> wgpu::TextureFormat {
         use wgpu::TextureFormat::*;
-        match (filter.moments(), self) {
-            (1, Self::Halves) => R16Float,
-            (1, _) => R32Float,
-            (2, Self::Halves) => Rg16Float,
-            (2, _) => Rg32Float,
-            (_, Self::Halves) => Rgba16Float,
-            (_, _) => Rgba32Float,
+        match (kind, self) {
+            (MomentKind::Esm, Self::F16) => R16Float,
+            (MomentKind::Esm, _) => R32Float,
+            (MomentKind::Vsm | MomentKind::Evsm2, Self::F16) => Rg16Float,
+            (MomentKind::Vsm | MomentKind::Evsm2, _) => Rg32Float,
+            (MomentKind::Evsm4 | MomentKind::Msm, Self::F16) => Rgba16Float,
+            (MomentKind::Evsm4 | MomentKind::Msm, _) => Rgba32Float,
+        }
+    }
+
+    /// What to tell of a device that keeps moments otherwise than in 32-bit floats with the hardware's filter.
+    pub(crate) fn note(self, kind: MomentKind) -> Option<String> {
+        match self {
+            Self::F32 => None,
+            Self::F16 => Some(format!(
+                "no filterable 32-bit floats: {kind} is kept in 16-bit floats, with smaller exponents, and leaks more"
+            )),
+            Self::F32Manual => {
+                Some(format!("no filterable 32-bit floats: the shader filters the moments of {kind} itself"))
+            }
         }
     }
 }
@@ -68,7 +83,7 @@ impl MomentStorage {
 /// Textures, pipelines and bind groups of one set of maps.
 #[derive(Debug)]
 pub(crate) struct Moments {
-    filter: Filter,
+    kind: MomentKind,
     storage: MomentStorage,
     own_taps: bool,
     texture: wgpu::Texture,
@@ -103,19 +118,19 @@ impl Moments {
     /// `depths` has one view for each split; `edge` is that of a layer, of which there are `layers`.
     pub fn new(
         device: &wgpu::Device,
-        options: &ShadowMapsOptions,
+        &MomentFilter { kind, samples, .. }: &MomentFilter,
+        fallbacks: Fallbacks,
         [edge, layers]: [u32; 2],
         depths: &[wgpu::TextureView],
     ) -> Result<Self> {
-        let ShadowMapsOptions { filter, fallbacks, samples, .. } = *options;
         if device.adapter_info().backend == wgpu::Backend::Gl {
-            return Err(Error::NoDepthLoads { filter });
+            return Err(Error::NoDepthLoads { filter: kind.word() });
         }
-        let storage = MomentStorage::choose(filter, device.features(), fallbacks)?;
+        let storage = MomentStorage::choose(kind, device.features(), fallbacks)?;
         // Mesa's software driver (seen with 22.3) gives an anisotropic sample the differences between neighbouring pixels' places, whatever
         // derivatives or level it was told: wrong on every border of splits, and outside fragment shaders.
         let own_taps = device.adapter_info().device_type == wgpu::DeviceType::Cpu;
-        let format = storage.format(filter);
+        let format = storage.format(kind);
         let level_count = edge.max(LEAST_LEVEL).ilog2() - LEAST_LEVEL.ilog2() + 1;
         let texture_of = |label, layers, levels| {
             device.create_texture(&wgpu::TextureDescriptor {
@@ -186,17 +201,17 @@ impl Moments {
             })
             .collect();
 
-        let kind = filter.kind();
-        let exponents = storage.exponents(filter);
+        let exponents = storage.exponents(kind);
+        let shader_kind = filter_kind(&Filter::Moments(MomentFilter::new(kind)));
         let text = if samples > 1 { MOMENT_PASSES_OF_SAMPLES } else { MOMENT_PASSES };
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("Moments::passes"),
             source: wgpu::ShaderSource::Wgsl(text.into()),
         });
-        let pipeline = |layout, entry| pass_pipeline(device, &module, layout, entry, format, kind, exponents);
-        let far = of_depth(kind, exponents, 1.0).map(f64::from);
+        let pipeline = |layout, entry| pass_pipeline(device, &module, layout, entry, format, shader_kind, exponents);
+        let far = of_depth(shader_kind, exponents, 1.0).map(f64::from);
         Ok(Self {
-            filter,
+            kind,
             storage,
             own_taps,
             convert: pipeline(&from_depth_layout, "fs_convert"),
@@ -223,7 +238,7 @@ impl Moments {
     /// The text that reads them.
     pub fn maps(&self) -> MomentMaps {
         match (self.storage, self.own_taps) {
-            (MomentStorage::FloatsByHand, _) => MomentMaps::ByHand,
+            (MomentStorage::F32Manual, _) => MomentMaps::ByHand,
             (_, true) => MomentMaps::Taps,
             (_, false) => MomentMaps::Sampled,
         }
@@ -236,7 +251,7 @@ impl Moments {
 
     /// The layout's entries after the frame's uniform, and what to bind there.
     pub fn receiver_entries(&self, visibility: wgpu::ShaderStages) -> Vec<wgpu::BindGroupLayoutEntry> {
-        let by_hand = self.storage == MomentStorage::FloatsByHand;
+        let by_hand = self.storage == MomentStorage::F32Manual;
         let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
         let texture = entry(
             1,
@@ -270,7 +285,7 @@ impl Moments {
             dimension: Some(wgpu::TextureViewDimension::D2Array),
             ..Default::default()
         });
-        let sampler = (self.storage != MomentStorage::FloatsByHand).then(|| {
+        let sampler = (self.storage != MomentStorage::F32Manual).then(|| {
             device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("Moments::smooth"),
                 mag_filter: wgpu::FilterMode::Linear,
@@ -293,20 +308,20 @@ impl Moments {
     }
 
     /// Takes a plan; nothing is written if it cannot be used.
-    pub fn prepare(&mut self, queue: &wgpu::Queue, plan: &ShadowPlan, options: &FrameOptions) -> Result<()> {
-        let wanted = self.wanted(plan, options)?;
-        self.write(queue, wanted, options);
+    pub fn prepare(&mut self, queue: &wgpu::Queue, plan: &ShadowPlan, filter: &MomentFilter) -> Result<()> {
+        let wanted = self.wanted(plan, filter)?;
+        self.write(queue, wanted, filter);
         Ok(())
     }
 
     /// What a plan asks for, checked.
-    fn wanted(&self, plan: &ShadowPlan, options: &FrameOptions) -> Result<Vec<Option<layout::MomentPass>>> {
+    fn wanted(&self, plan: &ShadowPlan, filter: &MomentFilter) -> Result<Vec<Option<layout::MomentPass>>> {
         let finest = plan.splits.iter().map(|split| split.texel_m.max_element()).fold(f64::INFINITY, f64::min);
-        let width = options.softness.width_m.map_or(DEFAULT_TEXELS * finest, f64::from);
+        let width = filter.width_m.unwrap_or(DEFAULT_TEXELS * finest);
         (plan.splits.iter().enumerate())
             .map(|(index, split)| {
                 if split.warp.is_some() {
-                    return Err(Error::WarpedMoments { split: index, filter: self.filter });
+                    return Err(Error::WarpedMoments { split: index, filter: self.kind.word() });
                 }
                 let (first, last) = split.receiver_depths;
                 let span = last - first;
@@ -330,11 +345,11 @@ impl Moments {
             .collect()
     }
 
-    fn write(&mut self, queue: &wgpu::Queue, wanted: Vec<Option<layout::MomentPass>>, options: &FrameOptions) {
-        let quads = (options.derivatives == crate::Derivatives::Quad).into();
+    fn write(&mut self, queue: &wgpu::Queue, wanted: Vec<Option<layout::MomentPass>>, filter: &MomentFilter) {
+        let quads = (filter.derivatives == Derivatives::Quad).into();
         let mut frame = layout::Moments {
-            exponents: self.storage.exponents(self.filter),
-            bleeding: options.softness.bleeding,
+            exponents: self.storage.exponents(self.kind),
+            bleeding: filter.bleeding as f32,
             splits: [layout::MomentSplit { quads, ..layout::MomentSplit::default() }; MAX_SPLITS],
             ..layout::Moments::default()
         };

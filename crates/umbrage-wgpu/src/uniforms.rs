@@ -3,11 +3,14 @@
 use std::f32::consts::TAU;
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
+use umbrage::config::{self, Filter, LightKind, ShadowConfig, SplitMetric};
 use umbrage::{Selection, ShadowPlan};
 use umbrage_shaders::layout::{self, SelectionKind};
 
+use crate::maps::lights::Slot;
 use crate::maps::storage::Tile;
-use crate::{Error, Filter, FrameOptions, LightSlot, Result, ShadowMapsOptions, local};
+use crate::options::{bias_kind, depth_step, filter_kind, reach_within, transition_kind};
+use crate::{Error, FrameOptions, LightMaps, Result, local};
 
 /// The square of texels that clip space covers when a split is drawn: the map and a guard band around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,36 +63,30 @@ impl Place {
 /// The uniform that receivers read: the frames of each light's slot. Their splits are what casters read. `places` are those of all maps.
 pub(crate) fn frames(
     plans: &[&ShadowPlan],
-    maps: &ShadowMapsOptions,
+    config: &ShadowConfig,
+    slots: &[Slot],
     places: &[Place],
     options: &FrameOptions,
 ) -> Result<Vec<layout::Frame>> {
     options.validate()?;
-    if plans.len() != maps.lights.len() {
-        return Err(Error::LightCount { plans: plans.len(), lights: maps.lights.len() });
+    if plans.len() != slots.len() {
+        return Err(Error::LightCount { plans: plans.len(), lights: slots.len() });
     }
     let mut frames = Vec::new();
-    for (light, (plan, slot)) in plans.iter().zip(&maps.lights).enumerate() {
-        maps.fixed.check(plan, options)?;
-        let is_local = plan.light.is_some_and(|light| light.position().is_some());
-        if plan.faces() > slot.faces() || (is_local && *slot == LightSlot::Sun) {
-            return Err(Error::LightSlot { light, faces: plan.faces(), slot: *slot });
-        }
-        let for_suns = maps.filter == Filter::Pcss || maps.filter.is_prefiltered();
-        if for_suns && plan.light.is_some_and(|light| light.position().is_some()) {
-            return Err(Error::FilterNeedsSun { filter: maps.filter, light });
-        }
-        let splits = maps.map_sizes.len();
-        for face in 0..slot.faces() {
-            let first = frames.len() * splits;
+    for (light, (plan, slot)) in plans.iter().zip(slots).enumerate() {
+        let given = plan.light.map_or(LightKind::Directional, LightKind::from);
+        LightMaps::from(slot.kind).check(light, given)?;
+        for face in 0..slot.kind.faces() {
+            let first = slot.first_map + face * slot.sizes.len();
             frames.push(match face < plan.faces() {
-                true => frame(plan, face, maps, &places[first..first + splits], options)?,
+                true => frame(plan, face, config, slot, &places[first..first + slot.sizes.len()], options)?,
                 // A sun in a point light's slot leaves five faces over, which nobody asks.
                 false => layout::Frame::default(),
             });
         }
+        check_config(plan, config, slots)?;
     }
-    local::number(&mut frames, &maps.lights, plans);
+    local::number(&mut frames, slots, plans);
     Ok(frames)
 }
 
@@ -97,21 +94,95 @@ pub(crate) fn frames(
 fn frame(
     plan: &ShadowPlan,
     face: usize,
-    maps: &ShadowMapsOptions,
+    config: &ShadowConfig,
+    slot: &Slot,
     places: &[Place],
     options: &FrameOptions,
 ) -> Result<layout::Frame> {
-    let all_faces = (0..plan.faces()).flat_map(|_| &maps.map_sizes);
+    check_plan(plan, slot)?;
+    let (filter, look) = (&config.filter, &config.look);
+    if let Some(width_m) = filter.width_m() {
+        let map_m = plan.splits.iter().map(|s| s.texel_m.max_element() * f64::from(s.size)).fold(0.0, f64::max);
+        if 0.5 * width_m > map_m {
+            return Err(Error::FilterTooWide { width_m, map_m });
+        }
+    }
+    let (sun_degrees, rotated) = match *filter {
+        Filter::Pcss { sun_degrees, rotated } => (sun_degrees, rotated),
+        Filter::Disc { rotated, .. } => (0.0, rotated),
+        _ => (0.0, false),
+    };
+    let plane = plan.view_depth_plane;
+    let mut frame = layout::Frame {
+        view_depth_plane: row(plane.truncate(), plane.truncate().dot(options.origin) + plane.w),
+        to_light: (-plan.light_direction).as_vec3().to_array(),
+        strength: look.strength as f32,
+        fade_begin: plan.fade_begin as f32,
+        split_count: slot.sizes.len() as u32,
+        filter_kind: filter_kind(filter) as u32,
+        enabled: options.enabled.into(),
+        tint: options.tint.into(),
+        filter_width_m: filter.width_m().unwrap_or(0.0) as f32,
+        sun_tangent: (0.5 * sun_degrees).to_radians().tan() as f32,
+        turn_per_pixel: if rotated { TAU } else { 0.0 },
+        transition: transition_kind(config.transition) as u32,
+        slice: layout::EVERY_SLICE,
+        selection: match plan.selection {
+            Selection::Depth => SelectionKind::Depth,
+            Selection::Map => SelectionKind::Map,
+        } as u32,
+        map_blend: plan.blend as f32,
+        bias_kind: bias_kind(look.bias) as u32,
+        shadow_colour: look.colour.map(|part| part as f32),
+        eye: plan.radial_eye.map_or([0.0; 3], |eye| (eye - options.origin).as_vec3().to_array()),
+        is_radial: plan.radial_eye.is_some().into(),
+        ..layout::Frame::default()
+    };
+    local::place_light(&mut frame, plan, options.origin);
+    let first = face * slot.sizes.len();
+    let splits = plan.splits.iter().enumerate().skip(first);
+    for ((uniform, (index, split)), place) in frame.splits.iter_mut().zip(splits).zip(places) {
+        *uniform = self::split(index, split, depth_step(config.depth_format), *place, options.origin)?;
+        uniform.filter_reach = reach_within(filter, split.filter_reach) as f32;
+        uniform.is_linear = (config.depth_format.is_colour() && split.light_position.is_some()).into();
+    }
+    Ok(frame)
+}
+
+/// Checks that a plan makes the choices that the receivers' text was made for.
+fn check_config(plan: &ShadowPlan, config: &ShadowConfig, slots: &[Slot]) -> Result<()> {
+    let other = |setting| Err(Error::PlanOfOtherConfig { setting });
+    let is_sun = plan.light.is_none_or(|light| light.position().is_none());
+    if is_sun && slots.iter().all(|slot| !slot.kind.is_local()) {
+        if (plan.selection == Selection::Map) != (config.selection == config::Selection::Map) {
+            return other("selection");
+        }
+        if plan.radial_eye.is_some() != (config.selection == config::Selection::Interval(SplitMetric::Distance)) {
+            return other("bands");
+        }
+    }
+    let is_warped = |split: &umbrage::Split| split.warp.is_some() && split.light_position.is_none();
+    if config.first_warp().is_none() && plan.splits.iter().any(is_warped) && !config.filter.is_prefiltered() {
+        return other("warp");
+    }
+    Ok(())
+}
+
+/// Checks what of a plan belongs to no split.
+fn check_plan(plan: &ShadowPlan, slot: &Slot) -> Result<()> {
+    let all_faces = (0..plan.faces()).flat_map(|_| &slot.sizes);
     if !plan.splits.iter().map(|split| &split.size).eq(all_faces) {
         return Err(Error::PlanMismatch {
             plan: plan.splits.iter().map(|split| split.size).collect(),
-            maps: maps.map_sizes.clone(),
+            maps: slot.sizes.clone(),
         });
     }
     let bad = |field, value, expected| Err(Error::InvalidPlan { field, value, expected });
-    let plane = plan.view_depth_plane;
-    if !plane.is_finite() {
+    if !plan.view_depth_plane.is_finite() {
         return bad("view_depth_plane", f64::NAN, "four finite numbers");
+    }
+    if let Some(plane) = plan.planes.iter().find(|plane| !plane.is_finite()) {
+        return bad("planes", *plane, "finite view depths");
     }
     if plan.radial_eye.is_some_and(|eye| !eye.is_finite()) {
         return bad("radial_eye", f64::NAN, "three finite numbers");
@@ -122,48 +193,10 @@ fn frame(
     if !plan.fade_begin.is_finite() {
         return bad("fade_begin", plan.fade_begin, "a finite view depth");
     }
-
-    if let Some(width_m) = options.softness.width_m.filter(|_| maps.filter.has_width()).map(f64::from) {
-        let map_m = plan.splits.iter().map(|s| s.texel_m.max_element() * f64::from(s.size)).fold(0.0, f64::max);
-        if 0.5 * width_m > map_m {
-            return Err(Error::FilterTooWide { width_m, map_m });
-        }
+    if !(0.0..=1.0).contains(&plan.blend) {
+        return bad("blend", plan.blend, "in 0..=1");
     }
-
-    let mut frame = layout::Frame {
-        view_depth_plane: row(plane.truncate(), plane.truncate().dot(options.origin) + plane.w),
-        to_light: (-plan.light_direction).as_vec3().to_array(),
-        strength: options.strength,
-        fade_begin: plan.fade_begin as f32,
-        split_count: maps.map_sizes.len() as u32,
-        filter_kind: maps.filter.kind() as u32,
-        enabled: options.enabled.into(),
-        tint: options.tint.into(),
-        filter_width_m: options.softness.width_m.unwrap_or(0.0),
-        sun_tangent: (0.5 * options.softness.sun_angle).tan(),
-        turn_per_pixel: if options.softness.turned { TAU } else { 0.0 },
-        transition: options.transition.kind() as u32,
-        slice: layout::EVERY_SLICE,
-        selection: match plan.selection {
-            Selection::Depth => SelectionKind::Depth,
-            Selection::Map => SelectionKind::Map,
-        } as u32,
-        map_blend: plan.blend as f32,
-        bias_kind: options.bias.kind() as u32,
-        shadow_colour: options.shadow_colour,
-        eye: plan.radial_eye.map_or([0.0; 3], |eye| (eye - options.origin).as_vec3().to_array()),
-        is_radial: plan.radial_eye.is_some().into(),
-        ..layout::Frame::default()
-    };
-    local::place_light(&mut frame, plan, options.origin);
-    let first = face * maps.map_sizes.len();
-    let splits = plan.splits.iter().enumerate().skip(first);
-    for ((uniform, (index, split)), place) in frame.splits.iter_mut().zip(splits).zip(places) {
-        *uniform = self::split(index, split, maps.depth_format.step(), *place, options.origin)?;
-        uniform.filter_reach = maps.filter.reach_within(split.filter_reach) as f32;
-        uniform.is_linear = (maps.depth_format.is_colour() && split.light_position.is_some()).into();
-    }
-    Ok(frame)
+    Ok(())
 }
 
 /// One split. `depth_step` is the format's step as a share of the depth range.
@@ -260,8 +293,14 @@ fn check(index: usize, split: &umbrage::Split) -> Result<()> {
     if !(range > 0.0 && range.is_finite() && split.depth_near.is_finite()) {
         return bad("depth_far", split.depth_far, "finite and greater than depth_near");
     }
+    if !split.near.is_finite() {
+        return bad("near", split.near, "a finite view depth");
+    }
     if !split.far.is_finite() {
         return bad("far", split.far, "a finite view depth");
+    }
+    if !(split.filter_reach >= 0.0 && split.filter_reach.is_finite()) {
+        return bad("filter_reach", split.filter_reach, "finite texels, 0 or more");
     }
     if !split.blend_begin.is_finite() || split.blend_begin > split.far {
         return bad("blend_begin", split.blend_begin, "a finite view depth no greater than far");

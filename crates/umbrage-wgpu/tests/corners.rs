@@ -2,9 +2,10 @@
 
 mod common;
 
-use common::{Gpu, World, ask, cuboid, ground, plan};
+use common::{Gpu, PCF3, PCF5, World, ask, config, cuboid, ground, plan};
 use glam::{DVec3, Vec3};
-use umbrage_wgpu::{Filter, FrameOptions, ReceiverBias, ShadowMapsOptions};
+use umbrage::config::ReceiverBias;
+use umbrage_wgpu::FrameOptions;
 
 /// Metres per texel: 256 of them over 64 m.
 const TEXEL: f32 = 0.25;
@@ -17,7 +18,8 @@ fn up_the_riser(world: &mut World, bias: ReceiverBias, casters: &[Vec3]) -> Vec<
     let one_split = plan(light, DVec3::new(20.0, 0.0, 0.0), &[256], &[0.1, 100.0], &[64.0]);
     let riser = cuboid(Vec3::new(20.0, 0.0, -20.0), Vec3::new(40.0, 3.0, 20.0));
     let scene = [ground(100.0), riser, casters.to_vec()].concat();
-    world.draw(&one_split, &FrameOptions { bias, ..FrameOptions::default() }, &scene);
+    world.set(&format!("bias={bias}"));
+    world.draw(&one_split, &FrameOptions::default(), &scene);
     let asks: Vec<_> = (0..800)
         .map(|i| ask(Vec3::new(20.0, 0.01 + 0.0247 * (i % 20) as f32, -4.0 + 0.203 * (i / 20) as f32), Vec3::NEG_X))
         .collect();
@@ -30,10 +32,9 @@ fn dark(visibilities: &[f32]) -> usize {
 
 #[test]
 fn the_foot_of_a_lit_wall_is_lit() {
-    for filter in [Filter::Pcf3, Filter::Pcf5] {
+    for filter in [PCF3, PCF5] {
         let Some(gpu) = Gpu::new() else { return };
-        let options = ShadowMapsOptions { map_sizes: vec![256], filter, ..ShadowMapsOptions::default() };
-        let mut world = World::new(gpu, &options);
+        let mut world = World::new(gpu, &config(&[256], filter, ""));
         assert_eq!(dark(&up_the_riser(&mut world, ReceiverBias::Plane, &[])), 0, "{filter:?}");
         // Which surface a texel belongs to is not asked without the receiver's plane: the seam that there would be.
         assert!(dark(&up_the_riser(&mut world, ReceiverBias::Slope, &[])) > 20, "{filter:?}");

@@ -2,12 +2,11 @@
 
 mod common;
 
-use common::{Ask, Gpu, World, ask, cuboid, ground, plan};
+use common::{ASK, Ask, Gpu, PCF3, PCF5, SUN, World, ask, config, cuboid, ground, plan};
 use glam::{DVec3, DVec4, Vec3};
+use umbrage::config::Filter;
 use umbrage::{Bands, Selection, ShadowPlan};
-use umbrage_wgpu::{
-    Error, Filter, Fixed, FrameOptions, LightSlot, ReceiverBias, ShadowMapsOptions, Softness, Transition,
-};
+use umbrage_wgpu::{Error, FrameOptions, ShadowMaps};
 
 const SIZES: [u32; 3] = [128; 3];
 
@@ -31,44 +30,26 @@ fn asks() -> Vec<Ask> {
     level.chain(wall).collect()
 }
 
-/// All answers of maps that were made so, as bits.
-fn answers(gpu: Gpu, options: &ShadowMapsOptions, frame: &FrameOptions, plan: &ShadowPlan) -> Vec<[u32; 8]> {
-    let mut world = World::new(gpu, options);
-    let boxes: Vec<Vec3> = (-3..4)
-        .flat_map(|i| cuboid(Vec3::new(6.0 * i as f32, 0.0, -25.0), Vec3::new(6.0 * i as f32 + 1.5, 3.0, 25.0)))
-        .chain(ground(100.0))
-        .collect();
-    world.draw(plan, frame, &boxes);
-    bytemuck::cast_slice(&world.ask(&asks())).to_vec()
-}
-
 #[test]
 fn what_is_fixed_answers_as_what_is_not() {
-    for (filter, selection, bands, transition, bias) in [
-        (Filter::Hard, Selection::Depth, Bands::Planar, Transition::Hard, ReceiverBias::Plane),
-        (Filter::Pcf2, Selection::Map, Bands::Planar, Transition::Blend, ReceiverBias::Plane),
-        (Filter::Pcf3, Selection::Depth, Bands::Planar, Transition::Blend, ReceiverBias::Plane),
-        (Filter::Pcf5, Selection::Depth, Bands::Radial, Transition::Dither, ReceiverBias::Slope),
-        (Filter::Pcss, Selection::Map, Bands::Planar, Transition::Dither, ReceiverBias::Plane),
-        (Filter::Msm, Selection::Depth, Bands::Planar, Transition::Blend, ReceiverBias::Slope),
+    let wide_pcss = Filter::Pcss { sun_degrees: 5.73, rotated: false };
+    for (filter, selection, bands, settings) in [
+        (Filter::Hard, Selection::Depth, Bands::Planar, "transition=hard"),
+        (Filter::Pcf2, Selection::Map, Bands::Planar, "selection=map"),
+        (PCF3, Selection::Depth, Bands::Planar, ""),
+        (PCF5, Selection::Depth, Bands::Radial, "bands=radial transition=dither bias=slope"),
+        (wide_pcss, Selection::Map, Bands::Planar, "selection=map transition=dither"),
     ] {
-        let plan = planned(selection, bands);
-        let softness = Softness { sun_angle: 0.1, ..Softness::default() };
-        let frame = FrameOptions { transition, bias, softness, ..FrameOptions::default() };
-        let open = ShadowMapsOptions { map_sizes: SIZES.to_vec(), filter, ..ShadowMapsOptions::default() };
-        let fixed = ShadowMapsOptions {
-            lights: vec![LightSlot::Sun],
-            fixed: Fixed {
-                selection: Some(selection),
-                bands: Some(bands),
-                warped: Some(false),
-                transition: Some(transition),
-                bias: Some(bias),
-            },
-            ..open.clone()
-        };
-        let Some((one, other)) = Gpu::new().zip(Gpu::new()) else { return };
-        let (open, fixed) = (answers(one, &open, &frame, &plan), answers(other, &fixed, &frame, &plan));
+        let Some(gpu) = Gpu::new() else { return };
+        let mut world = World::new(gpu, &config(&SIZES, filter, settings));
+        let boxes: Vec<Vec3> = (-3..4)
+            .flat_map(|i| cuboid(Vec3::new(6.0 * i as f32, 0.0, -25.0), Vec3::new(6.0 * i as f32 + 1.5, 3.0, 25.0)))
+            .chain(ground(100.0))
+            .collect();
+        world.draw(&planned(selection, bands), &FrameOptions::default(), &boxes);
+        let fixed: Vec<[u32; 8]> = bytemuck::cast_slice(&world.ask(&asks())).to_vec();
+        let everything = umbrage_shaders::receiver(1, umbrage_shaders::Maps::default()) + ASK;
+        let open: Vec<[u32; 8]> = world.gpu.compute(&everything, &asks(), Some(&world.maps));
         let differing = open.iter().zip(&fixed).filter(|(open, fixed)| open != fixed).count();
         assert_eq!(differing, 0, "{filter:?} of {}", open.len());
         let lit = open.iter().filter(|answer| f32::from_bits(answer[0]) > 0.5).count();
@@ -79,36 +60,25 @@ fn what_is_fixed_answers_as_what_is_not() {
 #[test]
 fn what_the_text_does_not_have_is_refused() {
     let Some(gpu) = Gpu::new() else { return };
-    let fixed = Fixed {
-        selection: Some(Selection::Depth),
-        bands: Some(Bands::Planar),
-        warped: Some(true),
-        transition: Some(Transition::Blend),
-        bias: Some(ReceiverBias::Plane),
-    };
-    let options = ShadowMapsOptions { map_sizes: SIZES.to_vec(), ..ShadowMapsOptions::default() };
-    for (name, fixed, frame, plan) in [
-        ("selection", Fixed { warped: None, ..fixed }, FrameOptions::default(), planned(Selection::Map, Bands::Planar)),
-        ("bands", Fixed { warped: None, ..fixed }, FrameOptions::default(), planned(Selection::Depth, Bands::Radial)),
-        ("warped", fixed, FrameOptions::default(), planned(Selection::Depth, Bands::Planar)),
-        (
-            "transition",
-            Fixed { warped: None, ..fixed },
-            FrameOptions { transition: Transition::Hard, ..FrameOptions::default() },
-            planned(Selection::Depth, Bands::Planar),
-        ),
-        (
-            "bias",
-            Fixed { warped: None, ..fixed },
-            FrameOptions { bias: ReceiverBias::Slope, ..FrameOptions::default() },
-            planned(Selection::Depth, Bands::Planar),
-        ),
+    let mut warped = planned(Selection::Depth, Bands::Planar);
+    warped.splits[1].warp = Some(warped.splits[1].shadow_from_world());
+    let by_map = planned(Selection::Map, Bands::Planar);
+    let radial = planned(Selection::Depth, Bands::Radial);
+    let planar = planned(Selection::Depth, Bands::Planar);
+    for (setting, settings, plan) in [
+        ("selection", "", &by_map),
+        ("selection", "selection=map", &planar),
+        ("bands", "", &radial),
+        ("bands", "bands=radial", &planar),
+        ("warp", "", &warped),
     ] {
-        let mut maps = umbrage_wgpu::ShadowMaps::new(&gpu.device, &ShadowMapsOptions { fixed, ..options.clone() })
-            .expect("valid options");
-        let error = maps.prepare(&gpu.queue, &plan, &frame).expect_err(name);
-        let Error::ConflictingOptions { first, second, .. } = &error else { panic!("{error}") };
-        assert!(first.starts_with(name) && second.starts_with(name), "{error}");
-        assert!(error.to_string().contains("ShadowMapsOptions::fixed"), "{error}");
+        let mut maps = ShadowMaps::new(&gpu.device, &config(&SIZES, PCF3, settings), &SUN).expect("valid");
+        let error = maps.prepare(&gpu.queue, plan, &FrameOptions::default()).expect_err(setting);
+        assert_eq!(error, Error::PlanOfOtherConfig { setting });
+        assert!(error.to_string().contains(setting), "{error}");
     }
+    let mut maps = ShadowMaps::new(&gpu.device, &config(&SIZES, PCF3, "warp=lispsm"), &SUN).expect("valid");
+    // Where a warp has nothing to gain, a split is plain.
+    assert_eq!(maps.prepare(&gpu.queue, &warped, &FrameOptions::default()), Ok(()));
+    assert_eq!(maps.prepare(&gpu.queue, &planar, &FrameOptions::default()), Ok(()));
 }

@@ -2,10 +2,11 @@
 
 mod common;
 
-use common::{Gpu, World, cuboid, ground, plan};
+use common::{EVSM4, Gpu, VSM, World, config, cuboid, ground, plan};
 use glam::{DVec3, Vec3};
 use umbrage::ShadowPlan;
-use umbrage_wgpu::{Derivatives, Filter, FrameOptions, ShadowMapsOptions};
+use umbrage::config::{Derivatives, Filter};
+use umbrage_wgpu::FrameOptions;
 
 const SIZE: u32 = 64;
 
@@ -42,16 +43,15 @@ fn askew() -> ShadowPlan {
 }
 
 fn world(filter: Filter) -> Option<World> {
-    let options = ShadowMapsOptions { map_sizes: vec![128; 4], filter, ..Default::default() };
-    Some(World::new(Gpu::new()?, &options))
+    Some(World::new(Gpu::new()?, &config(&[128; 4], filter, "")))
 }
 
 #[test]
 fn a_quad_agrees_on_its_last_split() {
-    let Some(mut world) = world(Filter::Vsm) else { return };
+    let Some(mut world) = world(VSM) else { return };
     for derivatives in [Derivatives::Analytic, Derivatives::Quad] {
-        let frame = FrameOptions { derivatives, ..FrameOptions::default() };
-        world.draw(&askew(), &frame, &ground(400.0));
+        world.set(&format!("derivatives={derivatives}"));
+        world.draw(&askew(), &FrameOptions::default(), &ground(400.0));
         let own = |x: u32, y: u32| {
             let depth = f64::from(x) + 0.5 + 0.35 * (f64::from(y) + 0.5 - 32.0) + 11.2;
             [16.3, 17.1, 40.6].iter().filter(|plane| depth >= **plane).count()
@@ -80,12 +80,13 @@ fn a_quad_agrees_on_its_last_split() {
 /// Both ways see the same shadow but for the pixels of the border.
 #[test]
 fn both_derivatives_see_one_shadow() {
-    for filter in [Filter::Vsm, Filter::Evsm4] {
+    for filter in [VSM, EVSM4] {
         let Some(mut world) = world(filter) else { return };
         let mut triangles = ground(400.0);
         triangles.extend(cuboid(Vec3::new(10.0, 0.0, -20.0), Vec3::new(40.0, 6.0, -10.0)));
         let [analytic, quad] = [Derivatives::Analytic, Derivatives::Quad].map(|derivatives| {
-            world.draw(&askew(), &FrameOptions { derivatives, ..FrameOptions::default() }, &triangles);
+            world.set(&format!("derivatives={derivatives}"));
+            world.draw(&askew(), &FrameOptions::default(), &triangles);
             drawn(&world, "0.0, 1.0")
         });
         let dark = analytic.iter().filter(|pixel| pixel[0] < 0.1).count();

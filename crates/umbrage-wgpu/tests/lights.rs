@@ -3,17 +3,16 @@
 mod common;
 
 use bytemuck::{Pod, Zeroable};
-use common::{Ask, Gpu, World, ask, cuboid, ground, quad};
+use common::{Ask, DISC, Gpu, PCF3, PCF5, PCSS, World, ask, config, cuboid, ground, quad};
 use glam::{DVec3, Vec3};
-use umbrage::{
-    Aabb, DirectionalLight, Frustum, Light, Planner, PointLight, ShadowPlan, ShadowSettings, SpotLight, View,
-};
-use umbrage_wgpu::{Error, Filter, FrameOptions, LightSlot, ShadowMaps, ShadowMapsOptions, Storage};
+use umbrage::config::{Filter, LightKind, ShadowConfig};
+use umbrage::{Aabb, DirectionalLight, Frustum, Light, Planner, PointLight, ShadowPlan, SpotLight, View};
+use umbrage_wgpu::{Error, FrameOptions, LightMaps, ShadowMaps};
 
 const LAMP: DVec3 = DVec3::new(0.0, 4.0, 0.0);
 
-fn options(lights: &[LightSlot], filter: Filter) -> ShadowMapsOptions {
-    ShadowMapsOptions { map_sizes: vec![256; 2], filter, lights: lights.to_vec(), ..Default::default() }
+fn maps_of(filter: Filter) -> ShadowConfig {
+    config(&[256; 2], filter, "")
 }
 
 /// A plate of 1 × 1 m, 2 m over the ground, and a wall beside it.
@@ -36,7 +35,8 @@ fn view() -> View {
 }
 
 fn planned(maps: &ShadowMaps, light: Light) -> ShadowPlan {
-    let mut planner = Planner::new(maps.matching_settings()).expect("valid");
+    let settings = maps.config().planner_settings(maps.depth_clamp(), [800, 600]);
+    let mut planner = Planner::new(settings).expect("valid");
     planner.plan(&view(), &light, &boxes(), &boxes()).expect("valid").clone()
 }
 
@@ -97,12 +97,10 @@ fn lit_by_lamp(p: Vec3, unsure: f32) -> Option<bool> {
 
 #[test]
 fn a_lamp_throws_shadows_as_large_as_similar_triangles_say() {
-    for (filter, reach, index) in
-        [(Filter::Hard, 1.0, 1), (Filter::Pcf3, 3.0, 1), (Filter::Pcf5, 4.0, 2), (Filter::Disc, 5.0, 2)]
-    {
+    for (filter, reach, index) in [(Filter::Hard, 1.0, 1), (PCF3, 3.0, 1), (PCF5, 4.0, 2), (DISC, 5.0, 2)] {
         let Some(gpu) = Gpu::new() else { return };
         let light = lights()[index];
-        let mut world = World::new(gpu, &options(&[light.into()], filter));
+        let mut world = World::of_lights(gpu, &maps_of(filter), &[light]);
         let plan = planned(&world.maps, light);
         world.draw(&plan, &FrameOptions::default(), &triangles());
         let asks = ground_asks();
@@ -128,8 +126,7 @@ fn a_lamp_throws_shadows_as_large_as_similar_triangles_say() {
 #[test]
 fn several_lights_answer_as_each_does_alone() {
     let Some(gpu) = Gpu::new() else { return };
-    let slots = lights().map(LightSlot::from);
-    let mut world = World::new(gpu, &options(&slots, Filter::Pcf3));
+    let mut world = World::of_lights(gpu, &maps_of(PCF3), &lights());
     assert_eq!(world.maps.map_count(), 2 * (1 + 6 + 1 + 1));
     assert_eq!([0, 1, 2, 3].map(|light| world.maps.first_map(light)), [0, 2, 14, 16]);
     let plans = lights().map(|light| planned(&world.maps, light));
@@ -139,7 +136,7 @@ fn several_lights_answer_as_each_does_alone() {
     let together: Vec<Answers> = world.gpu.compute(&source, &asks, Some(&world.maps));
     for (index, light) in lights().into_iter().enumerate() {
         let Some(gpu) = Gpu::new() else { return };
-        let mut alone = World::new(gpu, &options(&[light.into()], Filter::Pcf3));
+        let mut alone = World::of_lights(gpu, &maps_of(PCF3), &[light]);
         alone.draw(&plans[index], &FrameOptions::default(), &triangles());
         let answers = alone.ask(&asks);
         let dark = answers.iter().filter(|answer| answer.visibility < 0.5).count();
@@ -159,9 +156,9 @@ fn several_lights_answer_as_each_does_alone() {
 fn a_light_that_grazes_a_wall_makes_no_stripes() {
     // 10 cm from a wall 6 m high: over most of it light and wall meet at less than 5°.
     let light = lights()[3];
-    for filter in [Filter::Hard, Filter::Pcf5] {
+    for filter in [Filter::Hard, PCF5] {
         let Some(gpu) = Gpu::new() else { return };
-        let mut world = World::new(gpu, &options(&[light.into()], filter));
+        let mut world = World::of_lights(gpu, &maps_of(filter), &[light]);
         let plan = planned(&world.maps, light);
         world.draw(&plan, &FrameOptions::default(), &triangles());
         let steps = |from: f32, to: f32, n: i32| (0..n).map(move |i| from + (to - from) * (i as f32 + 0.5) / n as f32);
@@ -179,44 +176,82 @@ fn a_light_that_grazes_a_wall_makes_no_stripes() {
     }
 }
 
+/// A lamp has maps of its own: two of 128 texels for each face beside a sun's three of 256.
 #[test]
-fn what_the_device_or_the_options_cannot_hold_is_refused() {
+fn lights_have_map_sizes_of_their_own() {
     let Some(gpu) = Gpu::new() else { return };
-    let new = |options: &ShadowMapsOptions| ShadowMaps::new(&gpu.device, options);
-    // Three lights of eight maps each, kept apart: an array would do.
-    let three = ShadowMapsOptions { map_sizes: vec![64; 8], lights: vec![LightSlot::Single; 3], ..Default::default() };
-    for storage in [Storage::Separate, Storage::Atlas] {
-        let error = new(&ShadowMapsOptions { storage, ..three.clone() }).expect_err("one light's alone");
-        assert_eq!(error, Error::LightsNeedArray { maps: 24, splits: 8, storage });
-        let message = error.to_string();
-        assert!(
-            message.contains("lights") && message.contains("map_sizes") && message.contains("storage"),
-            "{message}"
-        );
+    let [sun, lamp] = [lights()[0], lights()[1]];
+    let slots =
+        [LightMaps::with_sizes(LightKind::Directional, &[256; 3]), LightMaps::with_sizes(LightKind::Point, &[128; 2])];
+    let asked = maps_of(PCF3);
+    let mut world = World::of_lights(gpu, &asked, &slots);
+    assert_eq!((world.maps.map_count(), world.maps.first_map(1)), (3 + 6 * 2, 3));
+    assert_eq!((world.maps.map_sizes(0), world.maps.map_sizes(1)), (&[256; 3][..], &[128; 2][..]));
+    assert_eq!(
+        (world.maps.light_of_map(2), world.maps.light_of_map(3), world.maps.light_of_map(14)),
+        ((0, 2), (1, 0), (1, 11))
+    );
+    let plan_with = |light: Light, map_sizes: &[u32]| {
+        let own = ShadowConfig { map_sizes: map_sizes.to_vec(), ..asked.clone() };
+        let mut planner = Planner::new(own.planner_settings(false, [800, 600])).expect("valid");
+        planner.plan(&view(), &light, &boxes(), &boxes()).expect("valid").clone()
+    };
+    let plans = [plan_with(sun, &[256; 3]), plan_with(lamp, &[128; 2])];
+    world.draw_all(&plans.each_ref(), &FrameOptions::default(), &triangles());
+    let asks = ground_asks();
+    let source = world.maps.receiver_wgsl(1) + &ASK_ALL.replace("light < 4u", "light < 2u");
+    let together: Vec<Answers> = world.gpu.compute(&source, &asks, Some(&world.maps));
+    for (index, (light, map_sizes)) in [(sun, &[256; 3][..]), (lamp, &[128; 2])].into_iter().enumerate() {
+        let Some(gpu) = Gpu::new() else { return };
+        let mut alone = World::of_lights(gpu, &config(map_sizes, PCF3, ""), &[light]);
+        alone.draw(&plans[index], &FrameOptions::default(), &triangles());
+        for ((one, all), it) in alone.ask(&asks).iter().zip(&together).zip(&asks) {
+            // A sampler weighs in steps of 1/256 from coordinates that round otherwise in another layer's size.
+            let off = (one.visibility - all.visibility[index]).abs();
+            assert!(off < 1.0 / 64.0, "light {index} at {}: {off}", it.position());
+            assert_eq!(one.split, all.split[index], "light {index} at {}", it.position());
+        }
     }
-    assert!(new(&ShadowMapsOptions { storage: Storage::Array, ..three.clone() }).is_ok());
+}
 
-    let none = ShadowMapsOptions { lights: vec![], ..Default::default() };
-    assert!(matches!(new(&none), Err(Error::TooManyLights { frames: 0, .. })));
-    let many = ShadowMapsOptions { map_sizes: vec![16], lights: vec![LightSlot::Cube; 100], ..Default::default() };
-    let error = new(&many).expect_err("600 frames");
+#[test]
+fn what_the_device_or_the_config_cannot_hold_is_refused() {
+    let Some(gpu) = Gpu::new() else { return };
+    // Three lights of eight maps each, kept apart: an array would do.
+    let three = [LightKind::Directional; 3];
+    for storage in ["separate", "atlas"] {
+        let asked = config(&[64; 8], PCF3, &format!("storage={storage}"));
+        let error = ShadowMaps::new(&gpu.device, &asked, &three).expect_err("one light's alone");
+        assert!(matches!(error, Error::Config(umbrage::Error::Conflict(_))), "{error}");
+        let message = error.to_string();
+        assert!(message.contains("lights") && message.contains(&format!("storage {storage}")), "{message}");
+    }
+    assert!(ShadowMaps::new(&gpu.device, &config(&[64; 8], PCF3, ""), &three).is_ok());
+
+    let none: [LightKind; 0] = [];
+    let error = ShadowMaps::new(&gpu.device, &maps_of(PCF3), &none);
+    assert!(matches!(error, Err(Error::TooManyLights { frames: 0, .. })));
+    let error =
+        ShadowMaps::new(&gpu.device, &config(&[16], PCF3, ""), &[LightKind::Point; 100]).expect_err("600 frames");
     assert!(matches!(error, Error::TooManyLights { frames: 600, .. }), "{error}");
 
-    let mut maps = new(&options(&[LightSlot::Single; 2], Filter::Pcf3)).expect("valid");
+    let mut maps = ShadowMaps::new(&gpu.device, &maps_of(PCF3), &[LightKind::Directional; 2]).expect("valid");
     let lamp = planned(&maps, lights()[1]);
+    let spot = planned(&maps, lights()[2]);
     let sun = planned(&maps, lights()[0]);
     let frame = FrameOptions::default();
-    let error = maps.prepare_lights(&gpu.queue, &[&sun, &lamp], &frame).expect_err("no cube");
-    assert!(matches!(error, Error::LightSlot { light: 1, faces: 6, slot: LightSlot::Single }), "{error}");
+    for (wrong, given) in [(&lamp, LightKind::Point), (&spot, LightKind::Spot)] {
+        let error = maps.prepare_lights(&gpu.queue, &[&sun, wrong], &frame).expect_err("no sun");
+        assert_eq!(error, Error::LightKind { light: 1, given, made_for: LightKind::Directional });
+    }
     let error = maps.prepare(&gpu.queue, &sun, &frame).expect_err("one of two");
     assert!(matches!(error, Error::LightCount { plans: 1, lights: 2 }), "{error}");
-    let mut soft = new(&options(&[LightSlot::Cube], Filter::Pcss)).expect("valid");
-    let error = soft.prepare(&gpu.queue, &lamp, &frame).expect_err("a lamp is no sun");
-    assert!(matches!(error, Error::FilterNeedsSun { filter: Filter::Pcss, light: 0 }), "{error}");
+    let error = ShadowMaps::new(&gpu.device, &maps_of(PCSS), &[LightKind::Point]).expect_err("a lamp is no sun");
+    assert!(error.to_string().contains("filter pcss"), "{error}");
     // A sun in a point light's place is drawn there; the other five faces are nobody's.
-    let mut cube = new(&options(&[LightSlot::Cube], Filter::Pcf3)).expect("valid");
-    assert!(cube.prepare(&gpu.queue, &sun, &frame).is_ok() && cube.prepare(&gpu.queue, &lamp, &frame).is_ok());
-    let other = ShadowSettings { map_sizes: vec![128; 2], ..maps.matching_settings() };
+    let mut cube = ShadowMaps::new(&gpu.device, &maps_of(PCF3), &[LightKind::Point]).expect("valid");
+    assert!([&sun, &spot, &lamp].iter().all(|plan| cube.prepare(&gpu.queue, plan, &frame).is_ok()));
+    let other = config(&[128; 2], PCF3, "").planner_settings(maps.depth_clamp(), [800, 600]);
     let mut planner = Planner::new(other).expect("valid");
     let plan = planner.plan(&view(), &lights()[1], &boxes(), &boxes()).expect("valid");
     assert!(matches!(cube.prepare(&gpu.queue, plan, &frame), Err(Error::PlanMismatch { .. })));

@@ -2,13 +2,14 @@
 
 mod common;
 
-use common::{Gpu, World, ask, cuboid, ground, plan};
+use common::{Gpu, PCF3, PCF7, PCSS, World, ask, config, cuboid, ground, plan};
 use glam::{DVec3, Quat, Vec3};
 use umbrage::ShadowPlan;
-use umbrage_wgpu::{Filter, FrameOptions, ReceiverBias, ShadowMapsOptions};
+use umbrage::config::{Filter, ReceiverBias};
+use umbrage_wgpu::FrameOptions;
 
 fn world(filter: Filter) -> Option<World> {
-    Some(World::new(Gpu::new()?, &ShadowMapsOptions { map_sizes: vec![256], filter, ..ShadowMapsOptions::default() }))
+    Some(World::new(Gpu::new()?, &config(&[256], filter, "")))
 }
 
 /// One split of 256 texels over 64 m: a texel is a quarter of a metre.
@@ -18,12 +19,13 @@ fn one_split(light: DVec3) -> ShadowPlan {
 
 #[test]
 fn shadows_have_the_colour_and_the_strength_that_they_are_given() {
-    let Some(mut world) = world(Filter::Pcf3) else { return };
+    let Some(mut world) = world(PCF3) else { return };
     let roof = cuboid(Vec3::new(15.0, 4.0, -5.0), Vec3::new(25.0, 5.0, 5.0));
     let asks = [ask(Vec3::new(20.0, 0.0, 0.0), Vec3::Y), ask(Vec3::new(40.0, 0.0, 0.0), Vec3::Y)];
     let mut lights = |strength: f32, shadow_colour: [f32; 3]| -> Vec<[f32; 4]> {
-        let frame = FrameOptions { strength, shadow_colour, ..FrameOptions::default() };
-        world.draw(&one_split(DVec3::NEG_Y), &frame, &[roof.clone(), ground(100.0)].concat());
+        let [red, green, blue] = shadow_colour;
+        world.set(&format!("shadow-strength={strength} shadow-colour={red},{green},{blue}"));
+        world.draw(&one_split(DVec3::NEG_Y), &FrameOptions::default(), &[roof.clone(), ground(100.0)].concat());
         let source = world.maps.receiver_wgsl(1)
             + "struct Ask { position: vec4f, normal: vec4f }
                @group(0) @binding(0) var<storage, read> asks: array<Ask>;
@@ -47,8 +49,8 @@ fn shadows_have_the_colour_and_the_strength_that_they_are_given() {
 /// own.
 fn dark_on_a_bare_plane(world: &mut World, bias: ReceiverBias, aside: f32) -> usize {
     let light = DVec3::new(0.7, -0.5, 0.3).normalize();
-    let frame = FrameOptions { bias, ..FrameOptions::default() };
-    world.draw(&one_split(light), &frame, &ground(60.0));
+    world.set(&format!("bias={bias}"));
+    world.draw(&one_split(light), &FrameOptions::default(), &ground(60.0));
     let normal = Quat::from_axis_angle(light.as_vec3(), aside.to_radians()) * Vec3::Y;
     let asks: Vec<_> = (0..900)
         .map(|i| ask(Vec3::new(14.0 + 0.413 * (i % 30) as f32, 0.0, -6.0 + 0.397 * (i / 30) as f32), normal))
@@ -58,7 +60,7 @@ fn dark_on_a_bare_plane(world: &mut World, bias: ReceiverBias, aside: f32) -> us
 
 #[test]
 fn planes_do_not_shade_themselves_and_the_slope_forgives_normals_that_point_aside() {
-    for filter in [Filter::Hard, Filter::Pcf3, Filter::Pcf7, Filter::Pcss] {
+    for filter in [Filter::Hard, PCF3, PCF7, PCSS] {
         let Some(mut world) = world(filter) else { return };
         let mut dark = |bias, aside| dark_on_a_bare_plane(&mut world, bias, aside);
         assert_eq!(dark(ReceiverBias::Plane, 0.0), 0, "{filter:?}");

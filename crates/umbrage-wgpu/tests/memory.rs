@@ -6,10 +6,12 @@
 
 mod common;
 
-use common::{Gpu, World, cuboid, ground, plan};
+use common::{Gpu, PCF3, World, config, cuboid, ground, plan};
 use glam::{DVec3, Vec3};
+use umbrage::ShadowConfig;
 use umbrage::ShadowPlan;
-use umbrage_wgpu::{DepthFormat, FrameOptions, Generation, ShadowMapsOptions};
+use umbrage::config::{DepthFormat, Layout};
+use umbrage_wgpu::FrameOptions;
 
 /// Frames until everything that is made once has been made.
 const WARM_UP: u32 = 100;
@@ -34,8 +36,8 @@ fn casters() -> Vec<Vec3> {
 }
 
 /// MiB by which the process grows while frames are drawn.
-fn growth(gpu: Gpu, options: &ShadowMapsOptions, frames: u32) -> f64 {
-    let mut world = World::new(gpu, options);
+fn growth(gpu: Gpu, asked: &ShadowConfig, frames: u32) -> f64 {
+    let mut world = World::new(gpu, asked);
     let casters = casters();
     let mut draw = |frame| {
         let options = FrameOptions { origin: DVec3::new(f64::from(frame % 7), 0.0, 0.0), ..FrameOptions::default() };
@@ -54,8 +56,8 @@ fn resident_mib() -> f64 {
     line.trim().trim_end_matches("kB").trim().parse::<f64>().expect("a number of kB") / 1024.0
 }
 
-fn options(generation: Generation, depth_format: DepthFormat) -> ShadowMapsOptions {
-    ShadowMapsOptions { map_sizes: vec![64; 4], generation, depth_format, ..ShadowMapsOptions::default() }
+fn asked(layout: Layout, depth_format: DepthFormat) -> ShadowConfig {
+    ShadowConfig { layout, depth_format, ..config(&[64; 4], PCF3, "") }
 }
 
 #[test]
@@ -66,15 +68,15 @@ fn drawing_casters_takes_no_more_memory_frame_by_frame() {
     assert!(resident_mib() - before > MOST_MIB, "{} bytes are held and not seen", held.len());
     drop(held);
     let mut grown = Vec::new();
-    for (generation, depth_format) in [
-        (Generation::PerSplit, DepthFormat::D32Float),
-        (Generation::PerSplit, DepthFormat::R32Float),
-        (Generation::Layered, DepthFormat::D32Float),
-        (Generation::Instanced, DepthFormat::D32Float),
+    for (layout, depth_format) in [
+        (Layout::Array, DepthFormat::D32Float),
+        (Layout::Array, DepthFormat::R32Float),
+        (Layout::LayeredArray, DepthFormat::D32Float),
+        (Layout::InstancedAtlas, DepthFormat::D32Float),
     ] {
         let Some(gpu) = Gpu::new() else { return };
-        let mib = growth(gpu, &options(generation, depth_format), 500);
-        grown.push((generation, depth_format, mib));
+        let mib = growth(gpu, &asked(layout, depth_format), 500);
+        grown.push((layout, depth_format, mib));
     }
     eprintln!("MiB in 500 frames: {grown:?}");
     assert!(grown.iter().all(|&(_, _, mib)| mib < MOST_MIB), "MiB in 500 frames: {grown:?}");
@@ -84,7 +86,7 @@ fn drawing_casters_takes_no_more_memory_frame_by_frame() {
 #[ignore = "run alone: `cargo test -p umbrage-wgpu --test memory -- --ignored`"]
 fn ten_thousand_frames_are_flat() {
     let Some(gpu) = Gpu::new() else { return };
-    let mib = growth(gpu, &options(Generation::PerSplit, DepthFormat::D32Float), 10_000);
+    let mib = growth(gpu, &asked(Layout::Array, DepthFormat::D32Float), 10_000);
     eprintln!("{mib:.1} MiB in 10,000 frames");
     assert!(mib < 20.0, "{mib:.1} MiB in 10,000 frames");
 }

@@ -2,19 +2,14 @@
 
 mod common;
 
-use common::{Ask, Gpu, World, ask, cuboid, ground, plan, quad};
+use common::{Ask, ESM, EVSM2, EVSM4, Gpu, MSM, PCF3, SUN, VSM, World, ask, config, cuboid, ground, plan, quad, with};
 use glam::{DVec3, Vec3};
 use umbrage::ShadowPlan;
-use umbrage_wgpu::{
-    Error, Filter, FrameOptions, LightSlot, MomentStorage, ShadowMaps, ShadowMapsOptions, Softness, Storage,
-};
+use umbrage::config::{Filter, LightKind, ShadowConfig};
+use umbrage_wgpu::{Error, FrameOptions, MomentStorage, ShadowMaps};
 
-const ALL: [Filter; 5] = [Filter::Esm, Filter::Vsm, Filter::Evsm2, Filter::Evsm4, Filter::Msm];
+const ALL: [Filter; 5] = [ESM, VSM, EVSM2, EVSM4, MSM];
 const SLANTED: DVec3 = DVec3::new(0.3, -0.8, 0.2);
-
-fn options(map_sizes: &[u32], filter: Filter) -> ShadowMapsOptions {
-    ShadowMapsOptions { map_sizes: map_sizes.to_vec(), filter, ..Default::default() }
-}
 
 fn without_float_filtering() -> Option<Gpu> {
     Gpu::without(wgpu::Features::FLOAT32_FILTERABLE)
@@ -42,13 +37,14 @@ fn one_map(light: DVec3, size: u32) -> ShadowPlan {
 fn planes_do_not_shade_themselves() {
     for filter in ALL {
         let Some(gpu) = Gpu::new() else { return };
-        let mut world = World::new(gpu, &options(&[256], filter));
+        let mut narrow = World::new(gpu, &config(&[256], filter, ""));
+        let Some(gpu) = Gpu::new() else { return };
+        let mut wide = World::new(gpu, &config(&[256], filter, "filter-width=2"));
         for (tilt, turn) in [(0.0, 0.0), (40.0, 10.0), (70.0, 100.0), (80.0, 300.0)] {
             let (tilt, turn) = (f64::to_radians(tilt), f64::to_radians(turn));
             let light = -DVec3::new(tilt.sin() * turn.cos(), tilt.cos(), tilt.sin() * turn.sin());
-            for width_m in [None, Some(2.0)] {
-                let softness = Softness { width_m, ..Softness::default() };
-                world.draw(&one_map(light, 256), &FrameOptions { softness, ..FrameOptions::default() }, &ground(400.0));
+            for (world, width_m) in [(&mut narrow, None), (&mut wide, Some(2.0))] {
+                world.draw(&one_map(light, 256), &FrameOptions::default(), &ground(400.0));
                 let points = grid(80..240, -60..60, 0.0913);
                 for (point, answer) in points.iter().zip(world.ask(&up(&points))) {
                     let lit = answer.visibility;
@@ -63,20 +59,20 @@ fn planes_do_not_shade_themselves() {
 #[test]
 fn walls_throw_shadows_in_every_storage() {
     for (filter, withheld, storage) in [
-        (Filter::Esm, false, MomentStorage::Floats),
-        (Filter::Vsm, false, MomentStorage::Floats),
-        (Filter::Evsm2, false, MomentStorage::Floats),
-        (Filter::Evsm4, false, MomentStorage::Floats),
-        (Filter::Msm, false, MomentStorage::Floats),
-        (Filter::Esm, true, MomentStorage::Halves),
-        (Filter::Vsm, true, MomentStorage::FloatsByHand),
-        (Filter::Evsm2, true, MomentStorage::Halves),
-        (Filter::Evsm4, true, MomentStorage::Halves),
-        (Filter::Msm, true, MomentStorage::FloatsByHand),
+        (ESM, false, MomentStorage::F32),
+        (VSM, false, MomentStorage::F32),
+        (EVSM2, false, MomentStorage::F32),
+        (EVSM4, false, MomentStorage::F32),
+        (MSM, false, MomentStorage::F32),
+        (ESM, true, MomentStorage::F16),
+        (VSM, true, MomentStorage::F32Manual),
+        (EVSM2, true, MomentStorage::F16),
+        (EVSM4, true, MomentStorage::F16),
+        (MSM, true, MomentStorage::F32Manual),
     ] {
         let Some(gpu) = (if withheld { without_float_filtering() } else { Gpu::new() }) else { return };
         let can = gpu.device.features().contains(wgpu::Features::FLOAT32_FILTERABLE);
-        let mut world = World::new(gpu, &options(&[256], filter));
+        let mut world = World::new(gpu, &config(&[256], filter, ""));
         if withheld || can {
             assert_eq!(world.maps.moment_storage(), Some(storage), "{filter:?}");
         }
@@ -101,7 +97,7 @@ fn by_hand_is_as_by_sampler() {
     let mut answers = Vec::new();
     for gpu in [Gpu::new(), without_float_filtering()] {
         let Some(gpu) = gpu else { return };
-        let mut world = World::new(gpu, &options(&[128], Filter::Vsm));
+        let mut world = World::new(gpu, &config(&[128], VSM, ""));
         let mut triangles = ground(400.0);
         triangles.extend(cuboid(Vec3::new(18.0, 0.0, -4.0), Vec3::new(19.0, 6.0, 4.0)));
         world.draw(&one_map(SLANTED, 128), &FrameOptions::default(), &triangles);
@@ -118,22 +114,20 @@ fn by_hand_is_as_by_sampler() {
 /// Neither blur nor levels reach into another layer, or past a map that is smaller than its layer.
 #[test]
 fn a_map_reads_itself_only() {
-    for (filter, sizes) in [(Filter::Vsm, [256, 128]), (Filter::Msm, [100, 100]), (Filter::Evsm4, [90, 130])] {
+    for (filter, sizes) in [(VSM, [256, 128]), (MSM, [100, 100]), (EVSM4, [90, 130])] {
         for dark in [0, 1] {
             let Some(gpu) = Gpu::new() else { return };
-            let mut world = World::new(gpu, &options(&sizes, filter));
+            let mut world = World::new(gpu, &config(&sizes, filter, "filter-width=60"));
             let widths = [64.0, 64.0];
             let mut plan = plan(DVec3::NEG_Y, DVec3::ZERO, &sizes, &[1.0, 2.0, 400.0], &widths);
             // A roof over everything in one map; nothing but ground in the other.
             plan.splits[1 - dark].depth_near = 60.0;
             plan.splits[1 - dark].depth_far = 100.0;
-            let softness = Softness { width_m: Some(60.0), ..Softness::default() };
-            let frame = FrameOptions { softness, ..FrameOptions::default() };
             let roof = quad(
                 [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
                     .map(|(x, z)| Vec3::new(500.0 * x, 50.0, 500.0 * z)),
             );
-            world.draw(&plan, &frame, &roof);
+            world.draw(&plan, &FrameOptions::default(), &roof);
             let points = grid(-64..64, -64..64, 0.49);
             for (point, answer) in points.iter().zip(world.ask(&up(&points))) {
                 let lit = answer.in_split[1 - dark];
@@ -167,7 +161,7 @@ fn levels_keep_the_mean() {
 }";
     for sizes in [[128, 128], [100, 75], [67, 67]] {
         let Some(gpu) = Gpu::new() else { return };
-        let mut world = World::new(gpu, &options(&sizes, Filter::Vsm));
+        let mut world = World::new(gpu, &config(&sizes, VSM, ""));
         let plan = plan(SLANTED, DVec3::new(20.0, 0.0, 0.0), &sizes, &[1.0, 20.0, 60.0], &[40.0, 60.0]);
         world.draw(&plan, &FrameOptions::default(), &cuboid(Vec3::new(12.0, 0.0, -4.0), Vec3::new(23.0, 6.0, 4.0)));
         let levels = u32::ilog2(sizes[0]) - 1;
@@ -193,12 +187,11 @@ fn four_samples_smooth_edges() {
     for samples in [1, 4] {
         let Some(gpu) = Gpu::new() else { return };
         // The narrowest kernel: what smooths is the samples.
-        let softness = Softness { width_m: Some(0.01), bleeding: 0.0, ..Softness::default() };
-        let mut world = World::new(gpu, &ShadowMapsOptions { samples, ..options(&[128], Filter::Vsm) });
+        let narrow = format!("msaa={samples} filter-width=0.01 bleeding=0");
+        let mut world = World::new(gpu, &config(&[128], VSM, &narrow));
         let end = |z: f32| Vec3::new(20.0 + 0.1 * z, 10.0, z);
         let roof = quad([Vec3::new(-300.0, 10.0, -200.0), end(-200.0), end(200.0), Vec3::new(-300.0, 10.0, 200.0)]);
-        let frame = FrameOptions { softness, ..FrameOptions::default() };
-        world.draw(&one_map(DVec3::NEG_Y, 128), &frame, &[roof, ground(300.0)].concat());
+        world.draw(&one_map(DVec3::NEG_Y, 128), &FrameOptions::default(), &[roof, ground(300.0)].concat());
         let along: Vec<Vec3> =
             (-500..500).map(|k| 0.01 * k as f32).map(|z| Vec3::new(20.0 + 0.1 * z, 0.0, z)).collect();
         let lit: Vec<f32> = world.ask(&up(&along)).iter().map(|answer| answer.visibility).collect();
@@ -212,66 +205,64 @@ fn four_samples_smooth_edges() {
 #[test]
 fn bytes_count_everything() {
     let Some(gpu) = Gpu::new() else { return };
-    let bytes = |filter, samples| {
-        let options = ShadowMapsOptions { samples, ..options(&[256, 128], filter) };
-        ShadowMaps::new(&gpu.device, &options).expect("valid options").bytes()
+    let bytes = |filter, settings: &str| {
+        ShadowMaps::new(&gpu.device, &config(&[256, 128], filter, settings), &SUN).expect("valid").bytes()
     };
     let depth = 2 * 256 * 256 * 4;
-    assert_eq!(bytes(Filter::Pcf3, 1), depth);
+    assert_eq!(bytes(PCF3, ""), depth);
     let texel = if gpu.device.features().contains(wgpu::Features::FLOAT32_FILTERABLE) { 4 } else { 2 };
     // Levels 256 to 4, of two layers, and the texture between two blurs.
     let levels: u64 = (2..=8).map(|k| 1u64 << (2 * k)).sum();
-    assert_eq!(bytes(Filter::Evsm4, 1), depth + 4 * texel * (2 * levels + 256 * 256));
-    assert_eq!(bytes(Filter::Esm, 4), 4 * 4 * (256 * 256 + 128 * 128) + texel * (2 * levels + 256 * 256));
+    assert_eq!(bytes(EVSM4, ""), depth + 4 * texel * (2 * levels + 256 * 256));
+    assert_eq!(bytes(ESM, "msaa=4"), 4 * 4 * (256 * 256 + 128 * 128) + texel * (2 * levels + 256 * 256));
 }
 
 #[test]
 fn what_cannot_be_is_an_error_that_says_so() {
     let Some(gpu) = without_float_filtering() else { return };
-    let error = |options: ShadowMapsOptions| ShadowMaps::new(&gpu.device, &options).expect_err("it cannot be");
+    let error = |asked: &ShadowConfig, lights: &[LightKind]| {
+        ShadowMaps::new(&gpu.device, asked, lights).expect_err("it cannot be")
+    };
+    let says = |found: Error, words: &[&str]| {
+        let message = found.to_string();
+        assert!(matches!(found, Error::Config(_)), "{message}");
+        assert!(words.iter().all(|word| message.contains(word)), "{message}");
+    };
     for samples in [0, 2, 3, 8, 16] {
-        let found = error(ShadowMapsOptions { samples, ..options(&[256], Filter::Vsm) });
-        assert_eq!(found, Error::Samples { samples, filter: Filter::Vsm });
+        let mut asked = config(&[256], VSM, "");
+        if let Filter::Moments(moments) = &mut asked.filter {
+            moments.samples = samples;
+        }
+        says(error(&asked, &SUN), &["msaa", &format!("{samples} samples")]);
     }
-    let found = error(ShadowMapsOptions { samples: 4, ..options(&[256], Filter::Pcf3) });
-    assert_eq!(found, Error::Samples { samples: 4, filter: Filter::Pcf3 });
     for filter in ALL {
-        let found = error(ShadowMapsOptions { fallbacks: false, ..options(&[256], filter) });
-        assert_eq!(found, Error::NoFilterableFloats { filter });
+        let word = filter.word();
+        let asked = config(&[256], filter, "");
+        let found = error(&with(asked.clone(), "fallbacks=forbid"), &SUN);
+        assert_eq!(found, Error::NoFilterableFloats { filter: word });
         assert!(found.to_string().contains("FLOAT32_FILTERABLE"), "{found}");
-        let found = error(options(&[32], filter));
-        assert_eq!(found, Error::MapTooSmall { split: 0, size: 32, filter, least: 33 }, "a blur wider than the map");
-        let found = error(ShadowMapsOptions { storage: Storage::Atlas, ..options(&[256], filter) });
-        assert_eq!(found, Error::MomentsNeedArray { storage: Storage::Atlas, filter });
-        let lights = vec![LightSlot::Single, LightSlot::Cube];
-        let found = error(ShadowMapsOptions { lights: lights.clone(), ..options(&[256], filter) });
-        assert_eq!(found, Error::MomentsNeedOneSun { lights, filter });
+        // A blur wider than the map.
+        says(error(&ShadowConfig { map_sizes: vec![32], ..asked.clone() }, &SUN), &["map 0 is 32 texels", word]);
+        let layout = umbrage::config::Layout::Atlas;
+        says(error(&ShadowConfig { layout, ..asked.clone() }, &SUN), &["storage atlas", &format!("filter {word}")]);
+        says(error(&asked, &[LightKind::Directional; 2]), &["several lights", &format!("filter {word}")]);
     }
 }
 
 #[test]
 fn plans_and_frames_that_cannot_be_are_refused() {
     let Some(gpu) = Gpu::new() else { return };
-    let mut maps = ShadowMaps::new(&gpu.device, &options(&[256], Filter::Evsm4)).expect("valid options");
+    let mut maps = ShadowMaps::new(&gpu.device, &config(&[256], EVSM4, ""), &SUN).expect("valid");
     let good = one_map(SLANTED, 256);
     let mut warped = good.clone();
     warped.splits[0].warp = Some(warped.splits[0].shadow_from_world());
     let found = maps.prepare(&gpu.queue, &warped, &FrameOptions::default()).expect_err("a warped map");
-    assert_eq!(found, Error::WarpedMoments { split: 0, filter: Filter::Evsm4 });
+    assert_eq!(found, Error::WarpedMoments { split: 0, filter: "evsm4" });
     for depths in [(1.0, 1.0), (f64::NAN, 2.0), (0.0, f64::INFINITY)] {
         let mut bad = good.clone();
         bad.splits[0].receiver_depths = depths;
         let found = maps.prepare(&gpu.queue, &bad, &FrameOptions::default()).expect_err("no range");
         assert!(matches!(found, Error::InvalidSplit { field: "receiver_depths", .. }), "{found}");
-    }
-    for softness in [
-        Softness { width_m: Some(0.0), ..Softness::default() },
-        Softness { bleeding: 1.0, ..Softness::default() },
-        Softness { bleeding: f32::NAN, ..Softness::default() },
-        Softness { sun_angle: -0.1, ..Softness::default() },
-    ] {
-        let frame = FrameOptions { softness, ..FrameOptions::default() };
-        assert!(maps.prepare(&gpu.queue, &good, &frame).is_err(), "{softness:?}");
     }
     maps.prepare(&gpu.queue, &good, &FrameOptions::default()).expect("a good plan");
 }

@@ -2,29 +2,28 @@
 
 mod common;
 
-use common::{Ask, Gpu, IN_SPLIT, World, ask, cuboid, ground, plan};
+use common::{Ask, Gpu, IN_SPLIT, PCF3, PCF5, PCF7, PCSS, SUN, World, ask, config, cuboid, ground, plan};
 use glam::{DVec3, Vec3};
 use umbrage::ShadowPlan;
-use umbrage_wgpu::{
-    DepthFormat, Error, Filter, FrameOptions, Generation, ShadowMaps, ShadowMapsOptions, Softness, Storage,
-};
+use umbrage::config::{DepthFormat, Fallbacks, Filter, Generation, Layout, ShadowConfig, Storage};
+use umbrage_wgpu::{Error, FrameOptions, ShadowMaps};
 
-/// The valid pairs but multipass, which has one map at a time: `umbrage-render` draws pictures with it.
-const PAIRS: [(Generation, Storage); 8] = [
-    (Generation::PerSplit, Storage::Array),
-    (Generation::PerSplit, Storage::Atlas),
-    (Generation::PerSplit, Storage::Separate),
-    (Generation::PerSplit, Storage::Cube),
-    (Generation::Layered, Storage::Array),
-    (Generation::Layered, Storage::Cube),
-    (Generation::Instanced, Storage::Atlas),
-    (Generation::Mixed, Storage::Array),
+/// All layouts but that of one map, which `umbrage-render` draws pictures with.
+const LAYOUTS: [Layout; 8] = [
+    Layout::Array,
+    Layout::Atlas,
+    Layout::Separate,
+    Layout::Cube,
+    Layout::LayeredArray,
+    Layout::LayeredCube,
+    Layout::InstancedAtlas,
+    Layout::MixedArray,
 ];
 
 const LIGHT: DVec3 = DVec3::new(0.4, -1.0, 0.3);
 
-fn options(sizes: &[u32], filter: Filter, (generation, storage): (Generation, Storage)) -> ShadowMapsOptions {
-    ShadowMapsOptions { map_sizes: sizes.to_vec(), filter, generation, storage, ..Default::default() }
+fn laid_out(sizes: &[u32], filter: Filter, layout: Layout, depth_format: DepthFormat) -> ShadowConfig {
+    ShadowConfig { layout, depth_format, ..config(sizes, filter, "blend=0") }
 }
 
 /// Splits side by side in view depth along +X, each map centred on its slice.
@@ -67,26 +66,24 @@ fn different(a: &[f32], b: &[f32], tolerance: f32) -> usize {
 fn check_pairs(sizes: &[u32], filter: Filter, depth_format: DepthFormat) {
     let plan = splits(sizes);
     let mut expected: Option<Vec<f32>> = None;
-    for pair in PAIRS {
-        let cube = pair.1 == Storage::Cube;
+    for layout in LAYOUTS {
+        let cube = layout.storage() == Storage::Cube;
         if cube && (sizes.len() > 6 || sizes.iter().any(|&size| size != sizes[0])) {
             continue;
         }
         let Some(gpu) = Gpu::new() else { return };
-        let mut world = World::new(gpu, &ShadowMapsOptions { depth_format, ..options(sizes, filter, pair) });
-        let chosen = world.maps.options();
-        if !world.maps.notes().is_empty() {
+        let mut world = World::new(gpu, &laid_out(sizes, filter, layout, depth_format));
+        if world.maps.layout() != layout {
             eprintln!("SKIPPED: {}", world.maps.notes()[0]);
             continue;
         }
-        assert_eq!((chosen.generation, chosen.storage), pair);
         let answers = answers(&mut world, &plan);
         let expected = expected.get_or_insert_with(|| answers.clone());
         // A direction into a cube and a place in an atlas round differently: a linear sampler's weights are steps of 1/256.
         let count = different(&answers, expected, 1.0 / 64.0);
-        let tiles = matches!(pair, (_, Storage::Atlas) | (Generation::Mixed, _));
+        let tiles = matches!(layout, Layout::Atlas | Layout::InstancedAtlas | Layout::MixedArray);
         let most = if tiles { answers.len() / 2000 } else { 0 };
-        assert!(count <= most, "{pair:?}, {filter:?}, {sizes:?}: {count} of {} answers differ", answers.len());
+        assert!(count <= most, "{layout:?}, {filter:?}, {sizes:?}: {count} of {} answers differ", answers.len());
         let dark = answers.iter().filter(|&&lit| lit < 0.5).count();
         assert!(dark > answers.len() / 300 && dark < answers.len() / 2, "{dark} of {} are dark", answers.len());
     }
@@ -94,30 +91,29 @@ fn check_pairs(sizes: &[u32], filter: Filter, depth_format: DepthFormat) {
 
 #[test]
 fn every_pair_answers_alike() {
-    for filter in [Filter::Hard, Filter::Pcf3, Filter::Pcss] {
+    for filter in [Filter::Hard, PCF3, PCSS] {
         check_pairs(&[256; 4], filter, DepthFormat::D32Float);
     }
-    check_pairs(&[256, 192, 128, 64, 128, 70, 64, 256], Filter::Pcf5, DepthFormat::D32Float);
+    check_pairs(&[256, 192, 128, 64, 128, 70, 64, 256], PCF5, DepthFormat::D32Float);
     check_pairs(&[256; 6], Filter::Hard, DepthFormat::D32Float);
-    check_pairs(&[200], Filter::Pcf3, DepthFormat::D32Float);
+    check_pairs(&[200], PCF3, DepthFormat::D32Float);
 }
 
 #[test]
 fn every_pair_stores_floats_and_sixteen_bits_alike() {
-    for filter in [Filter::Hard, Filter::Pcss] {
+    for filter in [Filter::Hard, PCSS] {
         check_pairs(&[128; 5], filter, DepthFormat::R32Float);
     }
-    check_pairs(&[128; 3], Filter::Pcf3, DepthFormat::D16Unorm);
+    check_pairs(&[128; 3], PCF3, DepthFormat::D16Unorm);
 }
 
 /// Colours compared by hand are what depth compared by hardware is.
 #[test]
 fn floats_say_what_depth_says() {
-    for filter in [Filter::Hard, Filter::Pcf2, Filter::Pcf7, Filter::Pcss] {
+    for filter in [Filter::Hard, Filter::Pcf2, PCF7, PCSS] {
         let of = |depth_format| {
-            let pair = (Generation::PerSplit, Storage::Array);
-            let options = ShadowMapsOptions { depth_format, ..options(&[256; 3], filter, pair) };
-            Some(answers(&mut World::new(Gpu::new()?, &options), &splits(&[256; 3])))
+            let asked = laid_out(&[256; 3], filter, Layout::Array, depth_format);
+            Some(answers(&mut World::new(Gpu::new()?, &asked), &splits(&[256; 3])))
         };
         let (Some(depth), Some(floats)) = (of(DepthFormat::D32Float), of(DepthFormat::R32Float)) else { return };
         let tolerance = if filter == Filter::Hard { 0.0 } else { 1.0 / 64.0 };
@@ -130,15 +126,14 @@ fn floats_say_what_depth_says() {
 #[test]
 fn filters_never_see_a_neighbour() {
     let sizes = [128u32; 4];
-    for pair in PAIRS {
+    for layout in LAYOUTS {
         for (filter, format) in [
-            (Filter::Pcf7, DepthFormat::D32Float),
-            (Filter::Pcss, DepthFormat::D32Float),
+            (PCF7, DepthFormat::D32Float),
+            (Filter::Pcss { sun_degrees: 28.65, rotated: false }, DepthFormat::D32Float),
             (Filter::Pcf2, DepthFormat::R32Float),
         ] {
             let Some(gpu) = Gpu::new() else { return };
-            let options = ShadowMapsOptions { depth_format: format, ..options(&sizes, filter, pair) };
-            let mut world = World::new(gpu, &options);
+            let mut world = World::new(gpu, &laid_out(&sizes, filter, layout, format));
             // All four look straight down on squares of 40 m, 1000 m apart; those of 1 and 3 are covered by a roof 90 m up.
             let mut plan = plan(DVec3::NEG_Y, DVec3::ZERO, &sizes, &[1.0, 2.0, 3.0, 4.0, 5.0], &[40.0; 4]);
             for (i, split) in plan.splits.iter_mut().enumerate() {
@@ -147,7 +142,6 @@ fn filters_never_see_a_neighbour() {
             }
             // A disc as wide as it gets, and one that was planned to be narrow.
             plan.splits[2].filter_reach = 5.0;
-            let softness = Softness { sun_angle: 0.5, ..Softness::default() };
             let mut triangles = ground(5000.0);
             for x in [1000.0, 3000.0] {
                 let corner = |dx: f32, dz: f32| Vec3::new(x + dx, 90.0, dz);
@@ -158,7 +152,7 @@ fn filters_never_see_a_neighbour() {
                     corner(-60.0, 60.0),
                 ]));
             }
-            world.draw(&plan, &FrameOptions { softness, ..FrameOptions::default() }, &triangles);
+            world.draw(&plan, &FrameOptions::default(), &triangles);
             // In and right outside of the map: what is outside is lit without being asked.
             let edge: Vec<f32> = (0..=200).map(|i| -20.3 + 0.203 * i as f32).collect();
             let mut asks = Vec::new();
@@ -185,7 +179,7 @@ fn filters_never_see_a_neighbour() {
             let answers: Vec<[f32; 4]> = world.gpu.compute(&source, &only, Some(&world.maps));
             for ((split, ask), answer) in asks.iter().zip(&answers) {
                 let lit = answer[*split as usize];
-                assert!(lit > 0.999, "{pair:?}, {filter:?}: {lit} at {}", ask.position());
+                assert!(lit > 0.999, "{layout:?}, {filter:?}: {lit} at {}", ask.position());
             }
             // And the neighbours are black indeed.
             let dark: Vec<[f32; 4]> = world.gpu.compute(
@@ -193,7 +187,7 @@ fn filters_never_see_a_neighbour() {
                 &[ask(Vec3::X * 1000.0, Vec3::Y), ask(Vec3::X * 3000.0, Vec3::Y)],
                 Some(&world.maps),
             );
-            assert!(dark[0][1] < 0.001 && dark[1][3] < 0.001, "{pair:?}, {filter:?}: {dark:?}");
+            assert!(dark[0][1] < 0.001 && dark[1][3] < 0.001, "{layout:?}, {filter:?}: {dark:?}");
         }
     }
 }
@@ -202,8 +196,8 @@ fn filters_never_see_a_neighbour() {
 #[test]
 fn another_resolution_is_seen() {
     let of = |size| {
-        let options = options(&[size; 3], Filter::Hard, PAIRS[0]);
-        Some(answers(&mut World::new(Gpu::new()?, &options), &splits(&[size; 3])))
+        let asked = laid_out(&[size; 3], Filter::Hard, Layout::Array, DepthFormat::D32Float);
+        Some(answers(&mut World::new(Gpu::new()?, &asked), &splits(&[size; 3])))
     };
     let (Some(a), Some(b)) = (of(256), of(250)) else { return };
     assert!(different(&a, &b, 1.0 / 64.0) > a.len() / 500);
@@ -213,39 +207,40 @@ fn another_resolution_is_seen() {
 fn memory_is_that_of_the_storage() {
     let Some(gpu) = Gpu::new() else { return };
     let sizes = [512u32, 256, 256, 128];
-    let bytes = |generation, storage, depth_format| {
-        let options = ShadowMapsOptions { depth_format, ..options(&sizes, Filter::Pcf3, (generation, storage)) };
-        ShadowMaps::new(&gpu.device, &options).expect("valid options").bytes()
+    let bytes = |layout, depth_format| {
+        let asked = laid_out(&sizes, PCF3, layout, depth_format);
+        ShadowMaps::new(&gpu.device, &asked, &SUN).expect("valid").bytes()
     };
     let sum: u64 = sizes.iter().map(|&size| 4 * u64::from(size * size)).sum();
     let d32 = DepthFormat::D32Float;
-    assert_eq!(bytes(Generation::PerSplit, Storage::Array, d32), 4 * 4 * 512 * 512);
-    assert_eq!(bytes(Generation::PerSplit, Storage::Separate, d32), sum);
-    assert_eq!(bytes(Generation::Multipass, Storage::Reused, d32), 4 * 512 * 512);
-    let atlas = bytes(Generation::PerSplit, Storage::Atlas, d32);
+    assert_eq!(bytes(Layout::Array, d32), 4 * 4 * 512 * 512);
+    assert_eq!(bytes(Layout::Separate, d32), sum);
+    assert_eq!(bytes(Layout::Reused, d32), 4 * 512 * 512);
+    let atlas = bytes(Layout::Atlas, d32);
     assert!(atlas >= sum && atlas <= sum + sum / 4, "{atlas} bytes for maps of {sum}");
     // Beside floats there is a depth buffer for one pass.
     let r32f = DepthFormat::R32Float;
-    assert_eq!(bytes(Generation::PerSplit, Storage::Array, r32f), 5 * 4 * 512 * 512);
-    assert_eq!(bytes(Generation::Multipass, Storage::Reused, r32f), 2 * 4 * 512 * 512);
+    assert_eq!(bytes(Layout::Array, r32f), 5 * 4 * 512 * 512);
+    assert_eq!(bytes(Layout::Reused, r32f), 2 * 4 * 512 * 512);
 }
 
 #[test]
 fn what_a_device_cannot_do_is_replaced_and_said() {
-    for (withheld, generation, storage) in [
-        (wgpu::Features::MULTIVIEW, Generation::Layered, Storage::Cube),
-        (wgpu::Features::CLIP_DISTANCES, Generation::Instanced, Storage::Atlas),
-        (wgpu::Features::MULTIVIEW, Generation::Mixed, Storage::Array),
-        (wgpu::Features::CLIP_DISTANCES, Generation::Mixed, Storage::Array),
+    for (withheld, layout) in [
+        (wgpu::Features::MULTIVIEW, Layout::LayeredCube),
+        (wgpu::Features::CLIP_DISTANCES, Layout::InstancedAtlas),
+        (wgpu::Features::MULTIVIEW, Layout::MixedArray),
+        (wgpu::Features::CLIP_DISTANCES, Layout::MixedArray),
     ] {
         let Some(gpu) = Gpu::without(withheld) else { return };
-        let asked = options(&[128; 3], Filter::Pcf3, (generation, storage));
-        let strict = ShadowMaps::new(&gpu.device, &ShadowMapsOptions { fallbacks: false, ..asked.clone() });
-        assert!(matches!(strict, Err(Error::MissingFeature { .. })), "{generation:?}");
+        let asked = laid_out(&[128; 3], PCF3, layout, DepthFormat::D32Float);
+        let strict = ShadowConfig { fallbacks: Fallbacks::Forbid, ..asked.clone() };
+        let strict = ShadowMaps::new(&gpu.device, &strict, &SUN);
+        assert!(matches!(strict, Err(Error::MissingFeature { .. })), "{layout:?}");
         let mut world = World::new(gpu, &asked);
-        assert_eq!(world.maps.options().generation, Generation::PerSplit);
-        assert_eq!(world.maps.options().storage, storage);
-        assert!(world.maps.notes()[0].contains(generation.name()), "{:?}", world.maps.notes());
+        assert_eq!(world.maps.layout().generation(), Generation::PerSplit);
+        assert_eq!(world.maps.layout().storage(), layout.storage());
+        assert!(world.maps.notes()[0].contains(layout.generation().word()), "{:?}", world.maps.notes());
         let answers = answers(&mut world, &splits(&[128; 3]));
         assert!(answers.contains(&0.0) && answers.contains(&1.0));
     }
@@ -257,8 +252,8 @@ fn more_separate_maps_than_textures_are_refused() {
     let limits = wgpu::Limits { max_sampled_textures_per_shader_stage: 16, ..Default::default() };
     assert!(gpu.device.limits().max_sampled_textures_per_shader_stage >= limits.max_sampled_textures_per_shader_stage);
     // No device has fewer than 16, and there are 8 splits at most: one light alone never meets the limit.
-    let eight = options(&[64; 8], Filter::Pcf3, (Generation::PerSplit, Storage::Separate));
-    gpu.checked(|| ShadowMaps::new(&gpu.device, &eight).expect("eight textures"));
+    let eight = laid_out(&[64; 8], PCF3, Layout::Separate, DepthFormat::D32Float);
+    gpu.checked(|| ShadowMaps::new(&gpu.device, &eight, &SUN).expect("eight textures"));
     let message = Error::TooManyTextures { count: 24, limit: 16 }.to_string();
     assert!(message.contains("separate") && message.contains("map_sizes") && message.contains("16"), "{message}");
 }
@@ -267,14 +262,11 @@ fn more_separate_maps_than_textures_are_refused() {
 #[test]
 fn a_reused_map_has_nothing_to_blend_with() {
     let Some(gpu) = Gpu::new() else { return };
-    let asked = options(&[128; 3], Filter::Pcf3, (Generation::Auto, Storage::Reused));
-    let mut maps = ShadowMaps::new(&gpu.device, &asked).expect("valid options");
-    assert_eq!((maps.options().generation, maps.matching_settings().blend), (Generation::Multipass, 0.0));
-    let mut plan = splits(&[128; 3]);
-    assert_eq!(maps.prepare(&gpu.queue, &plan, &FrameOptions::default()), Ok(()));
-    plan.splits[1].blend_begin -= 1.0;
-    let error = maps.prepare(&gpu.queue, &plan, &FrameOptions::default()).expect_err("a band").to_string();
+    let hard = laid_out(&[128; 3], PCF3, Layout::Reused, DepthFormat::D32Float);
+    let mut maps = ShadowMaps::new(&gpu.device, &hard, &SUN).expect("valid");
+    assert_eq!(maps.prepare(&gpu.queue, &splits(&[128; 3]), &FrameOptions::default()), Ok(()));
+    let transition = umbrage::config::Transition::Blend { share: 0.1 };
+    let blends = ShadowConfig { transition, ..hard };
+    let error = ShadowMaps::new(&gpu.device, &blends, &SUN).expect_err("a band").to_string();
     assert!(error.contains("storage reused") && error.contains("blend"), "{error}");
-    let hard = FrameOptions { transition: umbrage_wgpu::Transition::Hard, ..Default::default() };
-    assert_eq!(maps.prepare(&gpu.queue, &plan, &hard), Ok(()));
 }

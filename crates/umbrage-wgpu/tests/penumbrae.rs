@@ -2,9 +2,10 @@
 
 mod common;
 
-use common::{Gpu, IN_SPLIT, World, ask, plan, quad};
+use common::{DISC, ESM, EVSM2, EVSM4, Gpu, IN_SPLIT, MSM, PCF7, PCSS, VSM, World, ask, config, plan, quad};
 use glam::{DVec3, Vec3};
-use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions, Softness};
+use umbrage::config::Filter;
+use umbrage_wgpu::FrameOptions;
 
 /// Where the half plane ends, and how high it lies.
 const EDGE: f32 = 20.0;
@@ -51,20 +52,9 @@ fn ask_splits(splits: usize) -> String {
 }
 
 /// Full widths of the edge in each split, in metres, if it has the form `share`; `maps` are the widths of the splits' maps.
-fn widths<const N: usize>(
-    filter: Filter,
-    softness: Softness,
-    maps: [f64; N],
-    share: fn(f64) -> f64,
-) -> Option<[f64; N]> {
+fn widths<const N: usize>(filter: Filter, softness: &str, maps: [f64; N], share: fn(f64) -> f64) -> Option<[f64; N]> {
     let sizes = [SIZE; N];
-    let options = ShadowMapsOptions {
-        map_sizes: sizes.to_vec(),
-        depth_format: DepthFormat::D32Float,
-        filter,
-        ..Default::default()
-    };
-    let mut world = World::new(Gpu::new()?, &options);
+    let mut world = World::new(Gpu::new()?, &config(&sizes, filter, softness));
     let mut plan = plan(DVec3::NEG_Y, DVec3::new(f64::from(EDGE), 0.0, 0.0), &sizes, &PLANES[..=N], &maps);
     // The ground is all that is seen.
     plan.splits.iter_mut().for_each(|split| split.receiver_depths = (-5.0, 5.0));
@@ -72,7 +62,7 @@ fn widths<const N: usize>(
     let end = |z: f32| Vec3::new(EDGE + 0.1 * z, HEIGHT, z);
     let roof = quad([Vec3::new(-300.0, HEIGHT, -200.0), end(-200.0), end(200.0), Vec3::new(-300.0, HEIGHT, 200.0)]);
     let ground = common::ground(300.0);
-    world.draw(&plan, &FrameOptions { softness, ..FrameOptions::default() }, &[roof, ground].concat());
+    world.draw(&plan, &FrameOptions::default(), &[roof, ground].concat());
 
     let step = 0.01f32;
     let rows: Vec<f32> = (0..24).map(|row| -1.5 + 0.131 * row as f32).collect();
@@ -108,8 +98,10 @@ fn check_borders<const N: usize>(found: [f64; N], what: &str) {
 /// Four splits, so three borders; 0.8 m are 2.2 texels of the coarsest map and more of the others, but no more than the filter may take.
 #[test]
 fn edges_are_as_wide_on_both_sides_of_every_border() {
-    let softness = Softness { width_m: Some(0.8), bleeding: 0.02, ..Softness::default() };
-    for (filter, maps) in [(Filter::Pcf7, [64.0, 90.0, 130.0, 190.0]), (Filter::Evsm4, [16.0, 40.0, 90.0, 190.0])] {
+    for (filter, softness, maps) in [
+        (PCF7, "filter-width=0.8", [64.0, 90.0, 130.0, 190.0]),
+        (EVSM4, "filter-width=0.8 bleeding=0.02", [16.0, 40.0, 90.0, 190.0]),
+    ] {
         assert!(2.0 * maps[3] / f64::from(SIZE) <= 0.8);
         let Some(found) = widths(filter, softness, maps, tent_share) else { return };
         eprintln!("{filter:?}: {found:.3?} m");
@@ -120,19 +112,19 @@ fn edges_are_as_wide_on_both_sides_of_every_border() {
 #[test]
 fn discs_are_as_wide_as_they_are_told_in_every_split() {
     for width in [0.3f32, 0.8] {
-        let softness = Softness { width_m: Some(width), ..Softness::default() };
-        let Some(found) = widths(Filter::Disc, softness, [16.0, 40.0], disc_share) else { return };
+        let softness = format!("filter-width={width}");
+        let Some(found) = widths(DISC, &softness, [16.0, 40.0], disc_share) else { return };
         check(found, f64::from(width), "disc");
     }
 }
 
 #[test]
 fn tents_are_as_wide_as_they_are_told_up_to_their_texels() {
-    let softness = Softness { width_m: Some(0.8), ..Softness::default() };
-    let Some(found) = widths(Filter::Pcf7, softness, [64.0, 90.0], tent_share) else { return };
+    let softness = "filter-width=0.8";
+    let Some(found) = widths(PCF7, softness, [64.0, 90.0], tent_share) else { return };
     check(found, 0.8, "pcf7");
     // Seven texels of 1/64 m are the most that it has.
-    let Some(capped) = widths(Filter::Pcf7, softness, [8.0, 90.0], tent_share) else { return };
+    let Some(capped) = widths(PCF7, softness, [8.0, 90.0], tent_share) else { return };
     assert!((capped[0] / (7.0 / 64.0) - 1.0).abs() < 0.1, "{capped:?}");
 }
 
@@ -140,16 +132,16 @@ fn tents_are_as_wide_as_they_are_told_up_to_their_texels() {
 /// through) narrows it alike everywhere.
 #[test]
 fn blurs_are_as_wide_as_they_are_told_in_every_split() {
-    for filter in [Filter::Esm, Filter::Vsm, Filter::Evsm2, Filter::Evsm4, Filter::Msm] {
+    for filter in [ESM, VSM, EVSM2, EVSM4, MSM] {
         for width in [0.2f32, 0.8] {
-            let softness = Softness { width_m: Some(width), bleeding: 0.02, ..Softness::default() };
-            let Some(found) = widths(filter, softness, [16.0, 40.0], tent_share) else { return };
+            let softness = format!("filter-width={width} bleeding=0.02");
+            let Some(found) = widths(filter, &softness, [16.0, 40.0], tent_share) else { return };
             check(found, f64::from(width), &format!("{filter:?}"));
         }
-        let Some(found) = widths(filter, Softness::default(), [24.0, 36.0], tent_share) else { return };
+        let Some(found) = widths(filter, "", [24.0, 36.0], tent_share) else { return };
         check_borders(found, &format!("{filter:?}"));
         // 15 texels of 1/32 m to each side are the most.
-        let softness = Softness { width_m: Some(2.0), bleeding: 0.02, ..Softness::default() };
+        let softness = "filter-width=2 bleeding=0.02";
         let Some(capped) = widths(filter, softness, [16.0, 40.0], tent_share) else { return };
         assert!((capped[0] / (30.0 / 32.0) - 1.0).abs() < 0.1, "{filter:?}: {capped:?}");
     }
@@ -158,16 +150,16 @@ fn blurs_are_as_wide_as_they_are_told_in_every_split() {
 #[test]
 fn penumbrae_follow_from_height_and_angle() {
     for degrees in [2.0f64, 4.0] {
-        let softness = Softness { sun_angle: degrees.to_radians() as f32, ..Softness::default() };
-        let Some(found) = widths(Filter::Pcss, softness, [16.0, 40.0], disc_share) else { return };
+        let softness = format!("sun-angle={degrees}");
+        let Some(found) = widths(PCSS, &softness, [16.0, 40.0], disc_share) else { return };
         check(found, 2.0 * f64::from(HEIGHT) * (0.5 * degrees).to_radians().tan(), "pcss");
     }
 }
 
 #[test]
 fn a_point_of_a_sun_throws_the_narrowest_edge() {
-    let softness = Softness { sun_angle: 0.0, ..Softness::default() };
-    let Some(found) = widths(Filter::Pcss, softness, [16.0, 40.0], disc_share) else { return };
+    let softness = "sun-angle=0";
+    let Some(found) = widths(PCSS, softness, [16.0, 40.0], disc_share) else { return };
     for (width, map) in found.iter().zip([16.0, 40.0]) {
         assert!(*width < 3.0 * map / 512.0, "{found:?}");
     }

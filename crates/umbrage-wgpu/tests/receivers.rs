@@ -2,17 +2,18 @@
 
 mod common;
 
-use common::{Ask, Gpu, World, ask, cuboid, ground, plan};
+use common::{Ask, DISC, Gpu, PCF3, PCF5, PCF7, PCSS, World, ask, config, cuboid, ground, plan};
 use glam::{DVec3, Vec3};
 use umbrage::ShadowPlan;
-use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions, Softness, Transition};
+use umbrage::config::{DepthFormat, Filter};
+use umbrage_wgpu::{FrameOptions, ShadowConfig};
 
 const DOWN: DVec3 = DVec3::new(0.0, -1.0, 0.0);
 /// 45° down towards +X: a wall of height h throws a shadow h long.
 const SLANTED: DVec3 = DVec3::new(1.0, -1.0, 0.0);
 
-fn options(map_sizes: &[u32], filter: Filter, depth_format: DepthFormat) -> ShadowMapsOptions {
-    ShadowMapsOptions { map_sizes: map_sizes.to_vec(), depth_format, filter, ..Default::default() }
+fn stored(map_sizes: &[u32], filter: Filter, depth_format: DepthFormat) -> ShadowConfig {
+    ShadowConfig { depth_format, ..config(map_sizes, filter, "") }
 }
 
 /// The ground, and a box of 4 × 2 × 6 m standing on it around x = 20.
@@ -42,7 +43,7 @@ fn outside_shadow(point: Vec3, shadow_length: f32) -> f32 {
 /// Every answer farther from the shadow's edge than the filter and the bias reach must be exact.
 fn check_box(light: DVec3, shadow_length: f32, filter: Filter, depth_format: DepthFormat) {
     let Some(gpu) = Gpu::new() else { return };
-    let mut world = World::new(gpu, &options(&[512], filter, depth_format));
+    let mut world = World::new(gpu, &stored(&[512], filter, depth_format));
     let plan = plan(light, DVec3::new(20.0, 0.0, 0.0), &[512], &[0.1, 100.0], &[64.0]);
     world.draw(&plan, &FrameOptions::default(), &box_on_ground());
     let points = ground_points();
@@ -50,8 +51,8 @@ fn check_box(light: DVec3, shadow_length: f32, filter: Filter, depth_format: Dep
     // A slanted texel is √2 longer on the ground; the bias grows with the filter and lets light in under a caster that is lower.
     let reach = match filter {
         // Without a width, and under the sun's own angle: not the widest that they may be.
-        Filter::Disc => 4.0,
-        Filter::Pcss => 2.0,
+        Filter::Disc { .. } => 4.0,
+        Filter::Pcss { .. } => 2.0,
         _ => filter.radius_texels() as f32,
     };
     let unsure = texel * (2.0 * reach + 1.5);
@@ -79,21 +80,21 @@ fn check_box(light: DVec3, shadow_length: f32, filter: Filter, depth_format: Dep
 
 #[test]
 fn a_box_under_the_zenith_sun_shades_its_footprint() {
-    for filter in [Filter::Hard, Filter::Pcf2, Filter::Pcf3, Filter::Pcf5, Filter::Pcf7, Filter::Disc, Filter::Pcss] {
+    for filter in [Filter::Hard, Filter::Pcf2, PCF3, PCF5, PCF7, DISC, PCSS] {
         check_box(DOWN, 0.0, filter, DepthFormat::D32Float);
     }
 }
 
 #[test]
 fn a_box_under_a_slanted_sun_throws_its_height() {
-    for filter in [Filter::Hard, Filter::Pcf2, Filter::Pcf3, Filter::Pcf5, Filter::Pcf7, Filter::Disc, Filter::Pcss] {
+    for filter in [Filter::Hard, Filter::Pcf2, PCF3, PCF5, PCF7, DISC, PCSS] {
         check_box(SLANTED, 2.0, filter, DepthFormat::D32Float);
     }
 }
 
 #[test]
 fn sixteen_bits_of_depth_are_enough() {
-    for filter in [Filter::Hard, Filter::Pcf5] {
+    for filter in [Filter::Hard, PCF5] {
         check_box(SLANTED, 2.0, filter, DepthFormat::D16Unorm);
         check_box(DOWN, 0.0, filter, DepthFormat::D16Unorm);
     }
@@ -105,10 +106,10 @@ fn planes_do_not_shade_themselves() {
     let Some(gpu) = Gpu::new() else { return };
     let mut count = 0;
     let mut gpu = Some(gpu);
-    for filter in [Filter::Hard, Filter::Pcf2, Filter::Pcf3, Filter::Pcf5, Filter::Pcf7, Filter::Disc, Filter::Pcss] {
+    for filter in [Filter::Hard, Filter::Pcf2, PCF3, PCF5, PCF7, DISC, PCSS] {
         let mut world = World::new(
             gpu.take().or_else(Gpu::new).expect("there was one"),
-            &options(&[128], filter, DepthFormat::D32Float),
+            &stored(&[128], filter, DepthFormat::D32Float),
         );
         for (tilt, turn) in [(0.0, 0.0), (30.0, 10.0), (60.0, 100.0), (75.0, 200.0), (83.0, 300.0)] {
             let (tilt, turn) = (f64::to_radians(tilt), f64::to_radians(turn));
@@ -134,7 +135,7 @@ fn two_splits() -> ShadowPlan {
 #[test]
 fn splits_blend_and_fade_without_a_jump() {
     let Some(gpu) = Gpu::new() else { return };
-    let mut world = World::new(gpu, &options(&[256, 128], Filter::Pcf5, DepthFormat::D32Float));
+    let mut world = World::new(gpu, &stored(&[256, 128], PCF5, DepthFormat::D32Float));
     let plan = two_splits();
     let frame = FrameOptions { tint: true, ..FrameOptions::default() };
     // A long wall along the line of sight: its shadow's edge runs through the border and on through the fade.
@@ -176,20 +177,20 @@ fn splits_blend_and_fade_without_a_jump() {
 
 #[test]
 fn a_smaller_split_reads_its_own_corner_only() {
-    for filter in [Filter::Pcf5, Filter::Pcf7] {
+    for filter in [PCF5, PCF7] {
         check_own_corner(filter, 16.0);
     }
     // Planned for the widest disc, and for narrow ones.
-    for (filter, reach) in [(Filter::Disc, 16.0), (Filter::Disc, 5.0), (Filter::Pcss, 16.0), (Filter::Pcss, 4.0)] {
+    for (filter, reach) in [(DISC, 16.0), (DISC, 5.0), (PCSS, 16.0), (PCSS, 4.0)] {
         check_own_corner(filter, reach);
     }
 }
 
 fn check_own_corner(filter: Filter, reach: f64) {
     let Some(gpu) = Gpu::new() else { return };
-    let mut world = World::new(gpu, &options(&[256, 128], filter, DepthFormat::D32Float));
     // As wide as they get.
-    let softness = Softness { width_m: Some(60.0), sun_angle: 0.5, ..Softness::default() };
+    let softness = if matches!(filter, Filter::Pcss { .. }) { "sun-angle=28.65" } else { "filter-width=60" };
+    let mut world = World::new(gpu, &config(&[256, 128], filter, softness));
     let mut plan = two_splits();
     plan.splits[1].filter_reach = reach;
     plan.planes = vec![1.0, 2.0, 400.0];
@@ -202,7 +203,7 @@ fn check_own_corner(filter: Filter, reach: f64) {
         Vec3::new(500.0, 50.0, 500.0),
         Vec3::new(-500.0, 50.0, 500.0),
     ];
-    world.draw(&plan, &FrameOptions { softness, ..FrameOptions::default() }, &common::quad(roof));
+    world.draw(&plan, &FrameOptions::default(), &common::quad(roof));
     let points: Vec<Vec3> =
         (0..400).flat_map(|i| (-40..40).map(move |k| Vec3::new(i as f32 * 0.5, 0.0, k as f32 * 1.7))).collect();
     let split = &plan.splits[1];
@@ -223,7 +224,7 @@ fn check_own_corner(filter: Filter, reach: f64) {
 #[test]
 fn facing_strength_enabled_and_empty_splits() {
     let Some(gpu) = Gpu::new() else { return };
-    let mut world = World::new(gpu, &options(&[256, 128], Filter::Hard, DepthFormat::D32Float));
+    let mut world = World::new(gpu, &stored(&[256, 128], Filter::Hard, DepthFormat::D32Float));
     let mut plan = two_splits();
     let dark = Vec3::new(19.0, 0.0, 0.0);
     let behind_eye = Vec3::new(-1.0, 0.0, 0.0);
@@ -241,8 +242,9 @@ fn facing_strength_enabled_and_empty_splits() {
     // Below the box; from below; a plane that the light runs along; behind the eye; out of range and turned away.
     let frame = FrameOptions::default();
     assert_eq!(answers(&mut world, &plan, frame), [(0.0, 0), (0.0, 0), (0.0, 0), (1.0, 0), (0.0, -1)]);
-    let weak = FrameOptions { strength: 0.25, ..frame };
-    assert_eq!(answers(&mut world, &plan, weak)[..2], [(0.75, 0), (0.0, 0)]);
+    world.set("shadow-strength=0.25");
+    assert_eq!(answers(&mut world, &plan, frame)[..2], [(0.75, 0), (0.0, 0)]);
+    world.set("shadow-strength=1");
     let off = FrameOptions { enabled: false, ..frame };
     assert_eq!(answers(&mut world, &plan, off)[..2], [(1.0, -1), (0.0, -1)]);
     plan.splits[0].casters = 0..0;
@@ -255,35 +257,40 @@ fn facing_strength_enabled_and_empty_splits() {
 fn casters_before_the_near_plane_survive_with_depth_clamp() {
     for withheld in [wgpu::Features::empty(), wgpu::Features::DEPTH_CLIP_CONTROL] {
         let Some(gpu) = Gpu::without(withheld) else { return };
-        let mut world = World::new(gpu, &options(&[128], Filter::Hard, DepthFormat::D32Float));
+        let mut world = World::new(gpu, &stored(&[128], Filter::Hard, DepthFormat::D32Float));
         let mut plan = plan(DOWN, DVec3::new(20.0, 0.0, 0.0), &[128], &[0.1, 100.0], &[64.0]);
         plan.splits[0].depth_near = -1.0;
         world.draw(&plan, &FrameOptions::default(), &box_on_ground());
         let answer = world.ask(&[ask(Vec3::new(20.0, 0.0, 0.0), Vec3::Y)])[0].visibility;
-        let expected = if world.maps.depth_clamp() { 0.0 } else { 1.0 };
-        assert_eq!(answer, expected);
-        assert_eq!(world.maps.caster_primitive().unclipped_depth, world.maps.depth_clamp());
-        assert!(!(world.maps.depth_clamp() && withheld.contains(wgpu::Features::DEPTH_CLIP_CONTROL)));
+        let clamps = world.maps.caster_primitive().unclipped_depth;
+        assert_eq!(answer, if clamps { 0.0 } else { 1.0 });
+        assert_eq!(clamps, world.gpu.device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL));
+        // Near planes move up to the receivers for 16-bit maps alone.
+        assert!(!world.maps.depth_clamp());
+        let Some(gpu) = Gpu::without(withheld) else { return };
+        let world = World::new(gpu, &stored(&[128], Filter::Hard, DepthFormat::D16Unorm));
+        assert_eq!(world.maps.depth_clamp(), clamps);
     }
 }
 
 #[test]
 fn borders_blend_dither_or_are_hard() {
     let Some(gpu) = Gpu::new() else { return };
-    let mut world = World::new(gpu, &options(&[256, 128], Filter::Pcf5, DepthFormat::D32Float));
+    let mut gpu = Some(gpu);
     let plan = two_splits();
     let points: Vec<Vec3> = (0..400).map(|i| Vec3::new(18.5 + i as f32 * 0.005, 0.0, 0.45)).collect();
     let mut triangles = ground(200.0);
     triangles.extend(cuboid(Vec3::new(-10.0, 0.0, -0.4), Vec3::new(120.0, 2.0, 0.4)));
-    for transition in [Transition::Hard, Transition::Dither] {
-        world.draw(&plan, &FrameOptions { transition, ..FrameOptions::default() }, &triangles);
+    for (transition, border) in [("hard", 20.5), ("dither", 19.75)] {
+        let asked = config(&[256, 128], PCF5, &format!("transition={transition}"));
+        let mut world = World::new(gpu.take().or_else(Gpu::new).expect("there was one"), &asked);
+        world.draw(&plan, &FrameOptions::default(), &triangles);
         for (answer, point) in world.ask(&up(&points)).iter().zip(&points) {
             // Without a pixel a dithered border lies in the middle of its band, which is 19 to 20.5.
-            let border = if transition == Transition::Hard { 20.5 } else { 19.75 };
             let split = usize::from(point.x >= border);
-            if (point.x - border).abs() > 1e-3 {
-                assert_eq!(answer.split, split as i32, "{transition:?} at {point}");
-                assert_eq!(answer.visibility, answer.in_split[split], "{transition:?} at {point}");
+            if (point.x - border).abs() > 1e-3_f32 {
+                assert_eq!(answer.split, split as i32, "{transition} at {point}");
+                assert_eq!(answer.visibility, answer.in_split[split], "{transition} at {point}");
             }
         }
     }

@@ -3,12 +3,13 @@
 
 mod common;
 
-use common::{Gpu, World, cuboid};
+use common::{DISC, ESM, EVSM2, EVSM4, Gpu, MSM, PCF3, PCF5, PCF7, PCSS, VSM, World, config, cuboid};
 use glam::{DVec3, Vec3};
+use umbrage::config::{Derivatives, Filter};
 use umbrage::{Aabb, DirectionalLight, Frustum, Planner, ShadowPlan, ShadowSettings, SplitScheme, View};
 use umbrage_truth::scores::{Answers, Domain, Seams, seams};
 use umbrage_truth::{Hit, TruthMask};
-use umbrage_wgpu::{Derivatives, Filter, FrameOptions, ShadowMapsOptions};
+use umbrage_wgpu::FrameOptions;
 
 const SIZE: u32 = 512;
 const SPLITS: usize = 4;
@@ -19,20 +20,7 @@ const TRAVEL: DVec3 = DVec3::new(0.45, -0.6, 0.55);
 /// Tangents of the picture's edges.
 const HALF: f64 = 0.7;
 
-const ALL: [Filter; 12] = [
-    Filter::Hard,
-    Filter::Pcf2,
-    Filter::Pcf3,
-    Filter::Pcf5,
-    Filter::Pcf7,
-    Filter::Disc,
-    Filter::Pcss,
-    Filter::Esm,
-    Filter::Vsm,
-    Filter::Evsm2,
-    Filter::Evsm4,
-    Filter::Msm,
-];
+const ALL: [Filter; 12] = [Filter::Hard, Filter::Pcf2, PCF3, PCF5, PCF7, DISC, PCSS, ESM, VSM, EVSM2, EVSM4, MSM];
 
 /// Boxes on the plain; numbers from a linear congruential generator (Knuth's constants).
 fn boxes(seed: u64) -> Vec<Aabb> {
@@ -79,7 +67,7 @@ fn truth(boxes: &[Aabb]) -> Domain {
     Domain::new(&mask, RANGE).expect("a range")
 }
 
-fn plan(filter: Filter, boxes: &[Aabb]) -> ShadowPlan {
+fn plan(filter: &Filter, boxes: &[Aabb]) -> ShadowPlan {
     let settings = ShadowSettings {
         map_sizes: vec![MAP; SPLITS],
         scheme: SplitScheme::Logarithmic,
@@ -128,10 +116,13 @@ impl Scene {
     }
 
     fn score(&self, world: &mut World, derivatives: Derivatives, naive: bool) -> Seams {
-        let plan = plan(world.maps.options().filter, &self.boxes);
+        let plan = plan(&world.maps.config().filter, &self.boxes);
         let triangles: Vec<Vec3> =
             self.boxes.iter().flat_map(|it| cuboid(it.min.as_vec3(), it.max.as_vec3())).collect();
-        world.draw(&plan, &FrameOptions { derivatives, ..FrameOptions::default() }, &triangles);
+        if world.maps.config().filter.is_prefiltered() {
+            world.set(&format!("derivatives={derivatives}"));
+        }
+        world.draw(&plan, &FrameOptions::default(), &triangles);
         let mut source = world.maps.receiver_wgsl(2);
         if naive {
             source = source.replace("fn umbrage_fragment_query(", "fn umbrage_other_query(") + NAIVE;
@@ -160,8 +151,7 @@ impl Scene {
 
 /// Decisions of all scenes; `None` without an adapter.
 fn pooled(scenes: &[Scene], filter: Filter, derivatives: Derivatives, naive: bool) -> Option<Seams> {
-    let options = ShadowMapsOptions { map_sizes: vec![MAP; SPLITS], filter, ..Default::default() };
-    let mut world = World::new(Gpu::new()?, &options);
+    let mut world = World::new(Gpu::new()?, &config(&[MAP; SPLITS], filter, ""));
     let mut sum = Seams::default();
     scenes.iter().for_each(|scene| sum += scene.score(&mut world, derivatives, naive));
     eprintln!(
@@ -178,7 +168,7 @@ fn pooled(scenes: &[Scene], filter: Filter, derivatives: Derivatives, naive: boo
 #[test]
 fn no_filter_shows_a_seam() {
     let scenes = Scene::all(&[5, 6, 7, 8, 9]);
-    let quads = [(Filter::Vsm, Derivatives::Quad), (Filter::Msm, Derivatives::Quad)];
+    let quads = [(VSM, Derivatives::Quad), (MSM, Derivatives::Quad)];
     for (filter, derivatives) in ALL.map(|filter| (filter, Derivatives::Analytic)).into_iter().chain(quads) {
         let Some(score) = pooled(&scenes, filter, derivatives, false) else { return };
         assert_eq!(score.are_hidden(), Some(true), "{filter:?}, {derivatives:?}: {score:?}");

@@ -7,9 +7,10 @@
 
 mod common;
 
-use common::{Gpu, World, ask, plan};
+use common::{Gpu, PCF3, PCF5, World, ask, config, plan};
 use glam::{DVec2, DVec3, Vec3};
-use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions};
+use umbrage::config::Filter;
+use umbrage_wgpu::FrameOptions;
 
 const SIZE: u32 = 256;
 const WIDTH_M: f64 = 60.0;
@@ -78,13 +79,7 @@ fn compared(a: &[f32], b: &[f32], shift: (i32, i32)) -> (usize, usize, usize) {
 #[test]
 fn whole_texels_change_nothing() {
     let Some(gpu) = Gpu::new() else { return };
-    let options = ShadowMapsOptions {
-        map_sizes: vec![SIZE],
-        depth_format: DepthFormat::D32Float,
-        filter: Filter::Hard,
-        ..Default::default()
-    };
-    let mut world = World::new(gpu, &options);
+    let mut world = World::new(gpu, &config(&[SIZE], Filter::Hard, ""));
     for light in [DVec3::new(0.3, -1.0, 0.2), DVec3::new(0.0, -1.0, 0.0), DVec3::new(-1.0, -0.2, 0.5)] {
         let triangles = without_slivers(&soup(3000), light);
         // 0, 10 and 100 km from the world's origin.
@@ -106,17 +101,10 @@ fn whole_texels_change_nothing() {
 #[test]
 fn whole_texels_change_no_answer() {
     let mut compared = 0;
-    for (filter, tolerance) in
-        [(Filter::Hard, 0.0), (Filter::Pcf2, 1.0 / 64.0), (Filter::Pcf3, 1.0 / 64.0), (Filter::Pcf5, 1.0 / 64.0)]
+    for (filter, tolerance) in [(Filter::Hard, 0.0), (Filter::Pcf2, 1.0 / 64.0), (PCF3, 1.0 / 64.0), (PCF5, 1.0 / 64.0)]
     {
         let Some(gpu) = Gpu::new() else { return };
-        let options = ShadowMapsOptions {
-            map_sizes: vec![SIZE],
-            depth_format: DepthFormat::D32Float,
-            filter,
-            ..Default::default()
-        };
-        let mut world = World::new(gpu, &options);
+        let mut world = World::new(gpu, &config(&[SIZE], filter, ""));
         let light = DVec3::new(0.3, -1.0, 0.2);
         let triangles = without_slivers(&soup(3000), light);
         let asks: Vec<_> = triangles
@@ -154,13 +142,7 @@ fn whole_texels_change_no_answer() {
 #[test]
 fn half_a_texel_is_seen() {
     let Some(gpu) = Gpu::new() else { return };
-    let options = ShadowMapsOptions {
-        map_sizes: vec![SIZE],
-        depth_format: DepthFormat::D32Float,
-        filter: Filter::Hard,
-        ..Default::default()
-    };
-    let mut world = World::new(gpu, &options);
+    let mut world = World::new(gpu, &config(&[SIZE], Filter::Hard, ""));
     let triangles = soup(3000);
     let light = DVec3::new(0.3, -1.0, 0.2);
     let still = drawn(&mut world, light, DVec3::ZERO, DVec2::ZERO, &triangles);

@@ -5,8 +5,9 @@ mod common;
 use bytemuck::{Pod, Zeroable};
 use common::{Gpu, World, cuboid};
 use glam::{DQuat, DVec3, Vec3};
+use umbrage::config::{Filter, LightKind};
 use umbrage::{Aabb, DirectionalLight, Frustum, Planner, SteppedSun, View};
-use umbrage_wgpu::{Filter, FrameOptions, LightSlot, ShadowMapsOptions};
+use umbrage_wgpu::FrameOptions;
 
 /// A point, and the share of the second sun.
 #[repr(C)]
@@ -32,15 +33,10 @@ const FADE: f64 = 5.0;
 
 /// Visibility of points of the ground in each frame of a sun that moves by 0.02 rad a frame.
 fn seen(frames: u32, fade: f64) -> Option<Vec<Vec<f32>>> {
-    let options = ShadowMapsOptions {
-        map_sizes: vec![256; 2],
-        filter: Filter::Hard,
-        lights: vec![LightSlot::Single; 2],
-        ..ShadowMapsOptions::default()
-    };
-    let mut world = World::new(Gpu::new()?, &options);
+    let asked = common::config(&[256; 2], Filter::Hard, "");
+    let mut world = World::of_lights(Gpu::new()?, &asked, &[LightKind::Directional; 2]);
     let source = world.maps.receiver_wgsl(1) + FADED;
-    let planner = || Planner::new(world.maps.matching_settings()).expect("valid");
+    let planner = || Planner::new(asked.planner_settings(world.maps.depth_clamp(), [800, 600])).expect("valid");
     let mut planners = [planner(), planner()];
     let mut stepped = SteppedSun::new(0.07, fade).expect("valid");
     let lens = Frustum::perspective(1.2, 1.0, 0.3, 60.0).expect("a lens");

@@ -3,10 +3,11 @@
 mod common;
 
 use bytemuck::{Pod, Zeroable};
-use common::{Gpu, World, ask, plan};
+use common::{DISC, Gpu, PCF3, PCF5, PCF7, PCSS, World, ask, config, plan};
 use glam::{DVec3, Vec3};
+use umbrage::config::Filter;
 use umbrage_shaders::{layout, twin};
-use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions, Softness};
+use umbrage_wgpu::FrameOptions;
 
 /// Numbers in [0, 1) from a linear congruential generator (Knuth's constants).
 fn random() -> impl FnMut() -> f32 {
@@ -62,11 +63,11 @@ fn filters_reach_as_far_as_they_say() {
     let filters = [
         (layout::FilterKind::Hard, Filter::Hard),
         (layout::FilterKind::Pcf2, Filter::Pcf2),
-        (layout::FilterKind::Pcf3, Filter::Pcf3),
-        (layout::FilterKind::Pcf5, Filter::Pcf5),
-        (layout::FilterKind::Pcf7, Filter::Pcf7),
-        (layout::FilterKind::Disc, Filter::Disc),
-        (layout::FilterKind::Pcss, Filter::Pcss),
+        (layout::FilterKind::Pcf3, PCF3),
+        (layout::FilterKind::Pcf5, PCF5),
+        (layout::FilterKind::Pcf7, PCF7),
+        (layout::FilterKind::Disc, Filter::Disc { width_m: Some(1.0), rotated: false }),
+        (layout::FilterKind::Pcss, PCSS),
     ];
     let radii: Vec<f32> = gpu.compute(&source, &filters.map(|(kind, _)| kind as u32), None);
     for (radius, (_, filter)) in radii.iter().zip(filters) {
@@ -107,13 +108,7 @@ fn discs_widths_and_noise_agree() {
 fn selection_agrees_at_and_around_every_border() {
     let Some(gpu) = Gpu::new() else { return };
     let sizes = [64; 8];
-    let options = ShadowMapsOptions {
-        map_sizes: sizes.to_vec(),
-        depth_format: DepthFormat::D32Float,
-        filter: Filter::Hard,
-        ..Default::default()
-    };
-    let mut world = World::new(gpu, &options);
+    let mut world = World::new(gpu, &config(&sizes, Filter::Hard, ""));
     let planes = [1.0, 2.5, 6.0, 14.0, 30.0, 65.0, 140.0, 300.0, 640.0];
     let mut plan = plan(DVec3::NEG_Y, DVec3::ZERO, &sizes, &planes, &[2000.0; 8]);
     for split in &mut plan.splits {
@@ -139,16 +134,18 @@ fn selection_agrees_at_and_around_every_border() {
     }
 }
 
-/// What the planner is told of discs: as many texels as they have without a width, and metres where those say more.
+/// Discs keep free as many texels as they have without a width, and metres where those say more.
 #[test]
 fn discs_say_how_many_metres_they_reach() {
-    let wide = Softness { width_m: Some(0.8), sun_angle: 0.1, ..Softness::default() };
-    assert_eq!(Filter::Disc.reach(&Softness::default()), (4.0, None));
-    let (texels, metres) = Filter::Disc.reach(&wide);
+    let reach = |filter: Filter| (filter.radius_texels(), filter.half_width_m());
+    // A tap reaches one texel past its place.
+    assert_eq!(reach(DISC), (f64::from(twin::DISC_RADIUS) + 1.0, None));
+    let (texels, metres) = reach(Filter::Disc { width_m: Some(0.8), rotated: false });
     assert!(texels == 16.0 && metres.is_some_and(|metres| (metres - 0.4).abs() < 1e-6), "{metres:?}");
-    let (texels, metres) = Filter::Pcss.reach(&wide);
-    assert!(texels == 16.0 && metres.is_some_and(|metres| (metres - 200.0 * 0.05f64.tan()).abs() < 1e-5), "{metres:?}");
-    assert_eq!(Filter::Pcf5.reach(&wide), (2.5, None));
+    let (texels, metres) = reach(Filter::Pcss { sun_degrees: 0.1_f64.to_degrees(), rotated: false });
+    let expected = f64::from(twin::MOST_BLOCKER_M) * 0.05f64.tan();
+    assert!(texels == 16.0 && metres.is_some_and(|metres| (metres - expected).abs() < 1e-5), "{metres:?}");
+    assert_eq!(reach(Filter::Pcf5 { width_m: Some(0.8) }), (2.5, None));
 }
 
 /// A receiver and a texel near it, as the shader below takes them.

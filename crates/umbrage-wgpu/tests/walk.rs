@@ -5,13 +5,13 @@
 
 mod common;
 
-use common::{Gpu, World, cuboid};
+use common::{Gpu, PCF3, World, config, cuboid};
 use glam::{DQuat, DVec2, DVec3, IVec2, Vec3};
 use umbrage::{
     Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, ShadowPlan, ShadowSettings, Split, Stabilize,
     SteppedSun, SunFade, View,
 };
-use umbrage_wgpu::{DepthFormat, Filter, FrameOptions, ShadowMapsOptions};
+use umbrage_wgpu::FrameOptions;
 
 const FRAMES: u32 = 600;
 const SIZE: u32 = 128;
@@ -168,13 +168,7 @@ fn index(texel: DVec2) -> Option<usize> {
 }
 
 fn world() -> Option<World> {
-    let options = ShadowMapsOptions {
-        map_sizes: vec![SIZE; SPLITS],
-        depth_format: DepthFormat::D32Float,
-        filter: Filter::Pcf3,
-        ..ShadowMapsOptions::default()
-    };
-    Some(World::new(Gpu::new()?, &options))
+    Some(World::new(Gpu::new()?, &config(&[SIZE; SPLITS], PCF3, "")))
 }
 
 fn settings(stabilize: Stabilize) -> ShadowSettings {

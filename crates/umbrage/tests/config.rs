@@ -2,7 +2,9 @@
 #![cfg(feature = "serde")]
 
 use proptest::prelude::*;
-use umbrage::config::{Choice, Kind, LightKind, Preset, RULES, Range, SETTINGS, Setting, Stability, Transition};
+use umbrage::config::{
+    Choice, Kind, LightKind, Preset, RULES, Range, Rebuilds, SETTINGS, Setting, Stability, Transition,
+};
 use umbrage::{Error, ShadowConfig};
 
 fn given(text: &str) -> Vec<(String, String)> {
@@ -98,12 +100,16 @@ fn choose(choice: Choice) -> (&'static str, &'static [LightKind]) {
         Choice::Band => ("blend=0.1", sun),
         Choice::MomentFilter => ("filter=msm", sun),
         Choice::SunFilter => ("filter=pcss", sun),
+        Choice::SeveralSamples => ("filter=msm msaa=4", sun),
+        Choice::ColourMaps => ("depth-format=r32f", sun),
+        Choice::TiledLayers => ("generation=mixed", sun),
         Choice::OneMap => ("storage=reused", sun),
         Choice::NotLayers => ("storage=atlas", sun),
         Choice::NotPerSplit => ("generation=layered", sun),
         Choice::CubeFaces => ("storage=cube", sun),
         Choice::MoreThanSixSplits => ("splits=7", sun),
         Choice::UnequalSizes => ("map-size=1024,512,512,256", sun),
+        Choice::DeferredCoordinates => ("coordinates=deferred", sun),
         Choice::VertexCoordinates => ("coordinates=split", sun),
         Choice::MoreThanFourSplits => ("splits=5", sun),
         Choice::LocalLight => ("", &[LightKind::Spot]),
@@ -139,8 +145,14 @@ fn every_pair_of_choices_is_refused_exactly_where_a_rule_says_so() {
                 (first, second),
                 (Choice::MapSelection, Choice::DistanceMetric)
                     | (Choice::DistanceMetric, Choice::MapSelection)
-                    | (Choice::OneMap | Choice::NotLayers | Choice::CubeFaces, Choice::NotPerSplit)
-                    | (Choice::NotPerSplit, Choice::OneMap | Choice::NotLayers | Choice::CubeFaces)
+                    | (
+                        Choice::OneMap | Choice::NotLayers | Choice::CubeFaces,
+                        Choice::NotPerSplit | Choice::TiledLayers
+                    )
+                    | (
+                        Choice::NotPerSplit | Choice::TiledLayers,
+                        Choice::OneMap | Choice::NotLayers | Choice::CubeFaces
+                    )
                     | (Choice::MoreThanSixSplits | Choice::MoreThanFourSplits, Choice::UnequalSizes)
                     | (Choice::UnequalSizes, Choice::MoreThanSixSplits | Choice::MoreThanFourSplits)
             );
@@ -187,6 +199,34 @@ fn the_default_serves_every_kind_of_light() {
             assert_eq!(config.validate_for(lights), Ok(()), "{preset} {lights:?}");
         }
     }
+}
+
+#[test]
+fn a_lamp_beside_a_sun_leaves_the_suns_choices_alone() {
+    let lights = [LightKind::Directional, LightKind::Point];
+    let sharp = Preset::Sharp.config();
+    assert!(matches!(sharp.validate_for(&lights), Err(Error::Conflict(_))));
+    assert_eq!(sharp.validate_shared(&lights), Ok(()));
+    let (of_sun, none) = sharp.for_light(LightKind::Directional);
+    assert!(of_sun == sharp && none.is_empty());
+    let (of_lamp, notes) = sharp.for_light(LightKind::Point);
+    assert_eq!(of_lamp.validate_for(&[LightKind::Point]), Ok(()));
+    assert!(notes.len() == 2 && notes.iter().all(|note| note.contains("spot or point light")), "{notes:?}");
+    // What all maps share is no light's own.
+    for shared in ["filter=pcss", "filter=vsm", "storage=atlas", "coordinates=split"] {
+        let told = config(shared).unwrap().validate_shared(&lights);
+        assert!(matches!(told, Err(Error::Conflict(_))), "{shared}: {told:?}");
+    }
+}
+
+#[test]
+fn a_change_is_as_large_as_its_largest_setting() {
+    let papers = Preset::Papers.config();
+    assert_eq!(papers.rebuilds(&papers), None);
+    let to = |settings: &str| papers.rebuilds(&config(settings).unwrap());
+    assert_eq!(to("shadow-strength=0.5"), Some((Rebuilds::Nothing, "shadow-strength")));
+    assert_eq!(to("shadow-strength=0.5 map-size=512"), Some((Rebuilds::Maps, "map-size")));
+    assert_eq!(to("shadow-strength=0.5 map-size=512 storage=atlas"), Some((Rebuilds::Pipelines, "storage")));
 }
 
 /// A value of a setting, awkward ones included.

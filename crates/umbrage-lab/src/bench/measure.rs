@@ -14,7 +14,7 @@ use crate::{
     failure::Result,
     lights,
     scene_setup::SceneSetup,
-    technique::{Technique, args::wgpu_filter},
+    technique::{Technique, args::config_filter},
 };
 
 /// One technique's measurements, round by round, in milliseconds.
@@ -38,7 +38,7 @@ pub fn measure(
 ) -> Result<Vec<Row>> {
     let mut renderers = Vec::new();
     for technique in techniques {
-        let lights = lights::slots(&setup.lights);
+        let lights = lights::kinds(&setup.lights);
         let settings = technique.job.render_settings(job.size, job.samples, None, lights);
         renderers.push(Renderer::new(gpu, &setup.scene, &settings)?);
     }
@@ -105,7 +105,7 @@ fn row(technique: &Technique, measured: &Rounds, baseline: &Rounds, stats: &Fram
         frame_ratio: ratio(&measured.frame, &baseline.frame),
         shadow_ratio: ratio(&measured.shadow, &baseline.shadow),
         paper_ratio: None,
-        samples: wgpu_filter(technique.job.filter).samples(),
+        samples: config_filter(technique.job.filter).texels_read(),
         pairs: sum(|split| split.casters as u64),
         draws: u64::from(stats.shadow_draws),
         triangles: stats.shadow_triangles,

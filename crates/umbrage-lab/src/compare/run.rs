@@ -173,7 +173,7 @@ impl Run<'_> {
         renderers: &mut [Renderer],
     ) -> Result<()> {
         for renderer in renderers.iter_mut() {
-            renderer.restart()?;
+            renderer.restart();
         }
         let first_view = self.views.len();
         let mut walks: Vec<Stillness> =
@@ -201,7 +201,7 @@ impl Run<'_> {
             let both: Vec<ProbePoint> = old_points.iter().chain(&points).copied().collect();
             let (mut scores, mut shown) = (Vec::new(), Vec::new());
             for (number, (technique, renderer)) in self.techniques.iter().zip(renderers.iter_mut()).enumerate() {
-                let wanted = Outputs { picture: is_shown, mask: true, maps: false, deferred: technique.job.deferred };
+                let wanted = Outputs { picture: is_shown, mask: true, maps: false };
                 let coloured = Frame { tint: frame.tint || technique.job.tint, ..frame };
                 let rendered = renderer.render(&coloured, wanted).map_err(|error| in_technique(technique, error))?;
                 let mask = rendered.mask.ok_or_else(|| Failure::other("the renderer gave no mask"))?;
@@ -274,7 +274,7 @@ impl Run<'_> {
         };
         let mut plain = |light| -> Result<_> {
             let frame = Frame { light, shadows_on: false, ..*frame };
-            let wanted = Outputs { picture: true, mask: false, maps: false, deferred: false };
+            let wanted = Outputs { picture: true, mask: false, maps: false };
             renderer.render(&frame, wanted)?.picture.ok_or_else(|| Failure::other("the renderer gave no picture"))
         };
         let plain = Plain { lit: plain(frame.light)?, dark: plain(against)? };

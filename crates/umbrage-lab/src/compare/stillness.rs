@@ -4,9 +4,9 @@
 use std::sync::Arc;
 
 use umbrage::ShadowPlan;
+use umbrage::config::Transition;
 use umbrage_render::ProbePoint;
 use umbrage_truth::scores::{Domain, Flicker, FramePair};
-use umbrage_wgpu::Transition;
 
 use super::report::FlickerReport;
 use crate::failure::Result;
@@ -127,9 +127,9 @@ fn decides(plan: &ShadowPlan, point: &ProbePoint, transition: Transition) -> Dec
     let next = (index + 1).min(plan.splits.len() - 1);
     match transition {
         Transition::Hard => Decides::Split(index),
-        Transition::Blend if depth > split.blend_begin => Decides::Several,
-        Transition::Dither if depth > 0.5 * (split.blend_begin + split.far) => Decides::Split(next),
-        Transition::Blend | Transition::Dither => Decides::Split(index),
+        Transition::Blend { .. } if depth > split.blend_begin => Decides::Several,
+        Transition::Dither { .. } if depth > 0.5 * (split.blend_begin + split.far) => Decides::Split(next),
+        Transition::Blend { .. } | Transition::Dither { .. } => Decides::Split(index),
     }
 }
 
@@ -170,8 +170,8 @@ mod tests {
             (91.0, Several, Several, Several),
             (101.0, Nobody, Nobody, Nobody),
         ] {
-            assert_eq!(at(depth, Transition::Blend), blend, "{depth}");
-            assert_eq!(at(depth, Transition::Dither), dither, "{depth}");
+            assert_eq!(at(depth, Transition::Blend { share: 0.1 }), blend, "{depth}");
+            assert_eq!(at(depth, Transition::Dither { share: 0.1 }), dither, "{depth}");
             assert_eq!(at(depth, Transition::Hard), hard, "{depth}");
         }
     }

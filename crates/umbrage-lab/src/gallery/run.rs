@@ -85,11 +85,11 @@ fn draw(
     let view = &views[0];
     let of_view = scene_setup::Shot { camera: view.camera.clone(), view: view.view, ..setup.shots[0].clone() };
     // Shots do not follow each other: what earlier ones hold must not show.
-    session.renderer.restart()?;
-    let all = Outputs { picture: true, mask: true, maps: true, deferred: false };
+    session.renderer.restart();
+    let all = Outputs { picture: true, mask: true, maps: true };
     let frame = setup.frame(&of_view, &of_view.view, true, false);
     let rendered = session.renderer.render_views(&[frame], of_view.shown.as_ref(), all)?.remove(0);
-    session.renderer.restart()?;
+    session.renderer.restart();
     let tinted = setup.frame(&of_view, &of_view.view, true, true);
     let picture_only = Outputs { picture: true, ..Outputs::default() };
     let tint = session.renderer.render_views(&[tinted], of_view.shown.as_ref(), picture_only)?.remove(0);

@@ -403,32 +403,6 @@ pub enum Storage {
     Reused,
 }
 
-impl From<Generation> for umbrage_wgpu::Generation {
-    fn from(generation: Generation) -> Self {
-        match generation {
-            Generation::Auto => Self::Auto,
-            Generation::Multipass => Self::Multipass,
-            Generation::PerSplit => Self::PerSplit,
-            Generation::Layered => Self::Layered,
-            Generation::Instanced => Self::Instanced,
-            Generation::Mixed => Self::Mixed,
-        }
-    }
-}
-
-impl From<Storage> for umbrage_wgpu::Storage {
-    fn from(storage: Storage) -> Self {
-        match storage {
-            Storage::Auto => Self::Auto,
-            Storage::Array => Self::Array,
-            Storage::Atlas => Self::Atlas,
-            Storage::Separate => Self::Separate,
-            Storage::Cube => Self::Cube,
-            Storage::Reused => Self::Reused,
-        }
-    }
-}
-
 fn number_list(text: &str) -> Result<Numbers, String> {
     parse::numbers(text).map(Numbers)
 }
@@ -448,33 +422,19 @@ fn warp_list(text: &str) -> Result<Warps, String> {
     text.split(',').map(warp).collect::<Result<_, _>>().map(Warps)
 }
 
-/// The renderer's filter.
+/// The config's filter, with its data at the defaults.
 #[must_use]
-pub fn wgpu_filter(filter: Filter) -> umbrage_wgpu::Filter {
-    match filter {
-        Filter::Hard => umbrage_wgpu::Filter::Hard,
-        Filter::Pcf2 => umbrage_wgpu::Filter::Pcf2,
-        Filter::Pcf3 => umbrage_wgpu::Filter::Pcf3,
-        Filter::Pcf5 => umbrage_wgpu::Filter::Pcf5,
-        Filter::Pcf7 => umbrage_wgpu::Filter::Pcf7,
-        Filter::Disc => umbrage_wgpu::Filter::Disc,
-        Filter::Pcss => umbrage_wgpu::Filter::Pcss,
-        Filter::Esm => umbrage_wgpu::Filter::Esm,
-        Filter::Vsm => umbrage_wgpu::Filter::Vsm,
-        Filter::Evsm2 => umbrage_wgpu::Filter::Evsm2,
-        Filter::Evsm4 => umbrage_wgpu::Filter::Evsm4,
-        Filter::Msm => umbrage_wgpu::Filter::Msm,
-    }
+pub fn config_filter(filter: Filter) -> umbrage::config::Filter {
+    of_word(filter)
 }
 
-/// The renderer's depth format.
+/// The config's value of the same word.
+///
+/// # Panics
+/// If the config has no such word.
 #[must_use]
-pub fn wgpu_depth_format(format: DepthFormat) -> umbrage_wgpu::DepthFormat {
-    match format {
-        DepthFormat::D32f => umbrage_wgpu::DepthFormat::D32Float,
-        DepthFormat::D16 => umbrage_wgpu::DepthFormat::D16Unorm,
-        DepthFormat::R32f => umbrage_wgpu::DepthFormat::R32Float,
-    }
+pub fn of_word<T: std::str::FromStr<Err = String>>(value: impl ValueEnum) -> T {
+    typed_name(value).parse().expect("options and config have the same words")
 }
 
 /// The name of an option's value as it is typed.
@@ -486,6 +446,22 @@ pub fn typed_name(value: impl ValueEnum) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_word_is_one_of_the_config() {
+        fn all<A: ValueEnum, T: std::str::FromStr<Err = String>>() {
+            A::value_variants().iter().for_each(|value| drop(of_word::<T>(value.clone())));
+        }
+        use umbrage::config as to;
+        all::<Filter, to::Filter>();
+        all::<DepthFormat, to::DepthFormat>();
+        all::<Derivatives, to::Derivatives>();
+        all::<Fallbacks, to::Fallbacks>();
+        all::<Bias, to::ReceiverBias>();
+        all::<Translucent, to::Translucent>();
+        all::<Coordinates, to::Coordinates>();
+        all::<Fit, to::Crop>();
+    }
 
     #[test]
     fn warps_are_one_or_one_for_each_split() {

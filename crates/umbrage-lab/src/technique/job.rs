@@ -1,10 +1,12 @@
 //! What the options of shadows mean: everything that can be checked before a file is read.
 
 use glam::DVec3;
+use umbrage::config::{self, LightKind, SUN_DEGREES, ShadowConfig};
 use umbrage::{ExtentSteps, MAX_SPLITS, ShadowSettings, SplitScheme, Warp};
+use umbrage_render::{LightMaps, RenderSettings, Samples};
 
 use super::{
-    args::{self, Scheme, ShadowArgs, Technique, typed_name, wgpu_depth_format, wgpu_filter},
+    args::{self, Scheme, ShadowArgs, Technique, config_filter, of_word, typed_name},
     paths,
 };
 use crate::failure::{Failure, Result};
@@ -43,16 +45,12 @@ pub struct ShadowJob {
     pub contact_shadows: bool,
     /// `--shadow-colour`.
     pub shadow_colour: DVec3,
-    /// Whether `--coordinates` are `deferred`.
-    pub deferred: bool,
-    /// Where everything else takes map coordinates from.
-    pub coordinates: umbrage_render::Coordinates,
+    /// `--coordinates`.
+    pub coordinates: args::Coordinates,
     /// `--depth-format`.
     pub depth_format: args::DepthFormat,
-    /// `--generation`.
-    pub generation: umbrage_wgpu::Generation,
-    /// `--storage`.
-    pub storage: umbrage_wgpu::Storage,
+    /// `--generation` and `--storage`.
+    pub layout: config::Layout,
     /// Defaults invented.
     pub notes: Vec<String>,
     /// `--tint`.
@@ -108,7 +106,8 @@ impl ShadowJob {
                 );
             }
         }
-        let (blend, note) = paths::blend(args, &map_sizes)?;
+        let layout = paths::layout(args, &map_sizes)?;
+        let (blend, note) = paths::blend(args, layout, map_sizes.len())?;
         let settings = ShadowSettings {
             scheme: scheme(args, map_sizes.len())?,
             map_sizes,
@@ -135,7 +134,7 @@ impl ShadowJob {
                 args::Stabilize::None => umbrage::Stabilize::None,
             },
             warps: warps.iter().map(|&warp| planner_warp(warp, args.tsm_focus)).collect(),
-            filter_radius: wgpu_filter(args.filter).radius_texels(),
+            filter_radius: config_filter(args.filter).radius_texels(),
             filter_half_width_m: None,
             blend,
             far_fade: args.far_fade,
@@ -145,7 +144,7 @@ impl ShadowJob {
         settings.validate()?;
         check_moments(args, &warps)?;
         paths::check_coordinates(args, settings.map_sizes.len(), &warps)?;
-        if args.filter_width.is_some() && !wgpu_filter(args.filter).has_width() {
+        if args.filter_width.is_some() && !config_filter(args.filter).has_width() {
             return Err(Failure::input(format!(
                 "--filter-width: --filter {} has no width to choose; leave it away, or use pcf3, pcf5, pcf7, disc, esm, vsm, evsm2, evsm4 or msm",
                 typed_name(args.filter)
@@ -166,14 +165,9 @@ impl ShadowJob {
             translucent: args.translucent,
             contact_shadows: args.contact_shadows == args::Switch::On,
             shadow_colour: args.shadow_colour,
-            deferred: args.coordinates == args::Coordinates::Deferred,
-            coordinates: match args.coordinates {
-                args::Coordinates::Split => umbrage_render::Coordinates::Split,
-                args::Coordinates::World | args::Coordinates::Deferred => umbrage_render::Coordinates::World,
-            },
+            coordinates: args.coordinates,
             depth_format: args.depth_format,
-            generation: args.generation.into(),
-            storage: args.storage.into(),
+            layout,
             notes: note.into_iter().collect(),
             tint: args.tint,
             shadows_on: args.shadows == args::Switch::On,
@@ -185,14 +179,56 @@ impl ShadowJob {
         })
     }
 
-    /// How soft edges are under a sun of this angle in degrees.
+    /// Everything that can be chosen about shadows, as one value, under a sun of this angle in degrees.
     #[must_use]
-    pub fn softness(&self, sun_angle: Option<f64>) -> umbrage_wgpu::Softness {
-        umbrage_wgpu::Softness {
-            width_m: self.filter_width.map(|width| width as f32),
-            sun_angle: sun_angle.map_or(umbrage_wgpu::Softness::SUN, |degrees| degrees.to_radians() as f32),
-            turned: false,
-            bleeding: self.bleeding.map_or(umbrage_wgpu::Softness::default().bleeding, |share| share as f32),
+    pub fn config(&self, sun_angle: Option<f64>) -> ShadowConfig {
+        let settings = &self.settings;
+        ShadowConfig {
+            map_sizes: settings.map_sizes.clone(),
+            scheme: match &settings.scheme {
+                SplitScheme::Uniform => config::SplitScheme::Uniform,
+                SplitScheme::Logarithmic => config::SplitScheme::Logarithmic,
+                SplitScheme::Practical { lambda, delta } => {
+                    config::SplitScheme::Practical { lambda: *lambda, delta: delta.clone() }
+                }
+                SplitScheme::Manual(planes) => config::SplitScheme::Manual { planes: planes.clone() },
+                SplitScheme::Fitted => config::SplitScheme::Optimal,
+            },
+            range: match (settings.range, settings.range_fit) {
+                (Some((near, far)), _) => config::Range::Metres { near, far },
+                (None, umbrage::RangeFit::Camera) => config::Range::Camera,
+                (None, umbrage::RangeFit::Visible) => config::Range::Visible,
+            },
+            selection: match (settings.selection, settings.bands) {
+                (umbrage::Selection::Map, _) => config::Selection::Map,
+                (_, umbrage::Bands::Planar) => config::Selection::Interval(config::SplitMetric::ViewDepth),
+                (_, umbrage::Bands::Radial) => config::Selection::Interval(config::SplitMetric::Distance),
+            },
+            transition: self.transition(),
+            far_fade: settings.far_fade,
+            crop: of_word(self.fit),
+            stability: match settings.stabilize {
+                umbrage::Stabilize::None => config::Stability::Tight { warps: settings.warps.clone() },
+                umbrage::Stabilize::Exact => config::Stability::Exact,
+                umbrage::Stabilize::Approximate(ExtentSteps::PerDoubling(count)) => {
+                    config::Stability::Approximate { steps: config::ExtentSteps::PerDoubling(count) }
+                }
+                umbrage::Stabilize::Approximate(ExtentSteps::Levels(count)) => {
+                    config::Stability::Approximate { steps: config::ExtentSteps::Levels(count) }
+                }
+            },
+            filter: self.filter(sun_angle),
+            depth_format: of_word(self.depth_format),
+            layout: self.layout,
+            fallbacks: of_word(self.fallbacks),
+            coordinates: of_word(self.coordinates),
+            look: config::Look {
+                strength: self.shadow_strength,
+                colour: self.shadow_colour.to_array(),
+                bias: of_word(self.bias),
+                translucent: of_word(self.translucent),
+                contact: self.contact_shadows,
+            },
         }
     }
 
@@ -201,65 +237,42 @@ impl ShadowJob {
     pub fn render_settings(
         &self,
         size: [u32; 2],
-        samples: umbrage_render::Samples,
+        samples: Samples,
         sun_angle: Option<f64>,
-        lights: Vec<umbrage_wgpu::LightSlot>,
-    ) -> umbrage_render::RenderSettings {
-        umbrage_render::RenderSettings {
-            size,
-            shadows: self.settings.clone(),
-            filter: wgpu_filter(self.filter),
-            depth_format: wgpu_depth_format(self.depth_format),
-            samples,
-            softness: self.softness(sun_angle),
-            transition: self.transition(),
-            moments: self.moments(),
-            look: self.look(),
-            coordinates: self.coordinates,
-            storage: self.storage,
-            generation: self.generation,
-            lights,
-        }
+        lights: Vec<LightKind>,
+    ) -> RenderSettings {
+        let lights = lights.into_iter().map(LightMaps::from).collect();
+        RenderSettings { size, samples, config: self.config(sun_angle), lights }
     }
 
-    /// What filters of moments leave to choose.
-    #[must_use]
-    pub fn moments(&self) -> umbrage_render::MomentSettings {
-        umbrage_render::MomentSettings {
-            samples: self.msaa,
-            fallbacks: self.fallbacks == args::Fallbacks::Allow,
-            derivatives: match self.derivatives {
-                args::Derivatives::Analytic => umbrage_wgpu::Derivatives::Analytic,
-                args::Derivatives::Quad => umbrage_wgpu::Derivatives::Quad,
-            },
+    fn filter(&self, sun_angle: Option<f64>) -> config::Filter {
+        let mut filter = config_filter(self.filter);
+        match &mut filter {
+            config::Filter::Pcf3 { width_m } | config::Filter::Pcf5 { width_m } | config::Filter::Pcf7 { width_m } => {
+                *width_m = self.filter_width;
+            }
+            config::Filter::Disc { width_m, .. } => *width_m = self.filter_width,
+            config::Filter::Pcss { sun_degrees, .. } => *sun_degrees = sun_angle.unwrap_or(SUN_DEGREES),
+            config::Filter::Moments(moments) => {
+                moments.width_m = self.filter_width;
+                moments.samples = self.msaa;
+                moments.bleeding = self.bleeding.unwrap_or(moments.bleeding);
+                moments.derivatives = of_word(self.derivatives);
+            }
+            config::Filter::Hard | config::Filter::Pcf2 => {}
         }
-    }
-
-    /// How shadows look.
-    #[must_use]
-    pub fn look(&self) -> umbrage_render::Look {
-        umbrage_render::Look {
-            strength: self.shadow_strength as f32,
-            colour: self.shadow_colour.as_vec3().to_array(),
-            bias: match self.bias {
-                args::Bias::Plane => umbrage_wgpu::ReceiverBias::Plane,
-                args::Bias::Slope => umbrage_wgpu::ReceiverBias::Slope,
-            },
-            translucent: match self.translucent {
-                args::Translucent::None => umbrage_render::Translucent::None,
-                args::Translucent::Dithered => umbrage_render::Translucent::Dithered,
-            },
-            contact: self.contact_shadows.then(umbrage_wgpu::ContactOptions::default),
-        }
+        filter
     }
 
     /// How splits meet.
     #[must_use]
-    pub fn transition(&self) -> umbrage_wgpu::Transition {
+    pub fn transition(&self) -> config::Transition {
+        let share = self.settings.blend;
         match self.transition {
-            args::Transition::Blend => umbrage_wgpu::Transition::Blend,
-            args::Transition::Dither => umbrage_wgpu::Transition::Dither,
-            args::Transition::Hard => umbrage_wgpu::Transition::Hard,
+            _ if share == 0.0 => config::Transition::Hard,
+            args::Transition::Blend => config::Transition::Blend { share },
+            args::Transition::Dither => config::Transition::Dither { share },
+            args::Transition::Hard => config::Transition::Hard,
         }
     }
 }
@@ -301,7 +314,7 @@ fn map_sizes(args: &ShadowArgs) -> Result<Vec<u32>> {
 /// What only filters of moments take, and what they do not.
 fn check_moments(args: &ShadowArgs, warps: &[args::Warp]) -> Result<()> {
     let name = typed_name(args.filter);
-    if wgpu_filter(args.filter).is_prefiltered() {
+    if config_filter(args.filter).is_prefiltered() {
         let storage = typed_name(args.storage);
         if !["auto", "array"].contains(&storage.as_str()) {
             return Err(Failure::input(format!(

@@ -5,10 +5,10 @@ use std::sync::OnceLock;
 
 use glam::{DQuat, DVec3};
 use image::GrayAlphaImage;
-use umbrage::{DirectionalLight, Frustum, ShadowSettings, Stabilize, View};
+use umbrage::config::{Filter, Preset, Range, ShadowConfig, Stability, Transition};
+use umbrage::{DirectionalLight, Frustum, View};
 use umbrage_render::{Frame, Gpu, GpuOptions, Outputs, RenderSettings, Rendered, Renderer, Samples};
 use umbrage_scene::{Material, Mesh, Node, Pose, Primitive, Scene, Trs};
-use umbrage_wgpu::{DepthFormat, Filter, Generation, Softness, Storage, Transition};
 
 /// The device, or `None` (said loudly) where there is no adapter. `UMBRAGE_REQUIRE_GPU=1` turns that into a failure.
 pub fn gpu() -> Option<Gpu> {
@@ -28,28 +28,25 @@ pub const SIZE: [u32; 2] = [160, 120];
 
 /// Two maps of 512², hard, unstabilised: small and exact enough for closed forms.
 pub fn settings() -> RenderSettings {
-    RenderSettings {
-        size: SIZE,
-        shadows: ShadowSettings {
-            map_sizes: vec![512; 2],
-            blend: 0.0,
-            far_fade: 0.0,
-            range: Some((1.0, 60.0)),
-            stabilize: Stabilize::None,
-            ..Default::default()
-        },
+    RenderSettings { size: SIZE, samples: Samples::Four, config: config(), ..RenderSettings::default() }
+}
+
+/// The shadows of [`settings`].
+pub fn config() -> ShadowConfig {
+    ShadowConfig {
+        map_sizes: vec![512; 2],
+        transition: Transition::Hard,
+        far_fade: 0.0,
+        range: Range::Metres { near: 1.0, far: 60.0 },
+        stability: Stability::tight(),
         filter: Filter::Hard,
-        depth_format: DepthFormat::D32Float,
-        samples: Samples::Four,
-        softness: Softness::default(),
-        transition: Transition::default(),
-        moments: Default::default(),
-        look: umbrage_render::Look::default(),
-        coordinates: Default::default(),
-        storage: Storage::default(),
-        generation: Generation::default(),
-        lights: vec![umbrage_wgpu::LightSlot::Single],
+        ..Preset::Papers.config()
     }
+}
+
+/// The settings with another config.
+pub fn configured(config: ShadowConfig) -> RenderSettings {
+    RenderSettings { config, ..settings() }
 }
 
 pub fn look(eye: DVec3, target: DVec3) -> View {

@@ -25,7 +25,7 @@ fn measure(world: World) -> Option<[AcneAndLeak; 2]> {
     let settings = Technique::default_of_the_command().settings;
     let settings = umbrage_render::RenderSettings {
         size: SIZE,
-        shadows: umbrage::ShadowSettings { range: None, far_fade: 0.1, ..settings.shadows.clone() },
+        config: umbrage::ShadowConfig { far_fade: 0.1, ..settings.config.clone() },
         ..settings
     };
     let mut renderer = Renderer::new(gpu, &stage.scene, &settings).expect("a renderer");

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use umbrage::Warp;
+use umbrage::config::Filter;
 use umbrage_render::Outputs;
 use umbrage_scene::procedural::World;
 use umbrage_tests::compare::{Golden, compare};
 use umbrage_tests::golden::{Goldens, Mode};
 use umbrage_tests::stage::{Stage, Technique, gpu};
-use umbrage_wgpu::Filter;
 
 /// Pixels of a mask.
 const MASK_SIZE: [u32; 2] = [160, 120];
@@ -63,15 +63,15 @@ fn shots() -> Vec<Shot> {
         // Which filter.
         shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Hard)),
         shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Pcf2)),
-        shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Pcf3)),
-        shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Pcf5)),
-        shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Pcf7)),
-        shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Disc)),
-        shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Pcss)),
-        shot(Chessboard, "far", Mask, pssm(3).exact().filter(Filter::Pcf5).blended(0.3, 0.4)),
+        shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Pcf3 { width_m: None })),
+        shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Pcf5 { width_m: None })),
+        shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Pcf7 { width_m: None })),
+        shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Disc { width_m: None, rotated: false })),
+        shot(Chessboard, "near", Mask, pssm(2).filter(Filter::Pcss { sun_degrees: 0.53, rotated: false })),
+        shot(Chessboard, "far", Mask, pssm(3).exact().filter(Filter::Pcf5 { width_m: None }).blended(0.3, 0.4)),
         shot(Chessboard, "far", Tint, default()),
         // Which fit; leaves with holes.
-        shot(Knights, "near", Mask, pssm(4).exact().filter(Filter::Pcf3)),
+        shot(Knights, "near", Mask, pssm(4).exact().filter(Filter::Pcf3 { width_m: None })),
         shot(Knights, "middle", Mask, pssm(3)),
         shot(Knights, "middle", Mask, pssm(3).independent()),
         shot(Knights, "dueling", Mask, pssm(4).d16()),
@@ -84,7 +84,7 @@ fn shots() -> Vec<Shot> {
         // Ground that throws shadows.
         shot(MiningTerrain, "near", Mask, pssm(4)),
         shot(MiningTerrain, "middle", Mask, ssm().independent()),
-        shot(MiningTerrain, "far", Mask, pssm(4).exact().d16().filter(Filter::Pcf3)),
+        shot(MiningTerrain, "far", Mask, pssm(4).exact().d16().filter(Filter::Pcf3 { width_m: None })),
         shot(MiningTerrain, "dueling", Mask, pssm(4).independent().exact()),
         shot(MiningTerrain, "dueling", Picture, default()),
         shot(MiningTerrain, "middle", Tint, default()),

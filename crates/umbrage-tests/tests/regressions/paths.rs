@@ -1,23 +1,13 @@
 //! Every pair of generation and storage draws every world alike, and whatever a device lacks, everything renders.
 
 use image::GrayAlphaImage;
+use umbrage::config::{DepthFormat, Filter, Generation, Layout};
 use umbrage_render::{Gpu, GpuOptions, Outputs, ProbePoint, Renderer};
 use umbrage_scene::procedural::World;
 use umbrage_tests::stage::{Stage, Technique, gpu};
-use umbrage_wgpu::{DepthFormat, Filter, Generation, Storage};
 
 /// The first is what the others are compared with.
-const PAIRS: [(Generation, Storage); 9] = [
-    (Generation::PerSplit, Storage::Array),
-    (Generation::PerSplit, Storage::Atlas),
-    (Generation::PerSplit, Storage::Separate),
-    (Generation::PerSplit, Storage::Cube),
-    (Generation::Multipass, Storage::Reused),
-    (Generation::Layered, Storage::Array),
-    (Generation::Layered, Storage::Cube),
-    (Generation::Instanced, Storage::Atlas),
-    (Generation::Mixed, Storage::Array),
-];
+const LAYOUTS: [Layout; 9] = Layout::ALL;
 
 const SIZE: [u32; 2] = [160, 120];
 
@@ -25,18 +15,17 @@ const SIZE: [u32; 2] = [160, 120];
 const TILES: f64 = 0.0005;
 
 /// The mask of a world's camera `middle`, or `None`, said loudly, where the device cannot take this path.
-fn mask(gpu: &Gpu, world: World, technique: &Technique, pair: (Generation, Storage)) -> Option<GrayAlphaImage> {
+fn mask(gpu: &Gpu, world: World, technique: &Technique, layout: Layout) -> Option<GrayAlphaImage> {
     let mut technique = technique.clone();
-    (technique.settings.generation, technique.settings.storage) = pair;
+    technique.settings.config.layout = layout;
     let stage = Stage::of(world);
     let view = stage.view("middle", SIZE);
     let mut drawer = stage.drawer(gpu, &technique, SIZE);
-    let taken = drawer.renderer.map_options();
-    if taken.generation != pair.0 {
-        eprintln!("SKIPPED: {pair:?} became {:?}", taken.generation);
+    let taken = drawer.renderer.layout();
+    if taken != layout {
+        eprintln!("SKIPPED: {layout:?} became {taken:?}");
         return None;
     }
-    assert_eq!(taken.storage, pair.1);
     Some(drawer.mask(&view))
 }
 
@@ -46,36 +35,36 @@ fn difference(a: &GrayAlphaImage, b: &GrayAlphaImage) -> f64 {
     count as f64 / f64::from(a.width() * a.height())
 }
 
-fn check(world: World, technique: &Technique, pairs: &[(Generation, Storage)]) {
+fn check(world: World, technique: &Technique, layouts: &[Layout]) {
     let Some(gpu) = gpu() else { return };
-    let expected = mask(gpu, world, technique, PAIRS[0]).expect("the plainest path is there");
+    let expected = mask(gpu, world, technique, LAYOUTS[0]).expect("the plainest path is there");
     let shadowed = expected.pixels().filter(|pixel| pixel.0 == [0, 255]).count();
     assert!(shadowed > 500, "{}: only {shadowed} pixels are in shadow", world.name());
-    for &pair in pairs {
-        let Some(found) = mask(gpu, world, technique, pair) else { continue };
-        let tiles = pair.1 == Storage::Atlas || pair.0 == Generation::Mixed;
+    for &layout in layouts {
+        let Some(found) = mask(gpu, world, technique, layout) else { continue };
+        let tiles = matches!(layout, Layout::Atlas | Layout::InstancedAtlas | Layout::MixedArray);
         let (found, most) = (difference(&found, &expected), if tiles { TILES } else { 0.0 });
-        assert!(found <= most, "{} by {pair:?}: {:.4} % of the pixels differ", world.name(), 100.0 * found);
+        assert!(found <= most, "{} by {layout:?}: {:.4} % of the pixels differ", world.name(), 100.0 * found);
     }
 }
 
 #[test]
 fn every_pair_draws_every_world_alike() {
     for world in World::ALL {
-        check(world, &Technique::pssm(4, 256), &PAIRS[1..]);
+        check(world, &Technique::pssm(4, 256), &LAYOUTS[1..]);
     }
 }
 
 #[test]
 fn every_way_to_read_maps_filters_alike() {
-    check(World::Chessboard, &Technique::pssm(3, 256).filter(Filter::Pcf3), &PAIRS[1..5]);
+    check(World::Chessboard, &Technique::pssm(3, 256).filter(Filter::Pcf3 { width_m: None }), &LAYOUTS[1..5]);
 }
 
 /// The comparison must be able to say no: a technique that is a little coarser.
 #[test]
 fn another_resolution_is_no_path() {
     let Some(gpu) = gpu() else { return };
-    let of = |size| mask(gpu, World::Chessboard, &Technique::pssm(4, size), PAIRS[0]).expect("a mask");
+    let of = |size| mask(gpu, World::Chessboard, &Technique::pssm(4, size), LAYOUTS[0]).expect("a mask");
     assert!(difference(&of(256), &of(248)) > TILES);
 }
 
@@ -83,15 +72,15 @@ fn another_resolution_is_no_path() {
 #[test]
 fn sizes_and_floats_change_nothing() {
     let mut technique = Technique::pssm(4, 256);
-    technique.settings.shadows.map_sizes = vec![256, 192, 128, 128];
+    technique.settings.config.map_sizes = vec![256, 192, 128, 128];
     // Where sizes matter: packed, apart, with one viewport for several layers, and packed in layers.
-    check(World::Knights, &technique, &[PAIRS[1], PAIRS[2], PAIRS[5], PAIRS[8]]);
+    check(World::Knights, &technique, &[LAYOUTS[1], LAYOUTS[2], LAYOUTS[5], LAYOUTS[8]]);
     let Some(gpu) = gpu() else { return };
-    let depth = mask(gpu, World::Knights, &technique, PAIRS[0]).expect("a mask");
-    technique.settings.depth_format = DepthFormat::R32Float;
-    for pair in [PAIRS[0], PAIRS[5]] {
-        let Some(floats) = mask(gpu, World::Knights, &technique, pair) else { continue };
-        assert_eq!(difference(&depth, &floats), 0.0, "{pair:?}");
+    let depth = mask(gpu, World::Knights, &technique, LAYOUTS[0]).expect("a mask");
+    technique.settings.config.depth_format = DepthFormat::R32Float;
+    for layout in [LAYOUTS[0], LAYOUTS[5]] {
+        let Some(floats) = mask(gpu, World::Knights, &technique, layout) else { continue };
+        assert_eq!(difference(&depth, &floats), 0.0, "{layout:?}");
     }
 }
 
@@ -108,18 +97,18 @@ fn probes_answer_alike() {
             ProbePoint { position: glam::DVec3::new(position.x, 0.05, position.z), normal: glam::DVec3::Y }
         })
         .collect();
-    let answers = |pair: (Generation, Storage)| {
+    let answers = |layout: Layout| {
         let mut technique = Technique::pssm(4, 256);
-        (technique.settings.generation, technique.settings.storage) = pair;
+        technique.settings.config.layout = layout;
         let mut drawer = stage.drawer(gpu, &technique, SIZE);
         drawer.renderer.probe(&stage.frame(&view, false), &points).expect("answers")
     };
-    let expected = answers(PAIRS[0]);
+    let expected = answers(LAYOUTS[0]);
     let split_of = |split| expected.iter().filter(|answer| answer.split == split).count();
     assert!(expected.iter().any(|answer| answer.visibility == 0.0), "no point is in shadow");
     assert!((0..4).filter(|&split| split_of(split) > 10).count() > 1, "all points are of one split");
-    assert_eq!(answers((Generation::Multipass, Storage::Reused)), expected);
-    assert_eq!(answers((Generation::PerSplit, Storage::Separate)), expected);
+    assert_eq!(answers(Layout::Reused), expected);
+    assert_eq!(answers(Layout::Separate), expected);
 }
 
 /// With each optional feature withheld in turn, and with all of them, every path that is asked for renders, and the report names what was
@@ -131,32 +120,33 @@ fn whatever_a_device_lacks_everything_renders() {
     }
     let stage = Stage::of(World::RobotWar);
     let view = stage.view("near", SIZE);
-    use Generation::{Instanced, Layered, Mixed, Multipass};
+    use Layout::{InstancedAtlas as Instanced, LayeredArray as Layered, MixedArray as Mixed, Reused as Multipass};
     // Each with those whom it concerns.
-    let features: [(wgpu::Features, &[Generation]); 7] = [
+    let features: [(wgpu::Features, &[Layout]); 7] = [
         (wgpu::Features::MULTIVIEW, &[Layered, Mixed]),
         (wgpu::Features::CLIP_DISTANCES, &[Instanced, Mixed]),
         (wgpu::Features::DEPTH_CLIP_CONTROL, &[Multipass]),
         (wgpu::Features::TIMESTAMP_QUERY, &[Multipass]),
         (wgpu::Features::PIPELINE_STATISTICS_QUERY, &[Layered]),
-        (wgpu::Features::FLOAT32_FILTERABLE, &[Generation::PerSplit]),
+        (wgpu::Features::FLOAT32_FILTERABLE, &[Layout::Array]),
         (wgpu::Features::all(), &[Multipass, Layered, Instanced, Mixed]),
     ];
     let mut expected: Option<GrayAlphaImage> = None;
-    for (withhold, generations) in features {
+    for (withhold, layouts) in features {
         let gpu = Gpu::new(&GpuOptions { withhold }).expect("a device with less");
-        for &generation in generations {
+        for &layout in layouts {
+            let generation: Generation = layout.generation();
             let mut technique = Technique::pssm(2, 256);
-            technique.settings.generation = generation;
+            technique.settings.config.layout = layout;
             technique.settings.size = SIZE;
-            technique.settings.shadows.range = Some(stage.world.near_far());
+            technique.settings.config.range = stage.range();
             let mut renderer = Renderer::new(&gpu, &stage.scene, &technique.settings).expect("a renderer");
-            let outputs = Outputs { mask: true, picture: true, maps: true, deferred: false };
+            let outputs = Outputs { mask: true, picture: true, maps: true };
             let rendered = renderer.render(&stage.frame(&view, false), outputs).expect("a frame");
             let stats = rendered.stats;
             assert_eq!(stats.splits.len(), rendered.maps.len());
-            let taken = stats.generation == generation.name();
-            let noted = stats.notes.iter().any(|note| note.contains(generation.name()) && note.contains("per-split"));
+            let taken = stats.generation == generation.word();
+            let noted = stats.notes.iter().any(|note| note.contains(generation.word()) && note.contains("per-split"));
             assert!(
                 taken != noted,
                 "{generation:?} without {withhold:?} became {}: {:?}",

@@ -2,7 +2,8 @@
 //! `umbrage compare --preset stillness` measures over 600 frames (docs/results.md), over a few. Limits are those asked for.
 
 use glam::{DQuat, DVec3};
-use umbrage::{DirectionalLight, ExtentSteps, Frustum, Stabilize, View};
+use umbrage::config::{ExtentSteps, Stability, Transition};
+use umbrage::{DirectionalLight, Frustum, View};
 use umbrage_render::{Frame, ProbePoint, RenderSettings, Renderer};
 use umbrage_scene::{Pose, Scene};
 use umbrage_tests::stage::{Technique, gpu};
@@ -51,13 +52,13 @@ impl Walk {
         Self { place, scene, pose, sun, views, frames }
     }
 
-    fn flips(&self, stabilize: Stabilize) -> Option<Flips> {
+    fn flips(&self, stability: Stability) -> Option<Flips> {
         let any = Technique::default_of_the_command();
         let mut settings = RenderSettings { size: SIZE, ..any.settings };
-        settings.shadows.map_sizes = vec![256; 4];
-        settings.shadows.stabilize = stabilize;
+        settings.config.map_sizes = vec![256; 4];
+        settings.config.stability = stability.clone();
         // In a blend band two splits decide, and soft edges move with their shares.
-        settings.shadows.blend = 0.0;
+        settings.config.transition = Transition::Hard;
         let mut renderer = Renderer::new(gpu()?, &self.scene, &settings).expect("the device holds a town");
         let mut answers = |frame: usize, points: &[ProbePoint]| {
             let view = &self.views[frame];
@@ -79,7 +80,7 @@ impl Walk {
         }
         let [all, kept] = [all, kept].map(|sum| sum.per_edge().expect("shadows have edges"));
         let flips = Flips { all, kept };
-        eprintln!("{stabilize:?} at {}: {flips:?}", self.place);
+        eprintln!("{stability:?} at {}: {flips:?}", self.place);
         Some(flips)
     }
 }
@@ -98,7 +99,7 @@ fn view(place: DVec3, frame: u32, turns: bool) -> View {
 fn still_maps_flicker_as_little_as_was_asked() {
     for place in [DVec3::ZERO, DVec3::new(7_071.3, 12.7, -7_071.1), DVec3::new(-70_711.3, -31.4, 70_710.9)] {
         let walk = Walk::new(place, true);
-        let Some(exact) = walk.flips(Stabilize::Exact) else { return };
+        let Some(exact) = walk.flips(Stability::Exact) else { return };
         assert!(exact.kept <= 0.0002 && exact.all <= 0.0025, "exact at {place}: {exact:?}");
     }
 }
@@ -108,11 +109,11 @@ fn still_maps_flicker_as_little_as_was_asked() {
 fn nearly_tight_maps_flicker_a_tenth_of_tight_ones() {
     let place = DVec3::new(7_071.3, 12.7, -7_071.1);
     let walk = Walk::new(place, true);
-    let Some(tight) = walk.flips(Stabilize::None) else { return };
+    let Some(tight) = walk.flips(Stability::tight()) else { return };
     assert!(tight.kept > 0.02 && tight.all > 0.02, "{tight:?}");
-    let approximate = walk.flips(Stabilize::Approximate(ExtentSteps::default())).expect("a device");
+    let approximate = walk.flips(Stability::Approximate { steps: ExtentSteps::default() }).expect("a device");
     assert!(approximate.all <= 0.1 * tight.all, "{approximate:?} beside {tight:?}");
     let straight = Walk::new(place, false);
-    let approximate = straight.flips(Stabilize::Approximate(ExtentSteps::default())).expect("a device");
+    let approximate = straight.flips(Stability::Approximate { steps: ExtentSteps::default() }).expect("a device");
     assert!(approximate.all <= 0.01, "walking only: {approximate:?}");
 }

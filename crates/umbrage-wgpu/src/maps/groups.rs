@@ -1,11 +1,12 @@
 //! Bind groups: what casters are told of their splits, what receivers are told of the frame, and the maps they read.
 
+use umbrage::config::{Filter, Storage};
 use umbrage_shaders::layout;
 
 use super::passes::MapPass;
 use super::targets::Targets;
 use crate::moments::Moments;
-use crate::{ShadowMapsOptions, Storage};
+use crate::options::sampler_mode;
 
 /// Uniforms of one kind in one buffer, each with a bind group.
 #[derive(Debug)]
@@ -29,20 +30,14 @@ impl Uniforms {
     }
 
     /// What receivers are told: the frames, once for all splits, and where one map is reused, once more for each; and the maps.
-    pub fn of_receivers(
-        device: &wgpu::Device,
-        options: &ShadowMapsOptions,
-        targets: &Targets,
-        loads: bool,
-        moments: Option<&Moments>,
-    ) -> Self {
-        let count = if options.storage == Storage::Reused { 1 + options.map_sizes.len() } else { 1 };
+    pub fn of_receivers(device: &wgpu::Device, it: &Received, targets: &Targets, moments: Option<&Moments>) -> Self {
+        let count = if it.storage == Storage::Reused { 1 + it.maps } else { 1 };
         let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
-        let bytes = super::lights::frame_bytes(options);
+        let bytes = (it.frames * size_of::<layout::Frame>()) as u64;
         if let Some(moments) = moments {
             return Self::of_moments(device, moments, visibility, bytes);
         }
-        let bindings = MapBindings::new(device, options, targets, loads);
+        let bindings = MapBindings::new(device, it, targets);
         let mut entries = vec![uniform_entry(bytes, visibility)];
         let types = bindings.list.iter().map(|(binding, ty, _)| (*binding, *ty));
         entries.extend(types.map(|(binding, ty)| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }));
@@ -107,6 +102,20 @@ impl Uniforms {
     }
 }
 
+/// What receivers are told of and how they read it.
+pub(super) struct Received {
+    pub filter: Filter,
+    pub storage: Storage,
+    /// Maps are colours and not depth.
+    pub is_colour: bool,
+    /// Depth textures can be loaded from.
+    pub loads: bool,
+    /// Faces of all lights.
+    pub frames: usize,
+    /// Maps of all lights.
+    pub maps: usize,
+}
+
 enum Bound {
     View(wgpu::TextureView),
     Sampler(wgpu::Sampler),
@@ -118,9 +127,9 @@ struct MapBindings {
 }
 
 impl MapBindings {
-    fn new(device: &wgpu::Device, options: &ShadowMapsOptions, targets: &Targets, loads: bool) -> Self {
+    fn new(device: &wgpu::Device, it: &Received, targets: &Targets) -> Self {
         use wgpu::TextureViewDimension::{Cube, D2, D2Array};
-        let colour = options.depth_format.is_colour();
+        let (colour, loads) = (it.is_colour, it.loads);
         let sample_type = match colour {
             true => wgpu::TextureSampleType::Float { filterable: false },
             false => wgpu::TextureSampleType::Depth,
@@ -134,27 +143,27 @@ impl MapBindings {
             let ty = wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false };
             (binding, ty, Bound::View(view))
         };
-        let mut list = match options.storage {
+        let mut list = match it.storage {
             Storage::Separate => (0..targets.maps.len()).map(|index| map(3 + index as u32, index, D2)).collect(),
             Storage::Cube if loads && !colour => vec![map(1, 0, Cube), map(3, 0, D2Array)],
             Storage::Cube => vec![map(1, 0, Cube)],
             _ => vec![map(1, 0, D2Array)],
         };
-        let sampler = match (colour, options.storage) {
+        let sampler = match (colour, it.storage) {
             (false, _) => Some(wgpu::SamplerBindingType::Comparison),
             (true, Storage::Cube) => Some(wgpu::SamplerBindingType::NonFiltering),
             (true, _) => None,
         };
         if let Some(kind) = sampler {
-            list.push((2, wgpu::BindingType::Sampler(kind), Bound::Sampler(self::sampler(device, options, kind))));
+            list.push((2, wgpu::BindingType::Sampler(kind), Bound::Sampler(self::sampler(device, &it.filter, kind))));
         }
         Self { list }
     }
 }
 
-fn sampler(device: &wgpu::Device, options: &ShadowMapsOptions, kind: wgpu::SamplerBindingType) -> wgpu::Sampler {
+fn sampler(device: &wgpu::Device, filter: &Filter, kind: wgpu::SamplerBindingType) -> wgpu::Sampler {
     let compares = kind == wgpu::SamplerBindingType::Comparison;
-    let filter = if compares { options.filter.sampler_mode() } else { wgpu::FilterMode::Nearest };
+    let filter = if compares { sampler_mode(filter) } else { wgpu::FilterMode::Nearest };
     device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("ShadowMaps::sampler"),
         address_mode_u: wgpu::AddressMode::ClampToEdge,

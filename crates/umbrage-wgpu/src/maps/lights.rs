@@ -1,72 +1,91 @@
 //! Several lights in one texture and one bind group.
 
-use umbrage::{Selection, ShadowPlan};
+use umbrage::ShadowPlan;
+use umbrage::config::{Filter, Layout, LightKind, ShadowConfig};
 use umbrage_shaders::layout;
 
 use super::ShadowMaps;
-use crate::{Error, FrameOptions, Generation, Result, ShadowMapsOptions, Storage, Transition, uniforms};
+use crate::{Error, FrameOptions, LightMaps, Result, device, uniforms};
 
-/// The edges of all maps: those of `map_sizes` for every face of every light.
-pub(super) fn map_sizes(options: &ShadowMapsOptions, limits: &wgpu::Limits) -> Result<Vec<u32>> {
-    let (frames, bytes) = (frame_count(options), frame_bytes(options));
-    let limit = limits.max_uniform_buffer_binding_size;
-    if frames == 0 || bytes > limit {
-        return Err(Error::TooManyLights { frames, bytes, limit });
-    }
-    let splits = options.map_sizes.len();
-    if frames > 1 && !matches!(options.storage, Storage::Auto | Storage::Array) {
-        return Err(Error::LightsNeedArray { maps: frames * splits, splits, storage: options.storage });
-    }
-    if frames > 1 && options.generation != Generation::PerSplit {
-        return Err(Error::ConflictingOptions {
-            first: format!("{frames} lights or faces"),
-            second: format!("generation {}", options.generation.name()),
-            reason: "several lights and point lights are drawn one map at a time; use generation per-split",
-        });
-    }
-    Ok((0..frames).flat_map(|_| options.map_sizes.iter().copied()).collect())
+/// Where one light's maps and frames stand among those of all lights.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Slot {
+    pub kind: LightKind,
+    /// Edge of each split's map in texels.
+    pub sizes: Vec<u32>,
+    /// The map of its first split.
+    pub first_map: usize,
+    /// The frame of its first face.
+    pub first_frame: usize,
 }
 
-/// How many frames receivers bind: one for each face of each light.
-pub(super) fn frame_count(options: &ShadowMapsOptions) -> usize {
-    options.lights.iter().map(|slot| slot.faces()).sum()
-}
+impl Slot {
+    /// Those of all lights, after every rule that they share has been checked.
+    pub fn all(config: &ShadowConfig, lights: &[LightMaps], limits: &wgpu::Limits) -> Result<Vec<Self>> {
+        let kinds: Vec<LightKind> = lights.iter().map(|light| light.kind).collect();
+        let (mut slots, mut first_map, mut first_frame) = (Vec::new(), 0, 0);
+        for light in lights {
+            let sizes = light.map_sizes.as_ref().unwrap_or(&config.map_sizes);
+            config.with_map_sizes(sizes).0.validate_shared(&kinds)?;
+            slots.push(Self { kind: light.kind, sizes: sizes.clone(), first_map, first_frame });
+            first_map += light.kind.faces() * sizes.len();
+            first_frame += light.kind.faces();
+        }
+        let bytes = (first_frame * size_of::<layout::Frame>()) as u64;
+        let limit = limits.max_uniform_buffer_binding_size;
+        if first_frame == 0 || bytes > limit {
+            return Err(Error::TooManyLights { frames: first_frame, bytes, limit });
+        }
+        Ok(slots)
+    }
 
-/// Bytes of the frames of all lights.
-pub(super) fn frame_bytes(options: &ShadowMapsOptions) -> u64 {
-    (frame_count(options) * size_of::<layout::Frame>()) as u64
+    /// The edges of its maps, face after face.
+    pub fn map_sizes(&self) -> impl Iterator<Item = u32> {
+        (0..self.kind.faces()).flat_map(|_| self.sizes.iter().copied())
+    }
+
+    /// Number of its maps.
+    pub fn map_count(&self) -> usize {
+        self.kind.faces() * self.sizes.len()
+    }
 }
 
 impl ShadowMaps {
-    /// As [`ShadowMaps::prepare`], for several lights: a plan for each of [`ShadowMapsOptions::lights`]. All of them are for one view.
+    /// [`ShadowMaps::prepare`] for several lights: one plan for each, all of them for one view.
     ///
     /// Split `i` of light `l`'s plan is drawn as map `first_map(l) + i`: see [`ShadowMaps::first_map`]. Shaders ask with
     /// `umbrage_shadow(query)` of a query whose `light` is `l`.
     ///
     /// # Errors
-    /// Those of [`ShadowMaps::prepare`]; [`Error::LightCount`] if there is not one plan for each light, [`Error::LightSlot`] if a
-    /// point light's plan is in the place of another kind, [`Error::FilterNeedsSun`]. Nothing has been written then.
+    /// Those of [`ShadowMaps::prepare`]; [`Error::LightCount`] if there is not one plan for each light, [`Error::LightKind`] if a
+    /// light's maps do not serve its plan. Nothing has been written then.
     pub fn prepare_lights(&mut self, queue: &wgpu::Queue, plans: &[&ShadowPlan], options: &FrameOptions) -> Result<()> {
-        let frames = uniforms::frames(plans, &self.options, &self.places, options)?;
-        if self.options.storage == Storage::Reused {
-            self.check_alone(plans, options)?;
+        let frames = uniforms::frames(plans, &self.config, &self.slots, &self.places, options)?;
+        let device = self.device.clone();
+        device::guarded(&device, "preparing a frame", || self.write(queue, plans, &frames))
+    }
+
+    fn write(&mut self, queue: &wgpu::Queue, plans: &[&ShadowPlan], frames: &[layout::Frame]) -> Result<()> {
+        if let (Some(moments), [plan], Filter::Moments(filter)) = (&mut self.moments, plans, &self.config.filter) {
+            moments.prepare(queue, plan, filter)?;
         }
-        if let (Some(moments), [plan]) = (&mut self.moments, plans) {
-            moments.prepare(queue, plan, options)?;
-        }
-        self.receivers.write(queue, 0, &frames);
-        if self.options.storage == Storage::Reused {
+        self.receivers.write(queue, 0, frames);
+        if self.layout == Layout::Reused {
             for split in 0..self.splits() {
                 let slices: Vec<_> =
                     frames.iter().map(|&frame| layout::Frame { slice: split as u32, ..frame }).collect();
                 self.receivers.write(queue, 1 + split, &slices);
             }
         }
-        let splits: Vec<&layout::Split> = frames.iter().flat_map(|frame| &frame.splits[..self.splits()]).collect();
+        let of_light = |slot: &Slot| {
+            let of_face = |face: usize| frames[slot.first_frame + face].splits.into_iter().take(slot.sizes.len());
+            (0..slot.kind.faces()).flat_map(of_face).collect::<Vec<_>>()
+        };
+        let splits: Vec<layout::Split> = self.slots.iter().flat_map(of_light).collect();
         for (index, pass) in self.passes.iter().enumerate() {
             let here = pass.splits();
             if pass.is_alone() {
-                self.casters.write(queue, index, &[*splits[here.start]]);
+                self.casters.write(queue, index, &[splits[here.start]]);
             } else {
                 let uniform = layout::CasterPass {
                     first: here.start as u32,
@@ -81,48 +100,56 @@ impl ShadowMaps {
         Ok(())
     }
 
-    /// One map at a time has nothing to blend with and nothing to choose from.
-    fn check_alone(&self, plans: &[&ShadowPlan], options: &FrameOptions) -> Result<()> {
-        let blends = |split: &umbrage::Split| split.blend_begin < split.far;
-        let inner = |plan: &ShadowPlan| plan.splits.split_last().is_some_and(|(_, inner)| inner.iter().any(blends));
-        if plans.iter().any(|plan| plan.selection == Selection::Map) {
-            return Err(Error::ConflictingOptions {
-                first: "storage reused".to_owned(),
-                second: "selection map".to_owned(),
-                reason: "there is one map at a time and none to choose from; use umbrage::Selection::Depth or storage array",
-            });
-        }
-        if plans.iter().any(|plan| plan.radial_eye.is_some()) {
-            return Err(Error::ConflictingOptions {
-                first: "storage reused".to_owned(),
-                second: "radial bands".to_owned(),
-                reason: "the picture is drawn in slices of view depth; use umbrage::Bands::Planar or storage array",
-            });
-        }
-        if options.transition == Transition::Hard || !plans.iter().any(|plan| inner(plan)) {
-            return Ok(());
-        }
-        Err(Error::ConflictingOptions {
-            first: "storage reused".to_owned(),
-            second: "a blend band between splits".to_owned(),
-            reason: "there is one map at a time and none to blend with; set umbrage::ShadowSettings::blend to 0, or use \
-                     Transition::Hard or storage array",
-        })
-    }
-
     /// The map of a light's first split; those of its other splits follow, in the order of its plan.
     ///
     /// # Panics
     /// If there is no such light.
     #[must_use]
     pub fn first_map(&self, light: usize) -> usize {
-        assert!(light < self.options.lights.len(), "there are {} lights, no {light}", self.options.lights.len());
-        self.splits() * self.options.lights[..light].iter().map(|slot| slot.faces()).sum::<usize>()
+        assert!(light < self.slots.len(), "there are {} lights, no {light}", self.slots.len());
+        self.slots[light].first_map
     }
 
     /// The number of maps of all lights together; [`ShadowMaps::splits`] where there is one sun or spot light.
     #[must_use]
     pub fn map_count(&self) -> usize {
-        self.splits() * frame_count(&self.options)
+        self.slots.iter().map(Slot::map_count).sum()
+    }
+
+    /// Whether all maps are of one light that has one face.
+    pub(crate) fn is_of_one_light_and_face(&self) -> bool {
+        self.map_count() == self.splits()
+    }
+
+    /// Edge of each split's map of a light in texels, nearest split first.
+    ///
+    /// # Panics
+    /// If there is no such light.
+    #[must_use]
+    pub fn map_sizes(&self, light: usize) -> &[u32] {
+        &self.slots[light].sizes
+    }
+
+    /// Edge of a map in texels.
+    ///
+    /// # Panics
+    /// If there is no such map.
+    #[must_use]
+    pub fn map_size(&self, map: usize) -> u32 {
+        let (light, split) = self.light_of_map(map);
+        let sizes = &self.slots[light].sizes;
+        sizes[split % sizes.len()]
+    }
+
+    /// The light that a map is of, and the split of that light's plan.
+    ///
+    /// # Panics
+    /// If there is no such map.
+    #[must_use]
+    pub fn light_of_map(&self, map: usize) -> (usize, usize) {
+        let light = self.slots.iter().rposition(|slot| slot.first_map <= map).unwrap_or(0);
+        let split = map - self.slots[light].first_map;
+        assert!(split < self.slots[light].map_count(), "there are {} maps, no {map}", self.map_count());
+        (light, split)
     }
 }

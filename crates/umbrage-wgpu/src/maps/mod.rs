@@ -2,7 +2,7 @@
 
 pub(crate) mod choose;
 mod groups;
-mod lights;
+pub(crate) mod lights;
 mod passes;
 mod slices;
 pub(crate) mod storage;
@@ -10,27 +10,32 @@ mod targets;
 
 use std::num::NonZeroU32;
 
-use umbrage::{Bands, MAX_SPLITS, Selection, ShadowPlan, ShadowSettings};
+use umbrage::ShadowPlan;
+use umbrage::config::{
+    Coordinates, DepthFormat, Filter, Generation, Layout, Rebuilds, Selection, ShadowConfig, SplitMetric, Storage,
+};
 use umbrage_shaders::layout::{MetricKind, SelectionKind};
 use umbrage_shaders::{Bound, Casters, Lights, Maps, Projection, ReceiverText};
 
 use choose::{Abilities, Chosen};
-use groups::Uniforms;
+use groups::{Received, Uniforms};
+use lights::Slot;
 pub use passes::MapPass;
 pub use slices::Slice;
 use storage::{Arrangement, Tile};
 use targets::Targets;
 
 use crate::moments::{MomentStorage, Moments};
+use crate::options::{filter_kind, texture_format, transition_kind};
 use crate::uniforms::{Place, Viewport};
-use crate::{Error, FrameOptions, Generation, LightSlot, Result, ShadowMapsOptions, Storage};
+use crate::{Error, FrameOptions, LightMaps, Result, device};
 
-/// Features that make shadows better where an adapter has them: request `adapter.features() & optional_features()`.
+/// Features that make shadows better where an adapter has them; [`device_descriptor`] requests them.
 ///
-/// `DEPTH_CLIP_CONTROL` lets the near plane lie at the receivers ([`ShadowMaps::depth_clamp`]), `MULTIVIEW` (with a
-/// `max_multiview_view_count` of 2 or more in the limits) draws the layers of [`Generation::Layered`] and [`Generation::Mixed`] at
-/// once, `CLIP_DISTANCES` keeps the tiles of [`Generation::Instanced`] and [`Generation::Mixed`] apart,
-/// `FLOAT32_FILTERABLE` lets the hardware filter moments in full precision ([`MomentStorage`]).
+/// `DEPTH_CLIP_CONTROL` lets near planes of 16-bit maps lie at the receivers ([`ShadowMaps::depth_clamp`]), `MULTIVIEW` draws the
+/// layers of [`Generation::Layered`] and [`Generation::Mixed`] at once, `CLIP_DISTANCES` keeps the tiles of
+/// [`Generation::Instanced`] and [`Generation::Mixed`] apart, `FLOAT32_FILTERABLE` lets the hardware filter moments in full
+/// precision ([`MomentStorage`]).
 #[must_use]
 pub fn optional_features() -> wgpu::Features {
     wgpu::Features::DEPTH_CLIP_CONTROL
@@ -39,15 +44,44 @@ pub fn optional_features() -> wgpu::Features {
         | wgpu::Features::FLOAT32_FILTERABLE
 }
 
-/// The shadow maps of one light for one view, or of several lights ([`ShadowMaps::prepare_lights`]), on the GPU.
+/// What to request a device with: the application's own needs, and every feature and limit that makes shadows better and that
+/// the adapter has. Without them other ways are taken, and notes say so.
 ///
-/// [`Storage`] says where maps are kept, [`Generation`] how they are drawn. Each frame: [`ShadowMaps::prepare`], every pass of
-/// [`ShadowMaps::passes`] from [`ShadowMaps::begin_pass`], then any pass of the app with [`ShadowMaps::receiver_bind_group`]. With
-/// [`Storage::Reused`] the app's pass is taken apart into slices, each after its map: see [`ShadowMaps::slice_bind_group`]. Several views of
-/// one scene are as many `ShadowMaps`, each planned for its view.
+/// ```no_run
+/// # use umbrage_wgpu::{device_descriptor, wgpu};
+/// # async fn example(adapter: wgpu::Adapter) -> Result<(), wgpu::RequestDeviceError> {
+/// let (device, queue) = adapter.request_device(&device_descriptor(&adapter, wgpu::DeviceDescriptor::default())).await?;
+/// # Ok(())
+/// # }
+/// ```
+#[must_use]
+pub fn device_descriptor<'a>(adapter: &wgpu::Adapter, own: wgpu::DeviceDescriptor<'a>) -> wgpu::DeviceDescriptor<'a> {
+    let mut descriptor = own;
+    descriptor.required_features |= adapter.features() & optional_features();
+    if descriptor.required_features.contains(wgpu::Features::MULTIVIEW) {
+        // Without it a device with multiview has one view.
+        let views = adapter.limits().max_multiview_view_count;
+        let limits = &mut descriptor.required_limits;
+        limits.max_multiview_view_count = limits.max_multiview_view_count.max(views);
+    }
+    descriptor
+}
+
+/// The shadow maps of one light for one view, or of several lights ([`ShadowMaps::prepare_lights`]), on the GPU: the low level
+/// below [`crate::Shadows`].
+///
+/// [`Layout`] says where maps are kept and how they are drawn. Each frame: [`ShadowMaps::prepare`], every pass of
+/// [`ShadowMaps::passes`] from [`ShadowMaps::begin_pass`], [`ShadowMaps::prefilter`], then any pass of the app with
+/// [`ShadowMaps::receiver_bind_group`]. With [`Layout::Reused`] the app's pass is taken apart into slices, each after its map: see
+/// [`ShadowMaps::slice_bind_group`].
 #[derive(Debug)]
 pub struct ShadowMaps {
-    options: ShadowMapsOptions,
+    device: wgpu::Device,
+    /// As it was asked for.
+    config: ShadowConfig,
+    /// As it is carried out.
+    layout: Layout,
+    slots: Vec<Slot>,
     notes: Vec<String>,
     places: Vec<Place>,
     /// The viewport of passes that draw several layers at once.
@@ -55,7 +89,7 @@ pub struct ShadowMaps {
     passes: Vec<MapPass>,
     multiview_mask: Option<NonZeroU32>,
     depth_loads: bool,
-    depth_clamp: bool,
+    depth_clip_control: bool,
     colour_target: Option<wgpu::ColorTargetState>,
     targets: Targets,
     moments: Option<Moments>,
@@ -64,71 +98,114 @@ pub struct ShadowMaps {
 }
 
 impl ShadowMaps {
-    /// Makes the textures, buffers and bind groups. Before the first [`ShadowMaps::prepare`] every
-    /// answer is 0.
+    /// Makes the textures, buffers and bind groups for these lights, one at least: kinds
+    /// ([`umbrage::config::LightKind`]) or [`LightMaps`]. Before the first [`ShadowMaps::prepare`] every answer is 0.
     ///
     /// # Errors
-    /// [`Error::SplitCount`], [`Error::MapTooSmall`], [`Error::MapTooLarge`], [`Error::TooManyLayers`], [`Error::AtlasTooLarge`],
-    /// [`Error::TooManyTextures`], [`Error::TooManyLights`], [`Error::LightsNeedArray`], [`Error::ConflictingOptions`],
-    /// [`Error::MissingFeature`]; for filters of moments also [`Error::Samples`], [`Error::NoFilterableFloats`],
-    /// [`Error::NoDepthLoads`], [`Error::MomentsNeedArray`] and [`Error::MomentsNeedOneSun`].
-    pub fn new(device: &wgpu::Device, options: &ShadowMapsOptions) -> Result<Self> {
+    /// [`Error::Config`] for a config that is wrong or does not go with the lights; [`Error::MapTooLarge`],
+    /// [`Error::TooManyLayers`], [`Error::AtlasTooLarge`], [`Error::TooManyTextures`], [`Error::TooManyLights`],
+    /// [`Error::MissingFeature`], [`Error::NoFilterableFloats`] and [`Error::NoDepthLoads`] for what the device cannot do;
+    /// [`Error::Device`] and [`Error::OutOfMemory`] for what the device complains about.
+    pub fn new<L: Clone + Into<LightMaps>>(device: &wgpu::Device, config: &ShadowConfig, lights: &[L]) -> Result<Self> {
+        let lights: Vec<LightMaps> = lights.iter().cloned().map(Into::into).collect();
+        device::guarded(device, "making shadow maps", || Self::new_unguarded(device, config, &lights))
+    }
+
+    fn new_unguarded(device: &wgpu::Device, config: &ShadowConfig, lights: &[LightMaps]) -> Result<Self> {
         let limits = device.limits();
-        check_sizes(options, &limits)?;
-        check_samples(options)?;
+        let slots = Slot::all(config, lights, &limits)?;
+        let sizes: &Vec<u32> = &slots.iter().flat_map(Slot::map_sizes).collect();
+        check_sizes(&slots, &limits)?;
         let abilities = Abilities::of(device);
-        let Chosen { storage, generation, notes } = choose::choose(options, abilities)?;
-        let options = ShadowMapsOptions { storage, generation, ..options.clone() };
-        let sizes = &lights::map_sizes(&options, &limits)?;
+        let Chosen { layout, mut notes } = choose::choose(config, abilities)?;
+        let (storage, generation) = (layout.storage(), layout.generation());
         let passes = MapPass::all(generation, sizes.len(), abilities);
         let arrangement = Arrangement::new(storage, generation, &passes, sizes, limits.max_texture_dimension_2d)?;
         check_limits(device, storage, &arrangement)?;
 
-        check_moments(&options, sizes.len())?;
-
-        let targets = Targets::new(device, &options, &arrangement, &passes);
-        let backend = device.adapter_info().backend;
-        let depth_loads = backend != wgpu::Backend::Gl;
+        let targets = Targets::new(device, config, storage, sizes, &arrangement, &passes);
+        let depth_loads = device.adapter_info().backend != wgpu::Backend::Gl;
+        let depth_clip_control = device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL);
         let viewport = Viewport::around(sizes.iter().copied().max().unwrap_or(0), largest_viewport(device));
         let mut places = places(device, sizes, &arrangement.tiles);
         if generation == Generation::Layered {
             places.iter_mut().for_each(|place| place.viewport = viewport);
         }
-        let moments = (options.filter.is_prefiltered())
-            .then(|| {
+        let moments = match &config.filter {
+            Filter::Moments(filter) => {
                 let layers = targets::layers_needed(device, storage, &arrangement);
                 let depths = targets.splits(&arrangement);
-                Moments::new(device, &options, [arrangement.layer_texels[0], layers], &depths)
-            })
-            .transpose()?;
+                let edge_and_layers = [arrangement.layer_texels[0], layers];
+                let moments = Moments::new(device, filter, config.fallbacks, edge_and_layers, &depths)?;
+                notes.extend(moments.storage().note(filter.kind));
+                Some(moments)
+            }
+            _ => None,
+        };
+        let is_colour = config.depth_format.is_colour();
+        if config.depth_format == DepthFormat::D16Unorm && !depth_clip_control {
+            notes.push("no depth clip control: near planes of 16-bit maps stand before their first caster".to_owned());
+        }
+        if matches!(config.filter, Filter::Pcss { .. }) && !depth_loads && !is_colour {
+            notes.push("no loads from depth textures on GL: pcss is a disc of fixed width".to_owned());
+        }
+        let received = Received {
+            filter: config.filter,
+            storage,
+            is_colour,
+            loads: depth_loads,
+            frames: slots.iter().map(|slot| slot.kind.faces()).sum(),
+            maps: sizes.len(),
+        };
         Ok(Self {
+            device: device.clone(),
+            config: config.clone(),
+            layout,
             notes,
             places,
             viewport,
             multiview_mask: targets::multiview_mask(generation, &passes),
             depth_loads,
-            depth_clamp: device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL),
-            colour_target: options.depth_format.is_colour().then(|| options.depth_format.texture_format().into()),
+            depth_clip_control,
+            colour_target: is_colour.then(|| texture_format(config.depth_format).into()),
             casters: Uniforms::of_casters(device, &passes),
-            receivers: Uniforms::of_receivers(device, &options, &targets, depth_loads, moments.as_ref()),
+            receivers: Uniforms::of_receivers(device, &received, &targets, moments.as_ref()),
             targets,
             moments,
             passes,
-            options,
+            slots,
         })
+    }
+
+    /// Takes another config, from the next [`ShadowMaps::prepare`] on, that asks for no other maps or pipelines: see
+    /// [`umbrage::config::Setting::rebuilds`].
+    ///
+    /// # Errors
+    /// [`Error::Config`] if it is wrong, [`Error::NeedsNewMaps`] naming a setting that asks for more. The maps are unchanged then.
+    pub fn set_config(&mut self, config: &ShadowConfig) -> Result<()> {
+        let lights: Vec<LightMaps> =
+            self.slots.iter().map(|slot| LightMaps::with_sizes(slot.kind, &slot.sizes)).collect();
+        Slot::all(config, &lights, &self.device.limits())?;
+        match self.config.rebuilds(config) {
+            Some((rebuilds, setting)) if rebuilds > Rebuilds::Nothing => Err(Error::NeedsNewMaps { setting }),
+            _ => {
+                self.config = config.clone();
+                Ok(())
+            }
+        }
     }
 
     /// Hands a frame's plan to the GPU. Takes effect with the next submission to `queue`.
     ///
     /// # Errors
-    /// [`Error::PlanMismatch`] if the plan was made for other maps, [`Error::ConflictingOptions`] if it blends splits and there is only
-    /// one map at a time, [`Error::InvalidPlan`] or [`Error::InvalidSplit`] if it holds a number that cannot be used,
-    /// [`Error::InvalidFrameOption`]. Nothing has been written then.
+    /// [`Error::PlanMismatch`] if the plan was made for other maps, [`Error::InvalidPlan`] or [`Error::InvalidSplit`] if it holds a
+    /// number that cannot be used, [`Error::InvalidFrameOption`], [`Error::FilterTooWide`]. Nothing has been written then.
+    /// [`Error::Device`] for what the device complains about.
     pub fn prepare(&mut self, queue: &wgpu::Queue, plan: &ShadowPlan, options: &FrameOptions) -> Result<()> {
         self.prepare_lights(queue, &[plan], options)
     }
 
-    /// The passes that draw the maps, in order: with [`Generation::PerSplit`] and [`Generation::Multipass`] one for each split.
+    /// The passes that draw the maps, in order: with [`Generation::PerSplit`] and [`Generation::Multipass`] one for each map.
     #[must_use]
     pub fn passes(&self) -> &[MapPass] {
         &self.passes
@@ -149,7 +226,7 @@ impl ShadowMaps {
         let mut render = self.targets.begin(encoder, pass, self.multiview_mask, timestamp_writes);
         let split = self.passes[pass].splits().start;
         let Place { tile, viewport } = self.places[split];
-        match self.options.generation {
+        match self.layout.generation() {
             // The whole layer is the viewport: clip distances cut the tiles out of it.
             Generation::Instanced | Generation::Mixed => {}
             Generation::Layered => {
@@ -157,8 +234,8 @@ impl ShadowMaps {
                 render.set_viewport(corner, corner, edge, edge, 0.0, 1.0);
                 render.set_scissor_rect(0, 0, tile.layer_texels[0], tile.layer_texels[1]);
             }
-            Generation::Auto | Generation::PerSplit | Generation::Multipass => {
-                let (size, edge) = (self.options.map_sizes[split % self.splits()], viewport.edge as f32);
+            Generation::PerSplit | Generation::Multipass => {
+                let (size, edge) = (self.map_size(split), viewport.edge as f32);
                 let [left, top] = tile.corner.map(|texels| texels as f32 - viewport.guard as f32);
                 render.set_viewport(left, top, edge, edge, 0.0, 1.0);
                 render.set_scissor_rect(tile.corner[0], tile.corner[1], size, size);
@@ -168,8 +245,8 @@ impl ShadowMaps {
     }
 
     /// Turns the depths that were drawn into what receivers read: for filters of moments conversion, blur and mip levels
-    /// ([`crate::Filter::is_prefiltered`]), for all others nothing. Call it after the casters and before any receiver.
-    pub fn filter(&self, encoder: &mut wgpu::CommandEncoder) {
+    /// ([`Filter::is_prefiltered`]), for all others nothing. Call it after the casters and before any receiver.
+    pub fn prefilter(&self, encoder: &mut wgpu::CommandEncoder) {
         if let Some(moments) = &self.moments {
             moments.record(encoder);
         }
@@ -181,10 +258,10 @@ impl ShadowMaps {
         self.moments.as_ref().map(Moments::storage)
     }
 
-    /// The number of splits; of a point light, of each face.
+    /// The number of splits of the first light; of a point light, of each face.
     #[must_use]
     pub fn splits(&self) -> usize {
-        self.options.map_sizes.len()
+        self.slots[0].sizes.len()
     }
 
     /// What a vertex shader needs to draw casters; `group` is the index at which the app binds
@@ -204,8 +281,8 @@ impl ShadowMaps {
     /// `"@location(0) uv: vec2f,"`.
     #[must_use]
     pub fn caster_wgsl_with(&self, group: u32, members: &str) -> String {
-        let casters = match self.options.generation {
-            Generation::Auto | Generation::PerSplit | Generation::Multipass => Casters::default(),
+        let casters = match self.layout.generation() {
+            Generation::PerSplit | Generation::Multipass => Casters::default(),
             Generation::Layered => Casters { views: true, tiles: false },
             Generation::Instanced => Casters { views: false, tiles: true },
             Generation::Mixed => Casters { views: true, tiles: true },
@@ -214,114 +291,98 @@ impl ShadowMaps {
     }
 
     /// What any shader needs to ask for visibility; `group` is the index at which the app binds
-    /// [`ShadowMaps::receiver_bind_group`]. On GL and WebGL2, where depth textures cannot be loaded from, [`crate::Filter::Pcss`] is
-    /// then [`crate::Filter::Disc`], unless the format is [`crate::DepthFormat::R32Float`].
+    /// [`ShadowMaps::receiver_bind_group`]. With [`Coordinates::Vertex`] vertex shaders may make the coordinates of every split's map
+    /// (`umbrage_shadow_coordinates` and `umbrage_shadow_from_coordinates`, see `umbrage_shaders::Maps::coordinates`). On GL and WebGL2, where depth textures
+    /// cannot be loaded from, [`Filter::Pcss`] is [`Filter::Disc`], unless the format is [`DepthFormat::R32Float`].
     #[must_use]
     pub fn receiver_wgsl(&self, group: u32) -> String {
         umbrage_shaders::receiver(group, self.receiver_text())
     }
 
-    /// [`ShadowMaps::receiver_wgsl`] for apps whose vertex shaders make the shadow coordinates of every split (`umbrage_shadow_coordinates` and
-    /// `umbrage_shadow_from_coordinates`, see `umbrage_shaders::Maps::coordinates`). Plans have to be of a sun, without warps: others have
-    /// coordinates that cannot be interpolated.
-    ///
-    /// # Errors
-    /// [`Error::ConflictingOptions`] with more than [`crate::MAX_COORDINATES`] splits, with several lights and with
-    /// [`crate::LightSlot::Cube`].
-    pub fn receiver_wgsl_with_coordinates(&self, group: u32) -> Result<String> {
-        let conflict =
-            |second, reason| Err(Error::ConflictingOptions { first: "coordinates split".to_owned(), second, reason });
-        let lights = &self.options.lights;
-        if self.options.map_sizes.len() > umbrage_shaders::layout::MAX_COORDINATES {
-            return conflict(
-                format!("{} splits", self.options.map_sizes.len()),
-                "vertices hand on the coordinates of at most 4 splits; use fewer splits or coordinates world",
-            );
-        }
-        if lights.iter().map(|slot| slot.faces()).sum::<usize>() > 1 {
-            return conflict(
-                format!("{} lights with {} faces", lights.len(), lights.iter().map(|slot| slot.faces()).sum::<usize>()),
-                "vertices hand on the coordinates of one sun; use one sun or coordinates world",
-            );
-        }
-        let text = self.receiver_text();
-        Ok(umbrage_shaders::receiver(group, ReceiverText { maps: Maps { coordinates: true, ..text.maps }, ..text }))
-    }
-
-    /// What receivers' text is made for.
+    /// What receivers' text is made for: the config's choices that are fixed for as long as pipelines are, and no others.
     fn receiver_text(&self) -> ReceiverText {
-        let ShadowMapsOptions { filter, storage, fixed, lights, .. } = &self.options;
         let lights = match () {
-            () if lights.iter().all(|slot| *slot == LightSlot::Sun) => Lights::Suns,
-            () if lights.iter().all(|slot| slot.faces() == 1) => Lights::Single,
+            () if self.slots.iter().all(|slot| !slot.kind.is_local()) => Lights::Suns,
+            () if self.slots.iter().all(|slot| slot.kind.faces() == 1) => Lights::Single,
             () => Lights::Any,
         };
+        // A local light's maps are chosen by view depth, whatever a sun's are.
+        let of_suns = (lights == Lights::Suns).then_some(self.config.selection);
         ReceiverText {
-            filter: Some(filter.kind()),
-            selection: fixed.selection.filter(|_| lights == Lights::Suns).map(|selection| match selection {
-                Selection::Depth => SelectionKind::Depth,
+            filter: Some(filter_kind(&self.config.filter)),
+            selection: of_suns.map(|selection| match selection {
+                Selection::Interval(_) => SelectionKind::Depth,
                 Selection::Map => SelectionKind::Map,
             }),
-            metric: fixed.bands.filter(|_| lights == Lights::Suns).map(|bands| match bands {
-                Bands::Planar => MetricKind::ViewDepth,
-                Bands::Radial => MetricKind::Distance,
+            metric: of_suns.map(|selection| match selection {
+                Selection::Interval(SplitMetric::Distance) => MetricKind::Distance,
+                Selection::Interval(SplitMetric::ViewDepth) | Selection::Map => MetricKind::ViewDepth,
             }),
-            transition: fixed.transition.map(|transition| transition.kind()),
-            bias: fixed.bias.map(|bias| bias.kind()),
-            projection: match fixed.warped {
-                None => Projection::Any,
-                Some(true) => Projection::Warped,
-                Some(false) => Projection::Plain,
-            },
+            transition: Some(transition_kind(self.config.transition)),
+            bias: None,
+            // Where a warp has nothing to gain a split gets its plain map.
+            projection: if self.config.first_warp().is_some() { Projection::Any } else { Projection::Plain },
             lights,
-            sliced: *storage == Storage::Reused,
+            sliced: self.layout == Layout::Reused,
             ..self.receiver_maps().into()
         }
     }
 
     /// How receivers read these maps.
     fn receiver_maps(&self) -> Maps {
-        let bound = match self.options.storage {
+        let bound = match self.layout.storage() {
             Storage::Separate => Bound::Separate(self.splits()),
             Storage::Cube => Bound::Cube,
-            Storage::Auto | Storage::Array | Storage::Atlas | Storage::Reused => Bound::Array,
+            Storage::Array | Storage::Atlas | Storage::Reused => Bound::Array,
         };
         Maps {
             bound,
-            r32f: self.options.depth_format.is_colour(),
+            r32f: self.config.depth_format.is_colour(),
             without_loads: !self.depth_loads,
-            frames: lights::frame_count(&self.options) as u32,
+            frames: self.slots.iter().map(|slot| slot.kind.faces() as u32).sum(),
             moments: self.moments.as_ref().map(Moments::maps),
-            coordinates: false,
+            coordinates: self.config.coordinates == Coordinates::Vertex,
         }
     }
 
-    /// What the maps were made with; where the options left a choice, what was chosen.
+    /// The config that they carry out.
     #[must_use]
-    pub fn options(&self) -> &ShadowMapsOptions {
-        &self.options
+    pub fn config(&self) -> &ShadowConfig {
+        &self.config
+    }
+
+    /// Where maps are kept and how they are drawn: the config's layout, or what the device can do instead.
+    #[must_use]
+    pub fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    /// Whether pipelines for casters and receivers that were made for `other` fit these maps, too.
+    pub(crate) fn shares_pipelines_with(&self, other: &Self) -> bool {
+        // Bind group layouts follow from the texts: they hold what the texts declare.
+        self.receiver_wgsl(0) == other.receiver_wgsl(0)
+            && self.caster_wgsl(0) == other.caster_wgsl(0)
+            && self.caster_depth_stencil() == other.caster_depth_stencil()
+            && self.caster_targets() == other.caster_targets()
+            && self.caster_multisample() == other.caster_multisample()
+            && self.multiview_mask == other.multiview_mask
+    }
+
+    /// The device that they live on.
+    pub(crate) fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    /// The number of lights.
+    #[must_use]
+    pub fn light_count(&self) -> usize {
+        self.slots.len()
     }
 
     /// What was asked for and the device could not do, with what was done instead.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
-    }
-
-    /// Planner settings that fit these maps: their sizes, their filter's radius, whether depth is clamped, and no blend where there is only
-    /// one map at a time. Everything else, `image_size` in the first place, is the default and the app's to change.
-    #[must_use]
-    pub fn matching_settings(&self) -> ShadowSettings {
-        let mut settings = ShadowSettings {
-            map_sizes: self.options.map_sizes.clone(),
-            filter_radius: self.options.filter.radius_texels(),
-            depth_clamp: self.depth_clamp,
-            ..ShadowSettings::default()
-        };
-        if self.options.storage == Storage::Reused {
-            settings.blend = 0.0;
-        }
-        settings
     }
 
     /// Bytes of all maps, of depth buffers beside maps that are colours, and for filters of moments of these with their levels and of the
@@ -331,11 +392,13 @@ impl ShadowMaps {
         self.targets.bytes() + self.moments.as_ref().map_or(0, Moments::bytes)
     }
 
-    /// Whether depth is not clipped: what `umbrage::ShadowSettings::depth_clamp` wants. True if the device was requested with
-    /// `DEPTH_CLIP_CONTROL` (see [`optional_features`]).
+    /// Whether casters before a map's near plane are flattened onto it, so that the plane may lie at the receivers: what
+    /// `umbrage::ShadowConfig::planner_settings` wants. So it is for 16-bit maps on a device with `DEPTH_CLIP_CONTROL` (see
+    /// [`optional_features`]). Floats hold the depth of a whole world; 16 bits want the shorter range, and pay for it with maps
+    /// that step along the light.
     #[must_use]
     pub fn depth_clamp(&self) -> bool {
-        self.depth_clamp
+        self.depth_clip_control && self.config.depth_format == DepthFormat::D16Unorm
     }
 
     /// The layer of [`ShadowMaps::map_texture`] that holds the map of split `split`, and the map's upper left corner there in
@@ -377,10 +440,10 @@ impl ShadowMaps {
     /// Depth state for a pipeline that draws casters. It has no slope bias: receivers know their own slope.
     #[must_use]
     pub fn caster_depth_stencil(&self) -> wgpu::DepthStencilState {
-        let format = self.options.depth_format;
-        let format = if format.is_colour() { crate::DepthFormat::D32Float } else { format };
+        let format = self.config.depth_format;
+        let format = if format.is_colour() { DepthFormat::D32Float } else { format };
         wgpu::DepthStencilState {
-            format: format.texture_format(),
+            format: texture_format(format),
             depth_write_enabled: Some(true),
             depth_compare: Some(wgpu::CompareFunction::LessEqual),
             stencil: wgpu::StencilState::default(),
@@ -388,19 +451,19 @@ impl ShadowMaps {
         }
     }
 
-    /// Multisample state for a pipeline that draws casters: as many samples as [`crate::ShadowMapsOptions::samples`].
+    /// Multisample state for a pipeline that draws casters: as many samples as [`Filter::samples`].
     #[must_use]
     pub fn caster_multisample(&self) -> wgpu::MultisampleState {
-        wgpu::MultisampleState { count: self.options.samples, ..Default::default() }
+        wgpu::MultisampleState { count: self.config.filter.samples(), ..Default::default() }
     }
 
     /// Primitive state for a pipeline that draws casters: triangle lists, both faces (single-sided walls cast, too).
     #[must_use]
     pub fn caster_primitive(&self) -> wgpu::PrimitiveState {
-        wgpu::PrimitiveState { cull_mode: None, unclipped_depth: self.depth_clamp, ..Default::default() }
+        wgpu::PrimitiveState { cull_mode: None, unclipped_depth: self.depth_clip_control, ..Default::default() }
     }
 
-    /// Colour targets of a pipeline that draws casters: none, but one with [`crate::DepthFormat::R32Float`]. Casters then need a fragment
+    /// Colour targets of a pipeline that draws casters: none, but one with [`DepthFormat::R32Float`]. Casters then need a fragment
     /// shader that returns `umbrage_caster_depth(at)` of its `@builtin(position)` at location 0; one that is there anyway, to discard,
     /// may return it in any format.
     #[must_use]
@@ -423,14 +486,14 @@ impl ShadowMaps {
         &self.receivers.layout
     }
 
-    /// The group to bind where visibility is asked for. With [`Storage::Reused`] it answers for whatever map was drawn last: bind
+    /// The group to bind where visibility is asked for. With [`Layout::Reused`] it answers for whatever map was drawn last: bind
     /// [`ShadowMaps::slice_bind_group`] instead.
     #[must_use]
     pub fn receiver_bind_group(&self) -> &wgpu::BindGroup {
         &self.receivers.groups[0]
     }
 
-    /// With [`Storage::Reused`], the group to bind after pass `split` and before the next: visibility is that of the slice whose map is
+    /// With [`Layout::Reused`], the group to bind after pass `split` and before the next: visibility is that of the slice whose map is
     /// there, and `umbrage_in_slice(position)` says what to discard because it belongs to another. Draw slices front to back, each with the
     /// matrix and the depth range of its [`Slice`] ([`Slice::all`]). With any other storage it is [`ShadowMaps::receiver_bind_group`].
     ///
@@ -457,57 +520,13 @@ fn check_limits(device: &wgpu::Device, storage: Storage, arrangement: &Arrangeme
     Ok(())
 }
 
-/// Every size has to fit the filter and the device.
-fn check_sizes(options: &ShadowMapsOptions, limits: &wgpu::Limits) -> Result<()> {
-    let sizes = &options.map_sizes;
-    let least = options.filter.least_size();
+/// Every size has to fit the device.
+fn check_sizes(slots: &[Slot], limits: &wgpu::Limits) -> Result<()> {
     let limit = limits.max_texture_dimension_2d;
-    for (split, &size) in sizes.iter().enumerate() {
-        if size < least {
-            return Err(Error::MapTooSmall { split, size, filter: options.filter, least });
-        }
-        if size > limit {
+    for slot in slots {
+        if let Some((split, &size)) = slot.sizes.iter().enumerate().find(|&(_, &size)| size > limit) {
             return Err(Error::MapTooLarge { split, size, limit });
         }
-    }
-    match sizes.len() {
-        1..=MAX_SPLITS => Ok(()),
-        count => Err(Error::SplitCount { count, most: MAX_SPLITS }),
-    }
-}
-
-/// 1, or 4 where the mean of samples means something. WebGPU has these two everywhere.
-fn check_samples(&ShadowMapsOptions { samples, filter, .. }: &ShadowMapsOptions) -> Result<()> {
-    match samples {
-        1 => Ok(()),
-        4 if filter.is_prefiltered() => Ok(()),
-        _ => Err(Error::Samples { samples, filter }),
-    }
-}
-
-/// Moments are made of depth, a layer for each split of one sun.
-fn check_moments(options: &ShadowMapsOptions, maps: usize) -> Result<()> {
-    let &ShadowMapsOptions { filter, storage, generation, samples, .. } = options;
-    if !filter.is_prefiltered() {
-        return Ok(());
-    }
-    let conflict =
-        |second: String, reason| Err(Error::ConflictingOptions { first: format!("filter {filter:?}"), second, reason });
-    if storage != Storage::Array {
-        return Err(Error::MomentsNeedArray { storage, filter });
-    }
-    if maps > options.map_sizes.len() {
-        return Err(Error::MomentsNeedOneSun { lights: options.lights.clone(), filter });
-    }
-    if options.depth_format.is_colour() {
-        return conflict("depth format R32Float".to_owned(), "moments are made of depth; use D32Float or D16Unorm");
-    }
-    if generation != Generation::PerSplit && (generation != Generation::Layered || samples > 1) {
-        let second = format!("generation {}", generation.name());
-        return conflict(
-            second,
-            "moments need a layer for each split; use generation per-split, or layered with one sample a texel",
-        );
     }
     Ok(())
 }

@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use umbrage::ShadowPlan;
+use umbrage::config::Generation;
 
 use super::choose::Abilities;
-use crate::Generation;
 
 /// One pass that draws casters into the maps of one split or of several; see [`crate::ShadowMaps::passes`].
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,7 +24,7 @@ impl MapPass {
     pub(super) fn all(generation: Generation, splits: usize, abilities: Abilities) -> Vec<Self> {
         let several = |splits, views| Self { splits, views, alone: false, leads: views > 1 && abilities.leads };
         match generation {
-            Generation::Auto | Generation::PerSplit | Generation::Multipass => (0..splits)
+            Generation::PerSplit | Generation::Multipass => (0..splits)
                 .map(|split| Self { splits: split..split + 1, views: 1, alone: true, leads: false })
                 .collect(),
             Generation::Layered => {
@@ -62,12 +62,12 @@ impl MapPass {
     }
 
     /// Whether it draws one split with the plain text for casters.
-    pub(super) fn is_alone(&self) -> bool {
+    pub(crate) fn is_alone(&self) -> bool {
         self.alone
     }
 
     /// The instances that a caster of the splits in `mask` (bit `i`: split `i`) is drawn with; none if none of them is drawn here. A
-    /// caster that is an instance of the app's own is drawn once for each number of the range, with that number as its code.
+    /// caster that is an instance of the app's own gets one instance for each number of the range, with that number as its code.
     #[must_use]
     pub fn instances(&self, mask: u8) -> Range<u32> {
         if self.alone {
@@ -86,21 +86,36 @@ impl MapPass {
         code + tile(first) - u32::from(self.leads)..code + tile(last) + 1
     }
 
-    /// What to draw, where there is one sun or spot light: the plan's casters, as indices into the list given to the planner, each with its instances.
+    /// What to draw, where there is one sun or spot light: the plan's casters, as indices into the list given to the planner, each with
+    /// its instances.
     pub fn casters(&self, plan: &ShadowPlan) -> impl Iterator<Item = (u32, Range<u32>)> + use<> {
-        let mut masks = vec![0u8; plan.split_range.len()];
-        let mut order = Vec::new();
+        let (mut masks, mut list) = (Vec::new(), Vec::new());
+        self.list(plan, &mut masks, &mut list);
+        list.into_iter()
+    }
+
+    /// Appends [`MapPass::casters`] to a list; `masks` is scratch.
+    pub(crate) fn list(&self, plan: &ShadowPlan, masks: &mut Vec<u8>, list: &mut Vec<(u32, Range<u32>)>) {
+        if self.alone {
+            let casters = plan.casters(self.splits.start);
+            list.extend(casters.iter().map(|&caster| (caster, 0..1)));
+            return;
+        }
+        masks.clear();
+        masks.resize(plan.split_range.len(), 0);
+        let begin = list.len();
         for split in self.splits() {
             for &caster in plan.casters(split) {
                 let mask = &mut masks[caster as usize];
                 if *mask == 0 {
-                    order.push(caster);
+                    list.push((caster, 0..0));
                 }
                 *mask |= 1 << split;
             }
         }
-        let pass = self.clone();
-        order.into_iter().map(move |caster| (caster, pass.instances(masks[caster as usize])))
+        for (caster, instances) in &mut list[begin..] {
+            *instances = self.instances(masks[*caster as usize]);
+        }
     }
 }
 

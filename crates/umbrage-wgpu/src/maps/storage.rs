@@ -1,7 +1,9 @@
 //! Where each map lies: which layer of which size, and which part of it.
 
+use umbrage::config::{Generation, Storage};
+
 use super::passes::MapPass;
-use crate::{Error, Generation, Result, Storage};
+use crate::{Error, Result};
 
 /// Where one map lies, in texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +41,7 @@ impl Arrangement {
         match (storage, generation) {
             (Storage::Atlas, _) => Self::tiles(sizes, 1, largest),
             (_, Generation::Mixed) => Self::tiles(sizes, layers, largest),
-            (Storage::Auto | Storage::Array, _) => Ok(Self::layers(sizes, layers)),
+            (Storage::Array, _) => Ok(Self::layers(sizes, layers)),
             (Storage::Cube, _) => Ok(Self::layers(sizes, 6)),
             (Storage::Reused, _) => {
                 let mut it = Self::layers(sizes, 1);

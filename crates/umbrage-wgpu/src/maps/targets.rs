@@ -1,8 +1,10 @@
 //! The textures that maps are kept in, and what each pass draws into.
 
+use umbrage::config::{DepthFormat, Generation, ShadowConfig, Storage};
+
 use super::passes::MapPass;
 use super::storage::Arrangement;
-use crate::{DepthFormat, Generation, ShadowMapsOptions, Storage};
+use crate::options::texture_format;
 
 /// The textures of all maps.
 #[derive(Debug)]
@@ -25,22 +27,28 @@ struct Attachments {
 }
 
 impl Targets {
-    /// `options` have been chosen; `it` and `passes` are what follows from them.
-    pub fn new(device: &wgpu::Device, options: &ShadowMapsOptions, it: &Arrangement, passes: &[MapPass]) -> Self {
-        let format = options.depth_format;
+    /// `sizes` are the edges of all maps; the layout's `storage`, `it` and `passes` have been chosen.
+    pub fn new(
+        device: &wgpu::Device,
+        config: &ShadowConfig,
+        storage: Storage,
+        sizes: &[u32],
+        it: &Arrangement,
+        passes: &[MapPass],
+    ) -> Self {
+        let (format, samples) = (config.depth_format, config.filter.samples());
         let backend = device.adapter_info().backend;
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
         let read = usage | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
         // What has several samples cannot be copied.
-        let read = if options.samples > 1 { read.difference(wgpu::TextureUsages::COPY_SRC) } else { read };
+        let read = if samples > 1 { read.difference(wgpu::TextureUsages::COPY_SRC) } else { read };
         let map = |texels, layers| {
-            let format = format.texture_format();
-            texture(device, "ShadowMaps::maps", format, texels, [layers, options.samples], read)
+            texture(device, "ShadowMaps::maps", texture_format(format), texels, [layers, samples], read)
         };
         // Several samples and several layers do not go together in one texture.
-        let separate = options.storage == Storage::Separate || options.samples > 1;
-        let maps: Vec<wgpu::Texture> = match options.storage {
-            _ if separate => options.map_sizes.iter().map(|&size| map([size; 2], 1)).collect(),
+        let separate = storage == Storage::Separate || samples > 1;
+        let maps: Vec<wgpu::Texture> = match storage {
+            _ if separate => sizes.iter().map(|&size| map([size; 2], 1)).collect(),
             Storage::Cube => vec![map(it.layer_texels, it.layers)],
             _ => vec![map(it.layer_texels, array_layers(it.layers, it.layer_texels, backend))],
         };
@@ -53,13 +61,13 @@ impl Targets {
                 let map = if separate { &maps[tile.layer as usize] } else { &maps[0] };
                 let first = if separate { 0 } else { tile.layer };
                 let views = pass.views() as u32;
-                let keeps = options.storage == Storage::Atlas && pass.is_alone() && pass.splits().start > 0;
+                let keeps = storage == Storage::Atlas && pass.is_alone() && pass.splits().start > 0;
                 if !format.is_colour() {
                     return Attachments { colour: None, depth: view(map, first, views), keeps };
                 }
                 let same_size = |depth: &wgpu::Texture| depth.width() == map.width() && depth.height() == map.height();
                 let index = depths.iter().position(same_size).unwrap_or_else(|| {
-                    let format = DepthFormat::D32Float.texture_format();
+                    let format = texture_format(DepthFormat::D32Float);
                     let texels = [map.width(), map.height()];
                     depths.push(texture(device, "ShadowMaps::depth", format, texels, [views, 1], usage));
                     depths.len() - 1

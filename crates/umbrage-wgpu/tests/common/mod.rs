@@ -3,8 +3,39 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, DVec4, Vec3};
+use umbrage::config::{Filter, LightKind, MomentKind, Moments, Preset, ShadowConfig};
 use umbrage::{DirectionalLight, Selection, ShadowPlan, Split};
-use umbrage_wgpu::{FrameOptions, ShadowMaps, ShadowMapsOptions, optional_features};
+use umbrage_wgpu::{FrameOptions, LightMaps, ShadowMaps, optional_features};
+
+pub const PCF3: Filter = Filter::Pcf3 { width_m: None };
+pub const PCF5: Filter = Filter::Pcf5 { width_m: None };
+pub const PCF7: Filter = Filter::Pcf7 { width_m: None };
+pub const DISC: Filter = Filter::Disc { width_m: None, rotated: false };
+pub const PCSS: Filter = Filter::Pcss { sun_degrees: 0.53, rotated: false };
+pub const ESM: Filter = Filter::Moments(Moments::new(MomentKind::Esm));
+pub const VSM: Filter = Filter::Moments(Moments::new(MomentKind::Vsm));
+pub const EVSM2: Filter = Filter::Moments(Moments::new(MomentKind::Evsm2));
+pub const EVSM4: Filter = Filter::Moments(Moments::new(MomentKind::Evsm4));
+pub const MSM: Filter = Filter::Moments(Moments::new(MomentKind::Msm));
+
+/// Maps of one sun.
+pub const SUN: [LightKind; 1] = [LightKind::Directional];
+
+/// The papers' config with other maps, another filter, and settings over it, `key=value` with spaces between.
+pub fn config(map_sizes: &[u32], filter: Filter, settings: &str) -> ShadowConfig {
+    with(ShadowConfig { map_sizes: map_sizes.to_vec(), filter, ..Preset::Papers.config() }, settings)
+}
+
+/// A config with settings over it.
+pub fn with(mut config: ShadowConfig, settings: &str) -> ShadowConfig {
+    let given: Vec<(String, String)> = settings
+        .split_whitespace()
+        .map(|setting| setting.split_once('=').expect("key=value"))
+        .map(|(key, value)| (key.to_owned(), value.to_owned()))
+        .collect();
+    config.apply(&given).expect("settings that go together");
+    config
+}
 
 /// A device of its own for each test, and the queue.
 pub struct Gpu {
@@ -314,9 +345,13 @@ pub struct World {
 }
 
 impl World {
-    pub fn new(gpu: Gpu, options: &ShadowMapsOptions) -> Self {
+    pub fn new(gpu: Gpu, config: &ShadowConfig) -> Self {
+        Self::of_lights(gpu, config, &SUN)
+    }
+
+    pub fn of_lights<L: Clone + Into<LightMaps>>(gpu: Gpu, config: &ShadowConfig, lights: &[L]) -> Self {
         let (maps, pipeline) = gpu.checked(|| {
-            let maps = ShadowMaps::new(&gpu.device, options).expect("valid options");
+            let maps = ShadowMaps::new(&gpu.device, config, lights).expect("a valid config");
             let source = maps.caster_wgsl(0)
                 + "@vertex fn vertex(@location(0) position: vec3f, instance: UmbrageInstance) -> UmbrageCast {
                        return umbrage_cast(position, instance);
@@ -362,6 +397,12 @@ impl World {
         Self { gpu, maps, pipeline }
     }
 
+    /// Puts settings that need no other maps over the config.
+    pub fn set(&mut self, settings: &str) {
+        let config = with(self.maps.config().clone(), settings);
+        self.maps.set_config(&config).expect("settings of a frame");
+    }
+
     /// Draws `triangles` (three corners each, relative to the options' origin) into every map.
     pub fn draw(&mut self, plan: &ShadowPlan, options: &FrameOptions, triangles: &[Vec3]) {
         self.draw_all(&[plan], options, triangles);
@@ -380,7 +421,7 @@ impl World {
                 pass.set_vertex_buffer(0, vertices.slice(..));
                 pass.draw(0..triangles.len() as u32, map_pass.instances(u8::MAX));
             }
-            self.maps.filter(&mut encoder);
+            self.maps.prefilter(&mut encoder);
             self.gpu.queue.submit([encoder.finish()]);
         });
     }
@@ -405,7 +446,7 @@ impl World {
                     pass.draw(begins[caster as usize]..begins[caster as usize + 1], instances);
                 }
             }
-            self.maps.filter(&mut encoder);
+            self.maps.prefilter(&mut encoder);
             self.gpu.queue.submit([encoder.finish()]);
         });
     }
@@ -416,7 +457,7 @@ impl World {
 
     /// The texels of a D32Float map, row after row.
     pub fn texels(&self, split: usize) -> Vec<f32> {
-        let size = self.maps.options().map_sizes[split];
+        let size = self.maps.map_size(split);
         let row = (4 * size).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let bytes = self.gpu.checked(|| {
             let back = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {

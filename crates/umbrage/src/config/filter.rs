@@ -194,6 +194,12 @@ impl Filter {
         }
     }
 
+    /// Whether the filter has a width to choose.
+    #[must_use]
+    pub const fn has_width(&self) -> bool {
+        !matches!(self, Self::Hard | Self::Pcf2 | Self::Pcss { .. })
+    }
+
     /// The place of the width, for filters that have one to choose.
     pub(crate) fn width_mut(&mut self) -> Option<&mut Option<f64>> {
         match self {
@@ -229,6 +235,15 @@ impl Filter {
             Self::Pcf5 { .. } => 6,
             Self::Pcf7 { .. } => 8,
             Self::Disc { .. } | Self::Pcss { .. } | Self::Moments(_) => 33,
+        }
+    }
+
+    /// Samples of depth in a texel of the maps that casters are drawn into.
+    #[must_use]
+    pub const fn samples(&self) -> u32 {
+        match self {
+            Self::Moments(moments) => moments.samples,
+            _ => 1,
         }
     }
 

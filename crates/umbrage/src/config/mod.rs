@@ -17,6 +17,7 @@ mod rules;
 mod serialize;
 mod settings;
 mod splits;
+mod to_settings;
 
 pub use apply::Given;
 pub use filter::{Derivatives, Filter, MomentKind, Moments, SUN_DEGREES};
@@ -30,7 +31,7 @@ pub use rules::{Choice, Conflict, RULES, Rule};
 pub use settings::{Kind, Rebuilds, SETTINGS, Setting, Value};
 pub use splits::{Range, Selection, SplitMetric, SplitScheme, Transition};
 
-use crate::{Error, MAX_SPLITS, Result, Warp};
+use crate::{Error, Light, MAX_SPLITS, Result, Warp};
 
 /// What kind of light throws shadows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -51,6 +52,22 @@ impl LightKind {
         match self {
             Self::Directional | Self::Spot => 1,
             Self::Point => 6,
+        }
+    }
+
+    /// Whether the light stands somewhere, as spot and point lights do.
+    #[must_use]
+    pub const fn is_local(self) -> bool {
+        !matches!(self, Self::Directional)
+    }
+}
+
+impl From<Light> for LightKind {
+    fn from(light: Light) -> Self {
+        match light {
+            Light::Directional(_) => Self::Directional,
+            Light::Spot(_) => Self::Spot,
+            Light::Point(_) => Self::Point,
         }
     }
 }
@@ -193,6 +210,70 @@ impl ShadowConfig {
             }
         }
         (config, notes)
+    }
+
+    /// The config of one light among others: a choice that each light's plan makes by itself, and
+    /// that excludes this kind of light, is replaced by the usual one. The second value names what
+    /// was replaced.
+    #[must_use]
+    pub fn for_light(&self, kind: LightKind) -> (Self, Vec<String>) {
+        let (mut config, mut notes) = (self.clone(), Vec::new());
+        for rule in RULES.iter().filter(|rule| rule.is_about_lights() && rule.first.is_per_light()) {
+            if rule.is_broken_by(&config, &[kind]) {
+                let said = rule.first.say(&config);
+                if rule.first.relax(&mut config) {
+                    notes.push(format!("{said} is left away for a spot or point light: {}", rule.reason));
+                }
+            }
+        }
+        (config, notes)
+    }
+
+    /// The config with other maps. What was given for each split, or each plane, and no longer fits
+    /// their number is replaced by the usual choice. The second value names what was replaced.
+    #[must_use]
+    pub fn with_map_sizes(&self, map_sizes: &[u32]) -> (Self, Vec<String>) {
+        let (mut config, mut notes) = (Self { map_sizes: map_sizes.to_vec(), ..self.clone() }, Vec::new());
+        let (splits, inner) = (map_sizes.len(), map_sizes.len().saturating_sub(1));
+        let mut leave_away = |what| notes.push(format!("{what} left away: given for another number of splits"));
+        match &mut config.scheme {
+            SplitScheme::Manual { planes } if planes.len() != inner => {
+                config.scheme = SplitScheme::practical();
+                leave_away("planes are");
+            }
+            SplitScheme::Practical { delta, .. } if delta.len() > 1 && delta.len() != inner => {
+                delta.clear();
+                leave_away("delta is");
+            }
+            _ => {}
+        }
+        match &mut config.stability {
+            Stability::Tight { warps } if warps.len() > 1 && warps.len() != splits => {
+                warps.clear();
+                leave_away("warps are");
+            }
+            _ => {}
+        }
+        (config, notes)
+    }
+
+    /// Checks every field, and every rule but those that [`ShadowConfig::for_light`] settles.
+    ///
+    /// # Errors
+    /// Those of [`ShadowConfig::validate_for`].
+    pub fn validate_shared(&self, lights: &[LightKind]) -> Result<()> {
+        self.validate()?;
+        let local = lights.iter().copied().find(|light| light.is_local());
+        local.map_or_else(|| self.clone(), |kind| self.for_light(kind).0).validate_for(lights)
+    }
+
+    /// What a change from this config to another makes anew at most, and the setting that asks for
+    /// it; `None` between equal configs.
+    #[must_use]
+    pub fn rebuilds(&self, other: &Self) -> Option<(Rebuilds, &'static str)> {
+        let changed = SETTINGS.iter().filter(|setting| setting.get(self) != setting.get(other));
+        // Of several settings the first in the list is the most telling.
+        changed.map(|setting| (setting.rebuilds, setting.key)).rev().max_by_key(|(rebuilds, _)| *rebuilds)
     }
 
     fn check_sizes(&self) -> Result<()> {

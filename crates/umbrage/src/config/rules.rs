@@ -4,8 +4,8 @@
 use std::fmt;
 
 use super::{
-    Coordinates, Filter, Layout, LightKind, Range, Selection, ShadowConfig, SplitMetric, SplitScheme, Stability,
-    Transition,
+    Coordinates, DepthFormat, Filter, Layout, LightKind, Range, Selection, ShadowConfig, SplitMetric, SplitScheme,
+    Stability, Transition,
 };
 use crate::Warp;
 
@@ -28,6 +28,12 @@ pub enum Choice {
     MomentFilter,
     /// A filter that goes by depths of parallel light.
     SunFilter,
+    /// Maps have several samples of depth in a texel.
+    SeveralSamples,
+    /// Maps are colours and not depth.
+    ColourMaps,
+    /// Layers that hold several maps.
+    TiledLayers,
     /// One map is used for one split after the other.
     OneMap,
     /// Maps are not plain layers of one texture.
@@ -40,6 +46,8 @@ pub enum Choice {
     MoreThanSixSplits,
     /// Maps of different sizes.
     UnequalSizes,
+    /// Pixels make the coordinates of maps from the picture's depth.
+    DeferredCoordinates,
     /// Vertices make the coordinates of maps.
     VertexCoordinates,
     /// More splits than vertices hand on coordinates of.
@@ -96,6 +104,12 @@ pub const RULES: &[Rule] = &[
         "use bands planar, or another storage",
     ),
     rule(
+        Choice::DeferredCoordinates,
+        Choice::OneMap,
+        "there is one map at a time, and the picture's depth is complete after the last",
+        "use coordinates world, or another storage",
+    ),
+    rule(
         Choice::NotLayers,
         Choice::MomentFilter,
         "moments are kept as layers of one texture",
@@ -106,6 +120,24 @@ pub const RULES: &[Rule] = &[
         Choice::MomentFilter,
         "moments need depth that is linear along the light, which a warped map has not",
         "use no warp, or a filter that compares depth, such as pcf5",
+    ),
+    rule(
+        Choice::ColourMaps,
+        Choice::MomentFilter,
+        "moments are made of depth",
+        "use depth-format d32f or d16, or a filter that compares depth, such as pcf5",
+    ),
+    rule(
+        Choice::TiledLayers,
+        Choice::MomentFilter,
+        "moments need a layer for each split",
+        "use generation per-split or layered, or a filter that compares depth, such as pcf5",
+    ),
+    rule(
+        Choice::SeveralSamples,
+        Choice::NotPerSplit,
+        "layers of several samples cannot be drawn at once",
+        "use msaa 1, or generation per-split",
     ),
     rule(
         Choice::CubeFaces,
@@ -160,6 +192,12 @@ pub const RULES: &[Rule] = &[
         Choice::LocalLight,
         "the filter goes by depths of parallel light",
         "use another filter, such as pcf5, or a directional light",
+    ),
+    rule(
+        Choice::VertexCoordinates,
+        Choice::LocalLight,
+        "coordinates in the map of a local light are quotients, which cannot be interpolated",
+        "use coordinates world, or a directional light",
     ),
     rule(
         Choice::VertexCoordinates,
@@ -231,7 +269,7 @@ impl fmt::Display for Conflict {
 
 impl Choice {
     /// All choices that a rule may name.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 22] = [
         Self::Warp,
         Self::MapSelection,
         Self::DistanceMetric,
@@ -240,12 +278,16 @@ impl Choice {
         Self::Band,
         Self::MomentFilter,
         Self::SunFilter,
+        Self::SeveralSamples,
+        Self::ColourMaps,
+        Self::TiledLayers,
         Self::OneMap,
         Self::NotLayers,
         Self::NotPerSplit,
         Self::CubeFaces,
         Self::MoreThanSixSplits,
         Self::UnequalSizes,
+        Self::DeferredCoordinates,
         Self::VertexCoordinates,
         Self::MoreThanFourSplits,
         Self::LocalLight,
@@ -264,12 +306,16 @@ impl Choice {
             Self::Band => config.blend() > 0.0,
             Self::MomentFilter => config.filter.is_prefiltered(),
             Self::SunFilter => config.filter.is_prefiltered() || matches!(config.filter, Filter::Pcss { .. }),
+            Self::SeveralSamples => config.filter.samples() > 1,
+            Self::ColourMaps => config.depth_format.is_colour(),
+            Self::TiledLayers => config.layout == Layout::MixedArray,
             Self::OneMap => config.layout == Layout::Reused,
             Self::NotLayers => config.layout.storage() != super::Storage::Array,
             Self::NotPerSplit => config.layout.generation() != super::Generation::PerSplit,
             Self::CubeFaces => config.layout.storage() == super::Storage::Cube,
             Self::MoreThanSixSplits => config.splits() > 6,
             Self::UnequalSizes => config.map_sizes.windows(2).any(|pair| pair[0] != pair[1]),
+            Self::DeferredCoordinates => config.coordinates == Coordinates::Deferred,
             Self::VertexCoordinates => config.coordinates == Coordinates::Vertex,
             Self::MoreThanFourSplits => config.splits() > 4,
             Self::LocalLight => lights.iter().any(|light| *light != LightKind::Directional),
@@ -288,11 +334,13 @@ impl Choice {
             Self::OptimalScheme => &["scheme"],
             Self::Band => &["blend", "transition"],
             Self::MomentFilter | Self::SunFilter => &["filter", "msaa", "bleeding", "derivatives"],
+            Self::SeveralSamples => &["msaa"],
+            Self::ColourMaps => &["depth-format"],
             Self::OneMap | Self::NotLayers | Self::CubeFaces => &["storage", "generation"],
-            Self::NotPerSplit => &["generation", "storage"],
+            Self::NotPerSplit | Self::TiledLayers => &["generation", "storage"],
             Self::MoreThanSixSplits | Self::MoreThanFourSplits => &["splits", "map-size", "planes"],
             Self::UnequalSizes => &["map-size"],
-            Self::VertexCoordinates => &["coordinates"],
+            Self::DeferredCoordinates | Self::VertexCoordinates => &["coordinates"],
             Self::LocalLight | Self::SeveralFaces => &["light"],
         }
     }
@@ -315,6 +363,12 @@ impl Choice {
         }
     }
 
+    /// Whether each light's plan makes the choice by itself, and not all maps together.
+    #[must_use]
+    pub const fn is_per_light(self) -> bool {
+        matches!(self, Self::Warp | Self::MapSelection | Self::DistanceMetric | Self::OptimalScheme)
+    }
+
     /// Takes the choice back to what excludes nothing. False where there is no such choice.
     pub fn relax(self, config: &mut ShadowConfig) -> bool {
         match self {
@@ -324,8 +378,16 @@ impl Choice {
             Self::OptimalScheme => config.scheme = SplitScheme::practical(),
             Self::Band => config.transition = Transition::Hard,
             Self::MomentFilter | Self::SunFilter => config.filter = Filter::Pcf3 { width_m: None },
-            Self::OneMap | Self::NotLayers | Self::NotPerSplit | Self::CubeFaces => config.layout = Layout::Array,
-            Self::VertexCoordinates => config.coordinates = Coordinates::World,
+            Self::SeveralSamples => {
+                if let Filter::Moments(moments) = &mut config.filter {
+                    moments.samples = 1;
+                }
+            }
+            Self::ColourMaps => config.depth_format = DepthFormat::default(),
+            Self::OneMap | Self::NotLayers | Self::NotPerSplit | Self::CubeFaces | Self::TiledLayers => {
+                config.layout = Layout::Array;
+            }
+            Self::DeferredCoordinates | Self::VertexCoordinates => config.coordinates = Coordinates::World,
             Self::MoreThanSixSplits
             | Self::UnequalSizes
             | Self::MoreThanFourSplits

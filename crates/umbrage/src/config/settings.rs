@@ -113,7 +113,7 @@ impl Kind {
 }
 
 /// What a change of a setting makes anew.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Rebuilds {
     /// Nothing: the next frame has it.
     Nothing,

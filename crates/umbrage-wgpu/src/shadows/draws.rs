@@ -1,0 +1,79 @@
+//! Which casters each map is drawn with.
+
+use std::ops::Range;
+
+use umbrage::ShadowPlan;
+
+use crate::ShadowMaps;
+
+/// What to draw into the maps of a frame. Keeps its buffers.
+#[derive(Debug, Default)]
+pub(super) struct Draws {
+    /// Passes that have to be drawn.
+    pub passes: Vec<usize>,
+    /// Casters of each pass with their instances, pass after pass.
+    list: Vec<(u32, Range<u32>)>,
+    /// Where each pass's part of the list ends.
+    ends: Vec<usize>,
+    masks: Vec<u8>,
+}
+
+impl Draws {
+    /// Lists a frame's casters; none without shadows.
+    pub fn list(&mut self, maps: &ShadowMaps, plans: &[&ShadowPlan], enabled: bool) {
+        self.clear();
+        if !enabled {
+            return;
+        }
+        let alone = maps.is_of_one_light_and_face();
+        for (index, pass) in maps.passes().iter().enumerate() {
+            let begin = self.list.len();
+            if alone {
+                pass.list(plans[0], &mut self.masks, &mut self.list);
+            } else {
+                let (light, split) = maps.light_of_map(index);
+                // A sun in a point light's place leaves maps over.
+                let casters = if split < plans[light].splits.len() { plans[light].casters(split) } else { &[] };
+                self.list.extend(casters.iter().map(|&caster| (caster, 0..1)));
+            }
+            // A map without casters is not read: one of several lights need not even be cleared. Those of one
+            // light are, as they share textures.
+            if alone || self.list.len() > begin {
+                self.passes.push(index);
+            }
+            self.ends.push(self.list.len());
+        }
+    }
+
+    /// Lists nothing.
+    pub fn clear(&mut self) {
+        self.passes.clear();
+        self.list.clear();
+        self.ends.clear();
+    }
+
+    /// The casters of a pass with their instances.
+    pub fn of_pass(&self, pass: usize) -> &[(u32, Range<u32>)] {
+        let end = |pass: usize| self.ends.get(pass).copied().unwrap_or(0);
+        let begin = pass.checked_sub(1).map_or(0, end);
+        &self.list[begin..end(pass).max(begin)]
+    }
+}
+
+/// Neighbouring casters that are drawn with the same instances, as one.
+pub(super) fn runs(list: &[(u32, Range<u32>)]) -> impl Iterator<Item = (Range<u32>, Range<u32>)> + '_ {
+    let follows = |a: &(u32, Range<u32>), b: &(u32, Range<u32>)| b.0 == a.0 + 1 && a.1 == b.1;
+    list.chunk_by(follows).map(|run| (run[0].0..run[run.len() - 1].0 + 1, run[0].1.clone()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbours_are_one_run() {
+        let list = [(3, 0..1), (4, 0..1), (5, 0..2), (6, 0..2), (8, 0..2)];
+        assert_eq!(runs(&list).collect::<Vec<_>>(), [(3..5, 0..1), (5..7, 0..2), (8..9, 0..2)]);
+        assert_eq!(runs(&[]).count(), 0);
+    }
+}

@@ -1,0 +1,325 @@
+//! The front door: from a view, lights and boxes to maps that are drawn and asked.
+
+mod draws;
+mod frame;
+mod inputs;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use umbrage::config::{LightKind, Rebuilds, ShadowConfig};
+use umbrage::{Held, PlanInputs, Planner, ShadowPlan, ShadowSettings};
+
+use draws::Draws;
+pub use frame::{ShadowFrame, ShadowMap};
+pub use inputs::Inputs;
+
+use crate::{Error, FrameOptions, LightMaps, Result, ShadowMaps};
+
+/// Shadows of one sun or several lights, for one view or several.
+///
+/// Each frame: [`Shadows::prepare`], every map of [`ShadowFrame::maps`] drawn with its casters,
+/// [`Shadows::prefilter`], then the application's own pass with [`Shadows::bind_group`]. What the
+/// filter reaches, whether the device clamps depth, how many layers it draws at once and what a pixel
+/// covers is worked out here.
+///
+/// # Changes while it runs
+///
+/// | change | by | what it costs |
+/// |---|---|---|
+/// | view, lights' directions and places, casters, receivers, picture size | [`Inputs`] | nothing |
+/// | a setting of [`Rebuilds::Nothing`] | [`Shadows::set_config`] | nothing |
+/// | a setting of [`Rebuilds::Maps`] | [`Shadows::set_config`] | textures and bind groups; pipelines stay valid |
+/// | a setting of [`Rebuilds::Pipelines`] | [`Shadows::set_config`] | possibly pipelines: the answer says so |
+/// | number or kinds of lights | [`Shadows::set_lights`] | possibly pipelines: the answer says so |
+///
+/// [`umbrage::config::SETTINGS`] lists the settings with what they rebuild at most. Shadows stand
+/// still through every change that has nothing to do with where maps lie.
+///
+/// # Several views
+///
+/// Views share the maps, one after the other: prepare, draw and submit one view before the next is
+/// prepared. Give each its own [`Inputs::view_slot`], under which its stabilised maps are held. Views
+/// that are drawn in one submission take a `Shadows` each.
+#[derive(Debug)]
+pub struct Shadows {
+    config: ShadowConfig,
+    lights: Vec<LightMaps>,
+    maps: ShadowMaps,
+    /// What each light is planned with.
+    settings: Vec<ShadowSettings>,
+    notes: Vec<String>,
+    /// What plans each view's maps, a planner for each light.
+    planners: BTreeMap<u32, Vec<Planner>>,
+    /// What the planners held before the frame that is planned.
+    held: Vec<Held>,
+    /// The last frame's plans, one for each light. Their buffers serve the next frame once nobody else
+    /// holds them.
+    plans: Vec<Arc<ShadowPlan>>,
+    enabled: bool,
+    draws: Draws,
+}
+
+impl Shadows {
+    /// Shadows of one sun.
+    ///
+    /// # Errors
+    /// Those of [`ShadowMaps::new`].
+    pub fn new(device: &wgpu::Device, config: &ShadowConfig) -> Result<Self> {
+        Self::with_lights(device, config, &[LightKind::Directional])
+    }
+
+    /// Shadows of these lights, one at least: kinds ([`LightKind`]), lights ([`umbrage::Light`]) or
+    /// [`LightMaps`].
+    ///
+    /// A choice that a plan makes by itself and that excludes a kind of light, such as a warp for a
+    /// lamp, is replaced for that light alone; [`Shadows::notes`] says so.
+    ///
+    /// # Errors
+    /// Those of [`ShadowMaps::new`].
+    pub fn with_lights<L: Clone + Into<LightMaps>>(
+        device: &wgpu::Device,
+        config: &ShadowConfig,
+        lights: &[L],
+    ) -> Result<Self> {
+        let lights: Vec<LightMaps> = lights.iter().cloned().map(Into::into).collect();
+        let maps = ShadowMaps::new(device, config, &lights)?;
+        let (settings, notes) = planned_with(&maps, config, &lights);
+        // Whatever the planner refuses is refused now and not in a frame.
+        settings.iter().try_for_each(ShadowSettings::validate)?;
+        Ok(Self {
+            config: config.clone(),
+            lights,
+            maps,
+            settings,
+            notes,
+            planners: BTreeMap::new(),
+            held: Vec::new(),
+            plans: Vec::new(),
+            enabled: true,
+            draws: Draws::default(),
+        })
+    }
+
+    /// Plans a frame and hands it to the GPU. Takes effect with the next submission to `queue`.
+    ///
+    /// # Errors
+    /// [`Error::LightCount`] or [`Error::LightKind`] if the lights are not those that the maps were
+    /// made for, [`Error::Config`] naming a box that is no box or a camera that the range does not go
+    /// with, [`Error::InvalidFrameOption`] for an origin that is not finite, [`Error::FilterTooWide`],
+    /// [`Error::Device`] for what the device complains about. A refused frame does not change the next.
+    pub fn prepare(&mut self, queue: &wgpu::Queue, inputs: &Inputs<'_>) -> Result<ShadowFrame<'_>> {
+        self.check(inputs)?;
+        let slot = inputs.view_slot;
+        if !self.planners.contains_key(&slot) {
+            let fresh = self.settings.iter().cloned().map(Planner::new).collect::<Result<_, _>>()?;
+            self.planners.insert(slot, fresh);
+        }
+        let planners = self.planners.get(&slot).map_or(&[][..], Vec::as_slice);
+        self.held.clear();
+        self.held.extend(planners.iter().map(|planner| planner.held().clone()));
+        self.draws.clear();
+        let result = self.plan(queue, inputs);
+        // What stabilised maps hold belongs to frames that were shown with shadows.
+        if result.is_err() || !inputs.enabled {
+            let planners = self.planners.get_mut(&slot).map_or(&mut [][..], Vec::as_mut_slice);
+            planners.iter_mut().zip(self.held.drain(..)).for_each(|(planner, held)| planner.set_held(held));
+        }
+        result?;
+        self.enabled = inputs.enabled;
+        Ok(self.frame())
+    }
+
+    /// Plans a frame, hands it over and lists what is drawn.
+    fn plan(&mut self, queue: &wgpu::Queue, inputs: &Inputs<'_>) -> Result<()> {
+        let planners = self.planners.get_mut(&inputs.view_slot).map_or(&mut [][..], Vec::as_mut_slice);
+        self.plans.resize_with(planners.len(), Arc::default);
+        let receivers = inputs.receivers_in_view();
+        for ((planner, plan), light) in planners.iter_mut().zip(&mut self.plans).zip(inputs.lights) {
+            let of_light = PlanInputs {
+                receiver_clusters: inputs.receiver_clusters,
+                image_size: inputs.image_size,
+                ..PlanInputs::new(inputs.view, *light, inputs.casters, receivers)
+            };
+            if Arc::get_mut(plan).is_none() {
+                *plan = Arc::default();
+            }
+            if let Some(plan) = Arc::get_mut(plan) {
+                planner.plan_into(&of_light, plan)?;
+            }
+        }
+        let plans: Vec<&ShadowPlan> = self.plans.iter().map(|plan| &**plan).collect();
+        let options = FrameOptions { origin: inputs.origin, enabled: inputs.enabled, tint: inputs.tint };
+        self.maps.prepare_lights(queue, &plans, &options)?;
+        self.draws.list(&self.maps, &plans, inputs.enabled);
+        Ok(())
+    }
+
+    /// Whatever can be wrong before anything is planned.
+    fn check(&self, inputs: &Inputs<'_>) -> Result<()> {
+        if inputs.lights.len() != self.lights.len() {
+            return Err(Error::LightCount { plans: inputs.lights.len(), lights: self.lights.len() });
+        }
+        for (light, (given, maps)) in inputs.lights.iter().zip(&self.lights).enumerate() {
+            maps.check(light, LightKind::from(*given))?;
+        }
+        Ok(())
+    }
+
+    /// The last frame that was prepared.
+    #[must_use]
+    pub fn frame(&self) -> ShadowFrame<'_> {
+        ShadowFrame::new(self)
+    }
+
+    /// Turns drawn depths into what receivers read, for filters of moments; for others it does
+    /// nothing. Call it after the casters and before any receiver.
+    pub fn prefilter(&self, encoder: &mut wgpu::CommandEncoder) {
+        if self.enabled {
+            self.maps.prefilter(encoder);
+        }
+    }
+
+    /// The group that [`Shadows::receiver_wgsl`] declares.
+    #[must_use]
+    pub fn bind_group(&self) -> &wgpu::BindGroup {
+        self.maps.receiver_bind_group()
+    }
+
+    /// Layout of [`Shadows::bind_group`], for pipelines that ask for visibility.
+    #[must_use]
+    pub fn bind_group_layout(&self) -> &wgpu::BindGroupLayout {
+        self.maps.receiver_layout()
+    }
+
+    /// WGSL that stands before a shader that asks for visibility; `group` is the index at which
+    /// [`Shadows::bind_group`] is bound.
+    #[must_use]
+    pub fn receiver_wgsl(&self, group: u32) -> String {
+        self.maps.receiver_wgsl(group)
+    }
+
+    /// WGSL that stands before a vertex shader that draws casters; `group` is the index at which
+    /// [`ShadowMap::bind_group`] is bound. [`Shadows::caster_pipeline`] does the rest for the common
+    /// case.
+    #[must_use]
+    pub fn caster_wgsl(&self, group: u32) -> String {
+        self.maps.caster_wgsl(group)
+    }
+
+    /// [`Shadows::caster_wgsl`] for vertex shaders that hand more to their fragments: `members` joins
+    /// the struct that they return, for example `"@location(0) uv: vec2f,"`.
+    #[must_use]
+    pub fn caster_wgsl_with(&self, group: u32, members: &str) -> String {
+        self.maps.caster_wgsl_with(group, members)
+    }
+
+    /// The maps: the low level, which knows textures, passes and pipeline states.
+    #[must_use]
+    pub fn maps(&self) -> &ShadowMaps {
+        &self.maps
+    }
+
+    /// The config that is carried out.
+    #[must_use]
+    pub fn config(&self) -> &ShadowConfig {
+        &self.config
+    }
+
+    /// The lights that maps are made for.
+    #[must_use]
+    pub fn lights(&self) -> &[LightMaps] {
+        &self.lights
+    }
+
+    /// What was asked for and could not be had, with what is done instead.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Changes the config. Says what was made anew: after [`Rebuilds::Pipelines`] shader texts or
+    /// pipeline states have changed, and pipelines with them; after [`Rebuilds::Maps`] bind groups.
+    /// The answer is at most what [`ShadowConfig::rebuilds`] promises.
+    ///
+    /// # Errors
+    /// Those of [`ShadowMaps::new`]. Nothing has changed then.
+    pub fn set_config(&mut self, config: &ShadowConfig) -> Result<Rebuilds> {
+        self.change(config.clone(), self.lights.clone())
+    }
+
+    /// Changes the lights that maps are made for. Says what was made anew, as
+    /// [`Shadows::set_config`] does.
+    ///
+    /// # Errors
+    /// Those of [`ShadowMaps::new`]. Nothing has changed then.
+    pub fn set_lights<L: Clone + Into<LightMaps>>(&mut self, lights: &[L]) -> Result<Rebuilds> {
+        self.change(self.config.clone(), lights.iter().cloned().map(Into::into).collect())
+    }
+
+    fn change(&mut self, config: ShadowConfig, lights: Vec<LightMaps>) -> Result<Rebuilds> {
+        let promised = self.config.rebuilds(&config).map_or(Rebuilds::Nothing, |(rebuilds, _)| rebuilds);
+        let needs_maps = promised > Rebuilds::Nothing || lights != self.lights;
+        let new = needs_maps.then(|| ShadowMaps::new(self.maps.device(), &config, &lights)).transpose()?;
+        let (settings, notes) = planned_with(new.as_ref().unwrap_or(&self.maps), &config, &lights);
+        settings.iter().try_for_each(ShadowSettings::validate)?;
+        let rebuilt = match new {
+            None => {
+                self.maps.set_config(&config)?;
+                Rebuilds::Nothing
+            }
+            Some(new) => {
+                let keeps_pipelines = new.shares_pipelines_with(&self.maps);
+                self.maps = new;
+                if keeps_pipelines { Rebuilds::Maps } else { Rebuilds::Pipelines }
+            }
+        };
+        // A planner goes on where its settings do.
+        for planners in self.planners.values_mut() {
+            let before = std::mem::take(planners);
+            for (light, new) in settings.iter().enumerate() {
+                planners.push(match before.get(light).filter(|planner| planner.settings() == new) {
+                    Some(planner) => planner.clone(),
+                    None => Planner::new(new.clone())?,
+                });
+            }
+        }
+        (self.config, self.lights, self.settings, self.notes) = (config, lights, settings, notes);
+        self.plans.clear();
+        self.draws.clear();
+        Ok(rebuilt)
+    }
+
+    /// Forgets what stabilised maps hold on to, as if nothing had been drawn yet: for views that do
+    /// not follow each other.
+    pub fn restart(&mut self) {
+        self.planners.clear();
+        self.plans.clear();
+        self.draws.clear();
+    }
+
+    /// Lets view `to` go on from what view `from` holds, and forgets `from`.
+    pub fn move_view(&mut self, from: u32, to: u32) {
+        if let Some(planners) = self.planners.remove(&from) {
+            self.planners.insert(to, planners);
+        }
+    }
+
+    /// Whether anything is held for a view.
+    #[must_use]
+    pub fn holds_view(&self, view_slot: u32) -> bool {
+        self.planners.contains_key(&view_slot)
+    }
+}
+
+/// What each light is planned with, and notes on what was replaced.
+fn planned_with(maps: &ShadowMaps, config: &ShadowConfig, lights: &[LightMaps]) -> (Vec<ShadowSettings>, Vec<String>) {
+    let (mut settings, mut notes) = (Vec::new(), maps.notes().to_vec());
+    for (light, slot) in lights.iter().enumerate() {
+        let (own, of_sizes) = config.with_map_sizes(maps.map_sizes(light));
+        let (own, of_kind) = own.for_light(slot.kind);
+        notes.extend(of_sizes.into_iter().chain(of_kind));
+        settings.push(own.planner_settings(maps.depth_clamp(), [1, 1]));
+    }
+    (settings, notes)
+}
