@@ -61,15 +61,20 @@ pub fn bless() -> Result<()> {
     Ok(())
 }
 
-/// The fuzzer of loaders, long enough to find what CI's short run does not.
+/// The fuzzers of plans and loaders, long enough to find what CI's short runs do not.
 pub fn fuzz() -> Result<()> {
-    const FILES: &str = "UMBRAGE_FUZZ_FILES";
-    let mut tests = cargo();
-    tests.args(["test", "--release", "--package", "umbrage-scene", "--test", "mutated", "--", "--nocapture"]);
-    if !is_set(FILES) {
-        tests.env(FILES, "100000");
+    for (package, test, variable, count) in [
+        ("umbrage", "fuzz", "UMBRAGE_FUZZ_CASES", "1000000"),
+        ("umbrage-scene", "mutated", "UMBRAGE_FUZZ_FILES", "100000"),
+    ] {
+        let mut tests = cargo();
+        tests.args(["test", "--release", "--package", package, "--test", test, "--", "--nocapture"]);
+        if !is_set(variable) {
+            tests.env(variable, count);
+        }
+        run(&mut tests)?;
     }
-    run(&mut tests)
+    Ok(())
 }
 
 /// Whether there is an adapter, after trying to install one. None is an error where the environment demands one.

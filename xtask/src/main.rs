@@ -20,7 +20,8 @@ Usage: cargo xtask COMMAND
   test [--quick]
           formatting, lints, documentation, features, packages, the build for the browser and all tests, as CI runs them;
           --quick: formatting and the tests of what needs no graphics adapter, in under two minutes once it is built
-  fuzz    load 100,000 mutated files; UMBRAGE_FUZZ_FILES and UMBRAGE_FUZZ_SEED choose others
+  fuzz    check 1,000,000 plans of random scenes and load 100,000 mutated files; UMBRAGE_FUZZ_CASES, UMBRAGE_FUZZ_FILES
+          and UMBRAGE_FUZZ_SEED choose others
   package pack every crate that is published and build each from its package
   bless   draw the reference pictures of the tests anew
   results [--resume | --render | --tiny]

@@ -48,3 +48,13 @@ pub enum Command {
     #[command(hide = true)]
     Adapter,
 }
+
+/// `--shadows`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Switch {
+    /// With
+    #[default]
+    On,
+    /// Without
+    Off,
+}

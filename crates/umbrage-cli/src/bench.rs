@@ -8,10 +8,12 @@ use umbrage_lab::{
     failure::Result,
     parse,
     scene_request::{CameraChoice, LightChoice, SceneRequest},
-    technique::{args::Switch, text},
+    technique::text,
 };
 use umbrage_render::Samples;
 use umbrage_scene::procedural::World;
+
+use crate::args::Switch;
 
 /// The camera of a world that is taken if none is named: shadows near, in the middle and far in one picture.
 const CAMERA: &str = "middle";
@@ -27,14 +29,14 @@ pub struct BenchArgs {
         long,
         value_name = "LIST",
         value_delimiter = ',',
-        default_value = "ssm:1024,pssm:2:512,pssm:3:512,pssm:3:512:scheme=fitted,pssm:4:512"
+        default_value = "ssm:1024,pssm:2:512,pssm:3:512,pssm:3:512:scheme=optimal,pssm:4:512"
     )]
     pub techniques: Vec<String>,
     /// All filters over four maps of 1024² instead of techniques, divided by pcf2; over robot-war if no scene is named
     #[arg(long, conflicts_with_all = ["techniques", "with"])]
     pub filters: bool,
     /// Settings for all techniques that do not say otherwise, as for `umbrage compare`; the papers' splits meet in hard borders
-    #[arg(long, value_name = "SETTINGS", default_value = "filter=pcf2:stabilize=none:blend=0")]
+    #[arg(long, value_name = "SETTINGS", default_value = "preset=papers:filter=pcf2:stabilize=none:blend=0")]
     pub with: String,
     /// Rounds that are measured, after one that is not
     #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..=1000))]
@@ -72,7 +74,7 @@ pub struct BenchArgs {
 pub fn run(args: &BenchArgs) -> Result<()> {
     let (texts, with) =
         if args.filters { (bench::filter_techniques(), "") } else { (args.techniques.clone(), &*args.with) };
-    let techniques = text::parse_all(&texts, with, args.size)?;
+    let techniques = text::parse_all(&texts, with)?;
     let scenes: Vec<String> = match &args.scenes[..] {
         [] if args.filters => vec![World::RobotWar.name().to_owned()],
         [] => World::ALL.iter().map(|world| world.name().to_owned()).collect(),

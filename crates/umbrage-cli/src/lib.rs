@@ -1,7 +1,7 @@
 //! The command `umbrage`, as a library, so that its parts can be tested.
 //!
-//! [`args`] is what was typed; then there is one file per subcommand, with its options and what it does with them. The work is done by
-//! `umbrage-lab`. [`failure`] decides the exit code.
+//! [`args`] is what was typed; then there is one file per subcommand, with its options and what it
+//! does with them. The work is done by `umbrage-lab`. [`failure`] decides the exit code.
 
 mod adapter;
 pub mod args;
@@ -15,6 +15,7 @@ mod print;
 pub mod probe;
 pub mod render;
 pub mod scene_args;
+pub mod shadow_args;
 pub mod theory;
 pub mod truth;
 pub mod worlds;
@@ -25,7 +26,8 @@ use umbrage_lab::failure::Result;
 /// Does what was asked for.
 ///
 /// # Errors
-/// [`umbrage_lab::failure::Failure`], which [`failure::exit_code`] turns into an exit code. No output file is left behind.
+/// [`umbrage_lab::failure::Failure`], which [`failure::exit_code`] turns into an exit code. No
+/// output file is left behind.
 pub fn run(args: &Args) -> Result<()> {
     match &args.command {
         Command::Render(args) => render::run(args),

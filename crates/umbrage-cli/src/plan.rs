@@ -4,17 +4,19 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use serde::Serialize;
-use umbrage::{Aabb, ExtentSteps, Planner, ShadowPlan, Split, Stabilize};
+use umbrage::config::{ExtentSteps, Stability};
+use umbrage::{Aabb, Planner, ShadowPlan, Split};
 use umbrage_lab::{
     failure::Result,
     output::{self, Staged, numbered_file},
     report::{ShotReport, to_json},
     scene_request::SceneRequest,
     scene_setup::{SceneSetup, Shot},
-    technique::{ShadowArgs, ShadowJob, typed_name},
+    session::warps,
+    technique::ShadowRequest,
 };
 
-use crate::{print::print, scene_args::SceneArgs};
+use crate::{print::print, scene_args::SceneArgs, shadow_args::ShadowArgs};
 
 /// `umbrage plan`.
 #[derive(Debug, clap::Args)]
@@ -119,13 +121,13 @@ struct Caster {
 /// Runs the subcommand.
 pub fn run(args: &PlanArgs) -> Result<()> {
     let request = args.scene.request()?;
-    let shadows = ShadowJob::new(&args.shadows, request.size)?;
+    let shadows = args.shadows.request(request.sun_angle)?;
     if let Some(path) = &args.output {
         output::check(&[path], &[], &request.inputs())?;
     }
     let setup = SceneSetup::open(&request)?;
-    let config = shadows.config(request.sun_angle);
-    let mut planner = Planner::new(config.planner_settings(false, request.size))?;
+    let shadows = shadows.for_lights(&setup.lights[..1])?;
+    let mut planner = Planner::new(shadows.config.planner_settings(false, request.size))?;
     let receivers: Vec<Aabb> = setup.pose.objects.iter().map(|object| object.bounds).collect();
     let casters: Vec<Aabb> =
         setup.pose.objects.iter().filter(|object| object.casts).map(|object| object.bounds).collect();
@@ -150,7 +152,7 @@ fn write(path: &Path, frames: &[(Option<u32>, PlanReport)]) -> Result<()> {
 
 fn report(
     request: &SceneRequest,
-    shadows: &ShadowJob,
+    shadows: &ShadowRequest,
     setup: &SceneSetup,
     shot: &Shot,
     plan: &ShadowPlan,
@@ -159,18 +161,20 @@ fn report(
     let casters = setup.pose.objects.iter().filter(|object| object.casts).zip(&plan.split_range);
     PlanReport {
         shot: setup.report(request, shot),
-        technique: typed_name(shadows.technique),
-        fit: typed_name(shadows.fit),
-        stabilize: typed_name(shadows.stabilize),
-        extent_steps: match shadows.settings.stabilize {
-            Stabilize::Approximate(ExtentSteps::PerDoubling(count)) => Some(ExtentStepsReport::PerDoubling(count)),
-            Stabilize::Approximate(ExtentSteps::Levels(count)) => Some(ExtentStepsReport::Levels(count)),
-            Stabilize::None | Stabilize::Exact => None,
+        technique: shadows.word("technique"),
+        fit: shadows.word("fit"),
+        stabilize: shadows.word("stabilize"),
+        extent_steps: match shadows.config.stability {
+            Stability::Approximate { steps: ExtentSteps::PerDoubling(count) } => {
+                Some(ExtentStepsReport::PerDoubling(count))
+            }
+            Stability::Approximate { steps: ExtentSteps::Levels(count) } => Some(ExtentStepsReport::Levels(count)),
+            Stability::Tight { .. } | Stability::Exact => None,
         },
-        bands: typed_name(shadows.bands),
-        scheme: typed_name(shadows.scheme),
-        warp: shadows.warps.iter().map(|&warp| typed_name(warp)).collect(),
-        depth_convention: typed_name(convention),
+        bands: shadows.config.selection.metric().to_string(),
+        scheme: shadows.word("scheme"),
+        warp: warps(&shadows.config),
+        depth_convention: convention.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default(),
         planes_m: plan.planes.clone(),
         view_depth_plane: plan.view_depth_plane.to_array(),
         fade_begin_m: plan.fade_begin,
@@ -182,7 +186,7 @@ fn report(
                 split_range: range.map(|(first, last)| [first, last]),
             })
             .collect(),
-        notes: setup.notes.clone(),
+        notes: setup.notes.iter().chain(&shadows.notes).cloned().collect(),
     }
 }
 

@@ -13,11 +13,10 @@ use umbrage_lab::{
     report::{ProbeReport, to_json},
     scene_setup::SceneSetup,
     session::Session,
-    technique::{ShadowArgs, ShadowJob},
 };
 use umbrage_render::{Outputs, ProbePoint};
 
-use crate::scene_args::SceneArgs;
+use crate::{scene_args::SceneArgs, shadow_args::ShadowArgs};
 
 /// `umbrage probe`.
 #[derive(Debug, clap::Args)]
@@ -45,7 +44,7 @@ const RECORD_BYTES: usize = 6 * size_of::<f64>();
 /// Runs the subcommand.
 pub fn run(args: &ProbeArgs) -> Result<()> {
     let request = args.scene.request()?;
-    let shadows = ShadowJob::new(&args.shadows, request.size)?;
+    let shadows = args.shadows.request(request.sun_angle)?;
     let files: Vec<&Path> = [Some(&args.out), args.report.as_ref()].into_iter().flatten().map(AsRef::as_ref).collect();
     let inputs: Vec<&Path> = request.inputs().into_iter().chain([args.points.as_path()]).collect();
     output::check(&files, &[], &inputs)?;

@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use umbrage::config::SplitMetric;
 use umbrage_lab::{
     failure::{Failure, Result},
+    notes,
     output::{self, Staged, numbered_file, numbered_folder},
     picture::{png, side_by_side},
     progress,
@@ -11,11 +13,10 @@ use umbrage_lab::{
     scene_setup::SceneSetup,
     session::{Session, beside_report},
     split_views,
-    technique::{ShadowArgs, ShadowJob},
 };
 use umbrage_render::{Frame, Outputs};
 
-use crate::scene_args::SceneArgs;
+use crate::{scene_args::SceneArgs, shadow_args::ShadowArgs};
 
 /// `umbrage render`.
 #[derive(Debug, clap::Args)]
@@ -47,7 +48,7 @@ pub struct RenderArgs {
 /// Runs the subcommand.
 pub fn run(args: &RenderArgs) -> Result<()> {
     let request = args.scene.request()?;
-    let shadows = ShadowJob::new(&args.shadows, request.size)?;
+    let shadows = args.shadows.request(request.sun_angle)?;
     let files: Vec<&Path> =
         [&args.picture, &args.visibility, &args.report].into_iter().flatten().map(AsRef::as_ref).collect();
     let folders: Vec<&Path> = args.maps.iter().chain(&args.split_views).map(AsRef::as_ref).collect();
@@ -62,7 +63,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     if args.maps.is_some() && setup.shots.iter().any(|shot| !shot.beside.is_empty()) {
         return Err(Failure::input("--maps and several cameras: maps are of one view; name one --camera"));
     }
-    if args.split_views.is_some() && shadows.settings.bands == umbrage::Bands::Radial {
+    if args.split_views.is_some() && shadows.config.selection.metric() == SplitMetric::Distance {
         return Err(Failure::input(
             "--split-views and --bands radial exclude each other: each picture lies between two planes; leave one of them away",
         ));
@@ -80,6 +81,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     for shot in &setup.shots {
         let frames: Vec<Frame<'_>> = shot.views().map(|(_, view)| session.frame(&setup, shot, view)).collect();
         let mut views = session.renderer.render_views(&frames, shot.shown.as_ref(), outputs)?;
+        notes::say(shadows.notes.iter().chain(&views[0].stats.notes));
         let pictures: Vec<_> = views.iter_mut().filter_map(|view| view.picture.take()).collect();
         if let (Some(path), false) = (&args.picture, pictures.is_empty()) {
             staged.file(&numbered_file(path, shot.frame), png(&side_by_side(pictures))?)?;

@@ -9,13 +9,13 @@ use umbrage_lab::{
     parse,
     scene_request::{CameraChoice, DEFAULT_SUN_FADE, LightChoice, SceneRequest, SunTravel},
 };
-use umbrage_scene::HeightMapOptions;
+use umbrage_scene::{GltfOptions, HeightMapOptions, OpenOptions};
 
 /// Scene, picture size, camera, light and time.
 #[derive(Debug, clap::Args)]
 pub struct SceneArgs {
-    /// A .glb or .gltf; a height map (.png with its .json, or the --metres options); or a world:
-    /// robot-war, chessboard, knights, mining-terrain
+    /// A .glb, .gltf or .vrm; a height map (.png, .tif or .asc, with a .json beside it or the --metres options where it has
+    /// no scale of its own); or a world: robot-war, chessboard, knights, mining-terrain
     #[arg(value_name = "SCENE")]
     pub scene: String,
     /// Height map: metres between posts
@@ -27,6 +27,15 @@ pub struct SceneArgs {
     /// Height map: metres added to every height
     #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
     pub height_offset: Option<f64>,
+    /// Height map: how a picture holds heights, where its values do not tell
+    #[arg(long, value_enum, default_value_t, help_heading = "Scene")]
+    pub height_encoding: HeightEncoding,
+    /// glTF: most memory for textures, in MiB; larger ones are scaled down, with a note
+    #[arg(long, value_name = "MIB", default_value = "512", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Scene")]
+    pub texture_memory: u32,
+    /// glTF: let its files lie outside of its folder, as ../textures/bark.png does
+    #[arg(long, help_heading = "Scene")]
+    pub parent_folders: bool,
     /// Move the scene with its cameras and lights by this many metres, as if it lay far from the world's origin; --eye, --target and --path
     /// are places of the world
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Scene")]
@@ -88,6 +97,32 @@ pub struct SceneArgs {
     pub sun_angle: Option<f64>,
 }
 
+/// `--height-encoding`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum HeightEncoding {
+    /// Whichever fits its values
+    #[default]
+    Auto,
+    /// Grey
+    Grey,
+    /// Metres in colours: red · 256 + green + blue / 256 − 32768
+    Terrarium,
+    /// Metres in colours: (red · 65536 + green · 256 + blue) / 10 − 10000
+    Mapbox,
+}
+
+impl HeightEncoding {
+    /// The encoding, if one was named.
+    fn named(self) -> Option<umbrage_scene::HeightEncoding> {
+        match self {
+            Self::Auto => None,
+            Self::Grey => Some(umbrage_scene::HeightEncoding::Grey),
+            Self::Terrarium => Some(umbrage_scene::HeightEncoding::Terrarium),
+            Self::Mapbox => Some(umbrage_scene::HeightEncoding::Mapbox),
+        }
+    }
+}
+
 impl SceneArgs {
     /// The request that the options make.
     ///
@@ -96,10 +131,17 @@ impl SceneArgs {
     pub fn request(&self) -> Result<SceneRequest> {
         let camera = camera_choice(self)?;
         let request = SceneRequest {
-            height_map: HeightMapOptions {
-                metres_per_post: self.metres_per_post,
-                metres_per_unit: self.metres_per_unit,
-                height_offset: self.height_offset,
+            files: OpenOptions {
+                height_map: HeightMapOptions {
+                    metres_per_post: self.metres_per_post,
+                    metres_per_unit: self.metres_per_unit,
+                    height_offset: self.height_offset,
+                    encoding: self.height_encoding.named(),
+                },
+                gltf: GltfOptions {
+                    texture_bytes: u64::from(self.texture_memory) << 20,
+                    parent_folders: self.parent_folders,
+                },
             },
             move_scene: self.move_scene,
             time_s: self.time,

@@ -10,11 +10,10 @@ use umbrage_lab::{
     report::{TruthReport, TruthTimesMs, to_json},
     scene_setup::SceneSetup,
     sun_disc::sun_disc,
-    technique::ShadowArgs,
 };
 use umbrage_truth::Truth;
 
-use crate::scene_args::SceneArgs;
+use crate::{scene_args::SceneArgs, shadow_args::ShadowArgs};
 
 /// `umbrage truth`.
 #[derive(Debug, clap::Args)]

@@ -130,7 +130,6 @@ fn shadow_options_that_say_nonsense() {
         ("--technique lispsm --warp tsm", &["--technique lispsm", "--warp tsm"]),
         ("--warp tsm --stabilize exact", &["--warp tsm", "--stabilize exact"]),
         ("--warp tsm --stabilize approximate", &["--warp tsm", "--stabilize approximate"]),
-        ("--extent-steps 8", &["--extent-steps", "--stabilize approximate"]),
         ("--stabilize exact --extent-levels 64", &["--extent-levels", "--stabilize approximate"]),
         ("--stabilize approximate --extent-steps 8 --extent-levels 64", &["--extent-steps", "--extent-levels"]),
         ("--stabilize approximate --extent-steps 2", &["--extent-steps", "4 to 64"]),

@@ -4,7 +4,7 @@ mod common;
 
 use std::{fs, process::Stdio};
 
-use common::{Folder, has_adapter, names};
+use common::{Folder, has_adapter, names, stderr};
 use image::GenericImageView;
 
 /// The tiny scene from straight above, its box in the middle; one argument list for all subcommands.
@@ -202,6 +202,16 @@ fn an_empty_scene_gives_an_empty_picture() {
         "render tiny.glb --size 32x24 --eye 0,5,0 --target 0,50,1 --visibility n.png -o q.png --report q.json",
     );
     assert!(folder.mask("n.png").pixels().all(|pixel| pixel.0[1] == 0), "nothing was hit");
+}
+
+#[test]
+fn notes_reach_standard_error_once() {
+    let folder = Folder::new();
+    let output = folder.run("truth empty.gltf --size 32x24 -o t.png");
+    let said = stderr(&output);
+    let notes: Vec<&str> = said.lines().filter(|line| line.starts_with("umbrage: note: ")).collect();
+    assert_eq!(notes.iter().filter(|note| note.contains("no camera")).count(), 1, "{said}");
+    assert_eq!(notes.len(), 2, "camera and sun are invented: {said}");
 }
 
 #[test]
@@ -421,7 +431,7 @@ fn a_reader_who_leaves_is_no_error() {
         folder.command("worlds list").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
     drop(child.stdout.take());
     let output = child.wait_with_output().expect("it ends");
-    assert!(output.status.success(), "{}", common::stderr(&output));
+    assert!(output.status.success(), "{}", stderr(&output));
     let listed = folder.run("worlds list");
     let listed = String::from_utf8_lossy(&listed.stdout).into_owned();
     for world in ["robot-war", "chessboard", "knights", "mining-terrain"] {

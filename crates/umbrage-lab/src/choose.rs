@@ -2,7 +2,8 @@
 
 use crate::failure::{Failure, Result};
 
-/// The indices of one thing called `wanted`, whatever is in its name, or of several between commas; one at least.
+/// The indices of one thing called `wanted`, whatever is in its name, or of several between commas;
+/// one at least.
 ///
 /// # Errors
 /// [`Failure::Input`] naming the option, what is not there and what is.

@@ -2,7 +2,7 @@
 
 use std::{io, path::Path};
 
-use umbrage::config::{Conflict, SETTINGS};
+use umbrage::config::{Kind, SETTINGS};
 
 /// [`std::result::Result`] with a [`Failure`].
 pub type Result<T, E = Failure> = std::result::Result<T, E>;
@@ -10,7 +10,8 @@ pub type Result<T, E = Failure> = std::result::Result<T, E>;
 /// Why a command ended without its outputs. No output file is left behind in either case.
 #[derive(Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
-    /// The user can mend it: an option, a file, a full disk. The message names the culprit and what to do.
+    /// The user can mend it: an option, a file, a full disk. The message names the culprit and what
+    /// to do.
     #[error("{0}")]
     Input(String),
     /// Everything else: no adapter, a lost device, an internal error.
@@ -29,6 +30,27 @@ impl Failure {
         Self::Other(message.into())
     }
 
+    /// Settings that were refused, in the language of the command line.
+    #[must_use]
+    pub fn of_settings(error: &umbrage::Error, given: &[(String, String)]) -> Self {
+        match error {
+            umbrage::Error::InvalidSetting { field, reason } => {
+                let value = given.iter().rev().find(|(key, _)| key == field).map(|(_, value)| value.as_str());
+                let reason = in_options(reason);
+                Self::Input(match value {
+                    Some(value) => format!("--{field} {value}: {reason}"),
+                    None => format!("--{field}: {reason}"),
+                })
+            }
+            umbrage::Error::Conflict(conflict) => Self::Input(in_options(&conflict.to_string())),
+            umbrage::Error::UnknownSetting { key } => {
+                let keys: Vec<&str> = SETTINGS.iter().map(|setting| setting.key).collect();
+                Self::Input(format!("there is no setting {key}; there are {}", keys.join(", ")))
+            }
+            other => other.clone().into(),
+        }
+    }
+
     /// The operating system refused something about a file that the user named.
     #[must_use]
     pub fn file(doing: &str, path: &Path, error: &io::Error) -> Self {
@@ -43,36 +65,15 @@ impl Failure {
     }
 }
 
-/// Names the option behind a field of the planner's, so that the message speaks the language of the command line.
+/// Names the option behind a field of the planner's, so that the message speaks the language of the
+/// command line.
 impl From<umbrage::Error> for Failure {
     fn from(error: umbrage::Error) -> Self {
-        match &error {
-            umbrage::Error::Conflict(conflict) => return Self::Input(conflict_in_options(conflict)),
-            umbrage::Error::InvalidSetting { field, .. } if SETTINGS.iter().any(|setting| setting.key == *field) => {
-                return Self::Input(format!("--{field}: {error}"));
-            }
-            _ => {}
-        }
         let option = match &error {
-            umbrage::Error::InvalidSetting { field, .. } => match *field {
-                "map_sizes" => "--map-size, --splits",
-                "range" => "--shadow-range",
-                "lambda" => "--lambda",
-                "delta" => "--delta",
-                "planes" => "--planes",
-                "blend" => "--blend",
-                "far_fade" => "--far-fade",
-                "filter_radius" => "--filter",
-                "filter_half_width_m" => "--filter-width, --sun-angle",
-                "image_size" => "--size",
-                "stabilize" => "--extent-steps, --extent-levels",
-                "warps" => "--warp, --tsm-focus",
-                _ => "",
-            },
-            umbrage::Error::ConflictingSettings { first: "bands", second: "camera", .. } => "--bands, --camera",
-            umbrage::Error::ConflictingSettings { first: "bands", second: "light", .. } => "--bands, --light",
-            umbrage::Error::ConflictingSettings { second: "light", .. } => "--warp, --light",
-            umbrage::Error::ConflictingSettings { .. } => "--warp, --stabilize",
+            umbrage::Error::InvalidSetting { .. }
+            | umbrage::Error::Conflict(_)
+            | umbrage::Error::UnknownSetting { .. } => return Self::of_settings(&error, &[]),
+            umbrage::Error::ConflictingSettings { second: "camera", .. } => "--bands, --camera",
             umbrage::Error::InvalidCamera { field, .. } => match *field {
                 "fov" => "--fov",
                 "near" | "far" => "--near, --far",
@@ -86,7 +87,8 @@ impl From<umbrage::Error> for Failure {
     }
 }
 
-/// No adapter and a failing device are nobody's bad input; everything else names an option or the scene.
+/// No adapter and a failing device are nobody's bad input; everything else names an option or the
+/// scene.
 impl From<umbrage_render::Error> for Failure {
     fn from(error: umbrage_render::Error) -> Self {
         use umbrage_render::Error as E;
@@ -96,7 +98,7 @@ impl From<umbrage_render::Error> for Failure {
             }
             E::Plan(error) => error.into(),
             E::ImageSize { .. } => Self::input(format!("--size: {error}")),
-            E::Shadows(error) => Self::input(in_options(&error)),
+            E::Shadows(error) => Self::input(of_maps(&error)),
             E::Probe { .. } => Self::input(format!("--points: {error}")),
             _ => Self::input(error.to_string()),
         }
@@ -120,18 +122,60 @@ impl From<umbrage_truth::Error> for Failure {
     }
 }
 
-/// The library's message in the language of the command line.
+/// A message of the library with its settings as options: `selection map` becomes `--selection map`.
 #[must_use]
-pub fn in_options(error: &umbrage_wgpu::Error) -> String {
+pub fn in_options(message: &str) -> String {
+    let words: Vec<&str> = message.split(' ').collect();
+    let is_value = |kind: Kind, word: &str| {
+        let word = word.trim_end_matches([',', ';', ':', ')', '.']);
+        match kind {
+            Kind::Words(words) | Kind::WordList(words) => {
+                word.split(',').all(|part| words.iter().any(|known| known.word == part))
+            }
+            _ => word.starts_with(|first: char| first.is_ascii_digit()) || word.starts_with("A,"),
+        }
+    };
+    let mut options = Vec::new();
+    for (i, word) in words.iter().enumerate() {
+        let (open, key) = word.split_at(word.len() - word.trim_start_matches('(').len());
+        let setting = SETTINGS.iter().find(|setting| setting.key == key);
+        let next = words.get(i + 1).copied().unwrap_or_default();
+        match setting {
+            // A key with a hyphen is no word of English.
+            Some(setting) if key.contains('-') || is_value(setting.kind, next) => {
+                options.push(format!("{open}--{key}"))
+            }
+            _ => options.push((*word).to_owned()),
+        }
+    }
+    options.join(" ")
+}
+
+/// The maps' message in the language of the command line.
+fn of_maps(error: &umbrage_wgpu::Error) -> String {
     match error {
         umbrage_wgpu::Error::MapTooLarge { .. } => format!("--map-size: {error}"),
         umbrage_wgpu::Error::FilterTooWide { .. } => format!("--filter-width: {error}"),
-        other => other.to_string(),
+        other => in_options(&other.to_string()),
     }
 }
 
-/// A rule of the config that options break, in the language of the command line.
-fn conflict_in_options(conflict: &Conflict) -> String {
-    let Conflict { rule, first, second } = conflict;
-    format!("--{first} and --{second} exclude each other: {}; {}", rule.reason, rule.remedy)
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_become_options_where_a_value_follows() {
+        for (message, options) in [
+            ("selection map and warp tsm exclude each other", "--selection map and --warp tsm exclude each other"),
+            ("use scheme log, or leave splits away", "use --scheme log, or leave splits away"),
+            (
+                "storage reused (generation multipass) and blend 0.1",
+                "--storage reused (--generation multipass) and --blend 0.1",
+            ),
+            ("the filter goes by depth", "the filter goes by depth"),
+        ] {
+            assert_eq!(in_options(message), options);
+        }
+    }
 }

@@ -1,13 +1,17 @@
-//! umbrage's laboratory: what it takes to judge shadows, draw them side by side, measure their cost and show the theory behind them.
+//! umbrage's laboratory: what it takes to judge shadows, draw them side by side, measure their cost
+//! and show the theory behind them.
 //!
 //! * [`technique`]: how shadows are made, as options, as settings and under a name;
-//! * [`scene_request`] and [`scene_setup`]: what is looked at, asked for and opened; [`session`]: a device with the scene on it;
-//! * [`compare`] judges techniques by rays, [`bench`] measures what they cost, [`theory`] draws what the papers derive, [`gallery`] what
-//!   the defaults draw;
+//! * [`scene_request`] and [`scene_setup`]: what is looked at, asked for and opened;
+//! * [`session`]: a device with the scene on it;
+//! * [`compare`] judges techniques by rays, [`bench`] measures what they cost, [`theory`] draws what
+//!   the papers derive, [`gallery`] what the defaults draw;
 //! * [`page`]: report pages and their charts;
-//! * [`output`] makes files appear whole or not at all, [`failure`] says whose fault it is that there are none.
+//! * [`output`] makes files appear whole or not at all, [`failure`] says whose fault it is that
+//!   there are none.
 //!
-//! Messages name the options of the command `umbrage`, which is what a user of the laboratory types.
+//! Messages name the options of the command `umbrage`, which is what a user of the laboratory
+//! types.
 
 pub mod bench;
 pub mod choose;
@@ -15,6 +19,7 @@ pub mod compare;
 pub mod failure;
 pub mod gallery;
 pub mod lights;
+pub mod notes;
 pub mod output;
 pub mod page;
 pub mod parse;

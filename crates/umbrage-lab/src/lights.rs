@@ -9,7 +9,6 @@ use crate::{
     failure::{Failure, Result},
     report::LightReport,
     scene_request::{LightChoice, SceneRequest},
-    technique::args::{Coordinates, Filter, config_filter, typed_name},
 };
 
 /// A light under the name that people know it by.
@@ -48,51 +47,6 @@ impl NamedLight {
 #[must_use]
 pub fn kinds(lights: &[NamedLight]) -> Vec<umbrage::config::LightKind> {
     lights.iter().map(|light| light.lamp.light.into()).collect()
-}
-
-/// Filters that go by metres of depth along parallel light serve suns only.
-///
-/// # Errors
-/// [`Failure::Input`] naming the filter and the light.
-pub fn check_filter(lights: &[NamedLight], filter: Filter) -> Result<()> {
-    let is_prefiltered = config_filter(filter).is_prefiltered();
-    let serves_suns_only = filter == Filter::Pcss || is_prefiltered;
-    let local = lights.iter().find(|light| serves_suns_only && light.lamp.light.position().is_some());
-    match (local, is_prefiltered && lights.len() > 1) {
-        (Some(light), _) => Err(Failure::input(format!(
-            "--filter {}: it goes by depth along parallel light, but --light {} is a spot or point light; \
-             use hard, pcf2, pcf3, pcf5, pcf7 or disc",
-            typed_name(filter),
-            light.name
-        ))),
-        (None, true) => Err(Failure::input(format!(
-            "--filter {}: it serves one sun, but --light names {} lights; name one, or use a filter that compares depth",
-            typed_name(filter),
-            lights.len()
-        ))),
-        (None, false) => Ok(()),
-    }
-}
-
-/// Coordinates that vertices make are those of one sun.
-///
-/// # Errors
-/// [`Failure::Input`] naming both options.
-pub fn check_coordinates(lights: &[NamedLight], coordinates: Coordinates) -> Result<()> {
-    if coordinates != Coordinates::Split {
-        return Ok(());
-    }
-    match (lights.iter().find(|light| light.lamp.light.position().is_some()), lights.len()) {
-        (Some(light), _) => Err(Failure::input(format!(
-            "--coordinates split: --light {} is a spot or point light, the places of whose maps are quotients and cannot be \
-             interpolated; use --coordinates world, or a sun",
-            light.name
-        ))),
-        (None, 0 | 1) => Ok(()),
-        (None, count) => Err(Failure::input(format!(
-            "--coordinates split: it serves one sun, but --light names {count} lights; name one, or use --coordinates world"
-        ))),
-    }
 }
 
 /// The lights that a request asks for, one at least.
@@ -138,7 +92,8 @@ pub fn chosen(
     sun("invented", direction)
 }
 
-/// The lights that `--light` names: one by its name, whatever is in it; `all`; or several between commas.
+/// The lights that `--light` names: one by its name, whatever is in it; `all`; or several between
+/// commas.
 fn indices(wanted: &str, scene: &Scene) -> Result<Vec<usize>> {
     let names: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
     if wanted != "all" || names.contains(&wanted) {

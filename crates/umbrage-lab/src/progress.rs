@@ -5,7 +5,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// Steps of [`fraction`]'s bar; fine enough that it never seems to stand still.
 const FRACTION_STEPS: u64 = 1000;
 
-/// A bar on standard error that counts to `total`, hidden where standard error is no terminal or there is one step only.
+/// A bar on standard error that counts to `total`, hidden where standard error is no terminal or
+/// there is one step only.
 #[must_use]
 pub fn steps(total: u64, what: &'static str) -> ProgressBar {
     if total <= 1 {
@@ -14,7 +15,8 @@ pub fn steps(total: u64, what: &'static str) -> ProgressBar {
     styled(ProgressBar::new(total), "{msg} {wide_bar} {pos}/{len} {eta}").with_message(what)
 }
 
-/// A bar on standard error for a share of work in 0..=1, hidden where standard error is no terminal; see [`set_fraction`].
+/// A bar on standard error for a share of work in 0..=1, hidden where standard error is no
+/// terminal; see [`set_fraction`].
 #[must_use]
 pub fn fraction(what: &'static str) -> ProgressBar {
     styled(ProgressBar::new(FRACTION_STEPS), "{msg} {wide_bar} {percent:>3} % {eta}").with_message(what)

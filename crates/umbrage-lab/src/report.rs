@@ -1,4 +1,5 @@
-//! The report: what was drawn, with what, and what it cost. Field names are the contract of the command line.
+//! The report: what was drawn, with what, and what it cost. Field names are the contract of the
+//! command line.
 
 use serde::{Deserialize, Serialize};
 
@@ -38,12 +39,15 @@ pub struct Report {
     pub fit: String,
     /// `none`, `exact` or `approximate`.
     pub stabilize: String,
-    /// `planar` or `radial`: what `planes_m` and the splits' ends measure, view depth or distance to the eye.
+    /// `planar` or `radial`: what `planes_m` and the splits' ends measure, view depth or distance
+    /// to the eye.
     pub bands: String,
     /// Where planes stand: `uniform`, `log`, `practical`, `manual` or `fitted`.
     pub scheme: String,
     /// `none`, `psm`, `lispsm` or `tsm`: one for all splits, or one for each.
     pub warp: Vec<String>,
+    /// Every setting, under its key: what `--config` reads back.
+    pub config: umbrage::ShadowConfig,
     /// `C_0 ..= C_m`: view depths in metres.
     pub planes_m: Vec<f64>,
     /// How long it took.
@@ -172,7 +176,8 @@ pub struct SplitReport {
     pub near: f64,
     /// View depth where it ends, metres.
     pub far: f64,
-    /// The larger edge of a texel on the light's plane, metres; of a warped map in the middle of its receivers.
+    /// The larger edge of a texel on the light's plane, metres; of a warped map in the middle of
+    /// its receivers.
     pub texel_m: f64,
     /// Whether its map is warped; a warp that has nothing to gain leaves it plain.
     pub warped: bool,
@@ -208,7 +213,8 @@ pub struct LightReport {
     /// `C_0 ..= C_m` of its plan: view depths in metres.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub planes_m: Vec<f64>,
-    /// Its splits, nearest first; of a point light those of its face +X, then those of −X, +Y, −Y, +Z and −Z.
+    /// Its splits, nearest first; of a point light those of its face +X, then those of −X, +Y, −Y,
+    /// +Z and −Z.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub splits: Vec<SplitReport>,
 }
@@ -223,7 +229,8 @@ pub struct ProbeReport {
 /// JSON, indented, with a newline at its end.
 ///
 /// # Errors
-/// [`crate::failure::Failure::Other`] if a value cannot be written as JSON, which would be a mistake of ours.
+/// [`crate::failure::Failure::Other`] if a value cannot be written as JSON, which would be a
+/// mistake of ours.
 pub fn to_json(report: &impl Serialize) -> crate::failure::Result<Vec<u8>> {
     let mut json = serde_json::to_vec_pretty(report)
         .map_err(|error| crate::failure::Failure::other(format!("the report cannot be written as JSON: {error}")))?;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use umbrage::SteppedSun;
-use umbrage_scene::HeightMapOptions;
+use umbrage_scene::OpenOptions;
 
 use crate::failure::{Failure, Result};
 
@@ -24,8 +24,8 @@ pub const DEFAULT_SUN_FADE: u32 = 8;
 pub struct SceneRequest {
     /// A world's name or a file.
     pub scene: String,
-    /// How a height map is read.
-    pub height_map: HeightMapOptions,
+    /// How its file is read.
+    pub files: OpenOptions,
     /// The scene is moved by so many metres.
     pub move_scene: Option<DVec3>,
     /// Seconds into the animations.
@@ -100,7 +100,7 @@ impl SceneRequest {
     pub fn new(scene: impl Into<String>, size: [u32; 2]) -> Self {
         Self {
             scene: scene.into(),
-            height_map: HeightMapOptions::default(),
+            files: OpenOptions::default(),
             move_scene: None,
             time_s: 0.0,
             size,
@@ -114,8 +114,8 @@ impl SceneRequest {
         }
     }
 
-    /// Chooses the camera. One of the scene keeps its own near and far where the request has none; any other gets
-    /// [`DEFAULT_NEAR`] and [`DEFAULT_FAR`].
+    /// Chooses the camera. One of the scene keeps its own near and far where the request has none;
+    /// any other gets [`DEFAULT_NEAR`] and [`DEFAULT_FAR`].
     ///
     /// # Errors
     /// [`Failure::Input`] if near is not less than far.

@@ -1,4 +1,5 @@
-//! The scene of a request, opened and posed, with its views and its lights: what `render`, `probe` and `truth` have in common.
+//! The scene of a request, opened and posed, with its views and its lights: what `render`, `probe`
+//! and `truth` have in common.
 
 use glam::DQuat;
 use umbrage::{DirectionalLight, Frustum, Light, Projection, SunFade, View};
@@ -9,6 +10,7 @@ use crate::{
     choose::{named, several},
     failure::{Failure, Result},
     lights::{self, NamedLight},
+    notes,
     report::{CameraReport, ShotReport, SunShown},
     scene_request::{CameraChoice, DEFAULT_FAR, DEFAULT_FOV, DEFAULT_NEAR, SceneRequest},
 };
@@ -56,7 +58,8 @@ pub struct Shot {
     pub beside: Vec<(String, View)>,
     /// The first light in this frame.
     pub light: Light,
-    /// If it is a sun, the suns whose shadows are shown: the same, or one or two that follow it in steps.
+    /// If it is a sun, the suns whose shadows are shown: the same, or one or two that follow it in
+    /// steps.
     pub shown: Option<SunFade>,
 }
 
@@ -91,7 +94,7 @@ impl SceneSetup {
         Ok(setup)
     }
 
-    /// The same for those that show several cameras side by side.
+    /// Reads the files that the request names, for subcommands that show several cameras side by side.
     ///
     /// # Errors
     /// [`Failure::Input`] naming the file or option at fault.
@@ -100,7 +103,9 @@ impl SceneSetup {
             CameraChoice::Path { file, .. } => Some(CameraPath::load(file)?),
             _ => None,
         };
-        let scene = umbrage_scene::open(&request.scene, &request.height_map)?;
+        let scene = umbrage_scene::open(&request.scene, &request.files)?;
+        // At once, for they may say why what follows fails.
+        notes::say(&scene.notes);
         let scene = match request.move_scene {
             Some(by) => scene.moved(by),
             None => scene,
@@ -109,6 +114,7 @@ impl SceneSetup {
         let mut notes = scene.notes.clone();
         let frame_views = frame_views(request, &scene, &pose, path.as_ref(), &mut notes)?;
         let lights = lights::chosen(request, &scene, &pose, path.as_ref(), &mut notes)?;
+        notes::say(&notes);
         let shots = under_the_light(request, frame_views, &lights)?;
         Ok(Self::new(scene, pose, lights, shots, notes))
     }

@@ -1,7 +1,8 @@
-//! A device with a scene loaded onto it: what `render` and `probe` draw with, and what their reports say of it.
+//! A device with a scene loaded onto it: what `render` and `probe` draw with, and what their
+//! reports say of it.
 
-use umbrage::config::SUN_DEGREES;
-use umbrage::{ShadowPlan, View};
+use umbrage::config::Filter;
+use umbrage::{ShadowConfig, ShadowPlan, View};
 use umbrage_render::{Frame, FrameStats, Gpu, GpuOptions, Renderer, Samples, SplitStats};
 
 use crate::{
@@ -10,59 +11,61 @@ use crate::{
     report::{BesideReport, LightReport, Report, SplitReport, TimesMs},
     scene_request::SceneRequest,
     scene_setup::{SceneSetup, Shot, camera_report},
-    technique::{Filter, ShadowJob, typed_name},
+    technique::ShadowRequest,
 };
 
 /// A renderer set up as the options say; `render` and `probe` share it.
-pub struct Session<'a> {
+pub struct Session {
     /// Draws and probes.
     pub renderer: Renderer,
-    shadows: &'a ShadowJob,
+    shadows: ShadowRequest,
     adapter: String,
 }
 
-impl<'a> Session<'a> {
+impl Session {
     /// Opens the device and loads the scene onto it.
-    pub fn open(request: &SceneRequest, shadows: &'a ShadowJob, setup: &SceneSetup) -> Result<Self> {
-        lights::check_filter(&setup.lights, shadows.filter)?;
-        lights::check_coordinates(&setup.lights, shadows.coordinates)?;
+    pub fn open(request: &SceneRequest, shadows: &ShadowRequest, setup: &SceneSetup) -> Result<Self> {
+        let shadows = shadows.for_lights(&setup.lights)?;
         let gpu = Gpu::new(&GpuOptions::default())?;
-        let lights = lights::kinds(&setup.lights);
-        shadows.config(request.sun_angle).validate_for(&lights)?;
-        let settings = shadows.render_settings(request.size, Samples::default(), request.sun_angle, lights);
+        let settings = shadows.render_settings(request.size, Samples::default(), lights::kinds(&setup.lights));
         let renderer = Renderer::new(&gpu, &setup.scene, &settings)?;
         Ok(Self { renderer, shadows, adapter: adapter_description(&gpu) })
     }
 
     /// What the renderer is told about one view of a shot.
     pub fn frame<'s>(&self, setup: &'s SceneSetup, shot: &Shot, view: &'s View) -> Frame<'s> {
-        setup.frame(shot, view, self.shadows.shadows_on, self.shadows.tint)
+        setup.frame(shot, view, !self.shadows.options.shadows_off, self.shadows.options.tint)
     }
 
     /// What was done and what it cost.
     pub fn report(&self, request: &SceneRequest, setup: &SceneSetup, shot: &Shot, stats: &FrameStats) -> Report {
         let mut shot = setup.report(request, shot);
         shot.lights = light_reports(setup, stats);
+        let config = &self.shadows.config;
         Report {
             shot,
             adapter: self.adapter.clone(),
-            technique: typed_name(self.shadows.technique),
+            technique: self.shadows.word("technique"),
             generation: stats.generation.to_string(),
             storage: stats.storage.to_string(),
-            filter: typed_name(self.shadows.filter),
-            filter_width: self.shadows.filter_width,
-            sun_angle: (self.shadows.filter == Filter::Pcss).then(|| request.sun_angle.unwrap_or(SUN_DEGREES)),
-            transition: typed_name(self.shadows.transition),
-            bias: typed_name(self.shadows.bias),
-            translucent: typed_name(self.shadows.translucent),
-            contact_shadows: self.shadows.contact_shadows,
-            shadow_strength: self.shadows.shadow_strength,
-            shadow_colour: self.shadows.shadow_colour.to_array(),
-            fit: typed_name(self.shadows.fit),
-            bands: typed_name(self.shadows.bands),
-            scheme: typed_name(self.shadows.scheme),
-            stabilize: typed_name(self.shadows.stabilize),
-            warp: self.shadows.warps.iter().map(|&warp| typed_name(warp)).collect(),
+            filter: self.shadows.word("filter"),
+            filter_width: config.filter.width_m(),
+            sun_angle: match config.filter {
+                Filter::Pcss { sun_degrees, .. } => Some(sun_degrees),
+                _ => None,
+            },
+            transition: self.shadows.word("transition"),
+            bias: self.shadows.word("bias"),
+            translucent: self.shadows.word("translucent"),
+            contact_shadows: config.look.contact,
+            shadow_strength: config.look.strength,
+            shadow_colour: config.look.colour,
+            fit: self.shadows.word("fit"),
+            bands: config.selection.metric().word().to_owned(),
+            scheme: self.shadows.word("scheme"),
+            stabilize: self.shadows.word("stabilize"),
+            warp: warps(config),
+            config: config.clone(),
             planes_m: stats.plan.planes.clone(),
             times_ms: TimesMs { plan: stats.plan_ms, shadow: stats.shadow_ms, frame: stats.frame_ms },
             bytes: stats.bytes,
@@ -73,6 +76,16 @@ impl<'a> Session<'a> {
             probe: None,
             notes: setup.notes.iter().chain(&self.shadows.notes).chain(&stats.notes).cloned().collect(),
         }
+    }
+}
+
+/// The warp of all maps, or of each.
+#[must_use]
+pub fn warps(config: &ShadowConfig) -> Vec<String> {
+    let warps: Vec<String> = (0..config.splits()).map(|split| config.warp(split).word().to_owned()).collect();
+    match &warps[..] {
+        [first, rest @ ..] if rest.iter().all(|warp| warp == first) => vec![first.clone()],
+        _ => warps,
     }
 }
 

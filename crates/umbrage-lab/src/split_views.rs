@@ -1,6 +1,8 @@
-//! `--split-views`: the scene as each split's slice of the camera sees it, and as the light sees it through each split's map.
+//! `--split-views`: the scene as each split's slice of the camera sees it, and as the light sees it
+//! through each split's map.
 //!
-//! An OpenGL implementation of the GPU Gems chapter (\[PSSM-GL\]) shows the same of each of its splits.
+//! An OpenGL implementation of the GPU Gems chapter (\[PSSM-GL\]) shows the same of each of its
+//! splits.
 
 use glam::{DMat4, DVec2};
 use umbrage::{Frustum, Projection, Split, View};
@@ -11,13 +13,16 @@ use crate::{
     picture::png,
 };
 
-/// How far before a map's near plane the light's eye stands, metres: a camera's near plane lies before it.
+/// How far before a map's near plane the light's eye stands, metres: a camera's near plane lies
+/// before it.
 const STEP_BACK_M: f64 = 1.0;
 
-/// The pictures of one frame by name. `renderer` should draw nothing else: each slice is planned as a view of its own.
+/// The pictures of one frame by name. `renderer` should draw nothing else: each slice is planned as
+/// a view of its own.
 ///
 /// # Errors
-/// [`Failure::Input`] for a local light, whose maps lie in its perspective; what the renderer refuses.
+/// [`Failure::Input`] for a local light, whose maps lie in its perspective; what the renderer
+/// refuses.
 pub fn pictures(renderer: &mut Renderer, frame: &Frame<'_>, splits: &[Split]) -> Result<Vec<(String, Vec<u8>)>> {
     let wanted = Outputs { picture: true, ..Outputs::default() };
     let mut files = Vec::new();
@@ -49,8 +54,8 @@ fn slice(view: &View, split: &Split) -> Result<View> {
     Ok(view.with_frustum(Frustum { near, far: if far > near { far } else { near * 1.001 }, ..lens })?)
 }
 
-/// What the light sees of a plain map (of a warped one: of the plain map that it replaces), as much wider or higher as a picture of
-/// this aspect is.
+/// What the light sees of a plain map (of a warped one: of the plain map that it replaces), as much
+/// wider or higher as a picture of this aspect is.
 fn from_light(split: &Split, aspect: f64) -> Result<View> {
     let size = DVec2::splat(f64::from(split.size)) * split.texel_m;
     let middle = (split.min_texel + 0.5 * f64::from(split.size)) * split.texel_m;
@@ -94,7 +99,8 @@ mod tests {
             let plan = planner.plan(&view, &light, &world, &world).expect("valid").clone();
             for split in &plan.splits {
                 let seen = from_light(split, 4.0 / 3.0).expect("valid");
-                // A corner of the map lies on the picture's edge, and the light looks along its travel.
+                // A corner of the map lies on the picture's edge, and the light looks along its
+                // travel.
                 let texel = DVec2::ZERO + split.min_texel;
                 let corner = split.u_axis * (texel.x * split.texel_m.x) + split.v_axis * (texel.y * split.texel_m.y);
                 let at = seen.view_from_world_point(corner + split.depth_axis * split.depth_near);

@@ -179,7 +179,7 @@ impl SkinnedGeometry {
     }
 }
 
-/// The primitives of those meshes that skinned nodes show (others are empty): kept to lay out skinned vertices.
+/// The primitives of those meshes whose vertices a pose moves (others are empty): kept to lay out their vertices.
 pub(crate) struct SceneMeshes(Vec<Vec<Primitive>>);
 
 impl SceneMeshes {
@@ -187,10 +187,14 @@ impl SceneMeshes {
     pub fn of_scene(scene: &Scene) -> Self {
         let mut kept = vec![Vec::new(); scene.meshes.len()];
         for node in &scene.nodes {
-            if let (Some(mesh), Some(_)) = (node.mesh, node.skin)
+            if let Some(mesh) = node.mesh
                 && let Some(source) = scene.meshes.get(mesh)
+                && (node.skin.is_some() || source.is_morphed())
+                && kept[mesh].is_empty()
             {
-                kept[mesh].clone_from(&source.primitives);
+                // Their morph targets have done their part in the pose.
+                let laid_out = |primitive: &Primitive| Primitive { targets: Vec::new(), ..primitive.clone() };
+                kept[mesh] = source.primitives.iter().map(laid_out).collect();
             }
         }
         Self(kept)

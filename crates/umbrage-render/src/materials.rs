@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use umbrage_scene::{AlphaMode, Material, Scene, Texture, Wrap};
+use umbrage_scene::{AlphaMode, Material, Scene, Texture, TextureFilter, Wrap};
 use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
 
 use crate::mipmaps::{self, Alpha};
@@ -78,7 +78,8 @@ impl Materials {
                 bytes += size;
             }
         }
-        let white = Texture { width: 1, height: 1, rgba: vec![255; 4], wrap: [Wrap::Repeat; 2] };
+        let white =
+            Texture { width: 1, height: 1, rgba: vec![255; 4], wrap: [Wrap::Repeat; 2], filter: TextureFilter::Linear };
         let (white_view, _) = upload_texture(gpu, usize::MAX, &white, Alpha::Ignored)?;
         let list = scene
             .materials
@@ -161,21 +162,30 @@ fn gpu_material(
         Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
         Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
     });
-    let linear = wgpu::SamplerDescriptor {
+    // WebGPU has no anisotropy with a nearest filter.
+    let (mag_filter, anisotropy_clamp) = match texture.filter {
+        TextureFilter::Linear => (wgpu::FilterMode::Linear, 8),
+        TextureFilter::Nearest => (wgpu::FilterMode::Nearest, 1),
+    };
+    let both = wgpu::SamplerDescriptor {
         address_mode_u: address[0],
         address_mode_v: address[1],
-        mag_filter: wgpu::FilterMode::Linear,
+        mag_filter,
         min_filter: wgpu::FilterMode::Linear,
         ..Default::default()
     };
     let smooth = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("Materials::smooth_sampler"),
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        anisotropy_clamp: 8,
-        ..linear.clone()
+        anisotropy_clamp,
+        ..both.clone()
     });
-    let exact =
-        gpu.device.create_sampler(&wgpu::SamplerDescriptor { label: Some("Materials::exact_sampler"), ..linear });
+    // The decision of a mask is the same at every distance, so one filter serves both.
+    let exact = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("Materials::exact_sampler"),
+        min_filter: mag_filter,
+        ..both
+    });
     let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("Materials::bind_group"),
         layout,

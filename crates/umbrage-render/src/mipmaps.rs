@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     fn texture(width: u32, height: u32, rgba: Vec<u8>) -> Texture {
-        Texture { width, height, rgba, wrap: Default::default() }
+        Texture { width, height, rgba, wrap: Default::default(), filter: Default::default() }
     }
 
     #[test]

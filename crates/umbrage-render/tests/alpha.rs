@@ -6,7 +6,7 @@ use common::{Stage, gpu, ground, look, quad, scene, settings, sun};
 use glam::DVec3;
 use image::RgbaImage;
 use umbrage_render::{Outputs, RenderSettings, Samples};
-use umbrage_scene::{AlphaMode, Material, Primitive, Scene, Texture, Wrap};
+use umbrage_scene::{AlphaMode, Material, Primitive, Scene, Texture, TextureFilter, Wrap};
 
 /// Dark green leaves on a ground that is as dark and as green, round dots of texture among texels that are white where nobody sees them.
 fn leaves() -> Scene {
@@ -22,7 +22,13 @@ fn leaves() -> Scene {
         if is_leaf { [38, 80, 38, 255] } else { [255, 255, 255, 0] }
     };
     let rgba = (0..16).flat_map(|y| (0..16).flat_map(move |x| texel(x, y))).collect();
-    scene.textures.push(Texture { width: 16, height: 16, rgba, wrap: [Wrap::Repeat; 2] });
+    scene.textures.push(Texture {
+        width: 16,
+        height: 16,
+        rgba,
+        wrap: [Wrap::Repeat; 2],
+        filter: TextureFilter::Linear,
+    });
     scene
 }
 

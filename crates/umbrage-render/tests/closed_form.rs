@@ -5,7 +5,7 @@ mod common;
 use common::*;
 use glam::{DQuat, DVec2, DVec3, Vec3Swizzles as _};
 use umbrage_render::{Outputs, ProbePoint};
-use umbrage_scene::{AlphaMode, Material, Node, Primitive, Skin, Texture, Wrap};
+use umbrage_scene::{AlphaMode, Material, MorphTarget, Node, Primitive, Skin, Texture, TextureFilter, Wrap};
 
 /// Compares a mask with `occluded(point on the ground, towards the light, growth in metres)` on those pixels that show the
 /// ground at y = 0 and nothing before it (`covered(eye, ray)`), leaving out a band of `band` metres around shadow edges.
@@ -91,7 +91,13 @@ fn half_card(alpha: AlphaMode) -> umbrage_scene::Scene {
     let mut scene = scene(vec![ground(0.0, 30.0), card]);
     scene.materials.push(Material { alpha, base_color_texture: Some(0), double_sided: true, ..Default::default() });
     let row: Vec<u8> = (0..64_u8).flat_map(|x| [200, 80, 40, if x < 32 { 255 } else { 0 }]).collect();
-    scene.textures.push(Texture { width: 64, height: 1, rgba: row, wrap: [Wrap::Clamp; 2] });
+    scene.textures.push(Texture {
+        width: 64,
+        height: 1,
+        rgba: row,
+        wrap: [Wrap::Clamp; 2],
+        filter: TextureFilter::Linear,
+    });
     scene
 }
 
@@ -311,6 +317,42 @@ fn a_skinned_mesh_is_drawn_and_casts_where_its_joints_put_it() {
     let moved = stage.mask(&view, light);
     let differ = expected.pixels().zip(moved.pixels()).filter(|(a, b)| a != b).count();
     assert!(differ <= 10 && moved != found, "{differ} pixels differ");
+}
+
+#[test]
+fn a_morphed_mesh_is_drawn_and_casts_in_the_shape_that_its_weights_give_it() {
+    let Some(gpu) = gpu() else { return };
+    let view = look(DVec3::new(-9.0, 12.0, 16.0), DVec3::new(1.0, 0.0, -1.0));
+    let light = sun(DVec3::new(0.5, -0.8, 0.3));
+    // As it is, and mirrored: then the other side of each triangle is its front.
+    for scale in [DVec3::ONE, DVec3::new(-1.0, 1.0, 1.0)] {
+        let place = trs(DVec3::new(1.0, 2.5, -1.0), DQuat::from_rotation_y(0.6), scale);
+        let mut rigid = scene(vec![ground(0.0, 30.0), cuboid(DVec3::splat(-1.0), DVec3::splat(1.0))]);
+        rigid.nodes[1].local = place;
+        // Lower by 2 m, and two targets that bring it back.
+        let mut low = cuboid(DVec3::new(-1.0, -3.0, -1.0), DVec3::new(1.0, -1.0, 1.0));
+        let lift =
+            |height: f32| MorphTarget { positions: vec![[0.0, height, 0.0]; low.positions.len()], normals: Vec::new() };
+        low.targets = vec![lift(1.0), lift(6.0)];
+        let mut morphed = scene(vec![ground(0.0, 30.0), low]);
+        morphed.meshes[1].weights = vec![0.5, 0.25];
+        morphed.nodes[1].local = place;
+
+        let expected = Stage::new(&gpu, &rigid, &settings()).mask(&view, light);
+        let mut stage = Stage::new(&gpu, &morphed, &settings());
+        let found = stage.mask(&view, light);
+        let differ = expected.pixels().zip(found.pixels()).filter(|(a, b)| a != b).count();
+        assert!(differ <= 10, "{differ} pixels differ at {scale}");
+
+        // And with other weights, from the same renderer.
+        morphed.nodes[1].weights = vec![1.5, 0.25];
+        rigid.nodes[1].local.translation.y += 1.0;
+        stage.pose = morphed.pose(0.0).expect("a pose");
+        let expected = Stage::new(&gpu, &rigid, &settings()).mask(&view, light);
+        let moved = stage.mask(&view, light);
+        let differ = expected.pixels().zip(moved.pixels()).filter(|(a, b)| a != b).count();
+        assert!(differ <= 10 && moved != found, "{differ} pixels differ at {scale}");
+    }
 }
 
 #[test]

@@ -157,7 +157,8 @@ fn scenes_that_contradict_themselves_are_refused() {
     assert_eq!(refused(&|scene| scene.meshes[0].primitives[0].normals.clear()), "mesh");
     assert_eq!(refused(&|scene| scene.meshes[0].primitives[0].material = 7), "mesh");
     assert_eq!(refused(&|scene| scene.materials[0].base_color_texture = Some(3)), "material");
-    let short = Texture { width: 4, height: 4, rgba: vec![0; 63], wrap: Default::default() };
+    let short =
+        Texture { width: 4, height: 4, rgba: vec![0; 63], wrap: Default::default(), filter: Default::default() };
     assert_eq!(refused(&|scene| scene.textures.push(short.clone())), "texture");
 }
 

@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use common::{Stage, gpu, ground, quad, scene, settings, sun};
 use glam::{DQuat, DVec2, DVec3, IVec2, Vec2};
 use image::GrayImage;
@@ -23,7 +25,7 @@ fn panes(place: DVec3) -> Scene {
         let alpha = AlphaMode::Blend;
         scene.materials.push(Material { alpha, base_color, double_sided: true, ..Material::default() });
         scene.nodes.push(umbrage_scene::Node { mesh: Some(i + 1), ..Default::default() });
-        scene.meshes.push(umbrage_scene::Mesh { name: String::new(), primitives: vec![pane] });
+        scene.meshes.push(umbrage_scene::Mesh { primitives: vec![pane], ..Default::default() });
     }
     scene.moved(place)
 }
@@ -37,7 +39,7 @@ fn view(place: DVec3, frame: u32) -> View {
 }
 
 /// How a frame was planned, and its maps.
-type Frame = (ShadowPlan, Vec<GrayImage>);
+type Frame = (Arc<ShadowPlan>, Vec<GrayImage>);
 
 /// What a walk came to.
 #[derive(Debug, Default)]
@@ -66,7 +68,7 @@ fn walk(stability: Stability, place: DVec3, moved: Moved) -> Option<Tally> {
     for k in 0..FRAMES {
         let outputs = Outputs { maps: true, ..Outputs::default() };
         let rendered = stage.render(&view(place, k), sun(DVec3::new(0.3, -1.0, 0.2)), outputs);
-        let now = (ShadowPlan::clone(&rendered.stats.plan), rendered.maps);
+        let now = (Arc::clone(&rendered.stats.plan), rendered.maps);
         if let Some(before) = &before {
             (0..2).for_each(|split| compare(&mut tally, before, &now, split, moved));
         }

@@ -1,6 +1,7 @@
 //! What can be wrong with a scene and the files it comes from.
 
-use std::path::PathBuf;
+use std::fs::FileType;
+use std::path::{Path, PathBuf};
 
 /// [`std::result::Result`] with this crate's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -17,8 +18,28 @@ pub enum Error {
         /// What the system said.
         source: std::io::Error,
     },
+    /// Something that has a name like a file, but may never end or never begin.
+    #[error("{}: is {kind}, not a regular file; give a file", path.display())]
+    NotAFile {
+        /// Its name.
+        path: PathBuf,
+        /// What it is, as `a pipe`.
+        kind: &'static str,
+    },
+    /// A file that another file needs is missing or cannot be read.
+    #[error("{file}: {element}: its file {} cannot be read: {reason}", path.display())]
+    External {
+        /// The file that needs it.
+        file: String,
+        /// The buffer or image that names it.
+        element: String,
+        /// The file that is needed.
+        path: PathBuf,
+        /// What the system said.
+        reason: String,
+    },
     /// Neither the name of a world nor a file of a known kind.
-    #[error("{spec}: not a scene: give a .glb, a .gltf, a height map (.png) or one of the worlds {worlds}")]
+    #[error("{spec}: not a scene: give a .glb, a .gltf, a height map (.png, .tif, .asc) or one of the worlds {worlds}")]
     UnknownScene {
         /// What was asked for.
         spec: String,
@@ -44,7 +65,10 @@ pub enum Error {
         reason: String,
     },
     /// The file says that it cannot be shown without an extension which is not supported here.
-    #[error("{file}: requires the glTF extension {extension}, which is not supported; export the file without it")]
+    #[error(
+        "{file}: extensionsRequired: the glTF extension {extension} is not supported and may change shapes; export the \
+         file without it"
+    )]
     UnsupportedExtension {
         /// The file.
         file: String,
@@ -112,8 +136,10 @@ pub enum Error {
         count: usize,
     },
     /// A light that has no direction was asked for one.
-    #[error("light {light}: {reason}")]
+    #[error("scene {scene}: {light}: {reason}")]
     Light {
+        /// The scene's name.
+        scene: String,
         /// Index and name of the light.
         light: String,
         /// What is wrong and what to do.
@@ -129,6 +155,16 @@ pub enum Error {
         /// What is wrong with it.
         reason: String,
     },
+    /// The node of a camera places it in a way that no view can have.
+    #[error("scene {scene}: {camera}: {reason}")]
+    Camera {
+        /// The scene's name.
+        scene: String,
+        /// Index and name of the camera.
+        camera: String,
+        /// What is wrong and what to do.
+        reason: String,
+    },
     /// A view cannot be made of a camera.
     #[error(transparent)]
     View(#[from] umbrage::Error),
@@ -142,9 +178,35 @@ pub enum Error {
     },
 }
 
-/// Reads a whole file, naming it if that fails.
-pub(crate) fn read_file(path: &std::path::Path) -> Result<Vec<u8>> {
-    std::fs::read(path).map_err(|source| Error::Read { path: path.to_owned(), source })
+/// Reads a whole regular file, naming it if that fails.
+pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>> {
+    let failed = |source| Error::Read { path: path.to_owned(), source };
+    match irregular(&std::fs::metadata(path).map_err(failed)?.file_type()) {
+        Some(kind) => Err(Error::NotAFile { path: path.to_owned(), kind }),
+        None => std::fs::read(path).map_err(failed),
+    }
+}
+
+/// What something is that is no regular file.
+fn irregular(kind: &FileType) -> Option<&'static str> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt as _;
+        if kind.is_fifo() {
+            return Some("a pipe");
+        }
+        if kind.is_char_device() || kind.is_block_device() {
+            return Some("a device");
+        }
+        if kind.is_socket() {
+            return Some("a socket");
+        }
+    }
+    match (kind.is_dir(), kind.is_file()) {
+        (true, _) => Some("a folder"),
+        (_, true) => None,
+        _ => Some("something else"),
+    }
 }
 
 /// `kind[index]`, with the name behind it if there is one.

@@ -19,7 +19,7 @@ const LEAST_NEAR_SHARE: f64 = 1e-4;
 /// take precedence over the camera's own; without either, far is infinite for a perspective camera.
 ///
 /// # Errors
-/// [`Error::NoSuchElement`], or [`Error::View`] if the camera or the distances are not usable.
+/// [`Error::NoSuchElement`], [`Error::Camera`] if its node is flat, or [`Error::View`] if the distances are not usable.
 pub fn camera_view(
     scene: &Scene,
     pose: &Pose,
@@ -40,7 +40,14 @@ pub fn camera_view(
             Frustum::orthographic(2.0 * ymag * aspect, 2.0 * ymag, near.unwrap_or(znear), far.unwrap_or(zfar))?
         }
     };
-    Ok(View::from_world_from_view((*world_from_view).into(), frustum)?)
+    View::from_world_from_view((*world_from_view).into(), frustum).map_err(|error| Error::Camera {
+        scene: scene.name.clone(),
+        camera: element("cameras", index, &camera.name),
+        reason: format!(
+            "{error}; check the transform of {}, or choose another camera",
+            scene.node_element(camera.node)
+        ),
+    })
 }
 
 /// The way the light of a light of the scene travels along its axis, a unit vector in the world.
@@ -52,7 +59,7 @@ pub fn light_direction(scene: &Scene, pose: &Pose, index: usize) -> Result<DVec3
     let missing = || Error::NoSuchElement { kind: "light", index, count };
     let light = scene.lights.get(index).ok_or_else(missing)?;
     let world_from_light = pose.world_from_node.get(light.node).ok_or_else(missing)?;
-    let unusable = |reason: &str| Error::Light { light: element("lights", index, &light.name), reason: reason.into() };
+    let unusable = |reason: &str| light_error(scene, index, reason);
     if light.kind == LightKind::Point {
         return Err(unusable("shines to all sides; choose a directional light, or give the sun's direction"));
     }
@@ -87,7 +94,12 @@ pub fn scene_light(scene: &Scene, pose: &Pose, index: usize) -> Result<Light> {
             SpotLight::new(position, light_direction(scene, pose, index)?, outer, range).map(Light::from)
         }
     };
-    made.map_err(|error| Error::Light { light: element("lights", index, &light.name), reason: error.to_string() })
+    made.map_err(|error| light_error(scene, index, error.to_string()))
+}
+
+fn light_error(scene: &Scene, index: usize, reason: impl Into<String>) -> Error {
+    let name = scene.lights.get(index).map_or("", |light| light.name.as_str());
+    Error::Light { scene: scene.name.clone(), light: element("lights", index, name), reason: reason.into() }
 }
 
 /// A sun for scenes without one: from the south-west, 45° up. The way its light travels, a unit vector.

@@ -8,9 +8,9 @@
 //! * [`CameraPath`] walks through it, [`export_glb`] writes it down.
 //!
 //! ```
-//! use umbrage_scene::{HeightMapOptions, camera_view, export_glb, light_direction, open};
+//! use umbrage_scene::{OpenOptions, camera_view, export_glb, light_direction, open};
 //!
-//! let scene = open("chessboard", &HeightMapOptions::default())?;
+//! let scene = open("chessboard", &OpenOptions::default())?;
 //! let pose = scene.pose(2.5)?;
 //! let view = camera_view(&scene, &pose, 0, 800.0 / 600.0, None, None)?;
 //! let sun = light_direction(&scene, &pose, 0)?;
@@ -28,6 +28,7 @@ mod frame;
 mod gltf;
 mod height_map;
 mod model;
+mod morph;
 mod moved;
 mod open;
 mod picture;
@@ -40,8 +41,8 @@ pub use camera_path::CameraPath;
 pub use error::{Error, Result};
 pub use export::export_glb;
 pub use frame::{camera_view, invented_sun, invented_view, light_direction, scene_light};
-pub use gltf::{load_gltf, load_gltf_slice};
-pub use height_map::{HeightMapOptions, load_height_map};
+pub use gltf::{GltfOptions, load_gltf, load_gltf_slice};
+pub use height_map::{HeightEncoding, HeightMapOptions, load_height_map};
 pub use model::*;
-pub use open::open;
+pub use open::{OpenOptions, open};
 pub use pose::Poser;

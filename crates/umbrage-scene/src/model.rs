@@ -35,6 +35,16 @@ pub struct Mesh {
     pub name: String,
     /// One draw each.
     pub primitives: Vec<Primitive>,
+    /// How far each morph target of the primitives is applied where no node says otherwise; 0 where it is shorter.
+    pub weights: Vec<f32>,
+}
+
+impl Mesh {
+    /// Whether some primitive has morph targets, so that its vertices are posed.
+    #[must_use]
+    pub fn is_morphed(&self) -> bool {
+        self.primitives.iter().any(|primitive| !primitive.targets.is_empty())
+    }
 }
 
 /// An indexed triangle list with one material. Counter-clockwise triangles face the viewer.
@@ -56,6 +66,20 @@ pub struct Primitive {
     pub joints: Vec<[u16; 4]>,
     /// Their weights; sum 1.
     pub weights: Vec<[f32; 4]>,
+    /// Shapes that a weight each blends into the base shape; the primitives of a mesh share the weights.
+    pub targets: Vec<MorphTarget>,
+    /// Whether a posed shape takes its normals from its triangles, because the file has none. No two triangles then
+    /// share a vertex if there are morph targets.
+    pub flat: bool,
+}
+
+/// Differences to the base shape: vertex + weight · difference (glTF 2.0 specification, section 3.7.2.2).
+#[derive(Clone, Debug, Default)]
+pub struct MorphTarget {
+    /// Metres, one per vertex; empty if no vertex moves.
+    pub positions: Vec<[f32; 3]>,
+    /// Differences of normals, one per vertex; empty if no normal turns.
+    pub normals: Vec<[f32; 3]>,
 }
 
 /// How alpha is used.
@@ -114,6 +138,16 @@ pub enum Wrap {
     Mirror,
 }
 
+/// What lies between texels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum TextureFilter {
+    /// A bilinear mix of the four nearest.
+    #[default]
+    Linear,
+    /// The nearest texel.
+    Nearest,
+}
+
 /// A picture, 8-bit sRGB colour and linear alpha, row 0 on top.
 #[derive(Clone, Debug)]
 pub struct Texture {
@@ -125,6 +159,8 @@ pub struct Texture {
     pub rgba: Vec<u8>,
     /// Addressing of u and v.
     pub wrap: [Wrap; 2],
+    /// What magnified texels look like, for colour and for alpha masks.
+    pub filter: TextureFilter,
 }
 
 /// A place in the hierarchy.
@@ -142,6 +178,8 @@ pub struct Node {
     pub skin: Option<usize>,
     /// EXT_mesh_gpu_instancing: the mesh once per entry, relative to the node. Empty: once, at the node.
     pub instances: Vec<Trs>,
+    /// How far each morph target of the mesh is applied, instead of [`Mesh::weights`]; empty: as the mesh says.
+    pub weights: Vec<f32>,
     /// Whether the mesh throws shadows (`extras.castShadow`, true unless it says false).
     pub cast_shadow: bool,
 }
@@ -155,6 +193,7 @@ impl Default for Node {
             mesh: None,
             skin: None,
             instances: Vec::new(),
+            weights: Vec::new(),
             cast_shadow: true,
         }
     }
@@ -276,6 +315,23 @@ pub enum Keys {
     Translation(Vec<[f32; 3]>),
     Rotation(Vec<[f32; 4]>),
     Scale(Vec<[f32; 3]>),
+    /// Weights of morph targets, `per_key` for each key or tangent.
+    Weights {
+        per_key: usize,
+        values: Vec<f32>,
+    },
+}
+
+impl Keys {
+    /// How many values there are: one per key, three for cubic splines.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Translation(keys) | Self::Scale(keys) => keys.len(),
+            Self::Rotation(keys) => keys.len(),
+            Self::Weights { per_key, values } => values.len().checked_div(*per_key).unwrap_or(0),
+        }
+    }
 }
 
 /// Between keys.
@@ -295,7 +351,7 @@ pub struct Pose {
     pub objects: Vec<Object>,
     /// World transform of every node.
     pub world_from_node: Vec<DAffine3>,
-    /// Vertices of skinned objects, see [`Object::skinned`].
+    /// Vertices of skinned and morphed objects, see [`Object::skinned`].
     pub skinned: Vec<SkinnedMesh>,
     /// Around all objects; `None` if there are none.
     pub bounds: Option<Aabb>,
@@ -310,9 +366,9 @@ pub struct Object {
     pub instance: Option<u32>,
     /// Index into [`Scene::meshes`].
     pub mesh: usize,
-    /// Places the mesh; for skinned objects the translation to [`SkinnedMesh::origin`], their vertices being posed already.
+    /// Places the vertices: those of the mesh, or those of [`Object::skinned`].
     pub world_from_local: DAffine3,
-    /// Index into [`Pose::skinned`].
+    /// Index into [`Pose::skinned`], whose vertices take the place of the mesh's; instances share an entry.
     pub skinned: Option<usize>,
     /// Exact world bounds of the vertices.
     pub bounds: Aabb,
@@ -320,12 +376,12 @@ pub struct Object {
     pub casts: bool,
 }
 
-/// Vertices of a skinned mesh at one moment, one entry per primitive of the mesh.
+/// Vertices of a skinned or morphed mesh at one moment, one entry per primitive of the mesh.
 #[derive(Clone, Debug, Default)]
 pub struct SkinnedMesh {
-    /// The world point that the positions are relative to.
+    /// The world point that skinned positions are relative to; zero where a node places what is only morphed.
     pub origin: DVec3,
-    /// Positions relative to `origin`, in metres, per primitive.
+    /// Positions in metres, per primitive, in the space that [`Object::world_from_local`] places.
     pub positions: Vec<Vec<[f32; 3]>>,
     /// Unit normals, per primitive.
     pub normals: Vec<Vec<[f32; 3]>>,

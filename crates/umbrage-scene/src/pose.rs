@@ -1,8 +1,9 @@
-//! A scene at one moment: animation, hierarchy, skinning, bounds.
+//! A scene at one moment: animation, hierarchy, morph targets, skinning, bounds.
 
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use umbrage::Aabb;
 
+use crate::morph::morphed;
 use crate::{AlphaMode, Error, Mesh, Object, Pose, Result, Scene, SkinnedMesh, Trs};
 
 /// Poses one scene again and again. What stands still is worked out once.
@@ -13,9 +14,11 @@ pub struct Poser<'s> {
     local_bounds: Vec<Aabb>,
     /// Whether some primitive of each mesh throws shadows.
     mesh_casts: Vec<bool>,
+    /// Whether each mesh has morph targets.
+    mesh_morphs: Vec<bool>,
     /// Which clips play: no earlier one that plays moves a node of theirs.
     plays: Vec<bool>,
-    /// Transform and bounds of each object that is not skinned, from the last pose; in the order of objects.
+    /// Transform and bounds of each object whose vertices are the mesh's, from the last pose; in the order of objects.
     known_bounds: Vec<(DAffine3, Aabb)>,
 }
 
@@ -67,6 +70,7 @@ impl<'s> Poser<'s> {
                 .any(|p| scene.materials[p.material].alpha != AlphaMode::Blend && !p.indices.is_empty())
         };
         let mesh_casts = scene.meshes.iter().map(casts).collect();
+        let mesh_morphs = scene.meshes.iter().map(Mesh::is_morphed).collect();
         let mut is_moved = vec![false; scene.nodes.len()];
         let mut plays = Vec::with_capacity(scene.animations.len());
         for clip in &scene.animations {
@@ -76,7 +80,7 @@ impl<'s> Poser<'s> {
             }
             plays.push(is_free);
         }
-        Ok(Self { scene, local_bounds, mesh_casts, plays, known_bounds: Vec::new() })
+        Ok(Self { scene, local_bounds, mesh_casts, mesh_morphs, plays, known_bounds: Vec::new() })
     }
 
     /// The scene `time_s` seconds after its clips began; each clip that plays is looped on its own.
@@ -87,15 +91,16 @@ impl<'s> Poser<'s> {
         if !time_s.is_finite() {
             return Err(self.error("time", format!("{time_s} s is not a finite number of seconds")));
         }
-        let world_from_node = self.world_from_nodes(time_s)?;
+        let (world_from_node, weights) = self.nodes_at(time_s)?;
         let scene = self.scene;
         let mut pose = Pose { world_from_node, ..Pose::default() };
         let mut known = std::mem::take(&mut self.known_bounds).into_iter();
         for (index, node) in scene.nodes.iter().enumerate() {
             let Some(mesh) = node.mesh.filter(|&mesh| !self.local_bounds[mesh].is_empty()) else { continue };
             let casts = node.cast_shadow && self.mesh_casts[mesh];
+            let shape = self.mesh_morphs[mesh].then(|| morphed(&scene.meshes[mesh], &weights[index]));
             if let Some(skin) = node.skin {
-                let (skinned, bounds) = self.skin(&pose, mesh, skin, index)?;
+                let (skinned, bounds) = self.skin(&pose, shape.as_ref(), mesh, skin, index)?;
                 pose.objects.push(Object {
                     node: index,
                     instance: None,
@@ -117,25 +122,31 @@ impl<'s> Poser<'s> {
                     Some(_) => world_from_node * node_from_local.to_affine(),
                     None => world_from_node,
                 };
-                let bounds = match known.next() {
-                    Some((transform, bounds)) if transform == world_from_local => bounds,
-                    _ => world_bounds(&scene.meshes[mesh], self.local_bounds[mesh], &world_from_local),
+                let bounds = match &shape {
+                    Some(shape) => shape_bounds(&scene.meshes[mesh], shape, &world_from_local),
+                    None => match known.next() {
+                        Some((transform, bounds)) if transform == world_from_local => bounds,
+                        _ => world_bounds(&scene.meshes[mesh], self.local_bounds[mesh], &world_from_local),
+                    },
                 };
                 if !bounds.is_valid() {
                     let reason = format!("its mesh has no finite bounds in the world (instance {instance:?})");
                     return Err(self.error(scene.node_element(index), reason));
                 }
-                self.known_bounds.push((world_from_local, bounds));
+                if shape.is_none() {
+                    self.known_bounds.push((world_from_local, bounds));
+                }
                 pose.objects.push(Object {
                     node: index,
                     instance,
                     mesh,
                     world_from_local,
-                    skinned: None,
+                    skinned: shape.as_ref().map(|_| pose.skinned.len()),
                     bounds,
                     casts,
                 });
             }
+            pose.skinned.extend(shape);
         }
         pose.bounds = pose.objects.iter().map(|object| object.bounds).reduce(Aabb::union);
         Ok(pose)
@@ -145,12 +156,23 @@ impl<'s> Poser<'s> {
         Error::Pose { scene: self.scene.name.clone(), element: element.into(), reason: reason.into() }
     }
 
-    fn world_from_nodes(&self, time_s: f64) -> Result<Vec<DAffine3>> {
+    /// World transform of every node, and the weights of the morph targets of those that have some.
+    fn nodes_at(&self, time_s: f64) -> Result<(Vec<DAffine3>, Vec<Vec<f64>>)> {
         let scene = self.scene;
         let mut local: Vec<Trs> = scene.nodes.iter().map(|node| node.local).collect();
+        let still = |node: &crate::Node| match node.mesh.filter(|&mesh| self.mesh_morphs[mesh]) {
+            Some(mesh) if node.weights.is_empty() => {
+                scene.meshes[mesh].weights.iter().copied().map(f64::from).collect()
+            }
+            Some(_) => node.weights.iter().copied().map(f64::from).collect(),
+            None => Vec::new(),
+        };
+        let mut weights: Vec<Vec<f64>> = scene.nodes.iter().map(still).collect();
         for (clip, _) in scene.animations.iter().zip(&self.plays).filter(|(_, plays)| **plays) {
             let time = if clip.duration > 0.0 { time_s.rem_euclid(clip.duration) } else { 0.0 };
-            clip.channels.iter().for_each(|channel| channel.apply(time, &mut local[channel.node]));
+            for channel in &clip.channels {
+                channel.apply(time, &mut local[channel.node], &mut weights[channel.node]);
+            }
         }
         let mut world_from_node: Vec<DAffine3> = Vec::with_capacity(local.len());
         for (index, (node, local)) in scene.nodes.iter().zip(&local).enumerate() {
@@ -165,12 +187,20 @@ impl<'s> Poser<'s> {
             }
             world_from_node.push(world);
         }
-        Ok(world_from_node)
+        Ok((world_from_node, weights))
     }
 
     /// Linear blend skinning in `f64`. Source: glTF 2.0 specification, section 3.7.3.3: the node's own transform counts
     /// for nothing, each joint takes the vertex from mesh space through its bind pose into the world.
-    fn skin(&self, pose: &Pose, mesh: usize, skin: usize, node: usize) -> Result<(SkinnedMesh, Aabb)> {
+    /// Morph targets come before: `shape` is the mesh with them, if it has some.
+    fn skin(
+        &self,
+        pose: &Pose,
+        shape: Option<&SkinnedMesh>,
+        mesh: usize,
+        skin: usize,
+        node: usize,
+    ) -> Result<(SkinnedMesh, Aabb)> {
         let (mesh, skin) = (&self.scene.meshes[mesh], &self.scene.skins[skin]);
         let world_from_mesh: Vec<DMat4> = skin
             .joints
@@ -181,10 +211,14 @@ impl<'s> Poser<'s> {
         let mut bounds = Aabb::EMPTY;
         let mut posed: Vec<Vec<DVec3>> = Vec::with_capacity(mesh.primitives.len());
         let mut normals = Vec::with_capacity(mesh.primitives.len());
-        for primitive in &mesh.primitives {
-            let mut posed_here = Vec::with_capacity(primitive.positions.len());
-            let mut normals_here = Vec::with_capacity(primitive.positions.len());
-            for (vertex, position) in primitive.positions.iter().enumerate() {
+        for (k, primitive) in mesh.primitives.iter().enumerate() {
+            let (positions, still_normals) = match shape {
+                Some(shape) => (&shape.positions[k], &shape.normals[k]),
+                None => (&primitive.positions, &primitive.normals),
+            };
+            let mut posed_here = Vec::with_capacity(positions.len());
+            let mut normals_here = Vec::with_capacity(positions.len());
+            for (vertex, position) in positions.iter().enumerate() {
                 let (joints, weights) = (primitive.joints[vertex], primitive.weights[vertex]);
                 let blended = joints
                     .into_iter()
@@ -196,7 +230,7 @@ impl<'s> Poser<'s> {
                 let point = blended.transform_point3(DVec3::from(position.map(f64::from)));
                 bounds = bounds.including(point);
                 posed_here.push(point);
-                normals_here.push(posed_normal(&blended.matrix3, primitive.normals[vertex]));
+                normals_here.push(posed_normal(&blended.matrix3, still_normals[vertex]));
             }
             posed.push(posed_here);
             normals.push(normals_here);
@@ -226,6 +260,16 @@ fn vertex_bounds(mesh: &Mesh, world_from_local: &DAffine3) -> Aabb {
     let drawn = mesh.primitives.iter().filter(|primitive| !primitive.indices.is_empty());
     let positions = drawn.flat_map(|primitive| &primitive.positions);
     Aabb::from_points(positions.map(|p| world_from_local.transform_point3(DVec3::from(p.map(f64::from)))))
+}
+
+/// The box of all vertices of a morphed mesh under a transform; invalid if one is not finite.
+fn shape_bounds(mesh: &Mesh, shape: &SkinnedMesh, world_from_local: &DAffine3) -> Aabb {
+    let drawn = mesh.primitives.iter().zip(&shape.positions).filter(|(primitive, _)| !primitive.indices.is_empty());
+    let points = || drawn.clone().flat_map(|(_, positions)| positions).map(|p| DVec3::from(p.map(f64::from)));
+    if !points().all(|point| point.is_finite()) {
+        return Aabb::EMPTY;
+    }
+    Aabb::from_points(points().map(|point| world_from_local.transform_point3(point)))
 }
 
 /// The same, by way of the local box where that gives the same answer: when no axis turns into another.

@@ -44,13 +44,26 @@ impl Between {
 }
 
 impl Channel {
-    /// Puts the channel's value at `time` (seconds, within the clip) into `local`. Before the first key it is the first,
-    /// behind the last the last.
-    pub(crate) fn apply(&self, time: f64, local: &mut Trs) {
+    /// Puts the channel's value at `time` (seconds, within the clip) into `local` or `weights`. Before the first key it is
+    /// the first, behind the last the last.
+    pub(crate) fn apply(&self, time: f64, local: &mut Trs, weights: &mut Vec<f64>) {
         match &self.values {
             Keys::Translation(keys) => local.translation = self.vector(keys, time),
             Keys::Scale(keys) => local.scale = self.vector(keys, time),
             Keys::Rotation(keys) => local.rotation = self.rotation(keys, time),
+            Keys::Weights { per_key, values } => {
+                let between = Between::at(&self.times, time);
+                *weights =
+                    (0..*per_key).map(|k| self.weight(|i| f64::from(values[i * per_key + k]), &between)).collect();
+            }
+        }
+    }
+
+    fn weight(&self, key: impl Fn(usize) -> f64, between: &Between) -> f64 {
+        match self.interpolation {
+            Interpolation::Step => key(between.from),
+            Interpolation::Linear => key(between.from) + (key(between.to) - key(between.from)) * between.share,
+            Interpolation::CubicSpline => between.spline(|i| DVec4::splat(key(i))).x,
         }
     }
 

@@ -70,6 +70,11 @@ impl Scene {
                 return self.check(false, at, || reason.clone());
             }
         }
+        self.check(
+            mesh.weights.iter().all(|w| w.is_finite()),
+            || element("meshes", index, &mesh.name),
+            || "has a weight of a morph target that is not finite".into(),
+        )?;
         Ok(())
     }
 
@@ -84,6 +89,9 @@ impl Scene {
             })?;
             self.check(node.skin.is_none_or(|skin| skin < self.skins.len()), at, || {
                 format!("has the skin {:?}, but there are {}", node.skin, self.skins.len())
+            })?;
+            self.check(node.weights.iter().all(|w| w.is_finite()), at, || {
+                "has a weight of a morph target that is not finite".into()
             })?;
             if let (Some(mesh), Some(skin)) = (node.mesh, node.skin) {
                 let joints = self.skins[skin].joints.len();
@@ -105,16 +113,16 @@ impl Scene {
             for (c, channel) in animation.channels.iter().enumerate() {
                 let at = || format!("{}.channels[{c}]", element("animations", a, &animation.name));
                 self.check(channel.node < self.nodes.len(), at, || format!("moves node {}", channel.node))?;
-                let (count, finite) = match &channel.values {
-                    Keys::Translation(keys) | Keys::Scale(keys) => {
-                        (keys.len(), keys.iter().flatten().all(|x| x.is_finite()))
-                    }
-                    Keys::Rotation(keys) => (keys.len(), keys.iter().flatten().all(|x| x.is_finite())),
-                };
+                let (count, finite) = (channel.values.count(), are_finite(&channel.values));
                 let per_key = if channel.interpolation == Interpolation::CubicSpline { 3 } else { 1 };
                 self.check(!channel.times.is_empty() && count == channel.times.len() * per_key, at, || {
                     format!("has {} keys and {count} values", channel.times.len())
                 })?;
+                if let Keys::Weights { per_key, values } = &channel.values {
+                    self.check(values.len().is_multiple_of((*per_key).max(1)), at, || {
+                        format!("has {} weights for keys of {per_key} each", values.len())
+                    })?;
+                }
                 let rises = channel.times.windows(2).all(|t| t[0] <= t[1]);
                 self.check(finite && rises && channel.times.iter().all(|t| t.is_finite()), at, || {
                     "has keys that are not finite or do not rise".into()
@@ -128,6 +136,14 @@ impl Scene {
             )?;
         }
         Ok(())
+    }
+}
+
+fn are_finite(keys: &Keys) -> bool {
+    match keys {
+        Keys::Translation(keys) | Keys::Scale(keys) => keys.as_flattened().iter().all(|x| x.is_finite()),
+        Keys::Rotation(keys) => keys.as_flattened().iter().all(|x| x.is_finite()),
+        Keys::Weights { values, .. } => values.iter().all(|x| x.is_finite()),
     }
 }
 
@@ -162,6 +178,16 @@ fn fault(primitive: &Primitive, materials: usize) -> Option<String> {
     let finite_rest = primitive.uvs.iter().flatten().chain(primitive.colors.iter().flatten());
     if !(finite(&primitive.positions) && finite(&primitive.normals) && finite_rest.copied().all(f32::is_finite)) {
         return Some("has a position, normal, texture coordinate or colour that is not finite".into());
+    }
+    for (index, target) in primitive.targets.iter().enumerate() {
+        for (name, list) in [("positions", &target.positions), ("normals", &target.normals)] {
+            if !(list.is_empty() || list.len() == vertices) {
+                return Some(format!("has {vertices} positions, but targets[{index}] has {} {name}", list.len()));
+            }
+            if !finite(list) {
+                return Some(format!("has a difference that is not finite in the {name} of targets[{index}]"));
+            }
+        }
     }
     if !primitive.weights.iter().flatten().all(|w| w.is_finite() && *w >= 0.0) {
         return Some("has a weight that is negative or not finite".into());

@@ -5,14 +5,15 @@ use std::path::PathBuf;
 use glam::{DQuat, Mat4, dvec3};
 use umbrage_scene::procedural::World;
 use umbrage_scene::{
-    AlphaMode, Animation, Channel, Error, Interpolation, Keys, Lens, LightKind, Material, Mesh, Node, Primitive, Scene,
-    SceneCamera, SceneLight, Skin, Texture, Trs, Wrap, export_glb, load_gltf, load_gltf_slice,
+    AlphaMode, Animation, Channel, Error, GltfOptions, Interpolation, Keys, Lens, LightKind, Material, Mesh, Node,
+    Primitive, Scene, SceneCamera, SceneLight, Skin, Texture, TextureFilter, Trs, Wrap, export_glb, load_gltf,
+    load_gltf_slice,
 };
 
 #[track_caller]
 fn round(scene: &Scene) -> Scene {
     let bytes = export_glb(scene).unwrap_or_else(|error| panic!("{error}"));
-    load_gltf_slice("round.glb", &bytes).unwrap_or_else(|error| panic!("{error}"))
+    load_gltf_slice("round.glb", &bytes, &GltfOptions::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// That two scenes are the same, up to the `f32` of transforms.
@@ -89,7 +90,13 @@ fn rich() -> Scene {
         weights: vec![[0.25, 0.75, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]],
         ..primitive(1)
     };
-    let texture = |shade: u8, wrap| Texture { width: 2, height: 1, rgba: vec![shade, 2, 3, 4, 5, 6, 7, 8], wrap };
+    let texture = |shade: u8, wrap| Texture {
+        width: 2,
+        height: 1,
+        rgba: vec![shade, 2, 3, 4, 5, 6, 7, 8],
+        wrap,
+        filter: TextureFilter::Linear,
+    };
     let turned = Trs {
         translation: dvec3(10.0, -3.0, 0.5),
         rotation: DQuat::from_rotation_y(1.0),
@@ -98,8 +105,8 @@ fn rich() -> Scene {
     Scene {
         name: "rich".into(),
         meshes: vec![
-            Mesh { name: "plain".into(), primitives: vec![primitive(0), primitive(2)] },
-            Mesh { name: String::new(), primitives: vec![skinned] },
+            Mesh { name: "plain".into(), primitives: vec![primitive(0), primitive(2)], ..Mesh::default() },
+            Mesh { primitives: vec![skinned], ..Mesh::default() },
         ],
         materials: vec![
             Material {
@@ -287,7 +294,7 @@ fn numbers_that_gltf_cannot_hold_are_refused() {
 #[test]
 fn a_real_city_comes_back() {
     let city = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../assets/city_candela.glb");
-    let scene = load_gltf(&city).unwrap_or_else(|error| panic!("{error}"));
+    let scene = load_gltf(&city, &GltfOptions::default()).unwrap_or_else(|error| panic!("{error}"));
     assert_same(&scene, &round(&scene));
 }
 

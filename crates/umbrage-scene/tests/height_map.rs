@@ -6,7 +6,7 @@ use glam::{DVec3, dvec3};
 use image::{ImageBuffer, ImageFormat, Luma};
 use proptest::prelude::*;
 use serde_json::json;
-use umbrage_scene::{Error, HeightMapOptions, Scene, load_height_map, open};
+use umbrage_scene::{Error, HeightMapOptions, OpenOptions, Scene, load_height_map, open};
 
 /// A folder with a height map `land.png` and, if it is given, `land.json`.
 struct Land {
@@ -85,8 +85,12 @@ fn posts_stand_where_the_contract_says() {
 #[test]
 fn options_go_before_the_side_file() {
     let land = Land::new(&grey16(2, 2, |_, _| 8), Some(json!({ "cell_x_m": 2.0, "cell_y_m": 5.0, "offset": 100 })));
-    let options =
-        HeightMapOptions { metres_per_post: Some(3.0), metres_per_unit: Some(0.5), height_offset: Some(-7.0) };
+    let options = HeightMapOptions {
+        metres_per_post: Some(3.0),
+        metres_per_unit: Some(0.5),
+        height_offset: Some(-7.0),
+        ..metres(3.0)
+    };
     let scene = land.load(&options).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(triangles(&scene)[0], [dvec3(-1.5, -3.0, -1.5), dvec3(-1.5, -3.0, 1.5), dvec3(1.5, -3.0, 1.5)]);
     assert!(scene.notes.is_empty());
@@ -163,7 +167,9 @@ fn what_is_refused() {
     refused(&Land::new(&whole[..whole.len() / 2], None), &metres(1.0), "decoded");
     refused(&Land::new(&[], None), &metres(1.0), "picture");
     let mut color = std::io::Cursor::new(Vec::new());
-    image::RgbImage::new(4, 4).write_to(&mut color, ImageFormat::Png).expect("a small picture can be encoded");
+    image::RgbImage::from_fn(4, 4, |x, y| image::Rgb([(70 * x) as u8, 9, (70 * y) as u8]))
+        .write_to(&mut color, ImageFormat::Png)
+        .expect("a small picture can be encoded");
     refused(&Land::new(&color.into_inner(), None), &metres(1.0), "grey");
     assert!(matches!(load_height_map(Path::new("/nonexistent/land.png"), &none), Err(Error::Read { .. })));
 }
@@ -239,7 +245,7 @@ fn a_terrain_of_many_tiles_is_as_large_as_its_side_file_says() {
     let png = grey16(width, height, |i, j| ((i * 7919 + j * 104_729) % 1981) as u16);
     let side = json!({"width": width, "height": height, "cell_x_m": 30.0, "cell_y_m": 30.0, "height_m": "pixel + offset", "offset": 315});
     let land = Land::new(&png, Some(side));
-    let scene = open(&land.path.display().to_string(), &HeightMapOptions::default()).unwrap_or_else(|e| panic!("{e}"));
+    let scene = open(&land.path.display().to_string(), &OpenOptions::default()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(scene.placed_triangles(), 1_535_664);
     let bounds = scene.pose(0.0).unwrap_or_else(|error| panic!("{error}")).bounds.expect("there are triangles");
     let size = bounds.max - bounds.min;

@@ -149,7 +149,9 @@ fn mutated_files_cost_no_panic_and_little_memory() {
         let Ok(held) = outcome else { panic!("seed {seed}, file {number}: the loader panicked") };
         assert!(held < MOST_BYTES, "seed {seed}, file {number}: {held} bytes for a file of {}", bytes.len());
         most = most.max(held);
-        loaded += u64::from(umbrage_scene::load_gltf_slice("mutated.glb", &bytes).is_ok());
+        loaded += u64::from(
+            umbrage_scene::load_gltf_slice("mutated.glb", &bytes, &umbrage_scene::GltfOptions::default()).is_ok(),
+        );
     }
     eprintln!("{loaded} files loaded, {} MiB at most", most >> 20);
     assert!(loaded > 0, "mutations leave some files whole");

@@ -21,7 +21,7 @@ fn triangle(material: usize) -> Primitive {
 fn scene_of(nodes: Vec<Node>) -> Scene {
     Scene {
         name: "test".into(),
-        meshes: vec![Mesh { name: "triangle".into(), primitives: vec![triangle(0)] }],
+        meshes: vec![Mesh { name: "triangle".into(), primitives: vec![triangle(0)], ..Mesh::default() }],
         materials: vec![Material::default()],
         nodes,
         ..Scene::default()
@@ -181,7 +181,13 @@ fn inconsistent_scenes_are_refused() {
         ("joints and weights", |s| s.meshes[0].primitives[0].joints = vec![[0; 4]; 3]),
         ("texture", |s| s.materials[0].base_color_texture = Some(0)),
         ("pixels", |s| {
-            let texture = umbrage_scene::Texture { width: 2, height: 2, rgba: vec![0; 15], wrap: Default::default() };
+            let texture = umbrage_scene::Texture {
+                width: 2,
+                height: 2,
+                rgba: vec![0; 15],
+                wrap: Default::default(),
+                filter: Default::default(),
+            };
             s.textures.push(texture);
         }),
         ("mesh", |s| s.nodes[0].mesh = Some(1)),
@@ -417,6 +423,7 @@ fn a_moved_scene_is_the_same_elsewhere() {
     scene.meshes.push(Mesh {
         name: "skinned".into(),
         primitives: vec![Primitive { joints: vec![[0; 4]; 3], weights: vec![[1.0, 0.0, 0.0, 0.0]; 3], ..triangle(0) }],
+        ..Mesh::default()
     });
     scene.nodes.push(Node { mesh: Some(1), skin: Some(0), ..Node::default() });
     scene.skins.push(Skin { joints: vec![1], inverse_bind: vec![Mat4::IDENTITY] });

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use umbrage_scene::{AlphaMode, Scene, load_gltf};
+use umbrage_scene::{AlphaMode, GltfOptions, Scene, load_gltf};
 
 /// The city of `assets`.
 fn city() -> Scene {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../assets/city_candela.glb");
-    load_gltf(&path).unwrap_or_else(|error| panic!("{error}"))
+    load_gltf(&path, &GltfOptions::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[test]

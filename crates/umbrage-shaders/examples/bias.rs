@@ -1,5 +1,5 @@
-//! Draws the decision of `lib/bias.wesl`: what a texel is taken for, over its offset and the depth that it stores.
-//! `cargo run -p umbrage-shaders --example bias -- docs/images/bias.svg`
+//! Draws the decision of `lib/bias.wesl`: what a texel is taken for, over its offset and the depth
+//! that it stores. `cargo run -p umbrage-shaders --example bias -- docs/images/bias.svg`
 
 use std::fmt::Write as _;
 
@@ -24,7 +24,8 @@ const KEY: [(&str, &str); 5] = [
 /// What the texel at `offset` texels that stores `stored` is taken for.
 fn category(at: &Receiver, offset: f32, stored: f32) -> usize {
     let offset = [offset, 0.0];
-    // A surface whose next texels are so deep that it arrives behind any receiver: `meets_receiver` is then a question of steepness alone.
+    // A surface whose next texels are so deep that it arrives behind any receiver: `meets_receiver`
+    // is then a question of steepness alone.
     let continued = at.meets_receiver(offset, stored, [stored - 1e6; 2]);
     match () {
         () if at.lies_behind(offset, stored) => 0,
@@ -35,7 +36,8 @@ fn category(at: &Receiver, offset: f32, stored: f32) -> usize {
     }
 }
 
-/// One panel: a receiver whose normal and the light have this tangent between them, in a map of texels of 1 m; `span` metres of depth.
+/// One panel: a receiver whose normal and the light have this tangent between them, in a map of
+/// texels of 1 m; `span` metres of depth.
 fn panel(svg: &mut String, left: f32, tangent: f32, span: f32, title: &str) {
     let range_m = 1000.0;
     let receiver = Receiver {

@@ -70,10 +70,12 @@ pub struct Maps {
     pub frames: u32,
     /// Maps hold moments of depth, of one light.
     pub moments: Option<MomentMaps>,
-    /// Vertex shaders may make the shadow coordinates of every split: `umbrage_shadow_coordinates(position: vec3f)` returns an
-    /// `UmbrageShadowCoordinates` of four members `first` to `fourth`, each a `vec3f` to be interpolated; fragments ask
+    /// Vertex shaders may make the shadow coordinates of every split:
+    /// `umbrage_shadow_coordinates(position: vec3f)` returns an `UmbrageShadowCoordinates` of four
+    /// members `first` to `fourth`, each a `vec3f` to be interpolated; fragments ask
     /// `umbrage_shadow_from_coordinates(query, coordinates)`. For one sun without warps and at most
-    /// [`layout::MAX_COORDINATES`] splits. `umbrage_shadow(query)` makes those of the query's position.
+    /// [`layout::MAX_COORDINATES`] splits. `umbrage_shadow(query)` makes those of the query's
+    /// position.
     pub coordinates: bool,
 }
 
@@ -104,12 +106,15 @@ pub struct Casters {
     pub tiles: bool,
 }
 
-/// Text to put before a vertex shader that draws casters, and before everything else in its module. The vertex shader takes an
-/// `UmbrageInstance` and returns the `UmbrageCast` that `umbrage_cast(position: vec3f, instance: UmbrageInstance)` makes; `members` is
-/// WGSL for what else it has to return, for example `"@location(0) uv: vec2f,"`.
+/// Text to put before a vertex shader that draws casters, and before everything else in its module.
+/// The vertex shader takes an `UmbrageInstance` and returns the `UmbrageCast` that
+/// `umbrage_cast(position: vec3f, instance: UmbrageInstance)` makes; `members` is WGSL for what
+/// else it has to return, for example `"@location(0) uv: vec2f,"`.
 ///
-/// A vertex shader that takes `@builtin(instance_index)` itself calls `umbrage_cast_at(position, code: u32)`, which asks for no built-in;
-/// with [`Casters::views`] it is `umbrage_cast_at(position, code, view: u32)`, and `view` is the shader's own `@builtin(view_index)`.
+/// A vertex shader that takes `@builtin(instance_index)` itself calls `umbrage_cast_at(position,
+/// code: u32)`, which asks for no built-in; with [`Casters::views`] it is
+/// `umbrage_cast_at(position, code, view: u32)`, and `view` is the shader's own
+/// `@builtin(view_index)`.
 #[must_use]
 pub fn caster(group: u32, casters: Casters, members: &str) -> String {
     let Casters { views, tiles } = casters;

@@ -58,8 +58,9 @@ pub enum Projection {
     Any,
 }
 
-/// What a receiver's text is made for; everything else is not in it. Where a choice is `None` the text has all of them, and the
-/// [`layout::Frame`] says which is meant. What the text was made for and what the frame says have to agree: the text does not look.
+/// What a receiver's text is made for; everything else is not in it. Where a choice is `None` the
+/// text has all of them, and the [`layout::Frame`] says which is meant. What the text was made for
+/// and what the frame says have to agree: the text does not look.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ReceiverText {
     /// How maps are bound and read.
@@ -106,7 +107,8 @@ impl From<Maps> for ReceiverText {
 }
 
 impl ReceiverText {
-    /// Whether the text has what stands behind a condition of that name: the `CHOICES` of `build.rs`.
+    /// Whether the text has what stands behind a condition of that name: the `CHOICES` of
+    /// `build.rs`.
     fn has(&self, name: &str) -> bool {
         /// Whether a choice is this one, or open.
         fn may<T: Copy + PartialEq>(choice: Option<T>, these: &[T]) -> bool {
@@ -152,8 +154,9 @@ impl ReceiverText {
 /// | `umbrage_shadow(query: UmbrageQuery) -> UmbrageShadow` | the same of any light, with the split that answered |
 /// | `umbrage_shadow_from_coordinates(query, coordinates) -> UmbrageShadow` | the same from what vertices made ([`Maps::coordinates`]) |
 ///
-/// `umbrage_query(position, normal)` makes a query in any stage; `umbrage_fragment_query(position, normal, dx, dy, pixel)` makes one
-/// that knows its pixel, in uniform control flow. Set a query's `light`, `pixel` or `split` to ask something else.
+/// `umbrage_query(position, normal)` makes a query in any stage; `umbrage_fragment_query(position,
+/// normal, dx, dy, pixel)` makes one that knows its pixel, in uniform control flow. Set a query's
+/// `light`, `pixel` or `split` to ask something else.
 ///
 /// # Panics
 /// If there are fewer than 1 or more than [`layout::MAX_SPLITS`] separate maps.

@@ -1,7 +1,9 @@
-//! Makes a text of what is used: takes or drops what stands behind `@if(…)` (WESL's conditional translation), at run time.
+//! Makes a text of what is used: takes or drops what stands behind `@if(…)` (WESL's conditional
+//! translation), at run time.
 //!
-//! `build.rs` resolves what is known when this crate is built and keeps the conditions of a receiver's choices in the texts. What may
-//! follow such a condition here is a declaration, a member of a struct, a statement or a block.
+//! `build.rs` resolves what is known when this crate is built and keeps the conditions of a
+//! receiver's choices in the texts. What may follow such a condition here is a declaration, a
+//! member of a struct, a statement or a block.
 
 /// `text` with every `@if(condition)` resolved: `is_on` says which names are true.
 pub(crate) fn resolved(text: &str, is_on: impl Fn(&str) -> bool) -> String {
@@ -17,7 +19,8 @@ pub(crate) fn resolved(text: &str, is_on: impl Fn(&str) -> bool) -> String {
     result + rest
 }
 
-/// What stands between the parenthesis that `text` begins with and its partner, and what follows that.
+/// What stands between the parenthesis that `text` begins with and its partner, and what follows
+/// that.
 fn parenthesised(text: &str) -> (&str, &str) {
     let text = text.trim_start();
     let mut depth = 0usize;

@@ -156,6 +156,25 @@ fn every_way_to_read_and_to_draw_maps_is_valid_wgsl() {
     }
 }
 
+/// A vertex shader that takes its built-ins itself, as skinned and indirect draws do.
+#[test]
+fn casters_may_take_their_built_ins_themselves() {
+    for (views, tiles) in [(false, false), (true, false), (false, true), (true, true)] {
+        let (builtin, view) = if views { ("@builtin(view_index) view: u32,", ", view") } else { ("", "") };
+        let shader = format!(
+            "@vertex fn vertex(
+                @location(0) position: vec3f,
+                @location(1) code: u32,
+                @builtin(instance_index) own: u32,
+                {builtin}
+            ) -> UmbrageCast {{
+                return umbrage_cast_at(position + vec3f(f32(own)), code{view});
+            }}"
+        );
+        validated(&(umbrage_shaders::caster(0, Casters { views, tiles }, "") + &shader));
+    }
+}
+
 /// As many textures as there are maps, and no more: an app's own textures count against the same limit.
 #[test]
 fn separate_maps_bind_no_texture_too_many() {

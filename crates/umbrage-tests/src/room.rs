@@ -77,7 +77,7 @@ pub(crate) fn material(scene: &mut Scene, [r, g, b]: [f32; 3]) -> usize {
 
 pub(crate) fn place(scene: &mut Scene, name: &str, primitive: Primitive) {
     scene.nodes.push(Node { name: name.to_owned(), mesh: Some(scene.meshes.len()), ..Node::default() });
-    scene.meshes.push(Mesh { name: name.to_owned(), primitives: vec![primitive] });
+    scene.meshes.push(Mesh { name: name.to_owned(), primitives: vec![primitive], ..Mesh::default() });
 }
 
 /// A board on four legs.

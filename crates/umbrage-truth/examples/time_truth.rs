@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use umbrage::{Frustum, View};
-use umbrage_scene::{HeightMapOptions, invented_sun, invented_view, open};
+use umbrage_scene::{OpenOptions, invented_sun, invented_view, open};
 use umbrage_truth::{SunDisc, Truth};
 
 const SIZE: [u32; 2] = [800, 600];
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Ok(Some(DVec3::from(xyz)))
     };
     let spec = arguments.first().ok_or("name a scene")?;
-    let scene = open(spec, &HeightMapOptions::default())?;
+    let scene = open(spec, &OpenOptions::default())?;
     println!("{spec} loaded; peak memory so far {}", peak_memory());
 
     let start = Instant::now();

@@ -1,7 +1,7 @@
 //! Alpha-tested surfaces: base colour alpha × texture alpha × vertex alpha against the cutoff, as a GPU samples it at
 //! level 0, bilinear, without mip levels.
 
-use umbrage_scene::{AlphaMode, Material, Primitive, Scene, Wrap};
+use umbrage_scene::{AlphaMode, Material, Primitive, Scene, TextureFilter, Wrap};
 
 /// The alpha of one primitive, copied out of the scene so that the judge borrows nothing.
 #[derive(Debug)]
@@ -22,6 +22,7 @@ pub(crate) struct AlphaTest {
 pub(crate) struct AlphaPicture {
     size: [usize; 2],
     wrap: [Wrap; 2],
+    filter: TextureFilter,
     alpha: Vec<u8>,
 }
 
@@ -67,12 +68,18 @@ impl AlphaPicture {
         Self {
             size: [texture.width as usize, texture.height as usize],
             wrap: texture.wrap,
+            filter: texture.filter,
             alpha: texture.rgba.chunks_exact(4).map(|texel| texel[3]).collect(),
         }
     }
 
-    /// Bilinear alpha in `[0, 1]`; texel centres at half-integers, v down.
+    /// Alpha in `[0, 1]`, bilinear or of the nearest texel; texel centres at half-integers, v down.
     fn sample(&self, uv: [f64; 2]) -> f64 {
+        if self.filter == TextureFilter::Nearest {
+            let axis =
+                |i: usize| wrapped((uv[i] * self.size[i] as f64).floor() as i64, self.size[i] as i64, self.wrap[i]);
+            return f64::from(self.alpha[axis(1) * self.size[0] + axis(0)]) / 255.0;
+        }
         let axis = |i: usize| {
             let at = uv[i] * self.size[i] as f64 - 0.5;
             let low = at.floor();
@@ -104,7 +111,16 @@ mod tests {
     use super::*;
 
     fn picture(wrap: Wrap) -> AlphaPicture {
-        AlphaPicture { size: [2, 1], wrap: [wrap, wrap], alpha: vec![0, 255] }
+        AlphaPicture { size: [2, 1], wrap: [wrap, wrap], filter: TextureFilter::Linear, alpha: vec![0, 255] }
+    }
+
+    #[test]
+    fn the_nearest_texel_has_no_slope() {
+        let nearest = |wrap| AlphaPicture { filter: TextureFilter::Nearest, ..picture(wrap) };
+        assert_eq!([0.01, 0.49, 0.51, 0.99].map(|u| nearest(Wrap::Repeat).sample([u, 0.5])), [0.0, 0.0, 1.0, 1.0]);
+        assert_eq!([-0.01, 1.01].map(|u| nearest(Wrap::Repeat).sample([u, 0.5])), [1.0, 0.0]);
+        assert_eq!([-0.01, 1.01].map(|u| nearest(Wrap::Clamp).sample([u, 0.5])), [0.0, 1.0]);
+        assert_eq!([-0.01, 1.01].map(|u| nearest(Wrap::Mirror).sample([u, 0.5])), [0.0, 1.0]);
     }
 
     #[test]

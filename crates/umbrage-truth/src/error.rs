@@ -10,8 +10,12 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 #[non_exhaustive]
 pub enum Error {
     /// The scene or the pose contradicts itself, or holds numbers that no ray can meet.
-    #[error("object {object}, primitive {primitive}: {reason}")]
+    #[error("scene {scene}: {node}: object {object}, primitive {primitive}: {reason}")]
     InvalidGeometry {
+        /// The scene's name.
+        scene: String,
+        /// The node that shows it, as `nodes[3] (wheel)`.
+        node: String,
         /// Index into the pose's objects.
         object: usize,
         /// Index into the mesh's primitives.

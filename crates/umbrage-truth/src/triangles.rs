@@ -62,7 +62,7 @@ impl Triangles {
         let mut test_of_primitive = HashMap::new();
         let mut picture_of_texture = HashMap::new();
         for (index, object) in pose.objects.iter().enumerate() {
-            let bad = |primitive: usize, reason: String| Error::InvalidGeometry { object: index, primitive, reason };
+            let bad = |primitive: usize, reason: String| invalid(scene, pose, index, primitive, reason);
             let mesh = scene
                 .meshes
                 .get(object.mesh)
@@ -97,7 +97,7 @@ impl Triangles {
                     first: count as u32,
                     casts: object.casts,
                     single_sided: !material.double_sided,
-                    mirrored: object.skinned.is_none() && object.world_from_local.matrix3.determinant() < 0.0,
+                    mirrored: object.world_from_local.matrix3.determinant() < 0.0,
                     alpha,
                 });
                 count += primitive.indices.len() as u64 / 3;
@@ -125,14 +125,12 @@ impl Triangles {
             part.par_iter_mut().with_min_len(4096).enumerate().try_for_each(|(triangle, bounds)| {
                 let corners = placed.corners(triangle);
                 if !corners.iter().all(|corner| corner.abs().max_element() <= FARTHEST) {
-                    return Err(Error::InvalidGeometry {
-                        object: surface.object as usize,
-                        primitive: surface.primitive as usize,
-                        reason: format!(
-                            "triangle {triangle} has a corner that is not a number or more than {FARTHEST:e} m from the \
-                             camera; check its positions and its node's transform"
-                        ),
-                    });
+                    let reason = format!(
+                        "triangle {triangle} has a corner that is not a number or more than {FARTHEST:e} m from the camera; \
+                         check its positions and its node's transform"
+                    );
+                    let (object, primitive) = (surface.object as usize, surface.primitive as usize);
+                    return Err(invalid(scene, pose, object, primitive, reason));
                 }
                 let low = corners[0].min(corners[1]).min(corners[2]);
                 let high = corners[0].max(corners[1]).max(corners[2]);
@@ -167,25 +165,16 @@ impl Triangles {
     fn placed<'a>(&self, scene: &'a Scene, pose: &'a Pose, surface: &Surface) -> Placed<'a> {
         let object = &pose.objects[surface.object as usize];
         let primitive = &scene.meshes[surface.mesh as usize].primitives[surface.primitive as usize];
-        match object.skinned {
-            Some(skinned) => {
-                let skinned = &pose.skinned[skinned];
-                Placed {
-                    primitive,
-                    positions: &skinned.positions[surface.primitive as usize],
-                    relative_from_local: DAffine3::from_translation(skinned.origin - self.origin),
-                }
-            }
-            None => Placed {
-                primitive,
-                positions: &primitive.positions,
-                // Subtracting here and not from the finished points keeps the digits that a far origin would cost.
-                relative_from_local: DAffine3 {
-                    matrix3: object.world_from_local.matrix3,
-                    translation: object.world_from_local.translation - self.origin,
-                },
-            },
-        }
+        let positions = match object.skinned {
+            Some(skinned) => &pose.skinned[skinned].positions[surface.primitive as usize],
+            None => &primitive.positions,
+        };
+        // Subtracting here and not from the finished points keeps the digits that a far origin would cost.
+        let relative_from_local = DAffine3 {
+            matrix3: object.world_from_local.matrix3,
+            translation: object.world_from_local.translation - self.origin,
+        };
+        Placed { primitive, positions, relative_from_local }
     }
 }
 
@@ -203,6 +192,17 @@ impl Placed<'_> {
             self.relative_from_local.transform_point3(DVec3::new(x, y, z))
         })
     }
+}
+
+/// The error about a primitive of an object, with the node that shows it.
+fn invalid(scene: &Scene, pose: &Pose, object: usize, primitive: usize, reason: String) -> Error {
+    let node = pose.objects.get(object).map(|object| object.node);
+    let named = |index: usize| match scene.nodes.get(index) {
+        Some(node) if !node.name.is_empty() => format!("nodes[{index}] ({})", node.name),
+        _ => format!("nodes[{index}]"),
+    };
+    let node = node.map_or_else(|| "no node".into(), named);
+    Error::InvalidGeometry { scene: scene.name.clone(), node, object, primitive, reason }
 }
 
 /// What is wrong with a primitive, if anything.

@@ -139,15 +139,6 @@ pub enum Error {
         /// The sizes given at creation.
         maps: Vec<u32>,
     },
-    /// The plan makes a choice that the receivers' text was not made for.
-    #[error(
-        "the plan was made with another {setting} than the config of these maps; plan with \
-         ShadowConfig::planner_settings of that config"
-    )]
-    PlanOfOtherConfig {
-        /// Key of the setting, see [`umbrage::config::SETTINGS`].
-        setting: &'static str,
-    },
     /// A number of the plan cannot be used.
     #[error("split {split} of the plan: {field} is {value}, but it has to be {expected}")]
     InvalidSplit {
@@ -197,6 +188,19 @@ pub enum Error {
         plans: usize,
         /// How many lights the maps were made for.
         lights: usize,
+    },
+    /// A plan was made by a choice that the shaders of these maps were not made for.
+    #[error(
+        "the plan has {setting} {given}, but these maps and their shaders were made for {setting} {made_for}; plan with the config \
+         that the maps were made with"
+    )]
+    PlanOfOtherConfig {
+        /// Key of the setting.
+        setting: &'static str,
+        /// What the maps were made for.
+        made_for: String,
+        /// What the plan has.
+        given: String,
     },
     /// The maps of a light serve another kind of light.
     #[error(

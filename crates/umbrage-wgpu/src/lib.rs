@@ -61,8 +61,11 @@
 //! query.split = 2;    // one split alone, for points off screen
 //! ```
 //!
-//! `umbrage_fragment_query` belongs in uniform control flow. It knows the fragment's pixel, which dithered borders and turned discs need,
-//! and what the pixel covers, which filters of moments want ([`Filter::is_prefiltered`]); without it they look at their finest level, which shimmers far away. Everything else works in any control flow and in every stage.
+//! `umbrage_fragment_query` belongs in uniform control flow. It knows the fragment's pixel, which
+//! dithered borders and turned discs need, and what the pixel covers, which filters of moments want
+//! ([`Filter::is_prefiltered`], with [`ShadowMaps::prefilter`] between steps 4 and 5); without it they
+//! look at their finest level, which shimmers far away. Everything else works in any control flow
+//! and in every stage.
 //!
 //! Casters' and receivers' texts belong into two shader modules: both declare what they share.
 

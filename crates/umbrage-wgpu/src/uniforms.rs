@@ -84,10 +84,35 @@ pub(crate) fn frames(
                 false => layout::Frame::default(),
             });
         }
-        check_config(plan, config, slots)?;
+        check_choices(plan, config)?;
     }
     local::number(&mut frames, slots, plans);
     Ok(frames)
+}
+
+/// A sun's plan is made by the choices that receivers' text was made for: the text does not look.
+fn check_choices(plan: &ShadowPlan, config: &ShadowConfig) -> Result<()> {
+    if plan.light.is_some_and(|light| light.position().is_some()) {
+        return Ok(());
+    }
+    let mismatch = |setting, made_for: &str, given: &str| {
+        Err(Error::PlanOfOtherConfig { setting, made_for: made_for.to_owned(), given: given.to_owned() })
+    };
+    let by_map = config.selection == config::Selection::Map;
+    if by_map != (plan.selection == Selection::Map) {
+        let word = |by_map| if by_map { "map" } else { "depth" };
+        return mismatch("selection", word(by_map), word(!by_map));
+    }
+    let radial = config.selection == config::Selection::Interval(SplitMetric::Distance);
+    if radial != plan.radial_eye.is_some() {
+        let word = |radial| if radial { "radial" } else { "planar" };
+        return mismatch("bands", word(radial), word(!radial));
+    }
+    let has_warp = plan.splits.iter().any(|split| split.light_position.is_none() && split.warp.is_some());
+    if has_warp && config.first_warp().is_none() {
+        return mismatch("warp", "none", "a warped map");
+    }
+    Ok(())
 }
 
 /// One face of one light. `places` are those of its splits.
@@ -147,25 +172,6 @@ fn frame(
         uniform.is_linear = (config.depth_format.is_colour() && split.light_position.is_some()).into();
     }
     Ok(frame)
-}
-
-/// Checks that a plan makes the choices that the receivers' text was made for.
-fn check_config(plan: &ShadowPlan, config: &ShadowConfig, slots: &[Slot]) -> Result<()> {
-    let other = |setting| Err(Error::PlanOfOtherConfig { setting });
-    let is_sun = plan.light.is_none_or(|light| light.position().is_none());
-    if is_sun && slots.iter().all(|slot| !slot.kind.is_local()) {
-        if (plan.selection == Selection::Map) != (config.selection == config::Selection::Map) {
-            return other("selection");
-        }
-        if plan.radial_eye.is_some() != (config.selection == config::Selection::Interval(SplitMetric::Distance)) {
-            return other("bands");
-        }
-    }
-    let is_warped = |split: &umbrage::Split| split.warp.is_some() && split.light_position.is_none();
-    if config.first_warp().is_none() && plan.splits.iter().any(is_warped) && !config.filter.is_prefiltered() {
-        return other("warp");
-    }
-    Ok(())
 }
 
 /// Checks what of a plan belongs to no split.
@@ -454,7 +460,7 @@ mod tests {
         }
     }
 
-    /// \[PCSM\], Listings 4.1.4 and 4.1.5: map coordinates that a vertex shader hands on, and those that a fragment makes of an
+    /// Source 003, Listings 4.1.4 and 4.1.5: map coordinates that a vertex shader hands on, and those that a fragment makes of an
     /// interpolated position. The source calls the second wrong; perspective-correct interpolation is exact for both, as both are affine
     /// in the position, and in `f32` they differ by rounding alone.
     #[test]

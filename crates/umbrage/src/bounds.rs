@@ -2,6 +2,12 @@
 
 use glam::{DAffine3, DVec3};
 
+/// The largest coordinate and distance that is accepted, metres: a thousand million kilometres.
+pub(crate) const MOST_METRES: f64 = 1e12;
+
+/// The least distance that is accepted, metres.
+pub(crate) const LEAST_METRES: f64 = 1e-9;
+
 /// An axis-aligned box in world space, in metres.
 ///
 /// The bounds of a caster or a receiver. A box may be flat (a plane) or a single point; it may not be inverted,
@@ -54,6 +60,12 @@ impl Aabb {
         self.min.is_finite() && self.max.is_finite() && !self.is_empty()
     }
 
+    /// Whether the planner takes the box: [`Aabb::is_valid`], and no coordinate beyond ±10^12 m.
+    #[must_use]
+    pub fn is_accepted(self) -> bool {
+        self.is_valid() && self.min.abs().max(self.max.abs()).max_element() <= MOST_METRES
+    }
+
     /// The middle of the box.
     #[must_use]
     pub fn center(self) -> DVec3 {
@@ -82,6 +94,18 @@ impl Aabb {
     #[must_use]
     pub fn transformed(self, target_from_source: &DAffine3) -> Self {
         Self::from_points(self.corners().map(|corner| target_from_source.transform_point3(corner)))
+    }
+}
+
+impl From<[[f64; 3]; 2]> for Aabb {
+    fn from([min, max]: [[f64; 3]; 2]) -> Self {
+        Self::new(min.into(), max.into())
+    }
+}
+
+impl From<[[f32; 3]; 2]> for Aabb {
+    fn from(corners: [[f32; 3]; 2]) -> Self {
+        corners.map(|corner| corner.map(f64::from)).into()
     }
 }
 

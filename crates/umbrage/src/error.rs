@@ -52,10 +52,12 @@ pub enum Error {
         /// The key as given.
         key: String,
     },
-    /// The bounds of a caster or receiver are inverted, infinite or NaN.
-    #[error("{list}[{index}] has no valid bounds ({min} to {max}); give finite corners with min <= max")]
+    /// The bounds of a caster or receiver are inverted, NaN or beyond 10^12 m.
+    #[error(
+        "{list}[{index}] has no valid bounds ({min} to {max}); give finite corners with min <= max, within ±10^12 m"
+    )]
     InvalidBounds {
-        /// `casters` or `receivers`.
+        /// `casters`, `receivers` or `receiver_clusters`.
         list: &'static str,
         /// Index into that list.
         index: usize,

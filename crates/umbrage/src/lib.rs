@@ -49,7 +49,7 @@ pub use glam;
 
 pub use bias::{Bias, STEEPEST};
 pub use bounds::Aabb;
-pub use camera::{DepthConvention, Frustum, Projection, View};
+pub use camera::{DepthConvention, Frustum, Matrix, Projection, View};
 pub use config::ShadowConfig;
 pub use coverage::PlanCoverage;
 pub use error::{Error, Result};

@@ -2,10 +2,14 @@
 
 use glam::DVec3;
 
+use crate::bounds::MOST_METRES;
 use crate::{Error, Result};
 
 /// Share of a local light's range within which nothing casts, unless a light is told otherwise: a lamp's own glass.
 const NEAR_SHARE: f64 = 1.0 / 256.0;
+
+/// The least distance that a local light may shine, metres.
+const LEAST_RANGE: f64 = 1e-6;
 
 /// The widest angle, in radians, between a spot light's axis and the rim of its cone: 85°. Ours: a map of the whole cone then
 /// covers 2 tan 85° = 23 times the distance, and wider is what a point light is for.
@@ -56,7 +60,7 @@ impl SpotLight {
     ///
     /// # Errors
     /// [`Error::InvalidLight`] naming the parameter: a position or direction that is not finite, no direction, an angle that is not
-    /// in (0, 85°], a range that is not finite and greater than 0.
+    /// in (0, 85°], a range outside of 10^-6 to 10^12 m.
     pub fn new(position: DVec3, direction: DVec3, outer_angle: f64, range: f64) -> Result<Self> {
         if !(outer_angle > 0.0 && outer_angle <= WIDEST_CONE) {
             return Err(Error::light(
@@ -123,7 +127,7 @@ impl PointLight {
     /// A light at `position` (world, metres) that shines as far as `range` metres.
     ///
     /// # Errors
-    /// [`Error::InvalidLight`] naming the parameter: a position that is not finite, a range that is not finite and greater than 0.
+    /// [`Error::InvalidLight`] naming the parameter: a position beyond 10^12 m, a range outside of 10^-6 to 10^12 m.
     pub fn new(position: DVec3, range: f64) -> Result<Self> {
         let (position, range) = (place(position)?, reach(range)?);
         Ok(Self { position, range, near: range * NEAR_SHARE })
@@ -284,17 +288,17 @@ fn unit_direction(direction: DVec3) -> Result<DVec3> {
 }
 
 fn place(position: DVec3) -> Result<DVec3> {
-    if position.is_finite() {
+    if position.abs().cmple(DVec3::splat(MOST_METRES)).all() {
         return Ok(position);
     }
-    Err(Error::light("position", format!("{position} is not a place; give three finite numbers in metres")))
+    Err(Error::light("position", format!("{position} is not a place; give three numbers within ±10^12 m")))
 }
 
 fn reach(range: f64) -> Result<f64> {
-    if range > 0.0 && range.is_finite() {
+    if (LEAST_RANGE..=MOST_METRES).contains(&range) {
         return Ok(range);
     }
-    Err(Error::light("range", format!("{range} m; give a finite distance greater than 0, as far as the light shines")))
+    Err(Error::light("range", format!("{range} m; give a distance of 10^-6 to 10^12 m, as far as the light shines")))
 }
 
 fn distance_within(near: f64, range: f64) -> Result<f64> {

@@ -95,7 +95,8 @@ impl ShadowPlan {
     }
 
     /// The first split whose map holds every caster that can shade `point`, for points that the view does not show (points
-    /// that it shows use the split of their view depth). A split without casters answers "lit". `None`: no map answers.
+    /// that it shows use the split of their view depth). A split without casters answers "lit", but not with
+    /// [`Selection::Map`]. `None`: no map answers.
     #[must_use]
     pub fn covering_split(&self, point: DVec3) -> Option<usize> {
         let in_map = |split: &Split| split.contains(point, split.filter_reach);
@@ -111,11 +112,8 @@ impl ShadowPlan {
         let mut covering = self.splits.iter().enumerate().filter(|(i, _)| self.coverage.contains(*i, point));
         match self.selection {
             Selection::Depth => covering.find(|(_, split)| split.casters.is_empty() || in_map(split)),
-            // A map without casters is asked about nothing, and shadows that no map holds there are none.
-            Selection::Map => {
-                let lit = covering.clone().find(|(_, split)| split.casters.is_empty());
-                covering.find(|(_, split)| !split.casters.is_empty() && in_map(split)).or(lit)
-            }
+            // A map has all casters of what it contains, and nobody looked for those of points that no map contains.
+            Selection::Map => covering.find(|(_, split)| !split.casters.is_empty() && in_map(split)),
         }
         .map(|(i, _)| i)
     }
@@ -213,12 +211,13 @@ impl Split {
         self.warp.unwrap_or_else(|| self.plain_shadow_from_world())
     }
 
-    /// [`Split::shadow_from_world`] for an engine of the given convention: with OpenGL's z lies in [−1,1] (`z' = 2z − w`), which its
-    /// depth range puts back into [0,1], so that both store the same depth.
+    /// [`Split::shadow_from_world`] for an engine of the given convention. All draw the same map: where NDC's y points down
+    /// it is turned, and OpenGL's z lies in [−1,1] (`z' = 2z − w`), which its depth range puts back into [0,1].
     #[must_use]
     pub fn shadow_from_world_in(&self, convention: DepthConvention) -> DMat4 {
         let to_convention = match convention {
             DepthConvention::ZeroToOne => DMat4::IDENTITY,
+            DepthConvention::ZeroToOneYDown => DMat4::from_diagonal(DVec4::new(1.0, -1.0, 1.0, 1.0)),
             DepthConvention::MinusOneToOne => DMat4::from_cols(DVec4::X, DVec4::Y, 2.0 * DVec4::Z, DVec4::W - DVec4::Z),
         };
         to_convention * self.shadow_from_world()
@@ -229,12 +228,25 @@ impl Split {
     #[must_use]
     pub fn texture_from_world(&self, convention: DepthConvention) -> DMat4 {
         let up = match convention {
-            DepthConvention::ZeroToOne => -0.5,
+            DepthConvention::ZeroToOne | DepthConvention::ZeroToOneYDown => -0.5,
             DepthConvention::MinusOneToOne => 0.5,
         };
         let texture_from_shadow =
             DMat4::from_cols(0.5 * DVec4::X, up * DVec4::Y, DVec4::Z, DVec4::new(0.5, 0.5, 0.0, 1.0));
         texture_from_shadow * self.shadow_from_world()
+    }
+
+    /// [`Split::shadow_from_world_in`] for points relative to `origin`, a world point near the camera: entries stay small
+    /// enough for `f32` 100 km from the world's origin.
+    #[must_use]
+    pub fn shadow_from_relative(&self, origin: DVec3, convention: DepthConvention) -> DMat4 {
+        self.shadow_from_world_in(convention) * DMat4::from_translation(origin)
+    }
+
+    /// [`Split::texture_from_world`] for points relative to `origin`.
+    #[must_use]
+    pub fn texture_from_relative(&self, origin: DVec3, convention: DepthConvention) -> DMat4 {
+        self.texture_from_world(convention) * DMat4::from_translation(origin)
     }
 
     fn plain_shadow_from_world(&self) -> DMat4 {

@@ -1,5 +1,6 @@
 //! What the planner is told once: how many splits, where, how large and how they are fitted.
 
+use crate::bounds::{LEAST_METRES, MOST_METRES};
 use crate::{Bands, Error, Result, Warp};
 
 /// The most splits a light can have.
@@ -38,10 +39,14 @@ impl Default for SplitScheme {
 /// What the shadowed range is fitted to where [`ShadowSettings::range`] does not say it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RangeFit {
-    /// The camera's near and far, far capped by the receivers. With [`Stabilize::Exact`] far is capped by the distance of the farthest
-    /// receiver in any direction, which turning does not change, rounded up to steps of 9 % that move the last plane alone; the inner
-    /// planes are placed for the view depth that the first frame asks for, and follow where a view asks for √2 times as much. The range
-    /// ends at √2 times that depth at most.
+    /// The camera's near and far, far capped by the receivers and by 1.5 times the depth of the deepest shadow. An orthographic
+    /// camera's near moves up to the scene. Receivers far beyond all others that fill less than 0.01 % of the picture
+    /// together have no say: they are lit.
+    ///
+    /// With [`Stabilize::Exact`] far is capped by distances instead of depths, which turning does not change, rounded up to
+    /// steps of 9 % that move the last plane alone; the inner planes are placed for the view depth that the first frame asks
+    /// for, and follow where a view asks for √2 times as much. The range ends at √2 times that depth at most. All of it
+    /// recovers while the camera stands still.
     #[default]
     Camera,
     /// The view depths between which the view shows receivers: their boxes clipped to the frustum, as an empty foreground or a lens
@@ -118,7 +123,8 @@ impl Default for ExtentSteps {
     }
 }
 
-/// Everything that is settled before the first frame. Checked once, by [`crate::Planner::new`].
+/// Everything that is settled before the first frame. Checked once, by [`crate::Planner::new`]. Most of it comes from a
+/// [`crate::ShadowConfig`] (`ShadowSettings::from(&config)`).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShadowSettings {
     /// Edge of each split's map in texels; one entry per split, 1 to [`MAX_SPLITS`] of them.
@@ -158,7 +164,7 @@ pub struct ShadowSettings {
     /// Whether depth is not clipped (`DEPTH_CLIP_CONTROL`): casters before the near plane are then flattened onto it by the
     /// hardware and the near plane may lie at the receivers. Otherwise near stands before the first caster.
     pub depth_clamp: bool,
-    /// Pixels across the image, used to widen a split by one 2×2 pixel quad at its near side.
+    /// Pixels across the image for [`crate::Planner::plan`]; [`crate::PlanInputs::image_size`] is a frame's own.
     pub image_size: [u32; 2],
 }
 
@@ -236,12 +242,9 @@ impl ShadowSettings {
             return Err(Error::setting("filter_radius", format!("{} texels; give 0 to 64", self.filter_radius)));
         }
         if let Some(half_width) = self.filter_half_width_m
-            && !(half_width >= 0.0 && half_width.is_finite())
+            && !(0.0..=1e6).contains(&half_width)
         {
-            return Err(Error::setting(
-                "filter_half_width_m",
-                format!("{half_width} m; give a finite width, 0 or more"),
-            ));
+            return Err(Error::setting("filter_half_width_m", format!("{half_width} m; give 0 to 1000 km")));
         }
         if self.image_size.contains(&0) {
             return Err(Error::setting(
@@ -281,8 +284,8 @@ impl ShadowSettings {
                         format!("{} offsets for {} inner planes; give one, or one for each", delta.len(), m - 1),
                     ));
                 }
-                if let Some(bad) = delta.iter().find(|d| !d.is_finite()) {
-                    return Err(Error::setting("delta", format!("{bad} is not a finite number of metres")));
+                if let Some(bad) = delta.iter().find(|d| !(-MOST_METRES..=MOST_METRES).contains(*d)) {
+                    return Err(Error::setting("delta", format!("{bad} m; give metres within ±10^12")));
                 }
             }
             SplitScheme::Manual(planes) => {
@@ -369,13 +372,13 @@ impl ShadowSettings {
 }
 
 pub(crate) fn check_range(near: f64, far: f64) -> Result<()> {
-    if !(near > 0.0 && near.is_finite()) {
-        return Err(Error::setting("range", format!("near is {near}; give a finite view depth greater than 0")));
+    if !(LEAST_METRES..=MOST_METRES).contains(&near) {
+        return Err(Error::setting("range", format!("near is {near}; give a view depth of 10^-9 to 10^12 m, above 0")));
     }
-    if !(far > near && far.is_finite()) {
+    if !(far > near && far <= MOST_METRES) {
         return Err(Error::setting(
             "range",
-            format!("far is {far}; give a finite view depth greater than near ({near})"),
+            format!("far is {far}; give a view depth greater than near ({near}) and at most 10^12 m"),
         ));
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! Cameras: labelled points pushed through whole matrices, and matrices read back.
 
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat4, DVec3, DVec4, EulerRot};
 use proptest::prelude::*;
 use umbrage::{DepthConvention, Error, Frustum, Projection, View};
 
@@ -123,5 +123,142 @@ proptest! {
         prop_assert!(close(read.near, frustum.near, frustum.near * (1.0 + 1e-6 * ratio)), "near {} {}", read.near, frustum.near);
         let far_ok = if frustum.far / frustum.near > 1e5 { read.far > 0.5e5 * frustum.near } else { (read.far - frustum.far).abs() <= 1e-9 * ratio * frustum.far };
         prop_assert!(far_ok, "far {} {}", read.far, frustum.far);
+    }
+}
+
+/// A camera's matrices, as engines of every kind have them.
+#[derive(Clone, Copy, Debug)]
+struct Engine {
+    world_from_view: DMat4,
+    clip_from_view: DMat4,
+    convention: DepthConvention,
+}
+
+/// Off-axis, reversed, endless, orthographic, left-handed and mirrored cameras.
+fn engines() -> impl Strategy<Value = Engine> {
+    let sides = [0.1..1.5f64, 0.1..1.5, 0.1..1.5, 0.1..1.5];
+    let turn = [-3.0..3.0f64, -1.5..1.5, -3.0..3.0];
+    let at = [-50.0..50.0f64, -50.0..50.0, -50.0..50.0];
+    (sides, 0.1..2.0f64, prop_oneof![Just(f64::INFINITY), 20.0..500.0f64], turn, at, any::<[bool; 5]>()).prop_map(
+        |([l, r, b, t], near, far, [yaw, pitch, roll], at, [reversed, opengl, left_handed, mirrored, perspective])| {
+            let far = if perspective { far } else { far.min(500.0) };
+            let (low, high) = if opengl { (-1.0, 1.0) } else { (0.0, 1.0) };
+            let (at_near, at_far) = if reversed { (high, low) } else { (low, high) };
+            // z/w = a + b/d, or a d + b.
+            let (a, b_depth) = match (perspective, far.is_finite()) {
+                (true, true) => {
+                    let b_depth = (at_near - at_far) / (1.0 / near - 1.0 / far);
+                    (at_near - b_depth / near, b_depth)
+                }
+                (true, false) => (at_far, (at_near - at_far) * near),
+                (false, _) => {
+                    let a = (at_far - at_near) / (far - near);
+                    (a, at_near - a * near)
+                }
+            };
+            // Rows in a view space that looks down −Z; mirrored: x to the left.
+            let x = if mirrored { -1.0 } else { 1.0 };
+            let (sx, ox, sy, oy) = (2.0 / (l + r), (l - r) / (l + r), 2.0 / (b + t), (b - t) / (b + t));
+            let rows = if perspective {
+                [
+                    DVec4::new(x * sx, 0.0, -ox, 0.0),
+                    DVec4::new(0.0, sy, -oy, 0.0),
+                    DVec4::new(0.0, 0.0, -a, b_depth),
+                    DVec4::new(0.0, 0.0, -1.0, 0.0),
+                ]
+            } else {
+                [
+                    DVec4::new(x * sx, 0.0, 0.0, ox),
+                    DVec4::new(0.0, sy, 0.0, oy),
+                    DVec4::new(0.0, 0.0, -a, b_depth),
+                    DVec4::W,
+                ]
+            };
+            let clip_from_view = DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose();
+            let rotation = DMat4::from_euler(EulerRot::YXZ, yaw, pitch, roll);
+            let world_from_view = DMat4::from_translation(at.into()) * rotation;
+            let flip = |x: f64, z: f64| DMat4::from_diagonal(DVec4::new(x, 1.0, z, 1.0));
+            let side = if left_handed { flip(1.0, -1.0) } else { DMat4::IDENTITY };
+            // A mirrored transform undoes a mirrored projection, or not.
+            let other = if mirrored && reversed { flip(-1.0, 1.0) } else { DMat4::IDENTITY };
+            let convention = if opengl { DepthConvention::MinusOneToOne } else { DepthConvention::ZeroToOne };
+            Engine {
+                world_from_view: world_from_view * side * other,
+                clip_from_view: clip_from_view * side,
+                convention,
+            }
+        },
+    )
+}
+
+/// Whether a view shows a point, and whether that is beyond doubt.
+fn shows(view: &View, point: DVec3) -> bool {
+    let (at, lens) = (view.view_from_world_point(point), view.frustum());
+    let scale = lens.scale_at(-at.z);
+    (lens.near..=lens.far).contains(&-at.z)
+        && (lens.left * scale..=lens.right * scale).contains(&at.x)
+        && (lens.bottom * scale..=lens.top * scale).contains(&at.y)
+}
+
+proptest! {
+    #[test]
+    fn a_camera_shows_what_its_matrices_show(
+        engine in engines(), single in any::<bool>(), points in prop::collection::vec([-0.98..0.98f64, -0.98..0.98, 0.02..0.98f64], 8),
+    ) {
+        let clip_from_world = engine.clip_from_view * engine.world_from_view.inverse();
+        let perspective = engine.clip_from_view.row(3).w == 0.0;
+        let is_left_handed = engine.clip_from_view.row(3).z > 0.0;
+        let mut views = vec![if single {
+            View::from_clip_from_world(clip_from_world.as_mat4().to_cols_array(), engine.convention)
+        } else {
+            View::from_clip_from_world(clip_from_world.to_cols_array_2d(), engine.convention)
+        }];
+        if perspective {
+            views.push(View::from_matrices(engine.world_from_view, engine.clip_from_view, engine.convention));
+        }
+        for view in views {
+            let view = view?;
+            let rotation = view.world_from_view_rotation();
+            prop_assert!((rotation.determinant() - 1.0).abs() < 1e-6, "{rotation}");
+            for &[x, y, share] in &points {
+                for aside in [1.0, 1.05] {
+                    let low = if engine.convention == DepthConvention::MinusOneToOne { -1.0 } else { 0.0 };
+                    let ndc = DVec3::new(x, y, low + share * (1.0 - low));
+                    let ndc = if aside > 1.0 { ndc.with_x(1.05 * x.signum()) } else { ndc };
+                    let point = clip_from_world.inverse().project_point3(ndc);
+                    // What f32 leaves of an endless range is not worth asking.
+                    if point.is_finite() && point.length() < 1e4 {
+                        prop_assert_eq!(shows(&view, point), aside == 1.0, "{} of {:?} at {}", point, view, ndc);
+                    }
+                }
+            }
+        }
+        if is_left_handed && perspective {
+            let error = Frustum::from_projection_matrix(engine.clip_from_view, engine.convention).expect_err("left-handed");
+            prop_assert!(error.to_string().contains("left-handed"), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_projection_in_f32_is_read_with_its_rounding(fov in 0.1..2.5f32, aspect in 0.3..3.0f32, yaw in -3.0..3.0f32, noise in -1.0..1.0f32) {
+        // An engine that multiplies its projection by a jitter and a near-identity in f32.
+        let near_one = glam::Mat4::from_cols_array(&[
+            1.0, 1e-8 * noise, 0.0, 0.0, -1e-8, 1.0, 2e-8 * noise, 0.0, 0.0, 1e-8, 1.0, 1e-8 * noise, 0.0, 0.0, 1e-9, 1.0,
+        ]);
+        let lens = Frustum::perspective(f64::from(fov), f64::from(aspect), 0.1, f64::INFINITY)?;
+        let projection = lens.clip_from_view().as_mat4() * near_one;
+        let view = View::from_matrices(glam::Mat4::from_rotation_y(yaw), projection, DepthConvention::ZeroToOne)?;
+        let expected = Frustum::perspective(f64::from(fov), f64::from(aspect), 0.1, 1e3)?;
+        prop_assert!((view.frustum().top / expected.top - 1.0).abs() < 1e-5 && (view.frustum().right / expected.right - 1.0).abs() < 1e-5);
+        prop_assert!((view.frustum().near - 0.1).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn matrices_that_are_no_camera_are_refused() {
+    let skewed = DMat4::from_cols(DVec4::X, DVec4::new(0.7, 1.0, 0.0, 0.0), DVec4::Z, DVec4::W);
+    for matrix in [DMat4::ZERO, DMat4::from_diagonal(DVec4::new(1.0, 1.0, 0.0, 1.0)), skewed, DMat4::NAN] {
+        let error = View::from_clip_from_world(matrix, DepthConvention::ZeroToOne).expect_err("no camera");
+        assert!(error.to_string().contains("view-projection"), "{error}");
     }
 }

@@ -287,7 +287,7 @@ proptest! {
                     prop_assert!(s.contains(point, s.filter_reach), "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
                     let along = s.depth_axis.dot(point);
                     prop_assert!((s.receiver_depths.0..=s.receiver_depths.1).contains(&along), "{point} at {along} m along the light, outside {:?}", s.receiver_depths);
-                    let caster_begin = direction.dot(bounds.center()) - direction.abs().dot(bounds.half_extent());
+                    let caster_begin = direction.dot(point - direction * end);
                     prop_assert!(case.settings.depth_clamp || s.depth_near <= caster_begin, "the near plane cuts caster {index}");
                     if s.warp.is_some() {
                         let (at, caster) = (s.map_from_world(point), s.map_from_world(point - direction * end));
@@ -365,14 +365,12 @@ proptest! {
             });
             let asked = if in_band { 2 } else { 1 };
             for (index, bounds) in case.boxes.iter().enumerate() {
-                if index == owner || !shades(bounds, point, direction) {
-                    continue;
-                }
+                let Some(end) = shading_end(bounds, point, direction).filter(|_| index != owner) else { continue };
                 prop_assert!(!holders.is_empty(), "no map contains {point} at {depth} m, which {index} shades");
                 for &split in holders.iter().take(asked) {
                     let s = &plan.splits[split];
                     prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} of {holders:?} has no caster {index} for {point}");
-                    let begin = direction.dot(bounds.center()) - direction.abs().dot(bounds.half_extent());
+                    let begin = direction.dot(point - direction * end);
                     prop_assert!(case.settings.depth_clamp || s.depth_near <= begin, "the near plane cuts caster {index}");
                     prop_assert!(s.depth_near <= direction.dot(point), "the near plane lies behind {point}");
                 }

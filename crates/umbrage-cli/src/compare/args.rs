@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::args::Switch;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use umbrage_lab::{
@@ -10,7 +11,6 @@ use umbrage_lab::{
         shots::{SunSpec, sun_spec},
     },
     parse,
-    technique::args::Switch,
 };
 
 const TECHNIQUES_HELP: &str = "\

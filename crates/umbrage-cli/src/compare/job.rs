@@ -11,14 +11,13 @@ use umbrage_lab::{
     scene_request::{CameraChoice, SceneRequest},
     technique::{
         Technique,
-        args::Switch,
         text::{self, Rejected},
     },
 };
-use umbrage_scene::HeightMapOptions;
+use umbrage_scene::{HeightMapOptions, OpenOptions};
 
 use super::args::CompareArgs;
-use crate::scene_args::light_choice;
+use crate::{args::Switch, scene_args::light_choice};
 
 /// Pixels across and down where neither the options nor the preset say any.
 const DEFAULT_SIZE: [u32; 2] = [800, 600];
@@ -54,12 +53,12 @@ fn size(args: &CompareArgs) -> [u32; 2] {
 }
 
 fn techniques_of(args: &CompareArgs, notes: &mut Vec<String>) -> Result<Vec<Technique>> {
-    let (preset, size) = (args.preset, size(args));
+    let preset = args.preset;
     let mut with = text::parse_with(preset.map_or("", |preset| preset.with))?;
     let mut sources = Vec::new();
     for text in preset.map_or(&[][..], |preset| preset.techniques) {
         let source = text::parse(text)?;
-        match source.finish(&with, args.shadow_range, size) {
+        match source.finish(&with, args.shadow_range) {
             Ok(_) => sources.push(source),
             Err(Rejected::NotBuilt(failure)) => notes.push(format!("left out of the preset: {failure}")),
             Err(Rejected::Wrong(failure)) => return Err(failure),
@@ -79,7 +78,7 @@ fn techniques_of(args: &CompareArgs, notes: &mut Vec<String>) -> Result<Vec<Tech
             "no technique: give --techniques (for example pssm:4:1024,ssm:2048), --techniques-file or --preset",
         ));
     }
-    Ok(text::finish(&sources, &with, args.shadow_range, size)?)
+    Ok(text::finish(&sources, &with, args.shadow_range)?)
 }
 
 fn scenes_of(args: &CompareArgs) -> Result<Vec<String>> {
@@ -111,10 +110,14 @@ fn shot_request(args: &CompareArgs, scenes: usize) -> Result<ShotRequest> {
         _ => None,
     };
     let base = SceneRequest {
-        height_map: HeightMapOptions {
-            metres_per_post: args.metres_per_post,
-            metres_per_unit: args.metres_per_unit,
-            height_offset: args.height_offset,
+        files: OpenOptions {
+            height_map: HeightMapOptions {
+                metres_per_post: args.metres_per_post,
+                metres_per_unit: args.metres_per_unit,
+                height_offset: args.height_offset,
+                ..HeightMapOptions::default()
+            },
+            ..OpenOptions::default()
         },
         move_scene: args.move_scene,
         time_s: args.time,
@@ -176,7 +179,7 @@ fn stride_of(args: &CompareArgs, preset: Option<Stride>) -> Result<Option<Stride
 #[cfg(test)]
 mod tests {
     use clap::Parser;
-    use umbrage_lab::technique::args::{Filter, Stabilize};
+    use umbrage::config::{Filter, Stability};
 
     use umbrage_lab::compare::shots::SunSpec;
 
@@ -213,8 +216,8 @@ mod tests {
     fn what_was_typed_goes_before_the_preset() {
         let args = args("robot-war --preset ladder --with filter=pcf3 --suns 30 --near 2 --camera near,far -o x");
         let techniques = techniques_of(&args, &mut Vec::new()).expect("techniques");
-        assert!(techniques.iter().all(|technique| technique.job.filter == Filter::Pcf3));
-        assert!(techniques.iter().any(|technique| technique.job.stabilize == Stabilize::Exact));
+        assert!(techniques.iter().all(|technique| technique.shadows.config.filter == Filter::Pcf3 { width_m: None }));
+        assert!(techniques.iter().any(|technique| technique.shadows.config.stability == Stability::Exact));
         let shots = shot_request(&args, 1).expect("shots");
         assert_eq!((shots.base.near, shots.base.far), (Some(2.0), Some(500.0)));
         assert_eq!(shots.cameras, ["near", "far"].map(|name| CameraChoice::Named(name.into())));

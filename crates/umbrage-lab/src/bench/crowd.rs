@@ -21,7 +21,7 @@ pub fn crowd(count: u32) -> Result<(Scene, DVec3, DVec3)> {
     // The first robot's mesh: every object alike, as in the source.
     let robot = standing.into_iter().find(|&mesh| triangles(&scene.meshes[mesh]) > 1000).ok_or_else(missing)?;
     let edge = (GROUND_PER_OBJECT * f64::from(count)).sqrt();
-    let ground = Mesh { name: "ground".into(), primitives: vec![plane(edge)] };
+    let ground = Mesh { name: "ground".into(), primitives: vec![plane(edge)], ..Mesh::default() };
     scene.meshes.push(ground);
     let ground = scene.meshes.len() - 1;
     scene.nodes = vec![Node { name: "ground".into(), mesh: Some(ground), ..Node::default() }];

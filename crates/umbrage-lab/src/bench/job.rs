@@ -2,13 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::ValueEnum;
+use umbrage::config::Filter;
 use umbrage_render::Samples;
 
-use crate::{
-    scene_request::SceneRequest,
-    technique::{Filter, Technique, typed_name},
-};
+use crate::{scene_request::SceneRequest, technique::Technique};
 
 /// Techniques on scenes, and where the figures go.
 #[derive(Debug)]
@@ -40,12 +37,11 @@ pub struct Job {
 /// Four maps of 1024² under every filter, PCF 2×2 first, as text.
 #[must_use]
 pub fn filter_techniques() -> Vec<String> {
-    let all = Filter::value_variants().iter();
-    let rest = all.filter(|&&filter| filter != Filter::Pcf2).copied();
+    let rest = Filter::ALL.into_iter().filter(|filter| *filter != Filter::Pcf2);
     [Filter::Pcf2]
         .into_iter()
         .chain(rest)
-        .map(typed_name)
+        .map(|filter| filter.word())
         .map(|name| format!("pssm:4:1024:filter={name}:label={name}"))
         .collect()
 }

@@ -10,12 +10,7 @@ use super::{
     report::{Counts, Row},
     summary::Summary,
 };
-use crate::{
-    failure::Result,
-    lights,
-    scene_setup::SceneSetup,
-    technique::{Technique, args::config_filter},
-};
+use crate::{failure::Result, lights, scene_setup::SceneSetup, technique::Technique};
 
 /// One technique's measurements, round by round, in milliseconds.
 #[derive(Default)]
@@ -28,7 +23,8 @@ struct Rounds {
     wall_without: Vec<f64>,
 }
 
-/// Measures `techniques` on the first shot of the setup; the first technique is the baseline of all ratios.
+/// Measures `techniques` on the first shot of the setup; the first technique is the baseline of all
+/// ratios.
 pub fn measure(
     gpu: &Gpu,
     setup: &SceneSetup,
@@ -38,8 +34,8 @@ pub fn measure(
 ) -> Result<Vec<Row>> {
     let mut renderers = Vec::new();
     for technique in techniques {
-        let lights = lights::kinds(&setup.lights);
-        let settings = technique.job.render_settings(job.size, job.samples, None, lights);
+        let shadows = technique.shadows.for_lights(&setup.lights)?;
+        let settings = shadows.render_settings(job.size, job.samples, lights::kinds(&setup.lights));
         renderers.push(Renderer::new(gpu, &setup.scene, &settings)?);
     }
     let frame = |shadows_on| setup.frame(&setup.shots[0], &setup.shots[0].view, shadows_on, false);
@@ -105,7 +101,7 @@ fn row(technique: &Technique, measured: &Rounds, baseline: &Rounds, stats: &Fram
         frame_ratio: ratio(&measured.frame, &baseline.frame),
         shadow_ratio: ratio(&measured.shadow, &baseline.shadow),
         paper_ratio: None,
-        samples: config_filter(technique.job.filter).texels_read(),
+        samples: technique.shadows.config.filter.texels_read(),
         pairs: sum(|split| split.casters as u64),
         draws: u64::from(stats.shadow_draws),
         triangles: stats.shadow_triangles,

@@ -9,7 +9,8 @@ const TABLE_1: [(&str, [f64; 4]); 4] = [
     ("mining-terrain", [22.00, 15.60, 14.00, 13.20]),
 ];
 
-/// Frame time of `PSSM(splits; 512²)` over that of `SSM(1024²)` in the paper's Table 1, for 2 to 4 splits.
+/// Frame time of `PSSM(splits; 512²)` over that of `SSM(1024²)` in the paper's Table 1, for 2 to 4
+/// splits.
 #[must_use]
 pub fn table_1(world: &str, splits: usize) -> Option<f64> {
     let (_, fps) = TABLE_1.iter().find(|(name, _)| *name == world)?;

@@ -68,9 +68,9 @@ pub struct Row {
     pub frame_ms: Option<Summary>,
     /// The whole frame with everything the CPU does, wall clock.
     pub wall_ms: Option<Summary>,
-    /// The same frame without shadows, GPU timestamps.
+    /// The frame without shadows, GPU timestamps.
     pub frame_without_ms: Option<Summary>,
-    /// The same frame without shadows, wall clock.
+    /// The frame without shadows, wall clock.
     pub wall_without_ms: Option<Summary>,
     /// Frame with shadows minus frame without.
     pub cost_ms: Option<Summary>,
@@ -80,7 +80,8 @@ pub struct Row {
     pub shadow_ratio: Option<Summary>,
     /// Frame over frame in the paper's Table 1.
     pub paper_ratio: Option<f64>,
-    /// What a fragment of the picture reads of a map: texels, or filtered samples of filters that blur first.
+    /// What a fragment of the picture reads of a map: texels, or filtered samples of filters that
+    /// blur first.
     pub samples: u32,
     /// Caster-split pairs.
     pub pairs: u64,

@@ -23,8 +23,8 @@ use crate::{
     technique::text,
 };
 
-/// Figure 10-9's paths, four splits: filtered in the shader from one nearest texel's comparison, and compared and filtered in
-/// hardware; multipass, and everything in a single submission.
+/// Figure 10-9's paths, four splits: filtered in the shader from one nearest texel's comparison,
+/// and compared and filtered in hardware; multipass, and everything in a single submission.
 const CROWD: [&str; 5] = [
     "pssm:4:1024:filter=hard:label=per split, one texel",
     "pssm:4:1024:filter=pcf2:label=per split, hardware comparison",
@@ -55,7 +55,7 @@ pub fn run(job: &Job) -> Result<()> {
     if files.is_empty() {
         return Err(Failure::input("nothing to write: give -o HTML or --json JSON"));
     }
-    let crowd = text::parse_all(&CROWD.map(str::to_owned), "stabilize=none", job.size)?;
+    let crowd = text::parse_all(&CROWD.map(str::to_owned), "preset=papers:stabilize=none")?;
     let pairs = if job.paths {
         PAIRS.map(|pair| format!("pssm:4:512:generation={pair}:label={}", pair.replace(":storage=", ", "))).to_vec()
     } else {
@@ -63,7 +63,7 @@ pub fn run(job: &Job) -> Result<()> {
     };
     // Without a blend, which a reused map cannot have: all of them draw the same picture.
     let others = job.paths_with.split(':').filter(|setting| !setting.starts_with("blend="));
-    let pairs = text::parse_all(&pairs, &others.chain(["blend=0"]).collect::<Vec<_>>().join(":"), job.size)?;
+    let pairs = text::parse_all(&pairs, &others.chain(["blend=0"]).collect::<Vec<_>>().join(":"))?;
     let inputs: Vec<&Path> = job.scenes.iter().map(|scene| Path::new(&scene.scene)).collect();
     output::check(&files, &[], &inputs)?;
 
@@ -84,7 +84,7 @@ pub fn run(job: &Job) -> Result<()> {
         let setup = SceneSetup::open(request)?;
         let mut rows = measure(&gpu, &setup, &job.techniques, job, &bar)?;
         for (row, technique) in rows.iter_mut().zip(&job.techniques) {
-            let alike = technique.job.settings.map_sizes.iter().all(|&size| size == 512);
+            let alike = technique.shadows.config.map_sizes.iter().all(|&size| size == 512);
             row.paper_ratio = alike.then(|| papers::table_1(&request.scene, row.splits)).flatten();
         }
         report.scenes.push(SceneReport {

@@ -14,8 +14,8 @@ use crate::failure::Result;
 /// Where a view stands: scene, series, frame.
 pub type Place = [usize; 3];
 
-/// The views that the sheets show: one from each series, its middle one, or the frames of the only series; of too many, evenly
-/// chosen ones.
+/// The views that the sheets show: one from each series, its middle one, or the frames of the only
+/// series; of too many, evenly chosen ones.
 #[must_use]
 pub fn chosen(sets: &[SceneShots], most: usize) -> Vec<Place> {
     let series = |set: usize| sets[set].series.len();
@@ -49,7 +49,8 @@ pub struct Answer {
 /// How pixels are marked that a technique decided otherwise one frame ago.
 const FLIPPED: Rgb<u8> = Rgb([255, 216, 0]);
 
-/// What the truth's picture is put together from, beside the techniques' pictures: all that faces the sun lit, and nothing lit.
+/// What the truth's picture is put together from, beside the techniques' pictures: all that faces
+/// the sun lit, and nothing lit.
 pub struct Plain {
     /// Without shadows.
     pub lit: RgbaImage,
@@ -89,9 +90,10 @@ pub fn columns(judged: &ViewTruth, answers: &[Answer], plain: &Plain, cell: [u32
     Ok([pictures, errors].map(|cells| Column { title: String::new(), lines: Vec::new(), warning: None, cells }))
 }
 
-/// The picture with true shadows: without shadows where the sun shines; elsewhere as a technique has it that rightly finds shadow
-/// there, and if none does, without sun. Surfaces that hardly face the sun or turn away are as the best technique has them: how
-/// they are shaded is no matter of shadows.
+/// The picture with true shadows: without shadows where the sun shines; elsewhere as a technique
+/// has it that rightly finds shadow there, and if none does, without sun. Surfaces that hardly face
+/// the sun or turn away are as the best technique has them: how they are shaded is no matter of
+/// shadows.
 fn true_picture(judged: &ViewTruth, answers: &[Answer], plain: &Plain) -> RgbImage {
     let light = judged.truth.light();
     let errors = answers.iter().map(|answer| answer.scores.e.unwrap_or(1.0));

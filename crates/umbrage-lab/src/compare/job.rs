@@ -82,7 +82,8 @@ impl Outputs {
         let mut files: Vec<PathBuf> = self.files.iter().flatten().cloned().collect();
         let mut folders = Vec::new();
         match &self.folder {
-            // Into a folder that is there go single files, each of which may be in the way of something.
+            // Into a folder that is there go single files, each of which may be in the way of
+            // something.
             Some(folder) if folder.is_dir() => files.extend(IN_FOLDER.map(|name| folder.join(name))),
             Some(folder) => folders.push(folder.as_path()),
             None => {}

@@ -1,7 +1,8 @@
-//! What a comparison has finished, kept in a file while it runs: one that is cut off goes on from there.
+//! What a comparison has finished, kept in a file while it runs: one that is cut off goes on from
+//! there.
 //!
-//! The first line says what is compared, each further one holds a finished series: its views' scores, its flicker and its columns of the
-//! sheets. A line counts once its end is written.
+//! The first line says what is compared, each further one holds a finished series: its views'
+//! scores, its flicker and its columns of the sheets. A line counts once its end is written.
 
 use std::{
     fs::{self, File, OpenOptions},
@@ -48,10 +49,12 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Opens the journal at `path` or begins one. `of` says what is compared; a journal of anything else is refused.
+    /// Opens the journal at `path` or begins one. `of` says what is compared; a journal of anything
+    /// else is refused.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming the file: it cannot be read or written, is no journal, or is one of another comparison.
+    /// [`Failure::Input`] naming the file: it cannot be read or written, is no journal, or is one
+    /// of another comparison.
     pub fn open(path: &Path, of: &impl Serialize) -> Result<Self> {
         let failed = |error: io::Error| Failure::file("write", path, &error);
         let wrong = |what: String| Failure::input(format!("--resume {}: {what}", path.display()));
@@ -148,8 +151,8 @@ fn difference(old: &Value, new: &Value) -> Option<String> {
 struct Line {
     series: [usize; 2],
     views: Vec<ViewReport>,
-    /// Of each view and technique: pixels, falsely dark and falsely lit ones and missing answers of the seam and its two sides. The report
-    /// has their rates alone.
+    /// Of each view and technique: pixels, falsely dark and falsely lit ones and missing answers of
+    /// the seam and its two sides. The report has their rates alone.
     seams: Vec<Vec<[[usize; 4]; 3]>>,
     walk: Option<WalkReport>,
     columns: [Vec<ColumnLine>; 2],

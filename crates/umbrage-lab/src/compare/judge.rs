@@ -16,8 +16,8 @@ use umbrage_truth::{
 
 use crate::{failure::Result, sun_disc::sun_disc};
 
-/// Neighbouring pixels whose depths differ by this share, or whose normals' cosine is less than [`SAME_NORMAL`], do not lie on one
-/// surface.
+/// Neighbouring pixels whose depths differ by this share, or whose normals' cosine is less than
+/// [`SAME_NORMAL`], do not lie on one surface.
 const SAME_DEPTH: f64 = 0.05;
 /// See [`SAME_DEPTH`].
 const SAME_NORMAL: f64 = 0.95;
@@ -38,7 +38,8 @@ pub struct ViewTruth {
 }
 
 impl ViewTruth {
-    /// Traces a view. `range` is the shadowed range; without one it is the camera's, its far plane capped by the scene.
+    /// Traces a view. `range` is the shadowed range; without one it is the camera's, its far plane
+    /// capped by the scene.
     ///
     /// # Errors
     /// [`crate::failure::Failure::Input`] for a range that cannot be scored.
@@ -82,7 +83,8 @@ fn range_of(view: &View, pose: &Pose) -> (f64, f64) {
     (frustum.near, frustum.far.min(deepest))
 }
 
-/// What a technique scores in a view. Rates are shares in 0..=1; nothing is there where nothing could be counted.
+/// What a technique scores in a view. Rates are shares in 0..=1; nothing is there where nothing
+/// could be counted.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct Scores {
     /// E, the share of wrong decisions.
@@ -179,9 +181,11 @@ pub struct DepthScores {
     pub pixels: usize,
     /// E in it.
     pub e: Option<f64>,
-    /// Median of texels per pixel (along the worse axis) as the planner predicts it at the points that are seen.
+    /// Median of texels per pixel (along the worse axis) as the planner predicts it at the points
+    /// that are seen.
     pub predicted_texels_per_px: Option<f64>,
-    /// The same from where neighbouring pixels' points fall in the map.
+    /// Median of texels per pixel as measured: from where neighbouring pixels' points fall in the
+    /// map.
     pub measured_texels_per_px: Option<f64>,
 }
 
@@ -204,7 +208,8 @@ pub struct Cost {
     pub fragments: Option<u64>,
 }
 
-/// Scores a mask against the truth. Image metrics cost more than all the rest and are left out on demand.
+/// Scores a mask against the truth. Image metrics cost more than all the rest and are left out on
+/// demand.
 ///
 /// # Errors
 /// [`crate::failure::Failure`] if the mask has another size.
@@ -324,7 +329,8 @@ fn footprint(judged: &ViewTruth, plan: &ShadowPlan) -> Result<Option<TexelPixels
     }))
 }
 
-/// For each bin of depth the medians of texels per pixel, predicted and measured, over the same pixels.
+/// For each bin of depth the medians of texels per pixel, predicted and measured, over the same
+/// pixels.
 fn densities(judged: &ViewTruth, plan: &ShadowPlan) -> Vec<(Option<f64>, Option<f64>)> {
     const BINS: usize = 8;
     let domain = &judged.domain;
@@ -341,7 +347,8 @@ fn densities(judged: &ViewTruth, plan: &ShadowPlan) -> Vec<(Option<f64>, Option<
     bins.into_iter().map(|(predicted, measured)| (median(predicted), median(measured))).collect()
 }
 
-/// Texels per pixel along the worse axis: predicted, and measured between this pixel's point and those to its right and below.
+/// Texels per pixel along the worse axis: predicted, and measured between this pixel's point and
+/// those to its right and below.
 fn density_at(judged: &ViewTruth, plan: &ShadowPlan, pixel: usize, depth: f64) -> Option<(f64, f64)> {
     let [width, height] = judged.domain.size();
     let here = judged.hit(pixel)?;

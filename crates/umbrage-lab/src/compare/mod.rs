@@ -1,8 +1,9 @@
 //! Any techniques on any shots, judged by rays.
 //!
-//! [`job`] says what is compared, [`shots`] which views; [`run()`] draws every mask by the same path as `umbrage render --visibility`,
-//! scores it ([`judge`], and along walks [`stillness`]) and keeps the numbers ([`report`]) and the pictures (`columns`, [`sheet`]);
-//! `page` makes one HTML page of both.
+//! [`job`] says what is compared, [`shots`] which views; [`run()`] draws every mask by the same
+//! path as `umbrage render --visibility`, scores it ([`judge`], and along walks [`stillness`]) and
+//! keeps the numbers ([`report`]) and the pictures (`columns`, [`sheet`]); `page` makes one HTML
+//! page of both.
 
 mod columns;
 mod inset;

@@ -14,7 +14,8 @@ use crate::{
 /// Series with colours of their own; further ones are dashed.
 const COLOURS: usize = 8;
 
-/// The page's text. `labels` and `columns` are those of the contact sheet and of the sheet of errors.
+/// The page's text. `labels` and `columns` are those of the contact sheet and of the sheet of
+/// errors.
 ///
 /// # Errors
 /// [`Failure::Other`] if a chart or picture cannot be made, which would be a mistake of ours.

@@ -9,7 +9,8 @@ pub struct Preset {
     pub name: &'static str,
     /// What it is, in a few words.
     pub about: &'static str,
-    /// Techniques, in the grammar of [`crate::technique::text`]; kinds that do not exist yet are left out with a note.
+    /// Techniques, in the grammar of [`crate::technique::text`]; kinds that do not exist yet are
+    /// left out with a note.
     pub techniques: &'static [&'static str],
     /// Settings of all of them.
     pub with: &'static str,
@@ -31,13 +32,13 @@ pub struct Preset {
     pub tint: bool,
 }
 
-/// One map or slice, one nearest texel, one comparison, no blend, no fade, fitted to the slice alone: what the papers measured, and
-/// what the project's ladder was measured with.
-const PLAIN: &str = "filter=hard:blend=0:far-fade=0:fit=independent:stabilize=none";
+/// One map or slice, one nearest texel, one comparison, no blend, no fade, fitted to the slice
+/// alone: what the papers measured, and what the project's ladder was measured with.
+const PLAIN: &str = "preset=papers:filter=hard:blend=0:far-fade=0:fit=independent:stabilize=none";
 
-/// The same over the depths that are visible, for all techniques alike. Splits stand where the boxes in view promise the least error, and
-/// maps are chosen by what they contain.
-const VISIBLE: &str = "filter=hard:blend=0:far-fade=0:fit=independent:stabilize=none:range-fit=visible";
+/// [`PLAIN`] over the depths that are visible, for all techniques alike. Splits stand where the
+/// boxes in view promise the least error, and maps are chosen by what they contain.
+const VISIBLE: &str = "preset=papers:filter=hard:blend=0:far-fade=0:fit=independent:stabilize=none:range-fit=visible";
 
 const LADDER: Preset = Preset {
     name: "ladder",
@@ -75,9 +76,9 @@ const FIGURE_8: Preset = Preset {
         "psm:1024",
         "lispsm:1024",
         "tsm:1024",
-        "pssm:2:512:scheme=fitted:selection=map",
-        "pssm:3:512:scheme=fitted:selection=map",
-        "pssm:4:512:scheme=fitted:selection=map",
+        "pssm:2:512:scheme=optimal:selection=map",
+        "pssm:3:512:scheme=optimal:selection=map",
+        "pssm:4:512:scheme=optimal:selection=map",
     ],
     with: VISIBLE,
     scenes: &["chessboard", "robot-war", "mining-terrain", "knights"],
@@ -90,8 +91,9 @@ const FIGURE_8: Preset = Preset {
     tint: false,
 };
 
-/// The same figure, column (e): light and eye nearly opposite; single maps of 2048², splits of 1024². The cameras look 5° to 20° down
-/// and the sun stands 5° up before them, so that light and view oppose each other by all but 10° to 25°.
+/// Figure 8, column (e): light and eye nearly opposite; single maps of 2048², splits of 1024². The
+/// cameras look 5° to 20° down and the sun stands 5° up before them, so that light and view oppose
+/// each other by all but 10° to 25°.
 const DUELING: Preset = Preset {
     name: "dueling",
     about: "The paper's Figure 8, column (e): the dueling frusta",
@@ -100,9 +102,9 @@ const DUELING: Preset = Preset {
         "psm:2048",
         "lispsm:2048",
         "tsm:2048",
-        "pssm:2:1024:scheme=fitted:selection=map",
-        "pssm:3:1024:scheme=fitted:selection=map",
-        "pssm:4:1024:scheme=fitted:selection=map",
+        "pssm:2:1024:scheme=optimal:selection=map",
+        "pssm:3:1024:scheme=optimal:selection=map",
+        "pssm:4:1024:scheme=optimal:selection=map",
     ],
     cameras: &["dueling"],
     suns: &["into@5"],
@@ -149,7 +151,7 @@ const SELECTION: Preset = Preset {
     name: "selection",
     about: "Splits chosen by view depth and by map, coloured: Figure 4.1.9 of Practical Cascaded Shadow Maps",
     techniques: &["pssm:3:512:selection=depth", "pssm:3:512:selection=map"],
-    with: "filter=pcf3:blend=0:far-fade=0:stabilize=exact:range-fit=visible:scheme=log",
+    with: "preset=papers:filter=pcf3:blend=0:far-fade=0:stabilize=exact:range-fit=visible:scheme=log",
     scenes: &["robot-war", "knights"],
     cameras: &["dueling"],
     suns: &["into@11"],
@@ -163,13 +165,14 @@ const GEMS_FIGURE: Preset = Preset {
     name: "gems-figure",
     about: "SSM(2048) beside PSSM(3; 1024): GPU Gems 3, Figure 10-8",
     techniques: &["ssm:2048", "pssm:3:1024:generation=multipass"],
-    with: "filter=pcf2:blend=0:far-fade=0:fit=independent:stabilize=none",
+    with: "preset=papers:filter=pcf2:blend=0:far-fade=0:fit=independent:stabilize=none",
     scenes: &["robot-war", "knights"],
     cameras: &["near"],
     ..FIGURE_8
 };
 
-/// The same chapter's section 10.5: three and four splits of 1024² at 1280 × 1024 pixels, in a city that has to be given.
+/// Section 10.5 of that chapter: three and four splits of 1024² at 1280 × 1024 pixels, in a city
+/// that has to be given.
 const GEMS_RESULTS: Preset = Preset {
     name: "gems-results",
     about: "PSSM(3; 1024) and PSSM(4; 1024) at 1280 × 1024 pixels: GPU Gems 3, section 10.5, in a scene of your choice",
@@ -208,7 +211,7 @@ const PSVSM: Preset = Preset {
         "pssm:4:512:filter=pcf2:tint=true:label=The splits",
         "pssm:4:512:filter=vsm:filter-width=0.5:label=Parallel-split variance (4; 512²)",
     ],
-    with: "far-fade=0:stabilize=none",
+    with: "preset=papers:far-fade=0:stabilize=none",
     scenes: &["robot-war", "chessboard", "mining-terrain"],
     cameras: &["middle"],
     ..FIGURE_8

@@ -30,7 +30,8 @@ pub struct Comparison {
     pub walks: Vec<WalkReport>,
     /// Every technique against every later one, by E over the views that count.
     pub pairs: Vec<PairReport>,
-    /// Memory at which a technique comes down to E = 0.5 %, for those that were measured at two sizes or more.
+    /// Memory at which a technique comes down to E = 0.5 %, for those that were measured at two
+    /// sizes or more.
     pub memory_at_half_percent: Vec<FamilyReport>,
     /// What was left out, invented or does not count.
     pub notes: Vec<String>,
@@ -75,15 +76,16 @@ pub struct Means {
     pub edge_distance_px: Option<f64>,
     pub edge_distance_p95_px: Option<f64>,
     pub texel_px: Option<TexelPixels>,
-    /// The seam score: E on the borders of splits over the larger E of their sides, pooled over all views; none on fewer than 2,000 pixels.
+    /// The seam score: E on the borders of splits over the larger E of their sides, pooled over all
+    /// views; none on fewer than 2,000 pixels.
     pub seam_ratio: Option<f64>,
     /// F, over the walks that count.
     pub flicker: Option<f64>,
     /// F_edge, over the walks that count.
     pub flicker_per_edge: Option<f64>,
-    /// The same over points that keep their split.
+    /// F_edge over points that keep their split.
     pub kept_flicker_per_edge: Option<f64>,
-    /// The same over points that keep their split while its map takes no step.
+    /// F_edge over points that keep their split while its map takes no step.
     pub standing_flicker_per_edge: Option<f64>,
     pub flip: Option<f64>,
     pub ssim: Option<f64>,
@@ -156,14 +158,15 @@ pub struct FlickerReport {
     pub rate: Option<f64>,
     /// F_edge; may exceed 1.
     pub per_edge: Option<f64>,
-    /// F_edge over points that the same split decides on in both frames, without another's share and without a fade.
+    /// F_edge over points that the same split decides on in both frames, without another's share
+    /// and without a fade.
     pub kept_per_edge: Option<f64>,
     /// Those of them whose map took no step, over all pairs of frames.
     pub standing_points: usize,
     /// F_edge over them.
     pub standing_per_edge: Option<f64>,
-    /// How often a map took a step: changed its texel, axes or depth range instead of moving by whole texels. Of a map that is not
-    /// stabilised, how often it moved.
+    /// How often a map took a step: changed its texel, axes or depth range instead of moving by
+    /// whole texels. Of a map that is not stabilised, how often it moved.
     pub steps: usize,
 }
 

@@ -19,13 +19,14 @@ use super::{
 };
 use crate::{
     failure::{Failure, Result},
+    lights::NamedLight,
     output::Staged,
     picture::png,
     progress,
     report::to_json,
     scene_setup,
     session::adapter_description,
-    technique::{Technique, typed_name},
+    technique::Technique,
 };
 
 const REPRODUCE: &str = "umbrage render OPTIONS-OF-THE-VIEW OPTIONS-OF-THE-TECHNIQUE --visibility MASK.png; truth: umbrage truth OPTIONS-OF-THE-VIEW -o TRUTH.png";
@@ -124,9 +125,11 @@ impl Run<'_> {
         let truth = Truth::build(&set.scene, &set.pose, first.views[0].eye())?;
         let mut renderers = Vec::new();
         for technique in self.techniques {
-            let lights = vec![first.light.light.into()];
+            let shadows = technique.shadows.clone().under_sun(self.settings.sun_angle);
+            let light = NamedLight { name: first.sun_name.clone(), lamp: first.light };
+            let shadows = shadows.for_lights(&[light])?;
             let settings =
-                technique.job.render_settings(self.settings.size, Samples::default(), self.settings.sun_angle, lights);
+                shadows.render_settings(self.settings.size, Samples::default(), vec![first.light.light.into()]);
             let renderer = Renderer::new(self.gpu, &set.scene, &settings);
             renderers.push(renderer.map_err(|error| in_technique(technique, error))?);
         }
@@ -177,7 +180,7 @@ impl Run<'_> {
         }
         let first_view = self.views.len();
         let mut walks: Vec<Stillness> =
-            self.techniques.iter().map(|technique| Stillness::new(technique.job.transition())).collect();
+            self.techniques.iter().map(|technique| Stillness::new(technique.shadows.config.transition)).collect();
         let mut before: Option<Before> = None;
         for (k, view) in series.views.iter().enumerate() {
             let range = self.settings.shadow_range;
@@ -202,7 +205,7 @@ impl Run<'_> {
             let (mut scores, mut shown) = (Vec::new(), Vec::new());
             for (number, (technique, renderer)) in self.techniques.iter().zip(renderers.iter_mut()).enumerate() {
                 let wanted = Outputs { picture: is_shown, mask: true, maps: false };
-                let coloured = Frame { tint: frame.tint || technique.job.tint, ..frame };
+                let coloured = Frame { tint: frame.tint || technique.shadows.options.tint, ..frame };
                 let rendered = renderer.render(&coloured, wanted).map_err(|error| in_technique(technique, error))?;
                 let mask = rendered.mask.ok_or_else(|| Failure::other("the renderer gave no mask"))?;
                 let image_metrics = is_shown && self.settings.image_metrics;
@@ -393,7 +396,7 @@ fn labels(comparison: &Comparison, techniques: &[Technique]) -> Vec<Label> {
     let of = |(report, technique): (&TechniqueReport, &Technique)| {
         let [texels, bytes] = [report.texels, report.bytes].map(|count| count as f64 / f64::from(1 << 20));
         let mut lines =
-            vec![format!("{texels:.2} Mtexel, {bytes:.1} MiB"), format!("filter {}", typed_name(technique.job.filter))];
+            vec![format!("{texels:.2} Mtexel, {bytes:.1} MiB"), format!("filter {}", technique.shadows.word("filter"))];
         if let Some(e) = report.mean.e {
             lines.push(format!("mean E {:.2} %, {} views", 100.0 * e, report.mean.views));
         }

@@ -1,4 +1,5 @@
-//! The contact sheet: rows techniques, columns shots, insets where errors differ most, the truth as last row.
+//! The contact sheet: rows techniques, columns shots, insets where errors differ most, the truth as
+//! last row.
 
 use image::{GenericImage as _, Rgb, RgbImage, imageops};
 
@@ -66,7 +67,8 @@ pub fn cell_size(columns: usize, picture: [u32; 2]) -> [u32; 2] {
     [width, height.round().clamp(f64::from(width) / 4.0, f64::from(width) * 3.0) as u32]
 }
 
-/// A picture at a cell's size; the part of it in `inset` is marked and enlarged in the corner farthest from it.
+/// A picture at a cell's size; the part of it in `inset` is marked and enlarged in the corner
+/// farthest from it.
 #[must_use]
 pub fn framed(picture: &RgbImage, cell: [u32; 2], inset: Option<Rect>) -> RgbImage {
     let filter = if picture.width() < cell[0] { imageops::FilterType::Nearest } else { imageops::FilterType::Triangle };

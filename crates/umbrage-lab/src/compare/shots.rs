@@ -156,7 +156,7 @@ impl ShotRequest {
     /// [`Failure::Input`] naming the file or option at fault.
     pub fn open(&self, name: &str) -> Result<SceneShots> {
         let path = self.path().map(CameraPath::load).transpose()?;
-        let scene = umbrage_scene::open(name, &self.base.height_map)?;
+        let scene = umbrage_scene::open(name, &self.base.files)?;
         let scene = match self.base.move_scene {
             Some(by) => scene.moved(by),
             None => scene,
@@ -257,9 +257,9 @@ impl ShotRequest {
             ("fov", request.fov.filter(|_| is_path || self.stride.is_none())),
             ("near", request.near),
             ("far", request.far),
-            ("metres-per-post", request.height_map.metres_per_post),
-            ("metres-per-unit", request.height_map.metres_per_unit),
-            ("height-offset", request.height_map.height_offset),
+            ("metres-per-post", request.files.height_map.metres_per_post),
+            ("metres-per-unit", request.files.height_map.metres_per_unit),
+            ("height-offset", request.files.height_map.height_offset),
         ];
         common.extend(numbers.iter().filter_map(|(option, value)| value.map(|value| format!("--{option}={value}"))));
         let vector = |option: &str, v: DVec3| format!("--{option}={},{},{}", v.x, v.y, v.z);

@@ -1,5 +1,5 @@
-//! Flicker of one technique along a walk: over all points, over those that keep their split, and over those of them whose map takes no
-//! step.
+//! Flicker of one technique along a walk: over all points, over those that keep their split, and
+//! over those of them whose map takes no step.
 
 use std::sync::Arc;
 
@@ -50,8 +50,8 @@ impl Stillness {
         Self { transition, all, kept, standing, standing_points: 0, steps: 0, before: None }
     }
 
-    /// One more frame. `shared` are the domain of the frame before and the points that it shares with this one; answers which of those
-    /// are decided otherwise now.
+    /// One more frame. `shared` are the domain of the frame before and the points that it shares
+    /// with this one; answers which of those are decided otherwise now.
     ///
     /// # Errors
     /// [`crate::failure::Failure`] if answers are missing or none at all.
@@ -110,13 +110,15 @@ impl Stillness {
 enum Decides {
     /// One split alone.
     Split(usize),
-    /// Two splits that are mixed, or one that fades out: their shares change as the eye moves, and soft edges with them.
+    /// Two splits that are mixed, or one that fades out: their shares change as the eye moves, and
+    /// soft edges with them.
     Several,
     /// It lies beyond the range.
     Nobody,
 }
 
-/// Who decides on a point, by its view depth or its distance. A dithered border lies in the middle of its band for points that are no pixels.
+/// Who decides on a point, by its view depth or its distance. A dithered border lies in the middle
+/// of its band for points that are no pixels.
 fn decides(plan: &ShadowPlan, point: &ProbePoint, transition: Transition) -> Decides {
     let depth = plan.depth_at(point.position);
     let Some(index) = plan.splits.iter().position(|split| depth < split.far) else { return Decides::Nobody };

@@ -1,4 +1,5 @@
-//! The gallery: every world and a city from near, middle and far, with masks, maps and figures, as one page.
+//! The gallery: every world and a city from near, middle and far, with masks, maps and figures, as
+//! one page.
 
 mod drawn;
 mod page;

@@ -38,14 +38,15 @@ pub struct Job {
     pub folder: PathBuf,
 }
 
-/// Draws every shot, then writes the page and, below it, full-size pictures, masks, maps and reports. Answers where the page is.
+/// Draws every shot, then writes the page and, below it, full-size pictures, masks, maps and
+/// reports. Answers where the page is.
 ///
 /// # Errors
 /// [`Failure`] naming the scene that cannot be drawn or the file that cannot be written.
 pub fn run(job: &Job) -> Result<PathBuf> {
     let shots_folder = job.folder.join("shots");
     fs::create_dir_all(&shots_folder).map_err(|error| Failure::file("make", &shots_folder, &error))?;
-    let technique = text::parse_all(&[TECHNIQUE.to_owned()], "", job.size)?.remove(0);
+    let technique = text::parse_all(&[TECHNIQUE.to_owned()], "")?.remove(0);
     let total = job.scenes.iter().map(|scene| scene.shots.len() as u64).sum();
     let bar = progress::steps(total, "shots");
     let mut staged = Staged::default();
@@ -54,7 +55,7 @@ pub fn run(job: &Job) -> Result<PathBuf> {
         let mut drawn = Vec::new();
         let first = scene.request(&scene.shots[0], job.size)?;
         let setup = SceneSetup::open(&first)?;
-        let mut session = Session::open(&first, &technique.job, &setup)?;
+        let mut session = Session::open(&first, &technique.shadows, &setup)?;
         for shot in scene.shots {
             drawn.push(draw(&mut session, &setup, scene, shot, job.size)?);
             bar.inc(1);
@@ -74,7 +75,7 @@ pub fn run(job: &Job) -> Result<PathBuf> {
 }
 
 fn draw(
-    session: &mut Session<'_>,
+    session: &mut Session,
     setup: &SceneSetup,
     scene: &'static Scene,
     shot: &'static Shot,

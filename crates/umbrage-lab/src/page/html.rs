@@ -1,12 +1,13 @@
 //! Report pages: one HTML file with everything inside, no script, nothing fetched.
 //!
-//! A [`Page`] holds [`Section`]s, a section holds blocks in order: [text](Section::text), [figures](Section::figure),
-//! [tables](Section::table), [sheets of pictures](Section::sheet). Every text that comes in is plain and is escaped;
-//! in running text and captions `` `backticks` `` set code. Pictures go in as PNG or JPEG bytes, charts as the `<svg>` of
-//! [`super::plot`]. Readable on a phone and on a desktop, light or dark as the reader's system is.
+//! A [`Page`] holds [`Section`]s, a section holds blocks in order: [text](Section::text),
+//! [figures](Section::figure), [tables](Section::table), [sheets of pictures](Section::sheet).
+//! Every text that comes in is plain and is escaped; in running text and captions `` `backticks` ``
+//! set code. Pictures go in as PNG or JPEG bytes, charts as the `<svg>` of [`super::plot`].
+//! Readable on a phone and on a desktop, light or dark as the reader's system is.
 
 use base64::{Engine, engine::general_purpose::STANDARD};
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 
 use super::plot::dark_style;
 
@@ -54,7 +55,7 @@ impl Page {
         let style = format!("{STYLE}@media (prefers-color-scheme: dark) {{\n{dark}}}\n");
         let ids: Vec<String> = self.sections.iter().enumerate().map(|(index, section)| section.id(index)).collect();
         let page = html! {
-            (DOCTYPE)
+            (PreEscaped("<!doctype html>"))
             html lang="en" {
                 head {
                     meta charset="utf-8";
@@ -207,7 +208,8 @@ impl Figure {
     fn html(&self) -> Markup {
         let caption = html! { @if !self.caption.is_empty() { figcaption { (running(&self.caption)) } } };
         match self.width {
-            // A chart may grow by a quarter where there is room; on a narrow screen it scrolls rather than shrink beyond reading.
+            // A chart may grow by a quarter where there is room; on a narrow screen it scrolls
+            // rather than shrink beyond reading.
             Some(width) => html! {
                 figure.chart style={ "max-width:" (width + width / 4 + 42) "px" } { div.scroll { (self.content) } (caption) }
             },
@@ -216,7 +218,8 @@ impl Figure {
     }
 }
 
-/// An `<img>` with the picture inside. Its size is read from the file, so that the page does not jump.
+/// An `<img>` with the picture inside. Its size is read from the file, so that the page does not
+/// jump.
 fn picture(file: &[u8], alt: &str, pixelated: bool) -> Markup {
     let reader = image::ImageReader::new(std::io::Cursor::new(file)).with_guessed_format().ok();
     let kind = reader.as_ref().and_then(|reader| reader.format()).map_or("image/png", |format| format.to_mime_type());
@@ -352,7 +355,7 @@ impl Table {
         Self { caption: caption.into(), columns, rows: Vec::new() }
     }
 
-    /// The same table with one more row.
+    /// Adds a row.
     #[must_use]
     pub fn row(mut self, cells: Vec<Cell>) -> Self {
         self.rows.push(cells);

@@ -1,10 +1,7 @@
-//! Techniques: how shadows are made, as options ([`args`]), as settings ([`job`]) and under a name ([`text`]).
+//! Techniques: how shadows are made ([`request`]), and under a name ([`text`]).
 
-pub mod args;
-pub mod job;
-mod paths;
+pub mod request;
 pub mod text;
 
-pub use args::{Filter, ShadowArgs, typed_name};
-pub use job::ShadowJob;
+pub use request::{ShadowOptions, ShadowRequest, word};
 pub use text::Technique;

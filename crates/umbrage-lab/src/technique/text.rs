@@ -8,29 +8,36 @@
 //!           | "label" "=" TEXT
 //! ```
 //!
-//! A technique is translated into options of `umbrage render` and read by the very parser that reads those, so everything that
+//! The settings are those of `umbrage render`, over the default or over the preset that `preset=NAME` names, so everything that
 //! command can do can be compared, with the same defaults and the same messages, and each row of a comparison can be drawn
 //! alone.
 
 use std::path::Path;
 
-use clap::{Args as _, Command, FromArgMatches as _, ValueEnum as _, error::ErrorKind};
 use toml::{Table, Value};
+use umbrage::config::SETTINGS;
 
-use super::{
-    args::{ShadowArgs, Technique as Kind, typed_name},
-    job::ShadowJob,
-};
+use super::request::{ShadowOptions, ShadowRequest};
 use crate::failure::{Failure, Result};
+
+/// Techniques by their words.
+const KINDS: [&str; 5] = ["pssm", "ssm", "psm", "lispsm", "tsm"];
 
 /// Kinds that are spoken of and do not exist yet.
 const PLANNED: [&str; 1] = ["sdsm"];
 
 /// Options that say what is looked at rather than how shadows are made: they hold for the whole comparison, or not at all.
-const NOT_SETTINGS: [(&str, &str); 2] = [
+const NOT_SETTINGS: [(&str, &str); 3] = [
     ("shadow-range", "it decides which pixels are scored and is one for all; give --shadow-range beside --techniques"),
     ("shadows", "a technique without shadows has no score; leave it away"),
+    ("sun-angle", "it decides what is scored and is one for all; give --sun-angle beside --techniques"),
 ];
+
+/// The key that names the settings that a technique's own go over.
+const PRESET: &str = "preset";
+
+/// The key that colours a technique's pictures by split.
+const TINT: &str = "tint";
 
 /// The options that the short form has places for.
 const SHAPE: [&str; 3] = ["technique", "splits", "map-size"];
@@ -42,19 +49,19 @@ pub struct Technique {
     pub label: String,
     /// The short form, settings for all included.
     pub spec: String,
-    /// The same technique at other map sizes has the same family.
+    /// What the technique shares with itself at other map sizes.
     pub family: String,
     /// The options of `umbrage render` that draw it.
     pub options: Vec<String>,
     /// What they mean.
-    pub job: ShadowJob,
+    pub shadows: ShadowRequest,
 }
 
 impl Technique {
     /// Texels of all maps.
     #[must_use]
     pub fn texels(&self) -> u64 {
-        self.job.settings.map_sizes.iter().map(|&edge| u64::from(edge) * u64::from(edge)).sum()
+        self.shadows.config.texels()
     }
 }
 
@@ -189,9 +196,9 @@ fn parse_file(file: &str, text: &str) -> Result<(Settings, Vec<TechniqueSource>)
 ///
 /// # Errors
 /// [`Failure::Input`] naming the technique or setting.
-pub fn parse_all(texts: &[String], with: &str, size: [u32; 2]) -> Result<Vec<Technique>> {
+pub fn parse_all(texts: &[String], with: &str) -> Result<Vec<Technique>> {
     let sources = texts.iter().map(|text| parse(text)).collect::<Result<Vec<_>>>()?;
-    Ok(finish(&sources, &parse_with(with)?, None, size)?)
+    Ok(finish(&sources, &parse_with(with)?, None)?)
 }
 
 /// Checks sources and makes techniques of them. `with` holds for all that do not say otherwise, the last entry of a key wins.
@@ -203,11 +210,10 @@ pub fn finish(
     sources: &[TechniqueSource],
     with: &Settings,
     range: Option<(f64, f64)>,
-    size: [u32; 2],
 ) -> Result<Vec<Technique>, Rejected> {
     let mut techniques: Vec<Technique> = Vec::new();
     for source in sources {
-        let mut technique = source.finish(with, range, size)?;
+        let mut technique = source.finish(with, range)?;
         let taken = |label: &str| techniques.iter().any(|other| other.label == label);
         if taken(&technique.label) {
             let free = (2..).map(|n| format!("{} #{n}", technique.label)).find(|label| !taken(label));
@@ -219,11 +225,11 @@ pub fn finish(
 }
 
 impl TechniqueSource {
-    /// Checks all settings by the parser of `umbrage render`.
+    /// Checks all settings.
     ///
     /// # Errors
     /// [`Rejected::NotBuilt`] for a kind that is planned, else [`Rejected::Wrong`], both naming the technique and the setting.
-    pub fn finish(&self, with: &Settings, range: Option<(f64, f64)>, size: [u32; 2]) -> Result<Technique, Rejected> {
+    pub fn finish(&self, with: &Settings, range: Option<(f64, f64)>) -> Result<Technique, Rejected> {
         let wrong = |what: String| Rejected::Wrong(Failure::input(format!("technique {:?}: {what}", self.source)));
         self.check_kind()?;
         let mut settings = self.settings.clone();
@@ -236,48 +242,50 @@ impl TechniqueSource {
                 None => settings.push((key.clone(), value.clone())),
             }
         }
-        let parser = ShadowArgs::augment_args(Command::new("technique").no_binary_name(true).disable_help_flag(true));
-        let known: Vec<&str> = parser.get_arguments().filter_map(|option| option.get_long()).collect();
         for (key, _) in &settings {
             if let Some((_, why)) = NOT_SETTINGS.iter().find(|(not, _)| not == key) {
-                return Err(wrong(format!("{key}: {why}")));
+                return Err(wrong(format!("--{key}: {why}")));
             }
-            if !known.contains(&key.as_str()) {
-                let there: Vec<&str> = known
-                    .iter()
-                    .copied()
-                    .filter(|key| !SHAPE.contains(key) && NOT_SETTINGS.iter().all(|(not, _)| not != key))
-                    .collect();
-                return Err(wrong(format!("there is no setting {key}; there are label, {}", there.join(", "))));
+            if ![PRESET, TINT].contains(&key.as_str()) && SETTINGS.iter().all(|setting| setting.key != key) {
+                let keys = SETTINGS.iter().map(|setting| setting.key);
+                let there = keys.filter(|key| !SHAPE.contains(key) && NOT_SETTINGS.iter().all(|(not, _)| not != key));
+                let there = there.collect::<Vec<_>>().join(", ");
+                return Err(wrong(format!("there is no setting {key}; there are label, {PRESET}, {TINT}, {there}")));
             }
         }
         let mut options: Vec<String> = settings.iter().map(|(key, value)| format!("--{key}={value}")).collect();
+        let mut asked = ShadowOptions { given: settings.clone(), ..ShadowOptions::default() };
+        asked.given.retain(|(key, _)| ![PRESET, TINT].contains(&key.as_str()));
+        if let Some((_, tint)) = settings.iter().find(|(key, _)| key == TINT) {
+            let not = |_| wrong(format!("--{TINT} {tint}: it is no switch; give true or false"));
+            asked.tint = tint.parse().map_err(not)?;
+        }
+        if let Some((_, preset)) = settings.iter().find(|(key, _)| key == PRESET) {
+            asked.preset = Some(preset.parse().map_err(|why| wrong(format!("--{PRESET}: {why}")))?);
+        }
         if let Some((near, far)) = range {
             options.push(format!("--shadow-range={near}..{far}"));
+            asked.given.retain(|(key, _)| key != "range-fit");
+            asked.given.push(("shadow-range".to_owned(), format!("{near}..{far}")));
         }
-        let args = parser
-            .try_get_matches_from(&options)
-            .and_then(|matches| ShadowArgs::from_arg_matches(&matches))
-            .map_err(|error| wrong(first_line(&error)))?;
-        let job = ShadowJob::new(&args, size).map_err(|failure| wrong(failure.to_string()))?;
+        let shadows = ShadowRequest::new(asked).map_err(|failure| wrong(failure.to_string()))?;
         let without_sizes: Vec<String> =
             settings.iter().filter(|(key, _)| key != "map-size").map(|(key, value)| format!("{key}={value}")).collect();
         Ok(Technique {
-            label: self.label.clone().unwrap_or_else(|| self.default_label(&job)),
+            label: self.label.clone().unwrap_or_else(|| self.default_label(&shadows)),
             spec: spec(&settings),
             family: without_sizes.join(":"),
             options,
-            job,
+            shadows,
         })
     }
 
     fn check_kind(&self) -> Result<(), Rejected> {
-        let kind = self.settings.iter().find(|(key, _)| key == "technique").map_or("", |(_, kind)| kind);
-        let built: Vec<String> = Kind::value_variants().iter().map(|&kind| typed_name(kind)).collect();
-        if built.iter().any(|name| name == kind) {
+        let kind = self.settings.iter().find(|(key, _)| key == "technique").map_or("", |(_, kind)| kind.as_str());
+        if KINDS.contains(&kind) {
             return Ok(());
         }
-        let there = built.join(", ");
+        let there = KINDS.join(", ");
         let message = |what: &str| Failure::input(format!("technique {:?}: {what}; there are {there}", self.source));
         Err(if PLANNED.contains(&kind) {
             Rejected::NotBuilt(message(&format!("{kind} is not built yet")))
@@ -287,18 +295,16 @@ impl TechniqueSource {
     }
 
     /// `PSSM(4; 512²) λ 0.9`: the shape, then what the technique itself says beyond it.
-    fn default_label(&self, job: &ShadowJob) -> String {
-        let sizes = &job.settings.map_sizes;
+    fn default_label(&self, shadows: &ShadowRequest) -> String {
+        let sizes = &shadows.config.map_sizes;
         let size = match &sizes[..] {
             [first, rest @ ..] if rest.iter().all(|size| size == first) => format!("{first}²"),
             _ => sizes.iter().map(|size| format!("{size}²")).collect::<Vec<_>>().join("+"),
         };
-        let kind = typed_name(job.technique).to_uppercase();
-        let mut label = if job.technique == Kind::Pssm {
-            format!("{kind}({}; {size})", sizes.len())
-        } else {
-            format!("{kind}({size})")
-        };
+        let kind = self.settings.iter().find(|(key, _)| key == "technique").map_or("pssm", |(_, kind)| kind.as_str());
+        let kind = kind.to_uppercase();
+        let mut label =
+            if kind == "PSSM" { format!("{kind}({}; {size})", sizes.len()) } else { format!("{kind}({size})") };
         for (key, value) in self.settings.iter().filter(|(key, _)| !SHAPE.contains(&key.as_str())) {
             let text = match key.as_str() {
                 "lambda" => format!("λ {value}"),
@@ -387,17 +393,6 @@ fn options_of(table: Table) -> Result<Settings, String> {
             Ok((key, value))
         })
         .collect()
-}
-
-/// What clap has to say, without its usage.
-fn first_line(error: &clap::Error) -> String {
-    let text = error.to_string();
-    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
-    let first = lines.next().unwrap_or_default().trim_start_matches("error: ").to_owned();
-    let possible = (error.kind() == ErrorKind::InvalidValue)
-        .then(|| lines.find(|line| line.starts_with("[possible values")))
-        .flatten();
-    possible.map_or(first.clone(), |possible| format!("{first} {possible}"))
 }
 
 #[cfg(test)]

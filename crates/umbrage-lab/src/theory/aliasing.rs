@@ -1,5 +1,5 @@
-//! The three split schemes over depth and the aliasing that they yield: \[PSSM06\] Figure 4, \[GG3-10\]
-//! Figure 10-4.
+//! The three split schemes over depth and the aliasing that they yield: \[PSSM06\] Figure 4,
+//! \[GG3-10\] Figure 10-4.
 
 use glam::DVec3;
 use umbrage::{DirectionalLight, Fit, Planner, ShadowPlan, ShadowSettings, SplitScheme, Stabilize, View, split_planes};
@@ -36,22 +36,24 @@ fn split_of(planes: &[f64], z: f64) -> usize {
     planes[1..planes.len() - 1].partition_point(|&plane| plane < z)
 }
 
-/// Place in shadow-map space, 0 to 1 over the whole range, when every split gets 1/m of the resolution and is spread
-/// evenly over its own share: `s = (i + (z − C_i)/(C_{i+1} − C_i)) / m`.
+/// Place in shadow-map space, 0 to 1 over the whole range, when every split gets 1/m of the
+/// resolution and is spread evenly over its own share: `s = (i + (z − C_i)/(C_{i+1} − C_i)) / m`.
 pub(super) fn s_of(planes: &[f64], z: f64) -> f64 {
     let i = split_of(planes, z);
     let m = (planes.len() - 1) as f64;
     (i as f64 + (z - planes[i]) / (planes[i + 1] - planes[i])) / m
 }
 
-/// Perspective aliasing at view depth `z` in split `i`: \[PSSM06\] eq. (1) without its angles, `dp/ds = n/z · dz/ds`, with
-/// `dz/ds = m (C_{i+1} − C_i)`. (The source says that a split gets i/m of the resolution; 1/m is meant.)
+/// Perspective aliasing at view depth `z` in split `i`: \[PSSM06\] eq. (1) without its angles,
+/// `dp/ds = n/z · dz/ds`, with `dz/ds = m (C_{i+1} − C_i)`. (The source says that a split gets i/m
+/// of the resolution; 1/m is meant.)
 pub(super) fn dp_ds(planes: &[f64], i: usize, z: f64) -> f64 {
     let m = (planes.len() - 1) as f64;
     planes[0] / z * m * (planes[i + 1] - planes[i])
 }
 
-/// What no scheme can go below over the whole range: \[PSSM06\] eq. (2), `dp/ds = n ln(f/n)` at every depth.
+/// What no scheme can go below over the whole range: \[PSSM06\] eq. (2), `dp/ds = n ln(f/n)` at
+/// every depth.
 pub(super) fn optimum(near: f64, far: f64) -> f64 {
     near * (far / near).ln()
 }
@@ -72,7 +74,8 @@ fn over_splits(planes: &[f64], value: impl Fn(usize, f64) -> f64) -> Vec<(f64, f
     points
 }
 
-/// The plan for a sun at right angles to the view, as in the papers' figures: a camera that looks level over a plain at noon.
+/// The plan for a sun at right angles to the view, as in the papers' figures: a camera that looks
+/// level over a plain at noon.
 pub(super) fn plan_at_noon(
     setting: &Setting,
     scheme: SplitScheme,
@@ -97,7 +100,8 @@ pub(super) fn plan_at_noon(
     Ok((view, plan))
 }
 
-/// Pixels that one texel spans on a surface that faces the camera, over depth, from the planned matrices.
+/// Pixels that one texel spans on a surface that faces the camera, over depth, from the planned
+/// matrices.
 pub(super) fn predicted(setting: &Setting, view: &View, plan: &ShadowPlan) -> Vec<(f64, f64)> {
     over_splits(&plan.planes, |i, z| plan.splits[i].pixels_per_texel(view, setting.image_size[1], z))
 }
@@ -315,8 +319,8 @@ mod tests {
         }
     }
 
-    /// Under a sun at noon the map of a level view is as wide as the slice's far end, so there `m_p = W / size` for every split of
-    /// every scheme, and m_p falls as 1/z inside a split.
+    /// Under a sun at noon the map of a level view is as wide as the slice's far end, so there `m_p
+    /// = W / size` for every split of every scheme, and m_p falls as 1/z inside a split.
     #[test]
     fn the_matrices_say_what_the_theory_says() {
         let setting = Setting::default();
@@ -325,7 +329,8 @@ mod tests {
             for split in &plan.splits {
                 let at = |z: f64| split.pixels_per_texel(&view, 600, z);
                 assert!(near(at(split.near) * split.near, at(split.far) * split.far));
-                // Two texels on each side are margin; the rectangle may stand askew and be a little smaller.
+                // Two texels on each side are margin; the rectangle may stand askew and be a little
+                // smaller.
                 let expected = 800.0 / (512.0 - 4.0);
                 assert!(
                     (0.8 * expected..=1.001 * expected).contains(&at(split.far)),

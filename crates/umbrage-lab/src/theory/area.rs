@@ -33,11 +33,13 @@ pub(super) enum Turn {
 /// What encloses a slice in the light's plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Enclosure {
-    /// The axis-aligned box in a light space whose u follows the view, as \[PSSM06\] Figure 5 draws it.
+    /// The axis-aligned box in a light space whose u follows the view, as \[PSSM06\] Figure 5 draws
+    /// it.
     Box,
     /// The rectangle of least area, as the planner fits it.
     Least,
-    /// The square around the sphere around the slice, as the planner fits it when shadows stand still.
+    /// The square around the sphere around the slice, as the planner fits it when shadows stand
+    /// still.
     Sphere,
 }
 
@@ -52,7 +54,8 @@ pub(super) fn light(view: &View, turn: Turn, degrees: f64) -> Result<Directional
     Ok(DirectionalLight::new(cos * view.forward() + sin * aside)?)
 }
 
-/// Area of the box around the slice [a, b] in square metres, in the light's plane, its u axis along the view.
+/// Area of the box around the slice [a, b] in square metres, in the light's plane, its u axis along
+/// the view.
 fn box_area(view: &View, light: &DirectionalLight, a: f64, b: f64) -> f64 {
     let direction = light.direction();
     let along = view.forward() - view.forward().dot(direction) * direction;
@@ -108,7 +111,8 @@ pub(super) fn ratio(
     })
 }
 
-/// A ratio over the angle from 0° to 90°. It is symmetric about 90°, as a shadow map seen from behind has the same area.
+/// A ratio over the angle from 0° to 90°. It is symmetric about 90°, as a shadow map seen from
+/// behind has the same area.
 fn curve(setting: &Setting, view: &View, turn: Turn, planes: &[f64], enclosure: Enclosure) -> Result<Vec<(f64, f64)>> {
     (0..=(90.0 / STEP) as u32)
         .map(|k| {
@@ -231,7 +235,8 @@ mod tests {
         planes(&SplitScheme::default(), setting.near, setting.far, m).expect("planes")
     }
 
-    /// The design's two numbers, 1.31 and 0.68, belong to n = 1, f = 800, λ = 0.5, m = 4, and to every lens.
+    /// The design's two numbers, 1.31 and 0.68, belong to n = 1, f = 800, λ = 0.5, m = 4, and to
+    /// every lens.
     #[test]
     fn the_sum_is_1_31_along_the_view_and_0_68_across() {
         for (fov, image_size) in [(60.0, [800, 600]), (30.0, [512, 512]), (100.0, [1920, 1080])] {

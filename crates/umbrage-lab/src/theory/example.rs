@@ -1,5 +1,6 @@
-//! The scene of the diagrams: a street of boxes under a slanting sun, with everything that makes casters and receivers
-//! differ. A tower behind the eye and a balloon out of sight throw their shadows into the view.
+//! The scene of the diagrams: a street of boxes under a slanting sun, with everything that makes
+//! casters and receivers differ. A tower behind the eye and a balloon out of sight throw their
+//! shadows into the view.
 
 use glam::DVec3;
 use umbrage::{Aabb, DirectionalLight, Fit, Frustum, Planner, ShadowPlan, ShadowSettings, Split, Stabilize, View};
@@ -61,7 +62,8 @@ impl Example {
     }
 }
 
-/// The eight corners of what a split's map sees, in the world; bit 0 of the index is u, bit 1 v, bit 2 depth.
+/// The eight corners of what a split's map sees, in the world; bit 0 of the index is u, bit 1 v,
+/// bit 2 depth.
 pub(super) fn map_corners(split: &Split) -> [DVec3; 8] {
     let lo = split.min_texel * split.texel_m;
     let hi = lo + split.texel_m * f64::from(split.size);

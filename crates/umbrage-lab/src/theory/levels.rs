@@ -77,7 +77,8 @@ impl Ground {
         split.map_from_world(place).truncate()
     }
 
-    /// The level of a pixel; `None` above the horizon, beyond the last split, and in quads that are.
+    /// The level of a pixel; `None` above the horizon, beyond the last split, and in quads that
+    /// are.
     pub fn level(&self, way: Way, [x, y]: [u32; 2]) -> Option<f64> {
         let [left, top] = [x & !1, y & !1];
         let quad = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| self.at(left + i, top + j));

@@ -135,7 +135,8 @@ fn boxes(diagram: &mut Diagram, example: &Example, plane: Plane, colour_of: impl
     }
 }
 
-/// The three faces that the observer sees, with how dark each is: the top, the one towards +x and the one towards +z.
+/// The three faces that the observer sees, with how dark each is: the top, the one towards +x and
+/// the one towards +z.
 fn faces(bounds: &Aabb) -> [([DVec3; 4], f64); 3] {
     let c = bounds.corners();
     let face = |corners: [usize; 4]| corners.map(|i| c[i]);

@@ -118,7 +118,7 @@ pub fn scene(primitives: Vec<Primitive>) -> Scene {
     let mut scene = Scene { name: "test".to_owned(), materials: vec![Material::default()], ..Default::default() };
     for primitive in primitives {
         scene.nodes.push(Node { mesh: Some(scene.meshes.len()), ..Default::default() });
-        scene.meshes.push(Mesh { name: String::new(), primitives: vec![primitive] });
+        scene.meshes.push(Mesh { primitives: vec![primitive], ..Mesh::default() });
     }
     scene
 }

@@ -108,6 +108,12 @@ impl Binary {
         self.floats(values, Use::Other)
     }
 
+    /// Numbers that are no vertices.
+    pub(super) fn scalars(&mut self, values: &[f32]) -> usize {
+        let values: Vec<[f32; 1]> = values.iter().map(|&value| [value]).collect();
+        self.floats(&values, Use::Other)
+    }
+
     /// Key times.
     pub(super) fn times(&mut self, values: &[f32]) -> usize {
         let values: Vec<[f32; 1]> = values.iter().map(|&time| [time]).collect();

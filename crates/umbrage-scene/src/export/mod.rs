@@ -75,6 +75,9 @@ fn nodes(
             if let Some(skin) = node.skin {
                 json.insert("skin".into(), json!(skin));
             }
+            if !node.weights.is_empty() {
+                json.insert("weights".into(), numbers(&node.weights));
+            }
             if !node.instances.is_empty() {
                 let extension = instances(scene, index, &node.instances, binary)?;
                 extension_of(&mut json, "EXT_mesh_gpu_instancing", extension);

@@ -9,7 +9,12 @@ use serde_json::{Map, Value, json};
 use super::binary::{Binary, Use};
 use super::{named, number, numbers};
 use crate::error::element;
-use crate::{AlphaMode, Error, Interpolation, Keys, Lens, LightKind, Primitive, Result, Scene, Wrap};
+use crate::{
+    AlphaMode, Error, Interpolation, Keys, Lens, LightKind, MorphTarget, Primitive, Result, Scene, TextureFilter, Wrap,
+};
+
+/// `magFilter` of samplers that show the nearest texel.
+const NEAREST: u32 = 9728;
 
 /// The meshes that have triangles, and where each mesh of the scene has gone.
 pub(super) fn meshes(scene: &Scene, binary: &mut Binary) -> Result<(Vec<Value>, Vec<Option<usize>>)> {
@@ -24,6 +29,9 @@ pub(super) fn meshes(scene: &Scene, binary: &mut Binary) -> Result<(Vec<Value>, 
         place.push(Some(list.len()));
         let mut json = named(&mesh.name);
         json.insert("primitives".into(), Value::Array(primitives));
+        if !mesh.weights.is_empty() && mesh.is_morphed() {
+            json.insert("weights".into(), numbers(&mesh.weights));
+        }
         list.push(Value::Object(json));
     }
     Ok((list, place))
@@ -32,7 +40,10 @@ pub(super) fn meshes(scene: &Scene, binary: &mut Binary) -> Result<(Vec<Value>, 
 fn primitive(primitive: &Primitive, binary: &mut Binary) -> Value {
     let mut attributes = Map::new();
     attributes.insert("POSITION".into(), json!(binary.positions(&primitive.positions)));
-    attributes.insert("NORMAL".into(), json!(binary.attribute(&primitive.normals)));
+    // Without normals a reader computes flat ones of the posed shape, which is what is meant.
+    if !primitive.flat || primitive.targets.is_empty() {
+        attributes.insert("NORMAL".into(), json!(binary.attribute(&primitive.normals)));
+    }
     if !primitive.uvs.is_empty() {
         attributes.insert("TEXCOORD_0".into(), json!(binary.attribute(&primitive.uvs)));
     }
@@ -44,7 +55,27 @@ fn primitive(primitive: &Primitive, binary: &mut Binary) -> Value {
         attributes.insert("WEIGHTS_0".into(), json!(binary.attribute(&primitive.weights)));
     }
     let indices = binary.indices(&primitive.indices);
-    json!({ "attributes": attributes, "indices": indices, "material": primitive.material })
+    let mut json = json!({ "attributes": attributes, "indices": indices, "material": primitive.material });
+    if !primitive.targets.is_empty() {
+        json["targets"] = primitive.targets.iter().map(|target| self::target(primitive, target, binary)).collect();
+    }
+    json
+}
+
+/// A morph target. glTF wants one attribute at least, so a target without differences gets those of positions.
+fn target(primitive: &Primitive, target: &MorphTarget, binary: &mut Binary) -> Value {
+    let mut attributes = Map::new();
+    if !target.positions.is_empty() {
+        attributes.insert("POSITION".into(), json!(binary.positions(&target.positions)));
+    }
+    if !target.normals.is_empty() {
+        attributes.insert("NORMAL".into(), json!(binary.attribute(&target.normals)));
+    }
+    if attributes.is_empty() {
+        let still = vec![[0.0; 3]; primitive.positions.len()];
+        attributes.insert("POSITION".into(), json!(binary.positions(&still)));
+    }
+    Value::Object(attributes)
 }
 
 pub(super) fn materials(scene: &Scene, extensions_used: &mut Vec<&'static str>) -> Result<Vec<Value>> {
@@ -104,7 +135,7 @@ pub(super) struct TextureLists {
 pub(super) fn textures(scene: &Scene, binary: &mut Binary) -> Result<TextureLists> {
     let mut lists = TextureLists::default();
     let mut known_images: HashMap<(u32, u32, &[u8]), usize> = HashMap::new();
-    let mut known_samplers: HashMap<[Wrap; 2], usize> = HashMap::new();
+    let mut known_samplers: HashMap<([Wrap; 2], TextureFilter), usize> = HashMap::new();
     for (index, texture) in scene.textures.iter().enumerate() {
         let key = (texture.width, texture.height, texture.rgba.as_slice());
         let image = match known_images.get(&key) {
@@ -123,13 +154,17 @@ pub(super) fn textures(scene: &Scene, binary: &mut Binary) -> Result<TextureList
                 lists.images.len() - 1
             }
         };
-        let sampler = *known_samplers.entry(texture.wrap).or_insert_with(|| {
+        let sampler = *known_samplers.entry((texture.wrap, texture.filter)).or_insert_with(|| {
             let mode = |wrap| match wrap {
                 Wrap::Repeat => 10_497,
                 Wrap::Clamp => 33_071,
                 Wrap::Mirror => 33_648,
             };
-            lists.samplers.push(json!({ "wrapS": mode(texture.wrap[0]), "wrapT": mode(texture.wrap[1]) }));
+            let mut sampler = json!({ "wrapS": mode(texture.wrap[0]), "wrapT": mode(texture.wrap[1]) });
+            if texture.filter == TextureFilter::Nearest {
+                sampler["magFilter"] = json!(NEAREST);
+            }
+            lists.samplers.push(sampler);
             lists.samplers.len() - 1
         });
         lists.textures.push(json!({ "source": image, "sampler": sampler }));
@@ -227,6 +262,7 @@ pub(super) fn animations(scene: &Scene, binary: &mut Binary) -> Result<Vec<Value
                 Keys::Translation(keys) => ("translation", binary.vectors(keys)),
                 Keys::Rotation(keys) => ("rotation", binary.vectors(keys)),
                 Keys::Scale(keys) => ("scale", binary.vectors(keys)),
+                Keys::Weights { values, .. } => ("weights", binary.scalars(values)),
             };
             let interpolation = match channel.interpolation {
                 Interpolation::Linear => "LINEAR",

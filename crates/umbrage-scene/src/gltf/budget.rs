@@ -1,39 +1,46 @@
 //! How much a file may make of what it has: many parts can refer to the same few bytes, or to none.
+//!
+//! Each limit is an amount that every file may have and an amount for each byte of the file and the files it names. The
+//! numbers are ours: several times what real files make of a byte, and for a file of 1 MB little enough to be loaded in
+//! seconds and some hundred MiB.
 
 use std::cell::Cell;
 
 use super::Document;
 use crate::Result;
 
-/// What is counted. The limits are ours: far above what can be shown at all, and low enough that no file of a few
-/// kilobytes takes all memory.
+/// What is counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
-    /// Elements of accessors decoded; costs time only.
+    /// Elements of accessors that are read; costs time only.
     Element,
     /// Elements that have no bytes in the file (all zeros but for a sparse part).
     ZeroElement,
-    /// Vertices kept.
-    Vertex,
-    /// Corners of triangles kept.
-    Corner,
+    /// Bytes of vertices, indices and morph targets kept.
+    Geometry,
     /// Instances of EXT_mesh_gpu_instancing.
     Instance,
-    /// Values of animation keys.
+    /// Times and values of animation keys.
     Key,
+    /// Pixels of pictures that are decoded.
+    Pixel,
+    /// Bytes of decompressed buffer views and primitives.
+    Unpacked,
 }
 
 impl Part {
-    const COUNT: usize = 6;
+    const COUNT: usize = 7;
 
-    /// The most of it that one file may have.
-    const fn most(self) -> u64 {
+    /// What every file may have, and what it may have for each of its bytes.
+    const fn limit(self) -> (u64, f64) {
         match self {
-            Self::Element => 1 << 31,
-            Self::ZeroElement => 1 << 24,
-            Self::Vertex | Self::Key => 1 << 26,
-            Self::Corner => 1 << 28,
-            Self::Instance => 1 << 22,
+            Self::Element => (1 << 26, 64.0),
+            Self::ZeroElement => (1 << 20, 4.0),
+            Self::Geometry => (48 << 20, 112.0),
+            Self::Instance => (1 << 15, 0.25),
+            Self::Key => (1 << 20, 4.0),
+            Self::Pixel => (1 << 28, 64.0),
+            Self::Unpacked => (16 << 20, 24.0),
         }
     }
 
@@ -41,26 +48,56 @@ impl Part {
         match self {
             Self::Element => "elements of accessors",
             Self::ZeroElement => "elements without any bytes",
-            Self::Vertex => "vertices",
-            Self::Corner => "corners of triangles",
+            Self::Geometry => "bytes of vertices and indices",
             Self::Instance => "instances",
             Self::Key => "animated values",
+            Self::Pixel => "pixels",
+            Self::Unpacked => "bytes once decompressed",
         }
     }
 }
 
 /// What has been used of each limit.
 #[derive(Default)]
-pub(super) struct Used([Cell<u64>; Part::COUNT]);
+pub(super) struct Used {
+    parts: [Cell<u64>; Part::COUNT],
+    bytes: Cell<u64>,
+}
+
+impl Used {
+    /// For a file of so many bytes.
+    pub(super) fn new(bytes: usize) -> Self {
+        Self { bytes: Cell::new(bytes as u64), ..Self::default() }
+    }
+
+    /// A file that the file names has so many bytes.
+    pub(super) fn add_bytes(&self, bytes: usize) {
+        self.bytes.set(self.bytes.get().saturating_add(bytes as u64));
+    }
+
+    /// How much of a part the file may have.
+    fn most(&self, part: Part) -> u64 {
+        let (every_file, per_byte) = part.limit();
+        every_file.saturating_add((per_byte * self.bytes.get() as f64) as u64)
+    }
+}
 
 impl Document<'_> {
-    /// Counts `amount` more of a part on behalf of `user`; an error beyond the limit.
+    /// How much of a part the file may still have.
+    pub(super) fn left(&self, part: Part) -> u64 {
+        self.used.most(part).saturating_sub(self.used.parts[part as usize].get())
+    }
+
+    /// Counts `amount` more of a part on behalf of `user`; an error beyond the limit, and then it does not count.
     pub(super) fn count(&self, part: Part, amount: u64, user: &str) -> Result<()> {
-        let used = &self.used.0[part as usize];
-        used.set(used.get().saturating_add(amount));
-        if used.get() <= part.most() {
+        let used = &self.used.parts[part as usize];
+        let (most, sum) = (self.used.most(part), used.get().saturating_add(amount));
+        if sum <= most {
+            used.set(sum);
             return Ok(());
         }
-        Err(self.invalid(user, format!("takes this file over {} {}", part.most(), part.name())))
+        let reason =
+            format!("takes this file over {most} {}, the most for its {} bytes", part.name(), self.used.bytes.get());
+        Err(self.invalid(user, reason))
     }
 }

@@ -1,12 +1,14 @@
 //! Buffers and accessors. Every range is checked before a byte is read; nothing is trusted because the JSON says so.
 
 use std::borrow::Cow;
+use std::cell::OnceCell;
 
+use gltf::json;
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::validation::Checked;
 
 use super::budget::Part;
-use super::{Document, uri};
+use super::{Document, meshopt, uri};
 use crate::Result;
 
 /// What integers mean that are not marked as normalized.
@@ -18,51 +20,91 @@ pub(super) enum Integers {
     Normalized,
 }
 
-/// Loads every buffer of the file.
-pub(super) fn load<'a>(document: &Document<'a>, binary: Option<&'a [u8]>) -> Result<Vec<Cow<'a, [u8]>>> {
-    let mut buffers = Vec::with_capacity(document.root.buffers.len());
-    for (index, buffer) in document.root.buffers.iter().enumerate() {
-        let element = format!("buffers[{index}]");
-        let bytes: Cow<'a, [u8]> = match (&buffer.uri, binary) {
-            (Some(uri), _) => Cow::Owned(uri::read(document, &element, uri)?),
-            (None, Some(binary)) if index == 0 => Cow::Borrowed(binary),
-            (None, _) => return Err(document.invalid(element, "has neither a URI nor a binary chunk")),
-        };
-        let promised = buffer.byte_length.0;
-        if (bytes.len() as u64) < promised {
-            let reason = format!("is cut short: {promised} bytes are promised, but there are {}", bytes.len());
-            return Err(document.invalid(element, reason));
-        }
-        buffers.push(bytes);
+/// The bytes of a file, each buffer read when first asked for: what nobody uses may be missing.
+pub(super) struct Buffers<'a> {
+    binary: Option<&'a [u8]>,
+    buffers: Vec<OnceCell<Cow<'a, [u8]>>>,
+    /// What compressed buffer views hold.
+    unpacked: Vec<OnceCell<Vec<u8>>>,
+}
+
+impl<'a> Buffers<'a> {
+    pub(super) fn new(root: &json::Root, binary: Option<&'a [u8]>) -> Self {
+        let buffers = vec![OnceCell::new(); root.buffers.len()];
+        Self { binary, buffers, unpacked: vec![OnceCell::new(); root.buffer_views.len()] }
     }
-    Ok(buffers)
+}
+
+/// The bytes of a buffer.
+pub(super) fn buffer<'d>(document: &'d Document<'_>, index: usize, user: &str) -> Result<&'d [u8]> {
+    let json = document.get(&document.root.buffers, index, "buffers", user)?;
+    let slot = document.get(&document.buffers.buffers, index, "buffers", user)?;
+    if let Some(bytes) = slot.get() {
+        return Ok(bytes);
+    }
+    let element = format!("buffers[{index}]");
+    let bytes: Cow<'_, [u8]> = match (&json.uri, document.buffers.binary) {
+        (Some(uri), _) => {
+            let bytes = uri::read(document, &element, uri)?;
+            document.used.add_bytes(bytes.len());
+            Cow::Owned(bytes)
+        }
+        (None, Some(binary)) if index == 0 => Cow::Borrowed(binary),
+        (None, _) => {
+            return Err(document.invalid(element, format!("has neither a URI nor a binary chunk, but {user} needs it")));
+        }
+    };
+    let promised = json.byte_length.0;
+    if (bytes.len() as u64) < promised {
+        let reason = format!("is cut short: {promised} bytes are promised, but there are {}", bytes.len());
+        return Err(document.invalid(element, reason));
+    }
+    Ok(slot.get_or_init(|| bytes))
 }
 
 /// The bytes of a buffer view and its stride.
 pub(super) fn view<'d>(document: &'d Document<'_>, index: usize, user: &str) -> Result<(&'d [u8], Option<usize>)> {
     let view = document.get(&document.root.buffer_views, index, "bufferViews", user)?;
+    let stride = view.byte_stride.map(|stride| stride.0).filter(|&stride| stride != 0);
+    let slot = document.get(&document.buffers.unpacked, index, "bufferViews", user)?;
+    if let Some(bytes) = slot.get() {
+        return Ok((bytes, stride));
+    }
+    if let Some(bytes) = meshopt::unpacked(document, index, user)? {
+        return Ok((slot.get_or_init(|| bytes), stride));
+    }
     let element = format!("bufferViews[{index}]");
-    let buffer = document.get(&document.buffers, view.buffer.value(), "buffers", &element)?;
+    let buffer = buffer(document, view.buffer.value(), &element)?;
     let start = view.byte_offset.map_or(0, |offset| offset.0);
     let bytes = slice(buffer, start, view.byte_length.0).ok_or_else(|| {
         let length = view.byte_length.0;
         let reason = format!("takes {length} bytes from {start} of a buffer of {} bytes", buffer.len());
         document.invalid(element, reason)
     })?;
-    Ok((bytes, view.byte_stride.map(|stride| stride.0).filter(|&stride| stride != 0)))
+    Ok((bytes, stride))
 }
 
-fn slice(bytes: &[u8], start: u64, length: u64) -> Option<&[u8]> {
+pub(super) fn slice(bytes: &[u8], start: u64, length: u64) -> Option<&[u8]> {
     let end = start.checked_add(length)?;
     bytes.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?)
 }
 
-/// An accessor's elements without gaps, sparse values put in.
-struct Packed {
-    bytes: Vec<u8>,
-    count: usize,
-    component: ComponentType,
-    normalized: bool,
+/// Which elements of an accessor are wanted.
+#[derive(Clone, Copy)]
+pub(super) enum Wanted<'w> {
+    /// All of them.
+    All,
+    /// Those with these indices, which rise.
+    Only(&'w [u32]),
+}
+
+/// Elements of an accessor without gaps, sparse values put in.
+pub(super) struct Packed {
+    /// The accessor, for messages.
+    pub(super) index: usize,
+    pub(super) bytes: Vec<u8>,
+    pub(super) component: ComponentType,
+    pub(super) normalized: bool,
 }
 
 /// How many elements an accessor has.
@@ -70,47 +112,62 @@ pub(super) fn count(document: &Document<'_>, index: usize, user: &str) -> Result
     Ok(document.get(&document.root.accessors, index, "accessors", user)?.count.0)
 }
 
-/// Components of an accessor: 3 for VEC3.
-pub(super) fn components(document: &Document<'_>, index: usize, user: &str) -> Result<usize> {
+/// Whether an accessor has neither bytes nor sparse values, so that all of it is zero.
+pub(super) fn is_all_zero(document: &Document<'_>, index: usize, user: &str) -> Result<bool> {
     let accessor = document.get(&document.root.accessors, index, "accessors", user)?;
-    match accessor.type_ {
-        Checked::Valid(ty) => Ok(ty.multiplicity()),
-        Checked::Invalid => Err(document.invalid(format!("accessors[{index}]"), "has an unknown type")),
+    Ok(accessor.buffer_view.is_none() && accessor.sparse.is_none())
+}
+
+/// The type and the component type of an accessor; its type has to be one of `expected`.
+pub(super) fn types(
+    document: &Document<'_>,
+    index: usize,
+    user: &str,
+    expected: &[Type],
+) -> Result<(Type, ComponentType)> {
+    let accessor = document.get(&document.root.accessors, index, "accessors", user)?;
+    let invalid = |reason: String| document.invalid(format!("accessors[{index}]"), reason);
+    match (accessor.type_, accessor.component_type) {
+        (Checked::Valid(ty), Checked::Valid(component)) if expected.contains(&ty) => Ok((ty, component.0)),
+        (Checked::Valid(ty), Checked::Valid(_)) => Err(invalid(format!("is {ty:?}, but {user} needs {expected:?}"))),
+        (Checked::Invalid, _) => Err(invalid("has an unknown type".into())),
+        (_, Checked::Invalid) => Err(invalid("has an unknown component type".into())),
     }
 }
 
-fn packed(document: &Document<'_>, index: usize, user: &str, expected: &[Type]) -> Result<Packed> {
+/// Reads the wanted elements of an accessor.
+pub(super) fn packed(
+    document: &Document<'_>,
+    index: usize,
+    user: &str,
+    expected: &[Type],
+    wanted: Wanted<'_>,
+) -> Result<Packed> {
+    let (ty, component) = types(document, index, user, expected)?;
     let accessor = document.get(&document.root.accessors, index, "accessors", user)?;
     let element = format!("accessors[{index}]");
     let invalid = |reason: String| document.invalid(element.clone(), reason);
-    let ty = match accessor.type_ {
-        Checked::Valid(ty) if expected.contains(&ty) => ty,
-        Checked::Valid(ty) => return Err(invalid(format!("is {ty:?}, but {user} needs {expected:?}"))),
-        Checked::Invalid => return Err(invalid("has an unknown type".into())),
-    };
-    let Checked::Valid(component) = accessor.component_type else {
-        return Err(invalid("has an unknown component type".into()));
-    };
-    let component = component.0;
     let size = component.size() * ty.multiplicity();
-    document.count(Part::Element, accessor.count.0, &element)?;
+    let (all, offset) = (accessor.count.0, accessor.byte_offset.map_or(0, |offset| offset.0));
+    let count = match wanted {
+        Wanted::All => all,
+        Wanted::Only(list) => list.len() as u64,
+    };
+    document.count(Part::Element, count, &element)?;
 
-    let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
     let mut bytes = match accessor.buffer_view {
         Some(index) => {
             let (bytes, stride) = view(document, index.value(), &element)?;
-            gather(bytes, offset, accessor.count.0, size, stride).ok_or_else(|| {
-                let (count, there) = (accessor.count.0, bytes.len());
-                invalid(format!("takes {count} elements of {size} bytes from byte {offset} of a view of {there} bytes"))
+            gather(bytes, offset, all, size, stride, wanted).ok_or_else(|| {
+                let there = bytes.len();
+                invalid(format!("takes {all} elements of {size} bytes from byte {offset} of a view of {there} bytes"))
             })?
         }
-        None if accessor.sparse.is_some() => {
-            document.count(Part::ZeroElement, accessor.count.0, &element)?;
-            vec![0; accessor.count.0 as usize * size]
+        None => {
+            document.count(Part::ZeroElement, count, &element)?;
+            vec![0; count as usize * size]
         }
-        None => return Err(invalid("has no buffer view and no sparse values".into())),
     };
-    let count = bytes.len() / size;
 
     if let Some(sparse) = &accessor.sparse {
         let changed = sparse.count.0;
@@ -119,25 +176,37 @@ fn packed(document: &Document<'_>, index: usize, user: &str, expected: &[Type]) 
         };
         let part = |index: usize, offset: u64, size: usize| -> Result<Vec<u8>> {
             let (bytes, stride) = view(document, index, &element)?;
-            gather(bytes, offset, changed, size, stride)
+            gather(bytes, offset, changed, size, stride, Wanted::All)
                 .ok_or_else(|| invalid(format!("has {changed} sparse values, more than their view holds")))
         };
         let (indices, values) = (&sparse.indices, &sparse.values);
         let indices = part(indices.buffer_view.value(), indices.byte_offset.0, index_component.0.size())?;
         let values = part(values.buffer_view.value(), values.byte_offset.0, size)?;
         for (at, value) in integers(&indices, index_component.0).zip(values.chunks_exact(size)) {
-            let start = at as usize * size;
-            let target = bytes
-                .get_mut(start..start + size)
-                .ok_or_else(|| invalid(format!("has a sparse index {at} beyond its {count} elements")))?;
-            target.copy_from_slice(value);
+            if u64::from(at) >= all {
+                return Err(invalid(format!("has a sparse index {at} beyond its {all} elements")));
+            }
+            let place = match wanted {
+                Wanted::All => Some(at as usize),
+                Wanted::Only(list) => list.binary_search(&at).ok(),
+            };
+            if let Some(place) = place {
+                bytes[place * size..(place + 1) * size].copy_from_slice(value);
+            }
         }
     }
-    Ok(Packed { bytes, count, component, normalized: accessor.normalized })
+    Ok(Packed { index, bytes, component, normalized: accessor.normalized })
 }
 
-/// Copies `count` elements of `size` bytes out of strided bytes; `None` if they do not fit.
-fn gather(bytes: &[u8], offset: u64, count: u64, size: usize, stride: Option<usize>) -> Option<Vec<u8>> {
+/// Copies wanted ones of `count` elements of `size` bytes out of strided bytes; `None` if they do not fit.
+fn gather(
+    bytes: &[u8],
+    offset: u64,
+    count: u64,
+    size: usize,
+    stride: Option<usize>,
+    wanted: Wanted<'_>,
+) -> Option<Vec<u8>> {
     if count == 0 {
         return Some(Vec::new());
     }
@@ -147,14 +216,24 @@ fn gather(bytes: &[u8], offset: u64, count: u64, size: usize, stride: Option<usi
     }
     let length = (count - 1).checked_mul(stride as u64)?.checked_add(size as u64)?;
     let bytes = slice(bytes, offset, length)?;
-    if stride == size {
-        return Some(bytes.to_vec());
+    let element = |index: usize| &bytes[index * stride..index * stride + size];
+    match wanted {
+        Wanted::All if stride == size => Some(bytes.to_vec()),
+        Wanted::All => {
+            let mut packed = Vec::with_capacity(count as usize * size);
+            (0..count as usize).for_each(|index| packed.extend_from_slice(element(index)));
+            Some(packed)
+        }
+        Wanted::Only(list) => {
+            // They rise, so the last is the largest.
+            if list.last().is_some_and(|&last| u64::from(last) >= count) {
+                return None;
+            }
+            let mut packed = Vec::with_capacity(list.len() * size);
+            list.iter().for_each(|&index| packed.extend_from_slice(element(index as usize)));
+            Some(packed)
+        }
     }
-    let mut packed = Vec::with_capacity(count as usize * size);
-    for element in bytes.chunks(stride) {
-        packed.extend_from_slice(&element[..size]);
-    }
-    Some(packed)
 }
 
 /// Unsigned integers of a packed index list.
@@ -183,6 +262,18 @@ fn number(bytes: &[u8], component: ComponentType, normalized: bool) -> f32 {
     if normalized { (value / most).max(-1.0) } else { value }
 }
 
+/// The accessor type of vectors of `N` numbers.
+pub(super) fn type_of<const N: usize>() -> Type {
+    match N {
+        1 => Type::Scalar,
+        2 => Type::Vec2,
+        3 => Type::Vec3,
+        4 => Type::Vec4,
+        16 => Type::Mat4,
+        _ => unreachable!("glTF has no vectors of {N} numbers"),
+    }
+}
+
 /// Reads vectors of `N` numbers of any component type.
 pub(super) fn floats<const N: usize>(
     document: &Document<'_>,
@@ -190,62 +281,63 @@ pub(super) fn floats<const N: usize>(
     user: &str,
     meaning: Integers,
 ) -> Result<Vec<[f32; N]>> {
-    let ty = match N {
-        1 => Type::Scalar,
-        2 => Type::Vec2,
-        3 => Type::Vec3,
-        4 => Type::Vec4,
-        16 => Type::Mat4,
-        _ => unreachable!("glTF has no vectors of {N} numbers"),
-    };
-    let packed = packed(document, index, user, &[ty])?;
-    if N == 16 && packed.component != ComponentType::F32 {
-        return Err(document.invalid(format!("accessors[{index}]"), "has matrices that are not of floats"));
-    }
-    let normalized = packed.normalized || meaning == Integers::Normalized;
-    let step = packed.component.size();
-    let values: Vec<[f32; N]> = packed
-        .bytes
-        .chunks_exact(step * N)
-        .map(|element| std::array::from_fn(|i| number(&element[i * step..], packed.component, normalized)))
-        .collect();
-    debug_assert_eq!(values.len(), packed.count, "an accessor is read whole");
-    if let Some(bad) = values.iter().position(|v| v.iter().any(|x| !x.is_finite())) {
-        let reason = format!("holds {:?} at element {bad}; {user} needs finite numbers", values[bad]);
-        return Err(document.invalid(format!("accessors[{index}]"), reason));
-    }
-    Ok(values)
+    packed(document, index, user, &[type_of::<N>()], Wanted::All)?.floats(document, user, meaning)
 }
 
 /// Reads indices of vertices.
 pub(super) fn indices(document: &Document<'_>, index: usize, user: &str) -> Result<Vec<u32>> {
-    let packed = packed(document, index, user, &[Type::Scalar])?;
-    unsigned(document, index, &packed, "indices")?;
+    let packed = packed(document, index, user, &[Type::Scalar], Wanted::All)?;
+    packed.unsigned(document, "indices")?;
     Ok(integers(&packed.bytes, packed.component).collect())
 }
 
-/// Reads four joints per vertex.
-pub(super) fn joints(document: &Document<'_>, index: usize, user: &str) -> Result<Vec<[u16; 4]>> {
-    let packed = packed(document, index, user, &[Type::Vec4])?;
-    unsigned(document, index, &packed, "joints")?;
-    let flat: Vec<u32> = integers(&packed.bytes, packed.component).collect();
-    flat.chunks_exact(4)
-        .map(|four| {
-            let joint = |i: usize| {
-                u16::try_from(four[i])
-                    .map_err(|_| document.invalid(format!("accessors[{index}]"), "has a joint beyond 65535"))
-            };
-            Ok([joint(0)?, joint(1)?, joint(2)?, joint(3)?])
-        })
-        .collect()
-}
+impl Packed {
+    /// As vectors of `N` finite numbers.
+    pub(super) fn floats<const N: usize>(
+        &self,
+        document: &Document<'_>,
+        user: &str,
+        meaning: Integers,
+    ) -> Result<Vec<[f32; N]>> {
+        if N == 16 && self.component != ComponentType::F32 {
+            return Err(document.invalid(format!("accessors[{}]", self.index), "has matrices that are not of floats"));
+        }
+        let normalized = self.normalized || meaning == Integers::Normalized;
+        let step = self.component.size();
+        let values: Vec<[f32; N]> = self
+            .bytes
+            .chunks_exact(step * N)
+            .map(|element| std::array::from_fn(|i| number(&element[i * step..], self.component, normalized)))
+            .collect();
+        if let Some(bad) = values.iter().position(|v| v.iter().any(|x| !x.is_finite())) {
+            let reason = format!("holds {:?} at element {bad}; {user} needs finite numbers", values[bad]);
+            return Err(document.invalid(format!("accessors[{}]", self.index), reason));
+        }
+        Ok(values)
+    }
 
-fn unsigned(document: &Document<'_>, index: usize, packed: &Packed, what: &str) -> Result<()> {
-    match packed.component {
-        ComponentType::U8 | ComponentType::U16 | ComponentType::U32 => Ok(()),
-        other => {
-            let reason = format!("has {what} of type {other:?}; they have to be unsigned integers");
-            Err(document.invalid(format!("accessors[{index}]"), reason))
+    /// As four joints per vertex.
+    pub(super) fn joints(&self, document: &Document<'_>) -> Result<Vec<[u16; 4]>> {
+        self.unsigned(document, "joints")?;
+        let flat: Vec<u32> = integers(&self.bytes, self.component).collect();
+        flat.chunks_exact(4)
+            .map(|four| {
+                let joint = |i: usize| {
+                    let wrong = || document.invalid(format!("accessors[{}]", self.index), "has a joint beyond 65535");
+                    u16::try_from(four[i]).map_err(|_| wrong())
+                };
+                Ok([joint(0)?, joint(1)?, joint(2)?, joint(3)?])
+            })
+            .collect()
+    }
+
+    fn unsigned(&self, document: &Document<'_>, what: &str) -> Result<()> {
+        match self.component {
+            ComponentType::U8 | ComponentType::U16 | ComponentType::U32 => Ok(()),
+            other => {
+                let reason = format!("has {what} of type {other:?}; they have to be unsigned integers");
+                Err(document.invalid(format!("accessors[{}]", self.index), reason))
+            }
         }
     }
 }

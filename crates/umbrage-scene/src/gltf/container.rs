@@ -46,8 +46,16 @@ pub(super) fn split(bytes: &[u8]) -> Result<Chunks<'_>, String> {
         rest = &data[size..];
     }
     match chunks.as_slice() {
-        [(b"JSON", json)] => Ok(Chunks { json, binary: None }),
-        [(b"JSON", json), (kind, binary)] => Ok(Chunks { json, binary: (*kind == b"BIN\0").then_some(*binary) }),
+        [(b"JSON", json)] => Ok(Chunks { json: unpadded(json), binary: None }),
+        [(b"JSON", json), (kind, binary)] => {
+            Ok(Chunks { json: unpadded(json), binary: (*kind == b"BIN\0").then_some(*binary) })
+        }
         _ => Err("is a .glb whose first chunk is not JSON".into()),
     }
+}
+
+/// A JSON without its padding: blanks, as the specification wants them, are none of our business, zeros are.
+fn unpadded(json: &[u8]) -> &[u8] {
+    let end = json.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
+    &json[..end]
 }

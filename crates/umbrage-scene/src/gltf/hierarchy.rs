@@ -11,10 +11,12 @@ use crate::error::element;
 pub(super) struct Hierarchy {
     /// All nodes of the file, parents before children, otherwise as the file has them.
     pub(super) order: Vec<usize>,
-    /// The parent of each node of the file.
+    /// The parent of each node of the file; none for roots of the scene.
     pub(super) parent: Vec<Option<usize>>,
     /// Whether each node of the file belongs to the scene that is shown.
     pub(super) shown: Vec<bool>,
+    /// Whether each node of the file is visible (KHR_node_visibility), which its ancestors have to be, too.
+    pub(super) visible: Vec<bool>,
 }
 
 /// Name of a node for messages.
@@ -23,27 +25,37 @@ pub(super) fn node_name(document: &Document<'_>, index: usize) -> String {
     element("nodes", index, name.unwrap_or_default())
 }
 
-pub(super) fn sort(document: &mut Document<'_>) -> Result<Hierarchy> {
+pub(super) fn sort(document: &Document<'_>) -> Result<Hierarchy> {
     let nodes = &document.root.nodes;
     let mut parent = vec![None; nodes.len()];
     for (index, node) in nodes.iter().enumerate() {
         for child in node.children.iter().flatten() {
             let child = child.value();
             document.get(nodes, child, "nodes", &node_name(document, index))?;
-            if let Some(other) = parent[child].replace(index) {
-                let reason = format!("is a child of nodes[{other}] and of nodes[{index}]; it may have one parent");
-                return Err(document.invalid(node_name(document, child), reason));
+            match parent[child].replace(index) {
+                None => {}
+                Some(other) if other == index => {
+                    document
+                        .notes
+                        .add(node_name(document, child), "listed twice among its parent's children; shown once");
+                }
+                Some(other) => {
+                    let reason = format!("is a child of nodes[{other}] and of nodes[{index}]; it may have one parent");
+                    return Err(document.invalid(node_name(document, child), reason));
+                }
             }
         }
     }
 
     // Kahn's algorithm; the heap keeps the file's order wherever it is a possible one.
+    let mut children = vec![Vec::new(); nodes.len()];
+    (0..nodes.len()).for_each(|i| parent[i].into_iter().for_each(|parent: usize| children[parent].push(i)));
     let mut ready: BinaryHeap<Reverse<usize>> =
         (0..nodes.len()).filter(|&i| parent[i].is_none()).map(Reverse).collect();
     let mut order = Vec::with_capacity(nodes.len());
     while let Some(Reverse(index)) = ready.pop() {
         order.push(index);
-        ready.extend(nodes[index].children.iter().flatten().map(|child| Reverse(child.value())));
+        ready.extend(children[index].iter().copied().map(Reverse));
     }
     if order.len() < nodes.len() {
         let mut is_placed = vec![false; nodes.len()];
@@ -54,16 +66,25 @@ pub(super) fn sort(document: &mut Document<'_>) -> Result<Hierarchy> {
         );
     }
 
-    let shown = shown(document, &order, &parent)?;
-    let hidden = shown.iter().filter(|shown| !**shown).count();
-    if hidden > 0 {
-        document.notes.add(format!("{hidden} nodes do not belong to the scene that is shown"));
+    let shown = shown(document, &order, &mut parent)?;
+    let hidden = |shown: &[bool]| shown.iter().position(|shown| !shown);
+    if let Some(first) = hidden(&shown) {
+        let count = shown.iter().filter(|shown| !**shown).count();
+        document
+            .notes
+            .add(node_name(document, first), format!("{count} nodes do not belong to the scene that is shown"));
     }
-    Ok(Hierarchy { order, parent, shown })
+    let visible = visible(document, &order, &parent);
+    if let Some(first) = visible.iter().zip(&shown).position(|(visible, shown)| *shown && !visible) {
+        let count = visible.iter().zip(&shown).filter(|(visible, shown)| **shown && !**visible).count();
+        document.notes.add(node_name(document, first), format!("{count} nodes are invisible (KHR_node_visibility)"));
+    }
+    Ok(Hierarchy { order, parent, shown, visible })
 }
 
-/// The nodes of the default scene, or of the first one; all of them if the file has no scenes.
-fn shown(document: &Document<'_>, order: &[usize], parent: &[Option<usize>]) -> Result<Vec<bool>> {
+/// The nodes of the default scene, or of the first one; all of them if the file has no scenes. A node that the scene
+/// lists besides its parent is shown once, under its parent; one whose parent is not of the scene becomes a root.
+fn shown(document: &Document<'_>, order: &[usize], parent: &mut [Option<usize>]) -> Result<Vec<bool>> {
     let root = &document.root;
     if root.scenes.is_empty() && root.scene.is_none() {
         return Ok(vec![true; root.nodes.len()]);
@@ -74,16 +95,38 @@ fn shown(document: &Document<'_>, order: &[usize], parent: &[Option<usize>]) -> 
     let mut shown = vec![false; root.nodes.len()];
     for node in &scene.nodes {
         document.get(&root.nodes, node.value(), "nodes", &user)?;
-        if let Some(parent) = parent[node.value()] {
-            let reason = format!("is a root of {user}, but also a child of nodes[{parent}]");
-            return Err(document.invalid(node_name(document, node.value()), reason));
+        if std::mem::replace(&mut shown[node.value()], true) {
+            document.notes.add(node_name(document, node.value()), format!("listed twice in {user}; shown once"));
         }
-        shown[node.value()] = true;
     }
     for &node in order {
-        if let Some(parent) = parent[node] {
-            shown[node] = shown[parent];
+        match parent[node] {
+            Some(above) if shown[above] => {
+                if shown[node] {
+                    let remark = format!("listed in {user} besides its parent; shown once, under its parent");
+                    document.notes.add(node_name(document, node), remark);
+                }
+                shown[node] = true;
+            }
+            Some(_) if shown[node] => {
+                let remark = format!("listed in {user} without its parent; the parent's transform is not applied");
+                document.notes.add(node_name(document, node), remark);
+                parent[node] = None;
+            }
+            _ => {}
         }
     }
     Ok(shown)
+}
+
+/// KHR_node_visibility: a node is visible if it and all its ancestors say so.
+fn visible(document: &Document<'_>, order: &[usize], parent: &[Option<usize>]) -> Vec<bool> {
+    let mut visible = vec![true; order.len()];
+    for &node in order {
+        let extensions = document.root.nodes[node].extensions.as_ref();
+        let own =
+            extensions.and_then(|extensions| extensions.others.get("KHR_node_visibility")?.get("visible")?.as_bool());
+        visible[node] = own != Some(false) && parent[node].is_none_or(|parent| visible[parent]);
+    }
+    visible
 }

@@ -1,65 +1,98 @@
-//! Pictures: decoded within limits, so that a small file cannot fill the memory.
+//! Pictures of textures: found, measured, and decoded in a size that the budget allows.
 
-use std::collections::HashMap;
-use std::rc::Rc;
+use std::borrow::Cow;
 
-use image::ImageFormat;
+use image::{ImageFormat, RgbaImage};
 
-use super::{Document, buffers, uri};
+use super::budget::Part;
+use super::{Document, basis, buffers, uri};
 use crate::error::element;
-use crate::picture::decode;
+use crate::picture;
 use crate::{Error, Result};
 
-/// Most bytes of all decoded pictures of a scene together, at four bytes a pixel.
-const MOST_BYTES: u64 = 512 << 20;
+/// What pictures of textures may be.
+const FORMATS: [ImageFormat; 3] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP];
 
-/// 8-bit sRGB RGBA pixels.
-pub(super) struct Pixels {
-    pub(super) width: u32,
-    pub(super) height: u32,
-    pub(super) rgba: Vec<u8>,
+/// Most bytes of one decoded picture as the file has it. Ours: a JPEG of 16384 × 8192 pixels fits.
+const MOST_BYTES: u64 = 384 << 20;
+
+/// How a picture is encoded.
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    Plain(ImageFormat),
+    /// KHR_texture_basisu.
+    Basis,
 }
 
-/// The pictures of a document, each decoded when first asked for.
-#[derive(Default)]
-pub(super) struct Images {
-    decoded: HashMap<usize, Rc<Pixels>>,
-    bytes: u64,
+/// A picture whose header has been read.
+#[derive(Clone, Debug)]
+pub(super) struct Image {
+    pub(super) index: usize,
+    /// For messages.
+    pub(super) element: String,
+    kind: Kind,
+    /// Pixels across and down.
+    pub(super) size: [u32; 2],
+    /// Bytes as encoded.
+    pub(super) encoded: u64,
 }
 
-impl Images {
-    /// The pixels of `images[index]`.
-    pub(super) fn get(&mut self, document: &Document<'_>, index: usize, user: &str) -> Result<Rc<Pixels>> {
+impl Image {
+    /// Finds and measures `images[index]`.
+    pub(super) fn open(document: &Document<'_>, index: usize, user: &str) -> Result<Self> {
         let image = document.get(&document.root.images, index, "images", user)?;
-        if let Some(pixels) = self.decoded.get(&index) {
-            return Ok(Rc::clone(pixels));
-        }
-        let name = element("images", index, image.name.as_deref().unwrap_or_default());
-        let fetched;
-        let bytes = match (&image.uri, image.buffer_view) {
-            (Some(uri), _) => {
-                fetched = uri::read(document, &name, uri)?;
-                fetched.as_slice()
-            }
-            (None, Some(view)) => buffers::view(document, view.value(), &name)?.0,
-            (None, None) => return Err(document.invalid(name, "has neither a URI nor a buffer view")),
+        let element = element("images", index, image.name.as_deref().unwrap_or_default());
+        let bytes = bytes(document, index, &element)?;
+        let failed = |reason| failed(document, &element, reason);
+        let measured = if basis::is_ktx(&bytes) {
+            basis::size(&bytes).map(|size| (Kind::Basis, size))
+        } else {
+            picture::format(&bytes, &FORMATS)
+                .and_then(|format| picture::size(&bytes, format).map(|size| (Kind::Plain(format), size)))
         };
-        let failed = |reason| Error::Image { file: document.file.to_owned(), element: name.clone(), reason };
-        let left = MOST_BYTES.saturating_sub(self.bytes);
-        let rgba = decode(bytes, &[ImageFormat::Png, ImageFormat::Jpeg], left).map_err(failed)?.into_rgba8();
-        let pixels = Rc::new(Pixels { width: rgba.width(), height: rgba.height(), rgba: rgba.into_raw() });
-        self.charge(document, user, pixels.rgba.len())?;
-        self.decoded.insert(index, Rc::clone(&pixels));
-        Ok(pixels)
+        let (kind, size) = measured.map_err(failed)?;
+        let encoded = bytes.len() as u64;
+        Ok(Self { index, element, kind, size, encoded })
     }
 
-    /// Counts bytes against the limit of the whole scene.
-    pub(super) fn charge(&mut self, document: &Document<'_>, user: &str, bytes: usize) -> Result<()> {
-        self.bytes += bytes as u64;
-        if self.bytes <= MOST_BYTES {
-            return Ok(());
-        }
-        let reason = format!("takes the pictures of this file over {} MiB", MOST_BYTES >> 20);
-        Err(Error::Image { file: document.file.to_owned(), element: user.to_owned(), reason })
+    /// How often the edges have to be halved until none is longer than `longest`.
+    pub(super) fn halvings(&self, longest: u32) -> u32 {
+        let edge = self.size[0].max(self.size[1]);
+        (0..32).find(|halvings| edge.div_ceil(1 << halvings) <= longest).unwrap_or(31)
+    }
+
+    /// Bytes of its pixels once halved so often, at four each.
+    pub(super) fn pixel_bytes(&self, halvings: u32) -> u64 {
+        let [width, height] = self.size.map(|edge| u64::from(edge.div_ceil(1 << halvings)));
+        4 * width * height
+    }
+
+    /// 8-bit sRGB RGBA pixels, each edge halved so often.
+    pub(super) fn decode(&self, document: &Document<'_>, halvings: u32) -> Result<RgbaImage> {
+        let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
+        document.count(Part::Pixel, pixels, &self.element).map_err(|error| match error {
+            Error::Invalid { reason, .. } => failed(document, &self.element, reason),
+            other => other,
+        })?;
+        let bytes = bytes(document, self.index, &self.element)?;
+        let decoded = match self.kind {
+            Kind::Plain(format) => picture::decode(&bytes, format, MOST_BYTES).map(|p| picture::halved(p, halvings)),
+            Kind::Basis => basis::decode(&bytes, halvings),
+        };
+        decoded.map_err(|reason| failed(document, &self.element, reason))
+    }
+}
+
+fn failed(document: &Document<'_>, element: &str, reason: String) -> Error {
+    Error::Image { file: document.file.to_owned(), element: element.to_owned(), reason }
+}
+
+/// The encoded picture.
+fn bytes<'d>(document: &'d Document<'_>, index: usize, element: &str) -> Result<Cow<'d, [u8]>> {
+    let image = document.get(&document.root.images, index, "images", element)?;
+    match (&image.uri, image.buffer_view) {
+        (Some(uri), _) => uri::read(document, element, uri).map(Cow::Owned),
+        (None, Some(view)) => Ok(Cow::Borrowed(buffers::view(document, view.value(), element)?.0)),
+        (None, None) => Err(document.invalid(element, "has neither a URI nor a buffer view")),
     }
 }

@@ -1,17 +1,16 @@
 //! Materials and the textures of their base colour.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use gltf::json;
 use gltf::json::material::AlphaMode as JsonAlpha;
-use gltf::json::texture::WrappingMode;
 use gltf::json::validation::Checked;
 use serde::Deserialize;
 
 use super::Document;
-use super::images::Images;
+use super::textures::Textures;
 use crate::error::element;
-use crate::{AlphaMode, Material, Result, Texture, Wrap};
+use crate::{AlphaMode, Error, Material, Result, Texture};
 
 /// Which texture coordinates a material wants, and what becomes of them (KHR_texture_transform).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,48 +50,97 @@ fn white() -> [f32; 4] {
 /// All materials, the textures they use, and per material where its texture coordinates come from.
 type Loaded = (Vec<Material>, Vec<Texture>, Vec<Option<TextureCoordinates>>);
 
-pub(super) fn load(document: &mut Document<'_>) -> Result<Loaded> {
-    let mut textures = Textures::default();
+pub(super) fn load(document: &Document<'_>) -> Result<Loaded> {
+    let mut users = BTreeMap::new();
+    let mut base_colors = Vec::with_capacity(document.root.materials.len());
+    for (index, json) in document.root.materials.iter().enumerate() {
+        let user = element("materials", index, json.name.as_deref().unwrap_or_default());
+        let (color, info) = base_color(document, json, &user)?;
+        if let Some(info) = &info {
+            users.entry(info.index.value()).or_insert_with(|| user.clone());
+        }
+        base_colors.push((user, color, info));
+    }
+    let textures = Textures::load(document, &users)?;
     let (mut materials, mut coordinates) = (Vec::new(), Vec::new());
-    for index in 0..document.root.materials.len() {
-        let (material, source) = load_one(document, index, &mut textures)?;
+    for (json, (user, color, info)) in document.root.materials.iter().zip(base_colors) {
+        let mut material = load_one(document, json, &user, color)?;
+        let mut source = None;
+        if let Some(info) = info {
+            material.base_color_texture = texture(document, &textures, info.index.value(), &material, &user)?;
+            if material.base_color_texture.is_some() {
+                source = Some(texture_coordinates(document, &info, &user)?);
+            }
+        }
         materials.push(material);
         coordinates.push(source);
     }
     Ok((materials, textures.list, coordinates))
 }
 
-fn load_one(
-    document: &mut Document<'_>,
+/// The texture of a material. One that cannot be read is left out, unless an alpha mask depends on it.
+fn texture(
+    document: &Document<'_>,
+    textures: &Textures,
     index: usize,
-    textures: &mut Textures,
-) -> Result<(Material, Option<TextureCoordinates>)> {
-    let json = &document.root.materials[index];
-    let name = json.name.clone().unwrap_or_default();
-    let user = element("materials", index, &name);
-    let pbr = &json.pbr_metallic_roughness;
-    let (mut base_color, mut info) = (pbr.base_color_factor.0, pbr.base_color_texture.clone());
-    let extension = |name: &str| json.extensions.as_ref().and_then(|extensions| extensions.others.get(name));
-
-    if let Some(value) = extension("KHR_materials_pbrSpecularGlossiness") {
-        let old = SpecularGlossiness::deserialize(value).map_err(|error| {
-            document.invalid(user.as_str(), format!("KHR_materials_pbrSpecularGlossiness: {error}"))
-        })?;
-        (base_color, info) = (old.diffuse_factor, old.diffuse_texture);
+    material: &Material,
+    user: &str,
+) -> Result<Option<usize>> {
+    let error = match textures.places.get(&index) {
+        Some(Ok(place)) => return Ok(Some(*place)),
+        Some(Err(error)) => error,
+        None => return Ok(None),
+    };
+    if matches!(material.alpha, AlphaMode::Mask { .. }) {
+        return Err(Error::Image {
+            file: document.file.to_owned(),
+            element: user.to_owned(),
+            reason: format!("its alpha mask needs textures[{index}], which cannot be read: {}", document.said(error)),
+        });
     }
-    document.finite(&user, "the base colour", &base_color)?;
+    // By the picture, so that the same fault of many is one line.
+    match error {
+        Error::Image { element, reason, .. } => {
+            document.notes.add(format!("{element} of {user}"), format!("its texture is left out: {reason}"));
+        }
+        error => document.notes.add(user, format!("textures[{index}] is left out: {}", document.said(error))),
+    }
+    Ok(None)
+}
+
+/// Linear RGBA of a material, and where its texture comes from.
+fn base_color(
+    document: &Document<'_>,
+    json: &json::Material,
+    user: &str,
+) -> Result<([f32; 4], Option<json::texture::Info>)> {
+    let extension = json.extensions.as_ref().and_then(|e| e.others.get("KHR_materials_pbrSpecularGlossiness"));
+    if let Some(value) = extension {
+        let old = SpecularGlossiness::deserialize(value)
+            .map_err(|error| document.invalid(user, format!("KHR_materials_pbrSpecularGlossiness: {error}")))?;
+        return Ok((old.diffuse_factor, old.diffuse_texture));
+    }
+    let pbr = &json.pbr_metallic_roughness;
+    Ok((pbr.base_color_factor.0, pbr.base_color_texture.clone()))
+}
+
+/// A material without its texture.
+fn load_one(document: &Document<'_>, json: &json::Material, user: &str, base_color: [f32; 4]) -> Result<Material> {
+    let name = json.name.clone().unwrap_or_default();
+    let extension = |name: &str| json.extensions.as_ref().and_then(|extensions| extensions.others.get(name));
+    document.finite(user, "the base colour", &base_color)?;
 
     let mut emissive = json.emissive_factor.0;
     if let Some(strength) = extension("KHR_materials_emissive_strength").and_then(|e| e.get("emissiveStrength")) {
         let strength =
-            strength.as_f64().ok_or_else(|| document.invalid(user.as_str(), "emissiveStrength has to be a number"))?;
+            strength.as_f64().ok_or_else(|| document.invalid(user, "emissiveStrength has to be a number"))?;
         emissive = emissive.map(|c| c * strength as f32);
     }
-    document.finite(&user, "emissiveFactor", &emissive)?;
+    document.finite(user, "emissiveFactor", &emissive)?;
     let textured_glow = json.emissive_texture.is_some() && emissive != [0.0; 3];
 
     let cutoff = json.alpha_cutoff.unwrap_or_default().0;
-    document.finite(&user, "alphaCutoff", &[cutoff])?;
+    document.finite(user, "alphaCutoff", &[cutoff])?;
     let alpha = match json.alpha_mode {
         Checked::Valid(JsonAlpha::Opaque) => AlphaMode::Opaque,
         Checked::Valid(JsonAlpha::Mask) => AlphaMode::Mask { cutoff },
@@ -101,20 +149,12 @@ fn load_one(
     };
     let double_sided = json.double_sided;
 
-    let mut base_color_texture = None;
-    let mut coordinates = None;
-    if let Some(info) = info {
-        base_color_texture = textures.get(document, info.index.value(), &user)?;
-        if base_color_texture.is_some() {
-            coordinates = Some(texture_coordinates(document, &info, &user)?);
-        }
-    }
     if textured_glow {
         // Without its texture the whole surface would glow.
         emissive = [0.0; 3];
-        document.notes.add("an emissive texture is left out, and the emission of its material with it");
+        document.notes.add(user, "its emissive texture is left out, and its emission with it");
     }
-    Ok((Material { name, base_color, base_color_texture, alpha, double_sided, emissive }, coordinates))
+    Ok(Material { name, base_color, base_color_texture: None, alpha, double_sided, emissive })
 }
 
 fn texture_coordinates(document: &Document<'_>, info: &json::texture::Info, user: &str) -> Result<TextureCoordinates> {
@@ -130,54 +170,6 @@ fn texture_coordinates(document: &Document<'_>, info: &json::texture::Info, user
         rotation: f64::from(rotation),
         scale: scale.map(f64::from),
     })
-}
-
-/// Textures in use; the same picture with the same addressing is stored once.
-#[derive(Default)]
-struct Textures {
-    images: Images,
-    list: Vec<Texture>,
-    known: HashMap<(usize, [Wrap; 2]), usize>,
-    pictures_in_use: HashMap<usize, usize>,
-}
-
-impl Textures {
-    /// Index into the scene's textures of `textures[index]` of the file; `None` if it has no picture that can be read.
-    fn get(&mut self, document: &mut Document<'_>, index: usize, user: &str) -> Result<Option<usize>> {
-        let texture = document.get(&document.root.textures, index, "textures", user)?;
-        let user = element("textures", index, texture.name.as_deref().unwrap_or_default());
-        let wrap = match texture.sampler {
-            Some(sampler) => {
-                let sampler = document.get(&document.root.samplers, sampler.value(), "samplers", &user)?;
-                let wrap = |mode| match mode {
-                    Checked::Valid(WrappingMode::Repeat) => Ok(Wrap::Repeat),
-                    Checked::Valid(WrappingMode::ClampToEdge) => Ok(Wrap::Clamp),
-                    Checked::Valid(WrappingMode::MirroredRepeat) => Ok(Wrap::Mirror),
-                    Checked::Invalid => Err(document.invalid(user.as_str(), "has an unknown wrapping mode")),
-                };
-                [wrap(sampler.wrap_s)?, wrap(sampler.wrap_t)?]
-            }
-            None => [Wrap::Repeat; 2],
-        };
-        let source = texture.source.value();
-        // The `gltf` crate's way of saying that there is no `source`: the picture is in an extension's format.
-        if source == u32::MAX as usize {
-            document.notes.add("a texture has its picture in an extension's format only and is left out");
-            return Ok(None);
-        }
-        if let Some(&known) = self.known.get(&(source, wrap)) {
-            return Ok(Some(known));
-        }
-        let pixels = self.images.get(document, source, &user)?;
-        let copies = self.pictures_in_use.entry(source).or_default();
-        if *copies > 0 {
-            self.images.charge(document, &user, pixels.rgba.len())?;
-        }
-        *copies += 1;
-        self.list.push(Texture { width: pixels.width, height: pixels.height, rgba: pixels.rgba.clone(), wrap });
-        self.known.insert((source, wrap), self.list.len() - 1);
-        Ok(Some(self.list.len() - 1))
-    }
 }
 
 #[cfg(test)]

@@ -2,18 +2,18 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, Mat4};
 use gltf::json;
-use gltf::json::camera::Type as CameraType;
-use gltf::json::extensions::scene::khr_lights_punctual::{Light as JsonLight, Type as LightType};
-use gltf::json::validation::Checked;
 
 use super::budget::Part;
 use super::buffers::{self, Integers};
 use super::decompose::decompose;
 use super::exact::{ExactNode, or_rounded};
 use super::hierarchy::{self, Hierarchy, node_name};
-use super::{Document, Notes};
+use super::{Document, cameras, lights};
 use crate::error::element;
-use crate::{Lens, LightKind, Node, Result, Scene, SceneCamera, SceneLight, Skin, Trs};
+use crate::{Node, Result, Scene, Skin, Trs};
+
+/// How far the last row of a matrix may be from 0 0 0 1. Ours: a hundred times what single precision leaves of products.
+const AFFINE_TOLERANCE: f64 = 1e-4;
 
 /// Where the nodes of the file have gone.
 pub(super) struct Places {
@@ -21,37 +21,41 @@ pub(super) struct Places {
     pub(super) of_file_node: Vec<usize>,
 }
 
-/// Adds nodes, skins, cameras and lights to a scene that has its meshes.
-pub(super) fn load(document: &mut Document<'_>, scene: &mut Scene) -> Result<Places> {
+/// Adds nodes, skins, cameras and lights to a scene that has its meshes. Cameras and lights that make no sense are left
+/// out.
+pub(super) fn load(document: &Document<'_>, scene: &mut Scene) -> Result<Places> {
     let hierarchy = hierarchy::sort(document)?;
-    let mut notes = std::mem::take(&mut document.notes);
     let mut places = Places { of_file_node: vec![usize::MAX; document.root.nodes.len()] };
     for &index in &hierarchy.order {
-        add_node(document, &mut notes, scene, &hierarchy, index, &mut places)?;
+        add_node(document, scene, &hierarchy, index, &mut places)?;
     }
     add_skins(document, scene, &places)?;
     let (mut cameras, mut lights) = (Vec::new(), Vec::new());
-    for &index in &hierarchy.order {
-        if hierarchy.shown[index] {
-            let json = &document.root.nodes[index];
-            let (user, node) = (node_name(document, index), places.of_file_node[index]);
-            cameras.extend(camera(document, json, &user, node)?);
-            lights.extend(light(document, json, &user, node)?);
-            check_skin(document, scene, node, &user)?;
+    for &index in hierarchy.order.iter().filter(|&&index| hierarchy.shown[index]) {
+        let json = &document.root.nodes[index];
+        let (user, node) = (node_name(document, index), places.of_file_node[index]);
+        match cameras::load(document, json, &user, node) {
+            Ok(camera) => cameras.extend(camera),
+            Err(error) => document.leave_out(&format!("camera of {user}"), &error),
         }
+        if hierarchy.visible[index] {
+            match lights::load(document, json, &user, node) {
+                Ok(light) => lights.extend(light),
+                Err(error) => document.leave_out(&format!("light of {user}"), &error),
+            }
+        }
+        check_skin(document, scene, node, &user)?;
     }
     // In the order of the file's own lists, so that an index means what it means in the file.
     cameras.sort_by_key(|(index, _)| *index);
     lights.sort_by_key(|(index, _)| *index);
     scene.cameras = cameras.into_iter().map(|(_, camera)| camera).collect();
     scene.lights = lights.into_iter().map(|(_, light)| light).collect();
-    document.notes = notes;
     Ok(places)
 }
 
 fn add_node(
     document: &Document<'_>,
-    notes: &mut Notes,
     scene: &mut Scene,
     hierarchy: &Hierarchy,
     index: usize,
@@ -66,12 +70,16 @@ fn add_node(
         let outer = Node { name: format!("{} (outer part of its matrix)", node.name), ..node.clone() };
         scene.nodes.push(outer);
         node = Node { parent: Some(scene.nodes.len() - 1), local: inner, ..node };
-        notes.add("the matrix of a node shears; it became two nodes");
+        document.notes.add(&user, "its matrix shears; it became two nodes");
     }
 
     if let Some(mesh) = json.mesh {
         document.get(&document.root.meshes, mesh.value(), "meshes", &user)?;
-        node.mesh = hierarchy.shown[index].then_some(mesh.value());
+        node.mesh = (hierarchy.shown[index] && hierarchy.visible[index]).then_some(mesh.value());
+    }
+    if let Some(weights) = &json.weights {
+        document.finite(&user, "weights", weights)?;
+        node.weights.clone_from(weights);
     }
     if let Some(skin) = json.skin {
         document.get(&document.root.skins, skin.value(), "skins", &user)?;
@@ -86,10 +94,10 @@ fn add_node(
     if let (Some(extension), Some(_)) = (extension, node.mesh) {
         node.instances = instances(document, extension, &user)?;
         if node.instances.is_empty() {
-            notes.add("a node has no instances of its mesh");
+            document.notes.add(&user, "has no instances of its mesh");
             node.mesh = None;
         } else if node.skin.is_some() {
-            notes.add("a skinned node has instances; it is shown once");
+            document.notes.add(&user, "is skinned and has instances; it is shown once");
             node.instances = Vec::new();
         }
     }
@@ -102,10 +110,9 @@ fn add_node(
 fn transform(document: &Document<'_>, json: &json::Node, exact: ExactNode, user: &str) -> Result<(Trs, Option<Trs>)> {
     if let Some(m) = json.matrix {
         document.finite(user, "matrix", &m)?;
-        if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] {
-            return Err(document.invalid(user, "has a matrix whose last row is not 0 0 0 1"));
-        }
-        let m = or_rounded(exact.matrix, m);
+        let m = affine(&or_rounded(exact.matrix, m)).ok_or_else(|| {
+            document.invalid(user, "has a matrix whose last row is not 0 0 0 1; only affine transforms place a node")
+        })?;
         let column = |i: usize| DVec3::new(m[i], m[i + 1], m[i + 2]);
         let matrix = DMat3::from_cols(column(0), column(4), column(8));
         return Ok(decompose(DAffine3 { matrix3: matrix, translation: column(12) }));
@@ -117,11 +124,25 @@ fn transform(document: &Document<'_>, json: &json::Node, exact: ExactNode, user:
     document.finite(user, "rotation", &rotation)?;
     let local = Trs {
         translation: or_rounded(exact.translation, translation).into(),
-        rotation: unit_quaternion(or_rounded(exact.rotation, rotation))
-            .ok_or_else(|| document.invalid(user, "has a rotation of length 0"))?,
+        rotation: rotation_or_none(document, or_rounded(exact.rotation, rotation), user),
         scale: or_rounded(exact.scale, scale).into(),
     };
     Ok((local, None))
+}
+
+/// A matrix whose last row is 0 0 0 1 but for rounding, after the homogeneous scale is taken out.
+fn affine(m: &[f64; 16]) -> Option<[f64; 16]> {
+    let scaled = m.map(|x| x / m[15]);
+    let is_affine = m[15] > 0.0 && [3, 7, 11].into_iter().all(|i| scaled[i].abs() <= AFFINE_TOLERANCE);
+    (is_affine && scaled.iter().all(|x| x.is_finite())).then_some(scaled)
+}
+
+/// A rotation; none, with a note, where the quaternion has no length.
+fn rotation_or_none(document: &Document<'_>, xyzw: [f64; 4], user: &str) -> DQuat {
+    unit_quaternion(xyzw).unwrap_or_else(|| {
+        document.notes.add(user, "has a rotation of length 0; it is not rotated");
+        DQuat::IDENTITY
+    })
 }
 
 fn unit_quaternion(xyzw: [f64; 4]) -> Option<DQuat> {
@@ -162,18 +183,15 @@ fn instances(document: &Document<'_>, extension: &serde_json::Value, user: &str)
     let vector = |list: &Option<Vec<[f32; 3]>>, i: usize| {
         list.as_ref().and_then(|list| list.get(i)).map(|v| DVec3::from(v.map(f64::from)))
     };
-    (0..count.unwrap_or_default() as usize)
-        .map(|i| {
-            let rotation = match rotations.as_ref().and_then(|list| list.get(i)) {
-                Some(&q) => unit_quaternion(q.map(f64::from)).ok_or_else(|| {
-                    document.invalid(user.as_str(), format!("instance {i} has a rotation of length 0"))
-                })?,
-                None => DQuat::IDENTITY,
-            };
-            let translation = vector(&translations, i).unwrap_or(DVec3::ZERO);
-            Ok(Trs { translation, rotation, scale: vector(&scales, i).unwrap_or(DVec3::ONE) })
-        })
-        .collect()
+    let instance = |i: usize| Trs {
+        translation: vector(&translations, i).unwrap_or(DVec3::ZERO),
+        rotation: match rotations.as_ref().and_then(|list| list.get(i)) {
+            Some(&q) => rotation_or_none(document, q.map(f64::from), &user),
+            None => DQuat::IDENTITY,
+        },
+        scale: vector(&scales, i).unwrap_or(DVec3::ONE),
+    };
+    Ok((0..count.unwrap_or_default() as usize).map(instance).collect())
 }
 
 fn accessor_index(value: &serde_json::Value) -> Option<usize> {
@@ -221,89 +239,4 @@ fn check_skin(document: &Document<'_>, scene: &Scene, node: usize, user: &str) -
         }
     }
     Ok(())
-}
-
-/// The camera on a node, with its index in the file.
-fn camera(document: &Document<'_>, json: &json::Node, user: &str, node: usize) -> Result<Option<(usize, SceneCamera)>> {
-    let Some(index) = json.camera else { return Ok(None) };
-    let camera = document.get(&document.root.cameras, index.value(), "cameras", user)?;
-    let name = camera.name.clone().or_else(|| json.name.clone()).unwrap_or_default();
-    let user = element("cameras", index.value(), &name);
-    let need = |is_true: bool, field: &str, value: f32, expected: &str| {
-        if is_true {
-            Ok(())
-        } else {
-            Err(document.invalid(&user, format!("{field} is {value}; it has to be {expected}")))
-        }
-    };
-    let lens = match (&camera.type_, &camera.perspective, &camera.orthographic) {
-        (Checked::Valid(CameraType::Perspective), Some(p), _) => {
-            need(p.yfov > 0.0 && p.yfov < std::f32::consts::PI, "yfov", p.yfov, "between 0 and π")?;
-            need(p.znear > 0.0 && p.znear.is_finite(), "znear", p.znear, "a finite number above 0")?;
-            if let Some(zfar) = p.zfar {
-                need(zfar > p.znear && zfar.is_finite(), "zfar", zfar, "above znear")?;
-            }
-            if let Some(aspect) = p.aspect_ratio {
-                need(aspect > 0.0 && aspect.is_finite(), "aspectRatio", aspect, "a finite number above 0")?;
-            }
-            Lens::Perspective {
-                yfov: p.yfov.into(),
-                aspect: p.aspect_ratio.map(f64::from),
-                znear: p.znear.into(),
-                zfar: p.zfar.map(f64::from),
-            }
-        }
-        (Checked::Valid(CameraType::Orthographic), _, Some(o)) => {
-            // A negative magnification mirrors the picture; the specification advises against it and nobody needs it.
-            need(o.xmag.abs() > 0.0 && o.xmag.is_finite(), "xmag", o.xmag, "a finite number other than 0")?;
-            need(o.ymag.abs() > 0.0 && o.ymag.is_finite(), "ymag", o.ymag, "a finite number other than 0")?;
-            need(o.znear >= 0.0 && o.znear.is_finite(), "znear", o.znear, "a finite number of 0 or more")?;
-            need(o.zfar > o.znear && o.zfar.is_finite(), "zfar", o.zfar, "above znear")?;
-            Lens::Orthographic {
-                xmag: o.xmag.abs().into(),
-                ymag: o.ymag.abs().into(),
-                znear: o.znear.into(),
-                zfar: o.zfar.into(),
-            }
-        }
-        _ => return Err(document.invalid(user, "has no parameters for its type of projection")),
-    };
-    Ok(Some((index.value(), SceneCamera { name, node, lens })))
-}
-
-/// The light on a node, with its index in the file.
-fn light(document: &Document<'_>, json: &json::Node, user: &str, node: usize) -> Result<Option<(usize, SceneLight)>> {
-    let extension = json.extensions.as_ref().and_then(|extensions| extensions.khr_lights_punctual.as_ref());
-    let Some(extension) = extension else { return Ok(None) };
-    let lights: &[JsonLight] = document.root.as_ref();
-    let index = extension.light.value();
-    let light = document.get(lights, index, "lights", user)?;
-    let name = light.name.clone().or_else(|| json.name.clone()).unwrap_or_default();
-    let user = element("lights", index, &name);
-    document.finite(&user, "color", &light.color)?;
-    document.finite(&user, "intensity", &[light.intensity])?;
-    let kind = match light.type_ {
-        Checked::Valid(LightType::Directional) => LightKind::Directional,
-        Checked::Valid(LightType::Point) => LightKind::Point,
-        Checked::Valid(LightType::Spot) => {
-            let spot = light.spot.clone().unwrap_or(json::extensions::scene::khr_lights_punctual::Spot {
-                inner_cone_angle: 0.0,
-                outer_cone_angle: std::f32::consts::FRAC_PI_4,
-            });
-            let (inner, outer) = (spot.inner_cone_angle, spot.outer_cone_angle);
-            // A little more than a right angle is what rounding makes of π/2.
-            if !(inner >= 0.0 && inner <= outer && outer > 0.0 && outer <= std::f32::consts::FRAC_PI_2 * 1.000_001) {
-                let reason = format!("has cone angles {inner} and {outer}; 0 ≤ inner ≤ outer ≤ π/2 has to hold");
-                return Err(document.invalid(user, reason));
-            }
-            LightKind::Spot { inner: inner.into(), outer: outer.into() }
-        }
-        Checked::Invalid => return Err(document.invalid(user, "has an unknown type")),
-    };
-    if let Some(range) = light.range.filter(|range| range.is_nan() || *range <= 0.0) {
-        return Err(document.invalid(user, format!("range is {range}; it has to be above 0")));
-    }
-    let range = light.range.filter(|range| range.is_finite()).map(f64::from);
-    let light = SceneLight { name, node, kind, color: light.color, intensity: light.intensity, range };
-    Ok(Some((index, light)))
 }

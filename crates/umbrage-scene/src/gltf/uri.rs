@@ -8,7 +8,7 @@ use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 
 use super::Document;
 use crate::error::read_file;
-use crate::{Error, Result};
+use crate::{Error, GltfOptions, Result};
 
 /// Padding is optional: some exporters leave it out.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
@@ -35,25 +35,43 @@ pub(super) fn read(document: &Document<'_>, element: &str, uri: &str) -> Result<
 }
 
 /// Reads a file that a glTF file in `folder` refers to.
-pub(super) fn read_external(file: &str, folder: Option<&Path>, element: &str, uri: &str) -> Result<Vec<u8>> {
+pub(super) fn read_external(
+    file: &str,
+    folder: Option<&Path>,
+    element: &str,
+    uri: &str,
+    options: &GltfOptions,
+) -> Result<Vec<u8>> {
     let refuse =
         |reason| Error::UnsafeUri { file: file.to_owned(), element: element.to_owned(), uri: shortened(uri), reason };
     let folder = match folder {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let path = folder.join(relative_path(uri).map_err(refuse)?);
-    // A symbolic link may lead out of the folder although the name does not.
-    let real = |path: &Path| path.canonicalize().map_err(|source| Error::Read { path: path.to_owned(), source });
-    let (real_folder, real_path) = (real(folder)?, real(&path)?);
-    if !real_path.starts_with(&real_folder) {
-        return Err(refuse("leads out of the file's folder through a link"));
+    let path = folder.join(relative_path(uri, options.parent_folders).map_err(refuse)?);
+    let failed = |reason: String| Error::External {
+        file: file.to_owned(),
+        element: element.to_owned(),
+        path: path.clone(),
+        reason,
+    };
+    if !options.parent_folders {
+        // A symbolic link may lead out of the folder although the name does not.
+        let real = |path: &Path| path.canonicalize().map_err(|source| failed(source.to_string()));
+        if !real(&path)?.starts_with(real(folder)?) {
+            return Err(refuse("leads out of the file's folder through a link; --parent-folders lets it"));
+        }
     }
-    read_file(&real_path)
+    read_file(&path).map_err(|error| match error {
+        Error::Read { source, .. } => failed(source.to_string()),
+        Error::NotAFile { kind, .. } => failed(format!("it is {kind}, not a regular file")),
+        other => other,
+    })
 }
 
-/// The relative path that a URI reference names, with `.` and `..` resolved; it never leaves the folder.
-fn relative_path(uri: &str) -> Result<PathBuf, &'static str> {
+/// The relative path that a URI reference names, with `.` and `..` resolved; it never leaves the folder unless `parents`
+/// allows it to.
+fn relative_path(uri: &str, parents: bool) -> Result<PathBuf, &'static str> {
     // RFC 3986 section 4.2: in a relative reference no colon stands before the first slash. This covers http:, file: and C:.
     if uri.split('/').next().is_some_and(|first| first.contains(':')) {
         return Err("has a scheme or a drive");
@@ -69,8 +87,11 @@ fn relative_path(uri: &str) -> Result<PathBuf, &'static str> {
     for part in decoded.split(['/', '\\']) {
         match part {
             "" | "." => {}
-            ".." if parts.pop().is_none() => return Err("leads out of the file's folder"),
-            ".." => {}
+            ".." if parts.last().is_some_and(|last| *last != "..") => {
+                parts.pop();
+            }
+            ".." if parents => parts.push(part),
+            ".." => return Err("leads out of the file's folder; --parent-folders lets it"),
             _ if part.contains(['\0', ':']) => return Err("has a drive, a stream or a null character in it"),
             name => parts.push(name),
         }
@@ -101,7 +122,7 @@ mod tests {
             ("sub\\a.bin", "sub/a.bin"),
             ("..a/b...bin", "..a/b...bin"),
         ] {
-            assert_eq!(relative_path(uri).as_deref(), Ok(Path::new(path)), "{uri}");
+            assert_eq!(relative_path(uri, false).as_deref(), Ok(Path::new(path)), "{uri}");
         }
     }
 
@@ -129,7 +150,17 @@ mod tests {
             "a%00.bin",
             "%ff",
         ] {
-            assert!(relative_path(uri).is_err(), "{uri}");
+            assert!(relative_path(uri, false).is_err(), "{uri}");
+        }
+    }
+
+    #[test]
+    fn parents_are_reached_where_they_may_be() {
+        for (uri, path) in [("../t/a.png", "../t/a.png"), ("a/../../b", "../b"), ("..\\..\\b", "../../b")] {
+            assert_eq!(relative_path(uri, true).as_deref(), Ok(Path::new(path)), "{uri}");
+        }
+        for uri in ["", "..", "/etc/passwd", "file:///a", "C:/a"] {
+            assert!(relative_path(uri, true).is_err() || uri == "..", "{uri}");
         }
     }
 }

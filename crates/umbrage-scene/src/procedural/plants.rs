@@ -6,7 +6,7 @@ use super::figures::rounded;
 use super::maths::{Random, mix, scramble, sin_cos, smoothstep, turn, unit};
 use super::sculpt::Sculpture;
 use super::shapes::{Solid, ribbed};
-use crate::{Mesh, Texture, Wrap};
+use crate::{Mesh, Texture, TextureFilter, Wrap};
 
 const SMOOTH: f64 = 60.0;
 
@@ -294,5 +294,5 @@ pub(super) fn bough_texture() -> Texture {
         .zip(&brightness)
         .flat_map(|(&cover, &bright)| [byte(0.36 * bright), byte(0.52 * bright), byte(0.27 * bright), byte(cover)])
         .collect();
-    Texture { width: WIDTH, height: HEIGHT, rgba, wrap: [Wrap::Clamp; 2] }
+    Texture { width: WIDTH, height: HEIGHT, rgba, wrap: [Wrap::Clamp; 2], filter: TextureFilter::Linear }
 }

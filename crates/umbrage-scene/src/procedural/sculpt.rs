@@ -75,7 +75,7 @@ impl Sculpture {
 
     /// The mesh.
     pub(super) fn finish(self, name: &str) -> Mesh {
-        Mesh { name: name.to_owned(), primitives: self.primitives.into_values().collect() }
+        Mesh { name: name.to_owned(), primitives: self.primitives.into_values().collect(), weights: Vec::new() }
     }
 }
 

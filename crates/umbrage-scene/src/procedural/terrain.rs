@@ -154,7 +154,10 @@ impl Terrain {
                 primitive.indices.extend(triangles.as_flattened());
             }
         }
-        (Mesh { name: format!("ground {tile_column} {tile_row}"), primitives: vec![primitive] }, origin)
+        (
+            Mesh { name: format!("ground {tile_column} {tile_row}"), primitives: vec![primitive], weights: Vec::new() },
+            origin,
+        )
     }
 
     /// Puts the tiles on the stage.

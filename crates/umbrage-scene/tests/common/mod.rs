@@ -4,7 +4,7 @@
 pub mod rich;
 
 use serde_json::{Value, json};
-use umbrage_scene::{Error, Scene, load_gltf_slice};
+use umbrage_scene::{Error, GltfOptions, Scene, load_gltf_slice};
 
 pub const U8: u32 = 5121;
 pub const U16: u32 = 5123;
@@ -86,7 +86,7 @@ impl Glb {
     }
 
     pub fn load(&self) -> Result<Scene, Error> {
-        load_gltf_slice("test.glb", &self.bytes())
+        load_gltf_slice("test.glb", &self.bytes(), &GltfOptions::default())
     }
 
     #[track_caller]

@@ -156,6 +156,7 @@ impl Fingerprint {
             print.eat_f32(channel.times.iter().copied());
             match &channel.values {
                 Keys::Translation(keys) | Keys::Scale(keys) => print.eat_f32(keys.iter().flatten().copied()),
+                Keys::Weights { values, .. } => print.eat_f32(values.iter().copied()),
                 Keys::Rotation(keys) => print.eat_f32(keys.iter().flatten().copied()),
             }
         }

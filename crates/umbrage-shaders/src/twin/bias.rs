@@ -2,7 +2,8 @@
 
 use crate::layout::Split;
 
-/// `bias::MAX_SLOPE`: tangent of the steepest angle between light and normal that a plane is followed to.
+/// `bias::MAX_SLOPE`: tangent of the steepest angle between light and normal that a plane is
+/// followed to.
 pub const MAX_SLOPE: f32 = 50.0;
 /// `bias::TEXEL_BIAS`: constant bias in texels.
 pub const TEXEL_BIAS: f32 = 0.25;
@@ -16,7 +17,8 @@ pub const MOST_CORNER_SLOPE: f32 = 12.0;
 pub const MOST_STEEP: f32 = 12.0;
 /// `bias::PAST`: how far behind its plane a surface may round off.
 pub const PAST: f32 = 2.0;
-/// `bias::PAST_TEXELS`: how far before the receiver a surface from past the plane has to arrive to shade, in texels.
+/// `bias::PAST_TEXELS`: how far before the receiver a surface from past the plane has to arrive to
+/// shade, in texels.
 pub const PAST_TEXELS: f32 = 8.0;
 /// `bias::ROUNDING`: share of the numbers involved that `f32` may have lost.
 pub const ROUNDING: f32 = 1.907_348_6e-6;
@@ -30,7 +32,8 @@ pub struct Tolerance {
     pub bend: f32,
     /// How far it may round off behind its plane.
     pub past: f32,
-    /// How far before the plane another surface may lie to be continued to the receiver, per metre aside.
+    /// How far before the plane another surface may lie to be continued to the receiver, per metre
+    /// aside.
     pub steep: f32,
     /// How far before the receiver a surface from past the plane has to arrive to shade.
     pub arrival: f32,
@@ -51,7 +54,8 @@ pub struct Receiver {
     pub texel_m: [f32; 2],
     /// Metres along the light between depth 0 and depth 1.
     pub range_m: f32,
-    /// A and B of a local light's depth where its map stores depth that is linear in w; `depth` is then −B/w. 0 elsewhere.
+    /// A and B of a local light's depth where its map stores depth that is linear in w; `depth` is
+    /// then −B/w. 0 elsewhere.
     pub linear: [f32; 2],
     /// What the lookup forgives.
     pub tolerance: Tolerance,
@@ -71,8 +75,8 @@ struct MapPoint {
     linear: [f32; 2],
 }
 
-/// `bias::receiver`: `position` in metres from the frame's origin, `normal` the unit normal of the surface, `to_light` the unit vector
-/// towards the light.
+/// `bias::receiver`: `position` in metres from the frame's origin, `normal` the unit normal of the
+/// surface, `to_light` the unit vector towards the light.
 #[must_use]
 pub fn receiver(split: &Split, position: [f32; 3], normal: [f32; 3], to_light: [f32; 3]) -> Receiver {
     let at =
@@ -159,7 +163,8 @@ fn warped_point(split: &Split, position: [f32; 3], to_light: [f32; 3]) -> MapPoi
 }
 
 impl Receiver {
-    /// `bias::without_plane`: the receiver without its plane, for filters that read up to `reach` texels from it along each axis.
+    /// `bias::without_plane`: the receiver without its plane, for filters that read up to `reach`
+    /// texels from it along each axis.
     #[must_use]
     pub fn without_plane(mut self, reach: [f32; 2]) -> Self {
         self.depth -= self.slope[0].abs() * reach[0] + self.slope[1].abs() * reach[1];
@@ -169,8 +174,8 @@ impl Receiver {
         self
     }
 
-    /// Whether what a texel stores, `offset` texels from the receiver, shades it: all of the decision. `beyond` is what the next texels on
-    /// u and on v store, away from the receiver.
+    /// Whether what a texel stores, `offset` texels from the receiver, shades it: all of the
+    /// decision. `beyond` is what the next texels on u and on v store, away from the receiver.
     #[must_use]
     pub fn is_shaded(&self, offset: [f32; 2], stored: f32, beyond: [f32; 2]) -> bool {
         !self.lies_behind(offset, stored)
@@ -190,7 +195,8 @@ impl Receiver {
         !self.is_past(offset, stored) && self.reference(offset, [0.0; 2]) <= stored
     }
 
-    /// `bias::meets_receiver`: the texel is of a surface that meets the receiver, or arrives behind it.
+    /// `bias::meets_receiver`: the texel is of a surface that meets the receiver, or arrives behind
+    /// it.
     #[must_use]
     pub fn meets_receiver(&self, offset: [f32; 2], stored: f32, beyond: [f32; 2]) -> bool {
         let past = self.is_past(offset, stored);
@@ -201,13 +207,15 @@ impl Receiver {
         (past || stored >= steepest) && arrives >= self.as_stored(self.depth - before)
     }
 
-    /// `bias::is_past`: the texel lies so far behind the receiver's plane that the receiver's surface has ended before it.
+    /// `bias::is_past`: the texel lies so far behind the receiver's plane that the receiver's
+    /// surface has ended before it.
     #[must_use]
     pub fn is_past(&self, offset: [f32; 2], stored: f32) -> bool {
         stored > self.as_stored(self.level(offset) + dot2(self.slope, offset) + self.tolerance.past)
     }
 
-    /// `bias::reference`: the least depth of the receiver's own surface at `offset` texels, or up to `reach` texels from there.
+    /// `bias::reference`: the least depth of the receiver's own surface at `offset` texels, or up
+    /// to `reach` texels from there.
     #[must_use]
     pub fn reference(&self, offset: [f32; 2], reach: [f32; 2]) -> f32 {
         self.bent(offset, reach, self.tolerance.bend * offset[0].hypot(offset[1]))

@@ -1,5 +1,5 @@
-//! What people reported of their own scenes: light along the creases of closed rooms, stripes on wheels, speckled faces that the light
-//! grazes, wedges through narrow lenses. At the defaults, against rays.
+//! What people reported of their own scenes: speckled faces that the light runs along, lit walls
+//! through narrow lenses. At the defaults, against rays.
 
 use glam::DVec3;
 use image::GrayAlphaImage;
@@ -11,10 +11,9 @@ use umbrage_truth::{Hit, Truth};
 
 const SIZE: [u32; 2] = [240, 180];
 
-/// A scene with a material of each kind: 0 is seen from its front, 1 from both sides.
+/// A scene with one material.
 fn scene() -> Scene {
-    let double_sided = Material { double_sided: true, ..Material::default() };
-    Scene { materials: vec![Material::default(), double_sided], ..Scene::default() }
+    Scene { materials: vec![Material::default()], ..Scene::default() }
 }
 
 fn add(scene: &mut Scene, primitive: Primitive) {
@@ -57,14 +56,18 @@ fn look(eye: [f64; 3], target: [f64; 3], fov: f64, near: f64) -> View {
 fn judged(scene: &Scene, views: &[View], sun: DVec3, edge: u32) -> Option<Vec<(GrayAlphaImage, Vec<Option<Hit>>)>> {
     let gpu = gpu()?;
     let settings = Technique::default_of_the_command().settings;
-    let shadows = umbrage::ShadowSettings { map_sizes: vec![edge; 4], range: None, ..settings.shadows.clone() };
-    let settings = RenderSettings { size: SIZE, shadows, ..settings };
+    let config = umbrage::ShadowConfig {
+        map_sizes: vec![edge; 4],
+        range: umbrage::config::Range::Camera,
+        ..settings.config.clone()
+    };
+    let settings = RenderSettings { size: SIZE, config, ..settings };
     let mut renderer = Renderer::new(gpu, scene, &settings).expect("a renderer");
     let pose = scene.pose(0.0).expect("a pose");
     let sun = DirectionalLight::new(sun).expect("a direction");
     let truth = Truth::build(scene, &pose, views[0].eye()).expect("rays can meet it");
     let each = |view: &View| {
-        renderer.restart().expect("accepted before");
+        renderer.restart();
         let frame = Frame { pose: &pose, view, light: sun.into(), more_lights: &[], shadows_on: true, tint: false };
         let rendered = renderer.render(&frame, Outputs { mask: true, ..Outputs::default() }).expect("a frame");
         let truth = truth.mask(view, sun.direction(), SIZE, &|_| {}).expect("a truth");
@@ -73,7 +76,8 @@ fn judged(scene: &Scene, views: &[View], sun: DVec3, edge: u32) -> Option<Vec<(G
     Some(views.iter().map(each).collect())
 }
 
-/// Pixels that are false light or false shadow with no edge of the true shadow within two pixels, and how many of those there are.
+/// Pixels that are false light or false shadow with no edge of the true shadow within two pixels,
+/// and how many of those there are.
 fn away_from_edges(mask: &GrayAlphaImage, hits: &[Option<Hit>], counts: impl Fn(&Hit) -> bool) -> [usize; 3] {
     let [width, height] = SIZE.map(|size| size as i32);
     let lit = |x: i32, y: i32| {
@@ -93,78 +97,6 @@ fn away_from_edges(mask: &GrayAlphaImage, hits: &[Option<Hit>], counts: impl Fn(
         found[2] += 1;
     }
     found
-}
-
-/// A room of two-sided walls without thickness on a ground that lies a millimetre lower.
-fn room() -> Scene {
-    let mut scene = scene();
-    add(&mut scene, ground(-0.001, 40.0));
-    let mut walls = Primitive { material: 1, ..Primitive::default() };
-    cuboid(&mut walls, DVec3::new(-4.0, 0.0, -3.0), DVec3::new(8.0, 3.0, 6.0));
-    add(&mut scene, walls);
-    scene
-}
-
-#[test]
-fn closed_rooms_are_dark_along_their_creases() {
-    let views = [
-        look([3.4, 1.6, 2.4], [-1.0, 1.2, -1.0], 80.0, 0.05),
-        look([-3.7, 2.8, -2.7], [2.0, 0.0, 2.0], 90.0, 0.05),
-        look([-3.0, 2.2, -2.2], [-4.0, 3.0, -3.0], 60.0, 0.05),
-    ];
-    for sun in [DVec3::new(-0.5, -0.7, -0.4), DVec3::new(0.6, -0.4, -0.3), DVec3::new(0.1, -1.0, 0.3)] {
-        let Some(judged) = judged(&room(), &views, sun, 1024) else { return };
-        for (i, (mask, _)) in judged.iter().enumerate() {
-            let lit = mask.pixels().filter(|pixel| pixel.0[0] > 5).count();
-            let most = mask.pixels().map(|pixel| pixel.0[0]).max();
-            eprintln!("sun {sun}, view {i}: {lit} pixels are more than 2 % lit, at most {most:?}");
-            assert_eq!(lit, 0, "sun {sun}, view {i}: at most {most:?}");
-        }
-    }
-}
-
-/// A wheel around the x axis, standing on the ground, with a rounded tread; smooth normals are of no consequence to masks.
-fn wheel(x: f64) -> Primitive {
-    let (radius, half, around) = (0.6, 0.3, 64_u32);
-    let profile = [(-1.0, 0.55), (-1.0, 0.9), (-0.7, 1.0), (0.7, 1.0), (1.0, 0.9), (1.0, 0.55)];
-    let mut primitive = Primitive::default();
-    for i in 0..around {
-        let angle = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(around);
-        for pair in profile.windows(2) {
-            let at = |(along, share): (f64, f64), i: u32| {
-                let (sin, cos) = angle(i).sin_cos();
-                DVec3::new(x + half * along, radius * (1.0 + share * sin), radius * share * cos)
-            };
-            let [a, b, c, d] = [at(pair[0], i), at(pair[0], i + 1), at(pair[1], i + 1), at(pair[1], i)];
-            let first = primitive.positions.len() as u32;
-            let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3().to_array();
-            for corner in [a, b, c, d] {
-                primitive.positions.push(corner.as_vec3().to_array());
-                primitive.normals.push(normal);
-            }
-            primitive.indices.extend([0, 1, 3, 3, 1, 2].map(|i| first + i));
-        }
-    }
-    primitive
-}
-
-#[test]
-fn wheels_under_light_along_their_axles_have_no_stripes() {
-    let mut scene = scene();
-    add(&mut scene, ground(0.0, 30.0));
-    add(&mut scene, wheel(0.0));
-    add(&mut scene, wheel(2.0));
-    let views = [
-        look([1.0, 1.6, 4.0], [0.0, 0.6, 0.0], 45.0, 0.1),
-        look([1.0, 1.6, -4.0], [0.0, 0.6, 0.0], 45.0, 0.1),
-        look([0.5, 1.2, 1.6], [0.0, 0.6, 0.0], 45.0, 0.1),
-    ];
-    let Some(judged) = judged(&scene, &views, DVec3::new(-0.98, -0.15, -0.1), 1024) else { return };
-    for (i, (mask, hits)) in judged.iter().enumerate() {
-        let [light, shadow, all] = away_from_edges(mask, hits, |_| true);
-        eprintln!("view {i}: {light} false light, {shadow} false shadow of {all}");
-        assert!(light * 5000 <= all && shadow * 1000 <= all, "view {i}: {light} and {shadow} of {all}");
-    }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 mod acne;
 mod ceilings;
+mod field;
 mod goldens;
 mod paths;
 mod robot_war;

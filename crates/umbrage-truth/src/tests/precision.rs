@@ -213,7 +213,7 @@ fn faces_in_two_nodes_that_were_meant_to_coincide_count_as_one() {
             let mut add = |shape: Shape| {
                 let normals = vec![[0.0, 1.0, 0.0]; shape.positions.len()];
                 let primitive = Primitive { normals, ..shape.with_material(0) };
-                scene.meshes.push(Mesh { name: String::new(), primitives: vec![primitive] });
+                scene.meshes.push(Mesh { primitives: vec![primitive], ..Mesh::default() });
             };
             add(Shape::floor((2.0 * unit) as f32, (height * unit) as f32));
             let mut down = Shape::floor((2.0 * unit) as f32, 0.0);
@@ -264,7 +264,7 @@ fn a_turn_that_two_objects_share_takes_no_shadow() {
     for shape in [ground, Shape::cuboid([-0.5 * edge, -0.5 * edge, 0.0], [0.5 * edge, 0.5 * edge, edge])] {
         let normals = vec![[0.0, 0.0, 1.0]; shape.positions.len()];
         let primitive = Primitive { normals, ..shape.with_material(0) };
-        scene.meshes.push(Mesh { name: String::new(), primitives: vec![primitive] });
+        scene.meshes.push(Mesh { primitives: vec![primitive], ..Mesh::default() });
     }
     let at = DVec3::new(3000.0, 2000.0, 0.0);
     let yaw = DQuat::from_rotation_z(0.4);

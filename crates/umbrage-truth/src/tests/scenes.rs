@@ -31,7 +31,7 @@ impl Stage {
         let bounds = Aabb::from_points(
             primitive.positions.iter().map(|&p| world_from_local.transform_point3(DVec3::from(p.map(f64::from)))),
         );
-        self.scene.meshes.push(Mesh { name: String::new(), primitives: vec![primitive] });
+        self.scene.meshes.push(Mesh { primitives: vec![primitive], ..Mesh::default() });
         self.pose.objects.push(Object {
             node: 0,
             instance: None,

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DQuat, DVec3};
 use umbrage::{Frustum, View};
-use umbrage_scene::{AlphaMode, Material, Primitive, SkinnedMesh, Texture, Wrap};
+use umbrage_scene::{AlphaMode, Material, Primitive, SkinnedMesh, Texture, TextureFilter, Wrap};
 
 use super::scenes::{Shape, Stage, view, with_alpha};
 use crate::{Error, Truth};
@@ -85,7 +85,13 @@ fn half_leaf(vertex_alpha: Option<f32>) -> Stage {
     for _ in 0..4 {
         rgba.extend((0..4).flat_map(|x| [255, 255, 255, if x < 2 { 255 } else { 0 }]));
     }
-    stage.scene.textures.push(Texture { width: 4, height: 4, rgba, wrap: [Wrap::Clamp; 2] });
+    stage.scene.textures.push(Texture {
+        width: 4,
+        height: 4,
+        rgba,
+        wrap: [Wrap::Clamp; 2],
+        filter: TextureFilter::Linear,
+    });
     let material = Material { base_color_texture: Some(0), ..with_alpha(AlphaMode::Mask { cutoff: 0.5 }, 1.0) };
     let material = stage.material(material);
     let leaf = Primitive {

@@ -12,7 +12,8 @@ use std::num::NonZeroU32;
 
 use umbrage::ShadowPlan;
 use umbrage::config::{
-    Coordinates, DepthFormat, Filter, Generation, Layout, Rebuilds, Selection, ShadowConfig, SplitMetric, Storage,
+    Coordinates, DepthFormat, Filter, Generation, Layout, LightKind, Rebuilds, Selection, ShadowConfig, SplitMetric,
+    Storage,
 };
 use umbrage_shaders::layout::{MetricKind, SelectionKind};
 use umbrage_shaders::{Bound, Casters, Lights, Maps, Projection, ReceiverText};
@@ -299,31 +300,33 @@ impl ShadowMaps {
         umbrage_shaders::receiver(group, self.receiver_text())
     }
 
-    /// What receivers' text is made for: the config's choices that are fixed for as long as pipelines are, and no others.
+    /// What receivers' text is made for: what the config settles, and nothing else.
     fn receiver_text(&self) -> ReceiverText {
+        let config = &self.config;
+        let kinds = || self.slots.iter().map(|slot| slot.kind);
         let lights = match () {
-            () if self.slots.iter().all(|slot| !slot.kind.is_local()) => Lights::Suns,
-            () if self.slots.iter().all(|slot| slot.kind.faces() == 1) => Lights::Single,
+            () if kinds().all(|kind| kind == LightKind::Directional) => Lights::Suns,
+            () if kinds().all(|kind| kind.faces() == 1) => Lights::Single,
             () => Lights::Any,
         };
-        // A local light's maps are chosen by view depth, whatever a sun's are.
-        let of_suns = (lights == Lights::Suns).then_some(self.config.selection);
+        // Splits of local lights are chosen by view depth, whatever a sun's are chosen by.
+        let of_suns = lights == Lights::Suns;
+        let (selection, metric) = match config.selection {
+            Selection::Map => (SelectionKind::Map, None),
+            Selection::Interval(SplitMetric::ViewDepth) => (SelectionKind::Depth, Some(MetricKind::ViewDepth)),
+            Selection::Interval(SplitMetric::Distance) => (SelectionKind::Depth, Some(MetricKind::Distance)),
+        };
         ReceiverText {
-            filter: Some(filter_kind(&self.config.filter)),
-            selection: of_suns.map(|selection| match selection {
-                Selection::Interval(_) => SelectionKind::Depth,
-                Selection::Map => SelectionKind::Map,
-            }),
-            metric: of_suns.map(|selection| match selection {
-                Selection::Interval(SplitMetric::Distance) => MetricKind::Distance,
-                Selection::Interval(SplitMetric::ViewDepth) | Selection::Map => MetricKind::ViewDepth,
-            }),
-            transition: Some(transition_kind(self.config.transition)),
+            filter: Some(filter_kind(&config.filter)),
+            selection: of_suns.then_some(selection),
+            metric: metric.filter(|_| of_suns).or((of_suns).then_some(MetricKind::ViewDepth)),
+            transition: Some(transition_kind(config.transition)),
+            // Part of the look, which changes from frame to frame.
             bias: None,
-            // Where a warp has nothing to gain a split gets its plain map.
-            projection: if self.config.first_warp().is_some() { Projection::Any } else { Projection::Plain },
+            // A split whose warp has nothing to gain has a plain map.
+            projection: if config.first_warp().is_some() { Projection::Any } else { Projection::Plain },
             lights,
-            sliced: self.layout == Layout::Reused,
+            sliced: self.layout.storage() == Storage::Reused,
             ..self.receiver_maps().into()
         }
     }

@@ -134,12 +134,11 @@ impl Shadows {
     fn plan(&mut self, queue: &wgpu::Queue, inputs: &Inputs<'_>) -> Result<()> {
         let planners = self.planners.get_mut(&inputs.view_slot).map_or(&mut [][..], Vec::as_mut_slice);
         self.plans.resize_with(planners.len(), Arc::default);
-        let receivers = inputs.receivers_in_view();
         for ((planner, plan), light) in planners.iter_mut().zip(&mut self.plans).zip(inputs.lights) {
             let of_light = PlanInputs {
                 receiver_clusters: inputs.receiver_clusters,
                 image_size: inputs.image_size,
-                ..PlanInputs::new(inputs.view, *light, inputs.casters, receivers)
+                ..PlanInputs::new(inputs.view, *light, inputs.casters, inputs.receivers)
             };
             if Arc::get_mut(plan).is_none() {
                 *plan = Arc::default();

@@ -262,7 +262,7 @@ pub(super) fn scheme(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -
         "manual" if given.has("planes") || config.splits() == 1 => SplitScheme::Manual { planes: Vec::new() },
         "manual" => {
             let (inner, splits) = (config.splits() - 1, config.splits());
-            return refuse(format!("manual needs planes with the {inner} inner planes of {splits} splits"));
+            return refuse(format!("it needs planes A,B,… with the {inner} inner planes of {splits} splits"));
         }
         _ => return refuse(unknown("scheme", text, SplitScheme::WORDS)),
     };
@@ -491,13 +491,14 @@ pub(super) fn transition(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -
     Ok(())
 }
 
-pub(super) fn blend(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
+pub(super) fn blend(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
     let share = number(text)?;
     if !(0.0..=1.0).contains(&share) {
         return refuse(format!("{share} is not in 0..=1"));
     }
     config.transition = match config.transition {
-        _ if share == 0.0 => Transition::Hard,
+        // Borders that were asked to be hard have no band, however wide.
+        _ if share == 0.0 || given.value("transition") == Some("hard") => Transition::Hard,
         Transition::Dither { .. } => Transition::Dither { share },
         Transition::Blend { .. } | Transition::Hard => Transition::Blend { share },
     };

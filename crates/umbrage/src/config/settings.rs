@@ -86,7 +86,10 @@ impl Kind {
             },
             Self::Texels => apply::map_sizes(text).map(|_| ()),
             Self::Colour => match text.split(',').count() {
-                3 => text.split(',').try_for_each(|part| apply::number(part).and_then(|part| within(part, 1.0))),
+                3 => text.split(',').try_for_each(|part| match apply::number(part)? {
+                    part if (0.0..=1.0).contains(&part) => Ok(()),
+                    part => Err(format!("{part}; give red, green and blue from 0 to 1")),
+                }),
                 count => Err(format!("{count} numbers; give red, green and blue from 0 to 1")),
             },
             Self::Switch => apply::switch(text).map(|_| ()),

@@ -92,6 +92,17 @@ pub enum Selection {
     Map,
 }
 
+impl Selection {
+    /// What the planes between splits measure; view depth where maps are chosen by what they contain.
+    #[must_use]
+    pub const fn metric(self) -> SplitMetric {
+        match self {
+            Self::Interval(metric) => metric,
+            Self::Map => SplitMetric::ViewDepth,
+        }
+    }
+}
+
 impl Default for Selection {
     fn default() -> Self {
         Self::Interval(SplitMetric::ViewDepth)

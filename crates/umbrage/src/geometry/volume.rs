@@ -235,13 +235,21 @@ impl SweptVolume {
 
 /// Share of a scene's extent by which a caster may rise above the lowest receiver and still count as lying below all of
 /// them: rounding in the bounds, not a length that could be seen (1.2 mm in 1.2 km).
-pub(crate) const BELOW_ALL: f64 = 1e-6;
+const BELOW_ALL: f64 = 1e-6;
+
+/// The same in metres, at most: a ground of a thousand kilometres does throw its shadow on what lies a metre under it.
+const MOST_BELOW: f64 = 2e-3;
+
+/// Metres by which rounding may move the bounds of something in a box of this extent.
+pub(crate) fn rounding(extent: DVec3) -> f64 {
+    (BELOW_ALL * extent.max_element()).min(MOST_BELOW)
+}
 
 /// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers` as the light sees it: it then
 /// has nothing behind it to throw a shadow on. A flat ground under everything is the case that matters, and touches what
 /// stands on it. Anything that is not flat has to lie `margin` metres beyond: a filter asks beside its receiver, too.
 pub(crate) fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3, margin: f64) -> bool {
-    let slack = BELOW_ALL * (receivers.max - receivers.min).max_element();
+    let slack = rounding(receivers.max - receivers.min);
     (0..3).any(|axis| {
         let beyond = match direction[axis] {
             along if along < -1e-9 => receivers.min[axis] - (center[axis] + half[axis]),

@@ -98,6 +98,22 @@ impl HeldFar {
 pub(crate) struct HeldEnds {
     pub far: HeldFar,
     pub visible: HeldRange,
+    /// Where the range of an orthographic camera begins that stands off from the scene.
+    near: Option<f64>,
+}
+
+/// Share of a range's length that its beginning leaves free before the scene, and four times as much at most.
+const NEAR_ROOM: f64 = 1.0 / 16.0;
+
+impl HeldEnds {
+    /// A beginning between the camera's near plane and `first`, before a range that ends at `deepest`.
+    pub fn hold_near(&mut self, near: f64, first: f64, deepest: f64) -> f64 {
+        let room = NEAR_ROOM * (deepest - first).max(1e-3 * deepest.abs());
+        let serves = |held: &f64| (near..=first).contains(held) && first - held <= 4.0 * room;
+        let begin = self.near.filter(serves).unwrap_or((first - room).max(near));
+        self.near = Some(begin);
+        begin
+    }
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 
 use glam::DVec2;
 
+use super::size::ENOUGH;
 use crate::{MAX_SPLITS, View};
 
 /// Frames for which the camera stands before anything recovers: a pause between two steps is not a standstill.
@@ -16,9 +17,6 @@ const DURATION: u32 = 42;
 
 /// The step by which one split's size changes, at least: 9 %. Larger only where [`DURATION`] frames would not do.
 const STEP: f64 = 1.090_507_732_665_257_7;
-
-/// Sizes that exceed those of a fresh planner by no more than this share stay: a step would be seen and gain nothing.
-const ENOUGH: f64 = 1.05;
 
 /// Share of the eye's distance to the first plane, and radians, by which a camera that stands still may tremble.
 const TREMOR: f64 = 1e-5;
@@ -161,7 +159,7 @@ impl Recovery {
         let m = row.splits;
         let towards = |j: usize| target.planes[j].clamp(row.planes[j] / self.step, row.planes[j] * self.step);
         let moved = towards(plane);
-        let ahead = if plane > 1 { towards(plane - 1) } else { target.planes[0] };
+        let ahead: [f64; MAX_SPLITS + 1] = std::array::from_fn(|j| if j < plane { towards(j) } else { row.planes[j] });
         let below = plane == m || moved < row.planes[plane + 1];
         if moved > row.planes[plane - 1] && below {
             row.planes[plane] = moved;
@@ -169,9 +167,8 @@ impl Recovery {
         if plane == 1 && target.planes[0] < row.planes[1] {
             row.planes[0] = target.planes[0];
         }
-        // The next visit moves the plane before: room for that, or two maps would change at once.
-        let mut with_room = row.planes;
-        with_room[plane - 1] = with_room[plane - 1].min(ahead);
+        // The next visits move the planes before, where this map begins: room for that, or two maps would change at once.
+        let with_room: [f64; MAX_SPLITS + 1] = std::array::from_fn(|j| row.planes[j].min(ahead[j]));
         let split = plane - 1;
         let least = need(split, &row.planes[..=m]).max(need(split, &with_room[..=m]));
         row.half[split] = least.max(row.half[split] / self.step);

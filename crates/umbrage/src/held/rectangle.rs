@@ -2,14 +2,12 @@
 
 use glam::DVec2;
 
+use super::size::ENOUGH;
 use crate::ExtentSteps;
 use crate::geometry::region::{DIRECTIONS, Region};
 
 /// Relative room for rounding, so that an extent that keeps its value while the camera walks keeps its step as well.
 const ROUNDING: f64 = 1e-9;
-
-/// By how much the edges of a rectangle that has recovered may exceed those of the best one, in the mean.
-const RECOVERED: f64 = 1.05;
 
 /// The orientation and the extent of a map that is stabilised approximately.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +63,7 @@ impl HeldRectangle {
                 let steps = f64::from(count);
                 let best = least(target, steps);
                 let excess = 2f64.powf(2.0 / steps);
-                let excess = if refits { excess.min(RECOVERED * RECOVERED) } else { excess };
+                let excess = if refits { excess.min(ENOUGH * ENOUGH) } else { excess };
                 let enough = best.area() * excess * (1.0 + ROUNDING);
                 let grown = self.held.map(|held| held.grown_to(target, steps));
                 grown.filter(|grown| grown.area() <= enough).unwrap_or(best)

@@ -16,23 +16,17 @@ pub(crate) struct HeldSize {
 /// Steps per doubling of a held size: one step is 2^(1/8), 9 %.
 const STEPS_PER_OCTAVE: f64 = 8.0;
 
+/// A size that recovers may exceed what is needed by this factor: a smaller step would be seen and gain nothing.
+pub(crate) const ENOUGH: f64 = 1.05;
+
 /// Relative room for rounding, so that a size that comes round again by another way is the same.
 const ROUNDING: f64 = 1e-13;
 
 impl HeldSize {
-    /// What is held, if anything is.
-    pub fn get(&self) -> Option<f64> {
-        self.held
-    }
-
-    /// Holds this size from now on.
-    pub fn set(&mut self, size: f64) {
-        self.held = Some(size);
-    }
-
-    /// The held size for `size` of something that recovers: smaller by one step, where that serves.
+    /// The held size for `size` of something that recovers: smaller by one step, where that serves and is worth it.
     pub fn shrink(&mut self, size: f64, step: f64) -> f64 {
-        let value = self.held.map_or(size, |held| size.max(held / step));
+        let keeps = |held: f64| size <= held && held <= size * ENOUGH;
+        let value = self.held.map_or(size, |held| if keeps(held) { held } else { size.max(held / step) });
         self.held = Some(value);
         value
     }

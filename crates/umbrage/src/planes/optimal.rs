@@ -83,6 +83,24 @@ struct Costs {
 }
 
 impl Costs {
+    /// Empties the costs between `len` candidates.
+    fn reset(&mut self, len: usize, texels: impl Iterator<Item = f64>, weights: &[f64]) {
+        self.len = len;
+        self.texels.clear();
+        self.texels.extend(texels);
+        self.weights_before.clear();
+        self.weights_before.push(0.0);
+        let mut sum = 0.0;
+        self.weights_before.extend(weights.iter().map(|weight| {
+            sum += weight;
+            sum
+        }));
+        self.edges.clear();
+        self.edges.resize(len * len, 0.0);
+        self.begins.clear();
+        self.begins.resize(len * len, (0, 0.0));
+    }
+
     /// Expected error of map `split` over the slice from candidate `j` to `k`; `before` is where the slice before it begins.
     fn slice(&self, split: usize, before: Option<usize>, j: usize, k: usize) -> f64 {
         let weight = self.weights_before[k] - self.weights_before[j];
@@ -274,20 +292,7 @@ impl Placement {
         let Self { candidates, cells, weights, faces, costs, .. } = self;
         let settings = maps.settings;
         let n = candidates.len();
-        costs.len = n;
-        costs.texels.clear();
-        costs.texels.extend((0..settings.splits()).map(|i| maps.texels(i)));
-        costs.weights_before.clear();
-        costs.weights_before.push(0.0);
-        let mut sum = 0.0;
-        costs.weights_before.extend(weights.iter().map(|weight| {
-            sum += weight;
-            sum
-        }));
-        costs.edges.clear();
-        costs.edges.resize(n * n, 0.0);
-        costs.begins.clear();
-        costs.begins.resize(n * n, (0, 0.0));
+        costs.reset(n, (0..settings.splits()).map(|i| maps.texels(i)), weights);
         for i in 0..n {
             for j in i + 1..n {
                 costs.begins[i * n + j] = begin(sight.view, maps, candidates, i, j);

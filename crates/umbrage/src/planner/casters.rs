@@ -2,74 +2,16 @@
 
 use glam::DVec3;
 
-use super::fit::{MapSize, SliceEnds};
+use super::fit::MapSize;
 use super::frame::{Frame, Sun};
+use super::in_view::InView;
 use super::layout::{Layout, SplitFrame};
-use crate::bounds::Placed;
-use crate::coverage::{CoverageVolume, Served, can_shade};
+use super::shaft::{Shaft, first_depth};
+use super::slice_ends::SliceEnds;
+use crate::coverage::{CoverageVolume, can_shade};
 use crate::geometry::region::Region;
-use crate::geometry::volume::{Lies, Slice};
-use crate::{Aabb, Fit, ShadowPlan, Warp};
-
-/// What the whole view may show, as indices into a frame's lists.
-#[derive(Clone, Debug, Default)]
-pub(super) struct InView {
-    /// Receivers that some slice can contain.
-    pub receivers: Vec<u32>,
-    /// Casters that some slice's sweep can meet.
-    pub casters: Vec<u32>,
-    /// Receivers that a slice cuts.
-    across: Vec<u32>,
-}
-
-impl InView {
-    pub fn cull(&mut self, frame: &Frame<'_>, sun: &Sun<'_>, far: f64, whole_width: f64) {
-        let frustum = frame.view.frustum();
-        let whole = Slice::new(frame.view, frustum.near, far.min(frustum.far));
-        let keep = |list: &mut Vec<u32>, boxes: &[Placed], test: &dyn Fn(&Placed) -> bool| {
-            list.clear();
-            list.extend(boxes.iter().enumerate().filter(|(_, placed)| test(placed)).map(|(i, _)| i as u32));
-        };
-        keep(&mut self.receivers, frame.receivers, &|r| whole.classify(r.center, r.half) != Lies::Outside);
-        let swept = whole.swept_towards_light(sun.direction);
-        // The margin around a split is a few of its texels: at most this share of its width.
-        let across = whole.corners[4].distance(whole.corners[7]).max(whole.corners[0].distance(whole.corners[7]));
-        let margin = frame.margin_share() * across.max(whole_width);
-        keep(&mut self.casters, frame.casters, &|c| swept.meets(c.center, c.half, margin));
-    }
-
-    /// The receivers' part of a slice: its bounds in the light's plane and in the world.
-    fn receivers_in(&mut self, slice: &Slice, frame: &Frame<'_>, sun: &Sun<'_>) -> Served {
-        let fan = &sun.fan;
-        let mut region = Region::EMPTY;
-        let mut bounds = Aabb::EMPTY;
-        self.across.clear();
-        for &index in &self.receivers {
-            let receiver = &frame.receivers[index as usize];
-            match slice.classify(receiver.center, receiver.half) {
-                Lies::Outside => {}
-                Lies::Inside => {
-                    region.include_box(fan, receiver.center, receiver.half);
-                    bounds = bounds.union(receiver.bounds());
-                }
-                Lies::Across => self.across.push(index),
-            }
-        }
-        for &index in &self.across {
-            let receiver = &frame.receivers[index as usize];
-            let own = receiver.bounds();
-            let changes_nothing =
-                bounds.union(own) == bounds && region.encloses_box(fan, receiver.center, receiver.half);
-            if !changes_nothing {
-                slice.clip_box(&own, |point| {
-                    region.include_point(fan, point);
-                    bounds = bounds.including(point);
-                });
-            }
-        }
-        (region, bounds)
-    }
-}
+use crate::geometry::volume::Slice;
+use crate::{Fit, ShadowPlan, Warp};
 
 /// A slice of the view and what it shows.
 #[derive(Clone, Debug)]
@@ -85,7 +27,7 @@ impl Scene {
     /// Of one split.
     pub fn of_split(split: &SplitFrame<'_>, in_view: &mut InView) -> Self {
         let SplitFrame { frame, sun, layout, index } = *split;
-        Self::new(frame, sun, SliceEnds::new(frame, layout, layout.planes(), index), in_view)
+        Self::new(frame, sun, SliceEnds::new(frame, layout.planes(), index), in_view)
     }
 
     /// Of all splits: what any map may be asked about where maps are chosen by what they contain.
@@ -193,17 +135,33 @@ impl Scene {
             Some((region, _)) if !listed.is_empty() => {
                 let mut target = Region::EMPTY;
                 casters.for_each(|caster| target.include_box_within(fan, caster.center, caster.half, region));
-                let first = target.depth.0;
                 target.depth = region.depth;
-                (target, first)
+                (target, self.first(frame, sun, listed))
             }
             Some((region, _)) if !region.is_empty() => (*region, region.depth.0),
-            _ => (self.region, casters.map(|c| first_depth(c, fan.depth)).fold(f64::INFINITY, f64::min)),
+            _ => (self.region, self.first(frame, sun, listed)),
         }
+    }
+
+    /// Depth along the light of the first caster, metres: of its part over what is shown where the whole would make the depth
+    /// range too long to be precise.
+    fn first(&self, frame: &Frame<'_>, sun: &Sun<'_>, listed: &[u32]) -> f64 {
+        let casters = || listed.iter().map(|&index| &frame.casters[index as usize]);
+        let first = casters().map(|c| first_depth(c, sun.direction)).fold(f64::INFINITY, f64::min);
+        let (widest, last) = (self.widest() + self.volume.margin, self.depths().1);
+        if last - first <= MOST_WIDTHS * widest {
+            return first;
+        }
+        let middle = match &self.volume.receivers {
+            Some((_, bounds)) if !bounds.is_empty() => bounds.center(),
+            _ => self.volume.slice.corners.iter().sum::<DVec3>() / 8.0,
+        };
+        // Twice as wide: the middle of a box need not be that of what it bounds.
+        let shaft = Shaft::new(middle, 2.0 * widest, sun.light);
+        casters().filter_map(|c| shaft.passage(c)).map(|it| it.0).fold(self.depths().0, f64::min)
     }
 }
 
-/// Where a box begins along the light, metres.
-pub(super) fn first_depth(placed: &Placed, direction: DVec3) -> f64 {
-    direction.dot(placed.center) - direction.abs().dot(placed.half)
-}
+/// A tight map's depth range is that of its whole casters up to so many times the map's width: 32-bit depth then resolves a
+/// tenth of a texel.
+const MOST_WIDTHS: f64 = 1000.0;

@@ -2,8 +2,9 @@
 
 use glam::{DVec2, DVec3};
 
-use super::casters::{InView, first_depth};
 use super::frame::{Frame, Sun};
+use super::in_view::InView;
+use super::shaft::first_depth;
 use crate::bounds::Placed;
 use crate::coverage::CoverageVolume;
 use crate::geometry::volume::lies_below;

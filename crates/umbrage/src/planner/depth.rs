@@ -1,17 +1,26 @@
 //! Stage 6 of a sun's plan: depth ranges.
 
-use super::casters::first_depth;
+use glam::DVec3;
+
 use super::fit::MapSize;
 use super::frame::{Frame, Sun};
+use super::layout::Layout;
+use super::scope::Scope;
+use super::shaft::{Shaft, first_depth};
+use crate::held::depths::HeldDepths;
 use crate::{Split, Stabilize};
 
 /// Depths along the light between which still maps lie whose depth is not clamped, metres; `None` if nothing says so.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WorldDepths(Option<(f64, f64)>);
 
+/// A depth range is the whole world's up to so many times the length of what is shadowed. A longer one would cost precision:
+/// 32-bit depth resolves 1/8,000,000 of the range.
+const MOST_LENGTHS: f64 = 16.0;
+
 impl WorldDepths {
-    /// From the first caster to the last receiver of all.
-    pub fn measure(frame: &Frame<'_>, sun: &Sun<'_>) -> Self {
+    /// From the first caster to the last receiver: of all, or of those near the eye where the world is much larger.
+    pub fn measure(frame: &Frame<'_>, sun: &Sun<'_>, scope: &Scope, layout: &Layout, held: &mut HeldDepths) -> Self {
         if !frame.stands_still() || frame.settings.depth_clamp {
             return Self(None);
         }
@@ -19,8 +28,28 @@ impl WorldDepths {
         let last = |placed| -first_depth(placed, -direction);
         let near = frame.casters.iter().map(|c| first_depth(c, direction)).fold(f64::INFINITY, f64::min);
         let far = frame.receivers.iter().map(last).fold(f64::NEG_INFINITY, f64::max);
-        Self((near.is_finite() && far > near).then_some((near, far)))
+        if !(near.is_finite() && far > near) {
+            return Self(None);
+        }
+        let shaft = around_view(frame, sun, layout);
+        if far - near <= MOST_LENGTHS * shaft.half {
+            return Self(Some((near, far)));
+        }
+        // Of a receiver nothing is asked that lies farther from the eye than the range goes.
+        let far =
+            scope.receivers(frame).filter_map(|r| shaft.passage(r)).fold(f64::NEG_INFINITY, |far, it| far.max(it.1));
+        let far = far.min(shaft.depth(0.0) + shaft.half);
+        let begins = frame.casters.iter().filter_map(|c| shaft.passage(c)).map(|it| it.0).filter(|begin| *begin < far);
+        let near = begins.fold(shaft.depth(0.0) - shaft.half, f64::min);
+        Self((far > near).then(|| held.hold(near, far)))
     }
+}
+
+/// The shaft around all that the view can show in range, whichever way it turns.
+fn around_view(frame: &Frame<'_>, sun: &Sun<'_>, layout: &Layout) -> Shaft {
+    let far = layout.planes().last().copied().unwrap_or_default().min(frame.view.frustum().far);
+    let corner = layout.lens.frustum().corners_at(far).map(DVec3::length).into_iter().fold(0.0, f64::max);
+    Shaft::new(frame.view.eye(), corner, sun.light)
 }
 
 /// The split with its depth range: before the first caster and behind the last receiver, with room for the bias. Where depth

@@ -1,12 +1,14 @@
-//! A sun's plan, stage by stage: range → planes → casters → fit → snap → depth. Each stage is a value that the next ones
+//! A sun's plan, stage by stage: scope → range → planes → casters → fit → snap → depth. Each stage is a value that the next ones
 //! read; nothing goes back.
 
-use super::casters::{InView, Listed, Scene};
+use super::casters::{Listed, Scene};
 use super::covered;
 use super::depth::{self, WorldDepths};
 use super::fit::MapSize;
 use super::frame::{Frame, Sun};
+use super::in_view::InView;
 use super::layout::{Layout, LayoutBuffers, SplitFrame};
+use super::scope::Scope;
 use super::snap;
 use super::warped::WarpPoints;
 use crate::held::Held;
@@ -31,8 +33,9 @@ pub(super) fn plan(
     frame.settings.bands.check_view(frame.view)?;
     let SunBuffers { in_view, layout: layout_buffers, warp_points } = buffers;
     let sun = Sun::new(light, frame);
-    let layout = Layout::new(frame, &sun, held, in_view, layout_buffers)?;
-    let world = WorldDepths::measure(frame, &sun);
+    let scope = Scope::new(frame, &sun);
+    let layout = Layout::new((frame, &sun), &scope, held, in_view, layout_buffers)?;
+    let world = WorldDepths::measure(frame, &sun, &scope, &layout, &mut held.depths);
     describe(frame, &sun, &layout, plan);
     let by_map = frame.settings.selection == Selection::Map;
     let shown = by_map.then(|| Scene::of_view(frame, &sun, &layout, in_view));

@@ -2,34 +2,11 @@
 
 use glam::DVec2;
 
-use super::frame::Frame;
-use super::layout::{Layout, SplitFrame};
+use super::layout::SplitFrame;
 use crate::geometry::sphere::stable_texel;
 use crate::held::rectangle::longest_edge;
 use crate::margin::{EDGE_TEXELS, Reach};
-use crate::{RangeFit, Stabilize, Warp};
-
-/// The view depths that a split serves.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct SliceEnds {
-    pub from: f64,
-    pub to: f64,
-    /// Whether the camera shows any of them. Others still get a valid matrix.
-    pub is_visible: bool,
-}
-
-impl SliceEnds {
-    /// Of split `i` between `planes`.
-    pub fn new(frame: &Frame<'_>, layout: &Layout, planes: &[f64], i: usize) -> Self {
-        let (from, to) = layout.coverage(frame, frame.view, planes, i);
-        // Where the range holds all that is visible, nothing before it asks.
-        let fitted_begin = i == 0 && frame.settings.range_fit == RangeFit::Visible;
-        let from = if fitted_begin { from.max(planes[i]) } else { from };
-        let is_visible = to > from;
-        let (from, to) = if is_visible { (from, to) } else { (planes[i], planes[i + 1]) };
-        Self { from, to, is_visible }
-    }
-}
+use crate::{Stabilize, Warp};
 
 /// The size of a still map and how far filters reach in it.
 #[derive(Clone, Copy, Debug)]

@@ -5,8 +5,9 @@ use glam::DVec3;
 use super::inputs::PlanInputs;
 use crate::bounds::Placed;
 use crate::geometry::region::Fan;
+use crate::geometry::volume::{Lies, Slice};
 use crate::margin::EDGE_TEXELS;
-use crate::{DirectionalLight, ShadowSettings, Stabilize, View};
+use crate::{DirectionalLight, Frustum, ShadowSettings, Stabilize, View};
 
 /// One frame's inputs, checked.
 #[derive(Clone, Copy)]
@@ -32,7 +33,7 @@ impl<'a> Frame<'a> {
             view: inputs.view,
             image_size: inputs.image_size,
             casters,
-            receivers: if receivers.is_empty() { casters } else { receivers },
+            receivers,
             margin: settings.filter_radius + EDGE_TEXELS,
         }
     }
@@ -47,6 +48,15 @@ impl<'a> Frame<'a> {
         let smallest = self.settings.map_sizes.iter().copied().min().unwrap_or(1);
         2.0 * self.margin / f64::from(smallest).max(2.0 * self.margin + 2.0)
     }
+}
+
+/// Whether a view may show any of some boxes.
+pub(super) fn shows_any(view: &View, boxes: &[Placed]) -> bool {
+    let Frustum { near, far, .. } = *view.frustum();
+    let distance = |placed: &Placed| ((placed.center - view.eye()).abs() + placed.half).length();
+    let far = if far.is_finite() { far } else { boxes.iter().map(distance).fold(0.0, f64::max) };
+    let whole = Slice::new(view, near, far.max(1.01 * near + 0.01));
+    boxes.iter().any(|placed| whole.classify(placed.center, placed.half) != Lies::Outside)
 }
 
 /// A sun, and directions across its light to measure bounds along.

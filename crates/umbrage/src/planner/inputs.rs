@@ -61,7 +61,7 @@ pub(super) fn place(boxes: &[Aabb], list: &'static str, placed: &mut Vec<Placed>
 }
 
 fn check_boxes(boxes: &[Aabb], list: &'static str) -> Result<()> {
-    match boxes.iter().enumerate().find(|(_, bounds)| !bounds.is_valid()) {
+    match boxes.iter().enumerate().find(|(_, bounds)| !bounds.is_accepted()) {
         Some((index, bounds)) => Err(Error::InvalidBounds { list, index, min: bounds.min, max: bounds.max }),
         None => Ok(()),
     }

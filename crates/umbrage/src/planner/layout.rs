@@ -4,17 +4,19 @@
 
 use glam::DVec2;
 
-use super::casters::InView;
+use super::block::Block;
 use super::frame::{Frame, Sun};
+use super::in_view::InView;
 use super::range;
-use super::snap::Block;
+use super::scope::Scope;
+use super::slice_ends::{SliceEnds, covered};
 use crate::geometry::sphere::slice_sphere;
 use crate::held::Held;
 use crate::held::ends::Range;
 use crate::held::recovery::{Row, Standing};
 use crate::planes::cells::Sight;
 use crate::planes::optimal::{Maps, Placement};
-use crate::planes::scheme::{coverage, split_planes};
+use crate::planes::scheme::split_planes;
 use crate::{MAX_SPLITS, Result, SplitScheme, Stabilize, View, Warp};
 
 /// Where maps begin and end, and how large still ones are.
@@ -74,31 +76,31 @@ impl Layout {
     /// # Errors
     /// [`crate::Error::InvalidSetting`] for a range or planes that do not fit this camera.
     pub fn new(
-        frame: &Frame<'_>,
-        sun: &Sun<'_>,
+        (frame, sun): (&Frame<'_>, &Sun<'_>),
+        scope: &Scope,
         held: &mut Held,
         in_view: &mut InView,
         buffers: &mut LayoutBuffers,
     ) -> Result<Self> {
         if !frame.stands_still() {
-            return Self::holding(frame, sun, &mut Held::default(), 0.0, in_view, buffers);
+            return Self::holding((frame, sun), scope, (&mut Held::default(), 0.0), in_view, buffers);
         }
         let standing = held.begin(frame.view, sun.direction);
         let now = held.current_row(frame.settings.splits());
         let (Standing::Due | Standing::Recovering, Some(row)) = (standing, now) else {
-            return Self::holding(frame, sun, held, 0.0, in_view, buffers);
+            return Self::holding((frame, sun), scope, (held, 0.0), in_view, buffers);
         };
         let mut fresh = held.released();
         if standing == Standing::Recovering {
             fresh.adopt(held);
         }
         let shown = row.planes[row.splits];
-        let target = Self::holding(frame, sun, &mut fresh, shown, in_view, buffers)?;
+        let target = Self::holding((frame, sun), scope, (&mut fresh, shown), in_view, buffers)?;
         if standing == Standing::Due {
             let is_exact = frame.settings.stabilize == Stabilize::Exact;
             if is_exact && !row.exceeds(&target.row) {
                 held.standstill.set(Standing::Settled);
-                return Self::holding(frame, sun, held, 0.0, in_view, buffers);
+                return Self::holding((frame, sun), scope, (held, 0.0), in_view, buffers);
             }
             held.adopt(&fresh);
             held.standstill.set(Standing::Recovering);
@@ -126,14 +128,13 @@ impl Layout {
 
     /// Holds on to whatever serves. `shown` is the view depth up to which casters are looked for, at least.
     fn holding(
-        frame: &Frame<'_>,
-        sun: &Sun<'_>,
-        held: &mut Held,
-        shown: f64,
+        (frame, sun): (&Frame<'_>, &Sun<'_>),
+        scope: &Scope,
+        (held, shown): (&mut Held, f64),
         in_view: &mut InView,
         buffers: &mut LayoutBuffers,
     ) -> Result<Self> {
-        let range = range::shadowed(frame, &mut held.ends)?;
+        let range = range::shadowed(frame, scope, &mut held.ends)?;
         let stands_still = frame.stands_still();
         let lens = if stands_still { hold_lens(frame, held)? } else { *frame.view };
         let mut layout = Self { range, lens, ..Self::empty(frame) };
@@ -142,7 +143,7 @@ impl Layout {
             layout.whole_width = 2.0 * held.whole.hold(sphere.radius);
         }
         if frame.settings.stabilize == Stabilize::Exact {
-            layout.around_all = Block::around(frame.receivers, sun.light);
+            layout.around_all = Block::around(scope.receivers(frame), sun.light);
         }
         in_view.cull(frame, sun, range.far.max(shown), layout.whole_width);
         layout.place_planes(frame, sun, held, in_view, buffers)?;
@@ -208,17 +209,12 @@ impl Layout {
         Ok(())
     }
 
-    /// The view depths that split `i` serves, as [`coverage`] has them, through a lens.
-    pub fn coverage(&self, frame: &Frame<'_>, view: &View, planes: &[f64], i: usize) -> (f64, f64) {
-        coverage(view, planes, i, frame.settings.blend, frame.image_size, frame.settings.bands)
-    }
-
     /// What the still map of split `i` has to show: a block around its slice, and no longer than all receivers.
     pub fn block(&self, frame: &Frame<'_>, sun: &Sun<'_>, planes: &[f64], i: usize) -> Block {
-        let slice = super::fit::SliceEnds::new(frame, self, planes, i);
+        let slice = SliceEnds::new(frame, planes, i);
         // A wider lens has wider pixels, and its slices reach back farther.
         let begin = if slice.is_visible && i > 0 {
-            self.coverage(frame, &self.lens, planes, i).0.min(slice.from)
+            covered(frame, &self.lens, planes, i).0.min(slice.from)
         } else {
             slice.from
         };

@@ -13,7 +13,7 @@ use super::frame::Frame;
 use crate::bounds::Placed;
 use crate::coverage::LocalVolume;
 use crate::geometry::light_frustum::{LightFrustum, Part};
-use crate::geometry::volume::{BELOW_ALL, Lies, Slice};
+use crate::geometry::volume::{Lies, Slice, rounding};
 use crate::held::Held;
 use crate::held::recovery::Standing;
 use crate::held::size::HeldSize;
@@ -210,7 +210,7 @@ impl<'a> LocalSplit<'a> {
         let sides = part.sides(&frustum);
         let hull = part.bounds.including(frustum.position);
         // Rounding in the bounds.
-        let slack = BELOW_ALL * (hull.max - hull.min).max_element();
+        let slack = rounding(hull.max - hull.min);
         move |placed| {
             let (bounds, Placed { center, half }) = (placed.bounds(), *placed);
             let beside = bounds.max.cmplt(hull.min - margin).any() || bounds.min.cmpgt(hull.max + margin).any();

@@ -3,16 +3,22 @@
 //! [`plan`] is the core: values in, values out, with what is held between frames as a value of its own. A sun's plan is
 //! made in the stages of [`directional`], a local light's in those of [`local`].
 
+mod block;
 mod casters;
 mod covered;
 mod depth;
 mod directional;
 mod fit;
 mod frame;
+mod from_config;
+mod in_view;
 mod inputs;
 mod layout;
 mod local;
 mod range;
+mod scope;
+mod shaft;
+mod slice_ends;
 mod snap;
 mod warped;
 
@@ -48,12 +54,13 @@ struct Buffers {
 }
 
 impl Planner {
-    /// A planner for these settings.
+    /// A planner for a [`crate::ShadowConfig`] (by reference) or for [`ShadowSettings`].
     ///
     /// # Errors
     /// [`crate::Error::InvalidSetting`] naming the field that is wrong, [`crate::Error::ConflictingSettings`] naming two that
     /// exclude each other.
-    pub fn new(settings: ShadowSettings) -> Result<Self> {
+    pub fn new(settings: impl Into<ShadowSettings>) -> Result<Self> {
+        let settings = settings.into();
         settings.validate()?;
         Ok(Self { settings, held: Held::default(), buffers: Buffers::default(), plan: ShadowPlan::default() })
     }
@@ -146,6 +153,10 @@ fn plan_with(
     plan.split_range.resize(inputs.casters.len(), None);
     // A frame that is refused leaves what is held as it was.
     let Buffers { casters, receivers, sun, local, held: next } = buffers;
+    let shows = |boxes: &[Placed]| frame::shows_any(inputs.view, boxes);
+    if receivers.is_empty() || (!shows(receivers) && shows(casters)) {
+        receivers.clone_from(casters);
+    }
     next.clone_from(held);
     let frame = Frame::new(settings, inputs, casters, receivers);
     match &inputs.light {

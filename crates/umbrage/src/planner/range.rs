@@ -1,44 +1,43 @@
 //! Stage 1 of a sun's plan: the shadowed range, `C_0` and `C_m`.
 
 use super::frame::Frame;
-use crate::bounds::Placed;
+use super::scope::Scope;
 use crate::held::ends::{HeldEnds, Range};
 use crate::planes::visible::visible_range;
 use crate::settings::check_range;
-use crate::{Bands, RangeFit, Result, Stabilize, View};
+use crate::{Bands, Projection, RangeFit, Result, Stabilize};
 
 /// The least length of a range that is fitted to what is visible, as a share of its far end.
 const LEAST_RANGE: f64 = 0.01;
 
 /// The range of a frame: the setting; the view depths of the visible receivers; or the camera's near and far, far capped by
-/// the receivers. Held where maps have to stand still.
+/// what matters of the scene. Held where maps have to stand still.
 ///
 /// # Errors
 /// [`crate::Error::InvalidSetting`] naming `range` if it is empty for this camera, even with nothing held.
-pub(super) fn shadowed(frame: &Frame<'_>, held: &mut HeldEnds) -> Result<Range> {
-    let range = held_range(frame, held);
+pub(super) fn shadowed(frame: &Frame<'_>, scope: &Scope, held: &mut HeldEnds) -> Result<Range> {
+    let range = held_range(frame, scope, held);
     if check_range(range.near, range.inner_far).is_ok() {
         return Ok(range);
     }
     // A range that cannot be divided is not held on to.
     *held = HeldEnds::default();
-    let range = held_range(frame, held);
+    let range = held_range(frame, scope, held);
     check_range(range.near, range.inner_far)?;
     Ok(range)
 }
 
-fn held_range(frame: &Frame<'_>, held: &mut HeldEnds) -> Range {
+fn held_range(frame: &Frame<'_>, scope: &Scope, held: &mut HeldEnds) -> Range {
     let Frame { settings, view, receivers, .. } = *frame;
     if let Some((near, far)) = settings.range {
         return Range::new(near, far);
     }
-    let forward = view.forward();
     let bands = settings.bands;
     let (near, camera_far) = (view.frustum().near, view.frustum().far / bands.least_depth_share(view));
-    let view_depth = |r: &Placed| forward.dot(r.center - view.eye()) + forward.abs().dot(r.half);
-    let deepest = match bands {
-        Bands::Planar => receivers.iter().map(view_depth).fold(f64::NEG_INFINITY, f64::max),
-        Bands::Radial => farthest(view, receivers),
+    let deepest = match (settings.range_fit, bands) {
+        (RangeFit::Visible, _) => scope.deepest_receiver,
+        (RangeFit::Camera, Bands::Planar) => scope.deepest,
+        (RangeFit::Camera, Bands::Radial) => scope.farthest,
     };
     // Nothing before the eye: any short range will do.
     let deepest = if deepest > near { deepest } else { 2.0 * near.abs() + 1.0 };
@@ -54,16 +53,27 @@ fn held_range(frame: &Frame<'_>, held: &mut HeldEnds) -> Range {
         let first = first.max(near).min(last * (1.0 - LEAST_RANGE));
         return Range::new(first, last.min(camera_far));
     }
+    let near = first_shown(frame, scope, deepest, held);
     let range = match settings.stabilize {
         // Almost still maps are held by their own extents, whatever the planes: a range that is held as well would only
         // make them larger, by 8 % in the second of four splits, and saves no step.
         Stabilize::None | Stabilize::Approximate(_) => Range::new(near, deepest),
-        Stabilize::Exact => held.far.hold(near, deepest, farthest(view, receivers).min(camera_far)),
+        Stabilize::Exact => held.far.hold(near, deepest, scope.farthest.min(camera_far)),
     };
     Range { near, inner_far: range.inner_far.min(camera_far), far: range.far.min(camera_far) }
 }
 
-/// Metres from the eye to the farthest corner of any receiver; 0 without receivers.
-fn farthest(view: &View, receivers: &[Placed]) -> f64 {
-    receivers.iter().map(|r| ((r.center - view.eye()).abs() + r.half).length()).fold(0.0, f64::max)
+/// Where the range begins: with the camera; or, where that is orthographic, with the scene, as far as turning cannot bring it
+/// nearer. How far such a camera stands off changes nothing of its picture.
+fn first_shown(frame: &Frame<'_>, scope: &Scope, deepest: f64, held: &mut HeldEnds) -> f64 {
+    let frustum = frame.view.frustum();
+    if frustum.projection == Projection::Perspective {
+        return frustum.near;
+    }
+    let aside = frustum.left.abs().max(frustum.right.abs()).hypot(frustum.bottom.abs().max(frustum.top.abs()));
+    let first = (scope.nearest * scope.nearest - aside * aside).max(0.0).sqrt();
+    if first <= frustum.near {
+        return frustum.near;
+    }
+    held.hold_near(frustum.near, first.min(deepest), deepest)
 }

@@ -2,10 +2,10 @@
 
 use glam::{DVec2, DVec3};
 
+use super::block::Block;
 use super::casters::{Listed, Scene};
 use super::fit::MapSize;
 use super::layout::SplitFrame;
-use crate::bounds::Placed;
 use crate::geometry::region::{Fan, Region};
 use crate::held::rectangle::{HeldRectangle, Rectangle};
 use crate::margin::{EDGE_TEXELS, Reach};
@@ -80,48 +80,6 @@ fn stepped(mut split: Split, target: &Region, fan: &Fan, reach: Reach, held: Rec
     split.min_texel = (held.center(target) / split.texel_m - 0.5 * size).round();
     (split.depth_near, split.depth_far) = depth;
     split
-}
-
-/// A block on the light's own axes: along the map's two and along the light, metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Block {
-    pub center: DVec3,
-    pub half: DVec3,
-}
-
-impl Block {
-    /// Around a sphere of the world.
-    pub fn around_sphere(center: DVec3, radius: f64, light: &DirectionalLight) -> Self {
-        Self { center: axes(light).map(|axis| axis.dot(center)).into(), half: DVec3::splat(radius) }
-    }
-
-    /// Around boxes; `None` of none, and of such without any extent.
-    pub fn around(boxes: &[Placed], light: &DirectionalLight) -> Option<Self> {
-        let axes = axes(light);
-        let (lo, hi) = boxes.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), placed| {
-            let at = DVec3::from(axes.map(|axis| axis.dot(placed.center)));
-            let reach = DVec3::from(axes.map(|axis| axis.abs().dot(placed.half)));
-            (lo.min(at - reach), hi.max(at + reach))
-        });
-        let half = 0.5 * (hi - lo);
-        // What has no width (a wall seen edge-on by the light) still gets texels of some size.
-        let half = half.max(DVec3::splat(1e-3 * half.max_element()));
-        (half.max_element() > 0.0).then(|| Self { center: 0.5 * (lo + hi), half })
-    }
-
-    /// The same, but along each axis no longer than `other`, whose place it takes there.
-    pub fn no_longer_than(self, other: &Self) -> Self {
-        let longer = self.half.cmpge(other.half);
-        Self {
-            center: DVec3::select(longer, other.center, self.center),
-            half: DVec3::select(longer, other.half, self.half),
-        }
-    }
-}
-
-fn axes(light: &DirectionalLight) -> [DVec3; 3] {
-    let (u, v) = light.map_axes();
-    [u, v, light.direction()]
 }
 
 /// A block, moved to whole texels of a grid that is fixed to the light.

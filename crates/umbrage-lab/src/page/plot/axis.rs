@@ -37,19 +37,20 @@ impl Axis {
         Self { scale: Scale::Log, ..Self::linear(label) }
     }
 
-    /// The same axis with given ends. What lies outside is cut off.
+    /// Sets the ends. What lies outside is cut off.
     #[must_use]
     pub fn range(self, lo: f64, hi: f64) -> Self {
         Self { range: Some((lo, hi)), ..self }
     }
 
-    /// The same axis with zero on it.
+    /// Puts zero on the axis.
     #[must_use]
     pub fn from_zero(self) -> Self {
         Self { from_zero: true, ..self }
     }
 
-    /// Refuses values that the axis cannot show; NaN among them does not count. Answers whether there is a value at all.
+    /// Refuses values that the axis cannot show; NaN among them does not count. Answers whether
+    /// there is a value at all.
     pub(super) fn check(&self, title: &str, values: impl Iterator<Item = f64>) -> Result<bool> {
         let refuse = |value, remedy| Error::Value { title: title.into(), axis: self.label.clone(), value, remedy };
         let mut any = false;
@@ -82,7 +83,8 @@ pub(super) fn nice_step(step: f64) -> f64 {
     [1.0, 2.0, 5.0].into_iter().map(|m| m * decade).find(|&nice| nice >= step * (1.0 - 1e-9)).unwrap_or(10.0 * decade)
 }
 
-/// A value as a reader likes it: up to four figures, thousands apart, powers of ten where it is very large or small.
+/// A value as a reader likes it: up to four figures, thousands apart, powers of ten where it is
+/// very large or small.
 #[must_use]
 pub fn number(value: f64) -> String {
     if value == 0.0 {

@@ -32,7 +32,8 @@ pub struct BarSeries {
     pub name: String,
     /// One value per category; NaN where there is none.
     pub values: Vec<f64>,
-    /// How far the values scatter on both sides (a standard deviation, say), one per category; empty if that is not shown.
+    /// How far the values scatter on both sides (a standard deviation, say), one per category;
+    /// empty if that is not shown.
     pub spread: Vec<f64>,
     /// `None`: the palette's next.
     pub colour: Option<Colour>,
@@ -45,13 +46,13 @@ impl BarSeries {
         Self { name: name.into(), values, spread: Vec::new(), colour: None }
     }
 
-    /// The same series with whiskers.
+    /// Adds whiskers: one spread for each category.
     #[must_use]
     pub fn spread(self, spread: Vec<f64>) -> Self {
         Self { spread, ..self }
     }
 
-    /// The same series in this colour.
+    /// Sets the colour.
     #[must_use]
     pub fn colour(self, colour: Colour) -> Self {
         Self { colour: Some(colour), ..self }
@@ -63,7 +64,8 @@ impl BarSeries {
 pub struct BarChart {
     /// What it shows, in a few words.
     pub title: String,
-    /// What the bars' lengths are. Linear, as the length of a bar on a logarithmic axis says nothing.
+    /// What the bars' lengths are. Linear, as the length of a bar on a logarithmic axis says
+    /// nothing.
     pub value: Axis,
     /// Names, top to bottom.
     pub categories: Vec<String>,
@@ -82,21 +84,21 @@ impl BarChart {
         Self { title: title.into(), value, categories, series: Vec::new(), marks: Vec::new(), width: 680.0 }
     }
 
-    /// The same chart with one more series.
+    /// Adds a series.
     #[must_use]
     pub fn series(mut self, series: BarSeries) -> Self {
         self.series.push(series);
         self
     }
 
-    /// The same chart with an upright line.
+    /// Adds an upright line ([`Mark::X`]).
     #[must_use]
     pub fn mark(mut self, mark: Mark) -> Self {
         self.marks.push(mark);
         self
     }
 
-    /// The same chart, `width` pixels across.
+    /// Sets the width in pixels.
     #[must_use]
     pub fn width(self, width: f64) -> Self {
         Self { width, ..self }
@@ -105,8 +107,8 @@ impl BarChart {
     /// The chart as an `<svg>` element.
     ///
     /// # Errors
-    /// [`Error::Empty`] without a value, [`Error::Length`] if a series has not one value per category, [`Error::Value`] for an
-    /// infinite value or a logarithmic axis.
+    /// [`Error::Empty`] without a value, [`Error::Length`] if a series has not one value per
+    /// category, [`Error::Value`] for an infinite value or a logarithmic axis.
     pub fn to_svg(&self) -> Result<String> {
         self.check()?;
         let mut bars = BarPlot::new().with_horizontal(true).with_width(SHARE);
@@ -200,7 +202,8 @@ impl BarChart {
     }
 }
 
-/// Writes each bar's number behind it and its whisker. The library draws bars without numbers; they are found by where they begin.
+/// Writes each bar's number behind it and its whisker. The library draws bars without numbers; they
+/// are found by where they begin.
 fn write_numbers(scene: &mut Scene, computed: &ComputedLayout, numbers: &[String], errors: Option<&Vec<f64>>) {
     let zero = computed.map_x(0.0);
     let bottom = computed.height - computed.margin_bottom;

@@ -75,7 +75,7 @@ impl Series {
         Self { name: name.into(), points, style, colour: None }
     }
 
-    /// The same series in this colour.
+    /// Sets the colour.
     #[must_use]
     pub fn colour(self, colour: Colour) -> Self {
         Self { colour: Some(colour), ..self }
@@ -117,21 +117,21 @@ impl Chart {
         Self { title: title.into(), x, y, series: Vec::new(), marks: Vec::new(), width: 680.0, plot_height: 300.0 }
     }
 
-    /// The same chart with one more series.
+    /// Adds a series.
     #[must_use]
     pub fn series(mut self, series: Series) -> Self {
         self.series.push(series);
         self
     }
 
-    /// The same chart with one more line across.
+    /// Adds a line across.
     #[must_use]
     pub fn mark(mut self, mark: Mark) -> Self {
         self.marks.push(mark);
         self
     }
 
-    /// The same chart, `width` pixels across and its plot `plot_height` pixels high.
+    /// Sets the width in pixels, and the height of the plot itself.
     #[must_use]
     pub fn size(self, width: f64, plot_height: f64) -> Self {
         Self { width, plot_height, ..self }
@@ -140,8 +140,8 @@ impl Chart {
     /// The chart as an `<svg>` element.
     ///
     /// # Errors
-    /// [`Error::Empty`] without a finite point, [`Error::Value`] for an infinite one, or one at or below 0 on a logarithmic
-    /// axis.
+    /// [`Error::Empty`] without a finite point, [`Error::Value`] for an infinite one, or one at or
+    /// below 0 on a logarithmic axis.
     pub fn to_svg(&self) -> Result<String> {
         let points = || self.series.iter().flat_map(|series| &series.points);
         let any = points().any(|(x, y)| !x.is_nan() && !y.is_nan());

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-/// A colour by its meaning. Each has a form for light paper, which is what the SVG says, and one for dark paper.
+/// A colour by its meaning. Each has a form for light paper, which is what the SVG says, and one
+/// for dark paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colour {
     /// Text and outlines of the first rank.
@@ -13,7 +14,8 @@ pub enum Colour {
     Grid,
     /// What is behind everything, to cut lines where they cross.
     Paper,
-    /// Things that are told apart, such as techniques. Eight, then they repeat; readable for the colour-blind (after Okabe and Ito).
+    /// Things that are told apart, such as techniques. Eight, then they repeat; readable for the
+    /// colour-blind (after Okabe and Ito).
     Series(usize),
     /// A split, nearest first: the order of the renderer's tints (red, green, blue, yellow, …).
     Split(usize),
@@ -81,7 +83,8 @@ impl Colour {
     }
 }
 
-/// CSS rules that repaint the charts below `selector` for dark paper; they stand over the SVG's own attributes.
+/// CSS rules that repaint the charts below `selector` for dark paper; they stand over the SVG's own
+/// attributes.
 #[must_use]
 pub fn dark_style(selector: &str) -> String {
     let mut css = String::new();

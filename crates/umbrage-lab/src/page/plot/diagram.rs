@@ -150,11 +150,8 @@ impl Diagram {
         let heading = (HEADING_LEFT, 4.0 + f64::from(LARGE));
         scene.add(text(&self.title, heading, TextAnchor::Start, Colour::Ink, LARGE));
         self.draw_legend(&mut scene, &legend);
-        let (id, width, height) = (self.clip_id(), self.width - 2.0 * EDGE, bottom - top);
-        scene.defs.push(format!(
-            "<clipPath id=\"{id}\"><rect x=\"{EDGE}\" y=\"{top:.2}\" width=\"{width:.2}\" height=\"{height:.2}\"/></clipPath>"
-        ));
-        scene.add(Primitive::ClipStart { x: EDGE, y: top, width, height, id });
+        let (width, height) = (self.width - 2.0 * EDGE, bottom - top);
+        scene.add(Primitive::ClipStart { x: EDGE, y: top, width, height, id: String::new() });
         self.shapes.iter().for_each(|shape| draw(&mut scene, shape, &place));
         scene.add(Primitive::ClipEnd);
         self.shapes.iter().for_each(|shape| write(&mut scene, shape, &place));
@@ -202,14 +199,6 @@ impl Diagram {
             let at = (x + SWATCH, middle + 0.35 * f64::from(SMALL));
             scene.add(text(name, at, TextAnchor::Start, Colour::Ink, SMALL));
         }
-    }
-
-    /// The name of the frame as a clip. It holds across a whole page, so it is made of all that is drawn.
-    fn clip_id(&self) -> String {
-        use std::hash::{DefaultHasher, Hash, Hasher};
-        let mut hasher = DefaultHasher::new();
-        format!("{self:?}").hash(&mut hasher);
-        format!("frame-{:x}", hasher.finish())
     }
 }
 
@@ -306,7 +295,8 @@ fn text_width(text: &str) -> f64 {
     0.56 * f64::from(SMALL) * text.chars().count() as f64
 }
 
-/// The corners of the smallest convex outline around `points`, counter-clockwise (Andrew's monotone chain).
+/// The corners of the smallest convex outline around `points`, counter-clockwise (Andrew's monotone
+/// chain).
 #[must_use]
 pub fn convex_hull(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut sorted = points.to_vec();

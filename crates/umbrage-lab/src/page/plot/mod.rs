@@ -1,11 +1,12 @@
 //! Charts and diagrams as SVG text, from plain data.
 //!
-//! [`Chart`] draws lines and points over two axes, linear or logarithmic; [`BarChart`] draws bars; [`Diagram`] draws shapes to
-//! scale. What comes out is one `<svg>` element for a page of [`super::html`], complete in itself: it can be read as a
-//! file too. Colours are plain attributes in the light palette; [`dark_style`] is the CSS that repaints them for dark pages.
+//! [`Chart`] draws lines and points over two axes, linear or logarithmic; [`BarChart`] draws bars;
+//! [`Diagram`] draws shapes to scale. What comes out is one `<svg>` element for a page of
+//! [`super::html`], complete in itself: it can be read as a file too. Colours are plain attributes
+//! in the light palette; [`dark_style`] is the CSS that repaints them for dark pages.
 //!
-//! `kuva` draws them: axes, ticks, legends and the SVG itself are its own. What is ours is the palette, what is refused, and shapes to
-//! scale, which no library of charts has.
+//! `kuva` draws them: axes, ticks, legends and the SVG itself are its own. What is ours is the
+//! palette, what is refused, and shapes to scale, which no library of charts has.
 
 mod axis;
 mod bars;

@@ -107,8 +107,6 @@ pub(super) fn render(plots: Vec<Plot>, layout: Layout) -> Scene {
 
 /// The `<svg>` element of a scene. `title` is also what screen readers say.
 pub(super) fn element(title: &str, mut scene: Scene) -> Result<String> {
-    // The page's own paper shows through.
-    scene.background_color = None;
     // Titles stand where those of the page do: on the left, bold.
     for element in &mut scene.elements {
         if let Primitive::Text { x, content, anchor, bold, .. } = element
@@ -117,12 +115,27 @@ pub(super) fn element(title: &str, mut scene: Scene) -> Result<String> {
             (*x, *anchor, *bold) = (HEADING_LEFT, TextAnchor::Start, true);
         }
     }
-    let drawn = SvgBackend::new().render_scene(&scene);
-    // The backend's first tag has neither a name for readers nor a size that scales.
-    let body = drawn.split_once('>').and_then(|(_, body)| body.trim_end().strip_suffix("</svg>"));
-    let body = body.ok_or_else(|| Error::Backend { title: title.into(), reason: "it is no svg element".to_owned() })?;
     let (width, height) = (scene.width.ceil(), scene.height.ceil());
     let view_box = format!("0 0 {width} {height}");
+    let (mut body, mut part) = (String::new(), Vec::new());
+    for element in scene.elements {
+        match element {
+            // A drawing inside the drawing cuts what lies outside of it, without a name to refer to.
+            Primitive::ClipStart { x, y, width, height, .. } => {
+                body += &markup(title, std::mem::take(&mut part))?;
+                let corners = format!("{x:.2} {y:.2} {width:.2} {height:.2}");
+                body += &format!(
+                    "<svg x=\"{x:.2}\" y=\"{y:.2}\" width=\"{width:.2}\" height=\"{height:.2}\" viewBox=\"{corners}\">"
+                );
+            }
+            Primitive::ClipEnd => {
+                body += &markup(title, std::mem::take(&mut part))?;
+                body += "</svg>";
+            }
+            other => part.push(other),
+        }
+    }
+    body += &markup(title, part)?;
     let svg = html! {
         svg xmlns="http://www.w3.org/2000/svg" class="plot" role="img" aria-label=(title) width=(width) height=(height)
             viewBox=(view_box) stroke-linejoin="round" {
@@ -131,6 +144,17 @@ pub(super) fn element(title: &str, mut scene: Scene) -> Result<String> {
         }
     };
     Ok(svg.into_string())
+}
+
+/// Primitives as the library writes them, without its own first and last tag.
+fn markup(title: &str, elements: Vec<Primitive>) -> Result<String> {
+    let scene = Scene { background_color: None, elements, ..Scene::new(0.0, 0.0) };
+    let drawn = SvgBackend::new().render_scene(&scene);
+    let body = drawn.split_once('>').and_then(|(_, body)| body.trim_end().strip_suffix("</svg>"));
+    let body = body.ok_or_else(|| Error::Backend { title: title.into(), reason: "it is no svg element".to_owned() })?;
+    // The library's name and version stand in a comment before all else.
+    let comment = body.strip_prefix("<!--").and_then(|rest| rest.split_once("-->"));
+    Ok(comment.map_or(body, |(_, rest)| rest).to_owned())
 }
 
 #[cfg(test)]
@@ -150,9 +174,12 @@ mod tests {
             bold: false,
             color: None,
         });
+        scene.add(Primitive::ClipStart { x: 1.0, y: 2.0, width: 30.0, height: 40.0, id: String::new() });
+        scene.add(Primitive::ClipEnd);
         let svg = element("a < b & \"c\"", scene).expect("drawable");
         assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"), "{svg}");
-        assert_eq!((svg.matches("<svg").count(), svg.matches("</svg>").count()), (1, 1));
+        assert_eq!((svg.matches("<svg").count(), svg.matches("</svg>").count()), (2, 2));
+        assert!(svg.contains("viewBox=\"1.00 2.00 30.00 40.00\"") && !svg.contains("url("), "{svg}");
         assert!(svg.contains("viewBox=\"0 0 100 50\"") && svg.contains("width=\"100\""), "{svg}");
         assert!(svg.contains("a &lt; b &amp; &quot;c&quot;") && svg.contains("x &lt; y"), "{svg}");
     }

@@ -1,0 +1,137 @@
+//! The options of shadows: one for each setting of `umbrage::config::SETTINGS`, and the config that
+//! they go over.
+
+use std::path::PathBuf;
+
+use clap::builder::PossibleValue;
+use clap::{Arg, ArgAction, ArgMatches, Command, FromArgMatches};
+use umbrage::config::{Kind, Preset, SETTINGS, Setting};
+
+use umbrage_lab::technique::{ShadowOptions, ShadowRequest};
+
+use crate::args::Switch;
+
+/// The heading of these options in the help.
+const HEADING: &str = "Shadows";
+
+/// Settings that stand among other options: the sun's angle belongs to the light.
+const ELSEWHERE: [&str; 1] = ["sun-angle"];
+
+/// How shadows are made, as typed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShadowArgs(pub ShadowOptions);
+
+impl ShadowArgs {
+    /// The config that the options ask for, under a sun of this angle in degrees.
+    ///
+    /// # Errors
+    /// [`umbrage_lab::failure::Failure::Input`] naming the option at fault.
+    pub fn request(&self, sun_angle: Option<f64>) -> umbrage_lab::failure::Result<ShadowRequest> {
+        Ok(ShadowRequest::new(self.0.clone())?.under_sun(sun_angle))
+    }
+}
+
+impl clap::Args for ShadowArgs {
+    fn augment_args(command: Command) -> Command {
+        let command = command.next_help_heading(HEADING).args([preset(), config()]);
+        let command = command.args(settings().map(option));
+        command.args([tint(), shadows()])
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for ShadowArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let typed = |setting: &Setting| {
+            let value = matches.get_one::<String>(setting.key)?;
+            Some((setting.key.to_owned(), value.clone()))
+        };
+        Ok(Self(ShadowOptions {
+            preset: matches.get_one::<Preset>("preset").copied(),
+            file: matches.get_one::<PathBuf>("config").cloned(),
+            given: settings().filter_map(typed).collect(),
+            tint: matches.get_one::<bool>("tint").copied().unwrap_or(false),
+            shadows_off: matches.get_one::<Switch>("shadows") == Some(&Switch::Off),
+        }))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+fn settings() -> impl Iterator<Item = &'static Setting> {
+    SETTINGS.iter().filter(|setting| !ELSEWHERE.contains(&setting.key))
+}
+
+/// The option of a setting.
+fn option(setting: &'static Setting) -> Arg {
+    let default = setting.get(&Preset::Balanced.config()).map(|value| format!(" [default: {value}]"));
+    let arg = Arg::new(setting.key)
+        .long(setting.key)
+        .value_name(setting.kind.placeholder())
+        .help(format!("{}{}", setting.help, default.unwrap_or_default()))
+        .allow_hyphen_values(true);
+    match setting.kind {
+        Kind::Words(words) => {
+            let values = words.iter().map(|word| PossibleValue::new(word.word).help(word.help));
+            let arg = arg.value_parser(clap::builder::PossibleValuesParser::new(values));
+            match words {
+                // A switch may stand alone.
+                [on, off] if (on.word, off.word) == ("on", "off") => {
+                    arg.num_args(0..=1).require_equals(true).default_missing_value("on")
+                }
+                _ => arg,
+            }
+        }
+        Kind::Switch => arg.num_args(0..=1).require_equals(true).default_missing_value("true"),
+        // Checked beside the other settings, where a message can say more.
+        _ => arg,
+    }
+}
+
+fn preset() -> Arg {
+    let values = Preset::WORDS.iter().map(|word| PossibleValue::new(word.word).help(word.help));
+    let parser = clap::builder::PossibleValuesParser::new(values);
+    Arg::new("preset")
+        .long("preset")
+        .value_name("NAME")
+        .help("Settings by name; single options go over them [default: balanced]")
+        .value_parser(clap::builder::TypedValueParser::map(parser, |word: String| {
+            word.parse::<Preset>().unwrap_or_default()
+        }))
+}
+
+fn config() -> Arg {
+    Arg::new("config")
+        .long("config")
+        .value_name("FILE")
+        .help("Settings from a file (TOML or JSON), or from a report: that picture again; single options go over them")
+        .value_parser(clap::value_parser!(PathBuf))
+}
+
+fn tint() -> Arg {
+    Arg::new("tint")
+        .long("tint")
+        .value_name("true|false")
+        .help("Colour the picture by split")
+        .num_args(0..=1)
+        .require_equals(true)
+        .default_value("false")
+        .default_missing_value("true")
+        .action(ArgAction::Set)
+        .value_parser(clap::value_parser!(bool))
+}
+
+fn shadows() -> Arg {
+    Arg::new("shadows")
+        .long("shadows")
+        .value_name("SWITCH")
+        .help("Draw with shadows or without")
+        .default_value("on")
+        .value_parser(clap::value_parser!(Switch))
+}

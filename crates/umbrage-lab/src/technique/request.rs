@@ -1,0 +1,187 @@
+//! How shadows are made: a config, and what was asked for to make it.
+
+use std::path::{Path, PathBuf};
+
+use umbrage::ShadowConfig;
+use umbrage::config::{Filter, LightKind, Preset, RULES, SETTINGS};
+use umbrage_render::{LightMaps, RenderSettings, Samples};
+
+use crate::{
+    failure::{Failure, Result, in_options},
+    lights::{self, NamedLight},
+};
+
+/// What was asked for: settings over a preset or a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ShadowOptions {
+    /// A preset by name.
+    pub preset: Option<Preset>,
+    /// A file with a config (TOML or JSON), or a report.
+    pub file: Option<PathBuf>,
+    /// Settings by key.
+    pub given: Vec<(String, String)>,
+    /// Whether the picture is coloured by split.
+    pub tint: bool,
+    /// Whether anything throws shadows.
+    pub shadows_off: bool,
+}
+
+/// Shadows as they will be made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShadowRequest {
+    /// Everything that can be chosen.
+    pub config: ShadowConfig,
+    /// What was asked for.
+    pub options: ShadowOptions,
+    /// What gave way to what was asked for.
+    pub notes: Vec<String>,
+}
+
+impl ShadowRequest {
+    /// Puts the settings over the preset or the file.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] naming the setting or the file at fault.
+    pub fn new(options: ShadowOptions) -> Result<Self> {
+        for (key, value) in &options.given {
+            let setting = SETTINGS.iter().find(|setting| setting.key == key);
+            let checked = setting.map_or(Ok(()), |setting| setting.kind.check(value.trim()));
+            checked.map_err(|why| Failure::input(format!("--{key} {value}: {why}")))?;
+        }
+        let mut config = match (&options.file, options.preset) {
+            (Some(file), Some(preset)) => {
+                return Err(Failure::input(format!(
+                    "--config {} and --preset {preset} both choose all settings; give one of them",
+                    file.display()
+                )));
+            }
+            (Some(file), None) => load(file)?,
+            (None, preset) => preset.unwrap_or_default().config(),
+        };
+        let notes = config.apply(&options.given).map_err(|error| Failure::of_settings(&error, &options.given))?;
+        let notes = notes.iter().map(|note| in_options(note)).collect();
+        Ok(Self { config, options, notes })
+    }
+
+    /// These shadows under a sun of this angle in degrees: what pcss goes by.
+    #[must_use]
+    pub fn under_sun(mut self, sun_angle: Option<f64>) -> Self {
+        if let (Filter::Pcss { sun_degrees, .. }, Some(angle)) = (&mut self.config.filter, sun_angle) {
+            *sun_degrees = angle;
+        }
+        self
+    }
+
+    /// These shadows for some lights. What the lights exclude gives way, unless it was asked for.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] naming the setting and the light that exclude each other.
+    pub fn for_lights(&self, lights: &[NamedLight]) -> Result<Self> {
+        let kinds = lights::kinds(lights);
+        let mut request = self.clone();
+        for rule in RULES.iter().filter(|rule| rule.is_about_lights()) {
+            if !rule.is_broken_by(&request.config, &kinds) {
+                continue;
+            }
+            let said = rule.first.say(&request.config);
+            let asked = rule.first.keys().iter().any(|key| self.options.given.iter().any(|(given, _)| given == key));
+            if asked || !rule.first.relax(&mut request.config) {
+                let names: Vec<&str> = lights.iter().map(|light| light.name.as_str()).collect();
+                return Err(Failure::input(format!(
+                    "--{said} and --light {} exclude each other: {}; {}",
+                    names.join(","),
+                    rule.reason,
+                    rule.remedy
+                )));
+            }
+            request.notes.push(in_options(&format!("{said} is left away: {}", rule.reason)));
+        }
+        request.config.validate_for(&kinds).map_err(|error| Failure::of_settings(&error, &self.options.given))?;
+        Ok(request)
+    }
+
+    /// What a renderer is made with.
+    #[must_use]
+    pub fn render_settings(&self, size: [u32; 2], samples: Samples, lights: Vec<LightKind>) -> RenderSettings {
+        let lights = lights.into_iter().map(LightMaps::from).collect();
+        RenderSettings { size, samples, config: self.config.clone(), lights }
+    }
+
+    /// A setting's value as text; empty where the config has no such setting.
+    #[must_use]
+    pub fn word(&self, key: &str) -> String {
+        word(&self.config, key)
+    }
+}
+
+/// A setting's value as text; empty where the config has no such setting.
+#[must_use]
+pub fn word(config: &ShadowConfig, key: &str) -> String {
+    let setting = SETTINGS.iter().find(|setting| setting.key == key);
+    setting.and_then(|setting| setting.get(config)).map(|value| value.to_string()).unwrap_or_default()
+}
+
+/// The config of a file: TOML, JSON, or a report of `umbrage render`.
+fn load(path: &Path) -> Result<ShadowConfig> {
+    let text = std::fs::read_to_string(path).map_err(|error| Failure::file("read", path, &error))?;
+    parse(&text).map_err(|why| Failure::input(format!("--config {}: {why}", path.display())))
+}
+
+fn parse(text: &str) -> std::result::Result<ShadowConfig, String> {
+    if text.trim_start().starts_with('{') {
+        let mut json: serde_json::Value =
+            serde_json::from_str(text).map_err(|error| format!("is neither JSON nor TOML: {error}"))?;
+        let is_report = json.get("adapter").is_some() || json.get("splits").is_some_and(serde_json::Value::is_array);
+        let config = match json.get_mut("config") {
+            Some(config) => config.take(),
+            None if is_report => return Err("is a report without a config, of a former version".to_owned()),
+            None => json,
+        };
+        return serde_json::from_value(config).map_err(|error| error.to_string());
+    }
+    toml::from_str(text).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn options(given: &[(&str, &str)]) -> ShadowOptions {
+        let given = given.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+        ShadowOptions { given, ..ShadowOptions::default() }
+    }
+
+    #[test]
+    fn files_are_toml_json_or_reports() {
+        let papers = Preset::Papers.config();
+        assert_eq!(parse("preset = \"papers\"\n").as_ref(), Ok(&papers));
+        let toml = parse("preset = \"papers\"\nmap-size = [512, 256]\nsplits = 2\nblend = 0.2\n").unwrap();
+        assert_eq!((toml.map_sizes.as_slice(), toml.blend()), (&[512, 256][..], 0.2));
+        let json = serde_json::to_string(&toml).unwrap();
+        assert_eq!(parse(&json).as_ref(), Ok(&toml));
+        assert_eq!(parse(&format!("{{\"adapter\": \"x\", \"config\": {json}}}")).as_ref(), Ok(&toml));
+        assert!(parse("{\"adapter\": \"x\"}").unwrap_err().contains("without a config"));
+        for (bad, culprit) in [
+            ("{", "JSON"),
+            ("splits = ", "splits"),
+            ("colour = 3", "colour"),
+            ("{\"splits\": 99}", "splits"),
+            ("blend = []", "blend"),
+        ] {
+            let message = parse(bad).unwrap_err();
+            assert!(message.contains(culprit), "{bad}: {message}");
+        }
+    }
+
+    #[test]
+    fn options_go_over_a_preset() {
+        let request =
+            ShadowRequest::new(ShadowOptions { preset: Some(Preset::Papers), ..options(&[("lambda", "0.9")]) });
+        assert_eq!(request.unwrap().word("lambda"), "0.9");
+        let both =
+            ShadowOptions { preset: Some(Preset::Fast), file: Some("x.toml".into()), ..ShadowOptions::default() };
+        assert!(ShadowRequest::new(both).unwrap_err().to_string().contains("--preset fast"));
+        let missing = ShadowOptions { file: Some("no-such-file.toml".into()), ..ShadowOptions::default() };
+        assert!(ShadowRequest::new(missing).unwrap_err().to_string().contains("no-such-file.toml"));
+    }
+}

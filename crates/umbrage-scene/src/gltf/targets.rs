@@ -1,0 +1,59 @@
+//! Morph targets of primitives.
+
+use gltf::json::mesh::MorphTarget as JsonTarget;
+
+use super::Document;
+use super::budget::Part;
+use super::buffers::{self, Integers, Wanted};
+use crate::{MorphTarget, Result};
+
+/// Bytes of the differences of one vertex.
+const VERTEX_BYTES: u64 = size_of::<[f32; 3]>() as u64;
+
+/// The morph targets of a primitive with so many vertices in the file, of which the `wanted` are kept.
+pub(super) fn load(
+    document: &Document<'_>,
+    json: &[JsonTarget],
+    user: &str,
+    vertices: usize,
+    wanted: Wanted<'_>,
+) -> Result<Vec<MorphTarget>> {
+    let mut targets = Vec::with_capacity(json.len());
+    for (index, target) in json.iter().enumerate() {
+        let differences = |accessor: Option<usize>, name: &str| match accessor {
+            Some(accessor) => {
+                load_differences(document, accessor, &format!("{user}.targets[{index}].{name}"), vertices, wanted)
+            }
+            None => Ok(Vec::new()),
+        };
+        targets.push(MorphTarget {
+            positions: differences(target.positions.map(|index| index.value()), "POSITION")?,
+            normals: differences(target.normals.map(|index| index.value()), "NORMAL")?,
+        });
+    }
+    Ok(targets)
+}
+
+/// One per kept vertex; none if all of them are zero.
+fn load_differences(
+    document: &Document<'_>,
+    accessor: usize,
+    user: &str,
+    vertices: usize,
+    wanted: Wanted<'_>,
+) -> Result<Vec<[f32; 3]>> {
+    let count = buffers::count(document, accessor, user)?;
+    if count != vertices as u64 {
+        return Err(document.invalid(user, format!("has {count} differences for {vertices} vertices")));
+    }
+    if buffers::is_all_zero(document, accessor, user)? {
+        return Ok(Vec::new());
+    }
+    let packed = buffers::packed(document, accessor, user, &[buffers::type_of::<3>()], wanted)?;
+    let list = packed.floats::<3>(document, user, Integers::AsMarked)?;
+    if list.iter().flatten().all(|&x| x == 0.0) {
+        return Ok(Vec::new());
+    }
+    document.count(Part::Geometry, VERTEX_BYTES * list.len() as u64, user)?;
+    Ok(list)
+}

@@ -1,0 +1,48 @@
+//! Blocks on a sun's own axes: what a still map has to show.
+
+use glam::DVec3;
+
+use crate::DirectionalLight;
+use crate::bounds::Placed;
+
+/// A block on the light's own axes: along the map's two and along the light, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Block {
+    pub center: DVec3,
+    pub half: DVec3,
+}
+
+impl Block {
+    /// Around a sphere of the world.
+    pub fn around_sphere(center: DVec3, radius: f64, light: &DirectionalLight) -> Self {
+        Self { center: axes(light).map(|axis| axis.dot(center)).into(), half: DVec3::splat(radius) }
+    }
+
+    /// Around boxes; `None` of none, and of such without any extent.
+    pub fn around<'a>(boxes: impl Iterator<Item = &'a Placed>, light: &DirectionalLight) -> Option<Self> {
+        let axes = axes(light);
+        let (lo, hi) = boxes.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), placed| {
+            let at = DVec3::from(axes.map(|axis| axis.dot(placed.center)));
+            let reach = DVec3::from(axes.map(|axis| axis.abs().dot(placed.half)));
+            (lo.min(at - reach), hi.max(at + reach))
+        });
+        let half = 0.5 * (hi - lo);
+        // What has no width (a wall seen edge-on by the light) still gets texels of some size.
+        let half = half.max(DVec3::splat(1e-3 * half.max_element()));
+        (half.max_element() > 0.0).then(|| Self { center: 0.5 * (lo + hi), half })
+    }
+
+    /// The same, but along each axis no longer than `other`, whose place it takes there.
+    pub fn no_longer_than(self, other: &Self) -> Self {
+        let longer = self.half.cmpge(other.half);
+        Self {
+            center: DVec3::select(longer, other.center, self.center),
+            half: DVec3::select(longer, other.half, self.half),
+        }
+    }
+}
+
+fn axes(light: &DirectionalLight) -> [DVec3; 3] {
+    let (u, v) = light.map_axes();
+    [u, v, light.direction()]
+}

@@ -1,0 +1,204 @@
+//! What has no say: very far objects, ground beyond all shadows, how far an orthographic camera stands off.
+
+use glam::DVec3;
+use umbrage::{
+    Aabb, DirectionalLight, ExtentSteps, Frustum, Planner, Selection, ShadowPlan, ShadowSettings, SplitScheme,
+    Stabilize, View,
+};
+
+const STABILIZE: [Stabilize; 3] =
+    [Stabilize::None, Stabilize::Exact, Stabilize::Approximate(ExtentSteps::PerDoubling(24))];
+
+fn sun() -> DirectionalLight {
+    DirectionalLight::new(DVec3::new(-0.5, -0.6, -0.35)).expect("a sun")
+}
+
+fn view(near: f64, far: f64) -> View {
+    let lens = Frustum::perspective(1.0, 4.0 / 3.0, near, far).expect("a lens");
+    View::look_at_upright(DVec3::new(4.0, 5.0, 10.0), DVec3::new(0.0, 0.5, -1.0), lens).expect("a view")
+}
+
+/// Boxes of a metre or two within 10 m, sunk into the ground by a hand's breadth, on a flat ground of so many metres.
+fn things(half: f64) -> Vec<Aabb> {
+    let mut boxes: Vec<Aabb> = (0..14)
+        .map(|i| {
+            let at = DVec3::new(f64::from(i * 7 % 12) - 6.0, -0.1, f64::from(i * 5 % 13) - 9.0);
+            Aabb::new(at, at + DVec3::new(0.6, 1.0 + 0.2 * f64::from(i % 8), 0.7))
+        })
+        .collect();
+    boxes.push(Aabb::new(DVec3::new(-half, 0.0, -half), DVec3::new(half, 0.0, half)));
+    boxes
+}
+
+fn plan(settings: &ShadowSettings, view: &View, boxes: &[Aabb]) -> ShadowPlan {
+    let mut planner = Planner::new(settings.clone()).expect("settings");
+    planner.plan(view, &sun(), boxes, boxes).expect("a plan").clone()
+}
+
+/// The finest map that a shown point asks: edge of its texel, and length of its depth range, metres.
+fn texel_at(plan: &ShadowPlan, point: DVec3) -> (f64, f64) {
+    let split = plan.splits.iter().find(|split| plan.depth_at(point) < split.far).expect("the point is in range");
+    assert!(split.contains(point, split.filter_reach) || split.casters.is_empty(), "{point} in {split:?}");
+    (split.texel_m.max_element(), split.depth_far - split.depth_near)
+}
+
+#[test]
+fn a_ground_of_any_size_leaves_texels_to_what_stands_on_it() {
+    for stabilize in STABILIZE {
+        let settings = ShadowSettings { stabilize, ..ShadowSettings::default() };
+        for (near, far) in [(0.01, f64::INFINITY), (1.0, f64::INFINITY), (0.1, 300.0), (1.0, 1e6)] {
+            for half in [10.0, 100.0, 2e3, 2e4, 5e5] {
+                let plan = plan(&settings, &view(near, far), &things(half));
+                for foot in [DVec3::ZERO, DVec3::new(-5.0, 0.0, -8.0), DVec3::new(5.0, 0.0, 3.0)] {
+                    let (texel, depth) = texel_at(&plan, foot);
+                    assert!(
+                        texel < 0.07,
+                        "{stabilize:?} {near}..{far}, {half} m: texels of {texel} m, {:?}",
+                        plan.planes
+                    );
+                    // 32-bit depth is good to a few millimetres.
+                    assert!(depth < 2e4, "{stabilize:?} {near}..{far}, {half} m: {depth} m of depth");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn one_very_far_object_changes_nothing() {
+    let forward = view(1.0, 10.0).forward();
+    for stabilize in STABILIZE {
+        let settings = ShadowSettings { stabilize, ..ShadowSettings::default() };
+        for far in [300.0, f64::INFINITY] {
+            let view = view(0.1, far);
+            let boxes = things(50.0);
+            let without = plan(&settings, &view, &boxes);
+            for towards in [forward, -forward, DVec3::Y, DVec3::NEG_Y, DVec3::X, DVec3::new(-0.9, 0.05, 0.3)] {
+                for distance in [1e5, 1e6, 1e7, 1e9] {
+                    let at = distance * towards;
+                    let mut with = boxes.clone();
+                    with.push(Aabb::new(at - 0.5e-3 * distance, at + 0.5e-3 * distance));
+                    let with = plan(&settings, &view, &with);
+                    let told = format!("{stabilize:?}, {distance} m towards {towards}, lens to {far}");
+                    for (a, b) in with.splits.iter().zip(&without.splits) {
+                        let ratio = a.texel_m / b.texel_m;
+                        assert!(
+                            (ratio - 1.0).abs().max_element() < 1e-6,
+                            "{told}: texels of {} for {}",
+                            a.texel_m,
+                            b.texel_m
+                        );
+                        assert!(
+                            (a.far / b.far - 1.0).abs() < 1e-9,
+                            "{told}: {:?} for {:?}",
+                            with.planes,
+                            without.planes
+                        );
+                        assert!(a.depth_far - a.depth_near < 1e4, "{told}: {a:?}");
+                    }
+                    assert_eq!(with.caster_indices, without.caster_indices, "{told}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn an_orthographic_camera_may_stand_off_as_far_as_it_likes() {
+    let toward = DVec3::new(1.0, 0.9, 1.0).normalize();
+    for stabilize in STABILIZE {
+        let settings = ShadowSettings { stabilize, ..ShadowSettings::default() };
+        let texels = [30.0, 300.0, 5000.0].map(|distance| {
+            let lens = Frustum::orthographic(24.0, 18.0, 0.1, 2.0 * distance).expect("a lens");
+            let view = View::look_at_upright(toward * distance, DVec3::ZERO, lens).expect("a view");
+            texel_at(&plan(&settings, &view, &things(40.0)), DVec3::ZERO).0
+        });
+        assert!(texels[1] < 1.5 * texels[0] && texels[2] < 1.5 * texels[0], "{stabilize:?}: {texels:?}");
+    }
+}
+
+#[test]
+fn every_direction_of_sight_along_the_sun_has_axes_and_casters() {
+    let boxes: Vec<Aabb> = things(40.0).into_iter().chain([Aabb::new(DVec3::splat(-0.5), DVec3::splat(0.5))]).collect();
+    for i in 0..200 {
+        // Directions all over the sphere, the axes among them.
+        let y = 1.0 - (f64::from(i) + 0.5) / 100.0;
+        let (sin, cos) = (2.399_963_229_728_653 * f64::from(i)).sin_cos();
+        let axes = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
+        let d = axes.get(i as usize).copied().unwrap_or(DVec3::new(cos, y, sin).normalize());
+        for off in [0.0, 1e-16, 1e-12, 1e-9, 1e-7, 1e-6, 1e-4] {
+            let sun = DirectionalLight::new(d + off * DVec3::new(0.6, 0.0, -0.8)).expect("a sun");
+            let lens = Frustum::perspective(1.0, 1.5, 0.1, 100.0).expect("a lens");
+            let view = View::look_at_upright(-4.0 * d, DVec3::ZERO, lens).expect("a view");
+            for stabilize in STABILIZE {
+                for scheme in [SplitScheme::default(), SplitScheme::Fitted] {
+                    let settings = ShadowSettings { stabilize, scheme, ..ShadowSettings::default() };
+                    let mut planner = Planner::new(settings).expect("settings");
+                    let plan = planner.plan(&view, &sun, &boxes, &boxes).expect("a plan");
+                    for split in &plan.splits {
+                        let frame = split.u_axis.cross(split.v_axis);
+                        assert!(frame.abs_diff_eq(sun.direction(), 1e-10), "{d} {off} {stabilize:?}: {split:?}");
+                        assert!(split.u_axis.dot(split.v_axis).abs() < 1e-10, "{d} {off} {stabilize:?}: {split:?}");
+                    }
+                    // The cube before the eye throws a shadow on what lies behind it, and has a list that says so.
+                    assert!(plan.splits.iter().any(|split| !split.casters.is_empty()), "{d} {off} {stabilize:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_map_without_casters_does_not_answer_for_a_later_one() {
+    let lens = Frustum::perspective(1.0, 1.5, 0.5, 200.0).expect("a lens");
+    let view = View::look_at_upright(DVec3::Y * 2.0, DVec3::new(0.0, 1.0, -50.0), lens).expect("a view");
+    let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.0)).expect("a sun");
+    let ground = Aabb::new(DVec3::new(-100.0, 0.0, -150.0), DVec3::new(100.0, 0.0, 100.0));
+    // The only caster stands far away: the first split has none.
+    let caster = Aabb::new(DVec3::new(-3.0, 4.0, -103.0), DVec3::new(3.0, 8.0, -97.0));
+    let shaded = DVec3::new(1.5, 0.0, -100.0);
+    for selection in [Selection::Depth, Selection::Map] {
+        let settings = ShadowSettings { selection, ..ShadowSettings::default() };
+        let mut planner = Planner::new(settings).expect("settings");
+        let plan = planner.plan(&view, &sun, &[caster], &[ground]).expect("a plan");
+        assert!(plan.splits[0].casters.is_empty() && plan.splits.iter().any(|split| !split.casters.is_empty()));
+        let split = plan.covering_split(shaded).expect("a map answers");
+        assert_eq!(plan.casters(split), [0], "{selection:?}");
+        if selection == Selection::Map {
+            let depths = plan.splits[split].receiver_depths;
+            for corner in [DVec3::new(0.0, 0.0, -10.0), DVec3::new(20.0, 0.0, -100.0)] {
+                let along = sun.direction().dot(corner);
+                assert!((depths.0..=depths.1).contains(&along), "{along} of {depths:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_slice_that_the_camera_does_not_show_answers_for_nothing() {
+    let lens = Frustum::perspective(1.0, 1.5, 0.5, 100.0).expect("a lens");
+    let view = View::look_at_upright(DVec3::Y * 2.0, DVec3::new(0.0, 1.0, -50.0), lens).expect("a view");
+    let boxes = [
+        Aabb::new(DVec3::new(-900.0, 0.0, -900.0), DVec3::new(900.0, 0.0, 900.0)),
+        Aabb::new(DVec3::new(-5.0, 5.0, -305.0), DVec3::new(5.0, 9.0, -295.0)),
+    ];
+    let settings = ShadowSettings { range: Some((0.5, 800.0)), ..ShadowSettings::default() };
+    let mut planner = Planner::new(settings).expect("settings");
+    let sun = DirectionalLight::new(DVec3::new(0.0, -1.0, 0.01)).expect("a sun");
+    let plan = planner.plan(&view, &sun, &boxes, &boxes).expect("a plan");
+    assert_eq!(plan.covering_split(DVec3::new(0.0, 0.0, -300.0)), None, "nobody looked for its casters");
+}
+
+#[test]
+fn without_receivers_in_view_casters_show_shadows() {
+    let boxes = things(50.0);
+    let view = view(0.1, 300.0);
+    let elsewhere = [Aabb::new(DVec3::splat(900.0), DVec3::splat(901.0))];
+    let settings = ShadowSettings { stabilize: Stabilize::None, ..ShadowSettings::default() };
+    let all = plan(&settings, &view, &boxes);
+    for receivers in [&[][..], &elsewhere[..]] {
+        let mut planner = Planner::new(settings.clone()).expect("settings");
+        let plan = planner.plan(&view, &sun(), &boxes, receivers).expect("a plan");
+        assert_eq!(plan.splits, all.splits);
+    }
+}
