@@ -134,6 +134,6 @@ fn what_cannot_be_interpolated_is_refused() {
         shadows_on: true,
         tint: false,
     };
-    let error = stage.renderer.render(&frame, Outputs { mask: true, ..Default::default() }).err().expect("no sun");
+    let error = stage.renderer.render(&frame, Outputs { mask: true, ..Default::default() }).expect_err("no sun");
     assert!(error.to_string().contains("LightKind::Spot"), "{error}");
 }

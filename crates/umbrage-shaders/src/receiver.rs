@@ -136,7 +136,7 @@ impl ReceiverText {
             "plane_bias" => may(self.bias, &[BiasKind::Plane]),
             "slope_bias" => may(self.bias, &[BiasKind::Slope]),
             "plain" => self.projection != Projection::Warped,
-            "warped" => !self.maps.coordinates && !(suns_alone && self.projection == Projection::Plain),
+            "warped" => !(self.maps.coordinates || suns_alone && self.projection == Projection::Plain),
             "local" => !suns_alone,
             "faces" => self.lights == Lights::Any,
             "sliced" => self.sliced,

@@ -2,8 +2,8 @@
 
 use super::names::named;
 use super::{
-    Coordinates, Crop, DepthFormat, Fallbacks, Filter, Layout, Look, Range, Selection, ShadowConfig, SplitScheme,
-    Stability, Transition,
+    Coordinates, Crop, DepthFormat, ExtentSteps, Fallbacks, Filter, Layout, Look, Range, Selection, ShadowConfig,
+    SplitScheme, Stability, Transition,
 };
 
 named! {
@@ -16,7 +16,7 @@ named! {
         Balanced = "balanced",
         /// The tightest maps in every frame; edges crawl while the camera moves
         Sharp = "sharp",
-        /// Static shadows do not change at all, at coarser texels
+        /// Static shadows do not change at all, at texels of up to twice the size
         Still = "still",
         /// The settings of the papers: λ = 0.5, exactly still, chosen by view depth
         Papers = "papers",
@@ -43,18 +43,22 @@ impl Preset {
             coordinates: Coordinates::World,
             look: Look::default(),
         };
+        // Planes of least predicted error over the depths that are seen, and the finest map that
+        // contains a point: the same texels where there is something to see (docs/notes/default.md).
+        let balanced = ShadowConfig {
+            scheme: SplitScheme::Optimal,
+            range: Range::Visible,
+            selection: Selection::Map,
+            stability: Stability::Approximate { steps: ExtentSteps::PerDoubling(12) },
+            ..papers.clone()
+        };
         match self {
             Self::Papers => papers,
-            // The next step makes these differ from the papers' settings.
-            Self::Balanced | Self::Still => papers,
-            Self::Fast => ShadowConfig { map_sizes: vec![1024; 3], filter: Filter::Pcf2, ..papers },
-            Self::Sharp => ShadowConfig {
-                scheme: SplitScheme::Optimal,
-                range: Range::Visible,
-                selection: Selection::Map,
-                stability: Stability::tight(),
-                ..papers
-            },
+            Self::Balanced => balanced,
+            Self::Fast => ShadowConfig { map_sizes: vec![1024; 3], filter: Filter::Pcf2, ..balanced },
+            Self::Sharp => ShadowConfig { stability: Stability::tight(), ..balanced },
+            // A range that follows the view would move its maps with it.
+            Self::Still => ShadowConfig { stability: Stability::Exact, range: Range::Camera, ..balanced },
         }
     }
 }
