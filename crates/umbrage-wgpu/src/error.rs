@@ -24,7 +24,7 @@ pub enum Error {
         /// What was being done.
         during: &'static str,
     },
-    /// The device is lost or refused a command.
+    /// The device refused a command.
     #[error("the graphics device failed while {during}: {message}")]
     Device {
         /// What was being done.

@@ -76,7 +76,6 @@ pub(crate) fn frames(
     for (light, (plan, slot)) in plans.iter().zip(slots).enumerate() {
         let given = plan.light.map_or(LightKind::Directional, LightKind::from);
         LightMaps::from(slot.kind).check(light, given)?;
-        check_choices(plan, config)?;
         for face in 0..slot.kind.faces() {
             let first = slot.first_map + face * slot.sizes.len();
             frames.push(match face < plan.faces() {
@@ -85,6 +84,7 @@ pub(crate) fn frames(
                 false => layout::Frame::default(),
             });
         }
+        check_choices(plan, config)?;
     }
     local::number(&mut frames, slots, plans);
     Ok(frames)

@@ -78,7 +78,7 @@ fn drawing_casters_takes_no_more_memory_frame_by_frame() {
         let mib = growth(gpu, &asked(layout, depth_format), 500);
         grown.push((layout, depth_format, mib));
     }
-    println!("MiB in 500 frames: {grown:?}");
+    eprintln!("MiB in 500 frames: {grown:?}");
     assert!(grown.iter().all(|&(_, _, mib)| mib < MOST_MIB), "MiB in 500 frames: {grown:?}");
 }
 
@@ -87,6 +87,6 @@ fn drawing_casters_takes_no_more_memory_frame_by_frame() {
 fn ten_thousand_frames_are_flat() {
     let Some(gpu) = Gpu::new() else { return };
     let mib = growth(gpu, &asked(Layout::Array, DepthFormat::D32Float), 10_000);
-    println!("{mib:.1} MiB in 10,000 frames");
+    eprintln!("{mib:.1} MiB in 10,000 frames");
     assert!(mib < 20.0, "{mib:.1} MiB in 10,000 frames");
 }

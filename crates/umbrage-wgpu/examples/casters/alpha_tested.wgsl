@@ -2,9 +2,9 @@
 @group(1) @binding(1) var leaf_sampler: sampler;
 
 @vertex fn vertex(@location(0) position: vec3f, @location(1) uv: vec2f, instance: UmbrageInstance) -> UmbrageCast {
-    var cast = umbrage_cast(position, instance);
-    cast.uv = uv;
-    return cast;
+    var result = umbrage_cast(position, instance);
+    result.uv = uv;
+    return result;
 }
 
 @fragment fn fragment(@builtin(position) at: vec4f, @location(0) uv: vec2f) -> @location(0) f32 {

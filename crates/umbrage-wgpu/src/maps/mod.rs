@@ -27,7 +27,7 @@ use storage::{Arrangement, Tile};
 use targets::Targets;
 
 use crate::moments::{MomentStorage, Moments};
-use crate::options::{bias_kind, filter_kind, texture_format, transition_kind};
+use crate::options::{filter_kind, texture_format, transition_kind};
 use crate::uniforms::{Place, Viewport};
 use crate::{Error, FrameOptions, LightMaps, Result, device};
 
@@ -106,7 +106,7 @@ impl ShadowMaps {
     /// [`Error::Config`] for a config that is wrong or does not go with the lights; [`Error::MapTooLarge`],
     /// [`Error::TooManyLayers`], [`Error::AtlasTooLarge`], [`Error::TooManyTextures`], [`Error::TooManyLights`],
     /// [`Error::MissingFeature`], [`Error::NoFilterableFloats`] and [`Error::NoDepthLoads`] for what the device cannot do;
-    /// [`Error::Device`] for a device that is lost or out of memory.
+    /// [`Error::Device`] and [`Error::OutOfMemory`] for what the device complains about.
     pub fn new<L: Clone + Into<LightMaps>>(device: &wgpu::Device, config: &ShadowConfig, lights: &[L]) -> Result<Self> {
         let lights: Vec<LightMaps> = lights.iter().cloned().map(Into::into).collect();
         device::guarded(device, "making shadow maps", || Self::new_unguarded(device, config, &lights))
@@ -201,7 +201,7 @@ impl ShadowMaps {
     /// # Errors
     /// [`Error::PlanMismatch`] if the plan was made for other maps, [`Error::InvalidPlan`] or [`Error::InvalidSplit`] if it holds a
     /// number that cannot be used, [`Error::InvalidFrameOption`], [`Error::FilterTooWide`]. Nothing has been written then.
-    /// [`Error::Device`] if the device is lost.
+    /// [`Error::Device`] for what the device complains about.
     pub fn prepare(&mut self, queue: &wgpu::Queue, plan: &ShadowPlan, options: &FrameOptions) -> Result<()> {
         self.prepare_lights(queue, &[plan], options)
     }
@@ -321,7 +321,8 @@ impl ShadowMaps {
             selection: of_suns.then_some(selection),
             metric: metric.filter(|_| of_suns).or((of_suns).then_some(MetricKind::ViewDepth)),
             transition: Some(transition_kind(config.transition)),
-            bias: Some(bias_kind(config.look.bias)),
+            // Part of the look, which changes from frame to frame.
+            bias: None,
             // A split whose warp has nothing to gain has a plain map.
             projection: if config.first_warp().is_some() { Projection::Any } else { Projection::Plain },
             lights,

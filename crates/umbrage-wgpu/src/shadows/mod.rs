@@ -107,7 +107,7 @@ impl Shadows {
     /// [`Error::LightCount`] or [`Error::LightKind`] if the lights are not those that the maps were
     /// made for, [`Error::Config`] naming a box that is no box or a camera that the range does not go
     /// with, [`Error::InvalidFrameOption`] for an origin that is not finite, [`Error::FilterTooWide`],
-    /// [`Error::Device`] for a lost device. A refused frame does not change the next.
+    /// [`Error::Device`] for what the device complains about. A refused frame does not change the next.
     pub fn prepare(&mut self, queue: &wgpu::Queue, inputs: &Inputs<'_>) -> Result<ShadowFrame<'_>> {
         self.check(inputs)?;
         let slot = inputs.view_slot;
