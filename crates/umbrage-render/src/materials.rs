@@ -62,6 +62,10 @@ impl Materials {
                 layout_entry(3, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
             ],
         });
+        // Those too that no material names: a scene is right or it is not.
+        for (index, texture) in scene.textures.iter().enumerate() {
+            check_texture(gpu, index, texture)?;
+        }
         let mut bytes = 0;
         // A texture's levels depend on what is made of its alpha. Few textures serve materials of both kinds.
         let mut views = HashMap::new();
@@ -73,14 +77,14 @@ impl Materials {
                 reason: format!("there is no texture {of}, only {}", scene.textures.len()),
             })?;
             if let Entry::Vacant(vacant) = views.entry((of, use_of_alpha(material))) {
-                let (view, size) = upload_texture(gpu, of, texture, use_of_alpha(material))?;
+                let (view, size) = upload_texture(gpu, texture, use_of_alpha(material));
                 vacant.insert(view);
                 bytes += size;
             }
         }
         let white =
             Texture { width: 1, height: 1, rgba: vec![255; 4], wrap: [Wrap::Repeat; 2], filter: TextureFilter::Linear };
-        let (white_view, _) = upload_texture(gpu, usize::MAX, &white, Alpha::Ignored)?;
+        let (white_view, _) = upload_texture(gpu, &white, Alpha::Ignored);
         let list = scene
             .materials
             .iter()
@@ -108,7 +112,8 @@ fn layout_entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEnt
     wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None }
 }
 
-fn upload_texture(gpu: &Gpu, index: usize, texture: &Texture, alpha: Alpha) -> Result<(wgpu::TextureView, u64)> {
+/// Refuses a texture without pixels, with too few or too many of them, or larger than the device takes.
+fn check_texture(gpu: &Gpu, index: usize, texture: &Texture) -> Result<()> {
     let (width, height) = (texture.width, texture.height);
     let limit = gpu.device.limits().max_texture_dimension_2d;
     if width == 0 || height == 0 || texture.rgba.len() as u64 != 4 * u64::from(width) * u64::from(height) {
@@ -121,6 +126,11 @@ fn upload_texture(gpu: &Gpu, index: usize, texture: &Texture, alpha: Alpha) -> R
     if width > limit || height > limit {
         return Err(Error::TextureSize { index, width, height, limit });
     }
+    Ok(())
+}
+
+fn upload_texture(gpu: &Gpu, texture: &Texture, alpha: Alpha) -> (wgpu::TextureView, u64) {
+    let (width, height) = (texture.width, texture.height);
     let data = mipmaps::all_levels(texture, alpha).concat();
     let on_gpu = gpu.device.create_texture_with_data(
         &gpu.queue,
@@ -137,7 +147,7 @@ fn upload_texture(gpu: &Gpu, index: usize, texture: &Texture, alpha: Alpha) -> R
         TextureDataOrder::LayerMajor,
         &data,
     );
-    Ok((on_gpu.create_view(&wgpu::TextureViewDescriptor::default()), data.len() as u64))
+    (on_gpu.create_view(&wgpu::TextureViewDescriptor::default()), data.len() as u64)
 }
 
 fn gpu_material(

@@ -84,17 +84,6 @@ pub enum Error {
         /// The filter.
         filter: &'static str,
     },
-    /// Moments want depth that is linear.
-    #[error(
-        "split {split} of the plan is warped, but filter {filter} needs depth that is linear along the light; use warp none, or a \
-         filter that compares depth"
-    )]
-    WarpedMoments {
-        /// Index of the split.
-        split: usize,
-        /// The filter.
-        filter: &'static str,
-    },
     /// The device has no texture that holds all maps side by side.
     #[error(
         "storage atlas needs one texture that holds maps of {sizes:?} texels side by side, but this device's textures are at most \

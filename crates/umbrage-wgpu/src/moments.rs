@@ -320,9 +320,6 @@ impl Moments {
         let width = filter.width_m.unwrap_or(DEFAULT_TEXELS * finest);
         (plan.splits.iter().enumerate())
             .map(|(index, split)| {
-                if split.warp.is_some() {
-                    return Err(Error::WarpedMoments { split: index, filter: self.kind.word() });
-                }
                 let (first, last) = split.receiver_depths;
                 let span = last - first;
                 if !(span > 0.0 && span.is_finite() && first.is_finite()) {
