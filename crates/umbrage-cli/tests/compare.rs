@@ -9,7 +9,7 @@ use serde_json::Value;
 
 /// Two views and three techniques, the first of them twice.
 const TINY: &str = "compare tiny.glb --size 96x72 --camera front --suns 45@60,20@120 --techniques \
-                    pssm:2:256,ssm:64:label=coarse,pssm:2:256 --with filter=hard:blend=0 --least-edges 10";
+                    pssm:2:256,ssm:16:label=coarse,pssm:2:256 --with filter=hard:blend=0 --least-edges 10";
 
 /// All errors must be numbers, whatever else they are.
 fn number(value: &Value) -> f64 {
@@ -37,7 +37,7 @@ fn everything_is_written_and_says_what_it_should() {
     assert_eq!(labels, ["PSSM(2; 256²)", "coarse", "PSSM(2; 256²) #2"]);
     assert_eq!(techniques[0]["texels"], 2 * 256 * 256);
     assert_eq!(techniques[0]["bytes"], 2 * 256 * 256 * 4);
-    assert_eq!(techniques[1]["spec"], "ssm:64:filter=hard:blend=0");
+    assert_eq!(techniques[1]["spec"], "ssm:16:filter=hard:blend=0");
     assert_eq!(techniques[0]["mean"]["views"], 2);
     for field in ["e", "e_false_shadow", "e_false_light", "edge_distance_px", "ssim", "caster_split_pairs"] {
         assert!(number(&techniques[0]["mean"][field]) >= 0.0, "{field}");
@@ -53,7 +53,7 @@ fn everything_is_written_and_says_what_it_should() {
         assert_eq!(of.len(), 3);
         let sum = number(&of[1]["e_false_shadow"]) + number(&of[1]["e_false_light"]);
         assert!((sum - number(&of[1]["e"])).abs() < 1e-12, "E is E_fs + E_fl");
-        assert!(number(&of[1]["e"]) > number(&of[0]["e"]), "64² over everything is worse than two of 256²: {view}");
+        assert!(number(&of[1]["e"]) > number(&of[0]["e"]), "16² over everything is worse than two of 256²: {view}");
         assert!(number(&of[1]["edge_distance_px"]) > number(&of[0]["edge_distance_px"]));
         let texel = |number_of: usize| number(&of[number_of]["texel_px"]["perspective_p50"]);
         assert!(texel(1) > texel(0), "its texels are larger, too");
