@@ -289,7 +289,7 @@ fn chosen(pick: [usize; 8], maps: Maps) -> ReceiverText {
         bias: of(&[None, Some(BiasKind::Plane), Some(BiasKind::Slope)], pick[4]),
         projection: of(&[Projection::Any, Projection::Plain, Projection::Warped], pick[5]),
         lights: of(&[Lights::Any, Lights::Single, Lights::Suns], pick[6]),
-        sliced: pick[7] % 2 == 0,
+        sliced: pick[7].is_multiple_of(2),
         ..maps.into()
     }
 }
