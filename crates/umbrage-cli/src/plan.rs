@@ -38,7 +38,7 @@ pub struct PlanArgs {
 /// `--depth-convention`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum DepthConvention {
-    /// wgpu, Direct3D, Metal, Vulkan: NDC z in [0,1], v down
+    /// wgpu, Direct3D, Metal, Vulkan: NDC z in 0..1, v down
     #[default]
     ZeroToOne,
     /// OpenGL: NDC z in [−1,1], v up

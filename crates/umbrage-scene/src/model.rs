@@ -126,7 +126,7 @@ impl Default for Material {
     }
 }
 
-/// What happens outside `[0,1]`.
+/// What happens outside `\[0,1\]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Wrap {
     /// Starts again.

@@ -42,7 +42,7 @@ impl Truth {
     }
 
     /// The same under any light. Rays to a local light end there; what its range and cone do not reach is not shadowed (and not
-    /// scored: see [`crate::Domain`]).
+    /// scored: see [`crate::scores::Domain`]).
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] if the image has no pixels.

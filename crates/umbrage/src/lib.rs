@@ -6,10 +6,10 @@
 //! |---|---|---|
 //! | world | right-handed, +Y up, metres, `f64` | unbounded; 100 km from the origin is as good as 0 |
 //! | view | right-handed, +X right, +Y up, looks down −Z | *view depth* `d = −z`, positive in front |
-//! | camera clip, NDC | x, y in [−1,1], y up | z in [0,1], reversed (1 at near), infinite far allowed |
+//! | camera clip, NDC | x, y in [−1,1], y up | z in \[0,1\], reversed (1 at near), infinite far allowed |
 //! | light | u right, v down, depth along the light's travel; fixed to the light, never to the camera | metres |
 //! | local light | the same around a spot light's axis or a face of a point light, in the light's post-perspective space: `u/w`, `v/w`, depth `A − B/w` | tangents |
-//! | shadow NDC | x, y in [−1,1], y up | z in [0,1], 0 nearest to the light |
+//! | shadow NDC | x, y in [−1,1], y up | z in \[0,1\], 0 nearest to the light |
 //! | shadow texture | u right, v **down** | texels, [0, size]² per split |
 //!
 //! Column vectors, column-major matrices, radians. A transform is named `target_from_source`. Splits count from 0;

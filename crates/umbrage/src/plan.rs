@@ -172,7 +172,7 @@ pub struct Split {
     /// Texels around a sample that a filter may read: what lies on screen lies that far inside the map.
     /// [`crate::ShadowSettings::filter_radius`], or less where the filter's width is known in metres.
     pub filter_reach: f64,
-    /// Shadow NDC (x, y in [−1,1], y up, z in [0,1]) from world, to be divided by w; `None` for a plain map. w is positive at every
+    /// Shadow NDC (x, y in [−1,1], y up, z in \[0,1\]) from world, to be divided by w; `None` for a plain map. w is positive at every
     /// receiver, and does not change along parallel light.
     pub warp: Option<DMat4>,
     /// Where the light stands, metres; `None` for parallel light.
@@ -205,14 +205,14 @@ impl Split {
         self.light_position.map_or(self.depth_axis, |light| (point - light).try_normalize().unwrap_or(self.depth_axis))
     }
 
-    /// The same as a matrix to NDC (x right, y up, both in [−1,1], z in [0,1]); to be divided by w, which is 1 in a plain map.
+    /// The same as a matrix to NDC (x right, y up, both in [−1,1], z in \[0,1\]); to be divided by w, which is 1 in a plain map.
     #[must_use]
     pub fn shadow_from_world(&self) -> DMat4 {
         self.warp.unwrap_or_else(|| self.plain_shadow_from_world())
     }
 
     /// [`Split::shadow_from_world`] for an engine of the given convention. All draw the same map: where NDC's y points down
-    /// it is turned, and OpenGL's z lies in [−1,1] (`z' = 2z − w`), which its depth range puts back into [0,1].
+    /// it is turned, and OpenGL's z lies in [−1,1] (`z' = 2z − w`), which its depth range puts back into \[0,1\].
     #[must_use]
     pub fn shadow_from_world_in(&self, convention: DepthConvention) -> DMat4 {
         let to_convention = match convention {
@@ -223,8 +223,8 @@ impl Split {
         to_convention * self.shadow_from_world()
     }
 
-    /// To the map as a texture of an engine of the given convention: u and v in [0,1], v down or, with OpenGL's, up, and the depth that the
-    /// map stores there, in [0,1] with either; to be divided by w, which is 1 in a plain map.
+    /// To the map as a texture of an engine of the given convention: u and v in \[0,1\], v down or, with OpenGL's, up, and the depth that the
+    /// map stores there, in \[0,1\] with either; to be divided by w, which is 1 in a plain map.
     #[must_use]
     pub fn texture_from_world(&self, convention: DepthConvention) -> DMat4 {
         let up = match convention {

@@ -95,7 +95,7 @@ pub struct WarpTarget<'a> {
 }
 
 impl Warp {
-    /// The matrix to shadow NDC (x, y in [−1,1], z in [0,1] from the light on), to be divided by w.
+    /// The matrix to shadow NDC (x, y in [−1,1], z in \[0,1\] from the light on), to be divided by w.
     ///
     /// Returns `None` if there is nothing to show, or nothing but a point.
     #[must_use]

@@ -16,10 +16,10 @@ const NARROWEST: f64 = 1e-9;
 /// maps to the engine ([`crate::Split::shadow_from_world_in`], [`crate::Split::texture_from_world`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthConvention {
-    /// NDC y up and depth in [0,1], textures' v down: wgpu, Direct3D, Metal, Vulkan with a negative viewport height. A
+    /// NDC y up and depth in \[0,1\], textures' v down: wgpu, Direct3D, Metal, Vulkan with a negative viewport height. A
     /// camera's depth may run either way (reversed or not).
     ZeroToOne,
-    /// NDC y down and depth in [0,1], textures' v down: Vulkan with a positive viewport height.
+    /// NDC y down and depth in \[0,1\], textures' v down: Vulkan with a positive viewport height.
     ZeroToOneYDown,
     /// NDC depth in [−1,1], textures' v up: OpenGL.
     MinusOneToOne,

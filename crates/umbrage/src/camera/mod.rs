@@ -171,7 +171,7 @@ impl View {
         self.frustum.clip_from_view() * self.view_from_relative(origin)
     }
 
-    /// A world-space ray through a point of the image: `x` and `y` in [0,1] from the upper left corner. Returns the
+    /// A world-space ray through a point of the image: `x` and `y` in \[0,1\] from the upper left corner. Returns the
     /// ray's origin and its direction, scaled so that one unit is one metre of view depth. A perspective ray starts in the
     /// eye, an orthographic one on the plane through it.
     #[must_use]

@@ -94,7 +94,7 @@ named! {
         /// By the change of position from pixel to pixel, which no border interrupts
         #[default]
         Analytic = "analytic",
-        /// One split for all four pixels of a quad ([PSVSM07])
+        /// One split for all four pixels of a quad, as in parallel-split variance shadow maps
         Quad = "quad",
     }
 }

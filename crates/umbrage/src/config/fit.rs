@@ -4,7 +4,7 @@ use super::names::named;
 use crate::Warp;
 
 named! {
-    /// What a map is cropped to. Source: [GG3-10] section 10.3.
+    /// What a map is cropped to. Source: \[GG3-10\] section 10.3.
     pub enum Crop as "crop" {
         /// The slice, its receivers and its casters: scene-dependent
         #[default]
@@ -24,7 +24,7 @@ pub enum Stability {
     },
     /// The tight rectangle, its extent rounded up to steps and moved in whole texels.
     ///
-    /// Static shadows change only in frames in which a step is taken. Source: [PCSM],
+    /// Static shadows change only in frames in which a step is taken. Source: \[PCSM\],
     /// "Approximated solution".
     Approximate {
         /// The steps of the extent.
@@ -66,7 +66,7 @@ pub enum ExtentSteps {
     /// Geometric steps of the extent in metres, this many to a doubling: 4 to 64. Ours.
     PerDoubling(u32),
     /// This many equal steps of the unsplit light frustum: 8 to 4096. `s_q = 64 / ceil(64 / s)` for
-    /// 64 of them, as in [PCSM], Listing 4.1.2.
+    /// 64 of them, as in \[PCSM\], Listing 4.1.2.
     Levels(u32),
 }
 

@@ -4,7 +4,7 @@ use super::names::named;
 
 /// Where the planes between splits stand.
 ///
-/// `n` and `f` are the ends of the shadowed range, `m` is the number of splits. Source: [PSSM06]
+/// `n` and `f` are the ends of the shadowed range, `m` is the number of splits. Source: \[PSSM06\]
 /// section 3.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SplitScheme {
@@ -86,7 +86,7 @@ pub enum Range {
 pub enum Selection {
     /// Interval-based: the split between whose planes the point lies.
     Interval(SplitMetric),
-    /// Map-based: the first (finest) split whose map contains the point. Source: [PCSM],
+    /// Map-based: the first (finest) split whose map contains the point. Source: \[PCSM\],
     /// "Non-optimized split selection". Deviations: the filter's margin and the depth are part of
     /// the question, and the blend band lies along the map's edge.
     Map,
