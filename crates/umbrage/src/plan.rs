@@ -112,8 +112,11 @@ impl ShadowPlan {
         let mut covering = self.splits.iter().enumerate().filter(|(i, _)| self.coverage.contains(*i, point));
         match self.selection {
             Selection::Depth => covering.find(|(_, split)| split.casters.is_empty() || in_map(split)),
-            // A map has all casters of what it contains, and nobody looked for those of points that no map contains.
-            Selection::Map => covering.find(|(_, split)| !split.casters.is_empty() && in_map(split)),
+            // Later maps leave out casters whose shadows lie over an earlier one, so that one has to answer or nobody
+            // does. It does not answer for points before its depth range, where nobody looked for casters.
+            Selection::Map => covering
+                .find(|(_, split)| !split.casters.is_empty() && split.lies_over(point, split.filter_reach))
+                .filter(|(_, split)| in_map(split)),
         }
         .map(|(i, _)| i)
     }
@@ -276,12 +279,17 @@ impl Split {
         shared.then_some(shift)
     }
 
-    /// Whether a world point lies inside the map, `margin` texels away from its edge.
+    /// Whether a world point lies inside the map, `margin` texels away from its edge, and within its depth range.
     #[must_use]
     pub fn contains(&self, point: DVec3, margin: f64) -> bool {
+        self.lies_over(point, margin) && (0.0..=1.0).contains(&self.map_from_world(point).z)
+    }
+
+    /// Whether a world point lies over the map's rectangle, `margin` texels away from its edge, at any depth.
+    pub(crate) fn lies_over(&self, point: DVec3, margin: f64) -> bool {
         let at = self.map_from_world(point);
         let inside = margin..=f64::from(self.size) - margin;
-        inside.contains(&at.x) && inside.contains(&at.y) && (0.0..=1.0).contains(&at.z)
+        inside.contains(&at.x) && inside.contains(&at.y)
     }
 
     /// How u and v change with the world around a point, in texels per metre. Both vectors lie across the light. The same
