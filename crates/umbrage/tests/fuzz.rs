@@ -236,8 +236,8 @@ fn check(case: &Case, view: &View, plan: &ShadowPlan) -> Result<(), TestCaseErro
             prop_assert!(!splits.is_empty(), "no map holds {point}, which {index} shades");
             for split in splits {
                 let map = &plan.splits[split];
-                // Held planes may reach as far as it does, while depths end with what can be seen.
-                if is_tiny && map.map_from_world(point).z > 1.0 {
+                // Planes may reach as far as it does, while maps end with what can be seen.
+                if is_tiny && !map.contains(point, map.filter_reach) {
                     continue;
                 }
                 prop_assert!(

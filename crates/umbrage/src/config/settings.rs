@@ -6,7 +6,7 @@ use super::names::Word;
 use super::setting::{Kind, Rebuilds, Setting, Value};
 use super::{
     Coordinates, Crop, DepthFormat, Derivatives, ExtentSteps, Fallbacks, Filter, Generation, Range, ReceiverBias,
-    Selection, ShadowConfig, SplitMetric, SplitScheme, Stability, Storage, Transition, Translucent,
+    Selection, SplitMetric, SplitScheme, Stability, Storage, Transition, Translucent,
 };
 use super::{set, text};
 use crate::Warp;
