@@ -1,6 +1,7 @@
-//! `cargo xtask demo | test | package | bless | results | fuzz`: the project's automation, so that a machine that has Rust needs nothing else.
+//! `cargo xtask demo | test | book | package | bless | results | fuzz`: the project's automation, so that a machine that has Rust needs nothing else.
 
 mod adapter;
+mod book;
 mod check;
 mod demo;
 #[cfg(test)]
@@ -20,6 +21,8 @@ Usage: cargo xtask COMMAND
   test [--quick]
           formatting, lints, documentation, features, packages, the build for the browser and all tests, as CI runs them;
           --quick: formatting and the tests of what needs no graphics adapter, in under two minutes once it is built
+  book [--pictures]
+          build the book into out/book; --pictures draws its pictures anew instead
   fuzz    check 1,000,000 plans of random scenes and load 100,000 mutated files; UMBRAGE_FUZZ_CASES, UMBRAGE_FUZZ_FILES
           and UMBRAGE_FUZZ_SEED choose others
   package pack every crate that is published and build each from its package
@@ -36,6 +39,8 @@ fn main() -> ExitCode {
         ["demo"] => demo::run_demo(),
         ["test"] => check::test(),
         ["test", "--quick"] => check::quick(),
+        ["book"] => book::build(),
+        ["book", "--pictures"] => book::draw(),
         ["package"] => check::package(),
         ["bless"] => check::bless(),
         ["fuzz"] => check::fuzz(),

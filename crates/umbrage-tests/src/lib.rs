@@ -11,3 +11,14 @@ pub mod judge;
 pub mod room;
 pub mod stage;
 pub mod town;
+
+/// The book's pages, so that `cargo test --doc` compiles and runs their code.
+#[cfg(doctest)]
+mod book {
+    macro_rules! pages {
+        ($($name:ident: $file:literal),*) => {
+            $(#[doc = include_str!(concat!("../../../book/src/", $file))] mod $name {})*
+        };
+    }
+    pages!(wgpu: "adopt-wgpu.md", engine: "adopt-engine.md", presets: "presets.md");
+}

@@ -1,0 +1,123 @@
+//! `cargo xtask book`: the book in `book/`, as pages for a browser, and its pictures.
+
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use anyhow::{Context, Result};
+
+use crate::{
+    adapter,
+    run::{build_umbrage, cargo, root, run, succeeds},
+};
+
+/// Where pictures are kept.
+const PICTURES_FOLDER: &str = "book/src/images";
+
+/// A picture of the book and the command that draws it: words after `umbrage`, without the file.
+struct Picture {
+    name: &'static str,
+    words: &'static str,
+}
+
+const SIZE: &str = "--size 640x360";
+
+/// All pictures, in the order of the book. Those of symptoms name the setting that provokes them, as the book does.
+const PICTURES: [Picture; 7] = [
+    Picture { name: "one-map", words: "render robot-war --camera near --technique ssm --preset papers" },
+    Picture { name: "four-splits", words: "render robot-war --camera near --tint" },
+    Picture { name: "floating", words: "render robot-war --camera near --preset papers --bias slope --filter pcf7" },
+    Picture {
+        name: "seam",
+        words: "render robot-war --camera near --preset papers --transition hard --splits 2 --map-size 256",
+    },
+    Picture { name: "cut-off", words: "render robot-war --camera near --shadow-range 1..60 --far-fade 0" },
+    Picture {
+        name: "leak",
+        words: "render robot-war --camera near --preset papers --shadow-range 1..120 --filter esm --filter-width 1",
+    },
+    Picture { name: "blur", words: "render robot-war --camera near --preset papers" },
+];
+
+/// Builds the book into `out/book`; installs `mdbook` below the target folder where there is none.
+pub fn build() -> Result<()> {
+    let mdbook = mdbook()?;
+    run(Command::new(mdbook).current_dir(root()).args(["build", "book"]))?;
+    eprintln!("xtask: look at {} with a browser", root().join("out/book/index.html").display());
+    Ok(())
+}
+
+/// Draws the book's pictures anew.
+pub fn draw() -> Result<()> {
+    let umbrage = build_umbrage(true)?;
+    adapter::ensure(&umbrage)?;
+    let folder = root().join(PICTURES_FOLDER);
+    fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    for picture in PICTURES {
+        let file = folder.join(picture.name).with_extension("png");
+        let words = picture.words.split_whitespace().chain(SIZE.split_whitespace());
+        run(Command::new(&umbrage).current_dir(root()).args(words).arg("-o").arg(file))?;
+    }
+    for name in ["bias.svg", "split-views.png", "stillness.png"] {
+        copy(&root().join("docs/images").join(name), &folder.join(name))?;
+    }
+    Ok(())
+}
+
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    fs::copy(from, to).with_context(|| format!("cannot copy {} to {}", from.display(), to.display()))?;
+    Ok(())
+}
+
+/// The program `mdbook`: the one on the path, or one of our own.
+fn mdbook() -> Result<PathBuf> {
+    let on_path = PathBuf::from("mdbook");
+    if succeeds(Command::new(&on_path).arg("--version")) {
+        return Ok(on_path);
+    }
+    let folder = root().join("target/tools");
+    let own = folder.join("bin").join(format!("mdbook{}", env::consts::EXE_SUFFIX));
+    if !own.is_file() {
+        run(cargo().args(["install", "mdbook", "--locked", "--version", MDBOOK, "--root"]).arg(&folder))?;
+    }
+    Ok(own)
+}
+
+/// The version that the book is written for.
+const MDBOOK: &str = "0.5";
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    fn pages() -> Vec<(PathBuf, String)> {
+        let folder = root().join("book/src");
+        let entries = fs::read_dir(&folder).expect("the book").map(|entry| entry.expect("an entry").path());
+        let pages = entries.filter(|path| path.extension().is_some_and(|ending| ending == "md"));
+        pages.map(|path| (path.clone(), fs::read_to_string(path).expect("a page is text"))).collect()
+    }
+
+    #[test]
+    fn every_page_is_in_the_summary() {
+        let summary = fs::read_to_string(root().join("book/src/SUMMARY.md")).expect("the summary");
+        for (path, _) in pages() {
+            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+            assert!(name == "SUMMARY.md" || summary.contains(&format!("({name})")), "{name}");
+        }
+    }
+
+    #[test]
+    fn pictures_are_shown_and_say_what_provokes_them() {
+        let text: String = pages().into_iter().map(|(_, text)| text).collect();
+        let mut names = BTreeSet::new();
+        for Picture { name, words } in PICTURES {
+            assert!(names.insert(name), "{name} twice");
+            assert!(text.contains(&format!("(images/{name}.png)")), "{name} is not shown");
+            assert!(words.starts_with("render "), "{words}");
+        }
+    }
+}
