@@ -15,8 +15,11 @@ mod presets;
 mod rules;
 #[cfg(feature = "serde")]
 mod serialize;
+mod set;
+mod setting;
 mod settings;
 mod splits;
+mod text;
 
 pub use apply::Given;
 pub use filter::{Derivatives, Filter, MomentKind, Moments, SUN_DEGREES};
@@ -27,7 +30,8 @@ pub use names::Word;
 pub(crate) use names::unknown;
 pub use presets::Preset;
 pub use rules::{Choice, Conflict, RULES, Rule};
-pub use settings::{Kind, Rebuilds, SETTINGS, Setting, Value};
+pub use setting::{Kind, Rebuilds, Setting, Value};
+pub use settings::SETTINGS;
 pub use splits::{Range, Selection, SplitMetric, SplitScheme, Transition};
 
 use crate::bounds::MOST_METRES;
