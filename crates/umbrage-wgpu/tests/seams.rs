@@ -6,7 +6,6 @@ mod common;
 use common::{DISC, ESM, EVSM2, EVSM4, Gpu, MSM, PCF3, PCF5, PCF7, PCSS, VSM, World, config, cuboid};
 use glam::{DVec3, Vec3};
 use umbrage::config::{Derivatives, Filter, Preset, Range, SplitScheme};
-use umbrage::config::{Filter, Preset, SplitScheme};
 use umbrage::{Aabb, DirectionalLight, FilterReach, Frustum, Planner, PlannerOptions, ShadowConfig, ShadowPlan, View};
 use umbrage_truth::scores::{Answers, Domain, Seams, seams};
 use umbrage_truth::{Hit, TruthMask};

@@ -137,7 +137,7 @@ fn a_range_without_room_is_refused() {
     let near = 100.0f64;
     let far = near.next_up().next_up();
     for splits in [3, 8] {
-        let settings = ShadowConfig { range: Range::Metres { near: near, far: far }, ..tight(splits) };
+        let settings = ShadowConfig { range: Range::Metres { near, far }, ..tight(splits) };
         let mut planner = Planner::new(&settings).expect("valid settings");
         let error = planner.plan(&view(lens(1.0, 400.0)), &sun(), &[], &rows(&[101.0])).expect_err("no room");
         assert!(matches!(error, Error::InvalidSetting { field: "shadow-range", .. }), "{error}");

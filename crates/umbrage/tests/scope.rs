@@ -29,7 +29,7 @@ fn things(half: f64) -> Vec<Aabb> {
 }
 
 fn plan(settings: &ShadowConfig, view: &View, boxes: &[Aabb]) -> ShadowPlan {
-    let mut planner = Planner::new(&settings).expect("settings");
+    let mut planner = Planner::new(settings).expect("settings");
     planner.plan(view, &sun(), boxes, boxes).expect("a plan").clone()
 }
 

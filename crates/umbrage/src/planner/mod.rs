@@ -179,7 +179,7 @@ pub fn plan(
     Ok(plan)
 }
 
-/// The same with a checked config and memory of before.
+/// One frame's plan by a checked config, with memory of before.
 fn plan_with(
     technique: (&ShadowConfig, &PlannerOptions),
     inputs: &PlanInputs<'_>,
