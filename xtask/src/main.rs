@@ -1,4 +1,4 @@
-//! `cargo xtask demo | test | package | bless | results | fuzz`: the project's automation, so that a machine that has Rust needs nothing else.
+//! `cargo xtask demo | test | shaders | package | bless | results | fuzz`: the project's automation, so that a machine that has Rust needs nothing else.
 
 mod adapter;
 mod check;
@@ -22,6 +22,7 @@ Usage: cargo xtask COMMAND
           --quick: formatting and the tests of what needs no graphics adapter, in under two minutes once it is built
   fuzz    check 1,000,000 plans of random scenes and load 100,000 mutated files; UMBRAGE_FUZZ_CASES, UMBRAGE_FUZZ_FILES
           and UMBRAGE_FUZZ_SEED choose others
+  shaders join the modules of umbrage-shaders/shaders into the texts that are checked in, umbrage-shaders/src/wgsl
   package pack every crate that is published and build each from its package
   bless   draw the reference pictures of the tests anew
   results [--resume | --render | --tiny]
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         ["demo"] => demo::run_demo(),
         ["test"] => check::test(),
         ["test", "--quick"] => check::quick(),
+        ["shaders"] => check::shaders(),
         ["package"] => check::package(),
         ["bless"] => check::bless(),
         ["fuzz"] => check::fuzz(),

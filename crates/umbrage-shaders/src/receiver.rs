@@ -108,7 +108,7 @@ impl From<Maps> for ReceiverText {
 
 impl ReceiverText {
     /// Whether the text has what stands behind a condition of that name: the `CHOICES` of
-    /// `build.rs`.
+    /// `umbrage-shaders-join`.
     fn has(&self, name: &str) -> bool {
         /// Whether a choice is this one, or open.
         fn may<T: Copy + PartialEq>(choice: Option<T>, these: &[T]) -> bool {
@@ -141,7 +141,7 @@ impl ReceiverText {
             "faces" => self.lights == Lights::Any,
             "sliced" => self.sliced,
             "linear" => !suns_alone && self.maps.r32f,
-            _ => unreachable!("{name} is one of the choices of build.rs"),
+            _ => unreachable!("{name} is one of the choices that joined texts keep"),
         }
     }
 }
