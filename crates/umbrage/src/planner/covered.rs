@@ -71,7 +71,7 @@ pub(super) fn serving_all_it_covers(
 ) -> (Split, f64) {
     let direction = sun.direction;
     plan.caster_indices.truncate(split.casters.start);
-    let taken = Taken::new(&split, &plan.splits, frame.settings.blend);
+    let taken = Taken::new(&split, &plan.splits, frame.config.blend());
     let margin = taken.margin * split.texel_m.max_element();
     let (volume, depths) = shown;
     for &index in &in_view.casters {

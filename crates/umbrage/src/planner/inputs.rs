@@ -1,5 +1,6 @@
 //! What a frame's plan is made from.
 
+use super::options::check_image_size;
 use crate::bounds::Placed;
 use crate::{Aabb, Error, Light, Result, View};
 
@@ -27,7 +28,7 @@ pub struct PlanInputs<'a> {
     pub receivers: &'a [Aabb],
     /// World boxes that hold all that is drawn of the receivers in view and leave less air than the receivers' own:
     /// [`crate::ShadowPlan::casts_into`] then rejects parts of casters that have none of them behind. `None`: not known.
-    /// For [`crate::Fit::Dependent`].
+    /// For [`crate::config::Crop::SceneDependent`].
     pub receiver_clusters: Option<&'a [Aabb]>,
     /// Pixels across the picture: a split is widened by one 2×2 pixel quad at its near side.
     pub image_size: [u32; 2],
@@ -42,12 +43,7 @@ impl<'a> PlanInputs<'a> {
 
     /// Checks what can be wrong with lists and sizes.
     pub(super) fn check(&self) -> Result<()> {
-        if self.image_size.contains(&0) {
-            return Err(Error::setting(
-                "image_size",
-                "the image has no pixels; give a width and a height of 1 or more",
-            ));
-        }
+        check_image_size(self.image_size)?;
         check_boxes(self.receiver_clusters.unwrap_or_default(), "receiver_clusters")
     }
 }
