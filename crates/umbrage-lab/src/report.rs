@@ -46,7 +46,7 @@ pub struct Report {
     pub scheme: String,
     /// `none`, `psm`, `lispsm` or `tsm`: one for all splits, or one for each.
     pub warp: Vec<String>,
-    /// Every setting, under its key: what `--config` reads back.
+    /// Every setting, under its key: what `--config` reads back, beside the options.
     pub config: umbrage::ShadowConfig,
     /// `C_0 ..= C_m`: view depths in metres.
     pub planes_m: Vec<f64>,
@@ -100,6 +100,9 @@ pub struct TruthReport {
 pub struct ShotReport {
     /// As typed.
     pub scene: String,
+    /// Scene, camera, light and time as options of `umbrage render`: what `--config` draws again.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub options: Vec<String>,
     /// Seconds into the animations.
     pub time_s: f64,
     /// Along a path: which frame.
