@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use anyhow::{Context, Result, anyhow};
-use wesl::{CompileOptions, Feature, Mangler, ModulePath, Wesl};
+use wesl::{CompileOptions, Feature, Features, Mangler, ModulePath, Wesl};
 use wgsl_parse::SyntaxNode as _;
 
 pub use folder::{differences, write};
@@ -86,36 +86,6 @@ const FEATURES: [&str; 10] = [
     "coordinates",
 ];
 
-/// What a receiver's text may be made without, at run time: `ReceiverText` of `umbrage-shaders`
-/// says what each stands for. Conditions on these stay in the texts of receivers; every other text
-/// has all of them.
-const CHOICES: [&str; 24] = [
-    "any_filter",
-    "hard",
-    "pcf2",
-    "tent",
-    "disc",
-    "pcss",
-    "texels",
-    "vsm",
-    "msm",
-    "by_depth",
-    "by_map",
-    "planar",
-    "radial",
-    "any_transition",
-    "blended",
-    "dithered",
-    "plane_bias",
-    "slope_bias",
-    "plain",
-    "warped",
-    "local",
-    "faces",
-    "sliced",
-    "linear",
-];
-
 /// The folder of the modules.
 #[must_use]
 pub fn sources() -> PathBuf {
@@ -144,9 +114,18 @@ pub fn join(sources: &Path) -> Result<Vec<Text>> {
 
 fn joined(sources: &Path, (root, features, name): &Root) -> Result<Text> {
     let names = HouseNames::default();
+    let counts: Vec<String> = (2..=MOST_MAPS).map(|map| format!("maps_{map}")).collect();
+    let known = FEATURES.into_iter().chain(counts.iter().map(String::as_str));
+    let features = Features {
+        // All other conditions are choices that a receiver's text may be made without at run time: `ReceiverText` of
+        // `umbrage-shaders` knows them. They stay in the texts of receivers; every other text has all of them.
+        default: if *root == "receiver::api" { Feature::Keep } else { Feature::Enable },
+        flags: known.map(|name| (name.to_owned(), features.iter().any(|wanted| wanted == name).into())).collect(),
+    };
     let mut compiler = Wesl::new(sources);
     compiler.set_custom_mangler(names.clone());
     compiler.set_options(CompileOptions {
+        features,
         // A root has no entry point of its own (the app has it): all of it is kept, and what it uses of `lib`.
         keep_root: true,
         // The constant of the bind group's index is declared at run time, by `umbrage_shaders::receiver`, and the two functions
@@ -155,14 +134,6 @@ fn joined(sources: &Path, (root, features, name): &Root) -> Result<Text> {
         validate: false,
         ..CompileOptions::default()
     });
-    let counts: Vec<String> = (2..=MOST_MAPS).map(|map| format!("maps_{map}")).collect();
-    for feature in FEATURES.into_iter().chain(counts.iter().map(String::as_str)) {
-        compiler.set_feature(feature, features.iter().any(|wanted| wanted == feature));
-    }
-    for choice in CHOICES {
-        let is_receiver = *root == "receiver::api";
-        compiler.set_feature(choice, if is_receiver { Feature::Keep } else { Feature::Enable });
-    }
     let path: ModulePath = format!("package::{root}").parse().with_context(|| format!("{root} is no module path"))?;
     let mut compiled = compiler.compile(&path).map_err(|error| anyhow!("{root} does not join:\n{error}"))?;
     // `wesl` takes modules in the order of a hash set, another one in every run.

@@ -85,13 +85,13 @@ struct UmbrageMomentPass {
     size: f32
 }
 
-const UMBRAGE_MOMENTS_ESM: u32 = 7u;
+const UMBRAGE_MOMENTS_ESM: u32 = 16u;
 
-const UMBRAGE_MOMENTS_VSM: u32 = 8u;
+const UMBRAGE_MOMENTS_VSM: u32 = 17u;
 
-const UMBRAGE_MOMENTS_EVSM2: u32 = 9u;
+const UMBRAGE_MOMENTS_EVSM2: u32 = 18u;
 
-const UMBRAGE_MOMENTS_MSM: u32 = 11u;
+const UMBRAGE_MOMENTS_MSM: u32 = 20u;
 
 fn umbrage_moments_of_depth(kind: u32, exponents: vec2f, z: f32) -> vec4f {
     if kind == UMBRAGE_MOMENTS_VSM {

@@ -398,13 +398,13 @@ fn umbrage_map_covers(split: UmbrageSplit, at: vec3f) -> bool {
     return all(at.xy >= vec2f(0.0)) && all(at.xy <= vec2f(split.size));
 }
 
-const UMBRAGE_MOMENTS_ESM: u32 = 7u;
+const UMBRAGE_MOMENTS_ESM: u32 = 16u;
 
-const UMBRAGE_MOMENTS_VSM: u32 = 8u;
+const UMBRAGE_MOMENTS_VSM: u32 = 17u;
 
-const UMBRAGE_MOMENTS_EVSM2: u32 = 9u;
+const UMBRAGE_MOMENTS_EVSM2: u32 = 18u;
 
-const UMBRAGE_MOMENTS_MSM: u32 = 11u;
+const UMBRAGE_MOMENTS_MSM: u32 = 20u;
 
 const UMBRAGE_MOMENTS_LEAST_VARIANCE: f32 = 5e-7;
 

@@ -313,13 +313,9 @@ const UMBRAGE_FILTER_HARD: u32 = 0u;
 
 const UMBRAGE_FILTER_PCF2: u32 = 1u;
 
-const UMBRAGE_FILTER_PCF3: u32 = 2u;
+const UMBRAGE_FILTER_DISC: u32 = 8u;
 
-const UMBRAGE_FILTER_PCF5: u32 = 3u;
-
-const UMBRAGE_FILTER_DISC: u32 = 5u;
-
-const UMBRAGE_FILTER_PCSS: u32 = 6u;
+const UMBRAGE_FILTER_PCSS: u32 = 9u;
 
 const UMBRAGE_FILTER_LEAST_RADIUS: f32 = 1.0;
 
@@ -336,7 +332,7 @@ const UMBRAGE_FILTER_TAP_SPREAD: f32 = 0.6666667;
 const UMBRAGE_FILTER_GOLDEN_ANGLE: f32 = 2.3999632;
 
 fn umbrage_filter_radius(kind: u32) -> f32 {
-    return array<f32, 7>(0.5, 1.0, 1.5, 2.5, 3.5, 16.0, 16.0)[min(kind, UMBRAGE_FILTER_PCSS)];
+    return array<f32, 10>(0.5, 1.0, 1.5, 2.5, 3.5, 0.0, 0.0, 0.0, 16.0, 16.0)[min(kind, UMBRAGE_FILTER_PCSS)];
 }
 
 fn umbrage_filter_widest(kind: u32, reach: f32) -> f32 {
@@ -394,7 +390,7 @@ fn umbrage_filter_tent_integral(x: vec2f, r: vec2f) -> vec2f {
     return 0.5 + y - 0.5 * y * abs(y);
 }
 
-@if(tent)
+@if(pairs)
 struct UmbrageTap {
     texel: vec2f,
     weight: vec2f
@@ -472,24 +468,29 @@ fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSof
             return umbrage_filter_disc(layer, at, centre, wide, softness.turn);
         }
     }
-    @if(tent)
+    @if(pairs)
     {
-        return umbrage_filter_tent(layer, kind, softness, at, centre);
+        return umbrage_filter_pairs(layer, kind, softness, at, centre);
     }
-    @if(!tent)
+    @if(!pairs)
     return 1.0;
 }
 
-@if(tent)
-fn umbrage_filter_tent(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
+@if(pairs)
+fn umbrage_filter_pair(kind: u32, first: vec2f, centre: vec2f, r: vec2f) -> UmbrageTap {
+    return umbrage_filter_tent_tap(first, centre, r);
+}
+
+@if(pairs)
+fn umbrage_filter_pairs(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
     let r = umbrage_filter_half_width(softness.width_m, at.texel_m, umbrage_filter_radius(kind), umbrage_filter_radius(kind));
-    let taps = select(select(4, 3, kind == UMBRAGE_FILTER_PCF5), 2, kind == UMBRAGE_FILTER_PCF3);
+    let taps = i32(umbrage_filter_radius(kind) + 0.5);
     let corner = floor(centre - r);
     var lit = 0.0;
     for (var j = 0; j < taps; j++) {
         for (var i = 0; i < taps; i++) {
             let first = corner + 2.0 * vec2f(f32(i), f32(j));
-            let tap = umbrage_filter_tent_tap(first, centre, r);
+            let tap = umbrage_filter_pair(kind, first, centre, r);
             lit += tap.weight.x * tap.weight.y * umbrage_filter_four(layer, at, first, tap.texel - 0.5 - first);
         }
     }
