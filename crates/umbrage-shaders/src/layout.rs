@@ -24,6 +24,8 @@ pub enum FilterKind {
     Pcf5 = 3,
     /// A tent of seven texels in sixteen hardware taps.
     Pcf7 = 4,
+    /// Castaño's kernel of five texels in nine hardware taps.
+    Castano5 = 5,
     /// A disc of 32 hardware taps.
     Disc = 8,
     /// A disc as wide as the penumbra of a sun with a size; without depth loads as [`FilterKind::Disc`].
@@ -42,12 +44,13 @@ pub enum FilterKind {
 
 impl FilterKind {
     /// Every kind.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Hard,
         Self::Pcf2,
         Self::Pcf3,
         Self::Pcf5,
         Self::Pcf7,
+        Self::Castano5,
         Self::Disc,
         Self::Pcss,
         Self::Esm,
@@ -70,6 +73,7 @@ impl FilterKind {
             Self::Hard => &["hard"],
             Self::Pcf2 => &["pcf2", "texels"],
             Self::Pcf3 | Self::Pcf5 | Self::Pcf7 => &["tent", "pairs", "texels"],
+            Self::Castano5 => &["castano5", "pairs", "texels"],
             Self::Disc => &["disc", "texels"],
             Self::Pcss => &["pcss", "disc", "texels"],
             Self::Vsm => &["vsm"],

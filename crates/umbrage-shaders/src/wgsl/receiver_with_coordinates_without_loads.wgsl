@@ -285,6 +285,8 @@ const UMBRAGE_FILTER_HARD: u32 = 0u;
 
 const UMBRAGE_FILTER_PCF2: u32 = 1u;
 
+const UMBRAGE_FILTER_CASTANO5: u32 = 5u;
+
 const UMBRAGE_FILTER_DISC: u32 = 8u;
 
 const UMBRAGE_FILTER_PCSS: u32 = 9u;
@@ -302,7 +304,7 @@ const UMBRAGE_FILTER_TAP_SPREAD: f32 = 0.6666667;
 const UMBRAGE_FILTER_GOLDEN_ANGLE: f32 = 2.3999632;
 
 fn umbrage_filter_radius(kind: u32) -> f32 {
-    return array<f32, 10>(0.5, 1.0, 1.5, 2.5, 3.5, 0.0, 0.0, 0.0, 16.0, 16.0)[min(kind, UMBRAGE_FILTER_PCSS)];
+    return array<f32, 10>(0.5, 1.0, 1.5, 2.5, 3.5, 2.5, 0.0, 0.0, 16.0, 16.0)[min(kind, UMBRAGE_FILTER_PCSS)];
 }
 
 fn umbrage_filter_widest(kind: u32, reach: f32) -> f32 {
@@ -429,9 +431,31 @@ fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSof
     return 1.0;
 }
 
+@if(castano5)
+fn umbrage_filter_castano_weight(x: vec2f) -> vec2f {
+    let tents = max(3.0 - abs(x), vec2f(0.0)) + max(2.0 - abs(x), vec2f(0.0)) - max(1.0 - abs(x), vec2f(0.0));
+    return tents / 12.0;
+}
+
+@if(castano5)
+fn umbrage_filter_castano_tap(first: vec2f, centre: vec2f) -> UmbrageTap {
+    let second = umbrage_filter_castano_weight(first + 1.5 - centre);
+    let weight = umbrage_filter_castano_weight(first + 0.5 - centre) + second;
+    return UmbrageTap(first + 0.5 + second / max(weight, vec2f(1e-9)), weight);
+}
+
 @if(pairs)
 fn umbrage_filter_pair(kind: u32, first: vec2f, centre: vec2f, r: vec2f) -> UmbrageTap {
+    @if(castano5)
+    {
+        if kind == UMBRAGE_FILTER_CASTANO5 {
+            return umbrage_filter_castano_tap(first, centre);
+        }
+    }
+    @if(tent)
     return umbrage_filter_tent_tap(first, centre, r);
+    @if(!tent)
+    return UmbrageTap(first, vec2f(0.0));
 }
 
 @if(pairs)
