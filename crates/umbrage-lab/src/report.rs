@@ -58,6 +58,9 @@ pub struct Report {
     pub draws: u64,
     /// Triangles submitted to all maps, every instance counted once.
     pub triangles: u64,
+    /// Of the first light, for each split: how many casters its list leaves out because their
+    /// shadows are small (`--drop-small-casters`).
+    pub dropped_casters: Vec<u32>,
     /// The splits of the first light, nearest first; the others' are in `lights`.
     pub splits: Vec<SplitReport>,
     /// The views beside the first one, from left to right.
