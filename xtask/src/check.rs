@@ -20,13 +20,17 @@ const WASM_TARGET: &str = "wasm32-unknown-unknown";
 /// The crates that must build for it.
 const WASM_CRATES: [&str; 4] = ["umbrage", "umbrage-shaders", "umbrage-wgpu", "umbrage-render"];
 /// The crates whose tests need no adapter and are done in a minute: what `--quick` runs.
-const QUICK_CRATES: [&str; 4] = ["umbrage", "umbrage-shaders", "umbrage-scene", "xtask"];
+const QUICK_CRATES: [&str; 5] = ["umbrage", "umbrage-shaders", SHADERS_JOIN, "umbrage-scene", "xtask"];
+/// Joins the WGSL that is checked in.
+const SHADERS_JOIN: &str = "umbrage-shaders-join";
 /// Features that build C++; they are checked where there is a compiler for it.
 const CPP_FEATURES: [&str; 1] = ["flip"];
 
 /// Formatting, lints, documentation, features, packages, the browser's build, all tests.
 pub fn test() -> Result<()> {
     run(cargo().args(["fmt", "--all", "--check"]))?;
+    // Before anything is built of texts that are out of date.
+    run(cargo().args(["test", "--package", SHADERS_JOIN]))?;
     run(cargo().args(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
     check_wasm()?;
     run(cargo().args(["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))?;
@@ -46,6 +50,11 @@ pub fn test() -> Result<()> {
 pub fn quick() -> Result<()> {
     run(cargo().args(["fmt", "--all", "--check"]))?;
     run(cargo().arg("test").args(of(&QUICK_CRATES)))
+}
+
+/// Writes the joined WGSL anew.
+pub fn shaders() -> Result<()> {
+    run(cargo().args(["run", "--quiet", "--package", SHADERS_JOIN]))
 }
 
 /// Packs every crate that is published, in the order of their dependencies, and builds each from its package alone.

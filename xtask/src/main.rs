@@ -1,4 +1,4 @@
-//! `cargo xtask demo | test | book | package | bless | results | fuzz`: the project's automation, so that a machine that has Rust needs nothing else.
+//! `cargo xtask COMMAND`: the project's automation, so that a machine that has Rust needs nothing else.
 
 mod adapter;
 mod book;
@@ -25,6 +25,7 @@ Usage: cargo xtask COMMAND
           build the book into out/book; --pictures draws its pictures anew instead
   fuzz    check 1,000,000 plans of random scenes and load 100,000 mutated files; UMBRAGE_FUZZ_CASES, UMBRAGE_FUZZ_FILES
           and UMBRAGE_FUZZ_SEED choose others
+  shaders join the modules of umbrage-shaders/shaders into the texts that are checked in, umbrage-shaders/src/wgsl
   package pack every crate that is published and build each from its package
   bless   draw the reference pictures of the tests anew
   results [--resume | --render | --tiny]
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
         ["test", "--quick"] => check::quick(),
         ["book"] => book::build(),
         ["book", "--pictures"] => book::draw(),
+        ["shaders"] => check::shaders(),
         ["package"] => check::package(),
         ["bless"] => check::bless(),
         ["fuzz"] => check::fuzz(),

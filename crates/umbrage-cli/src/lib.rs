@@ -15,6 +15,7 @@ mod print;
 pub mod probe;
 pub mod render;
 pub mod scene_args;
+pub mod scene_options;
 pub mod shadow_args;
 pub mod switch;
 pub mod theory;

@@ -16,14 +16,18 @@ use umbrage_lab::{
     technique::ShadowRequest,
 };
 
-use crate::{print::print, scene_args::SceneArgs, shadow_args::ShadowArgs};
+use crate::{
+    print::print,
+    scene_options::{Asked, SceneOptions},
+    shadow_args::ShadowArgs,
+};
 
 /// `umbrage plan`.
 #[derive(Debug, clap::Args)]
 pub struct PlanArgs {
     /// Scene, camera, light and time.
     #[command(flatten)]
-    pub scene: SceneArgs,
+    pub scene: SceneOptions,
     /// Shadows.
     #[command(flatten)]
     pub shadows: ShadowArgs,
@@ -120,10 +124,10 @@ struct Caster {
 
 /// Runs the subcommand.
 pub fn run(args: &PlanArgs) -> Result<()> {
-    let request = args.scene.request()?;
-    let shadows = args.shadows.request(request.sun_angle)?;
+    let Asked { scene: request, shadows } = Asked::new(&args.scene, &args.shadows)?;
     if let Some(path) = &args.output {
-        output::check(&[path], &[], &request.inputs())?;
+        let inputs: Vec<&Path> = request.inputs().into_iter().chain(args.shadows.file()).collect();
+        output::check(&[path], &[], &inputs)?;
     }
     let setup = SceneSetup::open(&request)?;
     let shadows = shadows.for_lights(&setup.lights[..1])?;
@@ -135,7 +139,10 @@ pub fn run(args: &PlanArgs) -> Result<()> {
     let mut frames = Vec::new();
     for shot in &setup.shots {
         let plan = planner.plan(&shot.view, &shot.shown_light(), &casters, &receivers)?;
-        frames.push((shot.frame, report(&request, &shadows, &setup, shot, plan, args.depth_convention)));
+        if setup.is_wanted(shot) {
+            let report = report(&request, &shadows, &setup, shot, plan, args.depth_convention);
+            frames.push((setup.file_number(shot), report));
+        }
     }
     match &args.output {
         Some(path) => write(path, &frames),

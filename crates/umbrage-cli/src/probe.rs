@@ -16,14 +16,17 @@ use umbrage_lab::{
 };
 use umbrage_render::{Outputs, ProbePoint};
 
-use crate::{scene_args::SceneArgs, shadow_args::ShadowArgs};
+use crate::{
+    scene_options::{Asked, SceneOptions},
+    shadow_args::ShadowArgs,
+};
 
 /// `umbrage probe`.
 #[derive(Debug, clap::Args)]
 pub struct ProbeArgs {
     /// Scene, camera, light and time.
     #[command(flatten)]
-    pub scene: SceneArgs,
+    pub scene: SceneOptions,
     /// Shadows.
     #[command(flatten)]
     pub shadows: ShadowArgs,
@@ -43,10 +46,10 @@ const RECORD_BYTES: usize = 6 * size_of::<f64>();
 
 /// Runs the subcommand.
 pub fn run(args: &ProbeArgs) -> Result<()> {
-    let request = args.scene.request()?;
-    let shadows = args.shadows.request(request.sun_angle)?;
+    let Asked { scene: request, shadows } = Asked::new(&args.scene, &args.shadows)?;
     let files: Vec<&Path> = [Some(&args.out), args.report.as_ref()].into_iter().flatten().map(AsRef::as_ref).collect();
-    let inputs: Vec<&Path> = request.inputs().into_iter().chain([args.points.as_path()]).collect();
+    let inputs: Vec<&Path> =
+        request.inputs().into_iter().chain([args.points.as_path()]).chain(args.shadows.file()).collect();
     output::check(&files, &[], &inputs)?;
     let bytes = fs::read(&args.points).map_err(|error| Failure::file("read", &args.points, &error))?;
     let points = points(&args.points, &bytes)?;
@@ -61,17 +64,24 @@ pub fn run(args: &ProbeArgs) -> Result<()> {
             Some(fade) => session.renderer.probe_faded(&frame, fade, &points)?,
             None => session.renderer.probe(&frame, &points)?,
         };
+        // The same maps once more, for what they cost; no picture is asked for.
+        let rendered = match &args.report {
+            Some(_) => session.renderer.render_views(&[frame], shot.shown.as_ref(), Outputs::default())?,
+            None => Vec::new(),
+        };
+        bar.inc(1);
+        if !setup.is_wanted(shot) {
+            continue;
+        }
+        let number = setup.file_number(shot);
         let visibility = answers.iter().flat_map(|answer| answer.visibility.to_le_bytes()).collect();
-        staged.file(&numbered_file(&args.out, shot.frame), visibility)?;
-        if let Some(path) = &args.report {
-            // The same maps once more, for what they cost; no picture is asked for.
-            let rendered = session.renderer.render_views(&[frame], shot.shown.as_ref(), Outputs::default())?.remove(0);
+        staged.file(&numbered_file(&args.out, number), visibility)?;
+        if let (Some(path), Some(rendered)) = (&args.report, rendered.first()) {
             let mut report = session.report(&request, &setup, shot, &rendered.stats);
             report.probe = Some(ProbeReport { split: answers.iter().map(|answer| answer.split).collect() });
-            staged.file(&numbered_file(path, shot.frame), to_json(&report)?)?;
+            staged.file(&numbered_file(path, number), to_json(&report)?)?;
         }
         staged.finish_frame();
-        bar.inc(1);
     }
     bar.finish_and_clear();
     staged.commit()

@@ -9,21 +9,26 @@ use umbrage_lab::{
     output::{self, Staged, numbered_file, numbered_folder},
     picture::{png, side_by_side},
     progress,
-    report::to_json,
-    scene_setup::SceneSetup,
+    report::{Report, to_json},
+    scene_request::SceneRequest,
+    scene_setup::{SceneSetup, Shot},
     session::{Session, beside_report},
     split_views,
+    technique::ShadowRequest,
 };
-use umbrage_render::{Frame, Outputs};
+use umbrage_render::{Frame, Outputs, Rendered};
 
-use crate::{scene_args::SceneArgs, shadow_args::ShadowArgs};
+use crate::{
+    scene_options::{Asked, SceneOptions},
+    shadow_args::ShadowArgs,
+};
 
 /// `umbrage render`.
 #[derive(Debug, clap::Args)]
 pub struct RenderArgs {
     /// Scene, camera, light and time.
     #[command(flatten)]
-    pub scene: SceneArgs,
+    pub scene: SceneOptions,
     /// Shadows.
     #[command(flatten)]
     pub shadows: ShadowArgs,
@@ -47,8 +52,7 @@ pub struct RenderArgs {
 
 /// Runs the subcommand.
 pub fn run(args: &RenderArgs) -> Result<()> {
-    let request = args.scene.request()?;
-    let shadows = args.shadows.request(request.sun_angle)?;
+    let Asked { scene: request, shadows } = Asked::new(&args.scene, &args.shadows)?;
     let files: Vec<&Path> =
         [&args.picture, &args.visibility, &args.report].into_iter().flatten().map(AsRef::as_ref).collect();
     let folders: Vec<&Path> = args.maps.iter().chain(&args.split_views).map(AsRef::as_ref).collect();
@@ -57,10 +61,47 @@ pub fn run(args: &RenderArgs) -> Result<()> {
             "nothing to write: give -o PICTURE, --visibility MASK, --maps DIR, --split-views DIR or --report JSON",
         ));
     }
-    output::check(&files, &folders, &request.inputs())?;
+    let inputs: Vec<&Path> = request.inputs().into_iter().chain(args.shadows.file()).collect();
+    output::check(&files, &folders, &inputs)?;
 
     let setup = SceneSetup::open_views(&request)?;
-    if args.maps.is_some() && setup.shots.iter().any(|shot| !shot.beside.is_empty()) {
+    check_views(args, &setup, &shadows)?;
+    let mut session = Session::open(&request, &shadows, &setup)?;
+    // Views of splits are planned one by one and must not disturb what the frames' own maps hold on to.
+    let mut beside = args.split_views.as_ref().map(|_| Session::open(&request, &shadows, &setup)).transpose()?;
+    let mut staged = Staged::default();
+    let bar = progress::steps(setup.shots.len() as u64, "frames");
+    for shot in &setup.shots {
+        let frames: Vec<Frame<'_>> = shot.views().map(|(_, view)| session.frame(&setup, shot, view)).collect();
+        let is_wanted = setup.is_wanted(shot);
+        let outputs = if is_wanted { outputs(args) } else { Outputs::default() };
+        let mut views = session.renderer.render_views(&frames, shot.shown.as_ref(), outputs)?;
+        notes::say(shadows.notes.iter().chain(&views[0].stats.notes));
+        let number = setup.file_number(shot);
+        if let (Some(path), Some(beside)) = (&args.split_views, &mut beside) {
+            let files = split_views::pictures(&mut beside.renderer, &frames[0], &views[0].stats.plan.splits)?;
+            if is_wanted {
+                staged.folder(&numbered_folder(path, number), files)?;
+            }
+        }
+        if is_wanted {
+            stage(args, number, &mut views, &mut staged)?;
+            if let Some(path) = &args.report {
+                let report = report(&session, &request, &setup, shot, &views);
+                staged.file(&numbered_file(path, number), to_json(&report)?)?;
+            }
+            staged.finish_frame();
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    staged.commit()
+}
+
+/// Refuses what cannot be written of several views, or of splits by distance.
+fn check_views(args: &RenderArgs, setup: &SceneSetup, shadows: &ShadowRequest) -> Result<()> {
+    let has_several = setup.shots.iter().any(|shot| !shot.beside.is_empty());
+    if args.maps.is_some() && has_several {
         return Err(Failure::input("--maps and several cameras: maps are of one view; name one --camera"));
     }
     if args.split_views.is_some() && shadows.config.selection.metric() == SplitMetric::Distance {
@@ -68,46 +109,37 @@ pub fn run(args: &RenderArgs) -> Result<()> {
             "--split-views and --bands radial exclude each other: each picture lies between two planes; leave one of them away",
         ));
     }
-    if args.split_views.is_some() && setup.shots.iter().any(|shot| !shot.beside.is_empty()) {
+    if args.split_views.is_some() && has_several {
         return Err(Failure::input("--split-views and several cameras: splits are of one view; name one --camera"));
     }
-    let mut session = Session::open(&request, &shadows, &setup)?;
-    // Views of splits are planned one by one and must not disturb what the frames' own maps hold on to.
-    let mut beside = args.split_views.as_ref().map(|_| Session::open(&request, &shadows, &setup)).transpose()?;
-    let outputs =
-        Outputs { picture: args.picture.is_some(), mask: args.visibility.is_some(), maps: args.maps.is_some() };
-    let mut staged = Staged::default();
-    let bar = progress::steps(setup.shots.len() as u64, "frames");
-    for shot in &setup.shots {
-        let frames: Vec<Frame<'_>> = shot.views().map(|(_, view)| session.frame(&setup, shot, view)).collect();
-        let mut views = session.renderer.render_views(&frames, shot.shown.as_ref(), outputs)?;
-        notes::say(shadows.notes.iter().chain(&views[0].stats.notes));
-        let pictures: Vec<_> = views.iter_mut().filter_map(|view| view.picture.take()).collect();
-        if let (Some(path), false) = (&args.picture, pictures.is_empty()) {
-            staged.file(&numbered_file(path, shot.frame), png(&side_by_side(pictures))?)?;
-        }
-        let masks: Vec<_> = views.iter_mut().filter_map(|view| view.mask.take()).collect();
-        if let (Some(path), false) = (&args.visibility, masks.is_empty()) {
-            staged.file(&numbered_file(path, shot.frame), png(&side_by_side(masks))?)?;
-        }
-        if let Some(path) = &args.maps {
-            let maps = views[0].maps.iter().enumerate();
-            let files = maps.map(|(split, map)| Ok((format!("split{split}.png"), png(map)?))).collect::<Result<_>>()?;
-            staged.folder(&numbered_folder(path, shot.frame), files)?;
-        }
-        if let (Some(path), Some(beside)) = (&args.split_views, &mut beside) {
-            let files = split_views::pictures(&mut beside.renderer, &frames[0], &views[0].stats.plan.splits)?;
-            staged.folder(&numbered_folder(path, shot.frame), files)?;
-        }
-        if let Some(path) = &args.report {
-            let mut report = session.report(&request, &setup, shot, &views[0].stats);
-            let beside = shot.beside.iter().zip(&views[1..]);
-            report.beside = beside.map(|((camera, view), of)| beside_report(&setup, camera, view, &of.stats)).collect();
-            staged.file(&numbered_file(path, shot.frame), to_json(&report)?)?;
-        }
-        staged.finish_frame();
-        bar.inc(1);
+    Ok(())
+}
+
+fn outputs(args: &RenderArgs) -> Outputs {
+    Outputs { picture: args.picture.is_some(), mask: args.visibility.is_some(), maps: args.maps.is_some() }
+}
+
+/// Puts pictures, masks and maps of a shot's views among the outputs.
+fn stage(args: &RenderArgs, number: Option<u32>, views: &mut [Rendered], staged: &mut Staged) -> Result<()> {
+    let pictures: Vec<_> = views.iter_mut().filter_map(|view| view.picture.take()).collect();
+    if let (Some(path), false) = (&args.picture, pictures.is_empty()) {
+        staged.file(&numbered_file(path, number), png(&side_by_side(pictures))?)?;
     }
-    bar.finish_and_clear();
-    staged.commit()
+    let masks: Vec<_> = views.iter_mut().filter_map(|view| view.mask.take()).collect();
+    if let (Some(path), false) = (&args.visibility, masks.is_empty()) {
+        staged.file(&numbered_file(path, number), png(&side_by_side(masks))?)?;
+    }
+    if let Some(path) = &args.maps {
+        let maps = views[0].maps.iter().enumerate();
+        let files = maps.map(|(split, map)| Ok((format!("split{split}.png"), png(map)?))).collect::<Result<_>>()?;
+        staged.folder(&numbered_folder(path, number), files)?;
+    }
+    Ok(())
+}
+
+/// The report of a shot: of its first view, with the others beside it.
+fn report(session: &Session, request: &SceneRequest, setup: &SceneSetup, shot: &Shot, views: &[Rendered]) -> Report {
+    let beside = shot.beside.iter().zip(&views[1..]);
+    let beside = beside.map(|((camera, view), of)| beside_report(setup, camera, view, &of.stats)).collect();
+    Report { beside, ..session.report(request, setup, shot, &views[0].stats) }
 }

@@ -11,13 +11,16 @@ use umbrage_lab::{
 };
 use umbrage_scene::{GltfOptions, HeightMapOptions, OpenOptions};
 
+use crate::switch::Switch;
+
 /// Scene, picture size, camera, light and time.
 #[derive(Debug, clap::Args)]
 pub struct SceneArgs {
     /// A .glb, .gltf or .vrm; a height map (.png, .tif or .asc, with a .json beside it or the --metres options where it has
-    /// no scale of its own); or a world: robot-war, chessboard, knights, mining-terrain
+    /// no scale of its own); or a world: robot-war, chessboard, knights, mining-terrain. Left away, it is the scene of the
+    /// report that --config names
     #[arg(value_name = "SCENE")]
-    pub scene: String,
+    pub scene: Option<String>,
     /// Height map: metres between posts
     #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Scene")]
     pub metres_per_post: Option<f64>,
@@ -95,6 +98,20 @@ pub struct SceneArgs {
     /// [default: 0.53 for pcss; the exact mask is hard]
     #[arg(long, value_name = "DEGREES", value_parser = parse::sun_angle, allow_hyphen_values = true, help_heading = "Light")]
     pub sun_angle: Option<f64>,
+
+    /// Colour the picture by split
+    #[arg(long, value_name = "true|false", num_args = 0..=1, require_equals = true, default_value = "false", default_missing_value = "true", action = clap::ArgAction::Set, help_heading = "Picture")]
+    pub tint: bool,
+    /// Draw with shadows or without
+    #[arg(long, value_name = "SWITCH", value_enum, default_value_t, help_heading = "Picture")]
+    pub shadows: Switch,
+
+    /// Of several frames the only one that is wanted.
+    #[arg(skip)]
+    pub only_frame: Option<u32>,
+    /// All this as words of a command line.
+    #[arg(skip)]
+    pub options: Vec<String>,
 }
 
 /// `--height-encoding`.
@@ -150,7 +167,9 @@ impl SceneArgs {
             far: self.far,
             light: light_choice(self.light.as_deref(), self.sun)?,
             sun_angle: self.sun_angle,
-            ..SceneRequest::new(&self.scene, self.size)
+            only_frame: self.only_frame,
+            options: self.options.clone(),
+            ..SceneRequest::new(self.scene.clone().unwrap_or_default(), self.size)
         };
         Ok(SceneRequest { sun_travel: sun_travel(self)?, ..request.with_camera(camera)? })
     }

@@ -4,12 +4,10 @@
 use std::path::PathBuf;
 
 use clap::builder::PossibleValue;
-use clap::{Arg, ArgAction, ArgMatches, Command, FromArgMatches};
+use clap::{Arg, ArgMatches, Command, FromArgMatches};
 use umbrage::config::{Kind, Preset, SETTINGS, Setting};
 
-use umbrage_lab::technique::{ShadowOptions, ShadowRequest};
-
-use crate::switch::Switch;
+use umbrage_lab::technique::ShadowOptions;
 
 /// The heading of these options in the help.
 const HEADING: &str = "Shadows";
@@ -21,21 +19,10 @@ const ELSEWHERE: [&str; 1] = ["sun-angle"];
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShadowArgs(pub ShadowOptions);
 
-impl ShadowArgs {
-    /// The config that the options ask for, under a sun of this angle in degrees.
-    ///
-    /// # Errors
-    /// [`umbrage_lab::failure::Failure::Input`] naming the option at fault.
-    pub fn request(&self, sun_angle: Option<f64>) -> umbrage_lab::failure::Result<ShadowRequest> {
-        Ok(ShadowRequest::new(self.0.clone())?.under_sun(sun_angle))
-    }
-}
-
 impl clap::Args for ShadowArgs {
     fn augment_args(command: Command) -> Command {
         let command = command.next_help_heading(HEADING).args([preset(), config()]);
-        let command = command.args(settings().map(option));
-        command.args([tint(), shadows()])
+        command.args(settings().map(option))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -53,8 +40,7 @@ impl FromArgMatches for ShadowArgs {
             preset: matches.get_one::<Preset>("preset").copied(),
             file: matches.get_one::<PathBuf>("config").cloned(),
             given: settings().filter_map(typed).collect(),
-            tint: matches.get_one::<bool>("tint").copied().unwrap_or(false),
-            shadows_off: matches.get_one::<Switch>("shadows") == Some(&Switch::Off),
+            ..ShadowOptions::default()
         }))
     }
 
@@ -110,28 +96,10 @@ fn config() -> Arg {
     Arg::new("config")
         .long("config")
         .value_name("FILE")
-        .help("Settings from a file (TOML or JSON), or from a report: that picture again; single options go over them")
+        .help(
+            "Settings from a file (TOML or JSON), or from a report of render or probe: that picture again, where SCENE may be \
+             left away. Options go over what the file holds; a file that a report names is looked for in the working \
+             directory, then in the report's folder",
+        )
         .value_parser(clap::value_parser!(PathBuf))
-}
-
-fn tint() -> Arg {
-    Arg::new("tint")
-        .long("tint")
-        .value_name("true|false")
-        .help("Colour the picture by split")
-        .num_args(0..=1)
-        .require_equals(true)
-        .default_value("false")
-        .default_missing_value("true")
-        .action(ArgAction::Set)
-        .value_parser(clap::value_parser!(bool))
-}
-
-fn shadows() -> Arg {
-    Arg::new("shadows")
-        .long("shadows")
-        .value_name("SWITCH")
-        .help("Draw with shadows or without")
-        .default_value("on")
-        .value_parser(clap::value_parser!(Switch))
 }

@@ -1,6 +1,7 @@
 //! `umbrage truth`: the mask by rays, hard or under a sun with a size.
 
-use std::{path::PathBuf, time::Instant};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use umbrage_lab::{
     failure::Result,
@@ -13,15 +14,15 @@ use umbrage_lab::{
 };
 use umbrage_truth::Truth;
 
-use crate::{scene_args::SceneArgs, shadow_args::ShadowArgs};
+use crate::{scene_options::SceneOptions, shadow_args::ShadowArgs};
 
 /// `umbrage truth`.
 #[derive(Debug, clap::Args)]
 pub struct TruthArgs {
     /// Scene, camera, light and time.
     #[command(flatten)]
-    pub scene: SceneArgs,
-    /// Accepted and ignored: rays need none of it.
+    pub scene: SceneOptions,
+    /// Accepted and ignored, but for the scene of a report: rays need no settings.
     #[command(flatten)]
     pub shadows: ShadowArgs,
     /// Write the exact visibility mask here (PNG, grey and alpha); soft with --sun-angle, by 256 directions
@@ -34,18 +35,21 @@ pub struct TruthArgs {
 
 /// Runs the subcommand.
 pub fn run(args: &TruthArgs) -> Result<()> {
-    let request = args.scene.request()?;
+    let request = args.scene.over(args.shadows.file())?.request()?;
     let files: Vec<_> = [Some(&args.mask), args.report.as_ref()].into_iter().flatten().map(AsRef::as_ref).collect();
-    output::check(&files, &[], &request.inputs())?;
+    let inputs: Vec<&Path> = request.inputs().into_iter().chain(args.shadows.file()).collect();
+    output::check(&files, &[], &inputs)?;
     let setup = SceneSetup::open_views(&request)?;
     let began = Instant::now();
     let truth = Truth::build(&setup.scene, &setup.pose, setup.shots[0].view.eye())?;
     let build = began.elapsed();
     let mut staged = Staged::default();
-    let count = setup.shots.iter().map(|shot| shot.views().count()).sum::<usize>() as f32;
+    let shots = || setup.shots.iter().filter(|shot| setup.is_wanted(shot));
+    let count = shots().map(|shot| shot.views().count()).sum::<usize>() as f32;
     let bar = progress::fraction("rays");
     let mut done = 0.0;
-    for shot in &setup.shots {
+    for shot in shots() {
+        let number = setup.file_number(shot);
         let began = Instant::now();
         let mut images = Vec::new();
         for (_, view) in shot.views() {
@@ -59,14 +63,14 @@ pub fn run(args: &TruthArgs) -> Result<()> {
         }
         let image = side_by_side(images);
         let rays = began.elapsed();
-        staged.file(&numbered_file(&args.mask, shot.frame), png(&image)?)?;
+        staged.file(&numbered_file(&args.mask, number), png(&image)?)?;
         if let Some(path) = &args.report {
             let report = TruthReport {
                 shot: setup.report(&request, shot),
                 times_ms: TruthTimesMs { build: build.as_secs_f64() * 1e3, rays: rays.as_secs_f64() * 1e3 },
                 notes: setup.notes.clone(),
             };
-            staged.file(&numbered_file(path, shot.frame), to_json(&report)?)?;
+            staged.file(&numbered_file(path, number), to_json(&report)?)?;
         }
         staged.finish_frame();
     }

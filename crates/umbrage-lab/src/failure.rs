@@ -97,6 +97,7 @@ impl From<umbrage_render::Error> for Failure {
                 Self::other(error.to_string())
             }
             E::Plan(error) => error.into(),
+            E::Shadows(umbrage_wgpu::Error::DeviceLost) => Self::other(error.to_string()),
             E::ImageSize { .. } => Self::input(format!("--size: {error}")),
             E::Shadows(error) => Self::input(of_maps(&error)),
             E::Probe { .. } => Self::input(format!("--points: {error}")),

@@ -46,7 +46,7 @@ pub struct Report {
     pub scheme: String,
     /// `none`, `psm`, `lispsm` or `tsm`: one for all splits, or one for each.
     pub warp: Vec<String>,
-    /// Every setting, under its key: what `--config` reads back.
+    /// Every setting, under its key: what `--config` reads back, beside the options.
     pub config: umbrage::ShadowConfig,
     /// `C_0 ..= C_m`: view depths in metres.
     pub planes_m: Vec<f64>,
@@ -58,6 +58,9 @@ pub struct Report {
     pub draws: u64,
     /// Triangles submitted to all maps, every instance counted once.
     pub triangles: u64,
+    /// Of the first light, for each split: how many casters its list leaves out because their
+    /// shadows are small (`--drop-small-casters`).
+    pub dropped_casters: Vec<u32>,
     /// The splits of the first light, nearest first; the others' are in `lights`.
     pub splits: Vec<SplitReport>,
     /// The views beside the first one, from left to right.
@@ -100,6 +103,9 @@ pub struct TruthReport {
 pub struct ShotReport {
     /// As typed.
     pub scene: String,
+    /// Scene, camera, light and time as options of `umbrage render`: what `--config` draws again.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub options: Vec<String>,
     /// Seconds into the animations.
     pub time_s: f64,
     /// Along a path: which frame.

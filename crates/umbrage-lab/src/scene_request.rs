@@ -46,6 +46,11 @@ pub struct SceneRequest {
     pub sun_travel: Option<SunTravel>,
     /// Degrees across the sun; none where nothing was said.
     pub sun_angle: Option<f64>,
+    /// Of several frames this one alone is wanted; those before it are drawn, for what maps keep
+    /// from frame to frame, and not shown.
+    pub only_frame: Option<u32>,
+    /// All this as options of `umbrage render`, for reports; empty where nobody typed any.
+    pub options: Vec<String>,
 }
 
 /// How the eye was chosen.
@@ -111,6 +116,8 @@ impl SceneRequest {
             light: LightChoice::Default,
             sun_travel: None,
             sun_angle: None,
+            only_frame: None,
+            options: Vec::new(),
         }
     }
 

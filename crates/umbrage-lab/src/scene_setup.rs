@@ -30,6 +30,8 @@ pub struct SceneSetup {
     pub shots: Vec<Shot>,
     /// What the loader left out, and which defaults were invented.
     pub notes: Vec<String>,
+    /// The frame that alone is wanted; the last one of `shots`.
+    only_frame: Option<u32>,
 }
 
 /// The camera of a frame, before its light is known.
@@ -115,15 +117,37 @@ impl SceneSetup {
         let frame_views = frame_views(request, &scene, &pose, path.as_ref(), &mut notes)?;
         let lights = lights::chosen(request, &scene, &pose, path.as_ref(), &mut notes)?;
         notes::say(&notes);
-        let shots = under_the_light(request, frame_views, &lights)?;
-        Ok(Self::new(scene, pose, lights, shots, notes))
+        let mut shots = under_the_light(request, frame_views, &lights)?;
+        if let Some(only) = request.only_frame {
+            let frames = shots.len();
+            shots.truncate(only as usize + 1);
+            if shots.last().is_none_or(|last| last.frame != request.only_frame) {
+                return Err(Failure::input(format!(
+                    "the report is of frame {only}, but its options ask for {frames}, from 0; give --frames {} or more",
+                    u64::from(only) + 1
+                )));
+            }
+        }
+        Ok(Self { only_frame: request.only_frame, ..Self::new(scene, pose, lights, shots, notes) })
     }
 
     /// A setup from its parts; `lights` has one at least.
     #[must_use]
     pub fn new(scene: Scene, pose: Pose, lights: Vec<NamedLight>, shots: Vec<Shot>, notes: Vec<String>) -> Self {
         let more_lights = lights.iter().skip(1).map(|light| light.lamp).collect();
-        Self { scene, pose, lights, more_lights, shots, notes }
+        Self { scene, pose, lights, more_lights, shots, notes, only_frame: None }
+    }
+
+    /// Whether a shot is to be shown, and not drawn for the frames after it alone.
+    #[must_use]
+    pub fn is_wanted(&self, shot: &Shot) -> bool {
+        self.only_frame.is_none_or(|only| shot.frame == Some(only))
+    }
+
+    /// The number that the files of a shot get, if several are shown.
+    #[must_use]
+    pub fn file_number(&self, shot: &Shot) -> Option<u32> {
+        shot.frame.filter(|_| self.only_frame.is_none())
     }
 
     /// What the renderer is told about one view of a shot.
@@ -138,6 +162,7 @@ impl SceneSetup {
     pub fn report(&self, request: &SceneRequest, shot: &Shot) -> ShotReport {
         ShotReport {
             scene: request.scene.clone(),
+            options: request.options.clone(),
             time_s: request.time_s,
             frame: shot.frame,
             size: request.size,

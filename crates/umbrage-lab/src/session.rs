@@ -71,6 +71,7 @@ impl Session {
             bytes: stats.bytes,
             draws: u64::from(stats.shadow_draws),
             triangles: stats.shadow_triangles,
+            dropped_casters: stats.plan.dropped_casters.clone(),
             splits: stats.splits.iter().map(split_report).collect(),
             beside: Vec::new(),
             probe: None,

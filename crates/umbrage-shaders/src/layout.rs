@@ -9,7 +9,8 @@ pub const MAX_SPLITS: usize = 8;
 /// every device has.
 pub const MAX_COORDINATES: usize = 4;
 
-/// How one map answers, in [`Frame::filter_kind`].
+/// How one map answers, in [`Frame::filter_kind`]. Kernels of fixed taps are numbered from 0, discs
+/// from 8 and moments from 16: the shaders compare numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum FilterKind {
@@ -23,20 +24,63 @@ pub enum FilterKind {
     Pcf5 = 3,
     /// A tent of seven texels in sixteen hardware taps.
     Pcf7 = 4,
+    /// Castaño's kernel of five texels in nine hardware taps.
+    Castano5 = 5,
     /// A disc of 32 hardware taps.
-    Disc = 5,
+    Disc = 8,
     /// A disc as wide as the penumbra of a sun with a size; without depth loads as [`FilterKind::Disc`].
-    Pcss = 6,
+    Pcss = 9,
     /// The mean of an exponential of depth.
-    Esm = 7,
+    Esm = 16,
     /// Two moments of depth.
-    Vsm = 8,
+    Vsm = 17,
     /// Two moments of an exponential of depth.
-    Evsm2 = 9,
+    Evsm2 = 18,
     /// The same, and two of a falling exponential.
-    Evsm4 = 10,
+    Evsm4 = 19,
     /// Four moments of depth.
-    Msm = 11,
+    Msm = 20,
+}
+
+impl FilterKind {
+    /// Every kind.
+    pub const ALL: [Self; 13] = [
+        Self::Hard,
+        Self::Pcf2,
+        Self::Pcf3,
+        Self::Pcf5,
+        Self::Pcf7,
+        Self::Castano5,
+        Self::Disc,
+        Self::Pcss,
+        Self::Esm,
+        Self::Vsm,
+        Self::Evsm2,
+        Self::Evsm4,
+        Self::Msm,
+    ];
+
+    /// Whether maps are turned into moments before they are asked.
+    #[must_use]
+    pub const fn is_of_moments(self) -> bool {
+        self as u32 >= Self::Esm as u32
+    }
+
+    /// The conditions of `shaders/lib` that what the kind needs stands behind. A condition that no
+    /// kind names is none of a filter.
+    pub(crate) const fn parts(self) -> &'static [&'static str] {
+        match self {
+            Self::Hard => &["hard"],
+            Self::Pcf2 => &["pcf2", "texels"],
+            Self::Pcf3 | Self::Pcf5 | Self::Pcf7 => &["tent", "pairs", "texels"],
+            Self::Castano5 => &["castano5", "pairs", "texels"],
+            Self::Disc => &["disc", "texels"],
+            Self::Pcss => &["pcss", "disc", "texels"],
+            Self::Vsm => &["vsm"],
+            Self::Msm => &["msm"],
+            Self::Esm | Self::Evsm2 | Self::Evsm4 => &[],
+        }
+    }
 }
 
 /// What splits are chosen by, in [`Frame::is_radial`].

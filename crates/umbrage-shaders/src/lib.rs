@@ -4,8 +4,8 @@
 //! sampler and a uniform buffer. `umbrage-wgpu` is that renderer's half for wgpu.
 //!
 //! * `shaders/lib` has functions without bindings, `shaders/pass` the roots with bindings, `shaders/maps` the maps' own bindings
-//!   and the two functions that read them. `wesl` joins them when this crate is built; what comes out is ordinary WGSL, and
-//!   every name in it begins with `umbrage`, in one case or another.
+//!   and the two functions that read them. `src/wgsl` has what they join to: ordinary WGSL, in which every name begins with
+//!   `umbrage`, in one case or another.
 //! * A root is text to put before one's own shader. It declares no entry point and no override, so it adds nothing to a
 //!   pipeline's constants: an override would become a constant of the *app's* pipeline, to be repeated wherever it makes one.
 //! * What varies (filter, selection, strength) is a value in the [`layout::Frame`] uniform, unless [`ReceiverText`] fixes it:
@@ -27,7 +27,7 @@
 
 macro_rules! text {
     ($file:literal) => {
-        include_str!(concat!(env!("OUT_DIR"), "/", $file, ".wgsl"))
+        include_str!(concat!("wgsl/", $file, ".wgsl"))
     };
 }
 

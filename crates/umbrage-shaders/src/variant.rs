@@ -1,9 +1,9 @@
 //! Makes a text of what is used: takes or drops what stands behind `@if(…)` (WESL's conditional
 //! translation), at run time.
 //!
-//! `build.rs` resolves what is known when this crate is built and keeps the conditions of a
-//! receiver's choices in the texts. What may follow such a condition here is a declaration, a
-//! member of a struct, a statement or a block.
+//! `umbrage-shaders-join` resolves what is known when the texts are joined and keeps the conditions
+//! of a receiver's choices in them. What may follow such a condition here is a declaration, a member
+//! of a struct, a statement or a block.
 
 /// `text` with every `@if(condition)` resolved: `is_on` says which names are true.
 pub(crate) fn resolved(text: &str, is_on: impl Fn(&str) -> bool) -> String {

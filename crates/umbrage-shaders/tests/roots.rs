@@ -268,18 +268,19 @@ fn vertices_make_the_coordinates_of_every_split() {
     assert!(!umbrage_shaders::receiver(0, Maps::default()).contains("UmbrageShadowCoordinates"));
 }
 
+/// The kinds of filters that read such maps.
+fn kinds(maps: Maps) -> impl Iterator<Item = FilterKind> {
+    FilterKind::ALL.into_iter().filter(move |kind| kind.is_of_moments() == maps.moments.is_some())
+}
+
 /// What `ReceiverText` leaves to choose, one after the other; each with the value at `pick`, counted around.
 fn chosen(pick: [usize; 8], maps: Maps) -> ReceiverText {
-    use FilterKind::{Disc, Esm, Evsm4, Hard, Msm, Pcf2, Pcf3, Pcf7, Pcss, Vsm};
     fn of<T: Copy>(values: &[T], at: usize) -> T {
         values[at % values.len()]
     }
-    let filters: &[Option<FilterKind>] = match maps.moments {
-        None => &[None, Some(Hard), Some(Pcf2), Some(Pcf3), Some(Pcf7), Some(Disc), Some(Pcss)],
-        Some(_) => &[None, Some(Esm), Some(Vsm), Some(Evsm4), Some(Msm)],
-    };
+    let filters: Vec<Option<FilterKind>> = [None].into_iter().chain(kinds(maps).map(Some)).collect();
     ReceiverText {
-        filter: of(filters, pick[0]),
+        filter: of(&filters, pick[0]),
         selection: of(&[None, Some(SelectionKind::Depth), Some(SelectionKind::Map)], pick[1]),
         metric: of(&[None, Some(MetricKind::ViewDepth), Some(MetricKind::Distance)], pick[2]),
         transition: of(
@@ -305,7 +306,7 @@ fn every_pair_of_choices_is_valid_wgsl() {
         MOMENTS,
     ] {
         for (first, second) in (0..8).flat_map(|first| (first + 1..8).map(move |second| (first, second))) {
-            for (a, b) in (0..7).flat_map(|a| (0..4).map(move |b| (a, b))) {
+            for (a, b) in (0..=kinds(maps).count()).flat_map(|a| (0..4).map(move |b| (a, b))) {
                 // The others change along, so that no choice is looked at in one text alone.
                 let mut pick = [a + b; 8];
                 (pick[first], pick[second]) = (a, b);

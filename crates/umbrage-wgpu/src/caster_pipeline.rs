@@ -1,6 +1,6 @@
 //! A pipeline that draws casters, for the common case.
 
-use crate::device::guarded;
+use crate::device::made;
 use crate::{Result, ShadowMaps, Shadows};
 
 /// How casters are drawn.
@@ -90,10 +90,10 @@ impl Shadows {
     /// [`Shadows::set_lights`] answers [`umbrage::config::Rebuilds::Pipelines`].
     ///
     /// # Errors
-    /// [`crate::Error::Device`] if the device refuses shader or states.
+    /// [`crate::Error::Device`] if the device refuses shader or states, [`crate::Error::DeviceLost`].
     pub fn caster_pipeline(&self, options: &CasterPipeline<'_>) -> Result<wgpu::RenderPipeline> {
         let maps = self.maps();
-        guarded(maps.device(), "making a pipeline for casters", || Ok(pipeline(maps, options)))
+        made(maps.device(), "making a pipeline for casters", || Ok(pipeline(maps, options)))
     }
 }
 

@@ -21,6 +21,38 @@ pub(crate) fn guarded<T>(device: &wgpu::Device, during: &'static str, work: impl
     }
 }
 
+/// [`guarded`] for work that makes resources: those of a lost device are invalid, and `wgpu` says so to
+/// nobody but the application's callback.
+pub(crate) fn made<T>(device: &wgpu::Device, during: &'static str, work: impl FnOnce() -> Result<T>) -> Result<T> {
+    let made = guarded(device, during, work);
+    if is_lost(device) { Err(Error::DeviceLost) } else { made }
+}
+
+/// Writes `bytes` into `buffer`, from the next submission on.
+///
+/// # Errors
+/// [`Error::DeviceLost`], which [`wgpu::Queue::write_buffer`] does not tell. In a [`guarded`] call
+/// another reason takes precedence. A browser does not say that a device is lost.
+pub(crate) fn write(queue: &wgpu::Queue, buffer: &wgpu::Buffer, offset: u64, bytes: &[u8]) -> Result<()> {
+    let Some(size) = wgpu::BufferSize::new(bytes.len() as u64) else { return Ok(()) };
+    let mut view = queue.write_buffer_with(buffer, offset, size).ok_or(Error::DeviceLost)?;
+    view.copy_from_slice(bytes);
+    Ok(())
+}
+
+/// Whether a device is lost: no buffer of it can be mapped then. A browser does not say so.
+fn is_lost(device: &wgpu::Device) -> bool {
+    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("umbrage: is the device lost?"),
+        size: wgpu::COPY_BUFFER_ALIGNMENT,
+        usage: wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::MAP_WRITE,
+        mapped_at_creation: true,
+    });
+    let is_mapped = buffer.get_mapped_range_mut(..).is_ok();
+    now(memory.pop()).is_none() && !is_mapped
+}
+
 /// The answer, if it is there already.
 fn now(answer: impl Future<Output = Option<wgpu::Error>>) -> Option<wgpu::Error> {
     match pin!(answer).poll(&mut Context::from_waker(Waker::noop())) {

@@ -24,6 +24,12 @@ pub enum Error {
         /// What was being done.
         during: &'static str,
     },
+    /// The device is lost: its driver was reset or updated, its adapter was unplugged, or the
+    /// application destroyed it. Nothing that belongs to it works any more.
+    #[error(
+        "the graphics device is lost; request a new device, and make Shadows (or ShadowMaps) and all pipelines anew on it"
+    )]
+    DeviceLost,
     /// The device refused a command.
     #[error("the graphics device failed while {during}: {message}")]
     Device {

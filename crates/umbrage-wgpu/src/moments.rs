@@ -6,7 +6,7 @@ use umbrage_shaders::layout::{self, FilterKind};
 use umbrage_shaders::{MOMENT_PASSES, MOMENT_PASSES_OF_SAMPLES, MomentMaps, twin::moments::of_depth};
 
 use crate::options::filter_kind;
-use crate::{Error, Filter, Result};
+use crate::{Error, Filter, Result, device};
 
 /// What a device keeps moments in. Chosen when the maps are made, the first that it can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -310,8 +310,7 @@ impl Moments {
     /// Takes a plan; nothing is written if it cannot be used.
     pub fn prepare(&mut self, queue: &wgpu::Queue, plan: &ShadowPlan, filter: &MomentFilter) -> Result<()> {
         let wanted = self.wanted(plan, filter)?;
-        self.write(queue, wanted, filter);
-        Ok(())
+        self.write(queue, wanted, filter)
     }
 
     /// What a plan asks for, checked.
@@ -342,7 +341,12 @@ impl Moments {
             .collect()
     }
 
-    fn write(&mut self, queue: &wgpu::Queue, wanted: Vec<Option<layout::MomentPass>>, filter: &MomentFilter) {
+    fn write(
+        &mut self,
+        queue: &wgpu::Queue,
+        wanted: Vec<Option<layout::MomentPass>>,
+        filter: &MomentFilter,
+    ) -> Result<()> {
         let quads = (filter.derivatives == Derivatives::Quad).into();
         let mut frame = layout::Moments {
             exponents: self.storage.exponents(self.kind),
@@ -353,10 +357,11 @@ impl Moments {
         for (index, pass) in wanted.iter().enumerate() {
             let Some(pass) = pass else { continue };
             frame.splits[index] = layout::MomentSplit { quads, ..pass.split };
-            queue.write_buffer(&self.pass_buffer, index as u64 * self.pass_stride, bytemuck::bytes_of(pass));
+            device::write(queue, &self.pass_buffer, index as u64 * self.pass_stride, bytemuck::bytes_of(pass))?;
         }
-        queue.write_buffer(&self.frame_buffer, 0, bytemuck::bytes_of(&frame));
+        device::write(queue, &self.frame_buffer, 0, bytemuck::bytes_of(&frame))?;
         self.wanted = wanted;
+        Ok(())
     }
 
     /// Records the passes.

@@ -43,6 +43,7 @@ pub(crate) fn filter_kind(filter: &Filter) -> FilterKind {
         Filter::Pcf3 { .. } => FilterKind::Pcf3,
         Filter::Pcf5 { .. } => FilterKind::Pcf5,
         Filter::Pcf7 { .. } => FilterKind::Pcf7,
+        Filter::Castano5 => FilterKind::Castano5,
         Filter::Disc { .. } => FilterKind::Disc,
         Filter::Pcss { .. } => FilterKind::Pcss,
         Filter::Moments(moments) => match moments.kind {

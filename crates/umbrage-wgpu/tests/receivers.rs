@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Ask, DISC, Gpu, PCF3, PCF5, PCF7, PCSS, World, ask, config, cuboid, ground, plan};
+use common::{Ask, DISC, Gpu, PCF5, PCF7, PCSS, World, ask, config, cuboid, depth_filters, ground, plan};
 use glam::{DVec3, Vec3};
 use umbrage::ShadowPlan;
 use umbrage::config::{DepthFormat, Filter};
@@ -80,14 +80,14 @@ fn check_box(light: DVec3, shadow_length: f32, filter: Filter, depth_format: Dep
 
 #[test]
 fn a_box_under_the_zenith_sun_shades_its_footprint() {
-    for filter in [Filter::Hard, Filter::Pcf2, PCF3, PCF5, PCF7, DISC, PCSS] {
+    for filter in depth_filters() {
         check_box(DOWN, 0.0, filter, DepthFormat::D32Float);
     }
 }
 
 #[test]
 fn a_box_under_a_slanted_sun_throws_its_height() {
-    for filter in [Filter::Hard, Filter::Pcf2, PCF3, PCF5, PCF7, DISC, PCSS] {
+    for filter in depth_filters() {
         check_box(SLANTED, 2.0, filter, DepthFormat::D32Float);
     }
 }
@@ -106,7 +106,7 @@ fn planes_do_not_shade_themselves() {
     let Some(gpu) = Gpu::new() else { return };
     let mut count = 0;
     let mut gpu = Some(gpu);
-    for filter in [Filter::Hard, Filter::Pcf2, PCF3, PCF5, PCF7, DISC, PCSS] {
+    for filter in depth_filters() {
         let mut world = World::new(
             gpu.take().or_else(Gpu::new).expect("there was one"),
             &stored(&[128], filter, DepthFormat::D32Float),

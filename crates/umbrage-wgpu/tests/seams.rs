@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{DISC, ESM, EVSM2, EVSM4, Gpu, MSM, PCF3, PCF5, PCF7, PCSS, VSM, World, config, cuboid};
+use common::{Gpu, MSM, VSM, World, config, cuboid};
 use glam::{DVec3, Vec3};
 use umbrage::config::{Derivatives, Filter, Preset, Range, SplitScheme};
 use umbrage::{Aabb, DirectionalLight, FilterReach, Frustum, Planner, PlannerOptions, ShadowConfig, ShadowPlan, View};
@@ -19,8 +19,6 @@ const RANGE: (f64, f64) = (4.0, 60.0);
 const TRAVEL: DVec3 = DVec3::new(0.45, -0.6, 0.55);
 /// Tangents of the picture's edges.
 const HALF: f64 = 0.7;
-
-const ALL: [Filter; 12] = [Filter::Hard, Filter::Pcf2, PCF3, PCF5, PCF7, DISC, PCSS, ESM, VSM, EVSM2, EVSM4, MSM];
 
 /// Boxes on the plain; numbers from a linear congruential generator (Knuth's constants).
 fn boxes(seed: u64) -> Vec<Aabb> {
@@ -169,7 +167,7 @@ fn pooled(scenes: &[Scene], filter: Filter, derivatives: Derivatives, naive: boo
 fn no_filter_shows_a_seam() {
     let scenes = Scene::all(&[5, 6, 7, 8, 9]);
     let quads = [(VSM, Derivatives::Quad), (MSM, Derivatives::Quad)];
-    for (filter, derivatives) in ALL.map(|filter| (filter, Derivatives::Analytic)).into_iter().chain(quads) {
+    for (filter, derivatives) in Filter::ALL.map(|filter| (filter, Derivatives::Analytic)).into_iter().chain(quads) {
         let Some(score) = pooled(&scenes, filter, derivatives, false) else { return };
         assert_eq!(score.are_hidden(), Some(true), "{filter:?}, {derivatives:?}: {score:?}");
     }
@@ -179,7 +177,7 @@ fn no_filter_shows_a_seam() {
 #[test]
 fn naive_derivatives_show_one() {
     let scenes = Scene::all(&[5]);
-    for filter in ALL.into_iter().filter(|filter| filter.is_prefiltered()) {
+    for filter in Filter::ALL.into_iter().filter(|filter| filter.is_prefiltered()) {
         let Some(score) = pooled(&scenes, filter, Derivatives::Analytic, true) else { return };
         assert_eq!(score.are_hidden(), Some(false), "{filter:?}: {score:?}");
     }

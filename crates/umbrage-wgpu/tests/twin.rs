@@ -3,7 +3,7 @@
 mod common;
 
 use bytemuck::{Pod, Zeroable};
-use common::{DISC, Gpu, PCF3, PCF5, PCF7, PCSS, World, ask, config, plan};
+use common::{DISC, Gpu, World, ask, config, depth_filters, plan};
 use glam::{DVec3, Vec3};
 use umbrage::config::Filter;
 use umbrage_shaders::{layout, twin};
@@ -51,6 +51,39 @@ fn tent_taps_agree() {
     assert_eq!(output.len(), 20_000);
 }
 
+/// Nine taps give 6×6 texels the weights that [Castano13] derives for a sample a share `s` of the way
+/// from one texel's centre to the next: (1 − s, 3 − 2s, 4 − s, 3 + s, 1 + 2s, s) / 12 per axis.
+#[test]
+fn castano_s_taps_weigh_texels_as_published() {
+    let Some(gpu) = Gpu::new() else { return };
+    let source = umbrage_shaders::receiver(1, umbrage_shaders::Maps::default())
+        + "@group(0) @binding(0) var<storage, read> input: array<vec2f>;
+           @group(0) @binding(1) var<storage, read_write> output: array<vec2f>;
+           @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
+               if id.x >= arrayLength(&input) { return; }
+               let it = input[id.x];
+               let tap = umbrage_filter_castano_tap(vec2f(it.x), vec2f(it.y));
+               output[id.x] = vec2f(tap.texel.x - it.x - 0.5, tap.weight.x);
+           }";
+    let mut next = random();
+    let places: Vec<(f32, f32)> = (0..4096u16)
+        .map(|i| {
+            let s = if i % 4 == 0 { f32::from(i % 16) / 16.0 } else { next() };
+            (f32::from(i % 512) + 0.5, s)
+        })
+        .collect();
+    let taps = places.iter().flat_map(|&(texel, s)| [-2.0, 0.0, 2.0].map(|pair| [texel - 0.5 + pair, texel + s]));
+    let output: Vec<[f32; 2]> = gpu.compute(&source, &taps.collect::<Vec<_>>(), None);
+    for ((_, s), taps) in places.iter().zip(output.chunks(3)) {
+        let weights: Vec<f32> =
+            taps.iter().flat_map(|&[second, weight]| [weight * (1.0 - second), weight * second]).collect();
+        let published = [1.0 - s, 3.0 - 2.0 * s, 4.0 - s, 3.0 + s, 1.0 + 2.0 * s, *s].map(|twelfths| twelfths / 12.0);
+        // A place near 512 is known to 6e-5 of a texel, and a weight changes by a sixth of that.
+        assert!(weights.iter().zip(published).all(|(a, b)| (a - b).abs() < 5e-5), "{s}: {weights:?}, {published:?}");
+        assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-5 && weights.iter().all(|weight| *weight >= 0.0));
+    }
+}
+
 #[test]
 fn filters_reach_as_far_as_they_say() {
     let Some(gpu) = Gpu::new() else { return };
@@ -60,16 +93,16 @@ fn filters_reach_as_far_as_they_say() {
            @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
                if id.x < arrayLength(&input) { output[id.x] = umbrage_filter_radius(input[id.x]); }
            }";
-    let filters = [
-        (layout::FilterKind::Hard, Filter::Hard),
-        (layout::FilterKind::Pcf2, Filter::Pcf2),
-        (layout::FilterKind::Pcf3, PCF3),
-        (layout::FilterKind::Pcf5, PCF5),
-        (layout::FilterKind::Pcf7, PCF7),
-        (layout::FilterKind::Disc, Filter::Disc { width_m: Some(1.0), rotated: false }),
-        (layout::FilterKind::Pcss, PCSS),
-    ];
-    let radii: Vec<f32> = gpu.compute(&source, &filters.map(|(kind, _)| kind as u32), None);
+    // A disc without a width reaches what its width in texels says, less than the most.
+    let of = |filter| match filter {
+        Filter::Disc { rotated, .. } => Filter::Disc { width_m: Some(1.0), rotated },
+        other => other,
+    };
+    let kinds = layout::FilterKind::ALL.into_iter().filter(|kind| !kind.is_of_moments());
+    let filters: Vec<_> = kinds.zip(depth_filters().map(of)).collect();
+    let numbers: Vec<u32> = filters.iter().map(|(kind, _)| *kind as u32).collect();
+    let radii: Vec<f32> = gpu.compute(&source, &numbers, None);
+    assert_eq!(radii.len(), depth_filters().count());
     for (radius, (_, filter)) in radii.iter().zip(filters) {
         assert_eq!(f64::from(*radius), filter.radius_texels(), "{filter:?}");
     }

@@ -34,6 +34,8 @@ pub struct ShadowPlan {
     pub blend: f64,
     /// Indices into the planner's caster list, split after split; see [`ShadowPlan::casters`].
     pub caster_indices: Vec<u32>,
+    /// For each split how many casters its list leaves out by [`crate::ShadowConfig::drop_small_casters`].
+    pub dropped_casters: Vec<u32>,
     /// For each caster the first and the last split it is drawn in, `None` if it is drawn in none. The range is a bound:
     /// the lists are exact.
     pub split_range: Vec<Option<(u8, u8)>>,
@@ -56,6 +58,7 @@ impl ShadowPlan {
         self.blend = 0.0;
         self.planes.clear();
         self.caster_indices.clear();
+        self.dropped_casters.clear();
         self.split_range.clear();
         self.splits.clear();
         self.coverage.clear();
@@ -69,6 +72,22 @@ impl ShadowPlan {
             *range = Some((range.map_or(at, |(first, _)| first), at));
         }
         self.splits.push(split);
+        self.dropped_casters.resize(self.splits.len(), 0);
+    }
+
+    /// Leaves casters out of the list of the next split, which ends the plan's list.
+    pub(crate) fn drop_casters(&mut self, split: &mut Split, is_small: impl Fn(u32) -> bool) {
+        let mut kept = split.casters.start;
+        for at in split.casters.clone() {
+            let index = self.caster_indices[at];
+            if !is_small(index) {
+                self.caster_indices[kept] = index;
+                kept += 1;
+            }
+        }
+        self.caster_indices.truncate(kept);
+        self.dropped_casters.push((split.casters.end - kept) as u32);
+        split.casters.end = kept;
     }
 
     /// What chooses the split of a world point, metres: its view depth, or with radial bands its distance to the eye.

@@ -141,13 +141,7 @@ pub const JOBS: [Job; 12] = [
     Job {
         name: "filters-soft",
         kind: Kind::Compare,
-        options: concat!(
-            "--camera near --sun-angle 3 --techniques ",
-            "pssm:4:1024:filter=pcf2:label=pcf2,pssm:4:1024:filter=hard:label=hard,pssm:4:1024:filter=pcf3:label=pcf3,",
-            "pssm:4:1024:filter=pcf5:label=pcf5,pssm:4:1024:filter=pcf7:label=pcf7,pssm:4:1024:filter=disc:label=disc,",
-            "pssm:4:1024:filter=pcss:label=pcss,pssm:4:1024:filter=esm:label=esm,pssm:4:1024:filter=vsm:label=vsm,",
-            "pssm:4:1024:filter=evsm2:label=evsm2,pssm:4:1024:filter=evsm4:label=evsm4,pssm:4:1024:filter=msm:label=msm"
-        ),
+        options: "--camera near --sun-angle 3 --techniques pssm:4:1024:filter=each",
         full: "robot-war chessboard knights mining-terrain --size 320x240 --least-edges 300",
         tiny: "chessboard --size 64x48 --least-edges 1",
         minutes: 3,

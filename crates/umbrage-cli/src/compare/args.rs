@@ -15,7 +15,8 @@ use umbrage_lab::{
 
 const TECHNIQUES_HELP: &str = "\
 A technique is KIND:SPLITS:SIZE for pssm and KIND:SIZE for single maps, then settings: the shadow options of `umbrage render` \
-without their dashes, as :KEY=VALUE, lists with / between their numbers, and :label=TEXT. For example
+without their dashes, as :KEY=VALUE, lists with / between their numbers, and :label=TEXT; :filter=each is every filter in turn. \
+For example
   pssm:4:512,pssm:4:512:lambda=0.9:stabilize=none:fit=independent,pssm:3:1024/512/256:filter=hard,ssm:1024
 
 A file of techniques (TOML) says the same:

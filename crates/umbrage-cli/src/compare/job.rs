@@ -56,8 +56,8 @@ fn techniques_of(args: &CompareArgs, notes: &mut Vec<String>) -> Result<Vec<Tech
     let preset = args.preset;
     let mut with = text::parse_with(preset.map_or("", |preset| preset.with))?;
     let mut sources = Vec::new();
-    for text in preset.map_or(&[][..], |preset| preset.techniques) {
-        let source = text::parse(text)?;
+    for text in preset.map_or(&[][..], |preset| preset.techniques).iter().flat_map(|text| text::each(text)) {
+        let source = text::parse(&text)?;
         match source.finish(&with, args.shadow_range) {
             Ok(_) => sources.push(source),
             Err(Rejected::NotBuilt(failure)) => notes.push(format!("left out of the preset: {failure}")),
@@ -69,8 +69,8 @@ fn techniques_of(args: &CompareArgs, notes: &mut Vec<String>) -> Result<Vec<Tech
         with.extend(with_of_file);
         sources.extend(from_file);
     }
-    for text in &args.techniques {
-        sources.push(text::parse(text)?);
+    for text in args.techniques.iter().flat_map(|text| text::each(text)) {
+        sources.push(text::parse(&text)?);
     }
     with.extend(text::parse_with(args.with.as_deref().unwrap_or(""))?);
     if sources.is_empty() {

@@ -221,19 +221,7 @@ const PSVSM: Preset = Preset {
 const FILTERS: Preset = Preset {
     name: "filters",
     about: "Every filter on the same maps",
-    techniques: &[
-        "pssm:4:1024:filter=pcf2",
-        "pssm:4:1024:filter=pcf3",
-        "pssm:4:1024:filter=pcf5",
-        "pssm:4:1024:filter=pcf7",
-        "pssm:4:1024:filter=disc",
-        "pssm:4:1024:filter=pcss",
-        "pssm:4:1024:filter=esm",
-        "pssm:4:1024:filter=vsm",
-        "pssm:4:1024:filter=evsm2",
-        "pssm:4:1024:filter=evsm4",
-        "pssm:4:1024:filter=msm",
-    ],
+    techniques: &["pssm:4:1024:filter=each"],
     with: "",
     cameras: &["near"],
     ..FIGURE_8

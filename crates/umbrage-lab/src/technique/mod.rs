@@ -1,7 +1,10 @@
-//! Techniques: how shadows are made ([`request`]), and under a name ([`text`]).
+//! Techniques: how shadows are made ([`request`]), what a file says of them ([`file`]), and under a
+//! name ([`text`]).
 
+pub mod file;
 pub mod request;
 pub mod text;
 
+pub use file::{ConfigFile, Drawn};
 pub use request::{ShadowOptions, ShadowRequest, word};
 pub use text::Technique;

@@ -1,11 +1,12 @@
 //! How shadows are made: a config, and what was asked for to make it.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use umbrage::ShadowConfig;
 use umbrage::config::{Filter, LightKind, Preset, RULES, SETTINGS};
 use umbrage_render::{LightMaps, RenderSettings, Samples};
 
+use super::file::ConfigFile;
 use crate::{
     failure::{Failure, Result, in_options},
     lights::{self, NamedLight},
@@ -55,7 +56,7 @@ impl ShadowRequest {
                     file.display()
                 )));
             }
-            (Some(file), None) => load(file)?,
+            (Some(file), None) => ConfigFile::load(file)?.config,
             (None, preset) => preset.unwrap_or_default().config(),
         };
         let notes = config.apply(&options.given).map_err(|error| Failure::of_settings(&error, &options.given))?;
@@ -121,27 +122,6 @@ pub fn word(config: &ShadowConfig, key: &str) -> String {
     setting.and_then(|setting| setting.get(config)).map(|value| value.to_string()).unwrap_or_default()
 }
 
-/// The config of a file: TOML, JSON, or a report of `umbrage render`.
-fn load(path: &Path) -> Result<ShadowConfig> {
-    let text = std::fs::read_to_string(path).map_err(|error| Failure::file("read", path, &error))?;
-    parse(&text).map_err(|why| Failure::input(format!("--config {}: {why}", path.display())))
-}
-
-fn parse(text: &str) -> std::result::Result<ShadowConfig, String> {
-    if text.trim_start().starts_with('{') {
-        let mut json: serde_json::Value =
-            serde_json::from_str(text).map_err(|error| format!("is neither JSON nor TOML: {error}"))?;
-        let is_report = json.get("adapter").is_some() || json.get("splits").is_some_and(serde_json::Value::is_array);
-        let config = match json.get_mut("config") {
-            Some(config) => config.take(),
-            None if is_report => return Err("is a report without a config, of a former version".to_owned()),
-            None => json,
-        };
-        return serde_json::from_value(config).map_err(|error| error.to_string());
-    }
-    toml::from_str(text).map_err(|error| error.to_string())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -149,28 +129,6 @@ mod tests {
     fn options(given: &[(&str, &str)]) -> ShadowOptions {
         let given = given.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
         ShadowOptions { given, ..ShadowOptions::default() }
-    }
-
-    #[test]
-    fn files_are_toml_json_or_reports() {
-        let papers = Preset::Papers.config();
-        assert_eq!(parse("preset = \"papers\"\n").as_ref(), Ok(&papers));
-        let toml = parse("preset = \"papers\"\nmap-size = [512, 256]\nsplits = 2\nblend = 0.2\n").unwrap();
-        assert_eq!((toml.map_sizes.as_slice(), toml.blend()), (&[512, 256][..], 0.2));
-        let json = serde_json::to_string(&toml).unwrap();
-        assert_eq!(parse(&json).as_ref(), Ok(&toml));
-        assert_eq!(parse(&format!("{{\"adapter\": \"x\", \"config\": {json}}}")).as_ref(), Ok(&toml));
-        assert!(parse("{\"adapter\": \"x\"}").unwrap_err().contains("without a config"));
-        for (bad, culprit) in [
-            ("{", "JSON"),
-            ("splits = ", "splits"),
-            ("colour = 3", "colour"),
-            ("{\"splits\": 99}", "splits"),
-            ("blend = []", "blend"),
-        ] {
-            let message = parse(bad).unwrap_err();
-            assert!(message.contains(culprit), "{bad}: {message}");
-        }
     }
 
     #[test]

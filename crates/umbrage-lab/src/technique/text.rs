@@ -6,6 +6,7 @@
 //! SIZES     = SIZE { "/" SIZE }                 one, or one for each split
 //! SETTING   = KEY "=" VALUE { "/" VALUE }       a shadow option of `umbrage render` without its dashes
 //!           | "label" "=" TEXT
+//!           | "filter" "=" "each"               every filter in turn
 //! ```
 //!
 //! The settings are those of `umbrage render`, over the default or over the preset that `preset=NAME` names, so everything that
@@ -15,7 +16,7 @@
 use std::path::Path;
 
 use toml::{Table, Value};
-use umbrage::config::SETTINGS;
+use umbrage::config::{Filter, SETTINGS};
 
 use super::request::{ShadowOptions, ShadowRequest};
 use crate::failure::{Failure, Result};
@@ -92,6 +93,22 @@ impl From<Rejected> for Failure {
             Rejected::NotBuilt(failure) | Rejected::Wrong(failure) => failure,
         }
     }
+}
+
+/// The short forms that a text stands for: of a technique with `filter=each` one for every filter,
+/// labelled by it where no label is given; of any other the text alone.
+#[must_use]
+pub fn each(text: &str) -> Vec<String> {
+    let parts: Vec<&str> = text.split(':').collect();
+    let Some(at) = parts.iter().position(|part| part.trim() == "filter=each") else { return vec![text.to_owned()] };
+    let has_label = parts.iter().any(|part| part.trim_start().starts_with("label="));
+    let of = |word: &str| {
+        let mut parts: Vec<String> = parts.iter().map(ToString::to_string).collect();
+        parts[at] = format!("filter={word}");
+        parts.extend((!has_label).then(|| format!("label={word}")));
+        parts.join(":")
+    };
+    Filter::ALL.iter().map(|filter| of(filter.word())).collect()
 }
 
 /// Reads the short form of one technique.
@@ -197,7 +214,7 @@ fn parse_file(file: &str, text: &str) -> Result<(Settings, Vec<TechniqueSource>)
 /// # Errors
 /// [`Failure::Input`] naming the technique or setting.
 pub fn parse_all(texts: &[String], with: &str) -> Result<Vec<Technique>> {
-    let sources = texts.iter().map(|text| parse(text)).collect::<Result<Vec<_>>>()?;
+    let sources = texts.iter().flat_map(|text| each(text)).map(|text| parse(&text)).collect::<Result<Vec<_>>>()?;
     Ok(finish(&sources, &parse_with(with)?, None)?)
 }
 

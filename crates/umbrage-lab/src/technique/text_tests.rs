@@ -191,3 +191,16 @@ fn files_say_the_same() {
     let message = load(Path::new("no/such.toml")).expect_err("missing").to_string();
     assert!(message.contains("no/such.toml"), "{message}");
 }
+
+#[test]
+fn each_filter_is_one_technique() {
+    let texts = ["ssm:64".to_owned(), "pssm:4:64:filter=each:blend=0".to_owned()];
+    let techniques = parse_all(&texts, "").expect("techniques");
+    let labels: Vec<&str> = techniques.iter().skip(1).map(|technique| technique.label.as_str()).collect();
+    assert_eq!(labels, Filter::ALL.map(|filter| filter.word()));
+    for (technique, filter) in techniques.iter().skip(1).zip(Filter::ALL) {
+        assert_eq!(technique.shadows.config.filter, filter);
+    }
+    assert_eq!(each("pssm:4:64:filter=each:label=a")[1], "pssm:4:64:filter=pcf2:label=a");
+    assert_eq!(each("pssm:4:64:filter=hard"), ["pssm:4:64:filter=hard"]);
+}

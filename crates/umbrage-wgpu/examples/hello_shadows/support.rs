@@ -224,7 +224,11 @@ struct Shown<S> {
 impl<S> Shown<S> {
     fn open(event_loop: &ActiveEventLoop, new: New<S>) -> Result<Self> {
         let attributes = Window::default_attributes().with_title("hello, shadows");
-        let window = Arc::new(event_loop.create_window(attributes)?);
+        Self::open_in(Arc::new(event_loop.create_window(attributes)?), event_loop, new)
+    }
+
+    /// Everything but the window is made anew: at first, and after the device was lost.
+    fn open_in(window: Arc<Window>, event_loop: &ActiveEventLoop, new: New<S>) -> Result<Self> {
         let display = Box::new(event_loop.owned_display_handle());
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_with_display_handle_from_env(display));
         let surface = instance.create_surface(window.clone())?;
@@ -261,9 +265,10 @@ impl<S> Shown<S> {
     }
 }
 
-impl<S> ApplicationHandler for App<S> {
-    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
-        match Shown::open(event_loop, self.new) {
+impl<S> App<S> {
+    /// Shows what was opened, or ends with the failure.
+    fn show(&mut self, opened: Result<Shown<S>>, event_loop: &ActiveEventLoop) {
+        match opened {
             Ok(shown) => self.shown = Some(shown),
             Err(failure) => {
                 self.failure = Some(failure);
@@ -272,18 +277,36 @@ impl<S> ApplicationHandler for App<S> {
         }
     }
 
+    /// Draws a frame; with a new device where the old one was lost.
+    fn redraw(&mut self, event_loop: &ActiveEventLoop) {
+        let Some(mut shown) = self.shown.take() else { return };
+        let drawn = shown.draw(self.draw);
+        let window = shown.window.clone();
+        let opened = match drawn {
+            Err(failure) if matches!(failure.downcast_ref(), Some(umbrage_wgpu::Error::DeviceLost)) => {
+                // A window has one surface at a time.
+                drop(shown);
+                Shown::open_in(window.clone(), event_loop, self.new)
+            }
+            drawn => drawn.map(|()| shown),
+        };
+        self.show(opened, event_loop);
+        window.request_redraw();
+    }
+}
+
+impl<S> ApplicationHandler for App<S> {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        let opened = Shown::open(event_loop, self.new);
+        self.show(opened, event_loop);
+    }
+
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(shown) = &mut self.shown else { return };
         match event {
             WindowEvent::CloseRequested => event_loop.exit(),
             WindowEvent::Resized(size) => shown.resize([size.width, size.height]),
-            WindowEvent::RedrawRequested => {
-                if let Err(failure) = shown.draw(self.draw) {
-                    self.failure = Some(failure);
-                    event_loop.exit();
-                }
-                shown.window.request_redraw();
-            }
+            WindowEvent::RedrawRequested => self.redraw(event_loop),
             _ => {}
         }
     }

@@ -7,6 +7,7 @@ use super::passes::MapPass;
 use super::targets::Targets;
 use crate::moments::Moments;
 use crate::options::sampler_mode;
+use crate::{Result, device};
 
 /// Uniforms of one kind in one buffer, each with a bind group.
 #[derive(Debug)]
@@ -97,8 +98,11 @@ impl Uniforms {
     }
 
     /// Writes the uniforms of group `index`.
-    pub fn write<T: bytemuck::NoUninit>(&self, queue: &wgpu::Queue, index: usize, uniforms: &[T]) {
-        queue.write_buffer(&self.buffer, index as u64 * self.stride, bytemuck::cast_slice(uniforms));
+    ///
+    /// # Errors
+    /// [`crate::Error::DeviceLost`].
+    pub fn write<T: bytemuck::NoUninit>(&self, queue: &wgpu::Queue, index: usize, uniforms: &[T]) -> Result<()> {
+        device::write(queue, &self.buffer, index as u64 * self.stride, bytemuck::cast_slice(uniforms))
     }
 }
 

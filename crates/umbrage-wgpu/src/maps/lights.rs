@@ -69,12 +69,12 @@ impl ShadowMaps {
         if let (Some(moments), [plan], Filter::Moments(filter)) = (&mut self.moments, plans, &self.config.filter) {
             moments.prepare(queue, plan, filter)?;
         }
-        self.receivers.write(queue, 0, frames);
+        self.receivers.write(queue, 0, frames)?;
         if self.layout == Layout::Reused {
             for split in 0..self.splits() {
                 let slices: Vec<_> =
                     frames.iter().map(|&frame| layout::Frame { slice: split as u32, ..frame }).collect();
-                self.receivers.write(queue, 1 + split, &slices);
+                self.receivers.write(queue, 1 + split, &slices)?;
             }
         }
         let of_light = |slot: &Slot| {
@@ -85,7 +85,7 @@ impl ShadowMaps {
         for (index, pass) in self.passes.iter().enumerate() {
             let here = pass.splits();
             if pass.is_alone() {
-                self.casters.write(queue, index, &[splits[here.start]]);
+                self.casters.write(queue, index, &[splits[here.start]])?;
             } else {
                 let uniform = layout::CasterPass {
                     first: here.start as u32,
@@ -94,7 +94,7 @@ impl ShadowMaps {
                     splits: frames[0].splits,
                     ..layout::CasterPass::default()
                 };
-                self.casters.write(queue, index, &[uniform]);
+                self.casters.write(queue, index, &[uniform])?;
             }
         }
         Ok(())

@@ -106,10 +106,10 @@ impl ShadowMaps {
     /// [`Error::Config`] for a config that is wrong or does not go with the lights; [`Error::MapTooLarge`],
     /// [`Error::TooManyLayers`], [`Error::AtlasTooLarge`], [`Error::TooManyTextures`], [`Error::TooManyLights`],
     /// [`Error::MissingFeature`], [`Error::NoFilterableFloats`] and [`Error::NoDepthLoads`] for what the device cannot do;
-    /// [`Error::Device`] and [`Error::OutOfMemory`] for what the device complains about.
+    /// [`Error::Device`] and [`Error::OutOfMemory`] for what the device complains about, [`Error::DeviceLost`].
     pub fn new<L: Clone + Into<LightMaps>>(device: &wgpu::Device, config: &ShadowConfig, lights: &[L]) -> Result<Self> {
         let lights: Vec<LightMaps> = lights.iter().cloned().map(Into::into).collect();
-        device::guarded(device, "making shadow maps", || Self::new_unguarded(device, config, &lights))
+        device::made(device, "making shadow maps", || Self::new_unguarded(device, config, &lights))
     }
 
     fn new_unguarded(device: &wgpu::Device, config: &ShadowConfig, lights: &[LightMaps]) -> Result<Self> {
@@ -201,7 +201,7 @@ impl ShadowMaps {
     /// # Errors
     /// [`Error::PlanMismatch`] if the plan was made for other maps, [`Error::InvalidPlan`] or [`Error::InvalidSplit`] if it holds a
     /// number that cannot be used, [`Error::InvalidFrameOption`], [`Error::FilterTooWide`]. Nothing has been written then.
-    /// [`Error::Device`] for what the device complains about.
+    /// [`Error::Device`] for what the device complains about, [`Error::DeviceLost`].
     pub fn prepare(&mut self, queue: &wgpu::Queue, plan: &ShadowPlan, options: &FrameOptions) -> Result<()> {
         self.prepare_lights(queue, &[plan], options)
     }

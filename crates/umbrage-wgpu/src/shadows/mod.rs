@@ -41,6 +41,19 @@ use crate::{Error, FrameOptions, LightMaps, Result, ShadowMaps};
 /// Views share the maps, one after the other: prepare, draw and submit one view before the next is
 /// prepared. Give each its own [`Inputs::view_slot`], under which its stabilised maps are held. Views
 /// that are drawn in one submission take a `Shadows` each.
+///
+/// # A lost device
+///
+/// A driver that is reset or updated, or an adapter that is unplugged, takes the device and all that
+/// was made with it. [`Shadows::prepare`] says [`Error::DeviceLost`] from then on; so does
+/// [`Shadows::new`] with that device. An application requests a new adapter and a new device, makes
+/// its own resources and `Shadows` anew and draws the frame again, as the example `hello_shadows`
+/// does. What stabilised maps hold is lost with `Shadows`: their texels may move once.
+///
+/// A device that is lost between `prepare` and the end of the frame is told of at the next `prepare`.
+/// What the frame still records is without effect: wgpu reports some of it to
+/// [`wgpu::Device::on_uncaptured_error`], which should not panic then. A browser tells nobody but
+/// [`wgpu::Device::set_device_lost_callback`], which belongs to the application.
 #[derive(Debug)]
 pub struct Shadows {
     config: ShadowConfig,
@@ -107,7 +120,8 @@ impl Shadows {
     /// [`Error::LightCount`] or [`Error::LightKind`] if the lights are not those that the maps were
     /// made for, [`Error::Config`] naming a box that is no box or a camera that the range does not go
     /// with, [`Error::InvalidFrameOption`] for an origin that is not finite, [`Error::FilterTooWide`],
-    /// [`Error::Device`] for what the device complains about. A refused frame does not change the next.
+    /// [`Error::Device`] for what the device complains about, [`Error::DeviceLost`]. A refused frame does
+    /// not change the next.
     pub fn prepare(&mut self, queue: &wgpu::Queue, inputs: &Inputs<'_>) -> Result<ShadowFrame<'_>> {
         self.check(inputs)?;
         let slot = inputs.view_slot;

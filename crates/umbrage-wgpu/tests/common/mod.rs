@@ -26,6 +26,11 @@ pub fn config(map_sizes: &[u32], filter: Filter, settings: &str) -> ShadowConfig
     with(ShadowConfig { map_sizes: map_sizes.to_vec(), filter, ..Preset::Papers.config() }, settings)
 }
 
+/// Every filter that compares depth.
+pub fn depth_filters() -> impl Iterator<Item = Filter> {
+    Filter::ALL.into_iter().filter(|filter| !filter.is_prefiltered())
+}
+
 /// A config with settings over it.
 pub fn with(mut config: ShadowConfig, settings: &str) -> ShadowConfig {
     let given: Vec<(String, String)> = settings

@@ -27,6 +27,9 @@ pub enum Filter {
         /// Full width in metres.
         width_m: Option<f64>,
     },
+    /// Castaño's kernel of 5×5 texels, 1, 3, 4, 3, 1 per axis, blended linearly between texels
+    /// ([Castano13]): that of The Witness. Its width is five texels in every split.
+    Castano5,
     /// A disc of 32 bilinear comparisons, of a radius of 3 texels if no width is given.
     Disc {
         /// Full width in metres.
@@ -117,6 +120,7 @@ impl Filter {
         Word { word: "pcf3", help: "A tent of 3×3 texels" },
         Word { word: "pcf5", help: "A tent of 5×5 texels" },
         Word { word: "pcf7", help: "A tent of 7×7 texels" },
+        Word { word: "castano5", help: "Castaño's kernel of 5×5 texels, as in The Witness" },
         Word { word: "disc", help: "A disc of 32 taps" },
         Word { word: "pcss", help: "As wide as the sun's penumbra" },
         Word { word: "esm", help: "An exponential of depth, blurred" },
@@ -127,12 +131,13 @@ impl Filter {
     ];
 
     /// Every filter with its data at the defaults, in the order of [`Filter::WORDS`].
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Hard,
         Self::Pcf2,
         Self::Pcf3 { width_m: None },
         Self::Pcf5 { width_m: None },
         Self::Pcf7 { width_m: None },
+        Self::Castano5,
         Self::Disc { width_m: None, rotated: false },
         Self::Pcss { sun_degrees: SUN_DEGREES, rotated: false },
         Self::Moments(Moments::new(MomentKind::Esm)),
@@ -151,6 +156,7 @@ impl Filter {
             Self::Pcf3 { .. } => "pcf3",
             Self::Pcf5 { .. } => "pcf5",
             Self::Pcf7 { .. } => "pcf7",
+            Self::Castano5 => "castano5",
             Self::Disc { .. } => "disc",
             Self::Pcss { .. } => "pcss",
             Self::Moments(moments) => moments.kind.word(),
@@ -164,7 +170,7 @@ impl Filter {
             Self::Hard => 0.5,
             Self::Pcf2 => 1.0,
             Self::Pcf3 { .. } => 1.5,
-            Self::Pcf5 { .. } => 2.5,
+            Self::Pcf5 { .. } | Self::Castano5 => 2.5,
             Self::Pcf7 { .. } => 3.5,
             Self::Disc { width_m: None, .. } => DISC_REACH,
             // The widest disc or blur, 15 texels, and the reach of a tap on its rim.
@@ -190,14 +196,14 @@ impl Filter {
             Self::Pcf3 { width_m } | Self::Pcf5 { width_m } | Self::Pcf7 { width_m } => width_m,
             Self::Disc { width_m, .. } => width_m,
             Self::Moments(moments) => moments.width_m,
-            Self::Hard | Self::Pcf2 | Self::Pcss { .. } => None,
+            Self::Hard | Self::Pcf2 | Self::Castano5 | Self::Pcss { .. } => None,
         }
     }
 
     /// Whether the filter has a width to choose.
     #[must_use]
     pub const fn has_width(&self) -> bool {
-        !matches!(self, Self::Hard | Self::Pcf2 | Self::Pcss { .. })
+        !matches!(self, Self::Hard | Self::Pcf2 | Self::Castano5 | Self::Pcss { .. })
     }
 
     /// The place of the width, for filters that have one to choose.
@@ -206,7 +212,7 @@ impl Filter {
             Self::Pcf3 { width_m } | Self::Pcf5 { width_m } | Self::Pcf7 { width_m } => Some(width_m),
             Self::Disc { width_m, .. } => Some(width_m),
             Self::Moments(moments) => Some(&mut moments.width_m),
-            Self::Hard | Self::Pcf2 | Self::Pcss { .. } => None,
+            Self::Hard | Self::Pcf2 | Self::Castano5 | Self::Pcss { .. } => None,
         }
     }
 
@@ -218,7 +224,7 @@ impl Filter {
             Self::Hard | Self::Moments(_) => 1,
             Self::Pcf2 => 4,
             Self::Pcf3 { .. } => 16,
-            Self::Pcf5 { .. } => 36,
+            Self::Pcf5 { .. } | Self::Castano5 => 36,
             Self::Pcf7 { .. } => 64,
             Self::Disc { .. } => 4 * 32,
             Self::Pcss { .. } => 4 * 32 + 32,
@@ -232,7 +238,7 @@ impl Filter {
             Self::Hard => 1,
             Self::Pcf2 => 3,
             Self::Pcf3 { .. } => 4,
-            Self::Pcf5 { .. } => 6,
+            Self::Pcf5 { .. } | Self::Castano5 => 6,
             Self::Pcf7 { .. } => 8,
             Self::Disc { .. } | Self::Pcss { .. } | Self::Moments(_) => 33,
         }

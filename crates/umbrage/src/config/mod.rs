@@ -108,6 +108,11 @@ pub struct ShadowConfig {
     pub crop: Crop,
     /// Whether shadows stand still while the camera moves.
     pub stability: Stability,
+    /// Whether a sun's maps leave out casters whose whole shadow is under half a texel along both of
+    /// a map's axes, split by split. Such a caster covers one texel of the map or none; which one
+    /// changes with every step of the map. Maps that are warped, and those of spot and point lights,
+    /// show all casters.
+    pub drop_small_casters: bool,
     /// How a map is looked up.
     pub filter: Filter,
     /// What a texel of a map stores.
@@ -220,6 +225,7 @@ impl ShadowConfig {
             far_fade,
             crop,
             stability,
+            drop_small_casters,
             filter: _,
             depth_format: _,
             layout: _,
@@ -231,7 +237,7 @@ impl ShadowConfig {
             && *scheme == other.scheme
             && (*range, *selection, *crop) == (other.range, other.selection, other.crop)
             && (self.blend(), *far_fade) == (other.blend(), other.far_fade)
-            && *stability == other.stability
+            && (stability, *drop_small_casters) == (&other.stability, other.drop_small_casters)
     }
 
     /// The config that a light of this kind gets: what excludes the kind of light is replaced by the

@@ -36,6 +36,7 @@ impl Preset {
             far_fade: 0.1,
             crop: Crop::SceneDependent,
             stability: Stability::Exact,
+            drop_small_casters: false,
             filter: Filter::Pcf3 { width_m: None },
             depth_format: DepthFormat::D32Float,
             layout: Layout::Array,

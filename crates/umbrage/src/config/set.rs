@@ -282,10 +282,11 @@ pub(super) fn filter_width(config: &mut ShadowConfig, text: &str, _: &Given<'_>)
             *width = Some(value);
             Ok(())
         }
-        None => refuse(format!(
-            "filter {filter} has no width to choose; leave it away, or use pcf3, pcf5, pcf7, disc, esm, vsm, evsm2, \
-             evsm4 or msm"
-        )),
+        None => {
+            let with_width: Vec<_> = Filter::ALL.iter().filter(|filter| filter.has_width()).map(Filter::word).collect();
+            let names = with_width.join(", ");
+            refuse(format!("filter {filter} has no width to choose; leave it away, or use one of {names}"))
+        }
     }
 }
 

@@ -222,6 +222,14 @@ pub const SETTINGS: &[Setting] = &[
         },
     },
     Setting {
+        key: "drop-small-casters",
+        help: "Whether casters are left out of a map in which their whole shadow is under half a texel",
+        kind: Kind::Words(super::look::SWITCH),
+        rebuilds: Rebuilds::Nothing,
+        set: |config, text, _| text::switch(text).map(|on| config.drop_small_casters = on).map_err(Wrong::from),
+        get: |config| word(if config.drop_small_casters { "on" } else { "off" }),
+    },
+    Setting {
         key: "warp",
         help: "How each split's map spreads its texels: one, or one per split",
         kind: Kind::WordList(Warp::WORDS),

@@ -1,6 +1,8 @@
 //! A sun's plan, stage by stage: scope → range → planes → casters → fit → snap → depth. Each stage is a value that the next ones
 //! read; nothing goes back.
 
+use glam::DVec3;
+
 use super::casters::{Listed, Scene};
 use super::covered;
 use super::depth::{self, WorldDepths};
@@ -11,6 +13,7 @@ use super::layout::{Layout, LayoutBuffers, SplitFrame};
 use super::scope::Scope;
 use super::snap;
 use super::warped::WarpPoints;
+use crate::bounds::Placed;
 use crate::config::{Crop, Range, Selection, SplitMetric};
 use crate::held::Held;
 use crate::{DirectionalLight, Result, ShadowPlan, Split, Warp};
@@ -54,6 +57,10 @@ pub(super) fn plan(
             _ => (map, listed.first),
         };
         let mut map = depth::ranged(frame, map, first, &size, world);
+        if frame.config.drop_small_casters && split.warp() == Warp::None {
+            let texels_per_m = [map.u_axis / map.texel_m.x, map.v_axis / map.texel_m.y];
+            plan.drop_casters(&mut map, |caster| is_small(&frame.casters[caster as usize], texels_per_m));
+        }
         warp(&split, &scene, in_view, warp_points, &mut map, plan);
         plan.add(map);
         plan.coverage.volumes.push(scene.volume);
@@ -77,6 +84,15 @@ fn describe(frame: &Frame<'_>, sun: &Sun<'_>, layout: &Layout, plan: &mut Shadow
     let (near, far) = (layout.range.near, layout.range.far);
     plan.fade_begin = if fades { far - config.far_fade * (far - near) } else { plan.planes[layout.row.splits] };
     plan.coverage.fan = Some(sun.fan);
+}
+
+/// A caster is small if its shadow is less than this many texels long along both axes of a map. Below one it covers the centre
+/// of one texel at most. Higher: shadows are lost that a filter would have shown as a faint dot.
+const SMALL_TEXELS: f64 = 0.5;
+
+/// Whether the whole shadow of a caster is small in a map with these axes, in texels per metre.
+fn is_small(caster: &Placed, texels_per_m: [DVec3; 2]) -> bool {
+    texels_per_m.iter().all(|axis| 2.0 * axis.abs().dot(caster.half) < SMALL_TEXELS)
 }
 
 /// Warps the map of a split that is to be warped and has casters.

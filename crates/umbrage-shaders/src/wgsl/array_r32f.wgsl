@@ -1,0 +1,23 @@
+@group(UMBRAGE_RECEIVER_GROUP) @binding(1)
+var umbrage_maps: texture_2d_array<f32>;
+
+fn umbrage_map_compare(layer: u32, texel: vec2f, texels: vec2f, depth: f32) -> f32 {
+    return umbrage_bilinear_compared(layer, texel, depth);
+}
+
+fn umbrage_map_load(layer: u32, texel: vec2i) -> f32 {
+    return textureLoad(umbrage_maps, texel, layer, 0).x;
+}
+
+fn umbrage_bilinear_compared(layer: u32, texel: vec2f, depth: f32) -> f32 {
+    let corner = floor(texel - 0.5);
+    let share = texel - 0.5 - corner;
+    let first = vec2i(corner);
+    let upper = mix(umbrage_bilinear_lit(layer, first, depth), umbrage_bilinear_lit(layer, first + vec2i(1, 0), depth), share.x);
+    let lower = mix(umbrage_bilinear_lit(layer, first + vec2i(0, 1), depth), umbrage_bilinear_lit(layer, first + vec2i(1, 1), depth), share.x);
+    return mix(upper, lower, share.y);
+}
+
+fn umbrage_bilinear_lit(layer: u32, texel: vec2i, depth: f32) -> f32 {
+    return select(0.0, 1.0, depth <= umbrage_map_load(layer, texel));
+}

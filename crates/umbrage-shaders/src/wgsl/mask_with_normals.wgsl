@@ -1,0 +1,55 @@
+struct UmbrageMask {
+    eye_from_clip: mat4x4f,
+    eye: vec3f,
+    empty_depth: f32,
+    forward: vec3f,
+    perspective: f32
+}
+
+@group(UMBRAGE_MASK_GROUP) @binding(0)
+var<uniform> umbrage_mask: UmbrageMask;
+
+@group(UMBRAGE_MASK_GROUP) @binding(1)
+var umbrage_mask_depth: texture_depth_2d;
+
+@group(UMBRAGE_MASK_GROUP) @binding(2)
+var umbrage_mask_normals: texture_2d<f32>;
+
+@vertex
+fn umbrage_mask_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return vec4f(vec2f(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn umbrage_mask_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
+    let pixel = vec2i(at.xy);
+    let is_empty = textureLoad(umbrage_mask_depth, pixel, 0) == umbrage_mask.empty_depth;
+    let from_eye = umbrage_mask_position(pixel);
+    let position = umbrage_mask.eye + from_eye;
+    var query = umbrage_query(position, umbrage_mask_normal(pixel, from_eye));
+    query.pixel = at.xy;
+    let shadow = umbrage_shadow(query);
+    return vec4f(select(shadow.visibility, 1.0, is_empty), select(1.0, 0.0, is_empty), 0.0, 1.0);
+}
+
+fn umbrage_mask_position(pixel: vec2i) -> vec3f {
+    let size = vec2f(textureDimensions(umbrage_mask_depth));
+    let ndc = (vec2f(pixel) + 0.5) / size * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let stored = textureLoad(umbrage_mask_depth, pixel, 0);
+    let at = umbrage_mask.eye_from_clip * vec4f(ndc, stored, 1.0);
+    return at.xyz / select(at.w, 1e-20, abs(at.w) < 1e-20);
+}
+
+fn umbrage_mask_normal(pixel: vec2i, from_eye: vec3f) -> vec3f {
+    return umbrage_mask_towards_eye(textureLoad(umbrage_mask_normals, pixel, 0).xyz, from_eye);
+}
+
+fn umbrage_mask_towards_eye(normal: vec3f, from_eye: vec3f) -> vec3f {
+    let sight = select(umbrage_mask.forward, from_eye, umbrage_mask.perspective > 0.5);
+    let turned = select(normal, -normal, dot(normal, sight) > 0.0);
+    let largest = max(max(abs(turned.x), abs(turned.y)), abs(turned.z));
+    if largest == 0.0 {
+        return -normalize(sight);
+    }
+    return normalize(turned / largest);
+}

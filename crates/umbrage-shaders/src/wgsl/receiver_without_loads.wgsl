@@ -1,0 +1,848 @@
+struct UmbrageQuery {
+    position: vec3f,
+    normal: vec3f,
+    light: u32,
+    pixel: vec2f,
+    dx: vec3f,
+    dy: vec3f,
+    split: i32
+}
+
+struct UmbrageShadow {
+    visibility: f32,
+    split: i32,
+    tint: vec3f,
+    light: vec3f
+}
+
+fn umbrage_query(position: vec3f, normal: vec3f) -> UmbrageQuery {
+    var query: UmbrageQuery;
+    query.position = position;
+    query.normal = normal;
+    query.light = 0u;
+    query.pixel = vec2f(-1.0);
+    query.split = -1;
+    return query;
+}
+
+fn umbrage_fragment_query(position: vec3f, normal: vec3f, dx: vec3f, dy: vec3f, pixel: vec2f) -> UmbrageQuery {
+    var query = umbrage_query(position, normal);
+    query.pixel = pixel;
+    query.dx = dx;
+    query.dy = dy;
+    return query;
+}
+
+fn umbrage_visibility(position: vec3f, normal: vec3f) -> f32 {
+    return umbrage_shadow(umbrage_query(position, normal)).visibility;
+}
+
+fn umbrage_shadow(query: UmbrageQuery) -> UmbrageShadow {
+    return umbrage_answer(query, umbrage_point(query));
+}
+
+fn umbrage_light_of(light: u32, visibility: f32) -> vec3f {
+    return mix(umbrage_frames[light].shadow_colour, vec3f(1.0), visibility);
+}
+
+fn umbrage_in_slice(position: vec3f) -> bool {
+    @if(!sliced)
+    return true;
+    @if(sliced)
+    {
+        let depth = umbrage_frame_view_depth(0u, position);
+        let slice = umbrage_frames[0].slice + umbrage_zero(depth);
+        let count = umbrage_frames[0].split_count;
+        return slice >= count || slice == min(umbrage_select_split_at(0u, depth), count - 1u);
+    }
+}
+
+const UMBRAGE_BLEND: u32 = 0u;
+
+const UMBRAGE_DITHER: u32 = 1u;
+
+fn umbrage_point(query: UmbrageQuery) -> UmbragePoint {
+    var point: UmbragePoint;
+    point.position = query.position;
+    point.normal = query.normal;
+    point.noise = select(umbrage_filter_gradient_noise(query.pixel), 0.5, query.pixel.x < 0.0);
+    return point;
+}
+
+fn umbrage_answer(query: UmbrageQuery, point: UmbragePoint) -> UmbrageShadow {
+    let first = umbrage_frames[query.light].first_frame;
+    let is_alone = query.split >= 0;
+    var frame = umbrage_frame_frame_at(query.light, point.position);
+    if is_alone {
+        let faces = max(umbrage_frames[first].face_count, 1u);
+        frame = first + min(u32(query.split) / max(umbrage_frames[first].split_count, 1u), faces - 1u);
+    }
+    let facing = umbrage_frame_faces_light(point.normal, umbrage_frame_to_light(frame, point.position));
+    let unshaded = select(0.0, 1.0, facing);
+    let nobody = UmbrageShadow(unshaded, -1, vec3f(1.0), umbrage_light_of(frame, unshaded));
+    let depth = umbrage_frame_view_depth(frame, point.position);
+    let split_count = umbrage_frames[frame].split_count + umbrage_zero(depth);
+    let before = (frame - first) * split_count;
+    var choice = UmbrageChoice(u32(max(query.split, 0)) - before, 0u, 0.0);
+    if !is_alone {
+        let enabled = umbrage_frames[frame].enabled + umbrage_zero(depth);
+        if enabled == 0u || !umbrage_frame_illuminates(frame, point.position) {
+            return nobody;
+        }
+        choice = umbrage_select_choose(frame, depth, point);
+        if choice.index == split_count {
+            return nobody;
+        }
+    }
+    var index = choice.index;
+    @if(dithered)
+    {
+        @if(any_transition)
+        let dithers = umbrage_frames[frame].transition + umbrage_zero(depth) == UMBRAGE_DITHER;
+        @if(!any_transition)
+        let dithers = true;
+        index = select(choice.index, choice.next, dithers && choice.share > point.noise);
+    }
+    var visibility = 0.0;
+    var tint = umbrage_tint_of_split(index);
+    @if(blended)
+    {
+        @if(any_transition)
+        let blends = umbrage_frames[frame].transition + umbrage_zero(depth) == UMBRAGE_BLEND;
+        @if(!any_transition)
+        let blends = true;
+        let last = select(0u, 1u, blends && choice.share > 0.0);
+        for (var i = 0u; i <= last; i++) {
+            let found = umbrage_shade_visibility(frame, select(index, choice.next, i == 1u), point);
+            visibility = select(mix(visibility, found, choice.share), found, i == 0u);
+        }
+        tint = select(tint, mix(tint, umbrage_tint_of_split(choice.next), choice.share), last == 1u);
+    }
+    @if(!blended)
+    {
+        visibility = umbrage_shade_visibility(frame, index, point);
+    }
+    var strength = umbrage_frames[frame].strength;
+    if depth > umbrage_frames[frame].fade_begin {
+        let end = umbrage_frames[frame].splits[split_count - 1u].far;
+        strength *= clamp((end - depth) / (end - umbrage_frames[frame].fade_begin), 0.0, 1.0);
+    }
+    if facing && !is_alone {
+        visibility = mix(1.0, visibility, strength);
+    }
+    let shown_tint = select(vec3f(1.0), tint, umbrage_frames[frame].tint != 0u);
+    return UmbrageShadow(visibility, i32(before + index), shown_tint, umbrage_light_of(frame, visibility));
+}
+
+const UMBRAGE_BIAS_MAX_SLOPE: f32 = 50.0;
+
+const UMBRAGE_BIAS_TEXEL_BIAS: f32 = 0.25;
+
+const UMBRAGE_BIAS_CORNER_SLOPE: f32 = 0.5;
+
+const UMBRAGE_BIAS_FOLD: f32 = 0.03;
+
+const UMBRAGE_BIAS_MOST_CORNER_SLOPE: f32 = 12.0;
+
+const UMBRAGE_BIAS_MOST_STEEP: f32 = 12.0;
+
+const UMBRAGE_BIAS_PAST: f32 = 2.0;
+
+const UMBRAGE_BIAS_PAST_TEXELS: f32 = 8.0;
+
+const UMBRAGE_BIAS_ROUNDING: f32 = 1.9073486328125e-6;
+
+const UMBRAGE_BIAS_SNAP_TEXELS: f32 = 0.00390625;
+
+struct UmbrageTolerance {
+    bend: f32,
+    past: f32,
+    steep: f32,
+    arrival: f32
+}
+
+struct UmbrageReceiver {
+    texel: vec2f,
+    depth: f32,
+    slope: vec2f,
+    tilt: vec2f,
+    texel_m: vec2f,
+    range_m: f32,
+    linear: vec2f,
+    tolerance: UmbrageTolerance
+}
+
+struct UmbrageMapPoint {
+    texel: vec2f,
+    depth: f32,
+    along_u: vec3f,
+    along_v: vec3f,
+    texel_m: vec2f,
+    tilt: vec2f,
+    range_m: f32,
+    rounding_m: f32,
+    linear: vec2f
+}
+
+fn umbrage_bias_receiver(split: UmbrageSplit, position: vec3f, normal: vec3f, to_light: vec3f) -> UmbrageReceiver {
+    @if(plain && warped)
+    {
+        if umbrage_map_is_warped(split) {
+            return umbrage_bias_receiver_at(umbrage_bias_warped_point(split, position, to_light), normal, to_light);
+        }
+    }
+    @if(plain)
+    return umbrage_bias_receiver_at(umbrage_bias_plain_point(split, umbrage_map_place_from_world(split, position), position), normal, to_light);
+    @if(!plain)
+    return umbrage_bias_receiver_at(umbrage_bias_warped_point(split, position, to_light), normal, to_light);
+}
+
+fn umbrage_bias_receiver_at(at: UmbrageMapPoint, normal: vec3f, to_light: vec3f) -> UmbrageReceiver {
+    let cosine = dot(normal, to_light);
+    let sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    let steepness = 1.0 / max(cosine, sine / UMBRAGE_BIAS_MAX_SLOPE);
+    let tangent = sine * steepness;
+    let slope = vec2f(dot(normal, at.along_u), dot(normal, at.along_v)) * steepness;
+    let longer = max(at.texel_m.x, at.texel_m.y);
+    let bias_m = longer * (UMBRAGE_BIAS_TEXEL_BIAS + UMBRAGE_BIAS_SNAP_TEXELS * tangent) + at.rounding_m;
+    var result: UmbrageReceiver;
+    result.texel = at.texel;
+    result.depth = at.depth - bias_m / at.range_m;
+    result.slope = slope * at.texel_m / at.range_m;
+    result.tilt = at.tilt;
+    result.texel_m = at.texel_m;
+    result.range_m = at.range_m;
+    result.linear = at.linear;
+    result.tolerance = umbrage_bias_tolerance(tangent, at.texel_m, at.range_m);
+    return result;
+}
+
+fn umbrage_bias_tolerance(tangent: f32, texel_m: vec2f, range_m: f32) -> UmbrageTolerance {
+    let corner = clamp(UMBRAGE_BIAS_FOLD * (1.0 + tangent * tangent), UMBRAGE_BIAS_CORNER_SLOPE, UMBRAGE_BIAS_MOST_CORNER_SLOPE);
+    let longer = max(texel_m.x, texel_m.y);
+    var result: UmbrageTolerance;
+    result.bend = corner * min(texel_m.x, texel_m.y) / range_m;
+    result.past = UMBRAGE_BIAS_PAST * (1.0 + corner) * longer / range_m;
+    result.steep = max(UMBRAGE_BIAS_MOST_STEEP - tangent, 0.0) / range_m;
+    result.arrival = UMBRAGE_BIAS_PAST_TEXELS * longer / range_m;
+    return result;
+}
+
+fn umbrage_bias_plain_point(split: UmbrageSplit, place: vec3f, position: vec3f) -> UmbrageMapPoint {
+    let largest = max(max(abs(position.x), abs(position.y)), abs(position.z));
+    var result: UmbrageMapPoint;
+    result.texel = place.xy;
+    result.depth = place.z;
+    result.along_u = split.u_row.xyz * split.texel_m.x;
+    result.along_v = split.v_row.xyz * split.texel_m.y;
+    result.texel_m = split.texel_m;
+    result.tilt = vec2f(0.0);
+    result.range_m = split.depth_range_m;
+    result.rounding_m = UMBRAGE_BIAS_ROUNDING * (largest + split.depth_range_m) + split.depth_step_m;
+    result.linear = vec2f(0.0);
+    return result;
+}
+
+@if(warped)
+fn umbrage_bias_warped_point(split: UmbrageSplit, position: vec3f, to_light: vec3f) -> UmbrageMapPoint {
+    let point = vec4f(position, 1.0);
+    let w = umbrage_map_w_at(split, position);
+    let texel = vec2f(dot(split.u_row, point), dot(split.v_row, point)) / w;
+    let quotient = dot(split.depth_row, point) / w;
+    let u = (split.u_row.xyz - texel.x * split.w_row.xyz) / w;
+    let v = (split.v_row.xyz - texel.y * split.w_row.xyz) / w;
+    let z = (split.depth_row.xyz - quotient * split.w_row.xyz) / w;
+    let across_v = cross(v, to_light);
+    let across_u = cross(to_light, u);
+    let step_u = across_v / dot(u, across_v);
+    let step_v = across_u / dot(v, across_u);
+    let range_m = select(split.depth_range_m * w, -1.0 / dot(z, to_light), split.depth_offset > 0.0);
+    let largest = max(max(abs(position.x), abs(position.y)), abs(position.z));
+    let lost_z = length(split.depth_row.xyz) * largest + abs(split.depth_row.w);
+    let lost_w = length(split.w_row.xyz) * largest + abs(split.w_row.w);
+    let steps_m = split.depth_step_m / split.depth_range_m * range_m;
+    let is_linear = split.is_linear != 0u;
+    var result: UmbrageMapPoint;
+    result.texel = texel;
+    result.depth = select(quotient + split.depth_offset, quotient, is_linear);
+    result.texel_m = vec2f(length(step_u), length(step_v));
+    result.along_u = step_u / result.texel_m.x;
+    result.along_v = step_v / result.texel_m.y;
+    result.tilt = vec2f(dot(z, step_u), dot(z, step_v));
+    result.range_m = range_m;
+    result.rounding_m = UMBRAGE_BIAS_ROUNDING * range_m / w * (lost_z + abs(quotient) * lost_w + w) + steps_m;
+    result.linear = select(vec2f(0.0), vec2f(split.depth_offset, -split.depth_row.w), is_linear);
+    return result;
+}
+
+@if(slope_bias)
+fn umbrage_bias_without_plane(at: UmbrageReceiver, reach: vec2f) -> UmbrageReceiver {
+    var result = at;
+    result.depth -= dot(abs(at.slope), reach);
+    result.slope = vec2f(0.0);
+    result.tolerance.bend = 0.0;
+    result.tolerance.steep = 0.0;
+    return result;
+}
+
+fn umbrage_bias_level(at: UmbrageReceiver, offset: vec2f) -> f32 {
+    @if(warped)
+    return at.depth + dot(at.tilt, offset);
+    @if(!warped)
+    return at.depth;
+}
+
+fn umbrage_bias_reference(at: UmbrageReceiver, offset: vec2f, reach: vec2f) -> f32 {
+    return umbrage_bias_bent(at, offset, reach, at.tolerance.bend * length(offset));
+}
+
+fn umbrage_bias_bent(at: UmbrageReceiver, offset: vec2f, reach: vec2f, nearer: f32) -> f32 {
+    let lowest = dot(at.slope, offset) - dot(abs(at.slope), reach);
+    @if(warped)
+    let nearest = umbrage_bias_level(at, offset) - dot(abs(at.tilt), reach);
+    @if(!warped)
+    let nearest = umbrage_bias_level(at, offset);
+    return umbrage_bias_as_stored(at, nearest + min(lowest - nearer, 0.0));
+}
+
+fn umbrage_bias_as_stored(at: UmbrageReceiver, depth: f32) -> f32 {
+    @if(!linear)
+    return clamp(depth, 0.0, 1.0);
+    @if(linear)
+    {
+        let held = clamp(depth, -at.linear.x, 1.0 - at.linear.x);
+        return select(held, umbrage_bias_linear_depth(at.linear, at.linear.y / max(-held, 1e-30)), at.linear.y > 0.0);
+    }
+}
+
+fn umbrage_bias_linear_depth(linear: vec2f, w: f32) -> f32 {
+    let near = linear.y / linear.x;
+    return clamp((w - near) * (linear.x * (linear.x - 1.0) / linear.y), 0.0, 1.0);
+}
+
+const UMBRAGE_FILTER_HARD: u32 = 0u;
+
+const UMBRAGE_FILTER_PCF2: u32 = 1u;
+
+const UMBRAGE_FILTER_CASTANO5: u32 = 5u;
+
+const UMBRAGE_FILTER_DISC: u32 = 8u;
+
+const UMBRAGE_FILTER_PCSS: u32 = 9u;
+
+const UMBRAGE_FILTER_LEAST_RADIUS: f32 = 1.0;
+
+const UMBRAGE_FILTER_DISC_RADIUS: f32 = 3.0;
+
+const UMBRAGE_FILTER_DISC_TAPS: u32 = 32u;
+
+const UMBRAGE_FILTER_MOST_BLOCKER_M: f32 = 200.0;
+
+const UMBRAGE_FILTER_TAP_SPREAD: f32 = 0.6666667;
+
+const UMBRAGE_FILTER_GOLDEN_ANGLE: f32 = 2.3999632;
+
+fn umbrage_filter_radius(kind: u32) -> f32 {
+    return array<f32, 10>(0.5, 1.0, 1.5, 2.5, 3.5, 2.5, 0.0, 0.0, 16.0, 16.0)[min(kind, UMBRAGE_FILTER_PCSS)];
+}
+
+fn umbrage_filter_widest(kind: u32, reach: f32) -> f32 {
+    return select(umbrage_filter_radius(kind), reach - 1.0, kind >= UMBRAGE_FILTER_DISC);
+}
+
+@if(slope_bias)
+fn umbrage_filter_reach(kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver) -> vec2f {
+    @if(pcss)
+    {
+        if kind == UMBRAGE_FILTER_PCSS {
+            return umbrage_filter_search_radius(softness, at) + 1.0;
+        }
+    }
+    if kind == UMBRAGE_FILTER_DISC {
+        return umbrage_filter_half_width(softness.width_m, at.texel_m, UMBRAGE_FILTER_DISC_RADIUS, softness.most) + 1.0;
+    }
+    if kind <= UMBRAGE_FILTER_PCF2 {
+        return vec2f(umbrage_filter_radius(kind));
+    }
+    return umbrage_filter_half_width(softness.width_m, at.texel_m, umbrage_filter_radius(kind), umbrage_filter_radius(kind)) + 0.5;
+}
+
+@if(pcss)
+fn umbrage_filter_search_radius(softness: UmbrageSoftness, at: UmbrageReceiver) -> vec2f {
+    let farthest_m = clamp(at.depth * at.range_m, 0.0, UMBRAGE_FILTER_MOST_BLOCKER_M);
+    return clamp(softness.sun_tangent * farthest_m / at.texel_m, vec2f(UMBRAGE_FILTER_LEAST_RADIUS), vec2f(softness.most));
+}
+
+struct UmbrageSoftness {
+    width_m: f32,
+    sun_tangent: f32,
+    turn: f32,
+    most: f32
+}
+
+fn umbrage_filter_half_width(width_m: f32, texel_m: vec2f, own: f32, most: f32) -> vec2f {
+    let wanted = 0.5 * width_m / texel_m;
+    return select(vec2f(min(own, most)), clamp(wanted, vec2f(UMBRAGE_FILTER_LEAST_RADIUS), vec2f(most)), width_m > 0.0);
+}
+
+@if(disc)
+fn umbrage_filter_vogel(i: u32, count: u32, turn: f32) -> vec2f {
+    let angle = f32(i) * UMBRAGE_FILTER_GOLDEN_ANGLE + turn;
+    return sqrt((f32(i) + 0.5) / f32(count)) * vec2f(cos(angle), sin(angle));
+}
+
+fn umbrage_filter_gradient_noise(pixel: vec2f) -> f32 {
+    return fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
+}
+
+@if(tent)
+fn umbrage_filter_tent_integral(x: vec2f, r: vec2f) -> vec2f {
+    let y = clamp(x / r, vec2f(-1.0), vec2f(1.0));
+    return 0.5 + y - 0.5 * y * abs(y);
+}
+
+@if(pairs)
+struct UmbrageTap {
+    texel: vec2f,
+    weight: vec2f
+}
+
+@if(tent)
+fn umbrage_filter_tent_tap(first: vec2f, centre: vec2f, r: vec2f) -> UmbrageTap {
+    let left = first - centre;
+    let below = umbrage_filter_tent_integral(left, r);
+    let between = umbrage_filter_tent_integral(left + 1.0, r);
+    let above = umbrage_filter_tent_integral(left + 2.0, r);
+    let weight = above - below;
+    return UmbrageTap(first + 0.5 + (above - between) / max(weight, vec2f(1e-9)), weight);
+}
+
+struct UmbrageLayer {
+    index: u32,
+    texels: vec2f,
+    offset: vec2f,
+    first: vec2i,
+    last: vec2i
+}
+
+fn umbrage_filter_compare(layer: UmbrageLayer, texel: vec2f, depth: f32) -> f32 {
+    return umbrage_map_compare(layer.index, texel + layer.offset, layer.texels, depth);
+}
+
+@if(texels)
+fn umbrage_filter_four(layer: UmbrageLayer, at: UmbrageReceiver, first: vec2f, second: vec2f) -> f32 {
+    return umbrage_filter_compare(layer, first + 0.5 + second, umbrage_bias_reference(at, first + 1.0 - at.texel, vec2f(0.5)));
+}
+
+fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
+    @if(hard)
+    {
+        if kind == UMBRAGE_FILTER_HARD {
+            let texel = floor(centre) + 0.5;
+            return umbrage_filter_compare(layer, texel, umbrage_bias_reference(at, texel - at.texel, vec2f(0.0)));
+        }
+    }
+    @if(pcf2)
+    {
+        if kind == UMBRAGE_FILTER_PCF2 {
+            let first = floor(centre - 0.5);
+            return umbrage_filter_four(layer, at, first, centre - 0.5 - first);
+        }
+    }
+    @if(pcss)
+    {
+        if kind == UMBRAGE_FILTER_PCSS {
+            return umbrage_filter_disc(layer, at, centre, umbrage_filter_penumbra(layer, softness, at, centre), softness.turn);
+        }
+    }
+    @if(disc)
+    {
+        if kind == UMBRAGE_FILTER_DISC {
+            let wide = umbrage_filter_half_width(softness.width_m, at.texel_m, UMBRAGE_FILTER_DISC_RADIUS, softness.most);
+            return umbrage_filter_disc(layer, at, centre, wide, softness.turn);
+        }
+    }
+    @if(pairs)
+    {
+        return umbrage_filter_pairs(layer, kind, softness, at, centre);
+    }
+    @if(!pairs)
+    return 1.0;
+}
+
+@if(castano5)
+fn umbrage_filter_castano_weight(x: vec2f) -> vec2f {
+    let tents = max(3.0 - abs(x), vec2f(0.0)) + max(2.0 - abs(x), vec2f(0.0)) - max(1.0 - abs(x), vec2f(0.0));
+    return tents / 12.0;
+}
+
+@if(castano5)
+fn umbrage_filter_castano_tap(first: vec2f, centre: vec2f) -> UmbrageTap {
+    let second = umbrage_filter_castano_weight(first + 1.5 - centre);
+    let weight = umbrage_filter_castano_weight(first + 0.5 - centre) + second;
+    return UmbrageTap(first + 0.5 + second / max(weight, vec2f(1e-9)), weight);
+}
+
+@if(pairs)
+fn umbrage_filter_pair(kind: u32, first: vec2f, centre: vec2f, r: vec2f) -> UmbrageTap {
+    @if(castano5)
+    {
+        if kind == UMBRAGE_FILTER_CASTANO5 {
+            return umbrage_filter_castano_tap(first, centre);
+        }
+    }
+    @if(tent)
+    return umbrage_filter_tent_tap(first, centre, r);
+    @if(!tent)
+    return UmbrageTap(first, vec2f(0.0));
+}
+
+@if(pairs)
+fn umbrage_filter_pairs(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
+    let r = umbrage_filter_half_width(softness.width_m, at.texel_m, umbrage_filter_radius(kind), umbrage_filter_radius(kind));
+    let taps = i32(umbrage_filter_radius(kind) + 0.5);
+    let corner = floor(centre - r);
+    var lit = 0.0;
+    for (var j = 0; j < taps; j++) {
+        for (var i = 0; i < taps; i++) {
+            let first = corner + 2.0 * vec2f(f32(i), f32(j));
+            let tap = umbrage_filter_pair(kind, first, centre, r);
+            lit += tap.weight.x * tap.weight.y * umbrage_filter_four(layer, at, first, tap.texel - 0.5 - first);
+        }
+    }
+    return min(lit, 1.0);
+}
+
+@if(disc)
+fn umbrage_filter_disc(layer: UmbrageLayer, at: UmbrageReceiver, centre: vec2f, wide: vec2f, turn: f32) -> f32 {
+    let spread = sqrt(max(wide * wide - UMBRAGE_FILTER_TAP_SPREAD, vec2f(0.0)));
+    var lit = 0.0;
+    for (var i = 0u; i < UMBRAGE_FILTER_DISC_TAPS; i++) {
+        let texel = centre + spread * umbrage_filter_vogel(i, UMBRAGE_FILTER_DISC_TAPS, turn);
+        let first = floor(texel - 0.5);
+        lit += umbrage_filter_four(layer, at, first, texel - 0.5 - first);
+    }
+    return lit / f32(UMBRAGE_FILTER_DISC_TAPS);
+}
+
+@if(pcss)
+fn umbrage_filter_penumbra(layer: UmbrageLayer, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> vec2f {
+    return umbrage_filter_half_width(softness.width_m, at.texel_m, UMBRAGE_FILTER_DISC_RADIUS, softness.most);
+}
+
+struct UmbrageSplit {
+    u_row: vec4f,
+    v_row: vec4f,
+    depth_row: vec4f,
+    w_row: vec4f,
+    texel_offset: vec2f,
+    texel_m: vec2f,
+    size: f32,
+    far: f32,
+    blend_begin: f32,
+    depth_range_m: f32,
+    depth_step_m: f32,
+    is_empty: u32,
+    viewport_texels: f32,
+    guard_texels: f32,
+    corner: vec2f,
+    layer_texels: vec2f,
+    layer: u32,
+    depth_offset: f32,
+    is_linear: u32,
+    filter_reach: f32
+}
+
+struct UmbrageFrame {
+    view_depth_plane: vec4f,
+    to_light: vec3f,
+    strength: f32,
+    light_position: vec3f,
+    light_range_m: f32,
+    fade_begin: f32,
+    split_count: u32,
+    filter_kind: u32,
+    enabled: u32,
+    tint: u32,
+    filter_width_m: f32,
+    sun_tangent: f32,
+    turn_per_pixel: f32,
+    transition: u32,
+    cone_cosine: f32,
+    first_frame: u32,
+    face_count: u32,
+    shadow_colour: vec3f,
+    bias_kind: u32,
+    eye: vec3f,
+    is_radial: u32,
+    selection: u32,
+    map_blend: f32,
+    slice: u32,
+    splits: array<UmbrageSplit, 8>
+}
+
+fn umbrage_map_is_warped(split: UmbrageSplit) -> bool {
+    return any(split.w_row != vec4f(0.0));
+}
+
+fn umbrage_map_w_at(split: UmbrageSplit, position: vec3f) -> f32 {
+    return dot(split.w_row, vec4f(position, 1.0));
+}
+
+fn umbrage_map_plane_from_world(split: UmbrageSplit, position: vec3f) -> vec2f {
+    let point = vec4f(position, 1.0);
+    let place = vec2f(dot(split.u_row, point), dot(split.v_row, point));
+    @if(warped)
+    {
+        if umbrage_map_is_warped(split) {
+            return place / umbrage_map_w_at(split, position);
+        }
+    }
+    return place;
+}
+
+fn umbrage_map_place_from_world(split: UmbrageSplit, position: vec3f) -> vec3f {
+    let point = vec4f(position, 1.0);
+    return vec3f(dot(split.u_row, point), dot(split.v_row, point), dot(split.depth_row, point));
+}
+
+fn umbrage_map_from_world(split: UmbrageSplit, position: vec3f) -> vec3f {
+    @if(warped)
+    {
+        if umbrage_map_is_warped(split) {
+            let w = umbrage_map_w_at(split, position);
+            if w <= 0.0 {
+                return vec3f(-1.0, -1.0, 1.0);
+            }
+            let depth = dot(split.depth_row, vec4f(position, 1.0)) / w + split.depth_offset;
+            return vec3f(umbrage_map_plane_from_world(split, position), depth);
+        }
+    }
+    return vec3f(umbrage_map_plane_from_world(split, position) + split.texel_offset, dot(split.depth_row, vec4f(position, 1.0)));
+}
+
+fn umbrage_map_covers(split: UmbrageSplit, at: vec3f) -> bool {
+    return all(at.xy >= vec2f(0.0)) && all(at.xy <= vec2f(split.size));
+}
+
+fn umbrage_tint_of_split(index: u32) -> vec3f {
+    return array<vec3f, 8>(vec3f(1.0, 0.45, 0.45), vec3f(0.45, 1.0, 0.45), vec3f(0.45, 0.6, 1.0), vec3f(1.0, 1.0, 0.4), vec3f(1.0, 0.45, 1.0), vec3f(0.4, 1.0, 1.0), vec3f(1.0, 0.7, 0.35), vec3f(0.7, 0.5, 1.0))[min(index, 7u)];
+}
+
+@group(UMBRAGE_RECEIVER_GROUP) @binding(0)
+var<uniform> umbrage_frames: array<UmbrageFrame, UMBRAGE_FRAMES>;
+
+struct UmbragePoint {
+    position: vec3f,
+    normal: vec3f,
+    noise: f32
+}
+
+fn umbrage_frame_view_depth(frame: u32, position: vec3f) -> f32 {
+    @if(planar)
+    let planar = dot(umbrage_frames[frame].view_depth_plane, vec4f(position, 1.0));
+    @if(radial)
+    let radial = distance(umbrage_frames[frame].eye, position);
+    @if(planar && radial)
+    return select(planar, radial, umbrage_frames[frame].is_radial != 0u);
+    @if(!radial)
+    return planar;
+    @if(!planar)
+    return radial;
+}
+
+fn umbrage_frame_frame_at(light: u32, position: vec3f) -> u32 {
+    let first = umbrage_frames[light].first_frame;
+    @if(!faces)
+    return first;
+    @if(faces)
+    {
+        let from_light = position - umbrage_frames[first].light_position;
+        let size = abs(from_light);
+        let by_x = size.x >= size.y && size.x >= size.z;
+        let axis = select(select(2u, 1u, size.y >= size.z), 0u, by_x);
+        let along = select(select(from_light.z, from_light.y, axis == 1u), from_light.x, by_x);
+        let face = 2u * axis + select(0u, 1u, along < 0.0);
+        return first + min(face, max(umbrage_frames[first].face_count, 1u) - 1u);
+    }
+}
+
+fn umbrage_frame_to_light(frame: u32, position: vec3f) -> vec3f {
+    @if(!local)
+    return umbrage_frames[frame].to_light;
+    @if(local)
+    {
+        let towards = umbrage_frames[frame].light_position - position;
+        let unit = towards / max(length(towards), 1e-20);
+        return select(umbrage_frames[frame].to_light, unit, umbrage_frames[frame].light_range_m > 0.0);
+    }
+}
+
+const UMBRAGE_FRAME_LEAST_FACING: f32 = 0.0005;
+
+fn umbrage_frame_faces_light(normal: vec3f, to_light: vec3f) -> bool {
+    return dot(normal, to_light) > UMBRAGE_FRAME_LEAST_FACING;
+}
+
+fn umbrage_frame_illuminates(frame: u32, position: vec3f) -> bool {
+    @if(!local)
+    return true;
+    @if(local)
+    {
+        let from_light = position - umbrage_frames[frame].light_position;
+        let distance = length(from_light);
+        let along = -dot(umbrage_frames[frame].to_light, from_light);
+        let range = umbrage_frames[frame].light_range_m;
+        return range == 0.0 || (distance <= range && along >= umbrage_frames[frame].cone_cosine * distance);
+    }
+}
+
+fn umbrage_zero(metres: f32) -> u32 {
+    return select(0u, 1u, metres > 3e38);
+}
+
+const UMBRAGE_SELECT_BY_MAP: u32 = 1u;
+
+struct UmbrageChoice {
+    index: u32,
+    next: u32,
+    share: f32
+}
+
+fn umbrage_select_choose(frame: u32, depth: f32, point: UmbragePoint) -> UmbrageChoice {
+    let split_count = umbrage_frames[frame].split_count + umbrage_zero(depth);
+    let slice = umbrage_select_split_at(frame, depth);
+    if slice == split_count {
+        return UmbrageChoice(slice, slice, 0.0);
+    }
+    @if(by_depth && by_map)
+    {
+        if umbrage_frames[frame].selection + umbrage_zero(depth) == UMBRAGE_SELECT_BY_MAP {
+            return umbrage_select_choose_by_map(frame, point);
+        }
+    }
+    @if(by_depth)
+    return umbrage_select_choose_by_depth(frame, depth, slice);
+    @if(!by_depth)
+    return umbrage_select_choose_by_map(frame, point);
+}
+
+@if(by_depth)
+fn umbrage_select_choose_by_depth(frame: u32, depth: f32, slice: u32) -> UmbrageChoice {
+    let next = slice + 1u;
+    let band_begin = umbrage_frames[frame].splits[slice].blend_begin;
+    var share = 0.0;
+    if next < umbrage_frames[frame].split_count + umbrage_zero(depth) && depth > band_begin {
+        share = clamp((depth - band_begin) / (umbrage_frames[frame].splits[slice].far - band_begin), 0.0, 1.0);
+    }
+    return UmbrageChoice(slice, next, share);
+}
+
+@if(by_map)
+fn umbrage_select_choose_by_map(frame: u32, point: UmbragePoint) -> UmbrageChoice {
+    let split_count = umbrage_frames[frame].split_count + umbrage_zero(point.position.x);
+    let index = umbrage_select_map_at(frame, 0u, point);
+    if index == split_count {
+        return UmbrageChoice(index, index, 0.0);
+    }
+    let depth_inside = umbrage_select_inside(frame, index, point);
+    let band = 0.5 * umbrage_frames[frame].map_blend * umbrage_frames[frame].splits[index].size;
+    if depth_inside >= band {
+        return UmbrageChoice(index, index, 0.0);
+    }
+    let next = umbrage_select_map_at(frame, index + 1u, point);
+    return UmbrageChoice(index, next, select(1.0 - depth_inside / band, 0.0, next == split_count));
+}
+
+@if(by_map)
+fn umbrage_select_map_at(frame: u32, first: u32, point: UmbragePoint) -> u32 {
+    let split_count = umbrage_frames[frame].split_count + umbrage_zero(point.position.x);
+    var index = first + umbrage_zero(point.position.x);
+    while (index < split_count) {
+        if umbrage_select_inside(frame, index, point) >= 0.0 {
+            break;
+        }
+        index++;
+    }
+    return index;
+}
+
+@if(by_map)
+fn umbrage_select_inside(frame: u32, index: u32, point: UmbragePoint) -> f32 {
+    let split = umbrage_frames[frame].splits[index];
+    let at = umbrage_select_place_in_map(split, index, point);
+    let margin = split.filter_reach;
+    let room = min(at.xy - margin, split.size - margin - at.xy);
+    return select(min(room.x, room.y), -1.0, (split.is_empty != 0u) | (at.z > 1.0));
+}
+
+fn umbrage_select_place_in_map(split: UmbrageSplit, index: u32, point: UmbragePoint) -> vec3f {
+    return umbrage_map_from_world(split, point.position);
+}
+
+fn umbrage_select_split_at(frame: u32, depth: f32) -> u32 {
+    let split_count = umbrage_frames[frame].split_count + umbrage_zero(depth);
+    var index = 0u;
+    while (index < split_count) {
+        if depth < umbrage_frames[frame].splits[index].far {
+            break;
+        }
+        index++;
+    }
+    return index;
+}
+
+const UMBRAGE_SHADE_SLOPE_BIAS: u32 = 1u;
+
+fn umbrage_shade_visibility(frame: u32, index: u32, point: UmbragePoint) -> f32 {
+    let position = point.position;
+    let towards_light = umbrage_frame_to_light(frame, position);
+    if !umbrage_frame_faces_light(point.normal, towards_light) {
+        return 0.0;
+    }
+    if index >= umbrage_frames[frame].split_count + umbrage_zero(position.x) {
+        return 1.0;
+    }
+    @if(sliced)
+    {
+        let slice = umbrage_frames[frame].slice + umbrage_zero(position.x);
+        if slice != index && slice < umbrage_frames[frame].split_count {
+            return 1.0;
+        }
+    }
+    let split = umbrage_frames[frame].splits[index];
+    if split.is_empty != 0u || !umbrage_map_covers(split, umbrage_select_place_in_map(split, index, point)) {
+        return 1.0;
+    }
+    let at = umbrage_bias_receiver(split, position, point.normal, towards_light);
+    return umbrage_shade_lit_share(frame, split, index, at, point);
+}
+
+fn umbrage_shade_lit_share(frame: u32, split: UmbrageSplit, index: u32, plane: UmbrageReceiver, point: UmbragePoint) -> f32 {
+    @if(any_filter)
+    let kind = umbrage_frames[frame].filter_kind + umbrage_zero(plane.texel.x);
+    @if(!any_filter)
+    let kind = UMBRAGE_FILTER;
+    let margin = split.filter_reach;
+    let first = vec2f(margin) - split.texel_offset;
+    let last = vec2f(split.size - margin - 0.00390625) - split.texel_offset;
+    let map_first = vec2i(split.corner);
+    let map_last = map_first + vec2i(i32(split.size) - 1);
+    let layer = UmbrageLayer(split.layer, split.layer_texels, split.texel_offset + split.corner, map_first, map_last);
+    let turn = umbrage_frames[frame].turn_per_pixel * (point.noise - 0.5);
+    let frame_width_m = umbrage_frames[frame].filter_width_m;
+    let most = umbrage_filter_widest(kind, margin);
+    let softness = UmbrageSoftness(frame_width_m, umbrage_frames[frame].sun_tangent, turn, most);
+    var at = plane;
+    @if(plane_bias && slope_bias)
+    {
+        if umbrage_frames[frame].bias_kind + umbrage_zero(plane.texel.x) == UMBRAGE_SHADE_SLOPE_BIAS {
+            at = umbrage_bias_without_plane(at, umbrage_filter_reach(kind, softness, at));
+        }
+    }
+    @if(!plane_bias)
+    {
+        at = umbrage_bias_without_plane(at, umbrage_filter_reach(kind, softness, at));
+    }
+    return umbrage_filter_lit_share(layer, kind, softness, at, clamp(at.texel, first, last));
+}
