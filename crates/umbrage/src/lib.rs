@@ -31,6 +31,7 @@ mod alias;
 mod bias;
 mod bounds;
 mod camera;
+mod casters;
 pub mod config;
 mod coverage;
 mod error;
@@ -49,6 +50,7 @@ pub use glam;
 
 pub use bias::{Bias, STEEPEST};
 pub use bounds::Aabb;
+pub use casters::{Caster, CasterHandle, CasterSet, Layers, Motion, Visited};
 pub use camera::{DepthConvention, Frustum, Matrix, Projection, View};
 pub use config::ShadowConfig;
 pub use coverage::PlanCoverage;

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::bounds::Placed;
 use crate::{Aabb, View};
 
 /// A half space: inside is `normal · p <= offset`. The normal is a unit vector that points outwards.
@@ -211,6 +212,25 @@ impl SweptVolume {
     fn push(&mut self, plane: Plane) {
         self.planes[self.len] = plane;
         self.len += 1;
+    }
+
+    pub fn planes(&self) -> &[Plane] {
+        &self.planes[..self.len]
+    }
+
+    /// How the boxes in a box lie to what comes within `margin` metres of the volume: [`SweptVolume::meets`] for all of them.
+    pub fn met_by_all(&self, Placed { center, half }: &Placed, margin: f64) -> Lies {
+        let mut lies = Lies::Inside;
+        for plane in self.planes() {
+            let (distance, reach) = (plane.distance(*center), plane.normal.abs().dot(*half));
+            if distance - reach > margin {
+                return Lies::Outside;
+            }
+            if distance + reach > margin {
+                lies = Lies::Across;
+            }
+        }
+        lies
     }
 
     /// Whether a box comes within `margin` metres of the volume (conservatively).

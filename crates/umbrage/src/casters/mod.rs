@@ -1,0 +1,16 @@
+//! A kept set of casters: what a planner is given instead of lists where there are many.
+
+mod kind;
+mod loose;
+mod morton;
+mod packed;
+mod set;
+mod slots;
+pub(crate) mod tree;
+mod view;
+
+pub(crate) use kind::{Ask, Role};
+pub use kind::Layers;
+pub use set::{Caster, CasterSet, Motion};
+pub use slots::CasterHandle;
+pub use tree::Visited;
