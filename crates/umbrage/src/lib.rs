@@ -61,7 +61,7 @@ pub use light::{DirectionalLight, Light, PointLight, SpotLight};
 pub use plan::{ShadowPlan, Split};
 pub use planes::bands::Bands;
 pub use planes::scheme::split_planes;
-pub use planner::{PlanInputs, Planner, plan};
+pub use planner::{Boxes, PlanInputs, Planner, plan};
 pub use settings::{ExtentSteps, Fit, MAX_SPLITS, RangeFit, Selection, ShadowSettings, SplitScheme, Stabilize};
 pub use stepped::{SteppedSun, SunFade};
 pub use warp::{Warp, WarpTarget, texels_along};

@@ -2,6 +2,7 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
+use crate::casters::Gathered;
 use crate::coverage::PlanCoverage;
 use crate::{Aabb, DepthConvention, Light, Selection, View};
 
@@ -57,9 +58,21 @@ impl ShadowPlan {
         self.coverage.clear();
     }
 
-    /// Adds a split whose casters are listed.
-    pub(crate) fn add(&mut self, split: Split) {
+    /// Adds a split with those of the gathered casters that stand at `places`.
+    pub(crate) fn add_listed(&mut self, mut split: Split, casters: &mut Gathered, places: &[u32]) {
+        let begin = self.caster_indices.len();
+        casters.name(places, &mut self.caster_indices);
+        split.casters = begin..self.caster_indices.len();
+        self.add(split);
+    }
+
+    /// Adds a split whose casters are listed. Those of a set have no place among the ranges.
+    fn add(&mut self, split: Split) {
         let at = self.splits.len() as u8;
+        if self.split_range.is_empty() {
+            self.splits.push(split);
+            return;
+        }
         for &index in &self.caster_indices[split.casters.clone()] {
             let range = &mut self.split_range[index as usize];
             *range = Some((range.map_or(at, |(first, _)| first), at));

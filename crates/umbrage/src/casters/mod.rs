@@ -9,8 +9,10 @@ mod slots;
 pub(crate) mod tree;
 mod view;
 
-pub(crate) use kind::{Ask, Role};
+pub(crate) use kind::Role;
 pub use kind::Layers;
 pub use set::{Caster, CasterSet, Motion};
 pub use slots::CasterHandle;
 pub use tree::Visited;
+pub(crate) use tree::{BoxTree, Counter, Near};
+pub(crate) use view::{Crowd, Gathered, Group, Most};

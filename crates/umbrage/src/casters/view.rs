@@ -6,6 +6,7 @@ use super::kind::{Ask, Layers, Role};
 use super::packed::AskedRun;
 use super::set::CasterSet;
 use super::tree::{self, Asked, BoxTree, Counter, Near, with_room};
+use crate::Aabb;
 use crate::bounds::Placed;
 
 /// Casters or receivers of a frame.
@@ -67,9 +68,17 @@ impl<'a> Crowd<'a> {
         !self.any(|_| true)
     }
 
-    /// The largest of a monotone measure; −∞ if there is none.
-    pub fn most(&self, measure: impl Fn(&Placed) -> f64) -> f64 {
-        self.most_within(&measure, &measure)
+    /// Calls `visit` with the boxes without thickness, and what they are called.
+    pub fn flats(&self, mut visit: impl FnMut(u32, &Placed)) {
+        match self.boxes {
+            Boxes::List(list) => list.flats().for_each(|(at, placed)| visit(at as u32, placed)),
+            // None of them is packed.
+            Boxes::Set { set, ask, .. } => {
+                let (_, loose, kinds) = set.parts();
+                let asked = loose.flats().filter(|(at, _)| ask.is_for(kinds.get(loose.entries[*at].kind)));
+                asked.for_each(|(at, placed)| visit(loose.entries[at].key, placed));
+            }
+        }
     }
 
     /// The largest measure, where `bound` is a monotone one that is nowhere less.
@@ -138,6 +147,35 @@ impl<'a> Crowd<'a> {
     }
 }
 
+/// Boxes that can be measured without looking at each.
+pub(crate) trait Most {
+    /// The largest of a monotone measure; −∞ if there is none.
+    fn most(&self, measure: impl Fn(&Placed) -> f64) -> f64;
+
+    /// The box around all that pass a monotone test.
+    fn bounds(&self, test: impl Fn(&Placed) -> bool) -> Aabb {
+        let end = |of: &dyn Fn(&Placed) -> f64| self.most(|it| if test(it) { of(it) } else { f64::NEG_INFINITY });
+        let least = |axis: usize| -end(&|it| -(it.center[axis] - it.half[axis]));
+        let most = |axis: usize| end(&|it| it.center[axis] + it.half[axis]);
+        Aabb::new(DVec3::new(least(0), least(1), least(2)), DVec3::new(most(0), most(1), most(2)))
+    }
+}
+
+impl Most for Crowd<'_> {
+    fn most(&self, measure: impl Fn(&Placed) -> f64) -> f64 {
+        self.most_within(&measure, &measure)
+    }
+}
+
+impl Most for Gathered {
+    fn most(&self, measure: impl Fn(&Placed) -> f64) -> f64 {
+        self.groups.iter().fold(f64::NEG_INFINITY, |best, group| match measure(&group.bounds) > best {
+            true => self.boxes[group.range()].iter().map(&measure).fold(best, f64::max),
+            false => best,
+        })
+    }
+}
+
 /// Boxes that were gathered, in groups of neighbours, with what they are called.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Gathered {
@@ -149,6 +187,8 @@ pub(crate) struct Gathered {
     ranks: Vec<u32>,
     /// Scratch: a bit for each rank.
     marks: Vec<u64>,
+    /// Scratch: places in order.
+    ordered: Vec<u32>,
 }
 
 /// Boxes that lie beside each other.
@@ -210,6 +250,26 @@ impl Gathered {
         for (&(_, at), rank) in self.order.iter().zip(0..) {
             self.ranks[at as usize] = rank;
         }
+    }
+
+    /// All boxes in the order of their names.
+    pub fn in_order(&self) -> impl Iterator<Item = &Placed> {
+        let is_ordered = self.order.is_empty();
+        let ordered = self.boxes.iter().filter(move |_| is_ordered);
+        ordered.chain(self.order.iter().map(|&(_, at)| &self.boxes[at as usize]))
+    }
+
+    /// Some boxes, by their places, in the order of their names.
+    pub fn ordered(&mut self, places: &[u32]) -> impl Iterator<Item = &Placed> {
+        self.ordered.clear();
+        if self.order.is_empty() {
+            self.ordered.extend_from_slice(places);
+        } else {
+            self.ordered.extend(places.iter().map(|&at| self.ranks[at as usize]));
+            self.ordered.sort_unstable();
+            self.ordered.iter_mut().for_each(|rank| *rank = self.order[*rank as usize].1);
+        }
+        self.ordered.iter().map(|&at| &self.boxes[at as usize])
     }
 
     /// Appends the names of some boxes, by their places, in rising order and each once.

@@ -8,6 +8,7 @@ use super::fit::MapSize;
 use super::frame::{Frame, Sun};
 use super::in_view::InView;
 use super::layout::{Layout, LayoutBuffers, SplitFrame};
+use super::picked::Picked;
 use super::scope::Scope;
 use super::snap;
 use super::warped::WarpPoints;
@@ -18,6 +19,7 @@ use crate::{Bands, DirectionalLight, Fit, Result, Selection, ShadowPlan, Split, 
 #[derive(Clone, Debug, Default)]
 pub(super) struct SunBuffers {
     in_view: InView,
+    listed: Picked,
     layout: LayoutBuffers,
     warp_points: WarpPoints,
 }
@@ -31,7 +33,7 @@ pub(super) fn plan(
     plan: &mut ShadowPlan,
 ) -> Result<()> {
     frame.settings.bands.check_view(frame.view)?;
-    let SunBuffers { in_view, layout: layout_buffers, warp_points } = buffers;
+    let SunBuffers { in_view, listed: casters, layout: layout_buffers, warp_points } = buffers;
     let sun = Sun::new(light, frame);
     let scope = Scope::new(frame, &sun);
     let layout = Layout::new((frame, &sun), &scope, held, in_view, layout_buffers)?;
@@ -43,18 +45,19 @@ pub(super) fn plan(
         let split = SplitFrame { frame, sun: &sun, layout: &layout, index };
         let mut scene = Scene::of_split(&split, in_view);
         let size = MapSize::new(&split);
-        let listed = Listed::new(&split, &size, &mut scene, in_view, plan);
-        let map = snap::placed(&split, &scene, &size, &listed, &mut held.rectangle[index]);
+        let listed = Listed::new(&split, &size, &mut scene, &in_view.casters, casters);
+        let has_casters = !casters.is_empty();
+        let map = snap::placed(&split, &scene, &size, (&listed, has_casters), &mut held.rectangle[index]);
         let (map, first) = match &shown {
-            Some(all) if !map.casters.is_empty() => {
+            Some(all) if has_casters => {
                 let all = (&all.volume, all.depths());
-                covered::serving_all_it_covers(frame, &sun, (map, listed.first), all, in_view, plan)
+                covered::serving_all_it_covers(&sun, (map, listed.first), all, (&in_view.casters, casters), plan)
             }
             _ => (map, listed.first),
         };
         let mut map = depth::ranged(frame, map, first, &size, world);
-        warp(&split, &scene, in_view, warp_points, &mut map, plan);
-        plan.add(map);
+        warp(&split, &scene, (in_view, casters), warp_points, &mut map);
+        plan.add_listed(map, &mut in_view.casters, casters.places());
         plan.coverage.volumes.push(scene.volume);
     }
     plan.coverage.shown = shown.map(|scene| scene.volume);
@@ -81,21 +84,17 @@ fn describe(frame: &Frame<'_>, sun: &Sun<'_>, layout: &Layout, plan: &mut Shadow
 fn warp(
     split: &SplitFrame<'_>,
     scene: &Scene,
-    in_view: &InView,
+    (in_view, listed): (&mut InView, &Picked),
     points: &mut WarpPoints,
     map: &mut Split,
-    plan: &ShadowPlan,
 ) {
     let (frame, warp) = (split.frame, split.warp());
-    if warp == Warp::None || map.casters.is_empty() {
+    if warp == Warp::None || listed.is_empty() {
         return;
     }
-    let boxes = match frame.settings.fit {
-        Fit::Independent => None,
-        Fit::Dependent => Some((frame.receivers, &in_view.receivers[..])),
-    };
-    points.receivers_of(&scene.volume.slice, boxes);
-    let casters = plan.caster_indices[map.casters.clone()].iter().map(|&index| &frame.casters[index as usize]);
+    let receivers = (frame.settings.fit == Fit::Dependent).then(|| in_view.receivers.in_order());
+    points.receivers_of(&scene.volume.slice, receivers);
+    let casters = in_view.casters.ordered(listed.places());
     points.casters_of(&scene.volume.swept, scene.volume.margin, casters);
     points.warp(map, warp, frame.view, frame.margin, frame.settings.fit);
 }

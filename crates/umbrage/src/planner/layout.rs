@@ -143,7 +143,7 @@ impl Layout {
             layout.whole_width = 2.0 * held.whole.hold(sphere.radius);
         }
         if frame.settings.stabilize == Stabilize::Exact {
-            layout.around_all = Block::around(scope.receivers(frame), sun.light);
+            layout.around_all = Block::around(&frame.receivers, |r| scope.matters(frame, r), sun.light);
         }
         in_view.cull(frame, sun, range.far.max(shown), layout.whole_width);
         layout.place_planes(frame, sun, held, in_view, buffers)?;
@@ -179,10 +179,8 @@ impl Layout {
             let sight = Sight {
                 view: frame.view,
                 fan: &sun.fan,
-                receivers: frame.receivers,
-                visible: &in_view.receivers,
-                casters: frame.casters,
-                candidates: &in_view.casters,
+                receivers: &in_view.receivers,
+                casters: &in_view.casters,
             };
             let most_half = self.around_all.map_or(DVec2::INFINITY, |all| all.half.truncate());
             let (margin, whole_width, image_size) = (frame.margin, self.whole_width, frame.image_size);

@@ -15,6 +15,7 @@ mod in_view;
 mod inputs;
 mod layout;
 mod local;
+mod picked;
 mod range;
 mod scope;
 mod shaft;
@@ -22,13 +23,13 @@ mod slice_ends;
 mod snap;
 mod warped;
 
-use crate::bounds::Placed;
+use crate::casters::{BoxTree, Counter, Crowd, Role, Visited};
 use crate::geometry::light_frustum::LightFrustum;
 use crate::held::Held;
-use crate::{Aabb, Light, Result, ShadowPlan, ShadowSettings, View};
+use crate::{Light, Result, ShadowPlan, ShadowSettings, View};
 use directional::SunBuffers;
 use frame::Frame;
-pub use inputs::PlanInputs;
+pub use inputs::{Boxes, PlanInputs};
 use local::LocalBuffers;
 
 /// Plans shadow maps frame after frame.
@@ -46,8 +47,11 @@ pub struct Planner {
 /// Memory of one call that the next one uses again. Holds nothing that a plan depends on.
 #[derive(Clone, Debug, Default)]
 struct Buffers {
-    casters: Vec<Placed>,
-    receivers: Vec<Placed>,
+    /// Casters and receivers that come as lists.
+    casters: BoxTree,
+    receivers: BoxTree,
+    /// What the last plan looked at.
+    visited: Visited,
     sun: SunBuffers,
     local: LocalBuffers,
     held: Held,
@@ -77,6 +81,12 @@ impl Planner {
         &self.held
     }
 
+    /// What the last plan looked at of its casters and receivers: a measure of its cost that does not depend on the machine.
+    #[must_use]
+    pub fn visited(&self) -> Visited {
+        self.buffers.visited
+    }
+
     /// Replaces what is held between frames: to go on from another frame than the last one, or afresh.
     pub fn set_held(&mut self, held: Held) {
         self.held = held;
@@ -87,12 +97,12 @@ impl Planner {
     ///
     /// # Errors
     /// As [`Planner::plan_into`].
-    pub fn plan(
+    pub fn plan<'a>(
         &mut self,
-        view: &View,
+        view: &'a View,
         light: &(impl Copy + Into<Light>),
-        casters: &[Aabb],
-        receivers: &[Aabb],
+        casters: impl Into<Boxes<'a>>,
+        receivers: impl Into<Boxes<'a>>,
     ) -> Result<&ShadowPlan> {
         let inputs =
             PlanInputs { image_size: self.settings.image_size, ..PlanInputs::new(view, *light, casters, receivers) };
@@ -147,16 +157,18 @@ fn plan_with(
     plan: &mut ShadowPlan,
 ) -> Result<()> {
     inputs.check()?;
-    inputs::place(inputs.casters, "casters", &mut buffers.casters)?;
-    inputs::place(inputs.receivers, "receivers", &mut buffers.receivers)?;
+    inputs.casters.place("casters", &mut buffers.casters)?;
+    inputs.receivers.place("receivers", &mut buffers.receivers)?;
     plan.begin(inputs.view, inputs.light);
-    plan.split_range.resize(inputs.casters.len(), None);
+    plan.split_range.resize(inputs.casters.listed(), None);
     // A frame that is refused leaves what is held as it was.
-    let Buffers { casters, receivers, sun, local, held: next } = buffers;
-    let shows = |boxes: &[Placed]| frame::shows_any(inputs.view, boxes);
-    if receivers.is_empty() || (!shows(receivers) && shows(casters)) {
-        receivers.clone_from(casters);
-    }
+    let Buffers { casters, receivers, visited, sun, local, held: next } = buffers;
+    let (eye, counter) = (inputs.view.eye(), Counter::default());
+    let casters = inputs.casters.crowd(casters, (inputs.layers, Role::Caster), eye, &counter);
+    let receivers = inputs.receivers.crowd(receivers, (inputs.layers, Role::Receiver), eye, &counter);
+    let shows = |crowd: &Crowd<'_>| frame::shows_any(inputs.view, crowd);
+    let are_replaced = receivers.is_empty() || (!shows(&receivers) && shows(&casters));
+    let receivers = if are_replaced { casters } else { receivers };
     next.clone_from(held);
     let frame = Frame::new(settings, inputs, casters, receivers);
     match &inputs.light {
@@ -173,6 +185,7 @@ fn plan_with(
     if let Some(clusters) = inputs.receiver_clusters {
         plan.coverage.mask(clusters);
     }
+    *visited = counter.get();
     std::mem::swap(held, next);
     Ok(())
 }

@@ -43,7 +43,7 @@ fn held_range(frame: &Frame<'_>, scope: &Scope, held: &mut HeldEnds) -> Range {
     let deepest = if deepest > near { deepest } else { 2.0 * near.abs() + 1.0 };
     let deepest = deepest.min(camera_far);
     if settings.range_fit == RangeFit::Visible
-        && let Some((first, last)) = visible_range(view, near, deepest, receivers)
+        && let Some((first, last)) = visible_range(view, near, deepest, &receivers)
     {
         let (first, last) = match settings.stabilize {
             Stabilize::Exact | Stabilize::Approximate(_) if first > 0.0 => held.visible.hold(first, last),
