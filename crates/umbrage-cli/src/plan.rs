@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use serde::Serialize;
 use umbrage::config::{ExtentSteps, Stability};
-use umbrage::{Aabb, Planner, ShadowPlan, Split};
+use umbrage::{Aabb, Planner, PlannerOptions, ShadowPlan, Split};
 use umbrage_lab::{
     failure::Result,
     output::{self, Staged, numbered_file},
@@ -127,7 +127,8 @@ pub fn run(args: &PlanArgs) -> Result<()> {
     }
     let setup = SceneSetup::open(&request)?;
     let shadows = shadows.for_lights(&setup.lights[..1])?;
-    let mut planner = Planner::new(shadows.config.planner_settings(false, request.size))?;
+    let options = PlannerOptions { image_size: request.size, ..PlannerOptions::default() };
+    let mut planner = Planner::with_options(&shadows.config, options)?;
     let receivers: Vec<Aabb> = setup.pose.objects.iter().map(|object| object.bounds).collect();
     let casters: Vec<Aabb> =
         setup.pose.objects.iter().filter(|object| object.casts).map(|object| object.bounds).collect();

@@ -73,7 +73,7 @@ impl From<umbrage::Error> for Failure {
             umbrage::Error::InvalidSetting { .. }
             | umbrage::Error::Conflict(_)
             | umbrage::Error::UnknownSetting { .. } => return Self::of_settings(&error, &[]),
-            umbrage::Error::ConflictingSettings { second: "camera", .. } => "--bands, --camera",
+            umbrage::Error::CameraConflict { .. } => "--bands, --camera",
             umbrage::Error::InvalidCamera { field, .. } => match *field {
                 "fov" => "--fov",
                 "near" | "far" => "--near, --far",

@@ -83,7 +83,8 @@ fn from_light(split: &Split, aspect: f64) -> Result<View> {
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
-    use umbrage::{Aabb, DirectionalLight, Planner, ShadowSettings, Stabilize};
+    use umbrage::config::{Preset, Stability};
+    use umbrage::{Aabb, DirectionalLight, Planner, ShadowConfig};
 
     use super::*;
 
@@ -93,9 +94,9 @@ mod tests {
         let view = View::look_at_upright(DVec3::new(3.0, 4.0, 5.0), DVec3::ZERO, lens).expect("valid");
         let light = DirectionalLight::new(DVec3::new(0.4, -1.0, 0.3)).expect("valid");
         let world = [Aabb::new(DVec3::splat(-3.0), DVec3::splat(2.0)), Aabb::new(DVec3::splat(4.0), DVec3::splat(5.0))];
-        for stabilize in [Stabilize::None, Stabilize::Exact] {
-            let settings = ShadowSettings { map_sizes: vec![256; 2], stabilize, ..ShadowSettings::default() };
-            let mut planner = Planner::new(settings).expect("valid");
+        for stability in [Stability::tight(), Stability::Exact] {
+            let settings = ShadowConfig { map_sizes: vec![256; 2], stability, ..Preset::Papers.config() };
+            let mut planner = Planner::new(&settings).expect("valid");
             let plan = planner.plan(&view, &light, &world, &world).expect("valid").clone();
             for split in &plan.splits {
                 let seen = from_light(split, 4.0 / 3.0).expect("valid");

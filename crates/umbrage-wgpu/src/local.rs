@@ -77,7 +77,8 @@ pub(crate) fn number(frames: &mut [layout::Frame], slots: &[Slot], plans: &[&Sha
 mod tests {
     use glam::DVec3;
     use proptest::prelude::*;
-    use umbrage::{Aabb, Frustum, Light, Planner, PointLight, ShadowSettings, SpotLight, Stabilize, View};
+    use umbrage::config::{Preset, Stability};
+    use umbrage::{Aabb, Frustum, Light, Planner, PointLight, ShadowConfig, SpotLight, View};
     use umbrage_shaders::twin;
 
     use crate::maps::storage::Tile;
@@ -92,7 +93,7 @@ mod tests {
             offset in (-400.0..400.0f64, -50.0..50.0f64, -400.0..400.0f64),
             at in (0.2..1.0f64, -0.9..0.9f64, -0.9..0.9f64),
             is_point in any::<bool>(),
-            stabilize in prop_oneof![Just(Stabilize::None), Just(Stabilize::Exact)],
+            stability in prop_oneof![Just(Stability::tight()), Just(Stability::Exact)],
         ) {
             let center = DVec3::new(far_away, 3.0, -0.3 * far_away);
             let ground = [Aabb::new(center + DVec3::new(-20.0, -5.0, -20.0), center + DVec3::new(20.0, -4.0, 20.0))];
@@ -107,8 +108,8 @@ mod tests {
             };
             let lens = Frustum::perspective(1.0, 1.3, 0.5, 100.0).expect("valid");
             let view = View::look_at_upright(center + DVec3::new(0.0, 2.0, 15.0), center - DVec3::Y * 3.0, lens).expect("valid");
-            let settings = ShadowSettings { map_sizes: vec![1024; 2], stabilize, ..ShadowSettings::default() };
-            let mut planner = Planner::new(settings).expect("valid");
+            let settings = ShadowConfig { map_sizes: vec![1024; 2], stability, ..Preset::Papers.config() };
+            let mut planner = Planner::new(&settings).expect("valid");
             let plan = planner.plan(&view, &light, &posts, &ground).expect("valid");
             // The frame's origin lies up to half a kilometre from the light.
             let origin = center + DVec3::from(offset);

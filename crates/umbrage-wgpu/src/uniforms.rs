@@ -3,8 +3,8 @@
 use std::f32::consts::TAU;
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
-use umbrage::config::{self, Filter, LightKind, ShadowConfig, SplitMetric};
-use umbrage::{Selection, ShadowPlan};
+use umbrage::ShadowPlan;
+use umbrage::config::{Filter, LightKind, Selection, ShadowConfig, SplitMetric};
 use umbrage_shaders::layout::{self, SelectionKind};
 
 use crate::maps::lights::Slot;
@@ -98,12 +98,12 @@ fn check_choices(plan: &ShadowPlan, config: &ShadowConfig) -> Result<()> {
     let mismatch = |setting, made_for: &str, given: &str| {
         Err(Error::PlanOfOtherConfig { setting, made_for: made_for.to_owned(), given: given.to_owned() })
     };
-    let by_map = config.selection == config::Selection::Map;
+    let by_map = config.selection == Selection::Map;
     if by_map != (plan.selection == Selection::Map) {
         let word = |by_map| if by_map { "map" } else { "depth" };
         return mismatch("selection", word(by_map), word(!by_map));
     }
-    let radial = config.selection == config::Selection::Interval(SplitMetric::Distance);
+    let radial = config.selection == Selection::Interval(SplitMetric::Distance);
     if radial != plan.radial_eye.is_some() {
         let word = |radial| if radial { "radial" } else { "planar" };
         return mismatch("bands", word(radial), word(!radial));
@@ -153,7 +153,7 @@ fn frame(
         transition: transition_kind(config.transition) as u32,
         slice: layout::EVERY_SLICE,
         selection: match plan.selection {
-            Selection::Depth => SelectionKind::Depth,
+            Selection::Interval(_) => SelectionKind::Depth,
             Selection::Map => SelectionKind::Map,
         } as u32,
         map_blend: plan.blend as f32,

@@ -6,7 +6,9 @@ use bytemuck::{Pod, Zeroable};
 use common::{Ask, DISC, Gpu, PCF3, PCF5, PCSS, World, ask, config, cuboid, ground, quad};
 use glam::{DVec3, Vec3};
 use umbrage::config::{Filter, LightKind, ShadowConfig};
-use umbrage::{Aabb, DirectionalLight, Frustum, Light, Planner, PointLight, ShadowPlan, SpotLight, View};
+use umbrage::{
+    Aabb, DirectionalLight, Frustum, Light, Planner, PlannerOptions, PointLight, ShadowPlan, SpotLight, View,
+};
 use umbrage_wgpu::{Error, FrameOptions, LightMaps, ShadowMaps};
 
 const LAMP: DVec3 = DVec3::new(0.0, 4.0, 0.0);
@@ -35,8 +37,8 @@ fn view() -> View {
 }
 
 fn planned(maps: &ShadowMaps, light: Light) -> ShadowPlan {
-    let settings = maps.config().planner_settings(maps.depth_clamp(), [800, 600]);
-    let mut planner = Planner::new(settings).expect("valid");
+    let options = PlannerOptions { depth_clamp: maps.depth_clamp(), ..PlannerOptions::default() };
+    let mut planner = Planner::with_options(maps.config(), options).expect("valid");
     planner.plan(&view(), &light, &boxes(), &boxes()).expect("valid").clone()
 }
 
@@ -193,7 +195,7 @@ fn lights_have_map_sizes_of_their_own() {
     );
     let plan_with = |light: Light, map_sizes: &[u32]| {
         let own = ShadowConfig { map_sizes: map_sizes.to_vec(), ..asked.clone() };
-        let mut planner = Planner::new(own.planner_settings(false, [800, 600])).expect("valid");
+        let mut planner = Planner::new(&own).expect("valid");
         planner.plan(&view(), &light, &boxes(), &boxes()).expect("valid").clone()
     };
     let plans = [plan_with(sun, &[256; 3]), plan_with(lamp, &[128; 2])];
@@ -251,8 +253,8 @@ fn what_the_device_or_the_config_cannot_hold_is_refused() {
     // A sun in a point light's place is drawn there; the other five faces are nobody's.
     let mut cube = ShadowMaps::new(&gpu.device, &maps_of(PCF3), &[LightKind::Point]).expect("valid");
     assert!([&sun, &spot, &lamp].iter().all(|plan| cube.prepare(&gpu.queue, plan, &frame).is_ok()));
-    let other = config(&[128; 2], PCF3, "").planner_settings(maps.depth_clamp(), [800, 600]);
-    let mut planner = Planner::new(other).expect("valid");
+    let options = PlannerOptions { depth_clamp: maps.depth_clamp(), ..PlannerOptions::default() };
+    let mut planner = Planner::with_options(&config(&[128; 2], PCF3, ""), options).expect("valid");
     let plan = planner.plan(&view(), &lights()[1], &boxes(), &boxes()).expect("valid");
     assert!(matches!(cube.prepare(&gpu.queue, plan, &frame), Err(Error::PlanMismatch { .. })));
 }

@@ -5,8 +5,9 @@ mod common;
 
 use common::{DISC, ESM, EVSM2, EVSM4, Gpu, MSM, PCF3, PCF5, PCF7, PCSS, VSM, World, config, cuboid};
 use glam::{DVec3, Vec3};
-use umbrage::config::{Derivatives, Filter};
-use umbrage::{Aabb, DirectionalLight, Frustum, Planner, ShadowPlan, ShadowSettings, SplitScheme, View};
+use umbrage::config::{Derivatives, Filter, Preset, Range, SplitScheme};
+use umbrage::config::{Filter, Preset, SplitScheme};
+use umbrage::{Aabb, DirectionalLight, FilterReach, Frustum, Planner, PlannerOptions, ShadowConfig, ShadowPlan, View};
 use umbrage_truth::scores::{Answers, Domain, Seams, seams};
 use umbrage_truth::{Hit, TruthMask};
 use umbrage_wgpu::FrameOptions;
@@ -68,20 +69,20 @@ fn truth(boxes: &[Aabb]) -> Domain {
 }
 
 fn plan(filter: &Filter, boxes: &[Aabb]) -> ShadowPlan {
-    let settings = ShadowSettings {
+    let settings = ShadowConfig {
         map_sizes: vec![MAP; SPLITS],
         scheme: SplitScheme::Logarithmic,
-        range: Some(RANGE),
-        filter_radius: filter.radius_texels(),
-        image_size: [SIZE; 2],
+        range: Range::Metres { near: RANGE.0, far: RANGE.1 },
         far_fade: 0.0,
-        ..ShadowSettings::default()
+        ..Preset::Papers.config()
     };
     let eye = DVec3::new(0.0, EYE_HEIGHT, 0.0);
     let frustum = Frustum::perspective(2.0, 1.0, RANGE.0, RANGE.1).expect("a lens");
     let view = View::look_at(eye, eye + DVec3::X, DVec3::Y, frustum).expect("a view");
     let ground = Aabb::new(DVec3::new(0.0, -0.01, -150.0), DVec3::new(160.0, 0.0, 150.0));
-    let mut planner = Planner::new(settings).expect("valid settings");
+    let reach = FilterReach { radius_texels: filter.radius_texels(), half_width_m: None };
+    let options = PlannerOptions { filter_reach: Some(reach), image_size: [SIZE; 2], ..PlannerOptions::default() };
+    let mut planner = Planner::with_options(&settings, options).expect("valid settings");
     planner.plan(&view, &DirectionalLight::new(TRAVEL).expect("a direction"), boxes, &[ground]).expect("a plan").clone()
 }
 

@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use common::{Gpu, World, cuboid};
 use glam::{DQuat, DVec3, Vec3};
 use umbrage::config::{Filter, LightKind};
-use umbrage::{Aabb, DirectionalLight, Frustum, Planner, SteppedSun, View};
+use umbrage::{Aabb, DirectionalLight, Frustum, Planner, PlannerOptions, SteppedSun, View};
 use umbrage_wgpu::FrameOptions;
 
 /// A point, and the share of the second sun.
@@ -36,7 +36,8 @@ fn seen(frames: u32, fade: f64) -> Option<Vec<Vec<f32>>> {
     let asked = common::config(&[256; 2], Filter::Hard, "");
     let mut world = World::of_lights(Gpu::new()?, &asked, &[LightKind::Directional; 2]);
     let source = world.maps.receiver_wgsl(1) + FADED;
-    let planner = || Planner::new(asked.planner_settings(world.maps.depth_clamp(), [800, 600])).expect("valid");
+    let options = PlannerOptions { depth_clamp: world.maps.depth_clamp(), ..PlannerOptions::default() };
+    let planner = || Planner::with_options(&asked, options).expect("valid");
     let mut planners = [planner(), planner()];
     let mut stepped = SteppedSun::new(0.07, fade).expect("valid");
     let lens = Frustum::perspective(1.2, 1.0, 0.3, 60.0).expect("a lens");

@@ -5,13 +5,15 @@ mod common;
 
 use common::{Ask, Gpu, World, ask, config, cuboid, ground, plan};
 use glam::{DVec3, DVec4, Vec3};
-use umbrage::config::LightKind;
-use umbrage::{Bands, Selection, ShadowPlan};
+use umbrage::ShadowPlan;
+use umbrage::config::{LightKind, Selection, SplitMetric};
 use umbrage_wgpu::{Error, Filter, FrameOptions, ShadowConfig, ShadowMaps};
 
 const SIZES: [u32; 3] = [128; 3];
 
-fn planned(selection: Selection, bands: Bands) -> ShadowPlan {
+const RADIAL: Selection = Selection::Interval(SplitMetric::Distance);
+
+fn planned(selection: Selection) -> ShadowPlan {
     let mut plan =
         plan(DVec3::new(0.4, -1.0, 0.2), DVec3::ZERO, &SIZES, &[1.0, 12.0, 30.0, 90.0], &[40.0, 60.0, 100.0]);
     for split in &mut plan.splits {
@@ -20,7 +22,7 @@ fn planned(selection: Selection, bands: Bands) -> ShadowPlan {
     plan.view_depth_plane = DVec4::new(1.0, 0.0, 0.2, 25.0);
     plan.blend = 0.2;
     plan.selection = selection;
-    plan.radial_eye = (bands == Bands::Radial).then_some(DVec3::new(-25.0, 2.0, 0.0));
+    plan.radial_eye = (selection == RADIAL).then_some(DVec3::new(-25.0, 2.0, 0.0));
     plan
 }
 
@@ -44,13 +46,13 @@ fn answers(gpu: Gpu, config: &ShadowConfig, lights: &[LightKind], plan: &ShadowP
 
 #[test]
 fn a_text_for_suns_answers_as_a_text_for_any_single_light() {
-    for (filter, selection, bands, settings) in [
-        ("hard", Selection::Depth, Bands::Planar, "transition=hard"),
-        ("pcf2", Selection::Map, Bands::Planar, "selection=map blend=0.2"),
-        ("pcf3", Selection::Depth, Bands::Planar, "blend=0.2"),
-        ("pcf5", Selection::Depth, Bands::Radial, "bands=radial transition=dither bias=slope"),
+    for (filter, selection, settings) in [
+        ("hard", Selection::default(), "transition=hard"),
+        ("pcf2", Selection::Map, "selection=map blend=0.2"),
+        ("pcf3", Selection::default(), "blend=0.2"),
+        ("pcf5", RADIAL, "bands=radial transition=dither bias=slope"),
     ] {
-        let plan = planned(selection, bands);
+        let plan = planned(selection);
         let filter: Filter = filter.parse().expect("a filter");
         let config = config(&SIZES, filter, settings);
         let Some((one, other)) = Gpu::new().zip(Gpu::new()) else { return };
@@ -82,12 +84,10 @@ fn a_plan_of_other_choices_is_refused() {
     let Some(gpu) = Gpu::new() else { return };
     let config = config(&SIZES, Filter::Pcf3 { width_m: None }, "");
     let mut maps = ShadowMaps::new(&gpu.device, &config, &common::SUN).expect("valid config");
-    for (name, plan) in
-        [("selection", planned(Selection::Map, Bands::Planar)), ("bands", planned(Selection::Depth, Bands::Radial))]
-    {
+    for (name, plan) in [("selection", planned(Selection::Map)), ("bands", planned(RADIAL))] {
         let error = maps.prepare(&gpu.queue, &plan, &FrameOptions::default()).expect_err(name);
         assert!(matches!(error, Error::PlanOfOtherConfig { setting, .. } if setting == name), "{error}");
     }
-    let right = planned(Selection::Depth, Bands::Planar);
+    let right = planned(Selection::default());
     assert_eq!(maps.prepare(&gpu.queue, &right, &FrameOptions::default()), Ok(()));
 }

@@ -7,10 +7,8 @@ mod common;
 
 use common::{Gpu, PCF3, World, config, cuboid};
 use glam::{DQuat, DVec2, DVec3, IVec2, Vec3};
-use umbrage::{
-    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, ShadowPlan, ShadowSettings, Split, Stabilize,
-    SteppedSun, SunFade, View,
-};
+use umbrage::config::{Crop, ExtentSteps, Preset, Range, Stability};
+use umbrage::{Aabb, DirectionalLight, Frustum, Planner, ShadowConfig, ShadowPlan, Split, SteppedSun, SunFade, View};
 use umbrage_wgpu::FrameOptions;
 
 const FRAMES: u32 = 600;
@@ -95,8 +93,8 @@ struct Tally {
     widest: f32,
 }
 
-fn walk(world: &mut World, town: &Town, settings: &ShadowSettings, frames: u32) -> Tally {
-    let mut planner = Planner::new(settings.clone()).expect("valid");
+fn walk(world: &mut World, town: &Town, settings: &ShadowConfig, frames: u32) -> Tally {
+    let mut planner = Planner::new(settings).expect("valid");
     let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).expect("a direction");
     let (mut tally, mut before): (Tally, Option<Frame>) = Default::default();
     for k in 0..frames {
@@ -171,13 +169,13 @@ fn world() -> Option<World> {
     Some(World::new(Gpu::new()?, &config(&[SIZE; SPLITS], PCF3, "")))
 }
 
-fn settings(stabilize: Stabilize) -> ShadowSettings {
-    ShadowSettings {
+fn settings(stability: Stability) -> ShadowConfig {
+    ShadowConfig {
         map_sizes: vec![SIZE; SPLITS],
-        range: Some((1.0, 110.0)),
-        fit: Fit::Dependent,
-        stabilize,
-        ..ShadowSettings::default()
+        range: Range::Metres { near: 1.0, far: 110.0 },
+        crop: Crop::SceneDependent,
+        stability,
+        ..Preset::Papers.config()
     }
 }
 
@@ -187,7 +185,7 @@ fn no_static_texel_changes_while_step_and_origin_stand() {
     // At 100 km the path crosses a kilometre's border, so that the origin moves once.
     for place in [DVec3::ZERO, DVec3::new(7_071.3, 12.7, -7_071.1), DVec3::new(99_840.0, -31.4, 470.0)] {
         let town = Town::new(place);
-        let tally = walk(&mut world, &town, &settings(Stabilize::Exact), FRAMES);
+        let tally = walk(&mut world, &town, &settings(Stability::Exact), FRAMES);
         eprintln!("exact at {place}: {tally:?}");
         assert_eq!((tally.different, tally.outside), (0, 0), "{tally:?} at {place}");
         assert!(tally.filled > 50_000 && tally.texels > 2_000_000, "{tally:?}");
@@ -202,7 +200,7 @@ fn nor_does_one_of_an_approximate_map_between_its_steps() {
     let town = Town::new(DVec3::new(7_071.3, 12.7, -7_071.1));
     // While it turns and zooms a map takes a step of 9 % every tenth frame at most, a finer one every fifth.
     for (steps, frames) in [(ExtentSteps::PerDoubling(8), 10), (ExtentSteps::default(), 5)] {
-        let tally = walk(&mut world, &town, &settings(Stabilize::Approximate(steps)), FRAMES);
+        let tally = walk(&mut world, &town, &settings(Stability::Approximate { steps }), FRAMES);
         eprintln!("approximate, {steps:?}: {tally:?}");
         assert_eq!(tally.different, 0, "{tally:?}");
         assert!(tally.filled > 50_000 && tally.texels > 2_000_000, "{tally:?}");
@@ -226,7 +224,7 @@ fn between_steps_of_the_sun_no_static_texel_changes() {
 
 /// The texels of 150 frames, as many as go by before the zoom takes a step of its own, and the steps that the sun took.
 fn walk_under_stepped_sun(world: &mut World, town: &Town) -> (Tally, usize) {
-    let mut planner = Planner::new(settings(Stabilize::Exact)).expect("valid");
+    let mut planner = Planner::new(&settings(Stability::Exact)).expect("valid");
     let mut stepped = SteppedSun::new(0.01, 8.0).expect("valid");
     let (mut tally, mut steps, mut before): (Tally, usize, Option<(Frame, SunFade)>) = Default::default();
     for k in 0..150 {
@@ -254,6 +252,6 @@ fn walk_under_stepped_sun(world: &mut World, town: &Town) -> (Tally, usize) {
 fn unstabilised_texels_change_all_the_time() {
     let Some(mut world) = world() else { return };
     let town = Town::new(DVec3::ZERO);
-    let tally = walk(&mut world, &town, &settings(Stabilize::None), 20);
+    let tally = walk(&mut world, &town, &settings(Stability::tight()), 20);
     assert_eq!((tally.still, tally.stepped), (0, 19 * SPLITS), "{tally:?}");
 }

@@ -2,7 +2,8 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::DVec3;
-use umbrage::{Aabb, DirectionalLight, Fit, Frustum, Planner, ShadowSettings, SplitScheme, Stabilize, View};
+use umbrage::config::{Crop, Preset, Range, SplitScheme, Stability};
+use umbrage::{Aabb, DirectionalLight, Frustum, Planner, ShadowConfig, View};
 
 fn plan(criterion: &mut Criterion) {
     let mut world: Vec<Aabb> = (0..10_000u32)
@@ -17,15 +18,15 @@ fn plan(criterion: &mut Criterion) {
     let view = View::look_at_upright(DVec3::new(0.0, 20.0, 1500.0), DVec3::ZERO, frustum).expect("valid");
     let light = DirectionalLight::new(DVec3::new(-0.6, -1.0, 0.4)).expect("valid");
     let mut group = criterion.benchmark_group("plan 10,000 casters, 4 splits");
-    for fit in [Fit::Independent, Fit::Dependent] {
-        for stabilize in [Stabilize::None, Stabilize::Exact] {
-            for scheme in [SplitScheme::default(), SplitScheme::Fitted] {
-                let name = if scheme == SplitScheme::Fitted { " fitted planes" } else { "" };
-                let range = Some((1.0, 800.0));
-                let settings = ShadowSettings { fit, stabilize, range, scheme, ..ShadowSettings::default() };
-                let mut planner = Planner::new(settings).expect("valid");
+    for crop in [Crop::SceneIndependent, Crop::SceneDependent] {
+        for stability in [Stability::tight(), Stability::Exact] {
+            for scheme in [SplitScheme::practical(), SplitScheme::Optimal] {
+                let name = if scheme == SplitScheme::Optimal { " optimal planes" } else { "" };
+                let (range, stability) = (Range::Metres { near: 1.0, far: 800.0 }, stability.clone());
+                let settings = ShadowConfig { crop, stability, range, scheme, ..Preset::Papers.config() };
+                let mut planner = Planner::new(&settings).expect("valid");
                 let pairs = planner.plan(&view, &light, &world, &world).expect("valid").caster_indices.len();
-                group.bench_function(format!("{fit:?} {stabilize:?}{name} ({pairs} pairs)"), |b| {
+                group.bench_function(format!("{crop} {}{name} ({pairs} pairs)", settings.stability.word()), |b| {
                     b.iter(|| planner.plan(&view, &light, &world, &world).expect("valid").caster_indices.len());
                 });
             }

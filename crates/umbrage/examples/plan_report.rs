@@ -42,7 +42,7 @@ pub fn report() -> Result<String, Box<dyn Error>> {
     let (casters, receivers) = street();
 
     // One planner serves all frames of a view: it holds what keeps shadows still.
-    let mut planner = Planner::new(config.planner_settings(false, IMAGE_SIZE))?;
+    let mut planner = Planner::new(&config)?;
     let inputs = PlanInputs { image_size: IMAGE_SIZE, ..PlanInputs::new(&view, sun, &casters, &receivers) };
     let plan = planner.plan_frame(&inputs)?;
 

@@ -28,22 +28,21 @@ pub enum Error {
     /// A shadow setting is out of range.
     #[error("shadow setting {field}: {reason}")]
     InvalidSetting {
-        /// The setting at fault, by its name in [`crate::ShadowSettings`].
+        /// The setting at fault by its key in [`crate::config::SETTINGS`], or the field of
+        /// [`crate::PlannerOptions`], [`crate::FilterReach`] or [`crate::PlanInputs`].
         field: &'static str,
         /// What was wrong and what to do.
         reason: String,
     },
-    /// Two shadow settings exclude each other.
-    #[error("shadow settings {first} and {second} exclude each other: {reason}")]
-    ConflictingSettings {
-        /// One of them, by its name in [`crate::ShadowSettings`].
-        first: &'static str,
-        /// The other.
-        second: &'static str,
+    /// A shadow setting and the camera exclude each other.
+    #[error("shadow setting {setting} and the camera exclude each other: {reason}")]
+    CameraConflict {
+        /// The setting's key.
+        setting: &'static str,
         /// Why, and what to do.
         reason: String,
     },
-    /// Two settings of a [`crate::ShadowConfig`] exclude each other.
+    /// Two settings of a [`crate::ShadowConfig`], or a setting and the light, exclude each other.
     #[error("{0}")]
     Conflict(Box<crate::config::Conflict>),
     /// No setting has this key.

@@ -1,6 +1,7 @@
 //! How many texels a map keeps free around what it serves.
 
-use crate::ShadowSettings;
+use crate::config::Filter;
+use crate::{Error, Result, ShadowConfig};
 
 /// Texels that a map keeps free besides the filter's reach: half for the texel that a sample's rounding may choose, one for the
 /// normal offset of the receiver's bias.
@@ -13,23 +14,57 @@ const TAP: f64 = 1.0;
 /// depth cannot be loaded.
 const LEAST_REACH: f64 = 4.0;
 
-/// How far a filter reaches.
+/// How far a filter reads from the sample: the margin that each map keeps around what it serves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Reach {
-    /// Texels, at most.
-    most: f64,
-    /// Half width of its kernel in metres, if that is known.
-    metres: Option<f64>,
+pub struct FilterReach {
+    /// Texels from the sample, 0 to 64: 0.5 for one nearest texel, 1 for a bilinear comparison, 1.5
+    /// and 2.5 for tents of 3 and 5.
+    pub radius_texels: f64,
+    /// Half the width of the filter's kernel in metres, up to 1000 km, where it is known. Splits in
+    /// which that is less than `radius_texels` keep a margin of as many metres, and of 4 texels at
+    /// least ([`crate::Split::filter_reach`]). `None`: all keep `radius_texels`. Warped maps and
+    /// those of local lights always do.
+    pub half_width_m: Option<f64>,
 }
 
-impl Reach {
-    pub fn of(settings: &ShadowSettings) -> Self {
-        Self { most: settings.filter_radius, metres: settings.filter_half_width_m }
+impl From<&Filter> for FilterReach {
+    fn from(filter: &Filter) -> Self {
+        Self { radius_texels: filter.radius_texels(), half_width_m: filter.half_width_m() }
+    }
+}
+
+impl FilterReach {
+    /// Checks that it means something, and that the config's maps hold it.
+    pub(crate) fn check(self, config: &ShadowConfig) -> Result<()> {
+        let Self { radius_texels: radius, half_width_m } = self;
+        if !(0.0..=64.0).contains(&radius) {
+            return Err(Error::setting("radius_texels", format!("{radius} texels; give 0 to 64")));
+        }
+        if let Some(half_width) = half_width_m.filter(|metres| !(0.0..=1e6).contains(metres)) {
+            return Err(Error::setting("half_width_m", format!("{half_width} m; give 0 to 1000 km")));
+        }
+        let least = self.least_map_size(config.is_stabilised());
+        match config.map_sizes.iter().position(|&size| size < least) {
+            Some(map) => {
+                let size = config.map_sizes[map];
+                let reason =
+                    format!("map {map} is {size} texels wide; give {least} to 65536 with a filter of {radius} texels");
+                Err(Error::setting("map-size", reason))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Edge in texels of the smallest map that holds the filter's margins: one texel beside them, and
+    /// one for moving in whole texels.
+    pub(crate) fn least_map_size(self, is_stabilised: bool) -> u32 {
+        let moving = if is_stabilised { 5.0 } else { 4.0 };
+        (2.0 * self.radius_texels + moving).ceil() as u32
     }
 
     /// That of maps whose texels differ in size: the most.
-    pub fn most(settings: &ShadowSettings) -> Self {
-        Self { metres: None, ..Self::of(settings) }
+    pub(crate) fn most(self) -> Self {
+        Self { half_width_m: None, ..self }
     }
 
     /// Texels around the sample in a map of `size` texels whose shorter edge has to show `edge` metres; `spare` texels of that edge are for
@@ -37,20 +72,20 @@ impl Reach {
     ///
     /// With a kernel of half width h the edge takes e + 2 h metres and 2 + spare texels, so a texel is (e + 2 h) / (size − 2 − spare) and the
     /// reach 1 + h / texel, unless that is more than the filter's most: then it is that, and the filter narrower than asked for.
-    pub fn texels(self, edge: f64, size: u32, spare: f64) -> f64 {
-        let Some(half_width) = self.metres else { return self.most };
+    pub(crate) fn texels(self, edge: f64, size: u32, spare: f64) -> f64 {
+        let Some(half_width) = self.half_width_m else { return self.radius_texels };
         let texel = (edge + 2.0 * half_width) / (f64::from(size) - 2.0 * TAP - spare);
-        (half_width / texel + TAP).max(LEAST_REACH).min(self.most)
+        (half_width / texel + TAP).max(LEAST_REACH).min(self.radius_texels)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Reach;
+    use super::FilterReach;
 
     #[test]
     fn a_known_width_takes_as_many_texels_as_it_is_wide() {
-        let reach = Reach { most: 16.0, metres: Some(0.5) };
+        let reach = FilterReach { radius_texels: 16.0, half_width_m: Some(0.5) };
         for edge in [1.0, 20.0, 37.0, 80.0, 300.0, 1e5] {
             let texels = reach.texels(edge, 512, 3.0);
             let texel = edge / (512.0 - 2.0 * texels - 3.0);
@@ -62,7 +97,7 @@ mod tests {
                 "{edge}: {wanted}"
             );
         }
-        assert_eq!(Reach { most: 16.0, metres: None }.texels(20.0, 512, 3.0), 16.0);
-        assert_eq!(Reach { most: 1.5, metres: Some(0.5) }.texels(20.0, 512, 3.0), 1.5);
+        assert_eq!(FilterReach { radius_texels: 16.0, half_width_m: None }.texels(20.0, 512, 3.0), 16.0);
+        assert_eq!(FilterReach { radius_texels: 1.5, half_width_m: Some(0.5) }.texels(20.0, 512, 3.0), 1.5);
     }
 }

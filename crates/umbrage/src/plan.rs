@@ -3,8 +3,12 @@
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use crate::casters::Gathered;
+use crate::config::Selection;
 use crate::coverage::PlanCoverage;
-use crate::{Aabb, DepthConvention, Light, Selection, View};
+use crate::{Aabb, DepthConvention, Light, View};
+
+/// The most splits a light can have.
+pub const MAX_SPLITS: usize = 8;
 
 /// The shadow maps of one light for one view.
 ///
@@ -17,7 +21,7 @@ pub struct ShadowPlan {
     pub planes: Vec<f64>,
     /// The plane that measures view depth: `xyz · point + w`, in metres.
     pub view_depth_plane: DVec4,
-    /// With [`crate::Bands::Radial`] the eye, metres: all depths of this plan are then distances to it. `None`: view depths.
+    /// With [`crate::config::SplitMetric::Distance`] the eye, metres: all depths of this plan are then distances to it. `None`: view depths.
     pub radial_eye: Option<DVec3>,
     /// The way light travels, a unit vector; the axis of a spot light. A point light has none and the value is straight down.
     pub light_direction: DVec3,
@@ -49,7 +53,7 @@ impl ShadowPlan {
             Light::Point(_) => DVec3::NEG_Y,
         };
         self.light = Some(light);
-        self.selection = Selection::Depth;
+        self.selection = Selection::default();
         self.blend = 0.0;
         self.planes.clear();
         self.caster_indices.clear();
@@ -124,9 +128,12 @@ impl ShadowPlan {
         }
         let mut covering = self.splits.iter().enumerate().filter(|(i, _)| self.coverage.contains(*i, point));
         match self.selection {
-            Selection::Depth => covering.find(|(_, split)| split.casters.is_empty() || in_map(split)),
-            // A map has all casters of what it contains, and nobody looked for those of points that no map contains.
-            Selection::Map => covering.find(|(_, split)| !split.casters.is_empty() && in_map(split)),
+            Selection::Interval(_) => covering.find(|(_, split)| split.casters.is_empty() || in_map(split)),
+            // Later maps leave out casters whose shadows lie over an earlier one, so that one has to answer or nobody
+            // does. It does not answer for points before its depth range, where nobody looked for casters.
+            Selection::Map => covering
+                .find(|(_, split)| !split.casters.is_empty() && split.lies_over(point, split.filter_reach))
+                .filter(|(_, split)| in_map(split)),
         }
         .map(|(i, _)| i)
     }
@@ -183,7 +190,7 @@ pub struct Split {
     /// depth's moments spread their numbers over. A caster may lie before it.
     pub receiver_depths: (f64, f64),
     /// Texels around a sample that a filter may read: what lies on screen lies that far inside the map.
-    /// [`crate::ShadowSettings::filter_radius`], or less where the filter's width is known in metres.
+    /// [`crate::FilterReach::radius_texels`], or less where the filter's width is known in metres.
     pub filter_reach: f64,
     /// Shadow NDC (x, y in [−1,1], y up, z in \[0,1\]) from world, to be divided by w; `None` for a plain map. w is positive at every
     /// receiver, and does not change along parallel light.
@@ -289,12 +296,17 @@ impl Split {
         shared.then_some(shift)
     }
 
-    /// Whether a world point lies inside the map, `margin` texels away from its edge.
+    /// Whether a world point lies inside the map, `margin` texels away from its edge, and within its depth range.
     #[must_use]
     pub fn contains(&self, point: DVec3, margin: f64) -> bool {
+        self.lies_over(point, margin) && (0.0..=1.0).contains(&self.map_from_world(point).z)
+    }
+
+    /// Whether a world point lies over the map's rectangle, `margin` texels away from its edge, at any depth.
+    pub(crate) fn lies_over(&self, point: DVec3, margin: f64) -> bool {
         let at = self.map_from_world(point);
         let inside = margin..=f64::from(self.size) - margin;
-        inside.contains(&at.x) && inside.contains(&at.y) && (0.0..=1.0).contains(&at.z)
+        inside.contains(&at.x) && inside.contains(&at.y)
     }
 
     /// How u and v change with the world around a point, in texels per metre. Both vectors lie across the light. The same

@@ -1,15 +1,16 @@
 //! Predicted texels per pixel against finite differences.
 
 use glam::{DMat2, DVec2, DVec3};
-use umbrage::{Aabb, DirectionalLight, Frustum, Planner, ShadowSettings, Stabilize, View};
+use umbrage::config::{Preset, Stability};
+use umbrage::{Aabb, DirectionalLight, Frustum, Planner, ShadowConfig, View};
 
 #[test]
 fn the_jacobian_agrees_with_rays_a_pixel_apart() {
     let frustum = Frustum::perspective(1.0, 4.0 / 3.0, 1.0, 500.0).expect("valid");
     let view = View::look_at_upright(DVec3::new(3.0, 12.0, 40.0), DVec3::new(-5.0, 0.0, 0.0), frustum).expect("valid");
     let light = DirectionalLight::new(DVec3::new(0.4, -1.0, -0.2)).expect("valid");
-    let settings = ShadowSettings { stabilize: Stabilize::None, ..ShadowSettings::default() };
-    let mut planner = Planner::new(settings).expect("valid");
+    let settings = ShadowConfig { stability: Stability::tight(), ..Preset::Papers.config() };
+    let mut planner = Planner::new(&settings).expect("valid");
     let world = [Aabb::new(DVec3::new(-200.0, 0.0, -200.0), DVec3::new(200.0, 3.0, 200.0))];
     let plan = planner.plan(&view, &light, &world, &world).expect("valid");
     let (width, height) = (800.0, 600.0);
@@ -42,7 +43,7 @@ fn the_jacobian_agrees_with_rays_a_pixel_apart() {
 fn the_perspective_part_is_the_formula() {
     let frustum = Frustum::perspective(60f64.to_radians(), 4.0 / 3.0, 1.0, 500.0).expect("valid");
     let view = View::look_at_upright(DVec3::Y, DVec3::ZERO, frustum).expect("valid");
-    let mut planner = Planner::new(ShadowSettings::default()).expect("valid");
+    let mut planner = Planner::new(&Preset::Papers.config()).expect("valid");
     let light = DirectionalLight::new(DVec3::NEG_Y).expect("valid");
     let plan = planner.plan(&view, &light, &[], &[]).expect("valid");
     let split = &plan.splits[2];

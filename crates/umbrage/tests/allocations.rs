@@ -1,9 +1,10 @@
 //! After the first frame the planner allocates nothing.
 
 use glam::DVec3;
+use umbrage::config::{Crop, ExtentSteps, Preset, SplitScheme, Stability};
 use umbrage::{
-    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Light, PlanInputs, Planner, PointLight, ShadowPlan,
-    ShadowSettings, SplitScheme, SpotLight, Stabilize, View, Warp,
+    Aabb, DirectionalLight, Frustum, Light, PlanInputs, Planner, PointLight, ShadowConfig, ShadowPlan, SpotLight, View,
+    Warp,
 };
 
 #[test]
@@ -17,10 +18,10 @@ fn only_the_first_frame_allocates() {
     let light = DirectionalLight::new(DVec3::new(0.4, -1.0, 0.3)).expect("valid");
     let frustum = Frustum::perspective(1.0, 1.5, 0.5, 500.0).expect("valid");
     let view = |angle: f64| View::look_at_upright(DVec3::Y * 10.0, DVec3::new(angle.cos(), 9.9, angle.sin()), frustum);
-    for fit in [Fit::Dependent, Fit::Independent] {
-        for stabilize in [Stabilize::Exact, Stabilize::None] {
-            let settings = ShadowSettings { fit, stabilize, ..ShadowSettings::default() };
-            let mut planner = Planner::new(settings).expect("valid");
+    for crop in [Crop::SceneDependent, Crop::SceneIndependent] {
+        for stability in [Stability::Exact, Stability::tight()] {
+            let settings = ShadowConfig { crop, stability: stability.clone(), ..Preset::Papers.config() };
+            let mut planner = Planner::new(&settings).expect("valid");
             let view = view(0.3).expect("valid");
             let at = DVec3::new(60.0, 20.0, 10.0);
             let lamp = PointLight::new(at, 80.0).expect("valid");
@@ -30,13 +31,15 @@ fn only_the_first_frame_allocates() {
                 let again = allocation_counter::measure(|| {
                     planner.plan(&view, &light, &world, &world).expect("valid");
                 });
-                assert_eq!(again.count_total, 0, "{fit:?} {stabilize:?} {light:?} allocated {again:?}");
+                assert_eq!(again.count_total, 0, "{crop:?} {stability:?} {light:?} allocated {again:?}");
             }
         }
-        for stabilize in [Stabilize::Exact, Stabilize::None, Stabilize::Approximate(ExtentSteps::default())] {
-            let scheme = SplitScheme::Fitted;
-            let settings = ShadowSettings { fit, stabilize, scheme, ..ShadowSettings::default() };
-            let mut planner = Planner::new(settings).expect("valid");
+        for stability in
+            [Stability::Exact, Stability::tight(), Stability::Approximate { steps: ExtentSteps::default() }]
+        {
+            let scheme = SplitScheme::Optimal;
+            let settings = ShadowConfig { crop, stability: stability.clone(), scheme, ..Preset::Papers.config() };
+            let mut planner = Planner::new(&settings).expect("valid");
             let view = view(0.3).expect("valid");
             let inputs = PlanInputs::new(&view, light, &world, &world);
             let inputs = PlanInputs { receiver_clusters: Some(&world), ..inputs };
@@ -49,18 +52,18 @@ fn only_the_first_frame_allocates() {
                     planner.plan_into(&inputs, &mut plan).expect("valid");
                 }
             });
-            assert_eq!(again.count_total, 0, "{fit:?} {stabilize:?} fitted planes allocated {again:?}");
+            assert_eq!(again.count_total, 0, "{crop:?} {stability:?} fitted planes allocated {again:?}");
         }
         for warp in [Warp::Psm, Warp::Lispsm, Warp::Tsm { focus: 0.2 }] {
             let settings =
-                ShadowSettings { fit, stabilize: Stabilize::None, warps: vec![warp], ..ShadowSettings::default() };
-            let mut planner = Planner::new(settings).expect("valid");
+                ShadowConfig { crop, stability: Stability::Tight { warps: vec![warp] }, ..Preset::Papers.config() };
+            let mut planner = Planner::new(&settings).expect("valid");
             let view = view(0.3).expect("valid");
             planner.plan(&view, &light, &world, &world).expect("valid");
             let again = allocation_counter::measure(|| {
                 planner.plan(&view, &light, &world, &world).expect("valid");
             });
-            assert_eq!(again.count_total, 0, "{fit:?} {warp:?} allocated {again:?}");
+            assert_eq!(again.count_total, 0, "{crop:?} {warp:?} allocated {again:?}");
         }
     }
 }

@@ -1,15 +1,25 @@
 //! Settings, lights and bounds that must be refused, by name.
 
 use glam::DVec3;
+use umbrage::config::{DepthFormat, ExtentSteps, Filter, Look, Preset, Range, SplitScheme, Stability, Transition};
 use umbrage::{
-    Aabb, DirectionalLight, Error, ExtentSteps, Frustum, Planner, PointLight, ShadowSettings, SplitScheme, Stabilize,
-    View, Warp,
+    Aabb, DirectionalLight, Error, FilterReach, Frustum, Planner, PlannerOptions, PointLight, ShadowConfig, View,
 };
 
-fn refused(change: impl FnOnce(&mut ShadowSettings)) -> &'static str {
-    let mut settings = ShadowSettings::default();
-    change(&mut settings);
-    match Planner::new(settings).expect_err("these settings are not valid") {
+fn refused(change: impl FnOnce(&mut ShadowConfig)) -> &'static str {
+    let mut config = Preset::Papers.config();
+    change(&mut config);
+    named(Planner::new(&config))
+}
+
+fn refused_option(change: impl FnOnce(&mut PlannerOptions)) -> &'static str {
+    let mut options = PlannerOptions::default();
+    change(&mut options);
+    named(Planner::with_options(&Preset::Papers.config(), options))
+}
+
+fn named(result: umbrage::Result<Planner>) -> &'static str {
+    match result.expect_err("these settings are not valid") {
         Error::InvalidSetting { field, .. } => field,
         other => panic!("another error: {other}"),
     }
@@ -17,46 +27,100 @@ fn refused(change: impl FnOnce(&mut ShadowSettings)) -> &'static str {
 
 #[test]
 fn settings() {
-    assert_eq!(refused(|s| s.map_sizes = vec![]), "map_sizes");
-    assert_eq!(refused(|s| s.map_sizes = vec![512; 9]), "map_sizes");
-    assert_eq!(refused(|s| s.map_sizes = vec![512, 0]), "map_sizes");
-    assert_eq!(refused(|s| s.map_sizes = vec![512, 4]), "map_sizes");
-    assert_eq!(refused(|s| s.map_sizes = vec![1 << 20]), "map_sizes");
-    assert_eq!(refused(|s| s.blend = 1.5), "blend");
-    assert_eq!(refused(|s| s.blend = f64::NAN), "blend");
-    assert_eq!(refused(|s| s.far_fade = -0.1), "far_fade");
-    assert_eq!(refused(|s| s.filter_radius = f64::NAN), "filter_radius");
-    assert_eq!(refused(|s| s.filter_radius = -1.0), "filter_radius");
-    for width in [-0.1, f64::NAN, f64::INFINITY] {
-        assert_eq!(refused(|s| s.filter_half_width_m = Some(width)), "filter_half_width_m");
-    }
-    assert_eq!(refused(|s| s.image_size = [0, 600]), "image_size");
-    assert_eq!(refused(|s| s.range = Some((5.0, 5.0))), "range");
-    assert_eq!(refused(|s| s.range = Some((f64::NAN, 5.0))), "range");
-    assert_eq!(refused(|s| s.range = Some((0.0, 5.0))), "range");
-    assert_eq!(refused(|s| s.range = Some((1.0, f64::INFINITY))), "range");
-    let approximate = |steps| Stabilize::Approximate(steps);
-    assert_eq!(refused(|s| s.stabilize = approximate(ExtentSteps::PerDoubling(0))), "stabilize");
-    assert_eq!(refused(|s| s.stabilize = approximate(ExtentSteps::PerDoubling(65))), "stabilize");
-    assert_eq!(refused(|s| s.stabilize = approximate(ExtentSteps::Levels(1 << 20))), "stabilize");
+    assert_eq!(refused(|c| c.map_sizes = vec![]), "splits");
+    assert_eq!(refused(|c| c.map_sizes = vec![512; 9]), "splits");
+    assert_eq!(refused(|c| c.map_sizes = vec![512, 0]), "map-size");
+    assert_eq!(refused(|c| c.map_sizes = vec![512, 4]), "map-size");
+    assert_eq!(refused(|c| c.map_sizes = vec![1 << 20]), "map-size");
+    assert_eq!(refused(|c| c.transition = Transition::Blend { share: 1.5 }), "blend");
+    assert_eq!(refused(|c| c.transition = Transition::Blend { share: f64::NAN }), "blend");
+    assert_eq!(refused(|c| c.far_fade = -0.1), "far-fade");
+    let range = |near, far| Range::Metres { near, far };
+    assert_eq!(refused(|c| c.range = range(5.0, 5.0)), "shadow-range");
+    assert_eq!(refused(|c| c.range = range(f64::NAN, 5.0)), "shadow-range");
+    assert_eq!(refused(|c| c.range = range(0.0, 5.0)), "shadow-range");
+    assert_eq!(refused(|c| c.range = range(1.0, f64::INFINITY)), "shadow-range");
+    let approximate = |steps| Stability::Approximate { steps };
+    assert_eq!(refused(|c| c.stability = approximate(ExtentSteps::PerDoubling(0))), "extent-steps");
+    assert_eq!(refused(|c| c.stability = approximate(ExtentSteps::PerDoubling(65))), "extent-steps");
+    assert_eq!(refused(|c| c.stability = approximate(ExtentSteps::Levels(1 << 20))), "extent-levels");
     // A texel to move by is needed besides the margins: 2 · 1.5 + 5.
-    assert_eq!(refused(|s| s.map_sizes = vec![7]), "map_sizes");
+    assert_eq!(refused(|c| c.map_sizes = vec![7]), "map-size");
     let practical = |lambda, delta| SplitScheme::Practical { lambda, delta };
-    assert_eq!(refused(|s| s.scheme = practical(1.1, vec![])), "lambda");
-    assert_eq!(refused(|s| s.scheme = practical(f64::NAN, vec![])), "lambda");
-    assert_eq!(refused(|s| s.scheme = practical(0.5, vec![1.0, 2.0])), "delta");
-    assert_eq!(refused(|s| s.scheme = practical(0.5, vec![f64::INFINITY])), "delta");
-    assert_eq!(refused(|s| s.scheme = SplitScheme::Manual(vec![1.0])), "planes");
-    assert_eq!(refused(|s| s.scheme = SplitScheme::Manual(vec![10.0, 9.0, 20.0])), "planes");
+    assert_eq!(refused(|c| c.scheme = practical(1.1, vec![])), "lambda");
+    assert_eq!(refused(|c| c.scheme = practical(f64::NAN, vec![])), "lambda");
+    assert_eq!(refused(|c| c.scheme = practical(0.5, vec![1.0, 2.0])), "delta");
+    assert_eq!(refused(|c| c.scheme = practical(0.5, vec![f64::INFINITY])), "delta");
+    assert_eq!(refused(|c| c.scheme = practical(0.5, vec![1e13])), "delta");
+    assert_eq!(refused(|c| c.scheme = SplitScheme::Manual { planes: vec![1.0] }), "planes");
+    assert_eq!(refused(|c| c.scheme = SplitScheme::Manual { planes: vec![10.0, 9.0, 20.0] }), "planes");
+}
+
+#[test]
+fn options() {
+    let reach = |radius_texels, half_width_m| Some(FilterReach { radius_texels, half_width_m });
+    for radius in [f64::NAN, -1.0, 65.0] {
+        assert_eq!(refused_option(|o| o.filter_reach = reach(radius, None)), "radius_texels");
+    }
+    for width in [-0.1, f64::NAN, f64::INFINITY] {
+        assert_eq!(refused_option(|o| o.filter_reach = reach(1.5, Some(width))), "half_width_m");
+    }
+    assert_eq!(refused_option(|o| o.image_size = [0, 600]), "image_size");
+    // A filter of the engine's own asks for its own margins: 2 · 4 + 5.
+    let wide = PlannerOptions { filter_reach: reach(4.0, None), ..PlannerOptions::default() };
+    let of_size = |size| ShadowConfig { map_sizes: vec![size; 2], ..Preset::Papers.config() };
+    assert_eq!(named(Planner::with_options(&of_size(12), wide)), "map-size");
+    assert!(Planner::with_options(&of_size(13), wide).is_ok());
 }
 
 #[test]
 fn warps_do_not_stand_still() {
-    for stabilize in [Stabilize::Exact, Stabilize::Approximate(ExtentSteps::default())] {
-        let settings = ShadowSettings { stabilize, warps: vec![Warp::Lispsm], ..ShadowSettings::default() };
-        let error = Planner::new(settings).expect_err("a warp follows the camera");
-        assert!(matches!(error, Error::ConflictingSettings { first: "warps", second: "stabilize", .. }), "{error}");
+    for stability in ["exact", "approximate"] {
+        let given = [("stabilize", stability), ("warp", "lispsm")].map(|(key, value)| (key.into(), value.into()));
+        let error = Preset::Papers.config().apply(&given).expect_err("a warp follows the camera");
+        assert!(matches!(error, Error::InvalidSetting { field: "warp", .. }), "{error}");
+        assert!(error.to_string().contains(&format!("stabilize {stability}")), "{error}");
     }
+}
+
+/// A planner goes on holding what it holds through every change that plans do not depend on, and through no other.
+#[test]
+fn a_change_of_what_is_not_planned_leaves_a_planner_alone() {
+    let lens = Frustum::perspective(1.0, 1.0, 0.1, 1000.0).expect("valid");
+    let view = View::look_at_upright(DVec3::Y, DVec3::X, lens).expect("valid");
+    let sun = DirectionalLight::new(DVec3::new(0.2, -1.0, 0.1)).expect("valid");
+    let boxes = [Aabb::new(DVec3::splat(-60.0), DVec3::splat(60.0))];
+    let papers = Preset::Papers.config();
+    let options = PlannerOptions::default();
+    let holds_after = |config: &ShadowConfig, options| {
+        let mut planner = Planner::new(&papers).expect("valid");
+        planner.plan(&view, &sun, &boxes, &boxes).expect("a plan");
+        planner.set_config(config, options).expect("valid");
+        assert_eq!((planner.config(), planner.options()), (config, options));
+        *planner.held() != umbrage::Held::default()
+    };
+    let strength = Look { strength: 0.5, ..Look::default() };
+    let dither = Transition::Dither { share: papers.blend() };
+    for same in [
+        papers.clone(),
+        ShadowConfig { look: strength, ..papers.clone() },
+        ShadowConfig { depth_format: DepthFormat::D16Unorm, ..papers.clone() },
+        ShadowConfig { transition: dither, ..papers.clone() },
+    ] {
+        assert!(holds_after(&same, options), "{same:?}");
+    }
+    for other in [
+        ShadowConfig { far_fade: 0.2, ..papers.clone() },
+        ShadowConfig { transition: Transition::Hard, ..papers.clone() },
+        ShadowConfig { filter: Filter::Pcf5 { width_m: None }, ..papers.clone() },
+        ShadowConfig { range: Range::Visible, ..papers.clone() },
+    ] {
+        assert!(!holds_after(&other, options), "{other:?}");
+    }
+    assert!(!holds_after(&papers, PlannerOptions { depth_clamp: true, ..options }));
+    let mut planner = Planner::new(&papers).expect("valid");
+    let wrong = ShadowConfig { far_fade: 2.0, ..papers.clone() };
+    assert!(planner.set_config(&wrong, options).is_err() && *planner.config() == papers);
 }
 
 /// The smallest maps that are allowed do have texels.
@@ -66,11 +130,11 @@ fn small_maps() {
         .expect("valid");
     let light = DirectionalLight::new(DVec3::new(0.2, -1.0, 0.1)).expect("valid");
     let boxes = [Aabb::new(DVec3::splat(-60.0), DVec3::splat(60.0))];
-    for (stabilize, size) in
-        [(Stabilize::None, 7), (Stabilize::Exact, 8), (Stabilize::Approximate(ExtentSteps::default()), 8)]
+    for (stability, size) in
+        [(Stability::tight(), 7), (Stability::Exact, 8), (Stability::Approximate { steps: ExtentSteps::default() }, 8)]
     {
-        let settings = ShadowSettings { stabilize, map_sizes: vec![size; 2], ..ShadowSettings::default() };
-        let mut planner = Planner::new(settings).expect("valid");
+        let settings = ShadowConfig { stability, map_sizes: vec![size; 2], ..Preset::Papers.config() };
+        let mut planner = Planner::new(&settings).expect("valid");
         let plan = planner.plan(&view, &light, &boxes, &boxes).expect("a plan");
         assert!(plan.splits.iter().all(|split| split.texel_m.min_element() > 0.0 && split.texel_m.is_finite()));
     }
@@ -88,7 +152,7 @@ fn lights() {
 
 #[test]
 fn bounds() {
-    let mut planner = Planner::new(ShadowSettings::default()).expect("valid");
+    let mut planner = Planner::new(&Preset::Papers.config()).expect("valid");
     let view = View::look_at_upright(DVec3::ZERO, DVec3::X, Frustum::perspective(1.0, 1.0, 1.0, 100.0).expect("valid"))
         .expect("valid");
     let light = DirectionalLight::new(DVec3::NEG_Y).expect("valid");
@@ -136,7 +200,7 @@ fn numbers_without_meaning() {
     assert_eq!(light(PointLight::new(DVec3::splat(1e154), 1.0)), "position");
     let view = View::look_at_upright(DVec3::ZERO, DVec3::X, lens).expect("valid");
     let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).expect("valid");
-    let mut planner = Planner::new(ShadowSettings::default()).expect("valid");
+    let mut planner = Planner::new(&Preset::Papers.config()).expect("valid");
     let huge = Aabb::new(DVec3::splat(-1e154), DVec3::splat(1e154));
     let error = planner.plan(&view, &sun, &[huge], &[]).expect_err("no box");
     assert!(error.to_string().contains("10^12"), "{error}");
@@ -156,10 +220,10 @@ fn a_refused_frame_leaves_no_trace() {
     };
     let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).expect("valid");
     let world = [Aabb::new(DVec3::splat(-100.0), DVec3::splat(100.0))];
-    for scheme in [SplitScheme::default(), SplitScheme::Fitted] {
-        let settings = ShadowSettings { scheme, ..ShadowSettings::default() };
+    for scheme in [SplitScheme::practical(), SplitScheme::Optimal] {
+        let settings = ShadowConfig { scheme, ..Preset::Papers.config() };
         let (mut plain, mut disturbed) =
-            (Planner::new(settings.clone()).expect("valid"), Planner::new(settings).expect("valid"));
+            (Planner::new(&settings).expect("valid"), Planner::new(&settings).expect("valid"));
         for frame in 0..40 {
             let now = view(0.4 * f64::from(frame));
             let expected = plain.plan(&now, &sun, &world, &world).expect("a plan").clone();
@@ -182,15 +246,15 @@ fn tight_plans_have_no_memory() {
         })
         .collect();
     let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).expect("valid");
-    for scheme in [SplitScheme::default(), SplitScheme::Fitted] {
-        let settings = ShadowSettings { scheme, stabilize: Stabilize::None, ..ShadowSettings::default() };
-        let mut walking = Planner::new(settings.clone()).expect("valid");
+    for scheme in [SplitScheme::practical(), SplitScheme::Optimal] {
+        let settings = ShadowConfig { scheme, stability: Stability::tight(), ..Preset::Papers.config() };
+        let mut walking = Planner::new(&settings).expect("valid");
         for frame in 0..30 {
             let lens = Frustum::perspective(1.0, 1.0, 0.1, 300.0).expect("valid");
             let eye = DVec3::new(0.0, 5.0, 10.0 - 2.0 * f64::from(frame));
             let view = View::look_at_upright(eye, eye + DVec3::new(0.1, -0.1, -1.0), lens).expect("valid");
             let plan = walking.plan(&view, &sun, &world, &world).expect("a plan");
-            let mut fresh = Planner::new(settings.clone()).expect("valid");
+            let mut fresh = Planner::new(&settings).expect("valid");
             assert_eq!(plan, fresh.plan(&view, &sun, &world, &world).expect("a plan"), "frame {frame}");
         }
     }

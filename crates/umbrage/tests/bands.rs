@@ -2,9 +2,8 @@
 
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
-use umbrage::{
-    Aabb, Bands, DirectionalLight, Error, Frustum, Planner, RangeFit, Selection, ShadowSettings, SpotLight, View,
-};
+use umbrage::config::{Choice, Preset, Range, Selection, SplitMetric, Transition};
+use umbrage::{Aabb, DirectionalLight, Error, Frustum, Planner, PlannerOptions, ShadowConfig, SpotLight, View};
 
 const EYE: DVec3 = DVec3::new(3.0, 4.0, -2.0);
 
@@ -30,8 +29,9 @@ fn world() -> Vec<Aabb> {
 }
 
 /// Of points around the eye the splits in several directions of the same eye: how many change.
-fn changed(bands: Bands, turns: &[(f64, f64)], points: &[DVec3]) -> usize {
-    let mut planner = Planner::new(ShadowSettings { bands, ..ShadowSettings::default() }).expect("settings");
+fn changed(metric: SplitMetric, turns: &[(f64, f64)], points: &[DVec3]) -> usize {
+    let mut planner = Planner::new(&ShadowConfig { selection: Selection::Interval(metric), ..Preset::Papers.config() })
+        .expect("settings");
     let mut before: Option<Vec<Option<usize>>> = None;
     let mut changed = 0;
     for &(yaw, pitch) in turns {
@@ -53,7 +53,7 @@ proptest! {
         points in prop::collection::vec((-60.0..60.0f64, 0.0..9.0f64, -60.0..60.0f64), 40),
     ) {
         let points: Vec<DVec3> = points.into_iter().map(DVec3::from).collect();
-        prop_assert_eq!(changed(Bands::Radial, &turns, &points), 0);
+        prop_assert_eq!(changed(SplitMetric::Distance, &turns, &points), 0);
     }
 }
 
@@ -61,21 +61,21 @@ proptest! {
 #[test]
 fn planar_bands_turn_with_the_camera() {
     let points: Vec<DVec3> = (0..40).map(|i| DVec3::new(f64::from(i) - 20.0, 0.0, -30.0)).collect();
-    assert!(changed(Bands::Planar, &[(0.0, 0.0), (0.4, 0.0)], &points) > 5);
+    assert!(changed(SplitMetric::ViewDepth, &[(0.0, 0.0), (0.4, 0.0)], &points) > 5);
 }
 
 /// The farthest corner of an off-axis view decides how much view depth a band needs.
 #[test]
 fn a_radial_slice_is_widened_to_its_farthest_corner() {
     let off_axis = Frustum { left: -2.0, right: 0.1, bottom: -0.2, top: 1.0, ..lens() };
-    let settings = ShadowSettings {
-        bands: Bands::Radial,
-        range: Some((1.0, 90.0)),
-        blend: 0.0,
-        image_size: [1_000_000; 2],
-        ..ShadowSettings::default()
+    let settings = ShadowConfig {
+        selection: Selection::Interval(SplitMetric::Distance),
+        range: Range::Metres { near: 1.0, far: 90.0 },
+        transition: Transition::Hard,
+        ..Preset::Papers.config()
     };
-    let mut planner = Planner::new(settings).expect("settings");
+    let options = PlannerOptions { image_size: [1_000_000; 2], ..PlannerOptions::default() };
+    let mut planner = Planner::with_options(&settings, options).expect("settings");
     let plan = planner.plan(&turned(0.3, 0.0, off_axis), &sun(), &world(), &world()).expect("a plan");
     assert_eq!(plan.radial_eye, Some(EYE));
     for split in &plan.splits[1..] {
@@ -87,17 +87,19 @@ fn a_radial_slice_is_widened_to_its_farthest_corner() {
 
 #[test]
 fn what_radial_bands_exclude_is_named() {
-    let radial = ShadowSettings { bands: Bands::Radial, ..ShadowSettings::default() };
+    let selection = Selection::Interval(SplitMetric::Distance);
+    let radial = ShadowConfig { selection, ..Preset::Papers.config() };
     let named = |error: Error| match error {
-        Error::ConflictingSettings { first, second, .. } => (first, second),
+        Error::Conflict(conflict) => (conflict.rule.first, conflict.rule.second),
         other => panic!("{other}"),
     };
-    let refused = |settings| named(Planner::new(settings).expect_err("a conflict"));
-    assert_eq!(refused(ShadowSettings { selection: Selection::Map, ..radial.clone() }), ("bands", "selection"));
-    assert_eq!(refused(ShadowSettings { range_fit: RangeFit::Visible, ..radial.clone() }), ("bands", "range_fit"));
-    let mut planner = Planner::new(radial).expect("settings");
+    let visible = Planner::new(&ShadowConfig { range: Range::Visible, ..radial.clone() }).expect_err("a conflict");
+    assert_eq!(named(visible), (Choice::VisibleRange, Choice::DistanceMetric));
+    let mut planner = Planner::new(&radial).expect("settings");
     let flat = turned(0.0, 0.0, Frustum::orthographic(10.0, 10.0, 0.5, 100.0).expect("a lens"));
-    assert_eq!(named(planner.plan(&flat, &sun(), &[], &[]).expect_err("no eye")), ("bands", "camera"));
+    let error = planner.plan(&flat, &sun(), &[], &[]).expect_err("no eye");
+    assert!(matches!(error, Error::CameraConflict { setting: "bands", .. }), "{error}");
     let spot = SpotLight::new(DVec3::Y * 9.0, DVec3::NEG_Y, 0.5, 20.0).expect("a spot light");
-    assert_eq!(named(planner.plan(&turned(0.0, 0.0, lens()), &spot, &[], &[]).expect_err("local")), ("bands", "light"));
+    let local = planner.plan(&turned(0.0, 0.0, lens()), &spot, &[], &[]).expect_err("local");
+    assert_eq!(named(local), (Choice::DistanceMetric, Choice::LocalLight));
 }

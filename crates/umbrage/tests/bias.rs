@@ -2,14 +2,15 @@
 
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
-use umbrage::{Aabb, DirectionalLight, Frustum, Planner, STEEPEST, ShadowSettings, Split, Stabilize, View};
+use umbrage::config::{Preset, Stability};
+use umbrage::{Aabb, DirectionalLight, Frustum, Planner, STEEPEST, ShadowConfig, Split, View};
 
 fn split(sun: DVec3) -> Split {
-    let settings = ShadowSettings { stabilize: Stabilize::None, ..ShadowSettings::default() };
+    let settings = ShadowConfig { stability: Stability::tight(), ..Preset::Papers.config() };
     let frustum = Frustum::perspective(1.0, 1.5, 1.0, 300.0).expect("valid");
     let view = View::look_at_upright(DVec3::new(3.0, 9.0, 20.0), DVec3::ZERO, frustum).expect("valid");
     let world = [Aabb::new(DVec3::splat(-50.0), DVec3::splat(50.0))];
-    let mut planner = Planner::new(settings).expect("valid");
+    let mut planner = Planner::new(&settings).expect("valid");
     planner.plan(&view, &DirectionalLight::new(sun).expect("valid"), &world, &world).expect("valid").splits[1].clone()
 }
 

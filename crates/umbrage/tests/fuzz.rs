@@ -4,14 +4,17 @@
 use glam::{DQuat, DVec2, DVec3, EulerRot};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use umbrage::config::{
+    Crop, ExtentSteps, Preset, Range, Selection, ShadowConfig, SplitMetric, SplitScheme, Stability, Transition,
+};
 use umbrage::{
-    Aabb, Bands, DirectionalLight, ExtentSteps, Fit, Frustum, PlanInputs, Planner, Projection, RangeFit, Selection,
-    ShadowPlan, ShadowSettings, SplitScheme, Stabilize, View,
+    Aabb, DirectionalLight, FilterReach, Frustum, PlanInputs, Planner, PlannerOptions, Projection, ShadowPlan, View,
 };
 
 #[derive(Clone, Debug)]
 struct Case {
-    settings: ShadowSettings,
+    settings: ShadowConfig,
+    options: PlannerOptions,
     views: Vec<View>,
     sun: DirectionalLight,
     boxes: Vec<Aabb>,
@@ -35,43 +38,41 @@ fn direction() -> impl Strategy<Value = DVec3> {
     [part(), part(), part()].prop_map(DVec3::from).prop_filter("a direction", |d| d.length() > 1e-3)
 }
 
-fn settings() -> impl Strategy<Value = ShadowSettings> {
+fn settings() -> impl Strategy<Value = (ShadowConfig, PlannerOptions)> {
     let scheme = prop_oneof![
         Just(SplitScheme::Logarithmic),
         Just(SplitScheme::Uniform),
-        Just(SplitScheme::Fitted),
-        Just(SplitScheme::default()),
+        Just(SplitScheme::Optimal),
+        Just(SplitScheme::practical()),
     ];
-    let stabilize = prop_oneof![
-        Just(Stabilize::None),
-        Just(Stabilize::Exact),
-        Just(Stabilize::Approximate(ExtentSteps::default())),
-        Just(Stabilize::Approximate(ExtentSteps::Levels(64))),
+    let stability = prop_oneof![
+        Just(Stability::tight()),
+        Just(Stability::Exact),
+        Just(Stability::Approximate { steps: ExtentSteps::default() }),
+        Just(Stability::Approximate { steps: ExtentSteps::Levels(64) }),
     ];
     let way = prop_oneof![
-        3 => Just((Selection::Depth, Bands::Planar)),
-        2 => Just((Selection::Map, Bands::Planar)),
-        1 => Just((Selection::Depth, Bands::Radial)),
+        3 => Just(Selection::Interval(SplitMetric::ViewDepth)),
+        2 => Just(Selection::Map),
+        1 => Just(Selection::Interval(SplitMetric::Distance)),
     ];
-    let range = prop_oneof![3 => Just(None), 1 => (0.1..50.0f64, 1.5..1000.0f64).prop_map(|(n, r)| Some((n, n * r)))];
-    let blend = prop_oneof![Just(0.0), 0.0..1.0f64];
-    (1usize..=8, scheme, stabilize, way, range, blend, any::<[bool; 3]>(), 0.5..4.0f64).prop_map(
-        |(m, scheme, stabilize, (selection, bands), range, blend, [dependent, depth_clamp, visible], filter_radius)| {
-            let fits = visible && range.is_none() && bands == Bands::Planar;
-            ShadowSettings {
+    let range = prop_oneof![3 => Just(Range::Camera), 1 => (0.1..50.0f64, 1.5..1000.0f64).prop_map(|(n, r)| Range::Metres { near: n, far: n * r })];
+    let share = prop_oneof![Just(0.0), 0.0..1.0f64];
+    (1usize..=8, scheme, stability, way, range, share, any::<[bool; 3]>(), 0.5..4.0f64).prop_map(
+        |(m, scheme, stability, selection, range, share, [dependent, depth_clamp, visible], radius_texels)| {
+            let fits = visible && range == Range::Camera && selection.metric() == SplitMetric::ViewDepth;
+            let config = ShadowConfig {
                 map_sizes: vec![256; m],
                 scheme,
-                stabilize,
+                stability,
                 selection,
-                bands,
-                range,
-                range_fit: if fits { RangeFit::Visible } else { RangeFit::Camera },
-                blend,
-                fit: if dependent { Fit::Dependent } else { Fit::Independent },
-                depth_clamp,
-                filter_radius,
-                ..ShadowSettings::default()
-            }
+                range: if fits { Range::Visible } else { range },
+                transition: Transition::Blend { share },
+                crop: if dependent { Crop::SceneDependent } else { Crop::SceneIndependent },
+                ..Preset::Papers.config()
+            };
+            let reach = FilterReach { radius_texels, half_width_m: None };
+            (config, PlannerOptions { depth_clamp, filter_reach: Some(reach), ..PlannerOptions::default() })
         },
     )
 }
@@ -122,7 +123,7 @@ fn any_case() -> impl Strategy<Value = Case> {
         steps,
         prop::collection::vec(probe, 12),
     )
-        .prop_map(|(settings, boxes, sun, lens, (eye, look, off, against), steps, probes)| {
+        .prop_map(|((mut settings, options), boxes, sun, lens, (eye, look, off, against), steps, probes)| {
             let sun = DirectionalLight::new(sun).expect("a direction");
             let along = if against { -sun.direction() } else { sun.direction() };
             let ahead = (along + off * look).try_normalize().unwrap_or(along);
@@ -135,11 +136,11 @@ fn any_case() -> impl Strategy<Value = Case> {
                 let up = if ahead.y.abs() > 0.99 { DVec3::X } else { DVec3::Y };
                 views.push(View::look_at(at, at + ahead, up, lens).expect("a view"));
             }
-            let settings = match lens.projection {
-                Projection::Perspective => settings,
-                Projection::Orthographic => ShadowSettings { bands: Bands::Planar, ..settings },
-            };
-            Case { settings, views, sun, boxes, probes }
+            let is_radial = settings.selection.metric() == SplitMetric::Distance;
+            if is_radial && lens.projection == Projection::Orthographic {
+                settings.selection = Selection::default();
+            }
+            Case { settings, options, views, sun, boxes, probes }
         })
 }
 
@@ -215,26 +216,30 @@ fn check(case: &Case, view: &View, plan: &ShadowPlan) -> Result<(), TestCaseErro
         prop_assert!(split.texel_m.is_finite() && split.texel_m.min_element() > 0.0, "{split:?}");
         prop_assert!(split.min_texel.is_finite() && split.depth_near < split.depth_far, "{split:?}");
         prop_assert!(split.shadow_from_world().is_finite(), "{split:?}");
-        if case.settings.stabilize != Stabilize::None {
+        if case.settings.is_stabilised() {
             prop_assert_eq!(split.min_texel.fract(), DVec2::ZERO);
         }
     }
     for (owner, point) in shown(view, &case.boxes) {
+        let is_tiny = case.boxes[owner].half_extent().length() < 0.1 * view.eye().distance(point);
         for (index, bounds) in case.boxes.iter().enumerate() {
             let Some(hit) = shaded_from(bounds, point, direction).filter(|_| index != owner) else { continue };
             // What is too small and too far away to be seen may have no range.
             let Some(splits) = asked(plan, point) else {
                 // A range that was given may end before anything.
-                if case.settings.range.is_some() {
+                if matches!(case.settings.range, Range::Metres { .. }) {
                     continue;
                 }
-                let share = case.boxes[owner].half_extent().length() / view.eye().distance(point);
-                prop_assert!(share < 0.1, "{point} is beyond the range, and {index} shades it: {:?}", plan.planes);
+                prop_assert!(is_tiny, "{point} is beyond the range, and {index} shades it: {:?}", plan.planes);
                 continue;
             };
             prop_assert!(!splits.is_empty(), "no map holds {point}, which {index} shades");
             for split in splits {
                 let map = &plan.splits[split];
+                // Planes may reach as far as it does, while maps end with what can be seen.
+                if is_tiny && !map.contains(point, map.filter_reach) {
+                    continue;
+                }
                 prop_assert!(
                     plan.casters(split).contains(&(index as u32)),
                     "split {split} lacks {index}, which shades {point}"
@@ -251,7 +256,7 @@ fn check(case: &Case, view: &View, plan: &ShadowPlan) -> Result<(), TestCaseErro
                     "{along} of {:?}",
                     map.receiver_depths
                 );
-                prop_assert!(case.settings.depth_clamp || map.depth_near <= first, "near cuts {index} over {point}");
+                prop_assert!(case.options.depth_clamp || map.depth_near <= first, "near cuts {index} over {point}");
             }
         }
     }
@@ -272,7 +277,7 @@ proptest! {
 
     #[test]
     fn every_plan_keeps_its_promises(case in any_case()) {
-        let mut planner = Planner::new(case.settings.clone())?;
+        let mut planner = Planner::with_options(&case.settings, case.options)?;
         for view in &case.views {
             let inputs = PlanInputs::new(view, case.sun, &case.boxes, &case.boxes);
             let before = planner.held().clone();
@@ -288,9 +293,9 @@ proptest! {
             check(&case, view, &plan)?;
             // A plan is a function of its inputs and of what is held.
             let (mut held, after) = (before, planner.held().clone());
-            let again = umbrage::plan(&case.settings, &inputs, &mut held)?;
+            let again = umbrage::plan(&case.settings, case.options, &inputs, &mut held)?;
             prop_assert!(again == plan && held == after, "another plan by the same inputs");
-            if case.settings.stabilize == Stabilize::None {
+            if !case.settings.is_stabilised() {
                 prop_assert_eq!(&held, &umbrage::Held::default());
             }
         }

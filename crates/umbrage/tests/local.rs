@@ -3,14 +3,17 @@
 
 use glam::{DQuat, DVec3, EulerRot};
 use proptest::prelude::*;
+use umbrage::config::{Choice, Crop, Preset, Range, ShadowConfig, SplitScheme, Stability, Transition};
 use umbrage::{
-    Aabb, DirectionalLight, Error, Fit, Frustum, Light, Planner, PointLight, ShadowPlan, ShadowSettings, SplitScheme,
-    SpotLight, Stabilize, View, Warp,
+    Aabb, DirectionalLight, Error, FilterReach, Frustum, Light, Planner, PlannerOptions, PointLight, ShadowPlan,
+    SpotLight, View, Warp,
 };
 
 #[derive(Clone, Debug)]
 struct Case {
-    settings: ShadowSettings,
+    settings: ShadowConfig,
+    /// Texels that the filter reads from the sample.
+    radius_texels: f64,
     view: View,
     light: Light,
     boxes: Vec<Aabb>,
@@ -28,19 +31,22 @@ fn boxes() -> impl Strategy<Value = Vec<Aabb>> {
     })
 }
 
-fn settings() -> impl Strategy<Value = ShadowSettings> {
-    let scheme = prop_oneof![Just(SplitScheme::Uniform), Just(SplitScheme::Logarithmic), Just(SplitScheme::default()),];
-    let range = prop_oneof![3 => Just(None), 1 => Just(Some((1.0, 60.0)))];
+fn settings() -> impl Strategy<Value = (ShadowConfig, f64)> {
+    let scheme =
+        prop_oneof![Just(SplitScheme::Uniform), Just(SplitScheme::Logarithmic), Just(SplitScheme::practical()),];
+    let range = prop_oneof![3 => Just(Range::Camera), 1 => Just(Range::Metres { near: 1.0, far: 60.0 })];
     (1usize..=4, scheme, range, any::<[bool; 2]>(), prop_oneof![Just(0.0), 0.0..0.5f64], 0.5..3.0f64).prop_map(
-        |(m, scheme, range, [dependent, exact], blend, filter_radius)| ShadowSettings {
-            map_sizes: vec![256; m],
-            scheme,
-            range,
-            fit: if dependent { Fit::Dependent } else { Fit::Independent },
-            stabilize: if exact { Stabilize::Exact } else { Stabilize::None },
-            filter_radius,
-            blend,
-            ..ShadowSettings::default()
+        |(m, scheme, range, [dependent, exact], share, radius_texels)| {
+            let config = ShadowConfig {
+                map_sizes: vec![256; m],
+                scheme,
+                range,
+                crop: if dependent { Crop::SceneDependent } else { Crop::SceneIndependent },
+                stability: if exact { Stability::Exact } else { Stability::tight() },
+                transition: Transition::Blend { share },
+                ..Preset::Papers.config()
+            };
+            (config, radius_texels)
         },
     )
 }
@@ -82,7 +88,7 @@ fn cases() -> impl Strategy<Value = Case> {
         light,
         prop_oneof![3 => Just(DVec3::ZERO), 1 => Just(DVec3::new(1e5, 300.0, -7e4))],
     )
-        .prop_map(|(settings, mut boxes, frustum, eye, (yaw, pitch), light, shift)| {
+        .prop_map(|((settings, radius_texels), mut boxes, frustum, eye, (yaw, pitch), light, shift)| {
             let (beside, aim, cone, range, [point, grazing]) = light;
             let rotation = DQuat::from_euler(EulerRot::YXZ, yaw, pitch, 0.0);
             let eye = DVec3::from(eye) + shift;
@@ -100,7 +106,7 @@ fn cases() -> impl Strategy<Value = Case> {
                 SpotLight::new(position, aim, cone.to_radians(), range).expect("valid").into()
             };
             let view = View::look_at(eye, eye + rotation * DVec3::NEG_Z, DVec3::Y, frustum).expect("valid");
-            Case { settings, view, light, boxes }
+            Case { settings, radius_texels, view, light, boxes }
         })
 }
 
@@ -174,6 +180,11 @@ fn splits_of(case: &Case, plan: &ShadowPlan, point: DVec3, depth: f64) -> Vec<us
     if blended { vec![first + own, first + own + 1] } else { vec![first + own] }
 }
 
+fn planner(case: &Case) -> umbrage::Result<Planner> {
+    let reach = FilterReach { radius_texels: case.radius_texels, half_width_m: None };
+    Planner::with_options(&case.settings, PlannerOptions { filter_reach: Some(reach), ..PlannerOptions::default() })
+}
+
 fn planned(case: &Case, planner: &mut Planner) -> Result<ShadowPlan, TestCaseError> {
     match planner.plan(&case.view, &case.light, &case.boxes, &case.boxes) {
         Ok(plan) => Ok(plan.clone()),
@@ -186,20 +197,20 @@ proptest! {
 
     #[test]
     fn no_caster_is_lost_and_every_shadowed_receiver_lies_in_its_map(case in cases()) {
-        let mut planner = Planner::new(case.settings.clone())?;
+        let mut planner = planner(&case)?;
         let plan = planned(&case, &mut planner)?;
         let light = case.light.position().expect("a local light");
         for (owner, point, depth) in lit_points(&case, &plan) {
             for split in splits_of(&case, &plan, point, depth) {
                 let s = &plan.splits[split];
                 let at = s.map_from_world(point);
-                if case.settings.fit == Fit::Independent && !s.casters.is_empty() {
-                    prop_assert!(s.contains(point, case.settings.filter_radius), "{point} at {depth} m lies at {at} in split {split}");
+                if case.settings.crop == Crop::SceneIndependent && !s.casters.is_empty() {
+                    prop_assert!(s.contains(point, case.radius_texels), "{point} at {depth} m lies at {at} in split {split}");
                 }
                 for (index, bounds) in case.boxes.iter().enumerate() {
                     let Some((enter, leave)) = shading(bounds, light, point).filter(|_| index != owner) else { continue };
                     prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} lost caster {index}, which shades {point} at {depth} m ({enter} to {leave})");
-                    prop_assert!(s.contains(point, case.settings.filter_radius), "{point} at {depth} m lies at {at} in split {split}");
+                    prop_assert!(s.contains(point, case.radius_texels), "{point} at {depth} m lies at {at} in split {split}");
                     // Whatever of the caster lies beyond the light's near distance is stored, at the place of what it shades
                     // and nearer.
                     let caster = light + leave * (point - light);
@@ -223,7 +234,7 @@ proptest! {
     #[test]
     fn a_speck_anywhere_between_the_light_and_what_it_lights_is_listed(case in cases(), shares in prop::collection::vec(0.01..0.999f64, 400)) {
         // Specks put on the very rays: next to the outline of slices and maps, where a wrong plane shows.
-        let mut planner = Planner::new(case.settings.clone())?;
+        let mut planner = planner(&case)?;
         let plan = planned(&case, &mut planner)?;
         let light = case.light.position().expect("a local light");
         let points = lit_points(&case, &plan);
@@ -244,7 +255,7 @@ proptest! {
                 let listed = plan.casters(split).contains(&(index as u32));
                 prop_assert!(listed || below, "split {split} lost the speck {share} of the way to {point}");
                 if listed {
-                    prop_assert!(plan.splits[split].contains(point, case.settings.filter_radius));
+                    prop_assert!(plan.splits[split].contains(point, case.radius_texels));
                 }
             }
         }
@@ -252,7 +263,7 @@ proptest! {
 
     #[test]
     fn a_covered_point_has_all_its_casters(case in cases(), points in prop::collection::vec((-20.0..20.0f64, -3.0..15.0f64, -20.0..20.0f64), 60)) {
-        let mut planner = Planner::new(case.settings.clone())?;
+        let mut planner = planner(&case)?;
         let plan = planned(&case, &mut planner)?;
         let light = case.light.position().expect("a local light");
         for point in points.into_iter().map(|p| DVec3::from(p) + case.view.eye()) {
@@ -267,7 +278,7 @@ proptest! {
 
     #[test]
     fn lists_ranges_and_matrices_agree(case in cases()) {
-        let mut planner = Planner::new(case.settings.clone())?;
+        let mut planner = planner(&case)?;
         let plan = planned(&case, &mut planner)?;
         let (m, light) = (case.settings.splits(), case.light.position().expect("a local light"));
         prop_assert_eq!(plan.splits.len(), m * plan.faces());
@@ -276,7 +287,7 @@ proptest! {
             prop_assert!(split.texel_m.min_element() > 0.0 && split.texel_m.is_finite() && split.min_texel.is_finite());
             prop_assert!(split.depth_near < split.depth_far);
             prop_assert!(split.u_axis.cross(split.v_axis).abs_diff_eq(split.depth_axis, 1e-9), "the axes are no right-handed frame");
-            if case.settings.stabilize == Stabilize::Exact {
+            if case.settings.stability == Stability::Exact {
                 prop_assert_eq!(split.min_texel, split.min_texel.round());
             }
             for &caster in plan.casters(i) {
@@ -306,7 +317,7 @@ proptest! {
 
     #[test]
     fn texel_steps_are_the_maps_own(case in cases(), aside in (-0.4..0.4f64, -0.4..0.4f64, 0.05..0.9f64)) {
-        let mut planner = Planner::new(case.settings.clone())?;
+        let mut planner = planner(&case)?;
         let plan = planned(&case, &mut planner)?;
         let light = case.light.position().expect("a local light");
         for split in &plan.splits {
@@ -346,9 +357,9 @@ fn room() -> (View, Vec<Aabb>) {
 fn a_lamp_in_a_room_has_the_faces_that_are_seen() {
     let (view, boxes) = room();
     let lamp = PointLight::new(DVec3::new(0.5, 2.4, -0.5), 12.0).expect("valid");
-    for stabilize in [Stabilize::None, Stabilize::Exact] {
-        let settings = ShadowSettings { map_sizes: vec![512], stabilize, ..ShadowSettings::default() };
-        let mut planner = Planner::new(settings).expect("valid");
+    for stability in [Stability::tight(), Stability::Exact] {
+        let settings = ShadowConfig { map_sizes: vec![512], stability, ..Preset::Papers.config() };
+        let mut planner = Planner::new(&settings).expect("valid");
         let plan = planner.plan(&view, &lamp, &boxes, &boxes).expect("valid");
         assert_eq!(plan.faces(), 6);
         // Down are the table and the chest; nothing stands between the lamp and the ceiling above it.
@@ -365,7 +376,7 @@ fn a_light_that_the_view_cannot_see_the_work_of_has_empty_splits() {
     let (view, boxes) = room();
     for (position, range) in [(DVec3::new(0.0, 500.0, 0.0), 20.0), (view.eye() - 50.0 * view.forward(), 30.0)] {
         let plan_of = |light: Light| {
-            let mut planner = Planner::new(ShadowSettings::default()).expect("valid");
+            let mut planner = Planner::new(&Preset::Papers.config()).expect("valid");
             planner.plan(&view, &light, &boxes, &boxes).expect("valid").clone()
         };
         let lamp = PointLight::new(position, range).expect("valid");
@@ -384,7 +395,7 @@ fn boxes_behind_a_spot_light_are_not_listed_and_those_around_it_are() {
     boxes.push(Aabb::new(DVec3::new(5.0, 0.0, -2.0), DVec3::new(6.0, 3.0, 2.0)));
     let behind = boxes.len() as u32 - 1;
     let spot = SpotLight::new(DVec3::new(4.1, 1.5, 0.0), DVec3::NEG_X, 0.7, 15.0).expect("valid");
-    let mut planner = Planner::new(ShadowSettings::default()).expect("valid");
+    let mut planner = Planner::new(&Preset::Papers.config()).expect("valid");
     let plan = planner.plan(&view, &spot, &boxes, &boxes).expect("valid");
     let all = &plan.caster_indices;
     assert!(all.contains(&3), "the wall that the light stands in");
@@ -395,8 +406,8 @@ fn boxes_behind_a_spot_light_are_not_listed_and_those_around_it_are() {
 fn a_stabilised_spot_light_keeps_its_texels_while_the_camera_moves() {
     let (view, boxes) = room();
     let spot = SpotLight::new(DVec3::new(0.0, 2.9, 0.0), DVec3::NEG_Y, 1.0, 10.0).expect("valid");
-    let settings = ShadowSettings { map_sizes: vec![512; 2], ..ShadowSettings::default() };
-    let mut planner = Planner::new(settings).expect("valid");
+    let settings = ShadowConfig { map_sizes: vec![512; 2], ..Preset::Papers.config() };
+    let mut planner = Planner::new(&settings).expect("valid");
     let (mut steps, mut last, mut compared) = (0, None::<ShadowPlan>, 0);
     for k in 0..100 {
         let eye = view.eye() + DVec3::new(0.01, 0.0, -0.013) * f64::from(k);
@@ -446,10 +457,11 @@ fn what_is_no_light_is_refused_by_name() {
 
     let (view, boxes) = room();
     let settings =
-        ShadowSettings { warps: vec![Warp::Lispsm], stabilize: Stabilize::None, ..ShadowSettings::default() };
-    let mut planner = Planner::new(settings).expect("valid");
+        ShadowConfig { stability: Stability::Tight { warps: vec![Warp::Lispsm] }, ..Preset::Papers.config() };
+    let mut planner = Planner::new(&settings).expect("valid");
     let error = planner.plan(&view, &lamp, &boxes, &boxes).expect_err("a warp needs a sun");
-    assert!(matches!(error, Error::ConflictingSettings { first: "warps", second: "light", .. }), "{error}");
+    let Error::Conflict(conflict) = error else { panic!("{error}") };
+    assert_eq!((conflict.rule.first, conflict.rule.second), (Choice::Warp, Choice::LocalLight));
     let sun = DirectionalLight::new(down).expect("valid");
     assert!(planner.plan(&view, &sun, &boxes, &boxes).is_ok(), "the planner goes on with another light");
 }

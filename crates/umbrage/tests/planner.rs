@@ -3,16 +3,20 @@
 use glam::{DQuat, DVec3, EulerRot};
 use proptest::prelude::*;
 use umbrage::DepthConvention::{MinusOneToOne, ZeroToOne};
+use umbrage::config::{
+    Crop, ExtentSteps, Filter, Preset, Range, Selection, ShadowConfig, SplitMetric, SplitScheme, Stability, Transition,
+};
 use umbrage::{
-    Aabb, Bands, DirectionalLight, ExtentSteps, Fit, Frustum, PlanInputs, Planner, Projection, RangeFit, Selection,
-    ShadowPlan, ShadowSettings, SplitScheme, Stabilize, View, Warp,
+    Aabb, DirectionalLight, FilterReach, Frustum, PlanInputs, Planner, PlannerOptions, Projection, ShadowPlan, View,
+    Warp,
 };
 
 /// A world of boxes on and around a ground, a view and a sun, biased to the awkward: a sun straight down or level, a view into
 /// it, boxes behind the eye, flat boxes, boxes larger than the view.
 #[derive(Clone, Debug)]
 struct Case {
-    settings: ShadowSettings,
+    settings: ShadowConfig,
+    options: PlannerOptions,
     view: View,
     light: DirectionalLight,
     boxes: Vec<Aabb>,
@@ -31,63 +35,51 @@ fn boxes() -> impl Strategy<Value = Vec<Aabb>> {
     })
 }
 
-fn settings() -> impl Strategy<Value = ShadowSettings> {
+fn settings() -> impl Strategy<Value = (ShadowConfig, PlannerOptions)> {
     let scheme = prop_oneof![
         Just(SplitScheme::Uniform),
         Just(SplitScheme::Logarithmic),
-        Just(SplitScheme::Fitted),
+        Just(SplitScheme::Optimal),
         (0.0..=1.0f64).prop_map(|lambda| SplitScheme::Practical { lambda, delta: vec![] })
     ];
-    let range = prop_oneof![Just(None), Just(Some((1.0, 300.0))), Just(Some((5.0, 80.0)))];
+    let range = prop_oneof![
+        Just(Range::Camera),
+        Just(Range::Metres { near: 1.0, far: 300.0 }),
+        Just(Range::Metres { near: 5.0, far: 80.0 })
+    ];
     let warp = prop_oneof![
         Just(Warp::None),
         Just(Warp::Psm),
         Just(Warp::Lispsm),
         (0.01..0.99f64).prop_map(|focus| Warp::Tsm { focus })
     ];
-    let stabilize = prop_oneof![
-        2 => Just(Stabilize::None),
-        2 => Just(Stabilize::Exact),
-        1 => Just(Stabilize::Approximate(ExtentSteps::default())),
-        1 => Just(Stabilize::Approximate(ExtentSteps::PerDoubling(4))),
-        1 => Just(Stabilize::Approximate(ExtentSteps::Levels(64)))
+    let stability = prop_oneof![
+        2 => Just(Stability::tight()),
+        2 => Just(Stability::Exact),
+        1 => Just(Stability::Approximate { steps: ExtentSteps::default() }),
+        1 => Just(Stability::Approximate { steps: ExtentSteps::PerDoubling(4) }),
+        1 => Just(Stability::Approximate { steps: ExtentSteps::Levels(64) })
     ];
     let warps = prop_oneof![Just(vec![]), prop::collection::vec(warp.clone(), 1), prop::collection::vec(warp, 8)];
     let filter = prop_oneof![
-        2 => (0.5..3.0f64).prop_map(|texels| (texels, None)),
-        1 => prop_oneof![Just(0.0), 0.0..0.5f64, 0.5..40.0f64].prop_map(|metres| (16.0, Some(metres)))
+        2 => (0.5..3.0f64).prop_map(|texels| FilterReach { radius_texels: texels, half_width_m: None }),
+        1 => prop_oneof![Just(0.0), 0.0..0.5f64, 0.5..40.0f64].prop_map(|metres| FilterReach { radius_texels: 16.0, half_width_m: Some(metres) })
     ];
-    (1usize..=8, scheme, range, any::<[bool; 3]>(), stabilize, prop_oneof![Just(0.0), 0.0..0.5f64], filter, warps)
-        .prop_map(
-            |(
-                m,
+    (1usize..=8, scheme, range, any::<[bool; 3]>(), stability, prop_oneof![Just(0.0), 0.0..0.5f64], filter, warps)
+        .prop_map(|(m, scheme, range, [dependent, depth_clamp, visible], stability, share, filter_reach, mut warps)| {
+            warps.truncate(m);
+            let config = ShadowConfig {
+                map_sizes: vec![256; m],
                 scheme,
-                range,
-                [dependent, clamp, visible],
-                stabilize,
-                blend,
-                (filter_radius, filter_half_width_m),
-                mut warps,
-            )| {
-                ShadowSettings {
-                    map_sizes: vec![256; m],
-                    scheme,
-                    range,
-                    range_fit: if visible && range.is_none() { RangeFit::Visible } else { RangeFit::Camera },
-                    fit: if dependent { Fit::Dependent } else { Fit::Independent },
-                    stabilize,
-                    filter_radius,
-                    filter_half_width_m,
-                    blend,
-                    depth_clamp: clamp,
-                    warps: {
-                        warps.truncate(if stabilize == Stabilize::None { m } else { 0 });
-                        warps
-                    },
-                    ..ShadowSettings::default()
-                }
-            },
-        )
+                range: if visible && range == Range::Camera { Range::Visible } else { range },
+                crop: if dependent { Crop::SceneDependent } else { Crop::SceneIndependent },
+                stability: if stability == Stability::tight() { Stability::Tight { warps } } else { stability },
+                transition: Transition::Blend { share },
+                ..Preset::Papers.config()
+            };
+            let options = PlannerOptions { depth_clamp, filter_reach: Some(filter_reach), ..PlannerOptions::default() };
+            (config, options)
+        })
 }
 
 fn cases() -> impl Strategy<Value = Case> {
@@ -112,7 +104,7 @@ fn cases() -> impl Strategy<Value = Case> {
     let eye = (-50.0..50.0f64, 0.5..40.0f64, -50.0..50.0f64);
     let turn = (-3.2..3.2f64, -1.5..0.5f64, any::<bool>());
     (settings(), boxes(), sun, lens, eye, turn).prop_map(
-        |(settings, boxes, sun, frustum, eye, (yaw, pitch, into_the_light))| {
+        |((settings, options), boxes, sun, frustum, eye, (yaw, pitch, into_the_light))| {
             let eye = DVec3::from(eye);
             let light = DirectionalLight::new(sun).expect("valid");
             let rotation = DQuat::from_euler(EulerRot::YXZ, yaw, pitch, 0.0);
@@ -123,7 +115,7 @@ fn cases() -> impl Strategy<Value = Case> {
             };
             let up = if ahead.normalize().y.abs() > 0.9 { DVec3::X } else { DVec3::Y };
             let view = View::look_at(eye, eye + ahead, up, frustum).expect("valid");
-            Case { settings, view, light, boxes }
+            Case { settings, options, view, light, boxes }
         },
     )
 }
@@ -185,7 +177,9 @@ fn shading_end(bounds: &Aabb, point: DVec3, direction: DVec3) -> Option<f64> {
 
 /// The same case with radial bands, where they are possible.
 fn radial(case: Case) -> Option<Case> {
-    let settings = ShadowSettings { bands: Bands::Radial, range_fit: RangeFit::Camera, ..case.settings };
+    let range = if case.settings.range == Range::Visible { Range::Camera } else { case.settings.range };
+    let selection = Selection::Interval(SplitMetric::Distance);
+    let settings = ShadowConfig { selection, range, ..case.settings };
     (case.view.frustum().projection == Projection::Perspective).then_some(Case { settings, ..case })
 }
 
@@ -201,16 +195,16 @@ fn parts_beside_and_below_what_a_split_serves_do_not_reach_it() {
     let frustum = Frustum::perspective(1.0, 1.0, 0.5, 100.0).expect("valid");
     let view = View::look_at(DVec3::new(0.0, 2.0, 0.0), DVec3::new(0.0, 2.0, -1.0), DVec3::Y, frustum).expect("valid");
     let light = DirectionalLight::new(DVec3::NEG_Y).expect("valid");
-    let settings = ShadowSettings {
+    let settings = ShadowConfig {
         map_sizes: vec![512; 2],
         scheme: SplitScheme::Uniform,
-        range: Some((0.5, 40.5)),
-        ..ShadowSettings::default()
+        range: Range::Metres { near: 0.5, far: 40.5 },
+        ..Preset::Papers.config()
     };
     // A tower block along the view, through both slices, on a flat ground.
     let ground = Aabb::new(DVec3::new(-50.0, 0.0, -50.0), DVec3::new(50.0, 0.0, 50.0));
     let block = Aabb::new(DVec3::new(-0.5, 3.0, -40.0), DVec3::new(0.5, 8.0, -1.0));
-    let mut planner = Planner::new(settings).expect("valid");
+    let mut planner = Planner::new(&settings).expect("valid");
     let plan = planner.plan(&view, &light, &[block], &[ground]).expect("valid");
     assert_eq!((plan.casters(0), plan.casters(1)), (&[0][..], &[0][..]));
     let part = |y: f64, z: f64| Aabb::new(DVec3::new(-0.5, y, z), DVec3::new(0.5, y + 1.0, z + 1.0));
@@ -225,12 +219,13 @@ fn parts_with_no_surface_behind_them_do_not_reach_a_split_that_knows_its_surface
     let frustum = Frustum::perspective(1.0, 1.0, 0.5, 100.0).expect("valid");
     let view = View::look_at(DVec3::new(0.0, 2.0, 0.0), DVec3::new(0.0, 2.0, -1.0), DVec3::Y, frustum).expect("valid");
     let light = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.0)).expect("valid");
-    let settings = ShadowSettings { map_sizes: vec![512], range: Some((0.5, 60.5)), ..ShadowSettings::default() };
+    let settings =
+        ShadowConfig { map_sizes: vec![512], range: Range::Metres { near: 0.5, far: 60.5 }, ..Preset::Papers.config() };
     // Two pillars are one object; between them there is nothing.
     let pillar = |z: f64| Aabb::new(DVec3::new(-1.0, -20.0, z), DVec3::new(1.0, 1.0, z + 2.0));
     let pillars = [pillar(-50.0), pillar(-10.0)];
     let block = Aabb::new(DVec3::new(-4.0, 3.0, -52.0), DVec3::new(4.0, 4.0, -5.0));
-    let mut planner = Planner::new(settings).expect("valid");
+    let mut planner = Planner::new(&settings).expect("valid");
     let whole = [pillars[0].union(pillars[1])];
     let inputs = PlanInputs::new(&view, light, std::slice::from_ref(&block), &whole);
     let part = |x: f64, z: f64| Aabb::new(DVec3::new(x, 3.0, z), DVec3::new(x + 0.5, 4.0, z + 0.5));
@@ -254,7 +249,7 @@ proptest! {
     #[test]
     fn no_caster_is_lost_and_every_shadowed_receiver_lies_in_its_map(case in cases(), [by_distance, tells_parts] in any::<[bool; 2]>()) {
         let case = if by_distance { radial(case.clone()).unwrap_or(case) } else { case };
-        let mut planner = Planner::new(case.settings.clone())?;
+        let mut planner = Planner::with_options(&case.settings, case.options)?;
         let receiver_clusters = tells_parts.then_some(&case.boxes[..]);
         let inputs = PlanInputs::new(&case.view, case.light, &case.boxes, &case.boxes);
         let plan = match planner.plan_frame(&PlanInputs { receiver_clusters, ..inputs }) {
@@ -273,7 +268,7 @@ proptest! {
                 let s = &plan.splits[split];
                 if let Some(warp) = s.warp {
                     prop_assert!((warp * point.extend(1.0)).w > 0.0, "{point} at {depth} m lies behind the warp of split {split}");
-                    let inside = case.settings.fit == Fit::Dependent || s.contains(point, s.filter_reach);
+                    let inside = case.settings.crop == Crop::SceneDependent || s.contains(point, s.filter_reach);
                     prop_assert!(inside, "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
                 }
                 for (index, bounds) in case.boxes.iter().enumerate() {
@@ -288,7 +283,7 @@ proptest! {
                     let along = s.depth_axis.dot(point);
                     prop_assert!((s.receiver_depths.0..=s.receiver_depths.1).contains(&along), "{point} at {along} m along the light, outside {:?}", s.receiver_depths);
                     let caster_begin = direction.dot(point - direction * end);
-                    prop_assert!(case.settings.depth_clamp || s.depth_near <= caster_begin, "the near plane cuts caster {index}");
+                    prop_assert!(case.options.depth_clamp || s.depth_near <= caster_begin, "the near plane cuts caster {index}");
                     if s.warp.is_some() {
                         let (at, caster) = (s.map_from_world(point), s.map_from_world(point - direction * end));
                         prop_assert!((at - caster).truncate().length() < 1e-3, "split {split} shows {point} at {at}, caster {index} at {caster}");
@@ -301,7 +296,7 @@ proptest! {
 
     #[test]
     fn lists_ranges_and_matrices_agree(case in cases()) {
-        let mut planner = Planner::new(case.settings.clone())?;
+        let mut planner = Planner::with_options(&case.settings, case.options)?;
         let Ok(plan) = planner.plan(&case.view, &case.light, &case.boxes, &case.boxes) else { return Ok(()) };
         let plan = plan.clone();
         prop_assert_eq!(plan.splits.len(), case.settings.splits());
@@ -310,8 +305,9 @@ proptest! {
             prop_assert!(split.near < split.far && split.texel_m.min_element() > 0.0 && split.texel_m.is_finite());
             prop_assert!(split.depth_near < split.depth_far && split.min_texel.is_finite());
             // A kernel of known width has its room, and no map gives away more.
-            let most = case.settings.filter_radius;
-            let asked = case.settings.filter_half_width_m.map_or(most, |m| m / split.texel_m.min_element() + 1.0);
+            let reach = case.options.filter_reach.expect("a reach");
+            let most = reach.radius_texels;
+            let asked = reach.half_width_m.map_or(most, |m| m / split.texel_m.min_element() + 1.0);
             let reach = if split.warp.is_some() { most } else { asked.max(4.0).min(most) };
             prop_assert!((split.filter_reach - reach).abs() < 1e-6 * reach || split.warp.is_none() && split.filter_reach == most, "{} for {asked}", split.filter_reach);
             prop_assert!(split.u_axis.cross(split.v_axis).abs_diff_eq(split.depth_axis, 1e-9), "the axes are no right-handed frame");
@@ -349,8 +345,12 @@ proptest! {
 
     #[test]
     fn the_first_map_that_contains_a_point_has_all_its_casters(case in cases()) {
-        let settings = ShadowSettings { selection: Selection::Map, warps: vec![], ..case.settings.clone() };
-        let mut planner = Planner::new(settings)?;
+        let stability = match &case.settings.stability {
+            Stability::Tight { .. } => Stability::tight(),
+            still => still.clone(),
+        };
+        let settings = ShadowConfig { selection: Selection::Map, stability, ..case.settings.clone() };
+        let mut planner = Planner::with_options(&settings, case.options)?;
         let Ok(plan) = planner.plan(&case.view, &case.light, &case.boxes, &case.boxes) else { return Ok(()) };
         let plan = plan.clone();
         let direction = case.light.direction();
@@ -371,7 +371,7 @@ proptest! {
                     let s = &plan.splits[split];
                     prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} of {holders:?} has no caster {index} for {point}");
                     let begin = direction.dot(point - direction * end);
-                    prop_assert!(case.settings.depth_clamp || s.depth_near <= begin, "the near plane cuts caster {index}");
+                    prop_assert!(case.options.depth_clamp || s.depth_near <= begin, "the near plane cuts caster {index}");
                     prop_assert!(s.depth_near <= direction.dot(point), "the near plane lies behind {point}");
                 }
             }
@@ -380,8 +380,8 @@ proptest! {
 
     #[test]
     fn a_range_fitted_to_what_is_visible_holds_all_of_it(case in cases()) {
-        let settings = ShadowSettings { range: None, range_fit: RangeFit::Visible, ..case.settings.clone() };
-        let mut planner = Planner::new(settings)?;
+        let settings = ShadowConfig { range: Range::Visible, ..case.settings.clone() };
+        let mut planner = Planner::with_options(&settings, case.options)?;
         let Ok(plan) = planner.plan(&case.view, &case.light, &case.boxes, &case.boxes) else { return Ok(()) };
         let (first, last) = (plan.planes[0], plan.planes[plan.splits.len()]);
         let frustum = case.view.frustum();
@@ -392,7 +392,7 @@ proptest! {
 
     #[test]
     fn a_covered_point_has_all_its_casters(case in cases(), points in prop::collection::vec((-300.0..300.0f64, -5.0..40.0f64, -300.0..300.0f64), 50)) {
-        let mut planner = Planner::new(case.settings.clone())?;
+        let mut planner = Planner::with_options(&case.settings, case.options)?;
         let Ok(plan) = planner.plan(&case.view, &case.light, &case.boxes, &case.boxes) else { return Ok(()) };
         let plan = plan.clone();
         for point in points.into_iter().map(DVec3::from) {
@@ -421,18 +421,18 @@ fn robots(count: usize) -> Vec<Aabb> {
 fn lists_are_short_and_a_flat_ground_throws_no_shadow() {
     let mut world = robots(160);
     world.push(Aabb::new(DVec3::new(-600.0, 0.0, -600.0), DVec3::new(600.0, 0.0, 600.0)));
-    let settings = ShadowSettings {
+    let settings = ShadowConfig {
         map_sizes: vec![512; 4],
-        range: Some((1.0, 800.0)),
-        blend: 0.0,
+        range: Range::Metres { near: 1.0, far: 800.0 },
+        transition: Transition::Hard,
         far_fade: 0.0,
-        filter_radius: 0.5,
-        ..ShadowSettings::default()
+        filter: Filter::Hard,
+        ..Preset::Papers.config()
     };
     let frustum = Frustum::perspective(60f64.to_radians(), 4.0 / 3.0, 1.0, 800.0).expect("valid");
     let light = DirectionalLight::new(DVec3::new(-0.6, -1.0, 0.4)).expect("valid");
-    for stabilize in [Stabilize::None, Stabilize::Exact] {
-        let mut planner = Planner::new(ShadowSettings { stabilize, ..settings.clone() }).expect("valid");
+    for stability in [Stability::tight(), Stability::Exact] {
+        let mut planner = Planner::new(&ShadowConfig { stability, ..settings.clone() }).expect("valid");
         for eye in [DVec3::new(0.0, 15.0, 0.0), DVec3::new(550.0, 30.0, 500.0), DVec3::new(-300.0, 3.0, 300.0)] {
             let view = View::look_at_upright(eye, DVec3::new(0.1, 5.0, -0.2), frustum).expect("valid");
             let plan = planner.plan(&view, &light, &world, &world).expect("valid");
@@ -449,13 +449,13 @@ fn a_dependent_fit_is_never_larger() {
     let frustum = Frustum::perspective(1.0, 1.5, 1.0, 800.0).expect("valid");
     let light = DirectionalLight::new(DVec3::new(-0.6, -1.0, 0.4)).expect("valid");
     let view = View::look_at_upright(DVec3::new(100.0, 20.0, 300.0), DVec3::ZERO, frustum).expect("valid");
-    let areas = |fit| {
-        let settings = ShadowSettings { fit, stabilize: Stabilize::None, ..ShadowSettings::default() };
-        let mut planner = Planner::new(settings).expect("valid");
+    let areas = |crop| {
+        let settings = ShadowConfig { crop, stability: Stability::tight(), ..Preset::Papers.config() };
+        let mut planner = Planner::new(&settings).expect("valid");
         let plan = planner.plan(&view, &light, &world, &world).expect("valid");
         plan.splits.iter().map(|s| s.texel_m.x * s.texel_m.y).collect::<Vec<_>>()
     };
-    for (dependent, independent) in areas(Fit::Dependent).iter().zip(areas(Fit::Independent)) {
+    for (dependent, independent) in areas(Crop::SceneDependent).iter().zip(areas(Crop::SceneIndependent)) {
         assert!(*dependent <= independent * (1.0 + 1e-9), "{dependent} > {independent}");
     }
 }
@@ -469,23 +469,22 @@ fn a_visible_range_is_as_tight_as_the_boxes_and_steps_where_maps_stand_still() {
     // One at 20 to 22 m, one at 60 to 64 m, one beside and one behind the view.
     let boxed = |x: f64, from: f64, to: f64| Aabb::new(DVec3::new(x, 0.0, -to), DVec3::new(x + 2.0, 2.0, -from));
     let world = [boxed(0.0, 20.0, 22.0), boxed(-1.0, 60.0, 64.0), boxed(40.0, 5.0, 9.0), boxed(0.0, -30.0, -8.0)];
-    let settings =
-        ShadowSettings { range_fit: RangeFit::Visible, stabilize: Stabilize::None, ..ShadowSettings::default() };
-    let mut tight = Planner::new(settings.clone()).expect("valid");
+    let settings = ShadowConfig { range: Range::Visible, stability: Stability::tight(), ..Preset::Papers.config() };
+    let mut tight = Planner::new(&settings).expect("valid");
     let ends = |plan: &ShadowPlan| (plan.planes[0], plan.planes[4]);
     let (first, last) = ends(tight.plan(&view(0.0), &light, &world, &world).expect("valid"));
     assert!((19.99..20.0).contains(&first) && (64.0..64.02).contains(&last), "{first}..{last}");
 
-    let mut still = Planner::new(ShadowSettings { stabilize: Stabilize::Exact, ..settings.clone() }).expect("valid");
+    let mut still = Planner::new(&ShadowConfig { stability: Stability::Exact, ..settings.clone() }).expect("valid");
     let mut ranges: Vec<(f64, f64)> = (0..100)
         .map(|i| ends(still.plan(&view(-0.05 * f64::from(i)), &light, &world, &world).expect("valid")))
         .collect();
     ranges.dedup();
     assert!(ranges.len() <= 3, "five metres of walking move the range in steps: {ranges:?}");
 
-    let both = ShadowSettings { range: Some((1.0, 50.0)), ..settings };
-    let message = Planner::new(both).expect_err("two ranges").to_string();
-    assert!(message.contains("range and range_fit"), "{message}");
+    let both = [("shadow-range", "1..50"), ("range-fit", "visible")].map(|(key, value)| (key.into(), value.into()));
+    let message = Preset::Papers.config().apply(&both).expect_err("two ranges").to_string();
+    assert!(message.contains("shadow-range and range-fit"), "{message}");
     let nothing = tight.plan(&view(-500.0), &light, &world, &world).expect("an empty view");
     assert!(nothing.planes[4] > nothing.planes[0]);
 }
@@ -497,16 +496,16 @@ fn a_range_without_end_stops_at_the_scene() {
     let view = View::look_at_upright(DVec3::Y, DVec3::new(0.0, 1.0, -1.0), frustum).expect("valid");
     let light = DirectionalLight::new(DVec3::NEG_Y).expect("valid");
     let world = [Aabb::new(DVec3::new(-5.0, 0.0, -70.0), DVec3::new(5.0, 1.0, 10.0))];
-    let planes_of = |stabilize| {
-        let mut planner = Planner::new(ShadowSettings { stabilize, ..ShadowSettings::default() }).expect("valid");
+    let planes_of = |stability| {
+        let mut planner = Planner::new(&ShadowConfig { stability, ..Preset::Papers.config() }).expect("valid");
         planner.plan(&view, &light, &world, &world).expect("valid").planes.clone()
     };
-    let tight = planes_of(Stabilize::None);
+    let tight = planes_of(Stability::tight());
     assert_eq!(tight[0], 0.1);
     assert!((tight[4] - 70.0).abs() < 1e-9, "{tight:?}");
     // The inner planes are the same; the last one lies where turning and some walking do not move it: the farthest corner, 70.4 m away,
     // and half a step more.
-    let still = planes_of(Stabilize::Exact);
+    let still = planes_of(Stability::Exact);
     assert_eq!(still[..4], tight[..4]);
     assert!((still[4] / (70.0f64.powi(2) + 26.0).sqrt() - 2f64.powf(1.0 / 16.0)).abs() < 1e-9, "{still:?}");
 }

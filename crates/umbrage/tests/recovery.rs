@@ -2,10 +2,8 @@
 
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
-use umbrage::{
-    Aabb, DirectionalLight, ExtentSteps, Frustum, Light, Planner, PointLight, ShadowPlan, ShadowSettings, Split,
-    SplitScheme, Stabilize, View,
-};
+use umbrage::config::{ExtentSteps, Preset, SplitScheme, Stability};
+use umbrage::{Aabb, DirectionalLight, Frustum, Light, Planner, PointLight, ShadowConfig, ShadowPlan, Split, View};
 
 /// Frames that a recovery may take.
 const FRAMES: usize = 60;
@@ -50,11 +48,11 @@ fn changes(a: &ShadowPlan, b: &ShadowPlan) -> (usize, f64) {
 #[test]
 fn a_walk_of_300_m_leaves_no_coarse_maps_behind() {
     let world = town();
-    let mut planner = Planner::new(ShadowSettings::default()).expect("settings");
+    let mut planner = Planner::new(&Preset::Papers.config()).expect("settings");
     let mut coarse = 0.0;
     for step in 0..=150 {
         let view = view(DVec3::new(0.0, 2.0, 190.0 - 2.0 * f64::from(step)), 0.0, 1.0);
-        let fresh = Planner::new(ShadowSettings::default()).expect("settings");
+        let fresh = Planner::new(&Preset::Papers.config()).expect("settings");
         let fresh = fresh.clone().plan(&view, &sun(), &world, &world).expect("a plan").clone();
         coarse = excess(planner.plan(&view, &sun(), &world, &world).expect("a plan"), &fresh);
     }
@@ -70,7 +68,7 @@ fn a_walk_of_300_m_leaves_no_coarse_maps_behind() {
         steps += count;
         before = now;
     }
-    let fresh = Planner::new(ShadowSettings::default()).expect("settings").plan(&last, &sun(), &world, &world).cloned();
+    let fresh = Planner::new(&Preset::Papers.config()).expect("settings").plan(&last, &sun(), &world, &world).cloned();
     let left = excess(&before, &fresh.expect("a plan"));
     assert!(left <= 1.1 && steps > 4, "{left} after {steps} steps");
     // And then nothing moves any more.
@@ -79,22 +77,22 @@ fn a_walk_of_300_m_leaves_no_coarse_maps_behind() {
     }
 }
 
-fn settings() -> impl Strategy<Value = ShadowSettings> {
+fn settings() -> impl Strategy<Value = ShadowConfig> {
     let scheme = prop_oneof![
-        2 => Just(SplitScheme::default()),
+        2 => Just(SplitScheme::practical()),
         1 => Just(SplitScheme::Logarithmic),
-        1 => Just(SplitScheme::Fitted),
+        1 => Just(SplitScheme::Optimal),
     ];
-    let stabilize = prop_oneof![
-        3 => Just(Stabilize::Exact),
-        1 => Just(Stabilize::Approximate(ExtentSteps::default())),
-        1 => Just(Stabilize::Approximate(ExtentSteps::PerDoubling(4))),
+    let stability = prop_oneof![
+        3 => Just(Stability::Exact),
+        1 => Just(Stability::Approximate { steps: ExtentSteps::default() }),
+        1 => Just(Stability::Approximate { steps: ExtentSteps::PerDoubling(4) }),
     ];
-    (1usize..=8, scheme, stabilize).prop_map(|(m, scheme, stabilize)| ShadowSettings {
+    (1usize..=8, scheme, stability).prop_map(|(m, scheme, stability)| ShadowConfig {
         map_sizes: vec![512; m],
         scheme,
-        stabilize,
-        ..ShadowSettings::default()
+        stability,
+        ..Preset::Papers.config()
     })
 }
 
@@ -108,7 +106,7 @@ proptest! {
         legs in prop::collection::vec(([-2.0..2.0f64, 0.0..0.01, -2.0..2.0], -0.05..0.05f64, -0.01..0.01f64, 5..60u32), 1..4),
     ) {
         let world = town();
-        let mut planner = Planner::new(settings.clone())?;
+        let mut planner = Planner::new(&settings)?;
         let (mut eye, mut yaw, mut fov) = (DVec3::from(at), yaw, 1.0);
         for (step, turn, zoom, frames) in legs {
             for _ in 0..frames {
@@ -121,14 +119,14 @@ proptest! {
         for frame in 0..FRAMES {
             let now = planner.plan(&last, &sun(), &world, &world)?.clone();
             let (count, ratio) = changes(&before, &now);
-            if settings.stabilize == Stabilize::Exact {
+            if settings.stability == Stability::Exact {
                 prop_assert!(count <= 1, "frame {}: {} maps change", frame, count);
                 // Steps are 9 %, and larger where 60 frames would not do.
                 prop_assert!(settings.splits() > 4 || ratio < 1.6, "frame {}: {}", frame, ratio);
             }
             before = now;
         }
-        let fresh = Planner::new(settings)?.plan(&last, &sun(), &world, &world)?.clone();
+        let fresh = Planner::new(&settings)?.plan(&last, &sun(), &world, &world)?.clone();
         let left = excess(&before, &fresh);
         prop_assert!(left <= 1.1, "{} times a fresh planner's texels, planes {:?} for {:?}", left, before.planes, fresh.planes);
     }
@@ -137,9 +135,9 @@ proptest! {
     #[test]
     fn lamps_recover(splits in 1usize..=8, walk in 1.0..40.0f64, yaw in -3.0..3.0f64) {
         let world = town();
-        let settings = ShadowSettings { map_sizes: vec![256; splits], ..ShadowSettings::default() };
+        let settings = ShadowConfig { map_sizes: vec![256; splits], ..Preset::Papers.config() };
         let lamp: Light = PointLight::new(DVec3::new(3.0, 12.0, 5.0), 90.0)?.into();
-        let mut planner = Planner::new(settings.clone())?;
+        let mut planner = Planner::new(&settings)?;
         let mut last = view(DVec3::Y * 3.0, yaw, 1.0);
         for step in 0..=40 {
             last = view(DVec3::new(0.025 * walk * f64::from(step), 3.0, 0.0), yaw, 1.0);
@@ -149,7 +147,7 @@ proptest! {
             planner.plan(&last, &lamp, &world, &world)?;
         }
         let plan = planner.plan(&last, &lamp, &world, &world)?.clone();
-        let left = excess(&plan, Planner::new(settings)?.plan(&last, &lamp, &world, &world)?);
+        let left = excess(&plan, Planner::new(&settings)?.plan(&last, &lamp, &world, &world)?);
         prop_assert!(left <= 1.1, "{} times a fresh planner's texels", left);
     }
 }

@@ -1,13 +1,11 @@
 //! What has no say: very far objects, ground beyond all shadows, how far an orthographic camera stands off.
 
 use glam::DVec3;
-use umbrage::{
-    Aabb, DirectionalLight, ExtentSteps, Frustum, Planner, Selection, ShadowPlan, ShadowSettings, SplitScheme,
-    Stabilize, View,
-};
+use umbrage::config::{ExtentSteps, Preset, Range, Selection, SplitScheme, Stability};
+use umbrage::{Aabb, DirectionalLight, Frustum, Planner, ShadowConfig, ShadowPlan, View};
 
-const STABILIZE: [Stabilize; 3] =
-    [Stabilize::None, Stabilize::Exact, Stabilize::Approximate(ExtentSteps::PerDoubling(24))];
+const STABILITIES: [Stability; 3] =
+    [Stability::tight(), Stability::Exact, Stability::Approximate { steps: ExtentSteps::PerDoubling(24) }];
 
 fn sun() -> DirectionalLight {
     DirectionalLight::new(DVec3::new(-0.5, -0.6, -0.35)).expect("a sun")
@@ -30,8 +28,8 @@ fn things(half: f64) -> Vec<Aabb> {
     boxes
 }
 
-fn plan(settings: &ShadowSettings, view: &View, boxes: &[Aabb]) -> ShadowPlan {
-    let mut planner = Planner::new(settings.clone()).expect("settings");
+fn plan(settings: &ShadowConfig, view: &View, boxes: &[Aabb]) -> ShadowPlan {
+    let mut planner = Planner::new(&settings).expect("settings");
     planner.plan(view, &sun(), boxes, boxes).expect("a plan").clone()
 }
 
@@ -44,8 +42,8 @@ fn texel_at(plan: &ShadowPlan, point: DVec3) -> (f64, f64) {
 
 #[test]
 fn a_ground_of_any_size_leaves_texels_to_what_stands_on_it() {
-    for stabilize in STABILIZE {
-        let settings = ShadowSettings { stabilize, ..ShadowSettings::default() };
+    for stability in &STABILITIES {
+        let settings = ShadowConfig { stability: stability.clone(), ..Preset::Papers.config() };
         for (near, far) in [(0.01, f64::INFINITY), (1.0, f64::INFINITY), (0.1, 300.0), (1.0, 1e6)] {
             for half in [10.0, 100.0, 2e3, 2e4, 5e5] {
                 let plan = plan(&settings, &view(near, far), &things(half));
@@ -53,11 +51,11 @@ fn a_ground_of_any_size_leaves_texels_to_what_stands_on_it() {
                     let (texel, depth) = texel_at(&plan, foot);
                     assert!(
                         texel < 0.07,
-                        "{stabilize:?} {near}..{far}, {half} m: texels of {texel} m, {:?}",
+                        "{stability:?} {near}..{far}, {half} m: texels of {texel} m, {:?}",
                         plan.planes
                     );
                     // 32-bit depth is good to a few millimetres.
-                    assert!(depth < 2e4, "{stabilize:?} {near}..{far}, {half} m: {depth} m of depth");
+                    assert!(depth < 2e4, "{stability:?} {near}..{far}, {half} m: {depth} m of depth");
                 }
             }
         }
@@ -67,8 +65,8 @@ fn a_ground_of_any_size_leaves_texels_to_what_stands_on_it() {
 #[test]
 fn one_very_far_object_changes_nothing() {
     let forward = view(1.0, 10.0).forward();
-    for stabilize in STABILIZE {
-        let settings = ShadowSettings { stabilize, ..ShadowSettings::default() };
+    for stability in &STABILITIES {
+        let settings = ShadowConfig { stability: stability.clone(), ..Preset::Papers.config() };
         for far in [300.0, f64::INFINITY] {
             let view = view(0.1, far);
             let boxes = things(50.0);
@@ -79,7 +77,7 @@ fn one_very_far_object_changes_nothing() {
                     let mut with = boxes.clone();
                     with.push(Aabb::new(at - 0.5e-3 * distance, at + 0.5e-3 * distance));
                     let with = plan(&settings, &view, &with);
-                    let told = format!("{stabilize:?}, {distance} m towards {towards}, lens to {far}");
+                    let told = format!("{stability:?}, {distance} m towards {towards}, lens to {far}");
                     for (a, b) in with.splits.iter().zip(&without.splits) {
                         let ratio = a.texel_m / b.texel_m;
                         assert!(
@@ -106,14 +104,14 @@ fn one_very_far_object_changes_nothing() {
 #[test]
 fn an_orthographic_camera_may_stand_off_as_far_as_it_likes() {
     let toward = DVec3::new(1.0, 0.9, 1.0).normalize();
-    for stabilize in STABILIZE {
-        let settings = ShadowSettings { stabilize, ..ShadowSettings::default() };
+    for stability in &STABILITIES {
+        let settings = ShadowConfig { stability: stability.clone(), ..Preset::Papers.config() };
         let texels = [30.0, 300.0, 5000.0].map(|distance| {
             let lens = Frustum::orthographic(24.0, 18.0, 0.1, 2.0 * distance).expect("a lens");
             let view = View::look_at_upright(toward * distance, DVec3::ZERO, lens).expect("a view");
             texel_at(&plan(&settings, &view, &things(40.0)), DVec3::ZERO).0
         });
-        assert!(texels[1] < 1.5 * texels[0] && texels[2] < 1.5 * texels[0], "{stabilize:?}: {texels:?}");
+        assert!(texels[1] < 1.5 * texels[0] && texels[2] < 1.5 * texels[0], "{stability:?}: {texels:?}");
     }
 }
 
@@ -130,18 +128,18 @@ fn every_direction_of_sight_along_the_sun_has_axes_and_casters() {
             let sun = DirectionalLight::new(d + off * DVec3::new(0.6, 0.0, -0.8)).expect("a sun");
             let lens = Frustum::perspective(1.0, 1.5, 0.1, 100.0).expect("a lens");
             let view = View::look_at_upright(-4.0 * d, DVec3::ZERO, lens).expect("a view");
-            for stabilize in STABILIZE {
-                for scheme in [SplitScheme::default(), SplitScheme::Fitted] {
-                    let settings = ShadowSettings { stabilize, scheme, ..ShadowSettings::default() };
-                    let mut planner = Planner::new(settings).expect("settings");
+            for stability in &STABILITIES {
+                for scheme in [SplitScheme::practical(), SplitScheme::Optimal] {
+                    let settings = ShadowConfig { stability: stability.clone(), scheme, ..Preset::Papers.config() };
+                    let mut planner = Planner::new(&settings).expect("settings");
                     let plan = planner.plan(&view, &sun, &boxes, &boxes).expect("a plan");
                     for split in &plan.splits {
                         let frame = split.u_axis.cross(split.v_axis);
-                        assert!(frame.abs_diff_eq(sun.direction(), 1e-10), "{d} {off} {stabilize:?}: {split:?}");
-                        assert!(split.u_axis.dot(split.v_axis).abs() < 1e-10, "{d} {off} {stabilize:?}: {split:?}");
+                        assert!(frame.abs_diff_eq(sun.direction(), 1e-10), "{d} {off} {stability:?}: {split:?}");
+                        assert!(split.u_axis.dot(split.v_axis).abs() < 1e-10, "{d} {off} {stability:?}: {split:?}");
                     }
                     // The cube before the eye throws a shadow on what lies behind it, and has a list that says so.
-                    assert!(plan.splits.iter().any(|split| !split.casters.is_empty()), "{d} {off} {stabilize:?}");
+                    assert!(plan.splits.iter().any(|split| !split.casters.is_empty()), "{d} {off} {stability:?}");
                 }
             }
         }
@@ -157,9 +155,9 @@ fn a_map_without_casters_does_not_answer_for_a_later_one() {
     // The only caster stands far away: the first split has none.
     let caster = Aabb::new(DVec3::new(-3.0, 4.0, -103.0), DVec3::new(3.0, 8.0, -97.0));
     let shaded = DVec3::new(1.5, 0.0, -100.0);
-    for selection in [Selection::Depth, Selection::Map] {
-        let settings = ShadowSettings { selection, ..ShadowSettings::default() };
-        let mut planner = Planner::new(settings).expect("settings");
+    for selection in [Selection::default(), Selection::Map] {
+        let settings = ShadowConfig { selection, ..Preset::Papers.config() };
+        let mut planner = Planner::new(&settings).expect("settings");
         let plan = planner.plan(&view, &sun, &[caster], &[ground]).expect("a plan");
         assert!(plan.splits[0].casters.is_empty() && plan.splits.iter().any(|split| !split.casters.is_empty()));
         let split = plan.covering_split(shaded).expect("a map answers");
@@ -182,8 +180,8 @@ fn a_slice_that_the_camera_does_not_show_answers_for_nothing() {
         Aabb::new(DVec3::new(-900.0, 0.0, -900.0), DVec3::new(900.0, 0.0, 900.0)),
         Aabb::new(DVec3::new(-5.0, 5.0, -305.0), DVec3::new(5.0, 9.0, -295.0)),
     ];
-    let settings = ShadowSettings { range: Some((0.5, 800.0)), ..ShadowSettings::default() };
-    let mut planner = Planner::new(settings).expect("settings");
+    let settings = ShadowConfig { range: Range::Metres { near: 0.5, far: 800.0 }, ..Preset::Papers.config() };
+    let mut planner = Planner::new(&settings).expect("settings");
     let sun = DirectionalLight::new(DVec3::new(0.0, -1.0, 0.01)).expect("a sun");
     let plan = planner.plan(&view, &sun, &boxes, &boxes).expect("a plan");
     assert_eq!(plan.covering_split(DVec3::new(0.0, 0.0, -300.0)), None, "nobody looked for its casters");
@@ -194,10 +192,10 @@ fn without_receivers_in_view_casters_show_shadows() {
     let boxes = things(50.0);
     let view = view(0.1, 300.0);
     let elsewhere = [Aabb::new(DVec3::splat(900.0), DVec3::splat(901.0))];
-    let settings = ShadowSettings { stabilize: Stabilize::None, ..ShadowSettings::default() };
+    let settings = ShadowConfig { stability: Stability::tight(), ..Preset::Papers.config() };
     let all = plan(&settings, &view, &boxes);
     for receivers in [&[][..], &elsewhere[..]] {
-        let mut planner = Planner::new(settings.clone()).expect("settings");
+        let mut planner = Planner::new(&settings).expect("settings");
         let plan = planner.plan(&view, &sun(), &boxes, receivers).expect("a plan");
         assert_eq!(plan.splits, all.splits);
     }

@@ -1,7 +1,8 @@
 //! Split planes against 50-digit vectors, and what they must refuse.
 
 use proptest::prelude::*;
-use umbrage::{Error, SplitScheme, split_planes};
+use umbrage::config::SplitScheme;
+use umbrage::{Error, split_planes};
 
 fn planes(scheme: &SplitScheme, near: f64, far: f64, m: usize) -> umbrage::Result<Vec<f64>> {
     let mut planes = Vec::new();
@@ -45,8 +46,8 @@ fn delta_moves_inner_planes_only() {
 #[test]
 fn planes_that_do_not_rise_are_refused() {
     let delta = SplitScheme::Practical { lambda: 0.5, delta: vec![900.0] };
-    let manual = SplitScheme::Manual(vec![10.0, 5.0, 100.0]);
-    let beyond = SplitScheme::Manual(vec![10.0, 50.0, 801.0]);
+    let manual = SplitScheme::Manual { planes: vec![10.0, 5.0, 100.0] };
+    let beyond = SplitScheme::Manual { planes: vec![10.0, 50.0, 801.0] };
     for (scheme, field) in [(delta, "delta"), (manual, "planes"), (beyond, "planes")] {
         let error = planes(&scheme, 1.0, 800.0, 4).expect_err("these planes do not rise");
         assert!(matches!(error, Error::InvalidSetting { field: f, .. } if f == field), "{error}");
@@ -55,7 +56,7 @@ fn planes_that_do_not_rise_are_refused() {
         [(1.0, 1.0), (2.0, 1.0), (0.0, 1.0), (-1.0, 1.0), (1.0, f64::INFINITY), (f64::NAN, 1.0), (1.0, f64::NAN)]
     {
         let error = planes(&SplitScheme::Uniform, near, far, 2).expect_err("not a range");
-        assert!(matches!(error, Error::InvalidSetting { field: "range", .. }), "{error}");
+        assert!(matches!(error, Error::InvalidSetting { field: "shadow-range", .. }), "{error}");
     }
 }
 

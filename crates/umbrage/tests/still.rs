@@ -2,9 +2,9 @@
 
 use glam::{DQuat, DVec2, DVec3, EulerRot};
 use proptest::prelude::*;
+use umbrage::config::{Crop, ExtentSteps, Preset, Range, Stability};
 use umbrage::{
-    Aabb, DirectionalLight, ExtentSteps, Fit, Frustum, Planner, Projection, ShadowPlan, ShadowSettings, Split,
-    Stabilize, View, slice_sphere,
+    Aabb, DirectionalLight, Frustum, Planner, Projection, ShadowConfig, ShadowPlan, Split, View, slice_sphere,
 };
 
 proptest! {
@@ -32,10 +32,10 @@ proptest! {
     #[test]
     fn maps_move_in_whole_texels(
         place in place(), eye in prop::array::uniform3(-50.0..50.0f64), turns in prop::array::uniform2(prop::array::uniform3(-3.0..3.0f64)),
-        step in prop::array::uniform3(-2.0..2.0f64), sun in sun(), fit in fit(),
+        step in prop::array::uniform3(-2.0..2.0f64), sun in sun(), crop in crop(),
     ) {
-        let settings = ShadowSettings { range: Some((1.0, 300.0)), fit, stabilize: Stabilize::Exact, ..ShadowSettings::default() };
-        let mut planner = Planner::new(settings)?;
+        let settings = ShadowConfig { range: Range::Metres { near: 1.0, far: 300.0 }, crop, stability: Stability::Exact, ..Preset::Papers.config() };
+        let mut planner = Planner::new(&settings)?;
         let world = [Aabb::new(place - 400.0, place + 400.0)];
         let eye = place + DVec3::from(eye);
         let first = planner.plan(&turned_view(eye, turns[0])?, &sun, &world, &world)?.clone();
@@ -54,12 +54,12 @@ proptest! {
     #[test]
     fn approximate_maps_move_in_whole_texels_and_seldom_take_a_step(
         place in place(), eye in prop::array::uniform3(-50.0..50.0f64), turn in prop::array::uniform3(-3.0..3.0f64),
-        walk in prop::array::uniform3(-0.2..0.2f64), sun in sun(), fit in fit(),
+        walk in prop::array::uniform3(-0.2..0.2f64), sun in sun(), crop in crop(),
         steps in prop_oneof![Just(ExtentSteps::default()), (4u32..64).prop_map(ExtentSteps::PerDoubling), Just(ExtentSteps::Levels(64))],
     ) {
-        let stabilize = Stabilize::Approximate(steps);
-        let settings = ShadowSettings { range: Some((1.0, 300.0)), fit, stabilize, ..ShadowSettings::default() };
-        let mut planner = Planner::new(settings)?;
+        let stability = Stability::Approximate { steps: steps };
+        let settings = ShadowConfig { range: Range::Metres { near: 1.0, far: 300.0 }, crop, stability, ..Preset::Papers.config() };
+        let mut planner = Planner::new(&settings)?;
         let world = [Aabb::new(place - 400.0, place + 400.0)];
         let mut before: Option<ShadowPlan> = None;
         for k in 0..30 {
@@ -68,7 +68,7 @@ proptest! {
             for (i, split) in plan.splits.iter().enumerate() {
                 prop_assert_eq!(split.min_texel.fract(), DVec2::ZERO);
                 if let Some(before) = &before
-                    && fit == Fit::Independent
+                    && crop == Crop::SceneIndependent
                 {
                     // What a slice measures does not change while the eye walks, so no step is taken at all.
                     prop_assert!(split.texels_moved_since(&before.splits[i]).is_some(), "frame {k}, split {i}");
@@ -81,19 +81,19 @@ proptest! {
     /// Between the tightest map and 2^(2/24) of it, always inside the exact one's.
     #[test]
     fn approximate_maps_are_nearly_tight(
-        place in place(), turns in prop::collection::vec(prop::array::uniform3(-3.0..3.0f64), 1..6), sun in sun(), fit in fit(),
+        place in place(), turns in prop::collection::vec(prop::array::uniform3(-3.0..3.0f64), 1..6), sun in sun(), crop in crop(),
     ) {
-        let of = |stabilize| {
-            let settings = ShadowSettings { range: Some((1.0, 300.0)), fit, stabilize, ..ShadowSettings::default() };
-            Planner::new(settings)
+        let of = |stability| {
+            let settings = ShadowConfig { range: Range::Metres { near: 1.0, far: 300.0 }, crop, stability, ..Preset::Papers.config() };
+            Planner::new(&settings)
         };
-        let (mut held, mut exact) = (of(Stabilize::Approximate(ExtentSteps::default()))?, of(Stabilize::Exact)?);
+        let (mut held, mut exact) = (of(Stability::Approximate { steps: ExtentSteps::default() })?, of(Stability::Exact)?);
         let world = [Aabb::new(place - 400.0, place + 400.0)];
         for turn in turns {
             let view = turned_view(place, turn)?;
             let plan = held.plan(&view, &sun, &world, &world)?;
             // The tightest map turns with the view, so its rectangle can be smaller by what 2.8 degrees are worth.
-            let mut tight = of(Stabilize::None)?;
+            let mut tight = of(Stability::tight())?;
             let tight = tight.plan(&view, &sun, &world, &world)?;
             let sphere = exact.plan(&view, &sun, &world, &world)?;
             for ((a, t), s) in plan.splits.iter().zip(&tight.splits).zip(&sphere.splits) {
@@ -110,14 +110,14 @@ proptest! {
     fn back_and_forth_settles(
         place in place(), first in 0.3..1.2f64, base in 0.3..1.2f64, pose in prop::array::uniform3(-3.0..3.0f64),
         waves in prop::collection::vec([0.0..1.0f64, -1.0..1.0, -1.0..1.0], 2..12), sun in sun(),
-        (stabilize, step) in prop_oneof![
-            Just((Stabilize::Exact, 1.0)),
-            Just((Stabilize::Approximate(ExtentSteps::PerDoubling(8)), 1.0)),
-            Just((Stabilize::Approximate(ExtentSteps::default()), 8.0 / 24.0)),
+        (stability, step) in prop_oneof![
+            Just((Stability::Exact, 1.0)),
+            Just((Stability::Approximate { steps: ExtentSteps::PerDoubling(8) }, 1.0)),
+            Just((Stability::Approximate { steps: ExtentSteps::default() }, 8.0 / 24.0)),
         ],
     ) {
-        let settings = ShadowSettings { range: Some((1.0, 300.0)), fit: Fit::Independent, stabilize, ..ShadowSettings::default() };
-        let mut planner = Planner::new(settings)?;
+        let settings = ShadowConfig { range: Range::Metres { near: 1.0, far: 300.0 }, crop: Crop::SceneIndependent, stability, ..Preset::Papers.config() };
+        let mut planner = Planner::new(&settings)?;
         let world = [Aabb::new(place - 400.0, place + 400.0)];
         let mut splits = |fov: f64, turn: f64, walk: f64| -> Result<Vec<Split>, TestCaseError> {
             let lens = Frustum::perspective(fov, 1.5, 0.1, 1000.0)?;
@@ -141,15 +141,15 @@ proptest! {
     /// A long zoom takes one change for each step of 19 % between the narrowest and the widest lens, and the map always holds the slice.
     #[test]
     fn a_long_zoom_changes_the_texel_in_steps(place in place(), from in 0.3..1.2f64, to in 0.3..1.2f64) {
-        let settings = ShadowSettings { range: Some((1.0, 300.0)), stabilize: Stabilize::Exact, ..ShadowSettings::default() };
-        let mut planner = Planner::new(settings.clone())?;
+        let settings = ShadowConfig { range: Range::Metres { near: 1.0, far: 300.0 }, stability: Stability::Exact, ..Preset::Papers.config() };
+        let mut planner = Planner::new(&settings)?;
         let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2))?;
         let (mut changes, mut held) = (0, None);
         for k in 0..120 {
             let fov = from + (to - from) * f64::from(k) / 119.0;
             let view = View::look_at_upright(place, place + DVec3::NEG_Z, Frustum::perspective(fov, 1.5, 0.1, 1000.0)?)?;
             let texel = planner.plan(&view, &sun, &[], &[])?.splits[3].texel_m.x;
-            let tight = Planner::new(settings.clone())?.plan(&view, &sun, &[], &[])?.splits[3].texel_m.x;
+            let tight = Planner::new(&settings)?.plan(&view, &sun, &[], &[])?.splits[3].texel_m.x;
             prop_assert!(texel >= tight * (1.0 - 1e-12), "the map no longer holds the slice");
             prop_assert!(texel <= tight * 2f64.powf(2.0 / 4.0) * (1.0 + 1e-9), "{texel} is much larger than {tight}");
             changes += i32::from(held.is_some_and(|held| held != texel));
@@ -164,8 +164,8 @@ proptest! {
     fn the_range_is_held(
         place in place(), yaw in -3.0..3.0f64, walks in prop::collection::vec(0.0..1.0f64, 4..40), approximate in any::<bool>(),
     ) {
-        let stabilize = if approximate { Stabilize::Approximate(ExtentSteps::default()) } else { Stabilize::Exact };
-        let mut planner = Planner::new(ShadowSettings { stabilize, ..ShadowSettings::default() })?;
+        let stability = if approximate { Stability::Approximate { steps: ExtentSteps::default() } } else { Stability::Exact };
+        let mut planner = Planner::new(&ShadowConfig { stability, ..Preset::Papers.config() })?;
         let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2))?;
         let world = [Aabb::new(place - DVec3::new(200.0, 1.0, 200.0), place + DVec3::new(200.0, 9.0, 200.0))];
         let (mut far, mut changes) = (0.0, -1);
@@ -196,7 +196,7 @@ fn turning_and_walking_about_a_scene_leave_all_maps_alone() {
     let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).expect("a direction");
     let world = [Aabb::new(place - DVec3::new(200.0, 1.0, 200.0), place + DVec3::new(200.0, 9.0, 200.0))];
     for (fov, whole) in [(1.2, true), (0.4, false)] {
-        let mut planner = Planner::new(ShadowSettings::default()).expect("valid");
+        let mut planner = Planner::new(&Preset::Papers.config()).expect("valid");
         let (mut before, mut stretches, mut steps): (Option<ShadowPlan>, _, _) = (None, 0, 0);
         for k in 0..600 {
             let yaw = 0.003 * f64::from(k);
@@ -231,8 +231,8 @@ proptest! {
         place in place(), eye in prop::array::uniform3(-300.0..300.0f64), turn in prop::array::uniform3(-3.0..3.0f64), sun in sun(),
         half in prop_oneof![Just(1.0), 1.0..300.0f64], points in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 30),
     ) {
-        let settings = ShadowSettings::default();
-        let mut planner = Planner::new(settings.clone())?;
+        let settings = Preset::Papers.config();
+        let mut planner = Planner::new(&settings)?;
         let world = [Aabb::new(place - half, place + half), Aabb::new(place, place + DVec3::new(2.0 * half, 0.0, 0.0))];
         let view = turned_view(place + DVec3::from(eye), turn)?;
         let plan = planner.plan(&view, &sun, &world, &world)?;
@@ -245,13 +245,13 @@ proptest! {
         let whole = whole.max(DVec2::splat(1e-3 * whole.max_element()));
         for split in &plan.splits {
             let sphere = slice_sphere(view.frustum(), split.coverage.0, split.coverage.1);
-            let served = split.texel_m * (f64::from(split.size) - 2.0 * (settings.filter_radius + 1.5) - 1.0);
+            let served = split.texel_m * (f64::from(split.size) - 2.0 * (settings.filter.radius_texels() + 1.5) - 1.0);
             let least = whole.min(DVec2::splat(2.0 * sphere.radius));
             prop_assert!((served / least).abs_diff_eq(DVec2::ONE, 1e-6), "{served} m for {least} m");
             for point in &points {
                 let point = place + half * DVec3::from(*point);
                 if (split.coverage.0..=split.coverage.1).contains(&view.view_depth(point)) && in_frustum(&view, point) {
-                    prop_assert!(split.contains(point, settings.filter_radius), "{point} lies at {}", split.map_from_world(point));
+                    prop_assert!(split.contains(point, settings.filter.radius_texels()), "{point} lies at {}", split.map_from_world(point));
                 }
             }
         }
@@ -274,8 +274,8 @@ fn sun() -> impl Strategy<Value = DirectionalLight> {
     direction.prop_map(|direction| DirectionalLight::new(direction).expect("a direction"))
 }
 
-fn fit() -> impl Strategy<Value = Fit> {
-    prop_oneof![Just(Fit::Independent), Just(Fit::Dependent)]
+fn crop() -> impl Strategy<Value = Crop> {
+    prop_oneof![Just(Crop::SceneIndependent), Just(Crop::SceneDependent)]
 }
 
 /// Yaw, pitch, roll.
@@ -288,9 +288,12 @@ fn turned_view(eye: DVec3, [yaw, pitch, roll]: [f64; 3]) -> Result<View, umbrage
 /// The comparison can say no: tight maps share no grid.
 #[test]
 fn tight_maps_do_not_stand_still() {
-    let settings =
-        ShadowSettings { range: Some((1.0, 300.0)), stabilize: Stabilize::None, ..ShadowSettings::default() };
-    let mut planner = Planner::new(settings).expect("valid");
+    let settings = ShadowConfig {
+        range: Range::Metres { near: 1.0, far: 300.0 },
+        stability: Stability::tight(),
+        ..Preset::Papers.config()
+    };
+    let mut planner = Planner::new(&settings).expect("valid");
     let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).expect("valid");
     let world = [Aabb::new(DVec3::splat(-400.0), DVec3::splat(400.0))];
     let mut plan = |x| {
@@ -304,7 +307,7 @@ fn tight_maps_do_not_stand_still() {
 /// Into a zoom of a third and out again, as slowly and as often as one likes: what a map shows is the same, and comes back the same.
 #[test]
 fn a_zoom_of_a_third_and_back_changes_nothing() {
-    let mut planner = Planner::new(ShadowSettings::default()).expect("valid");
+    let mut planner = Planner::new(&Preset::Papers.config()).expect("valid");
     let light = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).expect("valid");
     let world = [Aabb::new(DVec3::splat(-400.0), DVec3::splat(400.0))];
     let mut splits = |zoom: f64| {
@@ -328,8 +331,8 @@ fn a_zoom_of_a_third_and_back_changes_nothing() {
 
 #[test]
 fn a_small_zoom_back_and_forth_changes_nothing() {
-    let settings = ShadowSettings { range: Some((1.0, 300.0)), ..ShadowSettings::default() };
-    let mut planner = Planner::new(settings).expect("valid");
+    let settings = ShadowConfig { range: Range::Metres { near: 1.0, far: 300.0 }, ..Preset::Papers.config() };
+    let mut planner = Planner::new(&settings).expect("valid");
     let light = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).expect("valid");
     let mut texel = |fov: f64| {
         let view = View::look_at_upright(

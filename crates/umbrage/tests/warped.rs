@@ -1,24 +1,22 @@
 //! Warped splits through the planner: that they are warped at all, what their texels are, and what is refused.
 
 use glam::{DQuat, DVec3};
-use umbrage::{
-    Aabb, DirectionalLight, Error, Fit, Frustum, Planner, ShadowPlan, ShadowSettings, Stabilize, View, Warp,
-};
+use umbrage::config::{Crop, Preset, Range, Stability};
+use umbrage::{Aabb, DirectionalLight, Error, Frustum, Planner, ShadowConfig, ShadowPlan, View, Warp};
 
 const WARPS: [Warp; 3] = [Warp::Psm, Warp::Lispsm, Warp::Tsm { focus: 0.2 }];
 
-fn settings(warps: &[Warp], splits: usize) -> ShadowSettings {
-    ShadowSettings {
+fn settings(warps: &[Warp], splits: usize) -> ShadowConfig {
+    ShadowConfig {
         map_sizes: vec![512; splits],
-        range: Some((1.0, 300.0)),
-        stabilize: Stabilize::None,
-        warps: warps.to_vec(),
-        ..ShadowSettings::default()
+        range: Range::Metres { near: 1.0, far: 300.0 },
+        stability: Stability::Tight { warps: warps.to_vec() },
+        ..Preset::Papers.config()
     }
 }
 
 /// A ground with posts, seen from 15 m up; the light comes from `bearing` degrees beside the view and `up` degrees above the ground.
-fn plan(settings: ShadowSettings, bearing: f64, up: f64) -> (View, ShadowPlan) {
+fn plan(settings: ShadowConfig, bearing: f64, up: f64) -> (View, ShadowPlan) {
     let mut world: Vec<Aabb> = (0..200)
         .map(|i| {
             let at = DVec3::new(f64::from(i % 20) * 30.0 - 300.0, 0.0, f64::from(i / 20) * -30.0);
@@ -31,7 +29,7 @@ fn plan(settings: ShadowSettings, bearing: f64, up: f64) -> (View, ShadowPlan) {
     let level = DQuat::from_rotation_y(bearing.to_radians()) * DVec3::NEG_Z;
     let to_light = level * up.to_radians().cos() + DVec3::Y * up.to_radians().sin();
     let light = DirectionalLight::new(-to_light).expect("valid");
-    let mut planner = Planner::new(settings).expect("valid");
+    let mut planner = Planner::new(&settings).expect("valid");
     let plan = planner.plan(&view, &light, &world, &world).expect("valid").clone();
     (view, plan)
 }
@@ -47,10 +45,10 @@ fn spread(view: &View, plan: &ShadowPlan) -> f64 {
 fn warps_are_in_force_wherever_light_and_view_do_not_meet() {
     let (mut plain, mut all) = (0, 0);
     for warp in WARPS {
-        for fit in [Fit::Independent, Fit::Dependent] {
+        for crop in [Crop::SceneIndependent, Crop::SceneDependent] {
             for bearing in [0.0, 30.0, 60.0, 90.0, 120.0, 150.0, 180.0] {
                 for up in [15.0, 30.0, 45.0, 60.0, 75.0, 90.0] {
-                    let (view, plan) = plan(ShadowSettings { fit, ..settings(&[warp], 1) }, bearing, up);
+                    let (view, plan) = plan(ShadowConfig { crop, ..settings(&[warp], 1) }, bearing, up);
                     assert!(!plan.splits[0].casters.is_empty());
                     let angle = view.forward().angle_between(-plan.light_direction).to_degrees();
                     if (40.0..140.0).contains(&angle) {
@@ -68,7 +66,7 @@ fn warps_are_in_force_wherever_light_and_view_do_not_meet() {
 #[test]
 fn across_the_view_a_perspective_map_follows_the_eye() {
     // Light from the side: the camera's own perspective, so that a texel grows as depth does, across the view.
-    let (view, plan) = plan(ShadowSettings { fit: Fit::Independent, ..settings(&[Warp::Psm], 1) }, 90.0, 60.0);
+    let (view, plan) = plan(ShadowConfig { crop: Crop::SceneIndependent, ..settings(&[Warp::Psm], 1) }, 90.0, 60.0);
     let spread = spread(&view, &plan);
     assert!((3.0..80.0).contains(&spread), "{spread}");
 }
@@ -131,7 +129,7 @@ fn an_orthographic_camera_has_nothing_to_undo() {
     let light = DirectionalLight::new(DVec3::new(0.5, -1.0, 0.2)).expect("valid");
     let world = [Aabb::new(DVec3::new(-2.0, 0.0, -50.0), DVec3::new(2.0, 5.0, -40.0))];
     for warp in WARPS {
-        let mut planner = Planner::new(settings(&[warp], 1)).expect("valid");
+        let mut planner = Planner::new(&settings(&[warp], 1)).expect("valid");
         let plan = planner.plan(&view, &light, &world, &world).expect("valid");
         assert_eq!(plan.splits[0].warp, None, "{warp:?}");
     }
@@ -139,14 +137,20 @@ fn an_orthographic_camera_has_nothing_to_undo() {
 
 #[test]
 fn what_does_not_go_together_is_refused_at_creation() {
-    let exact = ShadowSettings { stabilize: Stabilize::Exact, ..settings(&[Warp::None, Warp::Psm], 2) };
-    let error = Planner::new(exact).expect_err("a warp cannot stand still");
-    assert!(matches!(error, Error::ConflictingSettings { first: "warps", second: "stabilize", .. }), "{error}");
-    assert!(error.to_string().contains("warps") && error.to_string().contains("stabilize"), "{error}");
-    let still = ShadowSettings { stabilize: Stabilize::Exact, ..settings(&[Warp::None], 2) };
-    assert!(Planner::new(still).is_ok(), "no warp at all may stand still");
-    for warps in [vec![Warp::Psm; 2], vec![Warp::Tsm { focus: 0.0 }], vec![Warp::Tsm { focus: f64::NAN }]] {
-        let error = Planner::new(settings(&warps, 3)).expect_err("not valid");
-        assert!(matches!(error, Error::InvalidSetting { field: "warps", .. }), "{error}");
+    let all_with = |warp: &str| {
+        [("splits", "2"), ("stabilize", "exact"), ("warp", warp)].map(|(key, value)| (key.into(), value.into()))
+    };
+    let error = Preset::Papers.config().apply(&all_with("none,psm")).expect_err("a warp cannot stand still");
+    assert!(matches!(error, Error::InvalidSetting { field: "warp", .. }), "{error}");
+    assert!(error.to_string().contains("warp") && error.to_string().contains("stabilize"), "{error}");
+    let mut still = Preset::Papers.config();
+    assert!(still.apply(&all_with("none")).is_ok() && Planner::new(&still).is_ok(), "no warp at all may stand still");
+    for (warps, key) in [
+        (vec![Warp::Psm; 2], "warp"),
+        (vec![Warp::Tsm { focus: 0.0 }], "tsm-focus"),
+        (vec![Warp::Tsm { focus: f64::NAN }], "tsm-focus"),
+    ] {
+        let error = Planner::new(&settings(&warps, 3)).expect_err("not valid");
+        assert!(matches!(error, Error::InvalidSetting { field, .. } if field == key), "{error}");
     }
 }

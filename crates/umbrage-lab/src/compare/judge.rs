@@ -394,6 +394,7 @@ fn grey(mask: &GrayAlphaImage) -> RgbImage {
 #[cfg(test)]
 mod tests {
     use image::LumaA;
+    use umbrage::config::Preset;
 
     use super::*;
     use crate::compare::tests::chessboard_shot;
@@ -428,7 +429,7 @@ mod tests {
     #[test]
     fn predicted_and_measured_densities_agree_on_flat_ground() {
         let judged = chessboard_shot([160, 120]);
-        let mut planner = umbrage::Planner::new(umbrage::ShadowSettings::default()).expect("a planner");
+        let mut planner = umbrage::Planner::new(&Preset::Papers.config()).expect("a planner");
         let everything = [umbrage::Aabb::new(glam::DVec3::splat(-400.0), glam::DVec3::splat(400.0))];
         let plan = planner.plan(&judged.view, judged.truth.light(), &everything, &everything).expect("a plan");
         let pairs: Vec<(f64, f64)> =

@@ -138,24 +138,25 @@ fn decides(plan: &ShadowPlan, point: &ProbePoint, transition: Transition) -> Dec
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
-    use umbrage::{DirectionalLight, Frustum, Planner, ShadowSettings, SplitScheme, View};
+    use umbrage::config::{Preset, Range, SplitScheme, Transition};
+    use umbrage::{DirectionalLight, Frustum, Planner, ShadowConfig, View};
 
     use super::*;
 
     #[test]
     fn one_split_decides_or_several_do() {
-        let settings = ShadowSettings {
-            range: Some((1.0, 100.0)),
+        let settings = ShadowConfig {
+            range: Range::Metres { near: 1.0, far: 100.0 },
             map_sizes: vec![64; 2],
-            scheme: SplitScheme::Manual(vec![21.0]),
-            blend: 0.2,
+            scheme: SplitScheme::Manual { planes: vec![21.0] },
+            transition: Transition::Blend { share: 0.2 },
             far_fade: 0.1,
-            ..ShadowSettings::default()
+            ..Preset::Papers.config()
         };
         let lens = Frustum::perspective(1.0, 1.0, 0.5, 200.0).expect("a lens");
         let view = View::look_at_upright(DVec3::ZERO, DVec3::NEG_Z, lens).expect("a view");
         let sun = DirectionalLight::new(DVec3::new(0.2, -1.0, 0.1)).expect("a sun");
-        let mut planner = Planner::new(settings).expect("a planner");
+        let mut planner = Planner::new(&settings).expect("a planner");
         let plan = planner.plan(&view, &sun, &[], &[]).expect("a plan");
         let at = |depth: f64, transition| {
             decides(plan, &ProbePoint { position: DVec3::NEG_Z * depth, normal: DVec3::Y }, transition)

@@ -2,7 +2,8 @@
 //! \[GG3-10\] Figure 10-4.
 
 use glam::DVec3;
-use umbrage::{DirectionalLight, Fit, Planner, ShadowPlan, ShadowSettings, SplitScheme, Stabilize, View, split_planes};
+use umbrage::config::{Crop, Filter, Preset, Range, SplitScheme, Stability, Transition};
+use umbrage::{DirectionalLight, Planner, PlannerOptions, ShadowConfig, ShadowPlan, View, split_planes};
 
 use super::{Result, setting::Setting};
 use crate::{
@@ -20,7 +21,7 @@ pub(super) fn schemes() -> [(&'static str, SplitScheme); 3] {
     [
         ("uniform", SplitScheme::Uniform),
         ("logarithmic", SplitScheme::Logarithmic),
-        ("practical, λ = 0.5", SplitScheme::default()),
+        ("practical, λ = 0.5", SplitScheme::practical()),
     ]
 }
 
@@ -80,23 +81,23 @@ pub(super) fn plan_at_noon(
     setting: &Setting,
     scheme: SplitScheme,
     map_sizes: Vec<u32>,
-    stabilize: Stabilize,
+    stability: Stability,
 ) -> Result<(View, ShadowPlan)> {
     let view = setting.view()?;
-    let settings = ShadowSettings {
+    let settings = ShadowConfig {
         map_sizes,
         scheme,
-        range: Some((setting.near, setting.far)),
-        fit: Fit::Independent,
-        stabilize,
-        filter_radius: 0.5,
-        blend: 0.0,
-        image_size: setting.image_size,
-        ..ShadowSettings::default()
+        range: Range::Metres { near: setting.near, far: setting.far },
+        crop: Crop::SceneIndependent,
+        stability,
+        filter: Filter::Hard,
+        transition: Transition::Hard,
+        ..Preset::Papers.config()
     };
     let noon = DirectionalLight::new(DVec3::NEG_Y)?;
     let everything = setting.surroundings();
-    let plan = Planner::new(settings)?.plan(&view, &noon, &[everything], &[everything])?.clone();
+    let options = PlannerOptions { image_size: setting.image_size, ..PlannerOptions::default() };
+    let plan = Planner::with_options(&settings, options)?.plan(&view, &noon, &[everything], &[everything])?.clone();
     Ok((view, plan))
 }
 
@@ -171,13 +172,13 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
     )
     .mark(Mark::Y(1.0, "1 texel = 1 pixel".into()));
     for (index, (name, scheme, _)) in all.iter().enumerate() {
-        let (view, plan) = plan_at_noon(setting, scheme.clone(), vec![size; SPLITS], Stabilize::None)?;
+        let (view, plan) = plan_at_noon(setting, scheme.clone(), vec![size; SPLITS], Stability::tight())?;
         let series = Series::new(*name, Style::Line, predicted(setting, &view, &plan));
         pixels = pixels.series(series.colour(Colour::Series(index)));
     }
-    let (view, plan) = plan_at_noon(setting, SplitScheme::default(), vec![size; SPLITS], Stabilize::Exact)?;
+    let (view, plan) = plan_at_noon(setting, SplitScheme::practical(), vec![size; SPLITS], Stability::Exact)?;
     let still = Series::new("practical, standing still", Style::Dashed, predicted(setting, &view, &plan));
-    let (view, plan) = plan_at_noon(setting, SplitScheme::Uniform, vec![whole_size], Stabilize::None)?;
+    let (view, plan) = plan_at_noon(setting, SplitScheme::Uniform, vec![whole_size], Stability::tight())?;
     let single = Series::new(format!("one map of {whole_size}²"), Style::Line, predicted(setting, &view, &plan));
     pixels = pixels.series(still.colour(Colour::Series(2))).series(single.colour(Colour::Series(7)));
 
@@ -325,7 +326,7 @@ mod tests {
     fn the_matrices_say_what_the_theory_says() {
         let setting = Setting::default();
         for (name, scheme) in schemes() {
-            let (view, plan) = plan_at_noon(&setting, scheme, vec![512; 4], Stabilize::None).expect("a plan");
+            let (view, plan) = plan_at_noon(&setting, scheme, vec![512; 4], Stability::tight()).expect("a plan");
             for split in &plan.splits {
                 let at = |z: f64| split.pixels_per_texel(&view, 600, z);
                 assert!(near(at(split.near) * split.near, at(split.far) * split.far));

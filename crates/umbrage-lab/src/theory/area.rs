@@ -2,7 +2,8 @@
 //! that the sum is never more than the whole. It can be.
 
 use glam::{DVec2, DVec3};
-use umbrage::{DirectionalLight, Fit, MAX_SPLITS, Planner, ShadowSettings, SplitScheme, Stabilize, View, slice_sphere};
+use umbrage::config::{Crop, Preset, Range, SplitScheme, Stability, Transition};
+use umbrage::{DirectionalLight, FilterReach, MAX_SPLITS, Planner, PlannerOptions, ShadowConfig, View, slice_sphere};
 
 use super::{
     Result,
@@ -73,19 +74,19 @@ fn box_area(view: &View, light: &DirectionalLight, a: f64, b: f64) -> f64 {
 
 /// Area of the rectangle that the planner lays around each slice, in square metres.
 fn least_areas(setting: &Setting, view: &View, light: &DirectionalLight, planes: &[f64]) -> Result<Vec<f64>> {
-    let settings = ShadowSettings {
+    let settings = ShadowConfig {
         map_sizes: vec![FINE; planes.len() - 1],
-        scheme: SplitScheme::Manual(planes[1..planes.len() - 1].to_vec()),
-        range: Some((planes[0], planes[planes.len() - 1])),
-        fit: Fit::Independent,
-        stabilize: Stabilize::None,
-        filter_radius: 0.0,
-        blend: 0.0,
-        image_size: [FINE; 2],
-        ..ShadowSettings::default()
+        scheme: SplitScheme::Manual { planes: planes[1..planes.len() - 1].to_vec() },
+        range: Range::Metres { near: planes[0], far: planes[planes.len() - 1] },
+        crop: Crop::SceneIndependent,
+        stability: Stability::tight(),
+        transition: Transition::Hard,
+        ..Preset::Papers.config()
     };
     let everything = setting.surroundings();
-    let mut planner = Planner::new(settings)?;
+    let reach = FilterReach { radius_texels: 0.0, half_width_m: None };
+    let options = PlannerOptions { filter_reach: Some(reach), image_size: [FINE; 2], ..PlannerOptions::default() };
+    let mut planner = Planner::with_options(&settings, options)?;
     let plan = planner.plan(view, light, &[everything], &[everything])?;
     Ok(plan.splits.iter().map(|split| (split.texel_m * f64::from(split.size)).element_product()).collect())
 }
@@ -138,7 +139,7 @@ fn angle_below_one(curve: &[(f64, f64)]) -> Option<f64> {
 pub(super) fn section(setting: &Setting) -> Result<Section> {
     let Setting { near, far, .. } = *setting;
     let view = setting.view()?;
-    let practical = SplitScheme::default();
+    let practical = SplitScheme::practical();
     let angle = || Axis::linear("angle between light and view, degrees").range(0.0, 90.0);
     let sum = || Axis::linear("Σ Area(Bᵢ) / Area(B)").from_zero();
     let one = || Mark::Y(1.0, "as much as one map".into());
@@ -232,7 +233,7 @@ mod tests {
     }
 
     fn practical(setting: &Setting, m: usize) -> Vec<f64> {
-        planes(&SplitScheme::default(), setting.near, setting.far, m).expect("planes")
+        planes(&SplitScheme::practical(), setting.near, setting.far, m).expect("planes")
     }
 
     /// The design's two numbers, 1.31 and 0.68, belong to n = 1, f = 800, λ = 0.5, m = 4, and to

@@ -3,7 +3,8 @@
 //! shadows into the view.
 
 use glam::DVec3;
-use umbrage::{Aabb, DirectionalLight, Fit, Frustum, Planner, ShadowPlan, ShadowSettings, Split, Stabilize, View};
+use umbrage::config::{Crop, Filter, Preset, Range, Stability, Transition};
+use umbrage::{Aabb, DirectionalLight, Frustum, Planner, PlannerOptions, ShadowConfig, ShadowPlan, Split, View};
 
 use super::Result;
 use crate::page::plot::convex_hull;
@@ -46,19 +47,19 @@ impl Example {
     }
 
     /// The plan with hard borders, so that slices are what the papers draw.
-    pub fn plan(&self, fit: Fit) -> Result<ShadowPlan> {
-        let settings = ShadowSettings {
+    pub fn plan(&self, crop: Crop) -> Result<ShadowPlan> {
+        let settings = ShadowConfig {
             map_sizes: vec![1024; SPLITS],
-            fit,
-            stabilize: Stabilize::None,
-            filter_radius: 0.5,
-            blend: 0.0,
-            image_size: [1 << 16; 2],
-            range: Some((self.view.frustum().near, self.view.frustum().far)),
-            ..ShadowSettings::default()
+            crop,
+            stability: Stability::tight(),
+            filter: Filter::Hard,
+            transition: Transition::Hard,
+            range: Range::Metres { near: self.view.frustum().near, far: self.view.frustum().far },
+            ..Preset::Papers.config()
         };
         let receivers: Vec<Aabb> = self.boxes.iter().copied().chain([self.ground]).collect();
-        Ok(Planner::new(settings)?.plan(&self.view, &self.sun, &self.boxes, &receivers)?.clone())
+        let options = PlannerOptions { image_size: [1 << 16; 2], ..PlannerOptions::default() };
+        Ok(Planner::with_options(&settings, options)?.plan(&self.view, &self.sun, &self.boxes, &receivers)?.clone())
     }
 }
 
@@ -108,7 +109,7 @@ mod tests {
     #[test]
     fn a_map_holds_its_own_corners() {
         let example = Example::new().expect("the example");
-        for split in &example.plan(Fit::Dependent).expect("a plan").splits {
+        for split in &example.plan(Crop::SceneDependent).expect("a plan").splits {
             for (i, corner) in map_corners(split).into_iter().enumerate() {
                 let at = split.map_from_world(corner);
                 let expected = [1, 2, 4].map(|bit| if i & bit == 0 { 0.0 } else { 1.0 });
@@ -122,7 +123,7 @@ mod tests {
     #[test]
     fn the_example_shows_what_it_is_for() {
         let example = Example::new().expect("the example");
-        let plan = example.plan(Fit::Dependent).expect("a plan");
+        let plan = example.plan(Crop::SceneDependent).expect("a plan");
         let (tower_behind, balloon) = (0, example.boxes.len() as u32 - 1);
         let casts = |caster: u32| (0..SPLITS).any(|split| plan.casters(split).contains(&caster));
         assert!(casts(tower_behind) && casts(balloon), "{:?}", plan.split_range);

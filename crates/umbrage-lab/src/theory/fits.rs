@@ -1,7 +1,8 @@
 //! The scene-independent against the scene-dependent fit: \[GG3-10\] Figures 10-5 and 10-6.
 
 use glam::DVec3;
-use umbrage::{Aabb, DirectionalLight, Fit, Planner, ShadowPlan, ShadowSettings, Stabilize};
+use umbrage::config::{Crop, Preset, Range, Stability};
+use umbrage::{Aabb, DirectionalLight, Planner, PlannerOptions, ShadowConfig, ShadowPlan};
 use umbrage_scene::{camera_view, light_direction, procedural::World};
 
 use super::{
@@ -48,29 +49,29 @@ pub(super) fn texel_areas(world: World, setting: &Setting) -> Result<TexelAreas>
     let sun = DirectionalLight::new(light_direction(&scene, &pose, 0)?)?;
     let receivers: Vec<Aabb> = pose.objects.iter().map(|object| object.bounds).collect();
     let casters: Vec<Aabb> = pose.objects.iter().filter(|object| object.casts).map(|object| object.bounds).collect();
-    let areas = |fit: Fit| -> Result<Vec<f64>> {
-        let settings = ShadowSettings {
+    let areas = |crop: Crop| -> Result<Vec<f64>> {
+        let settings = ShadowConfig {
             map_sizes: vec![setting.map_size; SPLITS],
-            fit,
-            stabilize: Stabilize::None,
-            range: Some((setting.near, setting.far)),
-            image_size: setting.image_size,
-            ..ShadowSettings::default()
+            crop,
+            stability: Stability::tight(),
+            range: Range::Metres { near: setting.near, far: setting.far },
+            ..Preset::Papers.config()
         };
-        let mut planner = Planner::new(settings)?;
+        let options = PlannerOptions { image_size: setting.image_size, ..PlannerOptions::default() };
+        let mut planner = Planner::with_options(&settings, options)?;
         let plan = planner.plan(&view, &sun, &casters, &receivers)?;
         // A split without a caster needs no map.
         let area =
             |split: &umbrage::Split| if split.casters.is_empty() { f64::NAN } else { split.texel_m.element_product() };
         Ok(plan.splits.iter().map(area).collect())
     };
-    Ok(TexelAreas { independent: areas(Fit::Independent)?, dependent: areas(Fit::Dependent)? })
+    Ok(TexelAreas { independent: areas(Crop::SceneIndependent)?, dependent: areas(Crop::SceneDependent)? })
 }
 
 /// The section of the page.
 pub(super) fn section(setting: &Setting) -> Result<Section> {
     let example = Example::new()?;
-    let plans = [Fit::Independent, Fit::Dependent].map(|fit| example.plan(fit));
+    let plans = [Crop::SceneIndependent, Crop::SceneDependent].map(|crop| example.plan(crop));
     let [independent, dependent] = plans;
     let (independent, dependent) = (independent?, dependent?);
 
@@ -280,7 +281,7 @@ mod tests {
     #[test]
     fn knowing_the_scene_never_makes_texels_larger() {
         let example = Example::new().expect("the example");
-        let [a, b] = [Fit::Independent, Fit::Dependent].map(|fit| example.plan(fit).expect("a plan"));
+        let [a, b] = [Crop::SceneIndependent, Crop::SceneDependent].map(|crop| example.plan(crop).expect("a plan"));
         for (independent, dependent) in a.splits.iter().zip(&b.splits) {
             let areas = [independent, dependent].map(|split| split.texel_m.element_product());
             assert!(areas[1] <= areas[0] * (1.0 + 1e-9), "{areas:?}");

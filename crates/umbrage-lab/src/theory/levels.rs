@@ -2,7 +2,8 @@
 
 use glam::{DVec2, DVec3};
 use image::{Rgb, RgbImage};
-use umbrage::{DirectionalLight, Fit, Frustum, Planner, ShadowPlan, ShadowSettings, Split, Stabilize, View};
+use umbrage::config::{Crop, Preset, Range, Stability, Transition};
+use umbrage::{DirectionalLight, Frustum, Planner, PlannerOptions, ShadowConfig, ShadowPlan, Split, View};
 
 use super::{Error, Result, setting::Setting};
 use crate::{
@@ -46,17 +47,17 @@ impl Ground {
         let frustum = Frustum::perspective(setting.fov.to_radians(), aspect, setting.near, FAR)?;
         // Tilted, so that borders run askew through quads.
         let view = View::look_at(DVec3::ZERO, DVec3::new(0.0, -0.4, -1.0), DVec3::new(0.3, 1.0, 0.0), frustum)?;
-        let settings = ShadowSettings {
+        let settings = ShadowConfig {
             map_sizes: vec![setting.map_size; SPLITS],
-            range: Some((setting.near, FAR)),
-            fit: Fit::Independent,
-            stabilize: Stabilize::Exact,
-            image_size: SIZE,
-            blend: 0.0,
-            ..ShadowSettings::default()
+            range: Range::Metres { near: setting.near, far: FAR },
+            crop: Crop::SceneIndependent,
+            stability: Stability::Exact,
+            transition: Transition::Hard,
+            ..Preset::Papers.config()
         };
         let everything = [setting.surroundings()];
-        let mut planner = Planner::new(settings)?;
+        let options = PlannerOptions { image_size: SIZE, ..PlannerOptions::default() };
+        let mut planner = Planner::with_options(&settings, options)?;
         let plan = planner.plan(&view, &DirectionalLight::new(LIGHT)?, &everything, &everything)?.clone();
         let pixels = (0..SIZE[0] * SIZE[1])
             .map(|i| {

@@ -1,7 +1,8 @@
 //! Why shadows flicker and what keeps them still: \[PCSM\] Figures 4.1.3, 4.1.4 and 4.1.6.
 
 use glam::{DQuat, DVec2, DVec3};
-use umbrage::{DirectionalLight, ExtentSteps, Fit, Planner, ShadowPlan, ShadowSettings, Split, Stabilize, View};
+use umbrage::config::{Crop, ExtentSteps, Preset, Range, Stability};
+use umbrage::{DirectionalLight, Planner, PlannerOptions, ShadowConfig, ShadowPlan, Split, View};
 
 use super::{
     Result,
@@ -25,11 +26,15 @@ const SPLITS: usize = 4;
 const REACH: f64 = 3.0;
 
 /// The ways to stabilise, the colours that they have in every drawing.
-const KINDS: [(&str, Stabilize, Colour); 4] = [
-    ("unstabilised", Stabilize::None, Colour::Series(1)),
-    ("exact", Stabilize::Exact, Colour::Series(0)),
-    ("approximate, steps of 2^(1/24)", Stabilize::Approximate(ExtentSteps::PerDoubling(24)), Colour::Series(2)),
-    ("approximate, 64 levels", Stabilize::Approximate(ExtentSteps::Levels(64)), Colour::Series(3)),
+const KINDS: [(&str, Stability, Colour); 4] = [
+    ("unstabilised", Stability::tight(), Colour::Series(1)),
+    ("exact", Stability::Exact, Colour::Series(0)),
+    (
+        "approximate, steps of 2^(1/24)",
+        Stability::Approximate { steps: ExtentSteps::PerDoubling(24) },
+        Colour::Series(2),
+    ),
+    ("approximate, 64 levels", Stability::Approximate { steps: ExtentSteps::Levels(64) }, Colour::Series(3)),
 ];
 
 /// The view of a frame: it walks and turns.
@@ -41,15 +46,16 @@ fn view(setting: &Setting, frame: u32) -> Result<View> {
 }
 
 /// The plans of a walk.
-pub(super) fn plans(setting: &Setting, stabilize: Stabilize, frames: u32) -> Result<Vec<ShadowPlan>> {
-    let mut planner = Planner::new(ShadowSettings {
+pub(super) fn plans(setting: &Setting, stability: Stability, frames: u32) -> Result<Vec<ShadowPlan>> {
+    let config = ShadowConfig {
         map_sizes: vec![setting.map_size; SPLITS],
-        range: Some((setting.near, setting.far)),
-        fit: Fit::Independent,
-        stabilize,
-        image_size: setting.image_size,
-        ..ShadowSettings::default()
-    })?;
+        range: Range::Metres { near: setting.near, far: setting.far },
+        crop: Crop::SceneIndependent,
+        stability,
+        ..Preset::Papers.config()
+    };
+    let options = PlannerOptions { image_size: setting.image_size, ..PlannerOptions::default() };
+    let mut planner = Planner::with_options(&config, options)?;
     let sun = DirectionalLight::new(DVec3::new(0.5, -1.0, -0.3))?;
     let everything = setting.surroundings();
     let plan = |k| Ok(planner.plan(&view(setting, k)?, &sun, &[everything], &[everything])?.clone());

@@ -1,7 +1,8 @@
 //! The splits of the view and the frusta of the light, in space.
 
 use glam::DVec3;
-use umbrage::{Aabb, Fit, ShadowPlan};
+use umbrage::config::Crop;
+use umbrage::{Aabb, ShadowPlan};
 
 use super::{
     Result,
@@ -24,7 +25,7 @@ fn observer() -> Plane {
 /// The section of the page.
 pub(super) fn section() -> Result<Section> {
     let example = Example::new()?;
-    let plan = example.plan(Fit::Dependent)?;
+    let plan = example.plan(Crop::SceneDependent)?;
     let mut figures =
         vec![Figure::svg(all_splits(&example, &plan)?, "The slices Vᵢ of the view, nearest first, over the ground.")];
     for split in 0..SPLITS {

@@ -396,7 +396,7 @@ impl ShadowMaps {
     }
 
     /// Whether casters before a map's near plane are flattened onto it, so that the plane may lie at the receivers: what
-    /// `umbrage::ShadowConfig::planner_settings` wants. So it is for 16-bit maps on a device with `DEPTH_CLIP_CONTROL` (see
+    /// [`umbrage::PlannerOptions::depth_clamp`] wants. So it is for 16-bit maps on a device with `DEPTH_CLIP_CONTROL` (see
     /// [`optional_features`]). Floats hold the depth of a whole world; 16 bits want the shorter range, and pay for it with maps
     /// that step along the light.
     #[must_use]

@@ -61,7 +61,8 @@ impl Slice {
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
-    use umbrage::{Aabb, DirectionalLight, Frustum, Planner, ShadowSettings};
+    use umbrage::config::{Preset, Range};
+    use umbrage::{Aabb, DirectionalLight, Frustum, Planner, ShadowConfig};
 
     use super::*;
 
@@ -69,8 +70,8 @@ mod tests {
     fn slices_give_every_depth_back_and_leave_no_gap() {
         let frustum = Frustum::perspective(1.0, 1.3, 0.5, 900.0).expect("valid");
         let view = View::look_at(DVec3::new(5.0, 3.0, 9.0), DVec3::ZERO, DVec3::Y, frustum).expect("valid");
-        let mut planner =
-            Planner::new(ShadowSettings { range: Some((1.0, 300.0)), ..Default::default() }).expect("valid");
+        let range = Range::Metres { near: 1.0, far: 300.0 };
+        let mut planner = Planner::new(&ShadowConfig { range, ..Preset::Papers.config() }).expect("valid");
         let bounds = [Aabb::new(DVec3::splat(-400.0), DVec3::new(400.0, 0.0, 400.0))];
         let sun = DirectionalLight::new(DVec3::NEG_Y).expect("a direction");
         let plan = planner.plan(&view, &sun, &bounds, &bounds).expect("a plan").clone();

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use umbrage::config::{LightKind, Rebuilds, ShadowConfig};
-use umbrage::{Held, PlanInputs, Planner, ShadowPlan, ShadowSettings};
+use umbrage::{Held, PlanInputs, Planner, PlannerOptions, ShadowPlan};
 
 use draws::Draws;
 pub use frame::{ShadowFrame, ShadowMap};
@@ -47,7 +47,7 @@ pub struct Shadows {
     lights: Vec<LightMaps>,
     maps: ShadowMaps,
     /// What each light is planned with.
-    settings: Vec<ShadowSettings>,
+    planned: Vec<ShadowConfig>,
     notes: Vec<String>,
     /// What plans each view's maps, a planner for each light.
     planners: BTreeMap<u32, Vec<Planner>>,
@@ -84,14 +84,14 @@ impl Shadows {
     ) -> Result<Self> {
         let lights: Vec<LightMaps> = lights.iter().cloned().map(Into::into).collect();
         let maps = ShadowMaps::new(device, config, &lights)?;
-        let (settings, notes) = planned_with(&maps, config, &lights);
+        let (planned, notes) = planned_with(&maps, config, &lights);
         // Whatever the planner refuses is refused now and not in a frame.
-        settings.iter().try_for_each(ShadowSettings::validate)?;
+        planned.iter().try_for_each(ShadowConfig::validate)?;
         Ok(Self {
             config: config.clone(),
             lights,
             maps,
-            settings,
+            planned,
             notes,
             planners: BTreeMap::new(),
             held: Vec::new(),
@@ -112,7 +112,9 @@ impl Shadows {
         self.check(inputs)?;
         let slot = inputs.view_slot;
         if !self.planners.contains_key(&slot) {
-            let fresh = self.settings.iter().cloned().map(Planner::new).collect::<Result<_, _>>()?;
+            let options = planner_options(&self.maps);
+            let fresh = self.planned.iter().map(|config| Planner::with_options(config, options));
+            let fresh = fresh.collect::<Result<_, _>>()?;
             self.planners.insert(slot, fresh);
         }
         let planners = self.planners.get(&slot).map_or(&[][..], Vec::as_slice);
@@ -260,8 +262,8 @@ impl Shadows {
         let promised = self.config.rebuilds(&config).map_or(Rebuilds::Nothing, |(rebuilds, _)| rebuilds);
         let needs_maps = promised > Rebuilds::Nothing || lights != self.lights;
         let new = needs_maps.then(|| ShadowMaps::new(self.maps.device(), &config, &lights)).transpose()?;
-        let (settings, notes) = planned_with(new.as_ref().unwrap_or(&self.maps), &config, &lights);
-        settings.iter().try_for_each(ShadowSettings::validate)?;
+        let (planned, notes) = planned_with(new.as_ref().unwrap_or(&self.maps), &config, &lights);
+        planned.iter().try_for_each(ShadowConfig::validate)?;
         let rebuilt = match new {
             None => {
                 self.maps.set_config(&config)?;
@@ -273,17 +275,16 @@ impl Shadows {
                 if keeps_pipelines { Rebuilds::Maps } else { Rebuilds::Pipelines }
             }
         };
-        // A planner goes on where its settings do.
         for planners in self.planners.values_mut() {
-            let before = std::mem::take(planners);
-            for (light, new) in settings.iter().enumerate() {
-                planners.push(match before.get(light).filter(|planner| planner.settings() == new) {
-                    Some(planner) => planner.clone(),
-                    None => Planner::new(new.clone())?,
-                });
+            planners.truncate(planned.len());
+            for (light, config) in planned.iter().enumerate() {
+                match planners.get_mut(light) {
+                    Some(planner) => planner.set_config(config, planner_options(&self.maps))?,
+                    None => planners.push(Planner::with_options(config, planner_options(&self.maps))?),
+                }
             }
         }
-        (self.config, self.lights, self.settings, self.notes) = (config, lights, settings, notes);
+        (self.config, self.lights, self.planned, self.notes) = (config, lights, planned, notes);
         self.plans.clear();
         self.draws.clear();
         Ok(rebuilt)
@@ -312,13 +313,18 @@ impl Shadows {
 }
 
 /// What each light is planned with, and notes on what was replaced.
-fn planned_with(maps: &ShadowMaps, config: &ShadowConfig, lights: &[LightMaps]) -> (Vec<ShadowSettings>, Vec<String>) {
-    let (mut settings, mut notes) = (Vec::new(), maps.notes().to_vec());
+fn planned_with(maps: &ShadowMaps, config: &ShadowConfig, lights: &[LightMaps]) -> (Vec<ShadowConfig>, Vec<String>) {
+    let (mut planned, mut notes) = (Vec::new(), maps.notes().to_vec());
     for (light, slot) in lights.iter().enumerate() {
         let (own, of_sizes) = config.with_map_sizes(maps.map_sizes(light));
         let (own, of_kind) = own.for_light(slot.kind);
         notes.extend(of_sizes.into_iter().chain(of_kind));
-        settings.push(own.planner_settings(maps.depth_clamp(), [1, 1]));
+        planned.push(own);
     }
-    (settings, notes)
+    (planned, notes)
+}
+
+/// What planners are told beside a config. The picture's size is a frame's.
+fn planner_options(maps: &ShadowMaps) -> PlannerOptions {
+    PlannerOptions { depth_clamp: maps.depth_clamp(), ..PlannerOptions::default() }
 }

@@ -3,8 +3,8 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, DVec4, Vec3};
-use umbrage::config::{Filter, LightKind, MomentKind, Moments, Preset, ShadowConfig};
-use umbrage::{DirectionalLight, Selection, ShadowPlan, Split};
+use umbrage::config::{Filter, LightKind, MomentKind, Moments, Preset, Selection, ShadowConfig};
+use umbrage::{DirectionalLight, ShadowPlan, Split};
 use umbrage_wgpu::{FrameOptions, LightMaps, ShadowMaps, optional_features};
 
 pub const PCF3: Filter = Filter::Pcf3 { width_m: None };
@@ -533,7 +533,7 @@ pub fn plan(light: DVec3, center: DVec3, sizes: &[u32], planes: &[f64], widths: 
         light_direction: depth,
         light: None,
         fade_begin: planes[sizes.len()],
-        selection: Selection::Depth,
+        selection: Selection::default(),
         blend: 0.0,
         caster_indices: vec![0; sizes.len()],
         split_range: vec![Some((0, sizes.len() as u8 - 1))],

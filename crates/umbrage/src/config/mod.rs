@@ -15,9 +15,11 @@ mod presets;
 mod rules;
 #[cfg(feature = "serde")]
 mod serialize;
+mod set;
+mod setting;
 mod settings;
 mod splits;
-mod to_settings;
+mod text;
 
 pub use apply::Given;
 pub use filter::{Derivatives, Filter, MomentKind, Moments, SUN_DEGREES};
@@ -28,9 +30,13 @@ pub use names::Word;
 pub(crate) use names::unknown;
 pub use presets::Preset;
 pub use rules::{Choice, Conflict, RULES, Rule};
-pub use settings::{Kind, Rebuilds, SETTINGS, Setting, Value};
+pub use setting::{Kind, Rebuilds, Setting, Value};
+pub use settings::SETTINGS;
 pub use splits::{Range, Selection, SplitMetric, SplitScheme, Transition};
 
+use crate::bounds::MOST_METRES;
+use crate::margin::FilterReach;
+use crate::planes::scheme::check_range;
 use crate::{Error, Light, MAX_SPLITS, Result, Warp};
 
 /// What kind of light throws shadows.
@@ -95,7 +101,8 @@ pub struct ShadowConfig {
     /// How one split goes over into the next.
     pub transition: Transition,
     /// Share of the shadowed range over which shadows fade to lit at its far end, 0 to 1. Nothing
-    /// fades where nothing is seen beyond the range.
+    /// fades where nothing is seen beyond the range: shadows stay dark to the end of one that the
+    /// camera and the receivers decide.
     pub far_fade: f64,
     /// What each map is cropped to.
     pub crop: Crop,
@@ -196,6 +203,37 @@ impl ShadowConfig {
         RULES.iter().find(|rule| rule.is_broken_by(self, lights)).map(|rule| rule.conflict(self))
     }
 
+    /// The first rule that a plan for this kind of light would break by a choice that it makes by itself.
+    pub(crate) fn conflict_of_plan(&self, kind: LightKind) -> Option<Conflict> {
+        Rule::of_plans().find(|rule| rule.is_broken_by(self, &[kind])).map(|rule| rule.conflict(self))
+    }
+
+    /// Whether plans by this config are plans by the other, but for how far their filters reach.
+    pub(crate) fn plans_like(&self, other: &Self) -> bool {
+        // All fields are named, so that a new one is asked whether plans depend on it.
+        let Self {
+            map_sizes,
+            scheme,
+            range,
+            selection,
+            transition: _,
+            far_fade,
+            crop,
+            stability,
+            filter: _,
+            depth_format: _,
+            layout: _,
+            fallbacks: _,
+            coordinates: _,
+            look: _,
+        } = self;
+        *map_sizes == other.map_sizes
+            && *scheme == other.scheme
+            && (*range, *selection, *crop) == (other.range, other.selection, other.crop)
+            && (self.blend(), *far_fade) == (other.blend(), other.far_fade)
+            && *stability == other.stability
+    }
+
     /// The config that a light of this kind gets: what excludes the kind of light is replaced by the
     /// usual choice. The second value names what was replaced.
     #[must_use]
@@ -218,7 +256,7 @@ impl ShadowConfig {
     #[must_use]
     pub fn for_light(&self, kind: LightKind) -> (Self, Vec<String>) {
         let (mut config, mut notes) = (self.clone(), Vec::new());
-        for rule in RULES.iter().filter(|rule| rule.is_about_lights() && rule.first.is_per_light()) {
+        for rule in Rule::of_plans() {
             if rule.is_broken_by(&config, &[kind]) {
                 let said = rule.first.say(&config);
                 if rule.first.relax(&mut config) {
@@ -281,9 +319,7 @@ impl ShadowConfig {
         if !(1..=MAX_SPLITS).contains(&splits) {
             return Err(Error::setting("splits", format!("{splits} maps; there may be 1 to {MAX_SPLITS}")));
         }
-        // One texel beside the margins, and one for moving in whole texels.
-        let moving = if self.is_stabilised() { 5.0 } else { 4.0 };
-        let margins = (2.0 * self.filter.radius_texels() + moving).ceil() as u32;
+        let margins = FilterReach::from(&self.filter).least_map_size(self.is_stabilised());
         let least = self.filter.least_map_size().max(margins);
         for (split, &size) in self.map_sizes.iter().enumerate() {
             if !(least..=1 << 16).contains(&size) {
@@ -301,7 +337,7 @@ impl ShadowConfig {
         share("blend", self.transition.share(), 1.0)?;
         share("far-fade", self.far_fade, 1.0)?;
         if let Range::Metres { near, far } = self.range {
-            crate::settings::check_range(near, far)?;
+            check_range(near, far)?;
         }
         let inner = self.splits() - 1;
         match &self.scheme {
@@ -313,8 +349,8 @@ impl ShadowConfig {
                     let reason = format!("{count} offsets for {inner} inner planes; give one, or one for each");
                     return Err(Error::setting("delta", reason));
                 }
-                match delta.iter().find(|offset| !offset.is_finite()) {
-                    Some(bad) => Err(Error::setting("delta", format!("{bad} is not a finite number of metres"))),
+                match delta.iter().find(|offset| !(-MOST_METRES..=MOST_METRES).contains(*offset)) {
+                    Some(bad) => Err(Error::setting("delta", format!("{bad} m; give metres within ±10^12"))),
                     None => Ok(()),
                 }
             }

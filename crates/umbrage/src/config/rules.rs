@@ -242,6 +242,11 @@ impl Rule {
         matches!(self.second, Choice::LocalLight | Choice::SeveralFaces)
     }
 
+    /// The rules between kinds of light and choices that each light's plan makes by itself.
+    pub(super) fn of_plans() -> impl Iterator<Item = &'static Self> {
+        RULES.iter().filter(|rule| rule.is_about_lights() && rule.first.is_per_light())
+    }
+
     /// The rule in the words of a config that breaks it.
     #[must_use]
     pub fn conflict(&self, config: &ShadowConfig) -> Conflict {

@@ -1,163 +1,15 @@
 //! Every choice of a [`ShadowConfig`] as a setting with a key: what config files, the command line,
 //! reports and a viewer's controls share.
 
-use std::fmt;
-
-use super::apply::{self, Given, Wrong};
+use super::apply::Wrong;
 use super::names::Word;
+use super::setting::{Kind, Rebuilds, Setting, Value};
 use super::{
     Coordinates, Crop, DepthFormat, Derivatives, ExtentSteps, Fallbacks, Filter, Generation, Range, ReceiverBias,
-    Selection, ShadowConfig, SplitMetric, SplitScheme, Stability, Storage, Transition, Translucent,
+    Selection, SplitMetric, SplitScheme, Stability, Storage, Transition, Translucent,
 };
+use super::{set, text};
 use crate::Warp;
-
-/// One choice of a [`ShadowConfig`].
-#[derive(Clone, Copy, Debug)]
-pub struct Setting {
-    /// The key in config files; the command's option is the key behind two dashes.
-    pub key: &'static str,
-    /// One line of explanation.
-    pub help: &'static str,
-    /// What values it takes.
-    pub kind: Kind,
-    /// What an application's maps have to be made anew for when the setting changes.
-    pub rebuilds: Rebuilds,
-    pub(super) set: fn(&mut ShadowConfig, &str, &Given<'_>) -> Result<(), Wrong>,
-    pub(super) get: fn(&ShadowConfig) -> Option<Value>,
-}
-
-impl Setting {
-    /// The setting's value in a config; `None` where the config's other choices leave no room for it.
-    #[must_use]
-    pub fn get(&self, config: &ShadowConfig) -> Option<Value> {
-        (self.get)(config)
-    }
-}
-
-/// What values a setting takes.
-#[derive(Clone, Copy, Debug)]
-pub enum Kind {
-    /// One of a list of words.
-    Words(&'static [Word]),
-    /// Words with commas between, one for all splits or one for each.
-    WordList(&'static [Word]),
-    /// A number from 0 to the given most.
-    Share(f64),
-    /// Metres, above 0.
-    Metres,
-    /// Metres with commas between.
-    MetresList,
-    /// Two view depths in metres, `N..F`.
-    Range,
-    /// Degrees, from 0 to the given most.
-    Degrees(f64),
-    /// A whole number between two bounds.
-    Count(u32, u32),
-    /// Texels with commas between, one for all splits or one for each.
-    Texels,
-    /// Linear red, green and blue, 0 to 1 each.
-    Colour,
-    /// `true` or `false`.
-    Switch,
-}
-
-impl Kind {
-    /// Checks a value alone, without regard to other settings.
-    ///
-    /// # Errors
-    /// What is wrong with the value and what to give instead.
-    pub fn check(&self, text: &str) -> Result<(), String> {
-        let within = |value: f64, most: f64| {
-            if (0.0..=most).contains(&value) { Ok(()) } else { Err(format!("{value} is not in 0..{most}")) }
-        };
-        let positive = |text: &str| {
-            apply::number(text).and_then(|v| if v > 0.0 { Ok(v) } else { Err(format!("{v} is not greater than 0")) })
-        };
-        match *self {
-            Self::Words(words) => apply::one_of(text, words),
-            Self::WordList(words) => text.split(',').try_for_each(|word| apply::one_of(word.trim(), words)),
-            Self::Share(most) | Self::Degrees(most) => apply::number(text).and_then(|value| within(value, most)),
-            Self::Metres => positive(text).map(|_| ()),
-            Self::MetresList => text.split(',').try_for_each(|metres| apply::number(metres).map(|_| ())),
-            Self::Range => apply::range(text).map(|_| ()),
-            Self::Count(least, most) => match apply::count(text)? {
-                count if (least..=most).contains(&count) => Ok(()),
-                count => Err(format!("{count}; give {least} to {most}")),
-            },
-            Self::Texels => apply::map_sizes(text).map(|_| ()),
-            Self::Colour => match text.split(',').count() {
-                3 => text.split(',').try_for_each(|part| match apply::number(part)? {
-                    part if (0.0..=1.0).contains(&part) => Ok(()),
-                    part => Err(format!("{part}; give red, green and blue from 0 to 1")),
-                }),
-                count => Err(format!("{count} numbers; give red, green and blue from 0 to 1")),
-            },
-            Self::Switch => apply::switch(text).map(|_| ()),
-        }
-    }
-
-    /// What stands for a value in a line of help, such as `TEXELS,…`.
-    #[must_use]
-    pub const fn placeholder(&self) -> &'static str {
-        match self {
-            Self::Words(_) => "WORD",
-            Self::WordList(_) => "WORD,…",
-            Self::Share(_) => "SHARE",
-            Self::Metres => "M",
-            Self::MetresList => "M,…",
-            Self::Range => "N..F",
-            Self::Degrees(_) => "DEGREES",
-            Self::Count(..) => "N",
-            Self::Texels => "TEXELS,…",
-            Self::Colour => "R,G,B",
-            Self::Switch => "SWITCH",
-        }
-    }
-}
-
-/// What a change of a setting makes anew.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Rebuilds {
-    /// Nothing: the next frame has it.
-    Nothing,
-    /// Textures and bind groups. Pipelines stay valid.
-    Maps,
-    /// Shader texts, and with them the pipelines that use them.
-    Pipelines,
-}
-
-/// A setting's value.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Value {
-    /// A word or words.
-    Word(String),
-    /// A number.
-    Number(f64),
-    /// A whole number.
-    Count(u32),
-    /// Numbers.
-    Numbers(Vec<f64>),
-    /// Whole numbers.
-    Counts(Vec<u32>),
-    /// Yes or no.
-    Switch(bool),
-}
-
-impl fmt::Display for Value {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fn list<T: fmt::Display>(f: &mut fmt::Formatter<'_>, values: &[T]) -> fmt::Result {
-            values.iter().enumerate().try_for_each(|(i, value)| write!(f, "{}{value}", if i > 0 { "," } else { "" }))
-        }
-        match self {
-            Self::Word(word) => f.write_str(word),
-            Self::Number(number) => write!(f, "{number}"),
-            Self::Count(count) => write!(f, "{count}"),
-            Self::Numbers(numbers) => list(f, numbers),
-            Self::Counts(counts) => list(f, counts),
-            Self::Switch(on) => write!(f, "{on}"),
-        }
-    }
-}
 
 /// The setting of this key.
 pub(super) fn find(key: &str) -> Option<&'static Setting> {
@@ -218,7 +70,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "How the shadow maps share the view",
         kind: Kind::Words(TECHNIQUES),
         rebuilds: Rebuilds::Pipelines,
-        set: |config, _, given| apply::shape(config, given),
+        set: |config, _, given| set::shape(config, given),
         get: |config| {
             word(match (config.splits(), config.warp(0)) {
                 (1, Warp::None) => "ssm",
@@ -232,7 +84,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Number of splits (cascades)",
         kind: Kind::Count(1, crate::MAX_SPLITS as u32),
         rebuilds: Rebuilds::Pipelines,
-        set: |config, _, given| apply::shape(config, given),
+        set: |config, _, given| set::shape(config, given),
         get: |config| Some(Value::Count(config.splits() as u32)),
     },
     Setting {
@@ -240,7 +92,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Edge of each map in texels: one size, or one per split",
         kind: Kind::Texels,
         rebuilds: Rebuilds::Maps,
-        set: |config, _, given| apply::shape(config, given),
+        set: |config, _, given| set::shape(config, given),
         get: |config| Some(Value::Counts(config.map_sizes.clone())),
     },
     Setting {
@@ -248,7 +100,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Where the planes between splits stand",
         kind: Kind::Words(SplitScheme::WORDS),
         rebuilds: Rebuilds::Nothing,
-        set: apply::scheme,
+        set: set::scheme,
         get: |config| word(config.scheme.word()),
     },
     Setting {
@@ -256,7 +108,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Share of the logarithmic scheme in the practical one",
         kind: Kind::Share(1.0),
         rebuilds: Rebuilds::Nothing,
-        set: apply::lambda,
+        set: set::lambda,
         get: |config| match config.scheme {
             SplitScheme::Practical { lambda, .. } => Some(Value::Number(lambda)),
             _ => None,
@@ -267,7 +119,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Metres added to the inner planes of the practical scheme: one for all, or one for each",
         kind: Kind::MetresList,
         rebuilds: Rebuilds::Nothing,
-        set: apply::delta,
+        set: set::delta,
         get: |config| match &config.scheme {
             SplitScheme::Practical { delta, .. } if !delta.is_empty() => Some(Value::Numbers(delta.clone())),
             _ => None,
@@ -278,7 +130,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "The inner planes of the manual scheme: view depths in metres, rising",
         kind: Kind::MetresList,
         rebuilds: Rebuilds::Nothing,
-        set: apply::planes,
+        set: set::planes,
         get: |config| match &config.scheme {
             SplitScheme::Manual { planes } if !planes.is_empty() => Some(Value::Numbers(planes.clone())),
             _ => None,
@@ -289,7 +141,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "What the shadowed range is fitted to where no shadow-range is given",
         kind: Kind::Words(RANGE_FITS),
         rebuilds: Rebuilds::Nothing,
-        set: apply::range_fit,
+        set: set::range_fit,
         get: |config| match config.range {
             Range::Camera => word("camera"),
             Range::Visible => word("visible"),
@@ -301,7 +153,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "View depths in metres that shadows cover",
         kind: Kind::Range,
         rebuilds: Rebuilds::Nothing,
-        set: apply::shadow_range,
+        set: set::shadow_range,
         get: |config| match config.range {
             Range::Metres { near, far } => Some(Value::Word(format!("{near}..{far}"))),
             Range::Camera | Range::Visible => None,
@@ -320,7 +172,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Which map answers for a point",
         kind: Kind::Words(SELECTIONS),
         rebuilds: Rebuilds::Pipelines,
-        set: apply::selection,
+        set: set::selection,
         get: |config| {
             word(match config.selection {
                 Selection::Interval(_) => "depth",
@@ -333,7 +185,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "What the planes between splits measure",
         kind: Kind::Words(SplitMetric::WORDS),
         rebuilds: Rebuilds::Pipelines,
-        set: apply::bands,
+        set: set::bands,
         get: |config| match config.selection {
             Selection::Interval(metric) => word(metric.word()),
             Selection::Map => None,
@@ -344,7 +196,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Whether shadows stand still while the camera moves",
         kind: Kind::Words(Stability::WORDS),
         rebuilds: Rebuilds::Nothing,
-        set: apply::stabilize,
+        set: set::stabilize,
         get: |config| word(config.stability.word()),
     },
     Setting {
@@ -352,7 +204,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Approximately stable maps: steps to a doubling of a map's extent",
         kind: Kind::Count(4, 64),
         rebuilds: Rebuilds::Nothing,
-        set: |config, text, given| apply::extent(config, given, ExtentSteps::PerDoubling(apply::count(text)?)),
+        set: |config, text, given| set::extent(config, given, ExtentSteps::PerDoubling(text::count(text)?)),
         get: |config| match config.stability {
             Stability::Approximate { steps: ExtentSteps::PerDoubling(count) } => Some(Value::Count(count)),
             _ => None,
@@ -363,7 +215,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Approximately stable maps: equal steps of so many to the whole range instead",
         kind: Kind::Count(8, 4096),
         rebuilds: Rebuilds::Nothing,
-        set: |config, text, given| apply::extent(config, given, ExtentSteps::Levels(apply::count(text)?)),
+        set: |config, text, given| set::extent(config, given, ExtentSteps::Levels(text::count(text)?)),
         get: |config| match config.stability {
             Stability::Approximate { steps: ExtentSteps::Levels(count) } => Some(Value::Count(count)),
             _ => None,
@@ -374,7 +226,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "How each split's map spreads its texels: one, or one per split",
         kind: Kind::WordList(Warp::WORDS),
         rebuilds: Rebuilds::Pipelines,
-        set: apply::warp,
+        set: set::warp,
         get: |config| match &config.stability {
             Stability::Tight { warps } if !warps.is_empty() => {
                 Some(Value::Word(warps.iter().map(|warp| warp.word()).collect::<Vec<_>>().join(",")))
@@ -387,7 +239,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Share of the depth range that trapezoidal maps give four fifths of their texels",
         kind: Kind::Share(1.0),
         rebuilds: Rebuilds::Nothing,
-        set: apply::tsm_focus,
+        set: set::tsm_focus,
         get: |config| match &config.stability {
             Stability::Tight { warps } => warps.iter().find_map(|warp| match *warp {
                 Warp::Tsm { focus } => Some(Value::Number(focus)),
@@ -409,7 +261,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Full width of the filter in metres, equal in every split",
         kind: Kind::Metres,
         rebuilds: Rebuilds::Nothing,
-        set: apply::filter_width,
+        set: set::filter_width,
         get: |config| config.filter.width_m().map(Value::Number),
     },
     Setting {
@@ -417,7 +269,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Angle across the sun in degrees, for pcss",
         kind: Kind::Degrees(90.0),
         rebuilds: Rebuilds::Nothing,
-        set: apply::sun_angle,
+        set: set::sun_angle,
         get: |config| match config.filter {
             Filter::Pcss { sun_degrees, .. } => Some(Value::Number(sun_degrees)),
             _ => None,
@@ -428,7 +280,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Rotates the kernel of disc and pcss from pixel to pixel: noise instead of bands",
         kind: Kind::Switch,
         rebuilds: Rebuilds::Nothing,
-        set: apply::rotate_kernel,
+        set: set::rotate_kernel,
         get: |config| match config.filter {
             Filter::Disc { rotated, .. } | Filter::Pcss { rotated, .. } => Some(Value::Switch(rotated)),
             _ => None,
@@ -440,7 +292,7 @@ pub const SETTINGS: &[Setting] = &[
         kind: Kind::Count(1, 4),
         rebuilds: Rebuilds::Pipelines,
         set: |config, text, _| {
-            apply::moments(config, "msaa")?.samples = apply::count(text)?;
+            set::moments(config, "msaa")?.samples = text::count(text)?;
             Ok(())
         },
         get: |config| match config.filter {
@@ -454,7 +306,7 @@ pub const SETTINGS: &[Setting] = &[
         kind: Kind::Share(0.9),
         rebuilds: Rebuilds::Nothing,
         set: |config, text, _| {
-            apply::moments(config, "bleeding")?.bleeding = apply::number(text)?;
+            set::moments(config, "bleeding")?.bleeding = text::number(text)?;
             Ok(())
         },
         get: |config| match config.filter {
@@ -468,7 +320,7 @@ pub const SETTINGS: &[Setting] = &[
         kind: Kind::Words(Derivatives::WORDS),
         rebuilds: Rebuilds::Nothing,
         set: |config, text, _| {
-            apply::moments(config, "derivatives")?.derivatives = text.parse()?;
+            set::moments(config, "derivatives")?.derivatives = text.parse()?;
             Ok(())
         },
         get: |config| match config.filter {
@@ -489,7 +341,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "How one split goes over into the next",
         kind: Kind::Words(TRANSITIONS),
         rebuilds: Rebuilds::Pipelines,
-        set: apply::transition,
+        set: set::transition,
         get: |config| {
             word(match config.transition {
                 Transition::Hard => "hard",
@@ -503,7 +355,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Share of each split over which it blends into the next; 0 is off",
         kind: Kind::Share(1.0),
         rebuilds: Rebuilds::Nothing,
-        set: apply::blend,
+        set: set::blend,
         get: |config| Some(Value::Number(config.transition.share())),
     },
     Setting {
@@ -511,7 +363,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Share of the shadowed range over which shadows fade out at its far end; 0 is off",
         kind: Kind::Share(1.0),
         rebuilds: Rebuilds::Nothing,
-        set: |config, text, _| apply::number(text).map(|share| config.far_fade = share).map_err(Wrong::from),
+        set: |config, text, _| text::number(text).map(|share| config.far_fade = share).map_err(Wrong::from),
         get: |config| Some(Value::Number(config.far_fade)),
     },
     Setting {
@@ -535,7 +387,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "How maps are drawn",
         kind: Kind::Words(GENERATIONS),
         rebuilds: Rebuilds::Pipelines,
-        set: |config, _, given| apply::layout(config, given),
+        set: |config, _, given| set::layout(config, given),
         get: |config| word(config.layout.generation().word()),
     },
     Setting {
@@ -543,7 +395,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Where maps are kept",
         kind: Kind::Words(STORAGES),
         rebuilds: Rebuilds::Pipelines,
-        set: |config, _, given| apply::layout(config, given),
+        set: |config, _, given| set::layout(config, given),
         get: |config| word(config.layout.storage().word()),
     },
     Setting {
@@ -559,7 +411,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "How dark shadows are, 0 (not at all) to 1 (no sun)",
         kind: Kind::Share(1.0),
         rebuilds: Rebuilds::Nothing,
-        set: |config, text, _| apply::number(text).map(|strength| config.look.strength = strength).map_err(Wrong::from),
+        set: |config, text, _| text::number(text).map(|strength| config.look.strength = strength).map_err(Wrong::from),
         get: |config| Some(Value::Number(config.look.strength)),
     },
     Setting {
@@ -567,7 +419,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Factor of the sun's light in full shadow: linear red, green, blue",
         kind: Kind::Colour,
         rebuilds: Rebuilds::Nothing,
-        set: apply::colour,
+        set: set::colour,
         get: |config| Some(Value::Numbers(config.look.colour.to_vec())),
     },
     Setting {
@@ -585,7 +437,7 @@ pub const SETTINGS: &[Setting] = &[
         help: "Whether the picture's own depth is searched for casters too close for the maps",
         kind: Kind::Words(super::look::SWITCH),
         rebuilds: Rebuilds::Pipelines,
-        set: |config, text, _| apply::switch(text).map(|on| config.look.contact = on).map_err(Wrong::from),
+        set: |config, text, _| text::switch(text).map(|on| config.look.contact = on).map_err(Wrong::from),
         get: |config| word(if config.look.contact { "on" } else { "off" }),
     },
 ];

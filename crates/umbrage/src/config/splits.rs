@@ -17,7 +17,7 @@ pub enum SplitScheme {
         /// Share of the logarithmic scheme, 0 to 1.
         lambda: f64,
         /// Metres added to the inner planes `C_1 .. C_{m−1}`: none, one for all, or one for each.
-        /// The source adds δ to all planes, which would move near and far.
+        /// The source adds δ to all planes, which would move near and far; ours moves the inner ones.
         delta: Vec<f64>,
     },
     /// Inner planes `C_1 .. C_{m−1}` as view depths in metres, rising strictly.
@@ -27,9 +27,10 @@ pub enum SplitScheme {
     },
     /// The planes of least predicted error, among some forty depths of the view.
     ///
-    /// The prediction goes by the boxes of casters and receivers, the map sizes and the fit.
-    /// Stabilised maps keep their planes until others promise an error smaller by a third.
-    /// Needs a directional light. Ours.
+    /// The prediction goes by the boxes of casters and receivers, the map sizes and the crop; maps
+    /// with a warp are taken for plain ones. Stabilised maps keep their planes until others promise
+    /// an error smaller by a third, and all of them move in the frame that takes those. Needs a
+    /// directional light and a scene: [`crate::split_planes`] alone cannot place them. Ours.
     Optimal,
 }
 
@@ -66,10 +67,25 @@ impl SplitScheme {
 /// The view depths that shadows cover.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Range {
-    /// The camera's near and far; far is capped by the receivers.
+    /// The camera's near and far; far is capped by the receivers and by 1.5 times the depth of the
+    /// deepest shadow.
+    ///
+    /// An orthographic camera's near moves up to the scene. Receivers far beyond all others have no
+    /// say if they fill less than 0.01 % of the picture together: they are lit.
+    ///
+    /// Exactly stabilised maps cap far by distances instead of depths, as turning does not change
+    /// them. Far is rounded up to steps of 9 % that move the last plane alone. The inner planes are
+    /// placed for the view depth that the first frame asks for, and follow where a view asks for √2
+    /// times as much. The range ends at √2 times that depth at most. All of it recovers while the
+    /// camera stands still.
     #[default]
     Camera,
-    /// The nearest and the farthest receiver in view, by the boxes of receivers.
+    /// The view depths between which the view shows receivers, by their boxes clipped to the frustum.
+    ///
+    /// An empty foreground, or a lens with a tiny near plane, would spend splits on air. Exactly and
+    /// approximately stabilised maps move both ends in geometric steps of 19 %, with hysteresis, and
+    /// stand still in between. The logarithmic and the optimal scheme go best with it
+    /// (`docs/notes/fitted-planes.md`).
     Visible,
     /// View depths in metres. Receivers nearer than the first use split 0; beyond the second they
     /// are lit.
@@ -84,11 +100,15 @@ pub enum Range {
 /// Which split answers for a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Selection {
-    /// Interval-based: the split between whose planes the point lies.
+    /// Interval-based: the split between whose planes the point lies, as in the papers.
     Interval(SplitMetric),
-    /// Map-based: the first (finest) split whose map contains the point. Source: \[PCSM\],
-    /// "Non-optimized split selection". Deviations: the filter's margin and the depth are part of
-    /// the question, and the blend band lies along the map's edge.
+    /// Map-based: the first (finest) split whose map contains the point.
+    ///
+    /// Shadows are sharper where maps reach beyond their slices, and most so where view and light are
+    /// nearly parallel. A map's list holds all casters that can shade what the map covers and no
+    /// earlier one takes. Source: \[PCSM\], "Non-optimized split selection". Deviations: the
+    /// filter's margin and the depth are part of the question, and the blend band lies along the map's
+    /// edge.
     Map,
 }
 
@@ -111,6 +131,11 @@ impl Default for Selection {
 
 named! {
     /// What the planes between splits measure.
+    ///
+    /// By distance, a camera that only turns changes no point's split. All depths of the config and
+    /// the plan that are view depths otherwise are then distances, except for
+    /// [`crate::Split::coverage`]. Maps are as much larger as the corners of the view are nearer in
+    /// view depth than in distance. Distance needs a perspective camera.
     pub enum SplitMetric as "split metric" {
         /// View depth: planes across the line of sight
         #[default]

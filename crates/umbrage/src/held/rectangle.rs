@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::size::ENOUGH;
-use crate::ExtentSteps;
+use crate::config::ExtentSteps;
 use crate::geometry::region::{DIRECTIONS, Region};
 
 /// Relative room for rounding, so that an extent that keeps its value while the camera walks keeps its step as well.

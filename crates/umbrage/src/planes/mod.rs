@@ -1,7 +1,7 @@
 //! Where the planes between splits stand.
 
-pub(crate) mod bands;
 pub(crate) mod cells;
+pub(crate) mod metric;
 pub(crate) mod optimal;
 pub(crate) mod scheme;
 pub(crate) mod visible;

@@ -10,10 +10,11 @@ use glam::DVec2;
 use super::cells::{Cells, Sight};
 use super::scheme::{coverage, split_planes};
 use super::visible::visible_range;
+use crate::config::{Crop, ExtentSteps, SplitScheme, Stability};
 use crate::geometry::region::{Fan, Region};
 use crate::geometry::sphere::slice_sphere;
 use crate::held::ends::Range;
-use crate::{Error, ExtentSteps, Fit, Frustum, Projection, Result, ShadowSettings, SplitScheme, Stabilize, View};
+use crate::{Error, Frustum, Projection, Result, ShadowConfig, View};
 
 /// Candidates between the ends, besides those of the fixed schemes and those that are held.
 const CANDIDATES: usize = 32;
@@ -28,7 +29,7 @@ const WORTH_MOVING: f64 = 2.0 / 3.0;
 /// How the edge of a map follows from what it has to show.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Maps<'a> {
-    pub settings: &'a ShadowSettings,
+    pub config: &'a ShadowConfig,
     /// Pixels across the picture.
     pub image_size: [u32; 2],
     /// Texels that each map keeps free around what it serves.
@@ -48,8 +49,8 @@ impl Maps<'_> {
     /// Metres across a map that shows a region, the mean of its edges.
     fn edge(&self, region: &Region, fan: &Fan) -> f64 {
         let (_, _, lo, hi) = region.least_rectangle(fan);
-        let extent = match self.settings.stabilize {
-            Stabilize::Approximate(ExtentSteps::Levels(count)) => {
+        let extent = match self.config.stability {
+            Stability::Approximate { steps: ExtentSteps::Levels(count) } => {
                 let level = self.whole_width / f64::from(count);
                 ((hi - lo) / level).ceil().max(DVec2::ONE) * level
             }
@@ -61,8 +62,8 @@ impl Maps<'_> {
 
     /// Texels across map `i` that serve its slice.
     fn texels(&self, i: usize) -> f64 {
-        let rounding = if self.settings.stabilize == Stabilize::None { 0.0 } else { 1.0 };
-        (f64::from(self.settings.map_sizes[i]) - 2.0 * self.margin - rounding).max(1.0)
+        let rounding = if self.config.is_stabilised() { 1.0 } else { 0.0 };
+        (f64::from(self.config.map_sizes[i]) - 2.0 * self.margin - rounding).max(1.0)
     }
 }
 
@@ -202,7 +203,7 @@ impl Placement {
     /// there are any and none promise an error much smaller, or those that promise the least.
     ///
     /// # Errors
-    /// [`Error::InvalidSetting`] naming `range` if it is too short to be divided.
+    /// [`Error::InvalidSetting`] naming `shadow-range` if it is too short to be divided.
     pub fn place(
         &mut self,
         sight: &Sight,
@@ -212,7 +213,7 @@ impl Placement {
         planes: &mut Vec<f64>,
     ) -> Result<()> {
         let (near, far) = (range.near, range.inner_far);
-        let m = maps.settings.splits();
+        let m = maps.config.splits();
         split_planes(&SplitScheme::Logarithmic, near, far, m, planes)?;
         if m == 1 {
             return Ok(());
@@ -266,7 +267,7 @@ impl Placement {
         let Self { candidates, scheme: planes, .. } = self;
         candidates.clear();
         candidates.extend([near, far]);
-        let fixed = [SplitScheme::Logarithmic, SplitScheme::default()].map(|scheme| (scheme, near, far, m));
+        let fixed = [SplitScheme::Logarithmic, SplitScheme::practical()].map(|scheme| (scheme, near, far, m));
         for (scheme, from, to, splits) in [(scheme, first, last, CANDIDATES)].into_iter().chain(fixed) {
             // A range with room for the splits may be too short for all the candidates: those that it has no room for are
             // left out.
@@ -279,7 +280,7 @@ impl Placement {
         candidates.dedup();
         if candidates.len() <= m {
             return Err(Error::setting(
-                "range",
+                "shadow-range",
                 format!("{near} m to {far} m has no room for {m} splits; give a longer range or fewer splits"),
             ));
         }
@@ -289,9 +290,9 @@ impl Placement {
     /// Fills the costs of all slices.
     fn measure(&mut self, sight: &Sight, maps: &Maps, far: f64) {
         let Self { candidates, cells, weights, faces, costs, .. } = self;
-        let settings = maps.settings;
+        let config = maps.config;
         let n = candidates.len();
-        costs.reset(n, (0..settings.splits()).map(|i| maps.texels(i)), weights);
+        costs.reset(n, (0..config.splits()).map(|i| maps.texels(i)), weights);
         for i in 0..n {
             for j in i + 1..n {
                 costs.begins[i * n + j] = begin(sight.view, maps, candidates, i, j);
@@ -300,8 +301,8 @@ impl Placement {
         // The last slice may be stretched beyond the depths that the planes are placed for.
         let end = |j: usize| if j == n - 1 { far } else { candidates[j] };
         let edges = |i: usize| (i + 1..n).map(move |j| (j, i * n + j));
-        match (settings.stabilize, settings.fit) {
-            (Stabilize::Exact, _) => {
+        match (&config.stability, config.crop) {
+            (Stability::Exact, _) => {
                 let frustum = around(sight.view.frustum());
                 for (i, &from) in candidates.iter().enumerate() {
                     for (j, at) in edges(i) {
@@ -309,7 +310,7 @@ impl Placement {
                     }
                 }
             }
-            (_, Fit::Independent) => {
+            (_, Crop::SceneIndependent) => {
                 faces.clear();
                 faces.extend((0..n).map(|j| face(sight.view, sight.fan, end(j))));
                 for i in 0..n {
@@ -320,7 +321,7 @@ impl Placement {
                     }
                 }
             }
-            (_, Fit::Dependent) => {
+            (_, Crop::SceneDependent) => {
                 for i in 0..n {
                     let (mut receivers, mut casters, mut edge) = (Region::EMPTY, Region::EMPTY, 0.0);
                     for (j, at) in edges(i) {
@@ -359,7 +360,8 @@ fn face(view: &View, fan: &Fan, depth: f64) -> Region {
 fn begin(view: &View, maps: &Maps, candidates: &[f64], i: usize, j: usize) -> (usize, f64) {
     // The far plane has no say in where a slice begins.
     let planes = [candidates[i], candidates[j], f64::INFINITY];
-    let (from, _) = coverage(view, &planes, 1, maps.settings.blend, maps.image_size, maps.settings.bands);
+    let (blend, metric) = (maps.config.blend(), maps.config.selection.metric());
+    let (from, _) = coverage(view, &planes, 1, blend, maps.image_size, metric);
     let after = candidates.partition_point(|&candidate| candidate <= from);
     match after.checked_sub(1) {
         None => (0, 0.0),

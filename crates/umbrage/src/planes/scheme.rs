@@ -1,7 +1,8 @@
 //! Where the planes between splits stand, and which view depths each map has to serve.
 
-use crate::settings::check_range;
-use crate::{Bands, Error, Result, SplitScheme, View};
+use crate::bounds::{LEAST_METRES, MOST_METRES};
+use crate::config::{SplitMetric, SplitScheme};
+use crate::{Error, Result, View};
 
 /// Computes the `m + 1` planes `C_0 ..= C_m` between `near` and `far` (view depths in metres) into `planes`.
 ///
@@ -9,8 +10,8 @@ use crate::{Bands, Error, Result, SplitScheme, View};
 /// Shadow Maps* eq. 4 to 7, where δ moves all planes: ours leaves the ends where they are.
 ///
 /// # Errors
-/// [`Error::InvalidSetting`] naming `range`, `delta` or `planes` if the planes would not rise strictly, and `scheme` for
-/// [`SplitScheme::Fitted`], whose planes need a scene.
+/// [`Error::InvalidSetting`] naming `shadow-range`, `delta` or `planes` if the planes would not rise strictly, and
+/// `scheme` for [`SplitScheme::Optimal`], whose planes need a scene.
 pub fn split_planes(scheme: &SplitScheme, near: f64, far: f64, splits: usize, planes: &mut Vec<f64>) -> Result<()> {
     check_range(near, far)?;
     let m = splits as f64;
@@ -27,11 +28,11 @@ pub fn split_planes(scheme: &SplitScheme, near: f64, far: f64, splits: usize, pl
                 let offset = if delta.len() == 1 { delta[0] } else { delta.get(i - 1).copied().unwrap_or(0.0) };
                 lambda * logarithmic(i) + (1.0 - lambda) * uniform(i) + offset
             }
-            SplitScheme::Manual(inner) => inner[i - 1],
-            SplitScheme::Fitted => {
+            SplitScheme::Manual { planes: inner } => inner[i - 1],
+            SplitScheme::Optimal => {
                 return Err(Error::setting(
                     "scheme",
-                    "fitted planes need a scene; plan one with Planner::plan, or choose a scheme of near and far alone",
+                    "optimal planes need a scene; plan one with Planner::plan, or choose a scheme of near and far alone",
                 ));
             }
         });
@@ -39,11 +40,28 @@ pub fn split_planes(scheme: &SplitScheme, near: f64, far: f64, splits: usize, pl
     planes.push(far);
     if let Some(pair) = planes.windows(2).find(|pair| pair[0] >= pair[1] || pair[0].is_nan() || pair[1].is_nan()) {
         let (field, remedy) = match scheme {
-            SplitScheme::Manual(_) => ("planes", "give planes that rise strictly between the range's ends"),
+            SplitScheme::Manual { .. } => ("planes", "give planes that rise strictly between the range's ends"),
             SplitScheme::Practical { delta, .. } if !delta.is_empty() => ("delta", "give smaller offsets"),
-            _ => ("range", "give a longer range or fewer splits"),
+            _ => ("shadow-range", "give a longer range or fewer splits"),
         };
         return Err(Error::setting(field, format!("plane {} m is followed by {} m; {remedy}", pair[0], pair[1])));
+    }
+    Ok(())
+}
+
+/// Checks two view depths in metres that shadows are to cover.
+pub(crate) fn check_range(near: f64, far: f64) -> Result<()> {
+    if !(LEAST_METRES..=MOST_METRES).contains(&near) {
+        return Err(Error::setting(
+            "shadow-range",
+            format!("near is {near}; give a view depth of 10^-9 to 10^12 m, above 0"),
+        ));
+    }
+    if !(far > near && far <= MOST_METRES) {
+        return Err(Error::setting(
+            "shadow-range",
+            format!("far is {far}; give a view depth greater than near ({near}) and at most 10^12 m"),
+        ));
     }
     Ok(())
 }
@@ -52,14 +70,14 @@ pub fn split_planes(scheme: &SplitScheme, near: f64, far: f64, splits: usize, pl
 /// band and one pixel quad (the pixels of a quad may differ in their split). Split 0 starts at the camera's near plane, as
 /// nearer receivers use it too; the last ends at the range's or the camera's far plane.
 ///
-/// Radial bands between the distances a and b hold view depths from a cos θ to b, where θ is the angle of the view's farthest corner.
+/// Between the distances a and b lie view depths from a cos θ to b, where θ is the angle of the view's farthest corner.
 pub(crate) fn coverage(
     view: &View,
     planes: &[f64],
     i: usize,
     blend: f64,
     image_size: [u32; 2],
-    bands: Bands,
+    metric: SplitMetric,
 ) -> (f64, f64) {
     let camera_near = view.frustum().near;
     let from = if i == 0 {
@@ -67,7 +85,7 @@ pub(crate) fn coverage(
     } else {
         let band_begin = blend_begin(planes, i - 1, blend);
         let begin = band_begin - quad(view, band_begin, image_size);
-        (begin * bands.least_depth_share(view)).max(camera_near)
+        (begin * metric.least_depth_share(view)).max(camera_near)
     };
     (from, planes[i + 1].min(view.frustum().far))
 }

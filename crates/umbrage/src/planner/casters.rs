@@ -9,12 +9,13 @@ use super::layout::{Layout, SplitFrame};
 use super::shaft::{Shaft, first_depth};
 use super::slice_ends::SliceEnds;
 use super::picked::Picked;
+use crate::Warp;
 use crate::bounds::Placed;
 use crate::casters::Gathered;
+use crate::config::Crop;
 use crate::coverage::CoverageVolume;
 use crate::geometry::region::Region;
 use crate::geometry::volume::{Lies, Slice, lies_below};
-use crate::{Fit, Warp};
 
 /// A slice of the view and what it shows.
 #[derive(Clone, Debug)]
@@ -47,9 +48,9 @@ impl Scene {
         let swept = slice.swept_towards_light(sun.direction);
         let mut region = Region::EMPTY;
         slice.corners.iter().for_each(|&corner| region.include_point(&sun.fan, corner));
-        let receivers = match frame.settings.fit {
-            Fit::Independent => None,
-            Fit::Dependent => Some(in_view.receivers_in(&slice, sun)),
+        let receivers = match frame.config.crop {
+            Crop::SceneIndependent => None,
+            Crop::SceneDependent => Some(in_view.receivers_in(&slice, sun)),
         };
         let volume = CoverageVolume { slice, swept, receivers, margin: 0.0, is_void: !ends.is_visible };
         Self { ends, region, volume }

@@ -7,10 +7,10 @@ use super::frame::{Frame, Sun};
 use super::layout::Layout;
 use super::scope::Scope;
 use super::shaft::{Shaft, first_depth};
+use crate::Split;
 use crate::bounds::Placed;
 use crate::casters::Most;
 use crate::held::depths::HeldDepths;
-use crate::{Split, Stabilize};
 
 /// Depths along the light between which still maps lie whose depth is not clamped, metres; `None` if nothing says so.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +23,7 @@ const MOST_LENGTHS: f64 = 16.0;
 impl WorldDepths {
     /// From the first caster to the last receiver: of all, or of those near the eye where the world is much larger.
     pub fn measure(frame: &Frame<'_>, sun: &Sun<'_>, scope: &Scope, layout: &Layout, held: &mut HeldDepths) -> Self {
-        if !frame.stands_still() || frame.settings.depth_clamp {
+        if !frame.stands_still() || frame.depth_clamp {
             return Self(None);
         }
         let direction = sun.direction;
@@ -60,7 +60,7 @@ fn around_view(frame: &Frame<'_>, sun: &Sun<'_>, layout: &Layout) -> Shaft {
 pub(super) fn ranged(frame: &Frame<'_>, mut split: Split, first: f64, size: &MapSize, world: WorldDepths) -> Split {
     let (texel, radius) = (split.texel_m.max_element(), size.half.max_element());
     let own = (split.depth_near, split.depth_far);
-    let ((near, far), step) = match (frame.stands_still(), frame.settings.depth_clamp) {
+    let ((near, far), step) = match (frame.stands_still(), frame.depth_clamp) {
         (false, true) => (own, None),
         (false, false) => ((own.0.min(first), own.1), None),
         (true, true) => (own, Some(0.5 * radius)),
@@ -69,11 +69,8 @@ pub(super) fn ranged(frame: &Frame<'_>, mut split: Split, first: f64, size: &Map
             ((near, far), Some((far - near) / 16.0))
         }
     };
-    let receivers = match frame.settings.stabilize {
-        Stabilize::None => None,
-        // Finer steps would move more often, and with them what leaks.
-        _ => Some(radius / 8.0),
-    };
+    // Finer steps would move more often, and with them what leaks.
+    let receivers = frame.stands_still().then_some(radius / 8.0);
     let (begin, end) = split.receiver_depths;
     split.receiver_depths = with_room(begin, end, texel, receivers);
     (split.depth_near, split.depth_far) = with_room(near, far, texel, step);

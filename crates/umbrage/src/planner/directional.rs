@@ -12,8 +12,9 @@ use super::picked::Picked;
 use super::scope::Scope;
 use super::snap;
 use super::warped::WarpPoints;
+use crate::config::{Crop, Range, Selection, SplitMetric};
 use crate::held::Held;
-use crate::{Bands, DirectionalLight, Fit, Result, Selection, ShadowPlan, Split, Warp};
+use crate::{DirectionalLight, Result, ShadowPlan, Split, Warp};
 
 /// Memory of one call that the next one uses again.
 #[derive(Clone, Debug, Default)]
@@ -32,16 +33,16 @@ pub(super) fn plan(
     buffers: &mut SunBuffers,
     plan: &mut ShadowPlan,
 ) -> Result<()> {
-    frame.settings.bands.check_view(frame.view)?;
+    frame.config.selection.metric().check_view(frame.view)?;
     let SunBuffers { in_view, listed: casters, layout: layout_buffers, warp_points } = buffers;
     let sun = Sun::new(light, frame);
     let scope = Scope::new(frame, &sun);
     let layout = Layout::new((frame, &sun), &scope, held, in_view, layout_buffers)?;
     let world = WorldDepths::measure(frame, &sun, &scope, &layout, &mut held.depths);
     describe(frame, &sun, &layout, plan);
-    let by_map = frame.settings.selection == Selection::Map;
+    let by_map = frame.config.selection == Selection::Map;
     let shown = by_map.then(|| Scene::of_view(frame, &sun, &layout, in_view));
-    for index in 0..frame.settings.splits() {
+    for index in 0..frame.config.splits() {
         let split = SplitFrame { frame, sun: &sun, layout: &layout, index };
         let mut scene = Scene::of_split(&split, in_view);
         let size = MapSize::new(&split);
@@ -66,17 +67,18 @@ pub(super) fn plan(
 
 /// What a plan says of all its splits.
 fn describe(frame: &Frame<'_>, sun: &Sun<'_>, layout: &Layout, plan: &mut ShadowPlan) {
-    let (settings, view) = (frame.settings, frame.view);
+    let (config, view) = (frame.config, frame.view);
+    let metric = config.selection.metric();
     plan.planes.clear();
     plan.planes.extend(layout.planes());
-    plan.selection = settings.selection;
-    plan.blend = settings.blend;
-    plan.radial_eye = (settings.bands == Bands::Radial).then(|| view.eye());
+    plan.selection = config.selection;
+    plan.blend = config.blend();
+    plan.radial_eye = (metric == SplitMetric::Distance).then(|| view.eye());
     // Behind the last receiver and beyond the camera's far plane there is nothing to fade into.
-    let last_shown = view.frustum().far / settings.bands.least_depth_share(view);
-    let fades = settings.range.is_some_and(|(_, end)| end < last_shown);
+    let last_shown = view.frustum().far / metric.least_depth_share(view);
+    let fades = matches!(config.range, Range::Metres { far, .. } if far < last_shown);
     let (near, far) = (layout.range.near, layout.range.far);
-    plan.fade_begin = if fades { far - settings.far_fade * (far - near) } else { plan.planes[layout.row.splits] };
+    plan.fade_begin = if fades { far - config.far_fade * (far - near) } else { plan.planes[layout.row.splits] };
     plan.coverage.fan = Some(sun.fan);
 }
 
@@ -92,9 +94,9 @@ fn warp(
     if warp == Warp::None || listed.is_empty() {
         return;
     }
-    let receivers = (frame.settings.fit == Fit::Dependent).then(|| in_view.receivers.in_order());
+    let receivers = (frame.config.crop == Crop::SceneDependent).then(|| in_view.receivers.in_order());
     points.receivers_of(&scene.volume.slice, receivers);
     let casters = in_view.casters.ordered(listed.places());
     points.casters_of(&scene.volume.swept, scene.volume.margin, casters);
-    points.warp(map, warp, frame.view, frame.margin, frame.settings.fit);
+    points.warp(map, warp, frame.view, frame.margin, frame.config.crop);
 }

@@ -3,16 +3,17 @@
 use glam::DVec2;
 
 use super::layout::SplitFrame;
+use crate::Warp;
+use crate::config::Stability;
 use crate::geometry::sphere::stable_texel;
 use crate::held::rectangle::longest_edge;
-use crate::margin::{EDGE_TEXELS, Reach};
-use crate::{Stabilize, Warp};
+use crate::margin::{EDGE_TEXELS, FilterReach};
 
 /// The size of a still map and how far filters reach in it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MapSize {
     /// How far the split's filter reaches, by the map's size.
-    pub reach: Reach,
+    pub reach: FilterReach,
     /// Half the edges of a still map without its margin, metres.
     pub half: DVec2,
     /// The filter's reach in a still map, texels.
@@ -23,10 +24,9 @@ pub(super) struct MapSize {
 
 impl MapSize {
     pub fn new(split: &SplitFrame<'_>) -> Self {
-        let settings = split.frame.settings;
         let (half, size) = (split.layout.row.half[split.index], split.size());
         // A warped map's texels differ in size.
-        let reach = if split.warp() == Warp::None { Reach::of(settings) } else { Reach::most(settings) };
+        let reach = if split.warp() == Warp::None { split.frame.reach } else { split.frame.reach.most() };
         let still_reach = reach.texels(2.0 * half.min_element(), size, 2.0 * EDGE_TEXELS + 1.0);
         let texel = |half| stable_texel(half, size, still_reach + EDGE_TEXELS);
         Self { reach, half, still_reach, still_texel: DVec2::new(texel(half.x), texel(half.y)) }
@@ -35,12 +35,12 @@ impl MapSize {
     /// Metres around what the split serves that filters ask about, if that is `widest` metres wide: at most.
     pub fn margin(&self, split: &SplitFrame<'_>, widest: f64) -> f64 {
         let (margin, size) = (split.frame.margin, f64::from(split.size()));
-        match split.frame.settings.stabilize {
-            Stabilize::Exact => (self.still_reach + EDGE_TEXELS) * self.still_texel.max_element(),
-            Stabilize::Approximate(steps) => {
+        match split.frame.config.stability {
+            Stability::Exact => (self.still_reach + EDGE_TEXELS) * self.still_texel.max_element(),
+            Stability::Approximate { steps } => {
                 margin * longest_edge(steps, widest, split.layout.whole_width) / (size - 2.0 * margin - 1.0)
             }
-            Stabilize::None => widest * margin / (size - 2.0 * margin).max(1.0),
+            Stability::Tight { .. } => widest * margin / (size - 2.0 * margin).max(1.0),
         }
     }
 }

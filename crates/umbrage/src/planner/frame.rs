@@ -3,17 +3,23 @@
 use glam::DVec3;
 
 use super::inputs::PlanInputs;
+use super::options::PlannerOptions;
 use crate::bounds::Placed;
 use crate::casters::{Crowd, Most};
+use crate::config::Stability;
 use crate::geometry::region::Fan;
 use crate::geometry::volume::{Lies, Slice};
-use crate::margin::EDGE_TEXELS;
-use crate::{DirectionalLight, Frustum, ShadowSettings, Stabilize, View};
+use crate::margin::{EDGE_TEXELS, FilterReach};
+use crate::{DirectionalLight, Frustum, ShadowConfig, View};
 
 /// One frame's inputs, checked.
 #[derive(Clone, Copy)]
 pub(super) struct Frame<'a> {
-    pub settings: &'a ShadowSettings,
+    pub config: &'a ShadowConfig,
+    /// Whether casters before the near plane are flattened onto it.
+    pub depth_clamp: bool,
+    /// How far the filter reads.
+    pub reach: FilterReach,
     pub view: &'a View,
     pub image_size: [u32; 2],
     pub casters: Crowd<'a>,
@@ -24,29 +30,32 @@ pub(super) struct Frame<'a> {
 
 impl<'a> Frame<'a> {
     pub fn new(
-        settings: &'a ShadowSettings,
+        (config, options): (&'a ShadowConfig, &PlannerOptions),
         inputs: &PlanInputs<'a>,
         casters: Crowd<'a>,
         receivers: Crowd<'a>,
     ) -> Self {
+        let reach = options.reach(config);
         Self {
-            settings,
+            config,
+            depth_clamp: options.depth_clamp,
+            reach,
             view: inputs.view,
             image_size: inputs.image_size,
             casters,
             receivers,
-            margin: settings.filter_radius + EDGE_TEXELS,
+            margin: reach.radius_texels + EDGE_TEXELS,
         }
     }
 
     /// Whether maps stand still, exactly or almost.
     pub fn stands_still(&self) -> bool {
-        self.settings.stabilize != Stabilize::None
+        self.config.is_stabilised()
     }
 
     /// The largest share of a map's width that its margin can be.
     pub fn margin_share(&self) -> f64 {
-        let smallest = self.settings.map_sizes.iter().copied().min().unwrap_or(1);
+        let smallest = self.config.map_sizes.iter().copied().min().unwrap_or(1);
         2.0 * self.margin / f64::from(smallest).max(2.0 * self.margin + 2.0)
     }
 }
@@ -80,8 +89,8 @@ impl<'a> Sun<'a> {
         let forward = frame.view.forward();
         let across = forward - forward.dot(direction) * direction;
         let (map_u, _) = light.map_axes();
-        let first = match frame.settings.stabilize {
-            Stabilize::None | Stabilize::Exact if across.length() > LEAST_SINE => across.normalize(),
+        let first = match frame.config.stability {
+            Stability::Tight { .. } | Stability::Exact if across.length() > LEAST_SINE => across.normalize(),
             _ => map_u,
         };
         Self { light, direction, fan: Fan::new(first, direction) }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::options::check_image_size;
 use crate::bounds::Placed;
 use crate::casters::{BoxTree, Counter, Crowd, Role};
 use crate::{Aabb, CasterSet, Error, Layers, Light, Result, View};
@@ -103,7 +104,7 @@ pub struct PlanInputs<'a> {
     pub layers: Layers,
     /// World boxes that hold all that is drawn of the receivers in view and leave less air than the receivers' own:
     /// [`crate::ShadowPlan::casts_into`] then rejects parts of casters that have none of them behind. `None`: not known.
-    /// For [`crate::Fit::Dependent`].
+    /// For [`crate::config::Crop::SceneDependent`].
     pub receiver_clusters: Option<&'a [Aabb]>,
     /// Pixels across the picture: a split is widened by one 2×2 pixel quad at its near side.
     pub image_size: [u32; 2],
@@ -131,12 +132,7 @@ impl<'a> PlanInputs<'a> {
 
     /// Checks what can be wrong with lists and sizes.
     pub(super) fn check(&self) -> Result<()> {
-        if self.image_size.contains(&0) {
-            return Err(Error::setting(
-                "image_size",
-                "the image has no pixels; give a width and a height of 1 or more",
-            ));
-        }
+        check_image_size(self.image_size)?;
         check_boxes(self.receiver_clusters.unwrap_or_default(), "receiver_clusters")
     }
 }

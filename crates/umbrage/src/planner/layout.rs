@@ -10,6 +10,7 @@ use super::in_view::InView;
 use super::range;
 use super::scope::Scope;
 use super::slice_ends::{SliceEnds, covered};
+use crate::config::{SplitScheme, Stability};
 use crate::geometry::sphere::slice_sphere;
 use crate::held::Held;
 use crate::held::ends::Range;
@@ -17,7 +18,7 @@ use crate::held::recovery::{Row, Standing};
 use crate::planes::cells::Sight;
 use crate::planes::optimal::{Maps, Placement};
 use crate::planes::scheme::split_planes;
-use crate::{MAX_SPLITS, Result, SplitScheme, Stabilize, View, Warp};
+use crate::{MAX_SPLITS, Result, View, Warp};
 
 /// Where maps begin and end, and how large still ones are.
 #[derive(Clone, Copy, Debug)]
@@ -47,11 +48,11 @@ pub(super) struct SplitFrame<'a> {
 impl SplitFrame<'_> {
     /// Edge of the split's map in texels.
     pub fn size(&self) -> u32 {
-        self.frame.settings.map_sizes[self.index]
+        self.frame.config.map_sizes[self.index]
     }
 
     pub fn warp(&self) -> Warp {
-        self.frame.settings.warp(self.index)
+        self.frame.config.warp(self.index)
     }
 
     /// What the still map has to show.
@@ -86,7 +87,7 @@ impl Layout {
             return Self::holding((frame, sun), scope, (&mut Held::default(), 0.0), in_view, buffers);
         }
         let standing = held.begin(frame.view, sun.direction);
-        let now = held.current_row(frame.settings.splits());
+        let now = held.current_row(frame.config.splits());
         let (Standing::Due | Standing::Recovering, Some(row)) = (standing, now) else {
             return Self::holding((frame, sun), scope, (held, 0.0), in_view, buffers);
         };
@@ -97,7 +98,7 @@ impl Layout {
         let shown = row.planes[row.splits];
         let target = Self::holding((frame, sun), scope, (&mut fresh, shown), in_view, buffers)?;
         if standing == Standing::Due {
-            let is_exact = frame.settings.stabilize == Stabilize::Exact;
+            let is_exact = frame.config.stability == Stability::Exact;
             if is_exact && !row.exceeds(&target.row) {
                 held.standstill.set(Standing::Settled);
                 return Self::holding((frame, sun), scope, (held, 0.0), in_view, buffers);
@@ -112,7 +113,7 @@ impl Layout {
     fn approached(self, frame: &Frame<'_>, sun: &Sun<'_>, mut row: Row, held: &mut Held) -> Self {
         let need = |i: usize, planes: &[f64]| self.block(frame, sun, planes, i).half.truncate();
         // Rectangles that are almost still are chosen by the stage that places them, one a frame.
-        let has_rectangles = frame.settings.stabilize != Stabilize::Exact;
+        let has_rectangles = frame.config.stability != Stability::Exact;
         let pace = (held.standstill.frames_left(), has_rectangles);
         let refits = held.recovery.step(&mut row, &self.row, pace, need);
         if refits.is_none() {
@@ -142,7 +143,7 @@ impl Layout {
             let sphere = slice_sphere(lens.frustum(), frame.view.frustum().near, range.far);
             layout.whole_width = 2.0 * held.whole.hold(sphere.radius);
         }
-        if frame.settings.stabilize == Stabilize::Exact {
+        if frame.config.stability == Stability::Exact {
             layout.around_all = Block::around(&frame.receivers, |r| scope.matters(frame, r), sun.light);
         }
         in_view.cull(frame, sun, range.far.max(shown), layout.whole_width);
@@ -158,7 +159,7 @@ impl Layout {
     }
 
     fn empty(frame: &Frame<'_>) -> Self {
-        let splits = frame.settings.splits();
+        let splits = frame.config.splits();
         let row = Row { planes: [0.0; MAX_SPLITS + 1], half: [DVec2::ONE; MAX_SPLITS], splits };
         Self { range: Range::new(0.0, 0.0), row, lens: *frame.view, whole_width: 0.0, around_all: None, refits: None }
     }
@@ -172,10 +173,11 @@ impl Layout {
         in_view: &InView,
         buffers: &mut LayoutBuffers,
     ) -> Result<()> {
-        let settings = frame.settings;
-        let (m, range) = (settings.splits(), self.range);
+        let config = frame.config;
+        let (m, range) = (config.splits(), self.range);
+        let is_optimal = config.scheme == SplitScheme::Optimal;
         let LayoutBuffers { placement, planes } = buffers;
-        if settings.scheme == SplitScheme::Fitted {
+        if is_optimal {
             let sight = Sight {
                 view: frame.view,
                 fan: &sun.fan,
@@ -184,7 +186,7 @@ impl Layout {
             };
             let most_half = self.around_all.map_or(DVec2::INFINITY, |all| all.half.truncate());
             let (margin, whole_width, image_size) = (frame.margin, self.whole_width, frame.image_size);
-            let maps = Maps { settings, image_size, margin, whole_width, most_half };
+            let maps = Maps { config, image_size, margin, whole_width, most_half };
             let inner = held.row.as_ref().map(|(_, planes)| &planes[1..m]);
             placement.place(&sight, &maps, range, inner, planes)?;
             if inner != Some(&planes[1..m]) {
@@ -192,14 +194,12 @@ impl Layout {
                 held.half = Default::default();
             }
         } else {
-            split_planes(&settings.scheme, range.near, range.inner_far, m, planes)?;
+            split_planes(&config.scheme, range.near, range.inner_far, m, planes)?;
         }
         planes[m] = range.far;
         match held.row {
             // Between two ranges planes are on their way, and stay as far as they came.
-            Some((placed_for, row))
-                if settings.scheme != SplitScheme::Fitted && placed_for == range && row[m] >= range.far =>
-            {
+            Some((placed_for, row)) if !is_optimal && placed_for == range && row[m] >= range.far => {
                 self.row.planes = row;
             }
             _ => self.row.planes[..=m].copy_from_slice(planes),

@@ -12,6 +12,7 @@ use glam::{DVec2, DVec3};
 use super::frame::Frame;
 use crate::bounds::Placed;
 use crate::casters::{Gathered, Most};
+use crate::config::{Crop, LightKind, Range, SplitMetric, SplitScheme};
 use crate::coverage::LocalVolume;
 use crate::geometry::light_frustum::{LightFrustum, Part};
 use crate::geometry::volume::{Lies, Slice, rounding};
@@ -19,9 +20,7 @@ use crate::held::Held;
 use crate::held::recovery::Standing;
 use crate::held::size::HeldSize;
 use crate::planes::scheme::{blend_begin, coverage, split_planes};
-use crate::{
-    Bands, Error, Fit, Light, Result, Selection, ShadowPlan, ShadowSettings, Split, SplitScheme, Stabilize, Warp,
-};
+use crate::{Error, Light, Result, ShadowPlan, Split};
 
 /// Share of its depths that a map keeps free before its first caster and behind its last receiver, for rounding.
 const DEPTH_ROOM: f64 = 1e-3;
@@ -58,12 +57,14 @@ pub(super) fn plan(
     buffers: &mut LocalBuffers,
     plan: &mut ShadowPlan,
 ) -> Result<()> {
-    let settings = frame.settings;
-    check_settings(settings)?;
-    let m = settings.splits();
+    let config = frame.config;
+    if let Some(conflict) = config.conflict_of_plan(LightKind::from(*light)) {
+        return Err(Error::Conflict(Box::new(conflict)));
+    }
+    let m = config.splits();
     let (near, far, fades) = shadowed_range(frame, light, position);
-    split_planes(&settings.scheme, near, far, m, &mut plan.planes)?;
-    plan.fade_begin = if fades { far - settings.far_fade * (far - near) } else { far };
+    split_planes(&config.scheme, near, far, m, &mut plan.planes)?;
+    plan.fade_begin = if fades { far - config.far_fade * (far - near) } else { far };
     let recovering = recovering(frame, light, held, frusta.len() * m);
     for frustum in frusta {
         buffers.cull(frame, frustum);
@@ -100,39 +101,6 @@ fn recovering(
     held.standstill.turn(count)
 }
 
-/// What a local light cannot be combined with.
-fn check_settings(settings: &ShadowSettings) -> Result<()> {
-    let conflict =
-        |first, reason: &str| Err(Error::ConflictingSettings { first, second: "light", reason: reason.to_owned() });
-    if settings.warps.iter().any(|&warp| warp != Warp::None) {
-        return conflict(
-            "warps",
-            "a warp needs light that is parallel in the world; leave warps away, or use a directional light",
-        );
-    }
-    if settings.selection != Selection::Depth {
-        return conflict(
-            "selection",
-            "maps of a local light lie in its perspective and are chosen by view depth; \
-             set selection to Depth, or use a directional light",
-        );
-    }
-    if settings.bands != Bands::Planar {
-        return conflict(
-            "bands",
-            "splits of a local light are chosen by view depth; set bands to Planar, or use a directional light",
-        );
-    }
-    if settings.scheme == SplitScheme::Fitted {
-        return conflict(
-            "scheme",
-            "fitted planes are chosen for light that is parallel in the world; \
-             set scheme to Logarithmic or another of near and far alone, or use a directional light",
-        );
-    }
-    Ok(())
-}
-
 impl LocalBuffers {
     /// Keeps the receivers and casters that the light reaches in this frustum.
     fn cull(&mut self, frame: &Frame<'_>, frustum: &LightFrustum) {
@@ -146,8 +114,8 @@ impl LocalBuffers {
 impl<'a> LocalSplit<'a> {
     /// The slice, and the part of the light's frustum that it shows.
     fn new(frame: &'a Frame<'a>, frustum: &LightFrustum, index: usize, planes: &[f64], buffers: &LocalBuffers) -> Self {
-        let settings = frame.settings;
-        let (from, to) = coverage(frame.view, planes, index, settings.blend, frame.image_size, Bands::Planar);
+        let blend = frame.config.blend();
+        let (from, to) = coverage(frame.view, planes, index, blend, frame.image_size, SplitMetric::ViewDepth);
         let is_visible = to > from;
         let (from, to) = if is_visible { (from, to) } else { (planes[index], planes[index + 1]) };
         let slice = Slice::new(frame.view, from, to);
@@ -159,7 +127,7 @@ impl<'a> LocalSplit<'a> {
 
     /// Edge of the map in texels.
     fn size(&self) -> u32 {
-        self.frame.settings.map_sizes[self.index]
+        self.frame.config.map_sizes[self.index]
     }
 
     /// Texels across the map that serve its slice.
@@ -186,7 +154,7 @@ impl<'a> LocalSplit<'a> {
                 (lo, hi, first) = (lo.min(caster_lo), hi.max(caster_hi), first.min(depth));
             }
             target.near = first;
-            if (self.frame.settings.fit, self.frame.settings.stabilize) == (Fit::Dependent, Stabilize::None) {
+            if self.frame.config.crop == Crop::SceneDependent && !self.frame.stands_still() {
                 (target.lo, target.hi) = (lo, hi);
             }
         }
@@ -241,15 +209,14 @@ impl<'a> LocalSplit<'a> {
     /// The split's map.
     fn map(&self, target: &Part, planes: &[f64], held: &mut HeldSize, step: Option<f64>) -> Split {
         let LocalVolume { frustum, part, .. } = &self.volume;
-        let settings = self.frame.settings;
         let (texel, min_texel) = self.snapped(target, held, step);
-        let (w_near, w_far) = depths(target, frustum.near, settings.stabilize);
+        let (w_near, w_far) = depths(target, frustum.near, self.frame.stands_still());
         let axis_offset = frustum.axis.dot(frustum.position);
         let (size, depths) = (self.size(), (axis_offset + w_near, axis_offset + w_far));
         Split {
             near: planes[self.index],
             far: planes[self.index + 1],
-            blend_begin: blend_begin(planes, self.index, settings.blend),
+            blend_begin: blend_begin(planes, self.index, self.frame.config.blend()),
             coverage: self.coverage,
             size,
             u_axis: frustum.u,
@@ -260,7 +227,7 @@ impl<'a> LocalSplit<'a> {
             depth_near: depths.0,
             depth_far: depths.1,
             receiver_depths: depths,
-            filter_reach: settings.filter_radius,
+            filter_reach: self.frame.reach.radius_texels,
             warp: Some(frustum.shadow_from_world(texel, min_texel, size, (w_near, w_far))),
             light_position: Some(frustum.position),
             casters: 0..0,
@@ -271,7 +238,7 @@ impl<'a> LocalSplit<'a> {
 /// What a slice shows of the light's frustum: all of it, or its receivers.
 fn part_in(frame: &Frame<'_>, frustum: &LightFrustum, slice: &Slice, receivers: &Gathered) -> Part {
     let mut part = Part::EMPTY;
-    if frame.settings.fit == Fit::Independent {
+    if frame.config.crop == Crop::SceneIndependent {
         slice.clip_slice(&frustum.volume, |point| part.include(frustum, point));
         return part;
     }
@@ -288,22 +255,19 @@ fn part_in(frame: &Frame<'_>, frustum: &LightFrustum, slice: &Slice, receivers: 
 
 /// Depths along the axis at 0 and 1: before the first caster and behind the last receiver; in whole steps where the map is to stand
 /// still.
-fn depths(target: &Part, least: f64, stabilize: Stabilize) -> (f64, f64) {
+fn depths(target: &Part, least: f64, stands_still: bool) -> (f64, f64) {
     let far = target.far * (1.0 + DEPTH_ROOM);
     let near = (target.near.max(least) * (1.0 - DEPTH_ROOM)).min(0.5 * far);
-    match stabilize {
-        Stabilize::None => (near, far),
-        _ => (2f64.powf(near.log2().floor()), 2f64.powf(far.log2().ceil())),
-    }
+    if stands_still { (2f64.powf(near.log2().floor()), 2f64.powf(far.log2().ceil())) } else { (near, far) }
 }
 
 /// View depths that shadows cover, `C_0` and `C_m`, and whether they fade at the end: the setting; or the camera's near and far, far
 /// capped by the receivers that the light reaches, both narrowed to where it reaches. Shadows fade only where they end though
 /// the light goes on.
 fn shadowed_range(frame: &Frame<'_>, light: &Light, position: DVec3) -> (f64, f64, bool) {
-    let Frame { settings, view, receivers, .. } = *frame;
+    let Frame { config, view, receivers, .. } = *frame;
     let range = light.range();
-    if let Some((near, far)) = settings.range {
+    if let Range::Metres { near, far } = config.range {
         return (near, far, true);
     }
     let forward = view.forward();
@@ -323,10 +287,10 @@ fn shadowed_range(frame: &Frame<'_>, light: &Light, position: DVec3) -> (f64, f6
         return nothing;
     }
     // Planes that were given in metres mean those of the whole view.
-    let free = match &settings.scheme {
-        SplitScheme::Uniform | SplitScheme::Logarithmic | SplitScheme::Fitted => true,
+    let free = match &config.scheme {
+        SplitScheme::Uniform | SplitScheme::Logarithmic | SplitScheme::Optimal => true,
         SplitScheme::Practical { delta, .. } => delta.is_empty(),
-        SplitScheme::Manual(_) => false,
+        SplitScheme::Manual { .. } => false,
     };
     let near = if free { camera_near.max(reach.0) } else { camera_near };
     if near >= far { nothing } else { (near, far.min(camera_far), camera_far < far) }

@@ -10,11 +10,11 @@ mod depth;
 mod directional;
 mod fit;
 mod frame;
-mod from_config;
 mod in_view;
 mod inputs;
 mod layout;
 mod local;
+mod options;
 mod picked;
 mod range;
 mod scope;
@@ -26,19 +26,21 @@ mod warped;
 use crate::casters::{BoxTree, Counter, Crowd, Role, Visited};
 use crate::geometry::light_frustum::LightFrustum;
 use crate::held::Held;
-use crate::{Light, Result, ShadowPlan, ShadowSettings, View};
+use crate::{Light, Result, ShadowConfig, ShadowPlan, View};
 use directional::SunBuffers;
 use frame::Frame;
 pub use inputs::{Boxes, PlanInputs};
 use local::LocalBuffers;
+pub use options::PlannerOptions;
 
 /// Plans shadow maps frame after frame.
 ///
-/// Holds the settings, what is held between frames ([`Held`]) and buffers, so that only the first frames allocate. Each
+/// Holds the config, what is held between frames ([`Held`]) and buffers, so that only the first frames allocate. Each
 /// light of each view has a planner of its own.
 #[derive(Clone, Debug)]
 pub struct Planner {
-    settings: ShadowSettings,
+    config: ShadowConfig,
+    options: PlannerOptions,
     held: Held,
     buffers: Buffers,
     plan: ShadowPlan,
@@ -58,21 +60,53 @@ struct Buffers {
 }
 
 impl Planner {
-    /// A planner for a [`crate::ShadowConfig`] (by reference) or for [`ShadowSettings`].
+    /// A planner of a config's maps, with the default options.
     ///
     /// # Errors
-    /// [`crate::Error::InvalidSetting`] naming the field that is wrong, [`crate::Error::ConflictingSettings`] naming two that
-    /// exclude each other.
-    pub fn new(settings: impl Into<ShadowSettings>) -> Result<Self> {
-        let settings = settings.into();
-        settings.validate()?;
-        Ok(Self { settings, held: Held::default(), buffers: Buffers::default(), plan: ShadowPlan::default() })
+    /// Those of [`Planner::with_options`].
+    pub fn new(config: &ShadowConfig) -> Result<Self> {
+        Self::with_options(config, PlannerOptions::default())
     }
 
-    /// What the planner was made with.
+    /// A planner of a config's maps.
+    ///
+    /// # Errors
+    /// Those of [`ShadowConfig::validate`]; [`crate::Error::InvalidSetting`] naming a field of the options that is wrong, or
+    /// `map-size` for maps that do not hold the options' filter.
+    pub fn with_options(config: &ShadowConfig, options: PlannerOptions) -> Result<Self> {
+        options.check(config)?;
+        let (config, held, buffers) = (config.clone(), Held::default(), Buffers::default());
+        Ok(Self { config, options, held, buffers, plan: ShadowPlan::default() })
+    }
+
+    /// Plans by another config and other options from the next frame on. What is held stays held if plans do not depend on
+    /// what has changed, and is let go otherwise.
+    ///
+    /// # Errors
+    /// Those of [`Planner::with_options`]. Nothing has changed then.
+    pub fn set_config(&mut self, config: &ShadowConfig, options: PlannerOptions) -> Result<()> {
+        options.check(config)?;
+        let reaches = [options.reach(config), self.options.reach(&self.config)];
+        let is_alike = options.depth_clamp == self.options.depth_clamp
+            && reaches[0] == reaches[1]
+            && config.plans_like(&self.config);
+        if !is_alike {
+            self.held = Held::default();
+        }
+        (self.config, self.options) = (config.clone(), options);
+        Ok(())
+    }
+
+    /// The config that maps are planned by.
     #[must_use]
-    pub fn settings(&self) -> &ShadowSettings {
-        &self.settings
+    pub fn config(&self) -> &ShadowConfig {
+        &self.config
+    }
+
+    /// What the planner was told beside the config.
+    #[must_use]
+    pub fn options(&self) -> PlannerOptions {
+        self.options
     }
 
     /// What is held between frames.
@@ -92,7 +126,7 @@ impl Planner {
         self.held = held;
     }
 
-    /// Plans the maps of one frame for one light, for a picture of [`ShadowSettings::image_size`]; see
+    /// Plans the maps of one frame for one light, for a picture of [`PlannerOptions::image_size`]; see
     /// [`Planner::plan_frame`].
     ///
     /// # Errors
@@ -105,7 +139,7 @@ impl Planner {
         receivers: impl Into<Boxes<'a>>,
     ) -> Result<&ShadowPlan> {
         let inputs =
-            PlanInputs { image_size: self.settings.image_size, ..PlanInputs::new(view, *light, casters, receivers) };
+            PlanInputs { image_size: self.options.image_size, ..PlanInputs::new(view, *light, casters, receivers) };
         self.plan_frame(&inputs)
     }
 
@@ -122,7 +156,7 @@ impl Planner {
 
     /// Plans the maps of one frame for one light into a plan of the caller's, whose buffers are used again.
     ///
-    /// A point light's plan has six times as many splits as the settings: those of its first face, then those of the next
+    /// A point light's plan has six times as many splits as the config: those of its first face, then those of the next
     /// ([`Light::FACE_AXES`]). Splits that the light does not reach have no casters.
     ///
     /// A local light's default range is narrowed to where it reaches. Its stabilised maps stand on whole texels, of a size
@@ -130,27 +164,34 @@ impl Planner {
     ///
     /// # Errors
     /// [`crate::Error::InvalidBounds`] naming a box that is inverted or not finite; [`crate::Error::InvalidSetting`] if the
-    /// range or the planes do not fit this camera; [`crate::Error::ConflictingSettings`] for a warp or radial bands with a
-    /// local light, and for radial bands with an orthographic camera. What is held is left as it was; the plan is of no use.
+    /// range or the planes do not fit this camera; [`crate::Error::Conflict`] for a choice that a local light's plan cannot
+    /// make, such as a warp; [`crate::Error::CameraConflict`] for splits by distance with an orthographic camera. What is held
+    /// is left as it was; the plan is of no use.
     pub fn plan_into(&mut self, inputs: &PlanInputs<'_>, plan: &mut ShadowPlan) -> Result<()> {
-        plan_with(&self.settings, inputs, &mut self.held, &mut self.buffers, plan)
+        plan_with((&self.config, &self.options), inputs, &mut self.held, &mut self.buffers, plan)
     }
 }
 
-/// One frame's plan: a function of the settings, the inputs and what is held from the frames before.
+/// One frame's plan: a function of the config, the options, the inputs and what is held from the frames before. The picture's
+/// size is the inputs'.
 ///
 /// # Errors
-/// As [`Planner::plan_into`], and as [`Planner::new`] for the settings.
-pub fn plan(settings: &ShadowSettings, inputs: &PlanInputs<'_>, held: &mut Held) -> Result<ShadowPlan> {
-    settings.validate()?;
+/// As [`Planner::plan_into`], and as [`Planner::with_options`] for config and options.
+pub fn plan(
+    config: &ShadowConfig,
+    options: PlannerOptions,
+    inputs: &PlanInputs<'_>,
+    held: &mut Held,
+) -> Result<ShadowPlan> {
+    options.check(config)?;
     let mut plan = ShadowPlan::default();
-    plan_with(settings, inputs, held, &mut Buffers::default(), &mut plan)?;
+    plan_with((config, &options), inputs, held, &mut Buffers::default(), &mut plan)?;
     Ok(plan)
 }
 
-/// The same with checked settings and memory of before.
+/// The same with a checked config and memory of before.
 fn plan_with(
-    settings: &ShadowSettings,
+    technique: (&ShadowConfig, &PlannerOptions),
     inputs: &PlanInputs<'_>,
     held: &mut Held,
     buffers: &mut Buffers,
@@ -170,7 +211,7 @@ fn plan_with(
     let are_replaced = receivers.is_empty() || (!shows(&receivers) && shows(&casters));
     let receivers = if are_replaced { casters } else { receivers };
     next.clone_from(held);
-    let frame = Frame::new(settings, inputs, casters, receivers);
+    let frame = Frame::new(technique, inputs, casters, receivers);
     match &inputs.light {
         Light::Directional(light) => directional::plan(&frame, light, next, sun, plan)?,
         Light::Spot(spot) => {

@@ -2,10 +2,11 @@
 
 use super::frame::Frame;
 use super::scope::Scope;
+use crate::config::{self, SplitMetric, Stability};
 use crate::held::ends::{HeldEnds, Range};
+use crate::planes::scheme::check_range;
 use crate::planes::visible::visible_range;
-use crate::settings::check_range;
-use crate::{Bands, Projection, RangeFit, Result, Stabilize};
+use crate::{Projection, Result};
 
 /// The least length of a range that is fitted to what is visible, as a share of its far end.
 const LEAST_RANGE: f64 = 0.01;
@@ -14,7 +15,7 @@ const LEAST_RANGE: f64 = 0.01;
 /// what matters of the scene. Held where maps have to stand still.
 ///
 /// # Errors
-/// [`crate::Error::InvalidSetting`] naming `range` if it is empty for this camera, even with nothing held.
+/// [`crate::Error::InvalidSetting`] naming `shadow-range` if it is empty for this camera, even with nothing held.
 pub(super) fn shadowed(frame: &Frame<'_>, scope: &Scope, held: &mut HeldEnds) -> Result<Range> {
     let range = held_range(frame, scope, held);
     if check_range(range.near, range.inner_far).is_ok() {
@@ -28,37 +29,34 @@ pub(super) fn shadowed(frame: &Frame<'_>, scope: &Scope, held: &mut HeldEnds) ->
 }
 
 fn held_range(frame: &Frame<'_>, scope: &Scope, held: &mut HeldEnds) -> Range {
-    let Frame { settings, view, receivers, .. } = *frame;
-    if let Some((near, far)) = settings.range {
+    let Frame { config, view, receivers, .. } = *frame;
+    if let config::Range::Metres { near, far } = config.range {
         return Range::new(near, far);
     }
-    let bands = settings.bands;
-    let (near, camera_far) = (view.frustum().near, view.frustum().far / bands.least_depth_share(view));
-    let deepest = match (settings.range_fit, bands) {
-        (RangeFit::Visible, _) => scope.deepest_receiver,
-        (RangeFit::Camera, Bands::Planar) => scope.deepest,
-        (RangeFit::Camera, Bands::Radial) => scope.farthest,
+    let metric = config.selection.metric();
+    let fits_view = config.range == config::Range::Visible;
+    let (near, camera_far) = (view.frustum().near, view.frustum().far / metric.least_depth_share(view));
+    let deepest = match metric {
+        _ if fits_view => scope.deepest_receiver,
+        SplitMetric::ViewDepth => scope.deepest,
+        SplitMetric::Distance => scope.farthest,
     };
     // Nothing before the eye: any short range will do.
     let deepest = if deepest > near { deepest } else { 2.0 * near.abs() + 1.0 };
     let deepest = deepest.min(camera_far);
-    if settings.range_fit == RangeFit::Visible
-        && let Some((first, last)) = visible_range(view, near, deepest, &receivers)
-    {
-        let (first, last) = match settings.stabilize {
-            Stabilize::Exact | Stabilize::Approximate(_) if first > 0.0 => held.visible.hold(first, last),
-            _ => (first, last),
-        };
+    if fits_view && let Some((first, last)) = visible_range(view, near, deepest, &receivers) {
+        let holds = config.is_stabilised() && first > 0.0;
+        let (first, last) = if holds { held.visible.hold(first, last) } else { (first, last) };
         // A single wall that faces the camera still gets slices of some depth.
         let first = first.max(near).min(last * (1.0 - LEAST_RANGE));
         return Range::new(first, last.min(camera_far));
     }
     let near = first_shown(frame, scope, deepest, held);
-    let range = match settings.stabilize {
+    let range = match config.stability {
         // Almost still maps are held by their own extents, whatever the planes: a range that is held as well would only
         // make them larger, by 8 % in the second of four splits, and saves no step.
-        Stabilize::None | Stabilize::Approximate(_) => Range::new(near, deepest),
-        Stabilize::Exact => held.far.hold(near, deepest, scope.farthest.min(camera_far)),
+        Stability::Tight { .. } | Stability::Approximate { .. } => Range::new(near, deepest),
+        Stability::Exact => held.far.hold(near, deepest, scope.farthest.min(camera_far)),
     };
     Range { near, inner_far: range.inner_far.min(camera_far), far: range.far.min(camera_far) }
 }

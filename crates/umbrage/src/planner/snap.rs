@@ -6,11 +6,12 @@ use super::block::Block;
 use super::casters::{Listed, Scene};
 use super::fit::MapSize;
 use super::layout::SplitFrame;
+use crate::config::Stability;
 use crate::geometry::region::{Fan, Region};
 use crate::held::rectangle::{HeldRectangle, Rectangle};
-use crate::margin::{EDGE_TEXELS, Reach};
+use crate::margin::{EDGE_TEXELS, FilterReach};
 use crate::planes::scheme::blend_begin;
-use crate::{DirectionalLight, Split, Stabilize};
+use crate::{DirectionalLight, Split};
 
 /// The map of a split: its axes, its texels and where they lie. Depths are those of what it shows, until the next stage.
 pub(super) fn placed(
@@ -26,9 +27,9 @@ pub(super) fn placed(
     let split = Split {
         near: planes[i],
         far: planes[i + 1],
-        blend_begin: blend_begin(planes, i, frame.settings.blend),
+        blend_begin: blend_begin(planes, i, frame.config.blend()),
         coverage: (scene.ends.from, scene.ends.to),
-        size: frame.settings.map_sizes[i],
+        size: frame.config.map_sizes[i],
         u_axis: DVec3::ZERO,
         v_axis: DVec3::ZERO,
         depth_axis: sun.direction,
@@ -42,10 +43,10 @@ pub(super) fn placed(
         light_position: None,
         casters: 0..0,
     };
-    match frame.settings.stabilize {
-        Stabilize::None => fitted(split, &listed.target, &sun.fan, size.reach),
-        Stabilize::Exact => snapped(split, sun.light, &block, size.still_texel),
-        Stabilize::Approximate(steps) => {
+    match frame.config.stability {
+        Stability::Tight { .. } => fitted(split, &listed.target, &sun.fan, size.reach),
+        Stability::Exact => snapped(split, sun.light, &block, size.still_texel),
+        Stability::Approximate { steps } => {
             // A split without casters is lit, whatever its rectangle; it changes nothing that is held.
             let mut unheld = HeldRectangle::default();
             let held = if has_casters { held } else { &mut unheld };
@@ -59,7 +60,7 @@ pub(super) fn placed(
 }
 
 /// The smallest rectangle around `target`, widened by the filter's reach.
-fn fitted(mut split: Split, target: &Region, fan: &Fan, reach: Reach) -> Split {
+fn fitted(mut split: Split, target: &Region, fan: &Fan, reach: FilterReach) -> Split {
     let (u, v, lo, hi) = target.least_rectangle(fan);
     (split.u_axis, split.v_axis) = (u, v);
     let longest = (hi - lo).max_element();
@@ -72,7 +73,14 @@ fn fitted(mut split: Split, target: &Region, fan: &Fan, reach: Reach) -> Split {
 }
 
 /// A rectangle that is held, moved to whole texels of a grid that is fixed to the light.
-fn stepped(mut split: Split, target: &Region, fan: &Fan, reach: Reach, held: Rectangle, depth: (f64, f64)) -> Split {
+fn stepped(
+    mut split: Split,
+    target: &Region,
+    fan: &Fan,
+    reach: FilterReach,
+    held: Rectangle,
+    depth: (f64, f64),
+) -> Split {
     (split.u_axis, split.v_axis) = fan.axes(held.direction);
     let size = f64::from(split.size);
     split.filter_reach = reach.texels(held.extent.min_element(), split.size, 2.0 * EDGE_TEXELS + 1.0);

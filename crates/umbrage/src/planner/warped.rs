@@ -3,8 +3,9 @@
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use crate::bounds::Placed;
+use crate::config::Crop;
 use crate::geometry::volume::{Lies, Slice, SweptVolume};
-use crate::{Fit, Split, View, Warp, WarpTarget};
+use crate::{Split, View, Warp, WarpTarget};
 
 /// Share of the depth range that a warped map keeps free before its first caster and behind its last receiver: for rounding on the
 /// way to `f32`, and for the bias.
@@ -51,7 +52,7 @@ impl WarpPoints {
     }
 
     /// Gives the split its warp, which leaves `margin` texels free all round. The split stays plain if the warp changes nothing.
-    pub fn warp(&self, split: &mut Split, warp: Warp, view: &View, margin: f64, fit: Fit) {
+    pub fn warp(&self, split: &mut Split, warp: Warp, view: &View, margin: f64, crop: Crop) {
         let depths = self.receivers.iter().map(|&point| view.view_depth(point));
         let slice = depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), d| (lo.min(d), hi.max(d)));
         let target = WarpTarget {
@@ -66,9 +67,9 @@ impl WarpPoints {
         if matrix.row(3).truncate() == DVec3::ZERO {
             return;
         }
-        let matrix = match fit {
-            Fit::Independent => matrix,
-            Fit::Dependent => self.cropped(matrix, 1.0 - target.margin),
+        let matrix = match crop {
+            Crop::SceneIndependent => matrix,
+            Crop::SceneDependent => self.cropped(matrix, 1.0 - target.margin),
         };
         split.warp = Some(with_depth_room(matrix));
         let middle = self.receivers.iter().sum::<DVec3>() / self.receivers.len() as f64;

@@ -1,0 +1,392 @@
+//! What each key's value does to a config, beside the other keys that were given.
+
+use super::apply::{Given, Wrong, refuse, refuse_other};
+use super::names::unknown;
+use super::text::{count, map_sizes, number, numbers, range, switch};
+use super::{
+    ExtentSteps, Filter, Generation, Layout, Moments, Range, Selection, ShadowConfig, SplitMetric, SplitScheme,
+    Stability, Storage, Transition, settings,
+};
+use crate::{MAX_SPLITS, Warp};
+
+/// Share of a split that blends where nothing says another.
+const USUAL_BLEND: f64 = 0.1;
+
+/// Checks a word against the list of its key.
+fn known(key: &str, text: &str) -> Result<(), String> {
+    let words = settings::WORDS.iter().find(|(listed, _)| *listed == key).map_or(&[][..], |(_, words)| words);
+    if words.iter().any(|word| word.word == text) { Ok(()) } else { Err(unknown(key, text, words)) }
+}
+
+/// Number and sizes of maps, from `technique`, `splits`, `map-size` and `planes` together.
+pub(super) fn shape(config: &mut ShadowConfig, given: &Given<'_>) -> Result<(), Wrong> {
+    let single = single_map(given)?;
+    let typed = match given.value("map-size").map(map_sizes).transpose() {
+        Ok(typed) => typed,
+        Err(reason) => return refuse_other("map-size", reason),
+    };
+    let (key, splits) = split_count(config, given, single, typed.as_deref())?;
+    if !(1..=MAX_SPLITS).contains(&splits) {
+        return refuse_other(key, format!("{splits} splits; there may be 1 to {MAX_SPLITS}"));
+    }
+    let sizes = typed.unwrap_or_else(|| config.map_sizes.clone());
+    config.map_sizes = match sizes[..] {
+        [edge] => vec![edge; splits],
+        _ if sizes.len() == splits => sizes,
+        [edge, ..] if !given.has("map-size") && sizes.iter().all(|size| *size == edge) => vec![edge; splits],
+        _ => {
+            let (maps, there) = (sizes.len(), if splits == 1 { "is 1 split" } else { "are" });
+            let there = if splits == 1 { there.to_owned() } else { format!("{there} {splits} splits") };
+            return refuse_other(
+                "map-size",
+                format!("lists {maps} maps, but there {there}; give one size, or one for each split"),
+            );
+        }
+    };
+    let Some(single) = single else { return Ok(()) };
+    let warp = single.parse::<Warp>().unwrap_or(Warp::None);
+    if let Some(other) = given.value("warp").filter(|other| *other != warp.word()) {
+        return refuse(format!(
+            "technique {single} says how its one map is warped, and warp {other} says otherwise; leave warp away, \
+             or use technique pssm with splits 1"
+        ));
+    }
+    if warp != Warp::None {
+        set_warps(config, given, vec![warp], &format!("technique {single}"))
+    } else {
+        if config.first_warp().is_some() {
+            config.stability = Stability::tight();
+        }
+        Ok(())
+    }
+}
+
+/// The technique, if it is one map over the whole range.
+fn single_map<'a>(given: &Given<'a>) -> Result<Option<&'a str>, Wrong> {
+    let Some(technique) = given.value("technique").map(str::trim) else { return Ok(None) };
+    known("technique", technique)?;
+    Ok(Some(technique).filter(|technique| *technique != "pssm"))
+}
+
+/// The number of splits, and the setting that says so.
+fn split_count(
+    config: &ShadowConfig,
+    given: &Given<'_>,
+    single: Option<&str>,
+    sizes: Option<&[u32]>,
+) -> Result<(&'static str, usize), Wrong> {
+    let typed = match given.value("splits").map(count).transpose() {
+        Ok(typed) => typed,
+        Err(reason) => return refuse_other("splits", reason),
+    };
+    Ok(match (typed, single) {
+        (Some(splits), Some(single)) if splits != 1 => {
+            return refuse_other(
+                "splits",
+                format!("technique {single} is one map over the whole range; leave splits away, or use technique pssm"),
+            );
+        }
+        (Some(splits), _) => ("splits", splits as usize),
+        (None, Some(_)) => ("technique", 1),
+        (None, None) => match (sizes, given.value("planes")) {
+            (Some(sizes), _) if sizes.len() > 1 => ("map-size", sizes.len()),
+            (_, Some(planes)) => ("planes", planes.split(',').count() + 1),
+            _ => ("splits", config.splits()),
+        },
+    })
+}
+
+pub(super) fn scheme(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
+    if config.scheme.word() == text {
+        return Ok(());
+    }
+    config.scheme = match text {
+        "uniform" => SplitScheme::Uniform,
+        "log" => SplitScheme::Logarithmic,
+        "practical" => SplitScheme::practical(),
+        "optimal" | "fitted" => SplitScheme::Optimal,
+        "manual" if given.has("planes") || config.splits() == 1 => SplitScheme::Manual { planes: Vec::new() },
+        "manual" => {
+            let (inner, splits) = (config.splits() - 1, config.splits());
+            return refuse(format!("it needs planes A,B,… with the {inner} inner planes of {splits} splits"));
+        }
+        _ => return refuse(unknown("scheme", text, SplitScheme::WORDS)),
+    };
+    Ok(())
+}
+
+/// The practical scheme, which `key` belongs to.
+fn practical<'a>(
+    config: &'a mut ShadowConfig,
+    given: &Given<'_>,
+    key: &str,
+) -> Result<(&'a mut f64, &'a mut Vec<f64>), Wrong> {
+    let is_practical = matches!(config.scheme, SplitScheme::Practical { .. });
+    let other = match is_practical {
+        _ if given.has("planes") => Some("manual"),
+        false => given.value("scheme"),
+        true => None,
+    };
+    if let Some(scheme) = other {
+        return refuse(format!(
+            "{key} belongs to scheme practical, but the scheme is {scheme}; leave one of them away"
+        ));
+    }
+    if !is_practical {
+        config.scheme = SplitScheme::practical();
+    }
+    match &mut config.scheme {
+        SplitScheme::Practical { lambda, delta } => Ok((lambda, delta)),
+        _ => refuse(format!("{key} belongs to scheme practical")),
+    }
+}
+
+pub(super) fn lambda(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
+    let value = number(text)?;
+    practical(config, given, "lambda").map(|(lambda, _)| *lambda = value)
+}
+
+pub(super) fn delta(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
+    let values = numbers(text)?;
+    practical(config, given, "delta").map(|(_, delta)| *delta = values)
+}
+
+pub(super) fn planes(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
+    let planes = numbers(text)?;
+    if planes.iter().any(|plane| *plane <= 0.0) {
+        return refuse("a plane is a view depth in metres, above 0".to_owned());
+    }
+    match given.value("scheme") {
+        Some(scheme) if scheme.trim() != "manual" => {
+            return refuse(format!(
+                "planes belongs to scheme manual, but the scheme is {scheme}; leave one of them away"
+            ));
+        }
+        _ => config.scheme = SplitScheme::Manual { planes },
+    }
+    shape(config, given)
+}
+
+pub(super) fn range_fit(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
+    known("range-fit", text)?;
+    config.range = if text == "visible" { Range::Visible } else { Range::Camera };
+    Ok(())
+}
+
+pub(super) fn shadow_range(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
+    if given.value("range-fit") == Some("visible") {
+        return refuse(
+            "shadow-range and range-fit visible both choose the shadowed range; give one of them".to_owned(),
+        );
+    }
+    let (near, far) = range(text)?;
+    config.range = Range::Metres { near, far };
+    Ok(())
+}
+
+pub(super) fn selection(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
+    known("selection", text)?;
+    match (text, config.selection) {
+        ("map", _) => config.selection = Selection::Map,
+        (_, Selection::Map) => config.selection = Selection::default(),
+        (_, Selection::Interval(_)) => {}
+    }
+    Ok(())
+}
+
+pub(super) fn bands(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
+    let metric: SplitMetric = text.parse()?;
+    if metric == SplitMetric::Distance && given.value("selection") == Some("map") {
+        return refuse(
+            "bands radial and selection map exclude each other: maps that are chosen by what they contain \
+                    have no bands; leave one of them away",
+        );
+    }
+    if metric == SplitMetric::Distance || config.selection != Selection::Map {
+        config.selection = Selection::Interval(metric);
+    }
+    Ok(())
+}
+
+pub(super) fn stabilize(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
+    if config.stability.word() == text {
+        return Ok(());
+    }
+    config.stability = match text {
+        "exact" => Stability::Exact,
+        "approximate" => Stability::Approximate { steps: ExtentSteps::default() },
+        "none" => Stability::tight(),
+        _ => return refuse(unknown("stability", text, Stability::WORDS)),
+    };
+    Ok(())
+}
+
+pub(super) fn extent(config: &mut ShadowConfig, given: &Given<'_>, steps: ExtentSteps) -> Result<(), Wrong> {
+    if given.has("extent-steps") && given.has("extent-levels") {
+        return refuse("extent-steps and extent-levels both choose the steps of a map's extent; give one".to_owned());
+    }
+    match given.value("stabilize") {
+        Some(stability) if stability.trim() != "approximate" => {
+            refuse(format!("belongs to stabilize approximate, but it is {stability}; leave one of them away"))
+        }
+        _ => {
+            config.stability = Stability::Approximate { steps };
+            Ok(())
+        }
+    }
+}
+
+pub(super) fn warp(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
+    let warps: Vec<Warp> = text.split(',').map(|warp| warp.trim().parse()).collect::<Result<_, _>>()?;
+    if warps.iter().all(|warp| *warp == Warp::None) {
+        if config.first_warp().is_some() {
+            config.stability = Stability::tight();
+        }
+        return Ok(());
+    }
+    let typed = format!("warp {text}");
+    set_warps(config, given, warps, &typed)
+}
+
+fn set_warps(config: &mut ShadowConfig, given: &Given<'_>, warps: Vec<Warp>, typed: &str) -> Result<(), Wrong> {
+    match given.value("stabilize") {
+        Some(stability) if stability.trim() != "none" => refuse(format!(
+            "{typed} and stabilize {stability} exclude each other: a warped map follows the camera; \
+             leave one of them away"
+        )),
+        _ => {
+            config.stability = Stability::Tight { warps };
+            Ok(())
+        }
+    }
+}
+
+pub(super) fn tsm_focus(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
+    let value = number(text)?;
+    let mut is_used = false;
+    if let Stability::Tight { warps } = &mut config.stability {
+        for warp in warps {
+            if let Warp::Tsm { focus } = warp {
+                (*focus, is_used) = (value, true);
+            }
+        }
+    }
+    if is_used { Ok(()) } else { refuse("belongs to warp tsm, and no map has it; leave it away") }
+}
+
+pub(super) fn filter_width(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
+    let value = number(text)?;
+    let filter = config.filter.word();
+    match config.filter.width_mut() {
+        Some(width) => {
+            *width = Some(value);
+            Ok(())
+        }
+        None => refuse(format!(
+            "filter {filter} has no width to choose; leave it away, or use pcf3, pcf5, pcf7, disc, esm, vsm, evsm2, \
+             evsm4 or msm"
+        )),
+    }
+}
+
+pub(super) fn sun_angle(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
+    let value = number(text)?;
+    match &mut config.filter {
+        Filter::Pcss { sun_degrees, .. } => {
+            *sun_degrees = value;
+            Ok(())
+        }
+        other => refuse(format!("belongs to filter pcss, but the filter is {}; leave one of them away", other.word())),
+    }
+}
+
+pub(super) fn rotate_kernel(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
+    let on = switch(text)?;
+    match &mut config.filter {
+        Filter::Disc { rotated, .. } | Filter::Pcss { rotated, .. } => {
+            *rotated = on;
+            Ok(())
+        }
+        other => {
+            refuse(format!("belongs to filters disc and pcss, but the filter is {}; leave one away", other.word()))
+        }
+    }
+}
+
+pub(super) fn moments<'a>(config: &'a mut ShadowConfig, key: &str) -> Result<&'a mut Moments, Wrong> {
+    match &mut config.filter {
+        Filter::Moments(moments) => Ok(moments),
+        other => {
+            let filter = other.word();
+            refuse(format!(
+                "{key} belongs to filters esm, vsm, evsm2, evsm4 and msm, but the filter is {filter}; leave one of them away"
+            ))
+        }
+    }
+}
+
+pub(super) fn transition(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
+    known("transition", text)?;
+    let before = config.transition.share();
+    let share = if before > 0.0 { before } else { USUAL_BLEND };
+    config.transition = match text {
+        "blend" => Transition::Blend { share },
+        "dither" => Transition::Dither { share },
+        _ => Transition::Hard,
+    };
+    Ok(())
+}
+
+pub(super) fn blend(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
+    let share = number(text)?;
+    if !(0.0..=1.0).contains(&share) {
+        return refuse(format!("{share} is not in 0..=1"));
+    }
+    config.transition = match config.transition {
+        // Borders that were asked to be hard have no band, however wide.
+        _ if share == 0.0 || given.value("transition") == Some("hard") => Transition::Hard,
+        Transition::Dither { .. } => Transition::Dither { share },
+        Transition::Blend { .. } | Transition::Hard => Transition::Blend { share },
+    };
+    Ok(())
+}
+
+pub(super) fn colour(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
+    match numbers(text)?[..] {
+        [red, green, blue] => config.look.colour = [red, green, blue],
+        ref other => return refuse(format!("{} numbers; give red, green and blue from 0 to 1", other.len())),
+    }
+    Ok(())
+}
+
+/// The layout of `generation` and `storage` together; either may be `auto`.
+pub(super) fn layout(config: &mut ShadowConfig, given: &Given<'_>) -> Result<(), Wrong> {
+    let generation = given.value("generation").map(settings::generation).transpose()?.flatten();
+    let storage = given.value("storage").map(settings::storage).transpose()?.flatten();
+    let (generation, storage) = match (generation, storage) {
+        (None, None) => return Ok(()),
+        (None, Some(Storage::Reused)) => (Generation::Multipass, Storage::Reused),
+        (None, Some(storage)) => (Generation::PerSplit, storage),
+        (Some(generation), None) => (generation, usual_storage(generation)),
+        (Some(generation), Some(storage)) => (generation, storage),
+    };
+    match Layout::of(generation, storage) {
+        Some(layout) => {
+            config.layout = layout;
+            Ok(())
+        }
+        None => refuse(format!(
+            "generation {generation} and storage {storage} exclude each other: multipass goes with reused; per-split \
+             with array, atlas, separate or cube; layered with array or cube; instanced with atlas; mixed with array; \
+             leave one of them to auto"
+        )),
+    }
+}
+
+fn usual_storage(generation: Generation) -> Storage {
+    match generation {
+        Generation::Multipass => Storage::Reused,
+        Generation::Instanced => Storage::Atlas,
+        Generation::PerSplit | Generation::Layered | Generation::Mixed => Storage::Array,
+    }
+}

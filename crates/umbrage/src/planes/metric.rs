@@ -1,0 +1,29 @@
+//! What the planes between splits measure: view depth, or distance from the eye.
+
+use crate::config::SplitMetric;
+use crate::{Error, Projection, Result, View};
+
+impl SplitMetric {
+    /// View depth over what planes measure, at least, of anything that the view shows: for distances the cosine of the angle
+    /// between the line of sight and the farthest corner, which need not be opposite to another in an off-axis view.
+    pub(crate) fn least_depth_share(self, view: &View) -> f64 {
+        let f = view.frustum();
+        match self {
+            Self::ViewDepth => 1.0,
+            Self::Distance => 1.0 / f.left.abs().max(f.right.abs()).hypot(f.bottom.abs().max(f.top.abs())).hypot(1.0),
+        }
+    }
+
+    /// Distances need an eye.
+    pub(crate) fn check_view(self, view: &View) -> Result<()> {
+        if self == Self::Distance && view.frustum().projection == Projection::Orthographic {
+            return Err(Error::CameraConflict {
+                setting: "bands",
+                reason: "an orthographic camera has no eye to measure distances from; \
+                         use bands planar, or a perspective camera"
+                    .to_owned(),
+            });
+        }
+        Ok(())
+    }
+}
