@@ -49,8 +49,8 @@ pub use glam;
 
 pub use bias::{Bias, STEEPEST};
 pub use bounds::Aabb;
-pub use casters::{Caster, CasterHandle, CasterSet, Layers, Motion, Visited};
 pub use camera::{DepthConvention, Frustum, Matrix, Projection, View};
+pub use casters::{Caster, CasterHandle, CasterSet, Layers, Motion, Visited};
 pub use config::ShadowConfig;
 pub use coverage::PlanCoverage;
 pub use error::{Error, Result};

@@ -33,10 +33,10 @@ pub struct ShadowPlan {
     pub selection: Selection,
     /// With [`Selection::Map`]: share of a map's half edge over which it blends into the next that contains the point.
     pub blend: f64,
-    /// Indices into the planner's caster list, split after split; see [`ShadowPlan::casters`].
+    /// Indices into the planner's caster list, or keys of its set, split after split; see [`ShadowPlan::casters`].
     pub caster_indices: Vec<u32>,
-    /// For each caster the first and the last split it is drawn in, `None` if it is drawn in none. The range is a bound:
-    /// the lists are exact.
+    /// For each caster of a list the first and the last split it is drawn in, `None` if it is drawn in none. The range is a
+    /// bound: the lists are exact. Empty for a set, whose keys may be any numbers: see [`ShadowPlan::splits_of`].
     pub split_range: Vec<Option<(u8, u8)>>,
     /// What the lists are complete for; see [`ShadowPlan::casts_into`] and [`ShadowPlan::covering_split`].
     pub coverage: PlanCoverage,
@@ -60,6 +60,18 @@ impl ShadowPlan {
         self.split_range.clear();
         self.splits.clear();
         self.coverage.clear();
+    }
+
+    /// Takes over another plan that was made without receiver clusters. Buffers are kept.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.splits.clone_from(&other.splits);
+        self.planes.clone_from(&other.planes);
+        self.caster_indices.clone_from(&other.caster_indices);
+        self.split_range.clone_from(&other.split_range);
+        self.coverage.copy_from(&other.coverage);
+        (self.view_depth_plane, self.radial_eye) = (other.view_depth_plane, other.radial_eye);
+        (self.light_direction, self.light) = (other.light_direction, other.light);
+        (self.fade_begin, self.selection, self.blend) = (other.fade_begin, other.selection, other.blend);
     }
 
     /// Adds a split with those of the gathered casters that stand at `places`.
@@ -138,7 +150,14 @@ impl ShadowPlan {
         .map(|(i, _)| i)
     }
 
-    /// The casters of split `index`, as indices into the list given to the planner.
+    /// The splits that a caster, by its index or key, is drawn in: bit `i` stands for split `i`. 0: none.
+    #[must_use]
+    pub fn splits_of(&self, caster: u32) -> u64 {
+        let is_in = |&split: &usize| self.casters(split).binary_search(&caster).is_ok();
+        (0..self.splits.len()).filter(is_in).fold(0, |splits, split| splits | 1 << split)
+    }
+
+    /// The casters of split `index`, rising: indices into the list given to the planner, or keys of its set.
     #[must_use]
     pub fn casters(&self, index: usize) -> &[u32] {
         &self.caster_indices[self.splits[index].casters.clone()]

@@ -9,8 +9,8 @@ mod slots;
 pub(crate) mod tree;
 mod view;
 
-pub(crate) use kind::Role;
 pub use kind::Layers;
+pub(crate) use kind::Role;
 pub use set::{Caster, CasterSet, Motion};
 pub use slots::CasterHandle;
 pub use tree::Visited;

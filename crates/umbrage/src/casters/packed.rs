@@ -35,8 +35,8 @@ pub(super) const RUN: usize = 16_384;
 pub(super) fn on_lattice(bounds: Aabb) -> Option<Aabb> {
     let is_flat = |bounds: Aabb| Placed::from(bounds).is_flat();
     let kept = Aabb::new((bounds.min / STEP).floor() * STEP, (bounds.max / STEP).ceil() * STEP);
-    let is_small = (kept.max - kept.min).max_element() <= LONGEST
-        && kept.min.abs().max(kept.max.abs()).max_element() <= FARTHEST;
+    let is_small =
+        (kept.max - kept.min).max_element() <= LONGEST && kept.min.abs().max(kept.max.abs()).max_element() <= FARTHEST;
     (is_small && !is_flat(bounds) && !is_flat(kept)).then_some(kept)
 }
 
@@ -58,20 +58,8 @@ struct Boxes {
     high: [[u8; WIDE]; 6],
 }
 
-/// What is so of a whole leaf.
-#[derive(Clone, Copy, Debug)]
-struct Leaf {
-    /// In steps of [`ORIGIN_STEP`].
-    origin: [i32; 3],
-    /// The lanes that hold a caster.
-    live: u16,
-}
-
-impl Leaf {
-    fn origin(&self) -> DVec3 {
-        DVec3::from(self.origin.map(f64::from)) * ORIGIN_STEP
-    }
-}
+/// Kinds of a run, at most: a byte names one.
+const MOST_KINDS: usize = 256;
 
 /// Sixteen nodes.
 #[derive(Clone, Copy, Debug)]
@@ -115,9 +103,14 @@ fn rounded_down(value: f64) -> f32 {
 #[derive(Clone, Debug)]
 pub(super) struct Run {
     boxes: Vec<Boxes>,
-    leaves: Vec<Leaf>,
+    /// Origins of leaves, in steps of [`ORIGIN_STEP`].
+    origins: Vec<[i32; 3]>,
+    /// For each leaf the lanes that hold a caster.
+    live_lanes: Vec<u16>,
     keys: Vec<[u32; WIDE]>,
-    kinds: Vec<[u16; WIDE]>,
+    kinds: Vec<[u8; WIDE]>,
+    /// The numbers of the run's kinds.
+    palette: Vec<u16>,
     levels: Vec<Vec<Nodes>>,
     /// The sum of the three largest coordinates, at most, metres.
     farthest: f64,
@@ -127,13 +120,15 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// A run of casters in the order of their codes. Says for each its place. `None` if they lie so far apart that there is not
-    /// room for all: half as many have it.
+    /// A run of casters in the order of their codes. Says for each its place. `None` if they lie so far apart, or are of so many
+    /// kinds, that there is not room for all: half as many have it.
     pub fn new(casters: &[Packing], kinds: &Kinds) -> Option<(Self, Vec<u32>)> {
         let leaves = casters.len().div_ceil(WIDE);
         let mut run = Self {
             boxes: Vec::with_capacity(leaves),
-            leaves: Vec::with_capacity(leaves),
+            origins: Vec::with_capacity(leaves),
+            live_lanes: Vec::with_capacity(leaves),
+            palette: Vec::new(),
             keys: Vec::with_capacity(leaves),
             kinds: Vec::with_capacity(leaves),
             levels: Vec::new(),
@@ -150,11 +145,11 @@ impl Run {
                 bounds = bounds.union(casters[end].bounds);
                 end += 1;
             }
-            if run.leaves.len() * WIDE >= MOST_LANES {
+            let leaf = run.boxes.len();
+            if leaf * WIDE >= MOST_LANES || !run.add_leaf(bounds, &casters[begin..end]) {
                 return None;
             }
-            places.extend((0..end - begin).map(|lane| (run.leaves.len() * WIDE + lane) as u32));
-            run.add_leaf(bounds, &casters[begin..end]);
+            places.extend((0..end - begin).map(|lane| (leaf * WIDE + lane) as u32));
             begin = end;
         }
         run.shrink();
@@ -162,26 +157,45 @@ impl Run {
         Some((run, places))
     }
 
-    fn add_leaf(&mut self, bounds: Aabb, casters: &[Packing]) {
+    /// Appends a leaf, unless its casters are of too many kinds.
+    fn add_leaf(&mut self, bounds: Aabb, casters: &[Packing]) -> bool {
         // Wherever a leaf's casters move, they stay within its span.
         self.farthest = self.farthest.max(bounds.min.abs().element_sum() + 4.0 * SPAN);
         let origin = (bounds.min / ORIGIN_STEP).floor().to_array().map(|at| at as i32);
-        let live = u16::MAX >> (WIDE - casters.len());
-        self.leaves.push(Leaf { origin, live });
+        self.live_lanes.push(u16::MAX >> (WIDE - casters.len()));
+        self.origins.push(origin);
         self.boxes.push(Boxes { low: [[0; WIDE]; 6], high: [[0; WIDE]; 6] });
         let (mut keys, mut kinds) = ([0; WIDE], [0; WIDE]);
-        let leaf = self.leaves.len() - 1;
+        let leaf = self.boxes.len() - 1;
         for (lane, caster) in casters.iter().enumerate() {
-            (keys[lane], kinds[lane]) = (caster.key, caster.kind);
+            let number = self.palette.iter().position(|&kind| kind == caster.kind).unwrap_or(self.palette.len());
+            if number == MOST_KINDS {
+                return false;
+            }
+            if number == self.palette.len() {
+                self.palette.push(caster.kind);
+            }
+            (keys[lane], kinds[lane]) = (caster.key, number as u8);
             self.write(leaf, lane, caster.bounds);
         }
         self.keys.push(keys);
         self.kinds.push(kinds);
+        true
+    }
+
+    fn origin(&self, leaf: usize) -> DVec3 {
+        DVec3::from(self.origins[leaf].map(f64::from)) * ORIGIN_STEP
+    }
+
+    /// The number of a caster's kind.
+    fn kind(&self, leaf: usize, lane: usize) -> u16 {
+        self.palette[usize::from(self.kinds[leaf][lane])]
     }
 
     fn shrink(&mut self) {
         self.boxes.shrink_to_fit();
-        self.leaves.shrink_to_fit();
+        self.origins.shrink_to_fit();
+        self.live_lanes.shrink_to_fit();
         self.keys.shrink_to_fit();
         self.kinds.shrink_to_fit();
     }
@@ -189,10 +203,10 @@ impl Run {
     /// Makes the nodes fit their boxes.
     fn refit(&mut self, kinds: &Kinds) {
         self.levels.clear();
-        let mut nodes = vec![NO_NODES; self.leaves.len().div_ceil(WIDE)];
-        for leaf in 0..self.leaves.len() {
-            for lane in lanes(self.leaves[leaf].live) {
-                let layers = kinds.get(self.kinds[leaf][lane]).layers.bits();
+        let mut nodes = vec![NO_NODES; self.boxes.len().div_ceil(WIDE)];
+        for leaf in 0..self.boxes.len() {
+            for lane in lanes(self.live_lanes[leaf]) {
+                let layers = kinds.get(self.kind(leaf, lane)).layers.bits();
                 nodes[leaf / WIDE].include(leaf % WIDE, self.read(leaf, lane), layers);
             }
         }
@@ -215,7 +229,7 @@ impl Run {
     /// The key and kind of a caster.
     pub fn about(&self, place: u32) -> (u32, u16) {
         let (leaf, lane) = split(place);
-        (self.keys[leaf][lane], self.kinds[leaf][lane])
+        (self.keys[leaf][lane], self.kind(leaf, lane))
     }
 
     /// The box of a caster.
@@ -227,14 +241,14 @@ impl Run {
     /// Removes a caster.
     pub fn remove(&mut self, place: u32) {
         let (leaf, lane) = split(place);
-        self.leaves[leaf].live &= !(1 << lane);
+        self.live_lanes[leaf] &= !(1 << lane);
         self.live -= 1;
     }
 
     /// Changes the box of a caster, if its leaf reaches there: nodes grow around it.
     pub fn set(&mut self, place: u32, bounds: Aabb, layers: Layers) -> bool {
         let (leaf, lane) = split(place);
-        let origin = self.leaves[leaf].origin();
+        let origin = self.origin(leaf);
         if !(bounds.min.cmpge(origin).all() && (bounds.max - origin).max_element() < SPAN) {
             return false;
         }
@@ -249,12 +263,12 @@ impl Run {
 
     /// All casters with their places.
     pub fn places(&self) -> impl Iterator<Item = u32> + '_ {
-        let of = |(leaf, about): (usize, &Leaf)| lanes(about.live).map(move |lane| (WIDE * leaf + lane) as u32);
-        self.leaves.iter().enumerate().flat_map(of)
+        let of = |(leaf, live): (usize, &u16)| lanes(*live).map(move |lane| (WIDE * leaf + lane) as u32);
+        self.live_lanes.iter().enumerate().flat_map(of)
     }
 
     fn write(&mut self, leaf: usize, lane: usize, bounds: Aabb) {
-        let origin = self.leaves[leaf].origin();
+        let origin = self.origin(leaf);
         let corners = [(bounds.min - origin) / STEP, (bounds.max - origin) / STEP];
         for (k, corner) in corners.into_iter().enumerate() {
             for axis in 0..3 {
@@ -268,16 +282,18 @@ impl Run {
     fn read(&self, leaf: usize, lane: usize) -> Aabb {
         let boxes = &self.boxes[leaf];
         let steps = |k: usize| f64::from(u32::from(boxes.low[k][lane]) | u32::from(boxes.high[k][lane]) << 16);
-        let origin = self.leaves[leaf].origin();
+        let origin = self.origin(leaf);
         let corner = |k: usize| origin + DVec3::new(steps(k), steps(k + 1), steps(k + 2)) * STEP;
         Aabb::new(corner(0), corner(3))
     }
 
     pub fn bytes(&self) -> usize {
         self.boxes.capacity() * size_of::<Boxes>()
-            + self.leaves.capacity() * size_of::<Leaf>()
+            + self.origins.capacity() * size_of::<[i32; 3]>()
+            + self.live_lanes.capacity() * size_of::<u16>()
             + self.keys.capacity() * size_of::<[u32; WIDE]>()
-            + self.kinds.capacity() * size_of::<[u16; WIDE]>()
+            + self.kinds.capacity() * size_of::<[u8; WIDE]>()
+            + self.palette.capacity() * size_of::<u16>()
             + self.levels.iter().map(|level| level.capacity() * size_of::<Nodes>()).sum::<usize>()
             + self.levels.capacity() * size_of::<Vec<Nodes>>()
     }
@@ -311,10 +327,11 @@ pub(super) struct AskedRun<'a> {
 impl AskedRun<'_> {
     /// The lanes of a leaf that are asked for.
     fn asked_lanes(&self, leaf: usize) -> u16 {
-        let live = self.run.leaves[leaf].live;
+        let live = self.run.live_lanes[leaf];
         let Some(kinds) = self.kinds else { return live };
-        let numbers = &self.run.kinds[leaf];
-        lanes(live).filter(|&lane| self.ask.is_for(kinds.get(numbers[lane]))).fold(0, |mask, lane| mask | 1 << lane)
+        lanes(live)
+            .filter(|&lane| self.ask.is_for(kinds.get(self.run.kind(leaf, lane))))
+            .fold(0, |mask, lane| mask | 1 << lane)
     }
 }
 
@@ -391,14 +408,15 @@ impl Run {
                 ends[lane] = steps as i32 as f32 * STEP as f32;
             }
         }
-        let origin = self.leaves[leaf].origin();
+        let origin = self.origin(leaf);
         let (mut out, mut unsure) = ([false; WIDE], [false; WIDE]);
         for plane in ask.planes.iter().enumerate().filter(|(bit, _)| planes >> bit & 1 == 1).map(|(_, plane)| plane) {
             let bound = plane.offset + ask.margin - plane.normal.dot(origin);
             let nearest = |axis: usize| &ends[if plane.normal[axis] >= 0.0 { axis } else { axis + 3 }];
             let ([x, y, z], [nx, ny, nz]) = ([nearest(0), nearest(1), nearest(2)], plane.normal.as_vec3().to_array());
             // What f32 can be off by, and f64 for the origin.
-            let room = (1e-6 * (3.0 * SPAN + bound.abs()) + 1e-12 * (plane.offset.abs() + origin.abs().element_sum())) as f32;
+            let room =
+                (1e-6 * (3.0 * SPAN + bound.abs()) + 1e-12 * (plane.offset.abs() + origin.abs().element_sum())) as f32;
             let bound = bound as f32;
             for lane in 0..WIDE {
                 let at = nx * x[lane] + ny * y[lane] + nz * z[lane] - bound;

@@ -471,9 +471,22 @@ impl CasterSet {
         }
     }
 
+    /// Keeps the casters of a run one by one, for good.
+    fn keep_loose(&mut self, run: &Run, slots: &[(u32, u32)]) {
+        for &(slot, lane) in slots {
+            let (key, kind) = run.about(lane);
+            let bounds = run.bounds(lane);
+            let at = self.loose.push(Entry { bounds, code: 0, key, slot, kind, moves: false, is_due: false });
+            self.slots.set(slot, Place::Loose(at));
+        }
+    }
+
     fn add_run(&mut self, run: Run, slots: Vec<(u32, u32)>) {
         let number = self.runs.iter().position(Option::is_none).unwrap_or(self.runs.len());
-        debug_assert!(number < MOST_RUNS, "as many casters as there are handles need no more runs");
+        if number == MOST_RUNS {
+            // Only millions of casters that lie hundreds of metres apart need so many.
+            return self.keep_loose(&run, &slots);
+        }
         for (slot, lane) in slots {
             self.slots.set(slot, Place::Packed(PackedPlace { run: number as u32, lane }));
         }

@@ -182,10 +182,10 @@ mod tests {
     #[test]
     fn places_are_read_as_they_were_written() {
         let mut slots = Slots::default();
-        for place in [Place::Loose(0), Place::Loose(LOOSE - 2)]
-            .into_iter()
-            .chain([(0, 0), (MOST_RUNS as u32 - 1, MOST_LANES as u32 - 1)].map(|(run, lane)| Place::Packed(PackedPlace { run, lane })))
-        {
+        for place in [Place::Loose(0), Place::Loose(LOOSE - 2)].into_iter().chain(
+            [(0, 0), (MOST_RUNS as u32 - 1, MOST_LANES as u32 - 1)]
+                .map(|(run, lane)| Place::Packed(PackedPlace { run, lane })),
+        ) {
             let handle = slots.insert(place).expect("room");
             assert_eq!(slots.get(handle.index), place);
         }

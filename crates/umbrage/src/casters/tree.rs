@@ -258,7 +258,8 @@ impl BoxTree {
         self.boxes.clear();
         self.boxes.extend(boxes);
         self.flats.clear();
-        let flats = |leaf: &[Placed]| (0..).zip(leaf).fold(0, |flats, (lane, it)| flats | u16::from(it.is_flat()) << lane);
+        let flats =
+            |leaf: &[Placed]| (0..).zip(leaf).fold(0, |flats, (lane, it)| flats | u16::from(it.is_flat()) << lane);
         self.flats.extend(self.boxes.chunks(WIDE).map(flats));
         self.refit();
     }

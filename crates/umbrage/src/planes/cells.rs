@@ -30,11 +30,20 @@ pub(crate) struct Cell {
     pub casters: Region,
     /// Expected length of shadow edges in the light's plane, in [`Cells::unit`]: a sum that does not depend on its order.
     edges: u64,
+    /// [`Region::least_direction`] of the receivers, once they are all there.
+    least_direction: usize,
 }
 
 impl Cell {
     fn new(slice: Slice) -> Self {
-        Self { slice, receivers: Region::EMPTY, bounds: Aabb::EMPTY, casters: Region::EMPTY, edges: 0 }
+        Self {
+            slice,
+            receivers: Region::EMPTY,
+            bounds: Aabb::EMPTY,
+            casters: Region::EMPTY,
+            edges: 0,
+            least_direction: 0,
+        }
     }
 
     /// Takes a point of a box.
@@ -90,6 +99,7 @@ impl Cells {
         self.cells.clear();
         self.cells.extend(depths.windows(2).map(|pair| Cell::new(Slice::new(sight.view, pair[0], pair[1]))));
         self.gather_receivers(sight, depths);
+        self.cells.iter_mut().for_each(|cell| cell.least_direction = cell.receivers.least_direction());
         self.gather_casters(sight, depths);
     }
 
@@ -97,24 +107,36 @@ impl Cells {
         let &Sight { view, fan, .. } = sight;
         let forward = view.forward();
         let whole = Slice::new(view, depths[0], depths[depths.len() - 1]);
-        for &Placed { center, half } in &sight.receivers.boxes {
-            let (depth, reach) = (view.view_depth(center), forward.abs().dot(half));
-            let lies = whole.classify(center, half);
-            if lies == Lies::Outside {
+        let extent = |placed: &Placed| (view.view_depth(placed.center), forward.abs().dot(placed.half));
+        let changes_some = |cells: &[Cell], placed: &Placed| {
+            let (depth, reach) = extent(placed);
+            let bounds = placed.bounds();
+            cells_between(depths, depth - reach, depth + reach).any(|i| !cells[i].holds(fan, &bounds, placed))
+        };
+        for group in &sight.receivers.groups {
+            if !changes_some(&self.cells, &group.bounds) {
                 continue;
             }
-            let (placed, bounds) = (Placed { center, half }, Aabb::new(center - half, center + half));
-            for i in cells_between(depths, depth - reach, depth + reach) {
-                let cell = &mut self.cells[i];
-                if cell.holds(fan, &bounds, &placed) {
+            for placed in &sight.receivers.boxes[group.range()] {
+                let &Placed { center, half } = placed;
+                let (depth, reach) = extent(placed);
+                let lies = whole.classify(center, half);
+                if lies == Lies::Outside {
                     continue;
                 }
-                let slice = cell.slice;
-                let include = |point| cell.include(fan, point, &bounds);
-                match lies {
-                    Lies::Inside => between_depths(view, &bounds, depths[i], depths[i + 1], include),
-                    _ => {
-                        slice.clip_box(&bounds, include);
+                let bounds = placed.bounds();
+                for i in cells_between(depths, depth - reach, depth + reach) {
+                    let cell = &mut self.cells[i];
+                    if cell.holds(fan, &bounds, placed) {
+                        continue;
+                    }
+                    let slice = cell.slice;
+                    let include = |point| cell.include(fan, point, &bounds);
+                    match lies {
+                        Lies::Inside => between_depths(view, &bounds, depths[i], depths[i + 1], include),
+                        _ => {
+                            slice.clip_box(&bounds, include);
+                        }
                     }
                 }
             }
@@ -142,7 +164,7 @@ impl Cells {
                 let shaded = !cell.receivers.is_empty()
                     && cell.can_be_shadowed_by(&bounds)
                     && !lies_below(center, half, &cell.bounds, direction, 0.0);
-                if shaded { share(&bounds, &cell.receivers, cell.receivers.least_direction()) } else { -1.0 }
+                if shaded { share(&bounds, &cell.receivers, cell.least_direction) } else { -1.0 }
             }));
             // A shadow lies in one place: where boxes are high, several cells seem to hold the same piece of it.
             let held: f64 = self.shares.iter().map(|share| share.max(0.0)).sum();

@@ -22,7 +22,13 @@ const MOST_LENGTHS: f64 = 16.0;
 
 impl WorldDepths {
     /// From the first caster to the last receiver: of all, or of those near the eye where the world is much larger.
-    pub fn measure(frame: &Frame<'_>, sun: &Sun<'_>, scope: &Scope, layout: &Layout, held: &mut HeldDepths) -> Self {
+    pub fn measure(
+        frame: &Frame<'_>,
+        sun: &Sun<'_>,
+        scope: &Scope<'_>,
+        layout: &Layout,
+        held: &mut HeldDepths,
+    ) -> Self {
         if !frame.stands_still() || frame.depth_clamp {
             return Self(None);
         }
@@ -37,7 +43,7 @@ impl WorldDepths {
             return Self(Some((near, far)));
         }
         // Of a receiver nothing is asked that lies farther from the eye than the range goes.
-        let end = |r: &Placed| shaft.passage(r).filter(|_| scope.matters(frame, r)).map(|it| it.1);
+        let end = |r: &Placed| shaft.passage(r).filter(|_| scope.matters(r)).map(|it| it.1);
         let far = frame.receivers.most(|r| end(r).unwrap_or(f64::NEG_INFINITY));
         let far = far.min(shaft.depth(0.0) + shaft.half);
         let begin = |c: &Placed| shaft.passage(c).map(|it| it.0).filter(|begin| *begin < far);

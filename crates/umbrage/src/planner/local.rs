@@ -272,8 +272,7 @@ fn shadowed_range(frame: &Frame<'_>, light: &Light, position: DVec3) -> (f64, f6
     }
     let forward = view.forward();
     let (camera_near, camera_far) = (view.frustum().near, view.frustum().far);
-    let is_reached =
-        |r: &Placed| position.clamp(r.center - r.half, r.center + r.half).distance(position) <= range;
+    let is_reached = |r: &Placed| position.clamp(r.center - r.half, r.center + r.half).distance(position) <= range;
     let deepest = receivers.most(|r| match is_reached(r) {
         true => view.view_depth(r.center) + forward.abs().dot(r.half),
         false => f64::NEG_INFINITY,

@@ -12,6 +12,7 @@ mod fit;
 mod frame;
 mod in_view;
 mod inputs;
+mod kept;
 mod layout;
 mod local;
 mod options;
@@ -30,6 +31,7 @@ use crate::{Light, Result, ShadowConfig, ShadowPlan, View};
 use directional::SunBuffers;
 use frame::Frame;
 pub use inputs::{Boxes, PlanInputs};
+use kept::Kept;
 use local::LocalBuffers;
 pub use options::PlannerOptions;
 
@@ -54,6 +56,7 @@ struct Buffers {
     receivers: BoxTree,
     /// What the last plan looked at.
     visited: Visited,
+    kept: Kept,
     sun: SunBuffers,
     local: LocalBuffers,
     held: Held,
@@ -93,6 +96,7 @@ impl Planner {
         if !is_alike {
             self.held = Held::default();
         }
+        self.buffers.kept.clear();
         (self.config, self.options) = (config.clone(), options);
         Ok(())
     }
@@ -115,7 +119,8 @@ impl Planner {
         &self.held
     }
 
-    /// What the last plan looked at of its casters and receivers: a measure of its cost that does not depend on the machine.
+    /// What the last plan looked at of its casters and receivers: a measure of its cost that does not depend on the machine. Nothing
+    /// if view, light and sets were those of the plan before, and what is held as well.
     #[must_use]
     pub fn visited(&self) -> Visited {
         self.buffers.visited
@@ -198,12 +203,17 @@ fn plan_with(
     plan: &mut ShadowPlan,
 ) -> Result<()> {
     inputs.check()?;
+    let known = kept::Inputs::of(inputs);
+    if buffers.kept.serve(known.as_ref(), held, plan) {
+        buffers.visited = Visited::default();
+        return Ok(());
+    }
     inputs.casters.place("casters", &mut buffers.casters)?;
     inputs.receivers.place("receivers", &mut buffers.receivers)?;
     plan.begin(inputs.view, inputs.light);
     plan.split_range.resize(inputs.casters.listed(), None);
     // A frame that is refused leaves what is held as it was.
-    let Buffers { casters, receivers, visited, sun, local, held: next } = buffers;
+    let Buffers { casters, receivers, visited, kept, sun, local, held: next } = buffers;
     let (eye, counter) = (inputs.view.eye(), Counter::default());
     let casters = inputs.casters.crowd(casters, (inputs.layers, Role::Caster), eye, &counter);
     let receivers = inputs.receivers.crowd(receivers, (inputs.layers, Role::Receiver), eye, &counter);
@@ -227,6 +237,7 @@ fn plan_with(
         plan.coverage.mask(clusters);
     }
     *visited = counter.get();
+    kept.keep(known, held, next, plan);
     std::mem::swap(held, next);
     Ok(())
 }

@@ -32,44 +32,55 @@ const NEAREST: f64 = 32.0;
 /// Casters without thickness whose shadows are looked for receiver by receiver; more are taken for the worst.
 const MOST_SHEETS: usize = 8;
 
-/// What of the scene matters to a frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Scope {
+/// What of the scene matters to a frame. Measured as far as it is asked for.
+#[derive(Clone, Copy)]
+pub(super) struct Scope<'a> {
+    frame: &'a Frame<'a>,
+    direction: DVec3,
     /// Metres from the eye beyond which no receiver matters.
-    pub distance: f64,
-    /// View depth of the deepest receiver of all.
-    pub deepest_receiver: f64,
-    /// That of the deepest receiver that matters, or of the deepest shadow with [`SLACK`], whichever is less.
+    distance: f64,
+}
+
+/// How far what matters goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Extent {
+    /// View depth of the deepest receiver that matters, or of the deepest shadow with [`SLACK`], whichever is less.
     pub deepest: f64,
-    /// As `deepest`, by distance from the eye.
+    /// The same by distance from the eye.
     pub farthest: f64,
     /// Metres from the eye to the box around all receivers.
     pub nearest: f64,
 }
 
-impl Scope {
-    pub fn new(frame: &Frame<'_>, sun: &Sun<'_>) -> Self {
-        let distance = visible_distance(frame);
-        let eye = frame.view.eye();
-        let matters = |receiver: &Placed| receiver.distance_to(eye) <= distance;
+impl<'a> Scope<'a> {
+    pub fn new(frame: &'a Frame<'a>, sun: &Sun<'_>) -> Self {
+        Self { frame, direction: sun.direction, distance: visible_distance(frame) }
+    }
+
+    /// Whether a receiver, or any in a box, matters.
+    pub fn matters(&self, receiver: &Placed) -> bool {
+        receiver.distance_to(self.frame.view.eye()) <= self.distance
+    }
+
+    /// View depth of the deepest receiver of all.
+    pub fn deepest_receiver(&self) -> f64 {
+        self.frame.receivers.most(|receiver| deepest(self.frame.view, receiver))
+    }
+
+    /// How far what matters goes.
+    pub fn extent(&self) -> Extent {
+        let &Self { frame, direction, distance } = self;
+        let matters = |receiver: &Placed| self.matters(receiver);
         let bounds = frame.receivers.bounds(matters);
         let all = Reach::most(frame.view, |of| frame.receivers.most(|r| if matters(r) { of(r) } else { NOTHING }));
-        let deepest_receiver = frame.receivers.most(|receiver| deepest(frame.view, receiver));
         let nearest = if bounds.is_empty() { 0.0 } else { Placed::from(bounds).distance_to(frame.view.eye()) };
-        let shadows = Shadows { frame, direction: sun.direction, distance }.reach(&bounds);
+        let shadows = Shadows { frame, direction, distance }.reach(&bounds);
         let (mut deepest, mut farthest) = (all.deepest, all.farthest);
         if shadows.farthest > 0.0 {
             let ahead = (SLACK * shadows.deepest).max(LOOKING_AWAY * shadows.farthest);
             (deepest, farthest) = (deepest.min(ahead), farthest.min(SLACK * shadows.farthest));
         }
-        Self { distance, deepest_receiver, deepest, farthest, nearest }
-    }
-}
-
-impl Scope {
-    /// Whether a receiver, or any in a box, matters.
-    pub fn matters(&self, frame: &Frame<'_>, receiver: &Placed) -> bool {
-        receiver.distance_to(frame.view.eye()) <= self.distance
+        Extent { deepest, farthest, nearest }
     }
 }
 
@@ -158,12 +169,16 @@ impl Shares<'_> {
     /// The class of the farthest receiver that is nearer than `within` metres.
     fn farthest_class(&self, within: f64) -> Option<usize> {
         let eye = self.frame.view.eye();
-        let is_there = |distance: f64| distance <= self.most && (distance < within);
+        let is_there = |distance: f64| distance <= self.most && distance < within;
+        let of = |distance: f64| class(distance) as f64;
         // A box holds points at most so far away, or at least so near.
-        let bound = |r: &Placed| if r.distance_to(eye) <= self.most { farthest(eye, r) } else { NOTHING };
-        let measure = |r: &Placed| Some(r.distance_to(eye)).filter(|&it| is_there(it)).unwrap_or(NOTHING);
-        let distance = self.frame.receivers.most_within(bound, measure);
-        (distance > NOTHING).then(|| class(distance))
+        let bound = |r: &Placed| match is_there(r.distance_to(eye)) {
+            true => of(farthest(eye, r).min(self.most).min(within)),
+            false => NOTHING,
+        };
+        let measure = |r: &Placed| Some(r.distance_to(eye)).filter(|&it| is_there(it)).map_or(NOTHING, of);
+        let class = self.frame.receivers.most_within(bound, measure);
+        (class > NOTHING).then_some(class as usize)
     }
 
     /// Adds the shares of a class, up to what is enough.
@@ -214,14 +229,16 @@ impl Shadows<'_> {
         let Frame { view, casters, receivers, .. } = self.frame;
         let sheets = self.sheets(bounds);
         let is_sheet = |caster: &Placed| sheets.iter().flatten().any(|(_, sheet)| sheet == caster);
-        let is_void = |caster: &Placed| {
-            lies_below(caster.center, caster.half, bounds, self.direction, 0.0) || is_sheet(caster)
-        };
+        let is_void =
+            |caster: &Placed| lies_below(caster.center, caster.half, bounds, self.direction, 0.0) || is_sheet(caster);
         let shadow = |caster: &Placed, within: &Aabb, of: &dyn Fn(&Placed) -> f64| {
             self.shadow(caster, within).map_or(NOTHING, |shadow| of(&shadow))
         };
         reach = reach.union(Reach::most(view, |of| {
-            casters.most_within(|it| shadow(it, bounds, of), |it| if is_void(it) { NOTHING } else { shadow(it, bounds, of) })
+            casters.most_within(
+                |it| shadow(it, bounds, of),
+                |it| if is_void(it) { NOTHING } else { shadow(it, bounds, of) },
+            )
         }));
         // A sheet, such as a ground that something reaches below of, shades nothing of its own.
         for (_, sheet) in sheets.iter().flatten() {
