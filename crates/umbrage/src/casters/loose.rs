@@ -76,6 +76,12 @@ impl Loose {
         due
     }
 
+    /// Gives back memory that is not used.
+    pub fn shrink(&mut self) {
+        self.entries.shrink_to_fit();
+        self.tree.shrink();
+    }
+
     /// Fits the nodes once about every caster may have moved. Says whether casters have changed places.
     pub fn settle(&mut self) -> bool {
         if self.changes < self.entries.len().max(LEAST_CHANGES) {

@@ -335,6 +335,7 @@ impl CasterSet {
                 packing.push(entry(&self.caster(slot), self.about(slot).1, slot));
             }
         }
+        self.loose.shrink();
         self.runs.clear();
         self.pack_entries(&packing);
         self.revision += 1;

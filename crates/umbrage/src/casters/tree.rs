@@ -284,6 +284,14 @@ impl BoxTree {
         self.levels[..self.height.min(1)].iter().flatten().map(|node| node.half.element_sum()).sum()
     }
 
+    /// Gives back memory that is not used.
+    pub fn shrink(&mut self) {
+        self.boxes.shrink_to_fit();
+        self.flats.shrink_to_fit();
+        self.levels.truncate(self.height);
+        self.levels.iter_mut().for_each(Vec::shrink_to_fit);
+    }
+
     pub fn bytes(&self) -> usize {
         let nodes = self.levels.iter().map(Vec::capacity).sum::<usize>() + self.boxes.capacity();
         2 * self.flats.capacity() + nodes * size_of::<Placed>() + self.levels.capacity() * size_of::<Vec<Placed>>()
