@@ -161,7 +161,9 @@ pub enum Error {
         expected: &'static str,
     },
     /// A frame's casters or receivers come as lists beside a set, where nobody would look at them.
-    #[error("the inputs have {listed} boxes in lists beside a set of casters; insert them into the set, or leave it away")]
+    #[error(
+        "the inputs have {listed} boxes in lists beside a set of casters; insert them into the set, or leave it away"
+    )]
     SetAndLists {
         /// Casters and receivers in lists.
         listed: usize,

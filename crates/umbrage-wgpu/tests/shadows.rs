@@ -5,9 +5,7 @@ mod common;
 use common::{Gpu, PCF3, config, with};
 use glam::DVec3;
 use umbrage::config::{Kind, LightKind, Rebuilds, SETTINGS, Setting};
-use umbrage::{
-    Aabb, Caster, CasterSet, DirectionalLight, Frustum, Layers, Light, PointLight, Split, View,
-};
+use umbrage::{Aabb, Caster, CasterSet, DirectionalLight, Frustum, Layers, Light, PointLight, Split, View};
 use umbrage_wgpu::{CasterPipeline, Error, Inputs, LightMaps, ShadowFrame, Shadows};
 
 fn sun() -> Light {
@@ -384,7 +382,8 @@ fn a_set_is_drawn_as_its_lists() {
             let of_list = Inputs { casters: &casters, receivers: &receivers, ..Inputs::new(&view, &lights) };
             let of_set = by_set.prepare(&gpu.queue, &of_set).expect("a frame");
             let of_list = by_list.prepare(&gpu.queue, &of_list).expect("a frame");
-            let draws = |frame: ShadowFrame<'_>| frame.maps().map(|map| map.casters().collect()).collect::<Vec<Vec<_>>>();
+            let draws =
+                |frame: ShadowFrame<'_>| frame.maps().map(|map| map.casters().collect()).collect::<Vec<Vec<_>>>();
             assert_eq!(draws(of_set), draws(of_list), "{generation}, frame {frame}");
             assert!(draws(of_set).iter().any(|map| !map.is_empty()), "something is drawn");
             assert_eq!(of_set.plan(0).splits, of_list.plan(0).splits);

@@ -196,8 +196,7 @@ fn techniques() -> impl Strategy<Value = Technique> {
         Just(Stability::Exact),
         Just(Stability::Approximate { steps: ExtentSteps::default() }),
     ];
-    let range =
-        prop_oneof![2 => Just(Range::Camera), 1 => Just(Range::Visible), 1 => Just(Range::Metres { near: 0.5, far: 90.0 })];
+    let range = prop_oneof![2 => Just(Range::Camera), 1 => Just(Range::Visible), 1 => Just(Range::Metres { near: 0.5, far: 90.0 })];
     (1usize..=5, scheme, stability, range, any::<[bool; 3]>()).prop_map(
         |(m, scheme, stability, range, [is_dependent, by_map, depth_clamp])| {
             let has_warps = matches!(&stability, Stability::Tight { warps } if !warps.is_empty());
@@ -408,9 +407,9 @@ fn what_a_plan_looks_at_follows_from_what_is_in_view() {
         let visited = planner.visited();
         (visited.nodes + visited.boxes) as f64
     };
-    let (few, many) = (visited(20_000), visited(200_000));
-    assert!(many < 2.0 * few, "{few} nodes and boxes of 20,000, {many} of 200,000");
-    assert!(many < 50_000.0, "{many} nodes and boxes of 200,000");
+    let (few, many) = (visited(60_000), visited(240_000));
+    assert!(many < 1.5 * few, "{few} nodes and boxes of 60,000, {many} of 240,000");
+    assert!(many < 24_000.0, "{many} nodes and boxes of 240,000");
 }
 
 #[test]
@@ -420,7 +419,10 @@ fn a_box_that_is_none_is_named_and_harms_nobody() {
     let (before, revision) = (set.iter().collect::<Vec<_>>(), set.clone());
     let nan = Aabb::new(DVec3::splat(f64::NAN), DVec3::ONE);
     let error = set.set_bounds(handles[7], nan).expect_err("NaN");
-    assert!(matches!(error, Error::InvalidCaster { handle: Some(handle), key: 7, .. } if handle == handles[7]), "{error}");
+    assert!(
+        matches!(error, Error::InvalidCaster { handle: Some(handle), key: 7, .. } if handle == handles[7]),
+        "{error}"
+    );
     let text = error.to_string();
     assert!(text.contains(&handles[7].to_string()) && text.contains("key 7"), "{text}");
     for bad in [nan, Aabb::EMPTY, Aabb::new(DVec3::ZERO, DVec3::splat(1e13))] {

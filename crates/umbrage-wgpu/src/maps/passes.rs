@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use umbrage::{MAX_SPLITS, ShadowPlan};
 use umbrage::config::Generation;
+use umbrage::{MAX_SPLITS, ShadowPlan};
 
 use super::choose::Abilities;
 

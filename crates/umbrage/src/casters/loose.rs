@@ -1,8 +1,8 @@
 //! Casters that are kept one by one, as they were given: those that move, those that have just come, and boxes that the lattice of
 //! the packed ones does not suit. A small tree over them is refitted as they move.
 
+use super::curve::Curve;
 use super::kind::{Ask, Kinds};
-use super::morton::Curve;
 use super::tree::{Asked, BoxTree};
 use crate::Aabb;
 use crate::bounds::Placed;

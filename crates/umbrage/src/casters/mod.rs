@@ -1,8 +1,8 @@
 //! A kept set of casters: what a planner is given instead of lists where there are many.
 
+mod curve;
 mod kind;
 mod loose;
-mod morton;
 mod packed;
 mod set;
 mod slots;

@@ -2,9 +2,9 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::curve::Curve;
 use super::kind::{Kind, Kinds, Layers};
 use super::loose::{Entry, Loose};
-use super::morton::Curve;
 use super::packed::{Packing, RUN, Run, on_lattice};
 use super::slots::{CasterHandle, MOST_LANES, MOST_RUNS, PackedPlace, Place, Slots};
 use crate::{Aabb, Error, Result};

@@ -187,6 +187,7 @@ impl Shares<'_> {
         let (begin, end) = (2f64.powf(of as f64 - NEAREST), 2f64.powf(of as f64 + 1.0 - NEAREST));
         let begin = if of == 0 { 0.0 } else { begin * (1.0 - 1e-9) };
         let end = if of == CLASSES - 1 { f64::INFINITY } else { end * (1.0 + 1e-9) };
+        let end = end.min(self.most);
         let total = std::cell::Cell::new(*sum);
         let may_be = |r: &Placed| total.get() < LEAST_UNITS && r.distance_to(eye) <= end && farthest(eye, r) >= begin;
         self.frame.receivers.each(may_be, |_, receiver| {
