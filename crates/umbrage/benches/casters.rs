@@ -15,6 +15,9 @@ use umbrage::{
 /// Trees to the square kilometre.
 const DENSITY: f64 = 10_000.0;
 
+/// Trees.
+const COUNTS: [u32; 5] = [100, 1_000, 10_000, 100_000, 1_000_000];
+
 /// Views before the first comes again.
 const VIEWS: usize = 200;
 
@@ -128,7 +131,7 @@ fn set_against_list(criterion: &mut Criterion) {
     for (name, config) in configs() {
         let mut group = criterion.benchmark_group(format!("plan, {name}"));
         group.sample_size(10).warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2));
-        for count in [100, 1_000, 10_000, 100_000, 1_000_000] {
+        for count in COUNTS {
             let mut world = World::new(count, 800.0);
             let [mut by_set, mut by_list] = [(); 2].map(|()| Planner::new(&config).expect("valid"));
             let (mut pairs, mut nodes, mut boxes) = (0, 0, 0);
