@@ -118,7 +118,7 @@ impl<'a> Crowd<'a> {
                 tree::near(&loose.asked(asked_for, kinds, self.farthest), self.counter, ask, visit, end);
             }
         }
-        out.borrow_mut().rank(self.farthest);
+        out.borrow_mut().finish(self.farthest);
     }
 
     /// Gathers the boxes that pass a monotone test.
@@ -131,7 +131,7 @@ impl<'a> Crowd<'a> {
             }
         });
         out.end_group();
-        out.rank(self.farthest);
+        out.finish(self.farthest);
     }
 
     fn list(&self, tree: &'a BoxTree) -> Asked<'a, impl Fn(usize) -> bool> {
@@ -182,6 +182,8 @@ pub(crate) struct Gathered {
     pub boxes: Vec<Placed>,
     pub names: Vec<u32>,
     pub groups: Vec<Group>,
+    /// Whether names have been put in order.
+    is_ordered: bool,
     /// By name: the places of boxes, and the rank of each. Empty where boxes stand in that order.
     order: Vec<(u32, u32)>,
     ranks: Vec<u32>,
@@ -196,6 +198,8 @@ pub(crate) struct Gathered {
 pub(crate) struct Group {
     /// Around all of them, with room for rounding.
     pub bounds: Placed,
+    /// Around all of them, without.
+    pub exact: Aabb,
     pub begin: u32,
     pub end: u32,
 }
@@ -212,6 +216,7 @@ impl Gathered {
     }
 
     fn clear(&mut self) {
+        self.is_ordered = false;
         self.boxes.clear();
         self.names.clear();
         self.groups.clear();
@@ -230,15 +235,24 @@ impl Gathered {
         }
         if begin < self.boxes.len() {
             let bounds = Placed { center: 0.5 * (min + max), half: 0.5 * (max - min) };
-            self.groups.push(Group { bounds, begin: begin as u32, end: self.boxes.len() as u32 });
+            let exact = Aabb::new(min, max);
+            self.groups.push(Group { bounds, exact, begin: begin as u32, end: self.boxes.len() as u32 });
         }
     }
 
-    /// Once all are gathered: in which order names rise.
-    fn rank(&mut self, farthest: f64) {
+    /// Once all are gathered: groups get room for tests that are taken so far from the origin.
+    fn finish(&mut self, farthest: f64) {
         for group in &mut self.groups {
             group.bounds = with_room(group.bounds, farthest);
         }
+    }
+
+    /// Puts names in order, once they are asked for.
+    fn order(&mut self) {
+        if self.is_ordered {
+            return;
+        }
+        self.is_ordered = true;
         self.order.clear();
         self.ranks.clear();
         if self.names.is_sorted() {
@@ -253,7 +267,8 @@ impl Gathered {
     }
 
     /// All boxes in the order of their names.
-    pub fn in_order(&self) -> impl Iterator<Item = &Placed> {
+    pub fn in_order(&mut self) -> impl Iterator<Item = &Placed> {
+        self.order();
         let is_ordered = self.order.is_empty();
         let ordered = self.boxes.iter().filter(move |_| is_ordered);
         ordered.chain(self.order.iter().map(|&(_, at)| &self.boxes[at as usize]))
@@ -261,6 +276,7 @@ impl Gathered {
 
     /// Some boxes, by their places, in the order of their names.
     pub fn ordered(&mut self, places: &[u32]) -> impl Iterator<Item = &Placed> {
+        self.order();
         self.ordered.clear();
         if self.order.is_empty() {
             self.ordered.extend_from_slice(places);
@@ -274,6 +290,7 @@ impl Gathered {
 
     /// Appends the names of some boxes, by their places, in rising order and each once.
     pub fn name(&mut self, places: &[u32], names: &mut Vec<u32>) {
+        self.order();
         let begin = names.len();
         if self.order.is_empty() {
             names.extend(places.iter().map(|&at| self.names[at as usize]));

@@ -298,8 +298,14 @@ impl Polygon {
     /// four and the 18 planes of a swept volume are the most there can be.
     fn clipped(mut self, planes: &[Plane], margin: f64) -> Self {
         for plane in planes {
-            if self.len == 0 {
+            let points = &self.points[..self.len];
+            let outside = points.iter().filter(|&&point| plane.distance(point) - margin > 0.0).count();
+            if outside == self.len {
+                self.len = 0;
                 break;
+            }
+            if outside == 0 {
+                continue;
             }
             let mut kept = Self { points: [DVec3::ZERO; MOST_CORNERS], len: 0 };
             let mut push = |point| {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::bounds::Placed;
-use crate::casters::{Gathered, Most};
+use crate::casters::{Gathered, Group, Most};
 use crate::geometry::region::{DIRECTIONS, Fan, Region};
 use crate::geometry::volume::{Lies, Slice, lies_below};
 use crate::{Aabb, Projection, View};
@@ -81,6 +81,9 @@ fn outline(half: DVec3, direction: DVec3) -> f64 {
     (0..3).map(|axis| 4.0 * half[axis] * (1.0 - direction[axis] * direction[axis]).max(0.0).sqrt()).sum()
 }
 
+/// A receiver with parts in more cells than this is long.
+const LONG: usize = 8;
+
 /// Units of the longest outline of a caster.
 const UNITS: f64 = (1u64 << 32) as f64;
 
@@ -107,37 +110,54 @@ impl Cells {
         let &Sight { view, fan, .. } = sight;
         let forward = view.forward();
         let whole = Slice::new(view, depths[0], depths[depths.len() - 1]);
-        let extent = |placed: &Placed| (view.view_depth(placed.center), forward.abs().dot(placed.half));
-        let changes_some = |cells: &[Cell], placed: &Placed| {
-            let (depth, reach) = extent(placed);
-            let bounds = placed.bounds();
-            cells_between(depths, depth - reach, depth + reach).any(|i| !cells[i].holds(fan, &bounds, placed))
+        let extent = |placed: &Placed| {
+            let (depth, reach) = (view.view_depth(placed.center), forward.abs().dot(placed.half));
+            cells_between(depths, depth - reach, depth + reach)
         };
-        for group in &sight.receivers.groups {
-            if !changes_some(&self.cells, &group.bounds) {
+        let groups = &sight.receivers.groups;
+        let boxes = |group: &Group| &sight.receivers.boxes[group.range()];
+        let is_long = |placed: &Placed| extent(placed).len() > LONG;
+        // Few boxes make most of the bounds: those that are long, a ground above all.
+        for group in groups.iter().filter(|group| is_long(&group.bounds)) {
+            for placed in boxes(group).iter().filter(|it| is_long(it)) {
+                self.include((sight, depths), &whole, placed, extent(placed));
+            }
+        }
+        for group in groups {
+            let holds = |i: usize| self.cells[i].holds(fan, &group.exact, &group.bounds);
+            if extent(&group.bounds).all(holds) {
                 continue;
             }
-            for placed in &sight.receivers.boxes[group.range()] {
-                let &Placed { center, half } = placed;
-                let (depth, reach) = extent(placed);
-                let lies = whole.classify(center, half);
-                if lies == Lies::Outside {
-                    continue;
-                }
-                let bounds = placed.bounds();
-                for i in cells_between(depths, depth - reach, depth + reach) {
-                    let cell = &mut self.cells[i];
-                    if cell.holds(fan, &bounds, placed) {
-                        continue;
-                    }
-                    let slice = cell.slice;
-                    let include = |point| cell.include(fan, point, &bounds);
-                    match lies {
-                        Lies::Inside => between_depths(view, &bounds, depths[i], depths[i + 1], include),
-                        _ => {
-                            slice.clip_box(&bounds, include);
-                        }
-                    }
+            for placed in boxes(group).iter().filter(|it| !is_long(it)) {
+                self.include((sight, depths), &whole, placed, extent(placed));
+            }
+        }
+    }
+
+    /// Takes a receiver into the cells that it has a part in.
+    fn include(
+        &mut self,
+        (sight, depths): (&Sight, &[f64]),
+        whole: &Slice,
+        placed: &Placed,
+        cells: std::ops::Range<usize>,
+    ) {
+        let lies = whole.classify(placed.center, placed.half);
+        if lies == Lies::Outside {
+            return;
+        }
+        let bounds = placed.bounds();
+        for i in cells {
+            let cell = &mut self.cells[i];
+            if cell.holds(sight.fan, &bounds, placed) {
+                continue;
+            }
+            let slice = cell.slice;
+            let include = |point| cell.include(sight.fan, point, &bounds);
+            match lies {
+                Lies::Inside => between_depths(sight.view, &bounds, depths[i], depths[i + 1], include),
+                _ => {
+                    slice.clip_box(&bounds, include);
                 }
             }
         }

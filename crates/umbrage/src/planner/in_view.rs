@@ -39,13 +39,31 @@ impl InView {
         let fan = &sun.fan;
         let mut region = Region::EMPTY;
         let mut bounds = Aabb::EMPTY;
+        // Few boxes make most of the bounds: those that are large, a ground above all.
+        let large = LARGE * slice.corners[0].distance(slice.corners[7]);
+        let of_large = |part: &Placed| part.half.max_element() > large;
+        let include = |region: &mut Region, bounds: &mut Aabb, receiver: &Placed| {
+            let own = receiver.bounds();
+            slice.clip_box(&own, |point| {
+                region.include_point(fan, point);
+                // Rounding leads no part out of its box.
+                *bounds = bounds.including(point.clamp(own.min, own.max));
+            });
+        };
+        for group in receivers.groups.iter().filter(|group| of_large(&group.bounds)) {
+            for receiver in receivers.boxes[group.range()].iter().filter(|it| of_large(it)) {
+                match slice.classify(receiver.center, receiver.half) {
+                    Lies::Across => include(&mut region, &mut bounds, receiver),
+                    // One inside is taken below.
+                    Lies::Inside | Lies::Outside => {}
+                }
+            }
+        }
         across.clear();
         for group in &receivers.groups {
             let lies = slice.classify(group.bounds.center, group.bounds.half);
-            match lies {
-                Lies::Outside => continue,
-                Lies::Inside if holds(&region, &bounds, sun, &group.bounds) => continue,
-                _ => {}
+            if lies == Lies::Outside || holds(&region, &bounds, sun, &group.exact, &group.bounds) {
+                continue;
             }
             for at in group.range() {
                 let receiver = &receivers.boxes[at];
@@ -60,21 +78,18 @@ impl InView {
             }
         }
         for receiver in across.iter().map(|&at| &receivers.boxes[at as usize]) {
-            if !holds(&region, &bounds, sun, receiver) {
-                let own = receiver.bounds();
-                slice.clip_box(&own, |point| {
-                    region.include_point(fan, point);
-                    // Rounding leads no part out of its box.
-                    bounds = bounds.including(point.clamp(own.min, own.max));
-                });
+            if !holds(&region, &bounds, sun, &receiver.bounds(), receiver) && !of_large(receiver) {
+                include(&mut region, &mut bounds, receiver);
             }
         }
         (region, bounds)
     }
 }
 
-/// Whether nothing of a box can change the bounds of others.
-fn holds(region: &Region, bounds: &Aabb, sun: &Sun<'_>, placed: &Placed) -> bool {
-    let own = placed.bounds();
-    bounds.union(own) == *bounds && region.encloses_box(&sun.fan, placed.center, placed.half)
+/// Whether nothing of a box, `own` or a little more, can change the bounds of others.
+fn holds(region: &Region, bounds: &Aabb, sun: &Sun<'_>, own: &Aabb, placed: &Placed) -> bool {
+    bounds.union(*own) == *bounds && region.encloses_box(&sun.fan, placed.center, placed.half)
 }
+
+/// Share of a slice's length that half of a large receiver measures, at least.
+const LARGE: f64 = 0.25;

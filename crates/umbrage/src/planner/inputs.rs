@@ -51,6 +51,11 @@ impl<'a> Boxes<'a> {
         }
     }
 
+    /// Whether both are one and the same list.
+    pub(super) fn is_same_list(&self, other: &Self) -> bool {
+        matches!((self, other), (Self::List(one), Self::List(other)) if std::ptr::eq(*one, *other))
+    }
+
     /// Checks a list and copies it into a tree.
     pub(super) fn place(&self, name: &'static str, tree: &mut BoxTree) -> Result<()> {
         if let Self::List(list) = self {

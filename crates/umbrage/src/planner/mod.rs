@@ -209,13 +209,18 @@ fn plan_with(
         return Ok(());
     }
     inputs.casters.place("casters", &mut buffers.casters)?;
-    inputs.receivers.place("receivers", &mut buffers.receivers)?;
+    let is_one = inputs.casters.is_same_list(&inputs.receivers);
+    if !is_one {
+        inputs.receivers.place("receivers", &mut buffers.receivers)?;
+    }
     plan.begin(inputs.view, inputs.light);
     plan.split_range.resize(inputs.casters.listed(), None);
     // A frame that is refused leaves what is held as it was.
     let Buffers { casters, receivers, visited, kept, sun, local, held: next } = buffers;
     let (eye, counter) = (inputs.view.eye(), Counter::default());
-    let casters = inputs.casters.crowd(casters, (inputs.layers, Role::Caster), eye, &counter);
+    let trees = (&*casters, &*receivers);
+    let casters = inputs.casters.crowd(trees.0, (inputs.layers, Role::Caster), eye, &counter);
+    let receivers = if is_one { trees.0 } else { trees.1 };
     let receivers = inputs.receivers.crowd(receivers, (inputs.layers, Role::Receiver), eye, &counter);
     let shows = |crowd: &Crowd<'_>| frame::shows_any(inputs.view, crowd);
     let are_replaced = receivers.is_empty() || (!shows(&receivers) && shows(&casters));
