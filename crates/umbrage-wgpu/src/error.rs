@@ -166,6 +166,14 @@ pub enum Error {
         /// What it may be.
         expected: &'static str,
     },
+    /// A frame's casters or receivers come as lists beside a set, where nobody would look at them.
+    #[error(
+        "the inputs have {listed} boxes in lists beside a set of casters; insert them into the set, or leave it away"
+    )]
+    SetAndLists {
+        /// Casters and receivers in lists.
+        listed: usize,
+    },
     /// A filter so wide that its radius exceeds even the widest map.
     #[error(
         "the filter is {width_m} m wide, half of which is more than the {map_m:.3} m of the widest map; give less, or leave it to the filter"

@@ -5,8 +5,8 @@ mod common;
 use common::{Gpu, PCF3, config, with};
 use glam::DVec3;
 use umbrage::config::{Kind, LightKind, Rebuilds, SETTINGS, Setting};
-use umbrage::{Aabb, DirectionalLight, Frustum, Light, PointLight, Split, View};
-use umbrage_wgpu::{CasterPipeline, Error, Inputs, LightMaps, Shadows};
+use umbrage::{Aabb, Caster, CasterSet, DirectionalLight, Frustum, Layers, Light, PointLight, Split, View};
+use umbrage_wgpu::{CasterPipeline, Error, Inputs, LightMaps, ShadowFrame, Shadows};
 
 fn sun() -> Light {
     DirectionalLight::new(DVec3::new(0.4, -1.0, 0.3)).expect("a direction").into()
@@ -354,5 +354,46 @@ fn documented_caster_shaders_make_pipelines() {
         // A shader that is none is an error of ours and not the device's.
         let bad = CasterPipeline { wgsl: "@vertex fn vertex() {}", ..plain };
         assert!(matches!(shadows.caster_pipeline(&bad).map(|_| ()), Err(Error::Device { .. })));
+    }
+}
+
+/// A set is drawn as the lists of its boxes are, in every generation of passes.
+#[test]
+fn a_set_is_drawn_as_its_lists() {
+    let Some(gpu) = Gpu::new() else { return };
+    let mut set = CasterSet::new();
+    for (key, bounds) in (0..).zip(casters()) {
+        set.insert(Caster::new(bounds, key)).expect("valid");
+    }
+    let ground = receivers()[casters().len()];
+    set.insert(Caster { casts: false, ..Caster::new(ground, 1000) }).expect("valid");
+    // What the lists hold is what the set keeps.
+    let of = |is_asked: fn(&Caster) -> bool| {
+        let kept = set.iter().map(|(_, caster)| caster).filter(is_asked);
+        kept.map(|caster| caster.bounds).collect::<Vec<Aabb>>()
+    };
+    let (casters, receivers) = (of(|caster| caster.casts), of(|caster| caster.receives));
+    for generation in ["per-split", "layered", "instanced", "mixed"] {
+        let config = config(&[128; 3], PCF3, &format!("stabilize=approximate generation={generation}"));
+        let [mut by_set, mut by_list] = [(); 2].map(|()| Shadows::new(&gpu.device, &config).expect("valid"));
+        for frame in 0..4 {
+            let (view, lights) = (view(5 * frame), [sun()]);
+            let of_set = Inputs { set: Some(&set), ..Inputs::new(&view, &lights) };
+            let of_list = Inputs { casters: &casters, receivers: &receivers, ..Inputs::new(&view, &lights) };
+            let of_set = by_set.prepare(&gpu.queue, &of_set).expect("a frame");
+            let of_list = by_list.prepare(&gpu.queue, &of_list).expect("a frame");
+            let draws =
+                |frame: ShadowFrame<'_>| frame.maps().map(|map| map.casters().collect()).collect::<Vec<Vec<_>>>();
+            assert_eq!(draws(of_set), draws(of_list), "{generation}, frame {frame}");
+            assert!(draws(of_set).iter().any(|map| !map.is_empty()), "something is drawn");
+            assert_eq!(of_set.plan(0).splits, of_list.plan(0).splits);
+        }
+        let (view, lights) = (view(0), [sun()]);
+        let both = Inputs { set: Some(&set), casters: &casters, ..Inputs::new(&view, &lights) };
+        let refused = by_set.prepare(&gpu.queue, &both).map(|_| ());
+        assert!(matches!(refused, Err(Error::SetAndLists { listed }) if listed == casters.len()), "{refused:?}");
+        let nobody = Inputs { set: Some(&set), layers: Layers::NONE, ..Inputs::new(&view, &lights) };
+        let frame = by_set.prepare(&gpu.queue, &nobody).expect("a frame");
+        assert!(frame.maps().all(|map| map.casters().len() == 0), "nobody is asked for");
     }
 }

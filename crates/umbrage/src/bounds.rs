@@ -2,6 +2,8 @@
 
 use glam::{DAffine3, DVec3};
 
+use crate::geometry::volume::rounding;
+
 /// The largest coordinate and distance that is accepted, metres: a thousand million kilometres.
 pub(crate) const MOST_METRES: f64 = 1e12;
 
@@ -119,6 +121,11 @@ pub(crate) struct Placed {
 impl Placed {
     pub fn bounds(&self) -> Aabb {
         Aabb::new(self.center - self.half, self.center + self.half)
+    }
+
+    /// Whether the box has no thickness along some axis, but for rounding.
+    pub fn is_flat(&self) -> bool {
+        2.0 * self.half.min_element() <= rounding(self.half)
     }
 
     /// Metres from a point to the nearest point of the box; 0 inside.

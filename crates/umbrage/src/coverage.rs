@@ -101,6 +101,14 @@ impl PlanCoverage {
         self.local.clear();
     }
 
+    /// Takes over what has no masks. Buffers are kept.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.clear();
+        (self.fan, self.shown) = (other.fan, other.shown.clone());
+        self.volumes.clone_from(&other.volumes);
+        self.local.clone_from(&other.local);
+    }
+
     /// Fills the masks from the boxes that receivers consist of.
     pub(crate) fn mask(&mut self, clusters: &[Aabb]) {
         let (Some(fan), None) = (&self.fan, &self.shown) else { return };

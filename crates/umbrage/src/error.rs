@@ -65,6 +65,39 @@ pub enum Error {
         /// Its maximum corner as given.
         max: glam::DVec3,
     },
+    /// A caster of a [`crate::CasterSet`] has bounds that are inverted, NaN or beyond 10^12 m.
+    #[error(
+        "caster {} has no valid bounds ({min} to {max}); give finite corners with min <= max, within ±10^12 m",
+        handle.map_or_else(|| format!("with key {key}"), |handle| format!("{handle} (key {key})"))
+    )]
+    InvalidCaster {
+        /// Its handle, if it has one yet.
+        handle: Option<crate::CasterHandle>,
+        /// Its key.
+        key: u32,
+        /// Its minimum corner as given.
+        min: glam::DVec3,
+        /// Its maximum corner as given.
+        max: glam::DVec3,
+    },
+    /// A handle names no caster of this [`crate::CasterSet`].
+    #[error("handle {handle} names no caster of this set: it has been removed, or never was in it")]
+    RemovedCaster {
+        /// The handle.
+        handle: crate::CasterHandle,
+    },
+    /// There is no such layer.
+    #[error("there is no layer {layer}; layers are counted from 0 to 31")]
+    NoSuchLayer {
+        /// The layer as given.
+        layer: u32,
+    },
+    /// A [`crate::CasterSet`] is full.
+    #[error("a set holds 67,108,864 casters at most; keep some of them in another set, or merge small ones")]
+    TooManyCasters,
+    /// The casters of a [`crate::CasterSet`] have too many combinations of layers and flags.
+    #[error("the casters of a set have 65,536 combinations of layers and flags at most; use fewer layers")]
+    TooManyCasterKinds,
 }
 
 impl Error {

@@ -2,6 +2,7 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
+use crate::casters::Gathered;
 use crate::config::Selection;
 use crate::coverage::PlanCoverage;
 use crate::{Aabb, DepthConvention, Light, View};
@@ -32,12 +33,12 @@ pub struct ShadowPlan {
     pub selection: Selection,
     /// With [`Selection::Map`]: share of a map's half edge over which it blends into the next that contains the point.
     pub blend: f64,
-    /// Indices into the planner's caster list, split after split; see [`ShadowPlan::casters`].
+    /// Indices into the planner's caster list, or keys of its set, split after split; see [`ShadowPlan::casters`].
     pub caster_indices: Vec<u32>,
     /// For each split how many casters its list leaves out by [`crate::ShadowConfig::drop_small_casters`].
     pub dropped_casters: Vec<u32>,
-    /// For each caster the first and the last split it is drawn in, `None` if it is drawn in none. The range is a bound:
-    /// the lists are exact.
+    /// For each caster of a list the first and the last split it is drawn in, `None` if it is drawn in none. The range is a
+    /// bound: the lists are exact. Empty for a set, whose keys may be any numbers: see [`ShadowPlan::splits_of`].
     pub split_range: Vec<Option<(u8, u8)>>,
     /// What the lists are complete for; see [`ShadowPlan::casts_into`] and [`ShadowPlan::covering_split`].
     pub coverage: PlanCoverage,
@@ -64,30 +65,38 @@ impl ShadowPlan {
         self.coverage.clear();
     }
 
-    /// Adds a split whose casters are listed.
-    pub(crate) fn add(&mut self, split: Split) {
+    /// Takes over another plan that was made without receiver clusters. Buffers are kept.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.splits.clone_from(&other.splits);
+        self.planes.clone_from(&other.planes);
+        self.caster_indices.clone_from(&other.caster_indices);
+        self.split_range.clone_from(&other.split_range);
+        self.dropped_casters.clone_from(&other.dropped_casters);
+        self.coverage.copy_from(&other.coverage);
+        (self.view_depth_plane, self.radial_eye) = (other.view_depth_plane, other.radial_eye);
+        (self.light_direction, self.light) = (other.light_direction, other.light);
+        (self.fade_begin, self.selection, self.blend) = (other.fade_begin, other.selection, other.blend);
+    }
+
+    /// Adds a split with those of the gathered casters that stand at `places`.
+    pub(crate) fn add_listed(&mut self, mut split: Split, casters: &mut Gathered, places: &[u32]) {
+        let begin = self.caster_indices.len();
+        casters.name(places, &mut self.caster_indices);
+        split.casters = begin..self.caster_indices.len();
+        self.add(split);
+    }
+
+    /// Adds a split whose casters are listed. Those of a set have no place among the ranges.
+    fn add(&mut self, split: Split) {
         let at = self.splits.len() as u8;
-        for &index in &self.caster_indices[split.casters.clone()] {
-            let range = &mut self.split_range[index as usize];
-            *range = Some((range.map_or(at, |(first, _)| first), at));
+        if !self.split_range.is_empty() {
+            for &index in &self.caster_indices[split.casters.clone()] {
+                let range = &mut self.split_range[index as usize];
+                *range = Some((range.map_or(at, |(first, _)| first), at));
+            }
         }
         self.splits.push(split);
         self.dropped_casters.resize(self.splits.len(), 0);
-    }
-
-    /// Leaves casters out of the list of the next split, which ends the plan's list.
-    pub(crate) fn drop_casters(&mut self, split: &mut Split, is_small: impl Fn(u32) -> bool) {
-        let mut kept = split.casters.start;
-        for at in split.casters.clone() {
-            let index = self.caster_indices[at];
-            if !is_small(index) {
-                self.caster_indices[kept] = index;
-                kept += 1;
-            }
-        }
-        self.caster_indices.truncate(kept);
-        self.dropped_casters.push((split.casters.end - kept) as u32);
-        split.casters.end = kept;
     }
 
     /// What chooses the split of a world point, metres: its view depth, or with radial bands its distance to the eye.
@@ -144,7 +153,14 @@ impl ShadowPlan {
         .map(|(i, _)| i)
     }
 
-    /// The casters of split `index`, as indices into the list given to the planner.
+    /// The splits that a caster, by its index or key, is drawn in: bit `i` stands for split `i`. 0: none.
+    #[must_use]
+    pub fn splits_of(&self, caster: u32) -> u64 {
+        let is_in = |&split: &usize| self.casters(split).binary_search(&caster).is_ok();
+        (0..self.splits.len()).filter(is_in).fold(0, |splits, split| splits | 1 << split)
+    }
+
+    /// The casters of split `index`, rising: indices into the list given to the planner, or keys of its set.
     #[must_use]
     pub fn casters(&self, index: usize) -> &[u32] {
         &self.caster_indices[self.splits[index].casters.clone()]

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use umbrage::ShadowPlan;
 use umbrage::config::Generation;
+use umbrage::{MAX_SPLITS, ShadowPlan};
 
 use super::choose::Abilities;
 
@@ -86,35 +86,36 @@ impl MapPass {
         code + tile(first) - u32::from(self.leads)..code + tile(last) + 1
     }
 
-    /// What to draw, where there is one sun or spot light: the plan's casters, as indices into the list given to the planner, each with
-    /// its instances.
+    /// What to draw, where there is one sun or spot light: the plan's casters, as indices into the list given to the planner or keys
+    /// of its set, each with its instances.
     pub fn casters(&self, plan: &ShadowPlan) -> impl Iterator<Item = (u32, Range<u32>)> + use<> {
-        let (mut masks, mut list) = (Vec::new(), Vec::new());
-        self.list(plan, &mut masks, &mut list);
+        let mut list = Vec::new();
+        self.list(plan, &mut list);
         list.into_iter()
     }
 
-    /// Appends [`MapPass::casters`] to a list; `masks` is scratch.
-    pub(crate) fn list(&self, plan: &ShadowPlan, masks: &mut Vec<u8>, list: &mut Vec<(u32, Range<u32>)>) {
+    /// Appends [`MapPass::casters`] to a list.
+    pub(crate) fn list(&self, plan: &ShadowPlan, list: &mut Vec<(u32, Range<u32>)>) {
         if self.alone {
             let casters = plan.casters(self.splits.start);
             list.extend(casters.iter().map(|&caster| (caster, 0..1)));
             return;
         }
-        masks.clear();
-        masks.resize(plan.split_range.len(), 0);
-        let begin = list.len();
+        // Lists rise: the least of their first casters is the next one, in all splits whose list it heads.
+        let mut left: [&[u32]; MAX_SPLITS] = [&[]; MAX_SPLITS];
         for split in self.splits() {
-            for &caster in plan.casters(split) {
-                let mask = &mut masks[caster as usize];
-                if *mask == 0 {
-                    list.push((caster, 0..0));
-                }
-                *mask |= 1 << split;
-            }
+            left[split] = plan.casters(split);
         }
-        for (caster, instances) in &mut list[begin..] {
-            *instances = self.instances(masks[*caster as usize]);
+        while let Some(&caster) = left.iter().filter_map(|casters| casters.first()).min() {
+            let mut mask = 0;
+            for (split, casters) in left.iter_mut().enumerate() {
+                if let [first, rest @ ..] = casters
+                    && *first == caster
+                {
+                    (mask, *casters) = (mask | 1 << split, rest);
+                }
+            }
+            list.push((caster, self.instances(mask)));
         }
     }
 }

@@ -15,7 +15,6 @@ pub(super) struct Draws {
     list: Vec<(u32, Range<u32>)>,
     /// Where each pass's part of the list ends.
     ends: Vec<usize>,
-    masks: Vec<u8>,
 }
 
 impl Draws {
@@ -29,7 +28,7 @@ impl Draws {
         for (index, pass) in maps.passes().iter().enumerate() {
             let begin = self.list.len();
             if alone {
-                pass.list(plans[0], &mut self.masks, &mut self.list);
+                pass.list(plans[0], &mut self.list);
             } else {
                 let (light, split) = maps.light_of_map(index);
                 // A sun in a point light's place leaves maps over.

@@ -96,8 +96,8 @@ impl<'a> ShadowMap<'a> {
         self.shadows.maps.light_of_map(self.shadows.maps.passes()[self.pass].splits().start)
     }
 
-    /// The casters, by index into [`crate::Inputs::casters`], each with the instances that it is drawn
-    /// with.
+    /// The casters, by index into [`crate::Inputs::casters`] or by the keys of its set, each
+    /// with the instances that it is drawn with.
     pub fn casters(&self) -> impl ExactSizeIterator<Item = (u32, Range<u32>)> + use<'a> {
         self.shadows.draws.of_pass(self.pass).iter().cloned()
     }

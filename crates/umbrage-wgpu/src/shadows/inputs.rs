@@ -1,7 +1,9 @@
 //! What a frame is prepared from.
 
 use glam::DVec3;
-use umbrage::{Aabb, Light, View};
+use umbrage::{Aabb, Boxes, CasterSet, Layers, Light, View};
+
+use crate::{Error, Result};
 
 /// What a frame is prepared from. Positions are world metres.
 ///
@@ -22,6 +24,12 @@ pub struct Inputs<'a> {
     /// Bounds of what shows shadows, most casters among them. Where the list is empty, or holds nothing
     /// that is in view, casters serve as receivers.
     pub receivers: &'a [Aabb],
+    /// A set that takes the place of both lists, which stay empty then: casters and receivers by the
+    /// thousand, kept from frame to frame. [`crate::ShadowMap::casters`] speaks of its casters by their
+    /// keys.
+    pub set: Option<&'a CasterSet>,
+    /// Which members of the set take part: those that are on one of these layers.
+    pub layers: Layers,
     /// Bounds that hold all that is drawn of the receivers in view and leave less air than
     /// [`Inputs::receivers`]: [`umbrage::ShadowPlan::casts_into`] then rejects more parts of casters. `None`:
     /// not known.
@@ -50,12 +58,26 @@ impl<'a> Inputs<'a> {
             lights,
             casters: &[],
             receivers: &[],
+            set: None,
+            layers: Layers::ALL,
             receiver_clusters: None,
             origin: DVec3::ZERO,
             image_size: [1920, 1080],
             view_slot: 0,
             enabled: true,
             tint: false,
+        }
+    }
+
+    /// Casters and receivers as the planner takes them.
+    ///
+    /// # Errors
+    /// [`Error::SetAndLists`] for lists beside a set: nobody would look at them.
+    pub(super) fn boxes(&self) -> Result<[Boxes<'a>; 2]> {
+        let Some(set) = self.set else { return Ok([self.casters.into(), self.receivers.into()]) };
+        match self.casters.len() + self.receivers.len() {
+            0 => Ok([set.into(), set.into()]),
+            listed => Err(Error::SetAndLists { listed }),
         }
     }
 }

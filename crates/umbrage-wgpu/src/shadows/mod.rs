@@ -119,9 +119,9 @@ impl Shadows {
     /// # Errors
     /// [`Error::LightCount`] or [`Error::LightKind`] if the lights are not those that the maps were
     /// made for, [`Error::Config`] naming a box that is no box or a camera that the range does not go
-    /// with, [`Error::InvalidFrameOption`] for an origin that is not finite, [`Error::FilterTooWide`],
-    /// [`Error::Device`] for what the device complains about, [`Error::DeviceLost`]. A refused frame does
-    /// not change the next.
+    /// with, [`Error::InvalidFrameOption`] for an origin that is not finite, [`Error::SetAndLists`],
+    /// [`Error::FilterTooWide`], [`Error::Device`] for what the device complains about,
+    /// [`Error::DeviceLost`]. A refused frame does not change the next.
     pub fn prepare(&mut self, queue: &wgpu::Queue, inputs: &Inputs<'_>) -> Result<ShadowFrame<'_>> {
         self.check(inputs)?;
         let slot = inputs.view_slot;
@@ -148,13 +148,15 @@ impl Shadows {
 
     /// Plans a frame, hands it over and lists what is drawn.
     fn plan(&mut self, queue: &wgpu::Queue, inputs: &Inputs<'_>) -> Result<()> {
+        let [casters, receivers] = inputs.boxes()?;
         let planners = self.planners.get_mut(&inputs.view_slot).map_or(&mut [][..], Vec::as_mut_slice);
         self.plans.resize_with(planners.len(), Arc::default);
         for ((planner, plan), light) in planners.iter_mut().zip(&mut self.plans).zip(inputs.lights) {
             let of_light = PlanInputs {
                 receiver_clusters: inputs.receiver_clusters,
+                layers: inputs.layers,
                 image_size: inputs.image_size,
-                ..PlanInputs::new(inputs.view, *light, inputs.casters, inputs.receivers)
+                ..PlanInputs::new(inputs.view, *light, casters, receivers)
             };
             if Arc::get_mut(plan).is_none() {
                 *plan = Arc::default();

@@ -2,9 +2,15 @@
 
 use glam::{DVec2, DVec3};
 
+use super::volume::Lies;
+use crate::bounds::Placed;
+
 /// Directions over half a turn. A map's rectangle may stand on any pair that is a quarter turn apart, so the step between
 /// candidate rectangles is 180° / 32 = 5.6°, which costs at most 5 % of an edge against the smallest rectangle of all.
 pub(crate) const DIRECTIONS: usize = 32;
+
+/// Share of a coordinate by which rounding may move the bounds of a box, with room to spare.
+const ROUNDING: f64 = 1e-13;
 
 /// Directions to a quarter turn.
 const QUARTER: usize = DIRECTIONS / 2;
@@ -14,7 +20,12 @@ const QUARTER: usize = DIRECTIONS / 2;
 pub(crate) struct Fan {
     pub directions: [DVec3; DIRECTIONS],
     pub depth: DVec3,
+    /// The directions, axis by axis, for loops over all of them at once.
+    axes: [[f64; DIRECTIONS]; 3],
 }
+
+/// What a box measures along every direction of a fan.
+type Spans = ([f64; DIRECTIONS], [f64; DIRECTIONS]);
 
 impl Fan {
     /// The first direction is `first` (a unit vector of the light's plane), the others follow towards `first + 90°`.
@@ -24,7 +35,19 @@ impl Fan {
             let (sin, cos) = (std::f64::consts::PI * i as f64 / DIRECTIONS as f64).sin_cos();
             cos * first + sin * second
         });
-        Self { directions, depth }
+        let axes = [0, 1, 2].map(|axis| directions.map(|direction: DVec3| direction[axis]));
+        Self { directions, depth, axes }
+    }
+
+    /// Where the middle of a box lies along every direction, and half of what the box measures there.
+    fn spans(&self, center: DVec3, half: DVec3) -> Spans {
+        let [x, y, z] = &self.axes;
+        let (mut at, mut reach) = ([0.0; DIRECTIONS], [0.0; DIRECTIONS]);
+        for k in 0..DIRECTIONS {
+            at[k] = x[k] * center.x + y[k] * center.y + z[k] * center.z;
+            reach[k] = x[k].abs() * half.x + y[k].abs() * half.y + z[k].abs() * half.z;
+        }
+        (at, reach)
     }
 
     /// Direction `u` (of the first half) and the one a quarter turn further: with depth a right-handed frame (u, v, depth).
@@ -63,10 +86,10 @@ impl Region {
     }
 
     pub fn include_box(&mut self, fan: &Fan, center: DVec3, half: DVec3) {
-        for (k, direction) in fan.directions.iter().enumerate() {
-            let (at, reach) = (direction.dot(center), direction.abs().dot(half));
-            self.lo[k] = self.lo[k].min(at - reach);
-            self.hi[k] = self.hi[k].max(at + reach);
+        let (at, reach) = fan.spans(center, half);
+        for k in 0..DIRECTIONS {
+            self.lo[k] = self.lo[k].min(at[k] - reach[k]);
+            self.hi[k] = self.hi[k].max(at[k] + reach[k]);
         }
         let (depth, reach) = (fan.depth.dot(center), fan.depth.abs().dot(half));
         self.depth = (self.depth.0.min(depth - reach), self.depth.1.max(depth + reach));
@@ -86,32 +109,76 @@ impl Region {
         Self { lo: bound(&self.lo), hi: bound(&self.hi), depth: self.depth }
     }
 
-    /// Whether the box lies inside in every direction and in depth, so that including any part of it changes nothing.
+    /// Whether the box lies inside in every direction and in depth, so that including any part of it changes nothing. One that
+    /// touches the bounds does not: rounding might carry a part of it over them.
     pub fn encloses_box(&self, fan: &Fan, center: DVec3, half: DVec3) -> bool {
-        let (depth, reach) = (fan.depth.dot(center), fan.depth.abs().dot(half));
-        depth - reach >= self.depth.0
-            && depth + reach <= self.depth.1
-            && fan.directions.iter().enumerate().all(|(k, direction)| {
-                let (at, reach) = (direction.dot(center), direction.abs().dot(half));
-                at - reach >= self.lo[k] && at + reach <= self.hi[k]
-            })
+        let room = ROUNDING * (center.abs() + half).element_sum();
+        let (depth, reach) = (fan.depth.dot(center), fan.depth.abs().dot(half) + room);
+        if !(depth - reach >= self.depth.0 && depth + reach <= self.depth.1) {
+            return false;
+        }
+        let (at, reach) = fan.spans(center, half);
+        let sticks_out = |k: usize| {
+            let reach = reach[k] + room;
+            (at[k] - reach < self.lo[k]) | (at[k] + reach > self.hi[k])
+        };
+        !(0..DIRECTIONS).fold(false, |any, k| any | sticks_out(k))
     }
 
     /// Whether a box comes within `margin` metres in the light's plane and does not lie behind everything.
     pub fn can_be_shadowed_by(&self, fan: &Fan, center: DVec3, half: DVec3, margin: f64) -> bool {
-        fan.depth.dot(center) - fan.depth.abs().dot(half) <= self.depth.1
-            && fan.directions.iter().enumerate().all(|(k, direction)| {
-                let (at, reach) = (direction.dot(center), direction.abs().dot(half) + margin);
-                at - reach <= self.hi[k] && at + reach >= self.lo[k]
-            })
+        if fan.depth.dot(center) - fan.depth.abs().dot(half) > self.depth.1 {
+            return false;
+        }
+        let (at, reach) = fan.spans(center, half);
+        let is_beside = |k: usize| {
+            let reach = reach[k] + margin;
+            (at[k] - reach > self.hi[k]) | (at[k] + reach < self.lo[k])
+        };
+        !(0..DIRECTIONS).fold(false, |any, k| any | is_beside(k))
+    }
+
+    /// How the boxes in a box lie to what comes within `margin` metres in the light's plane and does not lie behind everything:
+    /// [`Region::can_be_shadowed_by`] for all of them.
+    pub fn shadowed_by_all(&self, fan: &Fan, Placed { center, half }: &Placed, margin: f64) -> Lies {
+        let room = ROUNDING * (center.abs() + *half).element_sum();
+        let (depth, reach) = (fan.depth.dot(*center), fan.depth.abs().dot(*half) + room);
+        if depth - reach > self.depth.1 {
+            return Lies::Outside;
+        }
+        let (at, reaches) = fan.spans(*center, *half);
+        let (mut outside, mut across) = (false, depth + reach > self.depth.1);
+        for k in 0..DIRECTIONS {
+            let (reach, lo, hi) = (reaches[k] + room, self.lo[k] - margin, self.hi[k] + margin);
+            outside |= (at[k] - reach > hi + room) | (at[k] + reach < lo - room);
+            across |= (at[k] + reach > hi) | (at[k] - reach < lo);
+        }
+        match (outside, across) {
+            (true, _) => Lies::Outside,
+            (_, true) => Lies::Across,
+            _ => Lies::Inside,
+        }
+    }
+
+    /// Whether including what lies of a box in `within`, as [`Region::include_box_within`] does, changes nothing of the bounds
+    /// across the light; or of any box in it.
+    pub fn encloses_box_within(&self, fan: &Fan, Placed { center, half }: &Placed, within: &Self) -> bool {
+        let room = ROUNDING * (center.abs() + *half).element_sum();
+        let (at, reach) = fan.spans(*center, *half);
+        let sticks_out = |k: usize| {
+            let reach = reach[k] + room;
+            (at[k] - reach < self.lo[k]) & (self.lo[k] > within.lo[k])
+                | (at[k] + reach > self.hi[k]) & (self.hi[k] < within.hi[k])
+        };
+        !(0..DIRECTIONS).fold(false, |any, k| any | sticks_out(k))
     }
 
     /// Includes the part of a box that lies in `within`, direction by direction.
     pub fn include_box_within(&mut self, fan: &Fan, center: DVec3, half: DVec3, within: &Self) {
-        for (k, direction) in fan.directions.iter().enumerate() {
-            let (at, reach) = (direction.dot(center), direction.abs().dot(half));
-            self.lo[k] = self.lo[k].min((at - reach).clamp(within.lo[k], within.hi[k]));
-            self.hi[k] = self.hi[k].max((at + reach).clamp(within.lo[k], within.hi[k]));
+        let (at, reach) = fan.spans(center, half);
+        for k in 0..DIRECTIONS {
+            self.lo[k] = self.lo[k].min((at[k] - reach[k]).clamp(within.lo[k], within.hi[k]));
+            self.hi[k] = self.hi[k].max((at[k] + reach[k]).clamp(within.lo[k], within.hi[k]));
         }
         let (depth, reach) = (fan.depth.dot(center), fan.depth.abs().dot(half));
         self.depth = (self.depth.0.min(depth - reach), self.depth.1.max(depth + reach));

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::bounds::Placed;
 use crate::{Aabb, View};
 
 /// A half space: inside is `normal · p <= offset`. The normal is a unit vector that points outwards.
@@ -213,6 +214,25 @@ impl SweptVolume {
         self.len += 1;
     }
 
+    pub fn planes(&self) -> &[Plane] {
+        &self.planes[..self.len]
+    }
+
+    /// How the boxes in a box lie to what comes within `margin` metres of the volume: [`SweptVolume::meets`] for all of them.
+    pub fn met_by_all(&self, Placed { center, half }: &Placed, margin: f64) -> Lies {
+        let mut lies = Lies::Inside;
+        for plane in self.planes() {
+            let (distance, reach) = (plane.distance(*center), plane.normal.abs().dot(*half));
+            if distance - reach > margin {
+                return Lies::Outside;
+            }
+            if distance + reach > margin {
+                lies = Lies::Across;
+            }
+        }
+        lies
+    }
+
     /// Whether a box comes within `margin` metres of the volume (conservatively).
     pub fn meets(&self, center: DVec3, half: DVec3, margin: f64) -> bool {
         self.planes[..self.len].iter().all(|plane| plane.nearest(center, half) <= margin)
@@ -278,8 +298,14 @@ impl Polygon {
     /// four and the 18 planes of a swept volume are the most there can be.
     fn clipped(mut self, planes: &[Plane], margin: f64) -> Self {
         for plane in planes {
-            if self.len == 0 {
+            let points = &self.points[..self.len];
+            let outside = points.iter().filter(|&&point| plane.distance(point) - margin > 0.0).count();
+            if outside == self.len {
+                self.len = 0;
                 break;
+            }
+            if outside == 0 {
+                continue;
             }
             let mut kept = Self { points: [DVec3::ZERO; MOST_CORNERS], len: 0 };
             let mut push = |point| {

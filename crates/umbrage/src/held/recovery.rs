@@ -57,7 +57,8 @@ impl Standstill {
             *self = Self { anchor: Some(*view), ..Self::default() };
             return Standing::Moving;
         }
-        self.frames = self.frames.saturating_add(1);
+        // Nothing asks how long it has stood beyond that: what is held is the same from then on.
+        self.frames = (self.frames + 1).min(PATIENCE + DURATION);
         if self.standing == Standing::Moving && self.frames >= PATIENCE {
             self.standing = Standing::Due;
         }

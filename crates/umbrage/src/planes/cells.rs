@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::bounds::Placed;
+use crate::casters::{Gathered, Group, Most};
 use crate::geometry::region::{DIRECTIONS, Fan, Region};
 use crate::geometry::volume::{Lies, Slice, lies_below};
 use crate::{Aabb, Projection, View};
@@ -12,12 +13,10 @@ use crate::{Aabb, Projection, View};
 pub(crate) struct Sight<'a> {
     pub view: &'a View,
     pub fan: &'a Fan,
-    pub receivers: &'a [Placed],
-    /// Those that the view shows in range.
-    pub visible: &'a [u32],
-    pub casters: &'a [Placed],
-    /// Those that can shade anything in range.
-    pub candidates: &'a [u32],
+    /// The receivers that the view shows in range.
+    pub receivers: &'a Gathered,
+    /// The casters that can shade anything in range.
+    pub casters: &'a Gathered,
 }
 
 /// The part of the view between two candidate planes.
@@ -29,18 +28,33 @@ pub(crate) struct Cell {
     bounds: Aabb,
     /// The casters that can shade them, whole; empty if there are none.
     pub casters: Region,
-    /// Expected length of shadow edges, metres in the light's plane.
-    edges: f64,
+    /// Expected length of shadow edges in the light's plane, in [`Cells::unit`]: a sum that does not depend on its order.
+    edges: u64,
+    /// [`Region::least_direction`] of the receivers, once they are all there.
+    least_direction: usize,
 }
 
 impl Cell {
     fn new(slice: Slice) -> Self {
-        Self { slice, receivers: Region::EMPTY, bounds: Aabb::EMPTY, casters: Region::EMPTY, edges: 0.0 }
+        Self {
+            slice,
+            receivers: Region::EMPTY,
+            bounds: Aabb::EMPTY,
+            casters: Region::EMPTY,
+            edges: 0,
+            least_direction: 0,
+        }
     }
 
-    fn include(&mut self, fan: &Fan, point: DVec3) {
+    /// Takes a point of a box.
+    fn include(&mut self, fan: &Fan, point: DVec3, of: &Aabb) {
         self.receivers.include_point(fan, point);
-        self.bounds = self.bounds.including(point);
+        self.bounds = self.bounds.including(point.clamp(of.min, of.max));
+    }
+
+    /// Whether nothing of a box can change the cell.
+    fn holds(&self, fan: &Fan, bounds: &Aabb, Placed { center, half }: &Placed) -> bool {
+        self.bounds.union(*bounds) == self.bounds && self.receivers.encloses_box(fan, *center, *half)
     }
 
     /// Whether a caster with these bounds can shade the cell's receivers.
@@ -67,11 +81,19 @@ fn outline(half: DVec3, direction: DVec3) -> f64 {
     (0..3).map(|axis| 4.0 * half[axis] * (1.0 - direction[axis] * direction[axis]).max(0.0).sqrt()).sum()
 }
 
+/// A receiver with parts in more cells than this is long.
+const LONG: usize = 8;
+
+/// Units of the longest outline of a caster.
+const UNITS: f64 = (1u64 << 32) as f64;
+
 /// All cells between a row of rising view depths.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cells {
     pub cells: Vec<Cell>,
     shares: Vec<f64>,
+    /// What edges are counted in, metres.
+    unit: f64,
 }
 
 impl Cells {
@@ -80,6 +102,7 @@ impl Cells {
         self.cells.clear();
         self.cells.extend(depths.windows(2).map(|pair| Cell::new(Slice::new(sight.view, pair[0], pair[1]))));
         self.gather_receivers(sight, depths);
+        self.cells.iter_mut().for_each(|cell| cell.least_direction = cell.receivers.least_direction());
         self.gather_casters(sight, depths);
     }
 
@@ -87,26 +110,54 @@ impl Cells {
         let &Sight { view, fan, .. } = sight;
         let forward = view.forward();
         let whole = Slice::new(view, depths[0], depths[depths.len() - 1]);
-        for &index in sight.visible {
-            let Placed { center, half } = sight.receivers[index as usize];
-            let (depth, reach) = (view.view_depth(center), forward.abs().dot(half));
-            let lies = whole.classify(center, half);
-            if lies == Lies::Outside {
+        let extent = |placed: &Placed| {
+            let (depth, reach) = (view.view_depth(placed.center), forward.abs().dot(placed.half));
+            cells_between(depths, depth - reach, depth + reach)
+        };
+        let groups = &sight.receivers.groups;
+        let boxes = |group: &Group| &sight.receivers.boxes[group.range()];
+        let is_long = |placed: &Placed| extent(placed).len() > LONG;
+        // Few boxes make most of the bounds: those that are long, a ground above all.
+        for group in groups.iter().filter(|group| is_long(&group.bounds)) {
+            for placed in boxes(group).iter().filter(|it| is_long(it)) {
+                self.include((sight, depths), &whole, placed, extent(placed));
+            }
+        }
+        for group in groups {
+            let holds = |i: usize| self.cells[i].holds(fan, &group.exact, &group.bounds);
+            if extent(&group.bounds).all(holds) {
                 continue;
             }
-            let bounds = Aabb::new(center - half, center + half);
-            for i in cells_between(depths, depth - reach, depth + reach) {
-                let cell = &mut self.cells[i];
-                if cell.receivers.encloses_box(fan, center, half) {
-                    continue;
-                }
-                let slice = cell.slice;
-                let include = |point| cell.include(fan, point);
-                match lies {
-                    Lies::Inside => between_depths(view, &bounds, depths[i], depths[i + 1], include),
-                    _ => {
-                        slice.clip_box(&bounds, include);
-                    }
+            for placed in boxes(group).iter().filter(|it| !is_long(it)) {
+                self.include((sight, depths), &whole, placed, extent(placed));
+            }
+        }
+    }
+
+    /// Takes a receiver into the cells that it has a part in.
+    fn include(
+        &mut self,
+        (sight, depths): (&Sight, &[f64]),
+        whole: &Slice,
+        placed: &Placed,
+        cells: std::ops::Range<usize>,
+    ) {
+        let lies = whole.classify(placed.center, placed.half);
+        if lies == Lies::Outside {
+            return;
+        }
+        let bounds = placed.bounds();
+        for i in cells {
+            let cell = &mut self.cells[i];
+            if cell.holds(sight.fan, &bounds, placed) {
+                continue;
+            }
+            let slice = cell.slice;
+            let include = |point| cell.include(sight.fan, point, &bounds);
+            match lies {
+                Lies::Inside => between_depths(sight.view, &bounds, depths[i], depths[i + 1], include),
+                _ => {
+                    slice.clip_box(&bounds, include);
                 }
             }
         }
@@ -116,9 +167,10 @@ impl Cells {
         let &Sight { view, fan, .. } = sight;
         let forward = view.forward();
         let direction = fan.depth;
+        let longest = sight.casters.most(|caster| outline(caster.half, direction));
+        self.unit = longest.max(f64::MIN_POSITIVE) / UNITS;
         let deepest = self.cells.iter().map(|cell| cell.receivers.depth.1).fold(f64::NEG_INFINITY, f64::max);
-        for &index in sight.candidates {
-            let Placed { center, half } = sight.casters[index as usize];
+        for &Placed { center, half } in &sight.casters.boxes {
             let mut bounds = Region::EMPTY;
             bounds.include_box(fan, center, half);
             // The shadow leaves the box along the light until it is below all receivers.
@@ -132,7 +184,7 @@ impl Cells {
                 let shaded = !cell.receivers.is_empty()
                     && cell.can_be_shadowed_by(&bounds)
                     && !lies_below(center, half, &cell.bounds, direction, 0.0);
-                if shaded { share(&bounds, &cell.receivers, cell.receivers.least_direction()) } else { -1.0 }
+                if shaded { share(&bounds, &cell.receivers, cell.least_direction) } else { -1.0 }
             }));
             // A shadow lies in one place: where boxes are high, several cells seem to hold the same piece of it.
             let held: f64 = self.shares.iter().map(|share| share.max(0.0)).sum();
@@ -140,7 +192,7 @@ impl Cells {
             for (cell, &share) in self.cells[reached].iter_mut().zip(&self.shares) {
                 if share >= 0.0 {
                     cell.casters.include_region(&bounds);
-                    cell.edges += share * length;
+                    cell.edges += (share * length / self.unit) as u64;
                 }
             }
         }
@@ -157,8 +209,8 @@ impl Cells {
             Projection::Orthographic => pair[1] - pair[0],
         };
         let edges = |pair: &[f64], cell: &Cell| match projection {
-            Projection::Perspective => cell.edges * (pair[0] * pair[1]).powf(-1.5),
-            Projection::Orthographic => cell.edges,
+            Projection::Perspective => self.unit * cell.edges as f64 * (pair[0] * pair[1]).powf(-1.5),
+            Projection::Orthographic => self.unit * cell.edges as f64,
         };
         let shadowed = || depths.windows(2).zip(&self.cells).filter(|(_, cell)| !cell.casters.is_empty());
         let all_pixels: f64 = shadowed().map(|(pair, _)| pixels(pair)).sum();

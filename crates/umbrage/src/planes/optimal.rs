@@ -260,8 +260,7 @@ impl Placement {
             Projection::Perspective => SplitScheme::Logarithmic,
             Projection::Orthographic => SplitScheme::Uniform,
         };
-        let visible = sight.visible.iter().map(|&index| &sight.receivers[index as usize]);
-        let (first, last) = visible_range(sight.view, near, far, visible)
+        let (first, last) = visible_range(sight.view, near, far, sight.receivers)
             .map(|(first, last)| (first.max(near), last.min(far)))
             .filter(|(first, last)| *last > LEAST_RATIO * first)
             .unwrap_or((near, far));

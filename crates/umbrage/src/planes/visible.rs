@@ -1,7 +1,7 @@
 //! The view depths between which a view shows anything.
 
 use crate::View;
-use crate::bounds::Placed;
+use crate::casters::Most;
 use crate::geometry::volume::{Lies, Slice};
 
 /// Share of a depth by which the range exceeds the receivers, so that rounding to `f32` on the way to a shader leaves none
@@ -14,30 +14,28 @@ const ROOM: f64 = 1e-4;
 /// Source: \[GG3-10\] section 10.2.1, which only says that near and far might be
 /// adjusted "so that the view frustum contains the visible objects as tightly as possible". What stands behind something
 /// else counts as visible: boxes hide nothing.
-pub(crate) fn visible_range<'a>(
-    view: &View,
-    near: f64,
-    far: f64,
-    receivers: impl IntoIterator<Item = &'a Placed>,
-) -> Option<(f64, f64)> {
+pub(crate) fn visible_range(view: &View, near: f64, far: f64, receivers: &impl Most) -> Option<(f64, f64)> {
     let room = |depth: f64| ROOM * depth.abs();
     let whole = Slice::new(view, near - 0.5 * room(near), far + room(far));
     let forward = view.forward();
-    let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
-    let mut include = |depth: f64| (first, last) = (first.min(depth), last.max(depth));
-    for receiver in receivers {
-        match whole.classify(receiver.center, receiver.half) {
-            Lies::Outside => {}
-            Lies::Inside => {
-                let (depth, reach) = (view.view_depth(receiver.center), forward.abs().dot(receiver.half));
-                include(depth - reach);
-                include(depth + reach);
+    // The depth that lies farthest ahead, or farthest back.
+    let end = |sign: f64| {
+        receivers.most(|receiver| {
+            let mut end = f64::NEG_INFINITY;
+            match whole.classify(receiver.center, receiver.half) {
+                Lies::Outside => {}
+                Lies::Inside => {
+                    let (depth, reach) = (view.view_depth(receiver.center), forward.abs().dot(receiver.half));
+                    end = sign * depth + reach;
+                }
+                Lies::Across => {
+                    whole.clip_box(&receiver.bounds(), |point| end = end.max(sign * view.view_depth(point)));
+                }
             }
-            Lies::Across => {
-                whole.clip_box(&receiver.bounds(), |point| include(view.view_depth(point)));
-            }
-        }
-    }
+            end
+        })
+    };
+    let (first, last) = (-end(-1.0), end(1.0));
     if first > last {
         return None;
     }

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use crate::DirectionalLight;
 use crate::bounds::Placed;
+use crate::casters::Most;
 
 /// A block on the light's own axes: along the map's two and along the light, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,14 +19,16 @@ impl Block {
         Self { center: axes(light).map(|axis| axis.dot(center)).into(), half: DVec3::splat(radius) }
     }
 
-    /// Around boxes; `None` of none, and of such without any extent.
-    pub fn around<'a>(boxes: impl Iterator<Item = &'a Placed>, light: &DirectionalLight) -> Option<Self> {
+    /// Around the boxes that pass a monotone test; `None` of none, and of such without any extent.
+    pub fn around(boxes: &impl Most, test: impl Fn(&Placed) -> bool, light: &DirectionalLight) -> Option<Self> {
         let axes = axes(light);
-        let (lo, hi) = boxes.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), placed| {
-            let at = DVec3::from(axes.map(|axis| axis.dot(placed.center)));
-            let reach = DVec3::from(axes.map(|axis| axis.abs().dot(placed.half)));
-            (lo.min(at - reach), hi.max(at + reach))
-        });
+        let end = |axis: DVec3, sign: f64| {
+            boxes.most(|it| match test(it) {
+                true => sign * axis.dot(it.center) + axis.abs().dot(it.half),
+                false => f64::NEG_INFINITY,
+            })
+        };
+        let (lo, hi) = (DVec3::from(axes.map(|axis| -end(axis, -1.0))), DVec3::from(axes.map(|axis| end(axis, 1.0))));
         let half = 0.5 * (hi - lo);
         // What has no width (a wall seen edge-on by the light) still gets texels of some size.
         let half = half.max(DVec3::splat(1e-3 * half.max_element()));

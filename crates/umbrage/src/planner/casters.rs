@@ -6,13 +6,16 @@ use super::fit::MapSize;
 use super::frame::{Frame, Sun};
 use super::in_view::InView;
 use super::layout::{Layout, SplitFrame};
+use super::picked::Picked;
 use super::shaft::{Shaft, first_depth};
 use super::slice_ends::SliceEnds;
+use crate::Warp;
+use crate::bounds::Placed;
+use crate::casters::Gathered;
 use crate::config::Crop;
-use crate::coverage::{CoverageVolume, can_shade};
+use crate::coverage::CoverageVolume;
 use crate::geometry::region::Region;
-use crate::geometry::volume::Slice;
-use crate::{ShadowPlan, Warp};
+use crate::geometry::volume::{Lies, Slice, lies_below};
 
 /// A slice of the view and what it shows.
 #[derive(Clone, Debug)]
@@ -47,7 +50,7 @@ impl Scene {
         slice.corners.iter().for_each(|&corner| region.include_point(&sun.fan, corner));
         let receivers = match frame.config.crop {
             Crop::SceneIndependent => None,
-            Crop::SceneDependent => Some(in_view.receivers_in(&slice, frame, sun)),
+            Crop::SceneDependent => Some(in_view.receivers_in(&slice, sun)),
         };
         let volume = CoverageVolume { slice, swept, receivers, margin: 0.0, is_void: !ends.is_visible };
         Self { ends, region, volume }
@@ -64,11 +67,9 @@ impl Scene {
     }
 }
 
-/// The casters of a slice and what its map has to show with them.
+/// What a map with a slice's casters has to show.
 #[derive(Clone, Debug)]
 pub(super) struct Listed {
-    /// Their place in [`ShadowPlan::caster_indices`].
-    pub casters: std::ops::Range<usize>,
     /// Bounds across the light and in depth.
     pub target: Region,
     /// Depth of the first caster along the light.
@@ -76,79 +77,88 @@ pub(super) struct Listed {
 }
 
 impl Listed {
-    /// Appends the casters of a split to the plan's list.
+    /// Lists the casters of a split.
     pub fn new(
         split: &SplitFrame<'_>,
         size: &MapSize,
         scene: &mut Scene,
-        in_view: &InView,
-        plan: &mut ShadowPlan,
+        casters: &Gathered,
+        listed: &mut Picked,
     ) -> Self {
-        let SplitFrame { frame, sun, .. } = *split;
-        let begin = plan.caster_indices.len();
+        let sun = split.sun;
         scene.volume.margin = size.margin(split, scene.widest());
         let is_shown = scene.volume.receivers.is_none_or(|(region, _)| !region.is_empty());
+        listed.clear();
         if scene.ends.is_visible && is_shown {
-            let shades = |&&index: &&u32| scene.is_shaded_by(frame, sun, index);
-            plan.caster_indices.extend(in_view.casters.iter().filter(shades));
+            scene.pick(sun, casters, listed);
         }
-        let (target, first) = scene.target(frame, sun, &plan.caster_indices[begin..]);
-        let mut listed = Self { casters: begin..plan.caster_indices.len(), target, first };
+        let (mut target, mut first) = scene.target(sun, casters, listed);
         // Casters leave a map with smaller texels than its receivers alone, and with those its filter reaches less far.
-        if scene.volume.receivers.is_some() && !listed.casters.is_empty() && split.warp() == Warp::None {
+        if scene.volume.receivers.is_some() && !listed.is_empty() && split.warp() == Warp::None {
+            let before = (scene.volume.margin, listed.len());
             scene.volume.margin = size.margin(split, target.widest());
-            if listed.thin(frame, sun, scene, plan) {
-                (listed.target, listed.first) = scene.target(frame, sun, &plan.caster_indices[begin..]);
+            if scene.volume.margin < before.0 {
+                scene.pick(sun, casters, listed);
+            }
+            if listed.len() < before.1 {
+                (target, first) = scene.target(sun, casters, listed);
             }
         }
-        listed
-    }
-
-    /// Takes away the casters, at the end of the plan's list, that come no nearer than the scene's margin. Says whether there
-    /// were any.
-    fn thin(&mut self, frame: &Frame<'_>, sun: &Sun<'_>, scene: &Scene, plan: &mut ShadowPlan) -> bool {
-        let mut kept = self.casters.start;
-        for at in self.casters.clone() {
-            let index = plan.caster_indices[at];
-            if scene.is_shaded_by(frame, sun, index) {
-                plan.caster_indices[kept] = index;
-                kept += 1;
-            }
-        }
-        plan.caster_indices.truncate(kept);
-        let fewer = kept < self.casters.end;
-        self.casters.end = kept;
-        fewer
+        Self { target, first }
     }
 }
 
 impl Scene {
-    fn is_shaded_by(&self, frame: &Frame<'_>, sun: &Sun<'_>, caster: u32) -> bool {
+    /// Lists the casters that come no farther away than the scene's margin.
+    fn pick(&self, sun: &Sun<'_>, casters: &Gathered, listed: &mut Picked) {
         let CoverageVolume { swept, receivers, margin, .. } = &self.volume;
-        can_shade(&frame.casters[caster as usize], swept, receivers.as_ref(), &sun.fan, *margin)
+        let (fan, margin) = (&sun.fan, *margin);
+        listed.clear();
+        for group in &casters.groups {
+            let bounds = &group.bounds;
+            let (met, served) = (swept.met_by_all(bounds, margin), receivers.as_ref());
+            if met == Lies::Outside {
+                continue;
+            }
+            let shadowed = served.map_or(Lies::Inside, |(region, _)| region.shadowed_by_all(fan, bounds, margin));
+            if shadowed == Lies::Outside {
+                continue;
+            }
+            listed.pick(casters, group, |Placed { center, half }| {
+                (met == Lies::Inside || swept.meets(*center, *half, margin))
+                    && served.is_none_or(|(region, bounds)| {
+                        !lies_below(*center, *half, bounds, fan.depth, margin)
+                            && (shadowed == Lies::Inside || region.can_be_shadowed_by(fan, *center, *half, margin))
+                    })
+            });
+        }
     }
 
     /// What a map with these casters has to show, in the light's plane and in depth, and the depth of the first caster.
-    fn target(&self, frame: &Frame<'_>, sun: &Sun<'_>, listed: &[u32]) -> (Region, f64) {
-        let fan = &sun.fan;
-        let casters = listed.iter().map(|&index| &frame.casters[index as usize]);
+    fn target(&self, sun: &Sun<'_>, casters: &Gathered, listed: &Picked) -> (Region, f64) {
         match &self.volume.receivers {
             Some((region, _)) if !listed.is_empty() => {
                 let mut target = Region::EMPTY;
-                casters.for_each(|caster| target.include_box_within(fan, caster.center, caster.half, region));
+                for part in &listed.parts {
+                    if target.encloses_box_within(&sun.fan, &part.bounds, region) {
+                        continue;
+                    }
+                    for caster in listed.boxes(casters, part) {
+                        target.include_box_within(&sun.fan, caster.center, caster.half, region);
+                    }
+                }
                 target.depth = region.depth;
-                (target, self.first(frame, sun, listed))
+                (target, self.first(sun, casters, listed))
             }
             Some((region, _)) if !region.is_empty() => (*region, region.depth.0),
-            _ => (self.region, self.first(frame, sun, listed)),
+            _ => (self.region, self.first(sun, casters, listed)),
         }
     }
 
     /// Depth along the light of the first caster, metres: of its part over what is shown where the whole would make the depth
     /// range too long to be precise.
-    fn first(&self, frame: &Frame<'_>, sun: &Sun<'_>, listed: &[u32]) -> f64 {
-        let casters = || listed.iter().map(|&index| &frame.casters[index as usize]);
-        let first = casters().map(|c| first_depth(c, sun.direction)).fold(f64::INFINITY, f64::min);
+    fn first(&self, sun: &Sun<'_>, casters: &Gathered, listed: &Picked) -> f64 {
+        let first = -listed.most(casters, |c| -first_depth(c, sun.direction));
         let (widest, last) = (self.widest() + self.volume.margin, self.depths().1);
         if last - first <= MOST_WIDTHS * widest {
             return first;
@@ -159,7 +169,8 @@ impl Scene {
         };
         // Twice as wide: the middle of a box need not be that of what it bounds.
         let shaft = Shaft::new(middle, 2.0 * widest, sun.light);
-        casters().filter_map(|c| shaft.passage(c)).map(|it| it.0).fold(self.depths().0, f64::min)
+        let begin = |c: &Placed| shaft.passage(c).map_or(f64::INFINITY, |it| it.0);
+        (-listed.most(casters, |c| -begin(c))).min(self.depths().0)
     }
 }
 

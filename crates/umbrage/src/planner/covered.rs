@@ -2,12 +2,13 @@
 
 use glam::{DVec2, DVec3};
 
-use super::frame::{Frame, Sun};
-use super::in_view::InView;
+use super::frame::Sun;
+use super::picked::Picked;
 use super::shaft::first_depth;
 use crate::bounds::Placed;
+use crate::casters::Gathered;
 use crate::coverage::CoverageVolume;
-use crate::geometry::volume::lies_below;
+use crate::geometry::volume::{Lies, lies_below};
 use crate::{ShadowPlan, Split};
 
 /// Texels beyond the filter's reach by which a caster may be off, for the rounding of a sample's place.
@@ -62,30 +63,37 @@ impl<'a> Taken<'a> {
 /// The split with a list and a depth range for everything that its map covers and no earlier one takes, and the depth of its
 /// first caster. `shown` and its depths are of all that any map may be asked about.
 pub(super) fn serving_all_it_covers(
-    frame: &Frame<'_>,
     sun: &Sun<'_>,
     (mut split, mut first): (Split, f64),
     shown: (&CoverageVolume, (f64, f64)),
-    in_view: &InView,
-    plan: &mut ShadowPlan,
+    (casters, listed): (&Gathered, &mut Picked),
+    plan: &ShadowPlan,
 ) -> (Split, f64) {
     let direction = sun.direction;
-    plan.caster_indices.truncate(split.casters.start);
-    let taken = Taken::new(&split, &plan.splits, frame.config.blend());
+    let taken = Taken::new(&split, &plan.splits, plan.blend);
     let margin = taken.margin * split.texel_m.max_element();
     let (volume, depths) = shown;
-    for &index in &in_view.casters {
-        let placed @ Placed { center, half } = frame.casters[index as usize];
-        let can_shade = volume.receivers.as_ref().is_none_or(|(region, bounds)| {
-            !lies_below(center, half, bounds, direction, margin)
-                && region.can_be_shadowed_by(&sun.fan, center, half, margin)
-        });
-        if can_shade && reaches(&split, center, half) && !taken.holds(center, half) {
-            plan.caster_indices.push(index);
-            first = first.min(first_depth(&placed, direction));
+    listed.clear();
+    for group in &casters.groups {
+        let bounds = &group.bounds;
+        // What no box of a group can do, or all of them do.
+        if !reaches(&split, bounds.center, bounds.half) || taken.holds(bounds.center, bounds.half) {
+            continue;
         }
+        let served = volume.receivers.as_ref();
+        let shadowed = served.map_or(Lies::Inside, |(region, _)| region.shadowed_by_all(&sun.fan, bounds, margin));
+        if shadowed == Lies::Outside {
+            continue;
+        }
+        listed.pick(casters, group, |&Placed { center, half }| {
+            reaches(&split, center, half)
+                && served.is_none_or(|(_, bounds)| !lies_below(center, half, bounds, direction, margin))
+                && !taken.holds(center, half)
+                && (shadowed == Lies::Inside
+                    || served.is_none_or(|(region, _)| region.can_be_shadowed_by(&sun.fan, center, half, margin)))
+        });
     }
-    split.casters.end = plan.caster_indices.len();
+    first = first.min(-listed.most(casters, |c| -first_depth(c, direction)));
     split.depth_near = split.depth_near.min(depths.0);
     split.depth_far = split.depth_far.max(depths.1);
     // Any of it may be looked up in this map.

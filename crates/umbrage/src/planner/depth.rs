@@ -8,6 +8,8 @@ use super::layout::Layout;
 use super::scope::Scope;
 use super::shaft::{Shaft, first_depth};
 use crate::Split;
+use crate::bounds::Placed;
+use crate::casters::Most;
 use crate::held::depths::HeldDepths;
 
 /// Depths along the light between which still maps lie whose depth is not clamped, metres; `None` if nothing says so.
@@ -20,14 +22,19 @@ const MOST_LENGTHS: f64 = 16.0;
 
 impl WorldDepths {
     /// From the first caster to the last receiver: of all, or of those near the eye where the world is much larger.
-    pub fn measure(frame: &Frame<'_>, sun: &Sun<'_>, scope: &Scope, layout: &Layout, held: &mut HeldDepths) -> Self {
+    pub fn measure(
+        frame: &Frame<'_>,
+        sun: &Sun<'_>,
+        scope: &Scope<'_>,
+        layout: &Layout,
+        held: &mut HeldDepths,
+    ) -> Self {
         if !frame.stands_still() || frame.depth_clamp {
             return Self(None);
         }
         let direction = sun.direction;
-        let last = |placed| -first_depth(placed, -direction);
-        let near = frame.casters.iter().map(|c| first_depth(c, direction)).fold(f64::INFINITY, f64::min);
-        let far = frame.receivers.iter().map(last).fold(f64::NEG_INFINITY, f64::max);
+        let near = -frame.casters.most(|c| -first_depth(c, direction));
+        let far = frame.receivers.most(|r| -first_depth(r, -direction));
         if !(near.is_finite() && far > near) {
             return Self(None);
         }
@@ -36,11 +43,12 @@ impl WorldDepths {
             return Self(Some((near, far)));
         }
         // Of a receiver nothing is asked that lies farther from the eye than the range goes.
-        let far =
-            scope.receivers(frame).filter_map(|r| shaft.passage(r)).fold(f64::NEG_INFINITY, |far, it| far.max(it.1));
+        let end = |r: &Placed| shaft.passage(r).filter(|_| scope.matters(r)).map(|it| it.1);
+        let far = frame.receivers.most(|r| end(r).unwrap_or(f64::NEG_INFINITY));
         let far = far.min(shaft.depth(0.0) + shaft.half);
-        let begins = frame.casters.iter().filter_map(|c| shaft.passage(c)).map(|it| it.0).filter(|begin| *begin < far);
-        let near = begins.fold(shaft.depth(0.0) - shaft.half, f64::min);
+        let begin = |c: &Placed| shaft.passage(c).map(|it| it.0).filter(|begin| *begin < far);
+        let near = -frame.casters.most(|c| -begin(c).unwrap_or(f64::INFINITY));
+        let near = near.min(shaft.depth(0.0) - shaft.half);
         Self((far > near).then(|| held.hold(near, far)))
     }
 }

@@ -10,6 +10,7 @@ use super::fit::MapSize;
 use super::frame::{Frame, Sun};
 use super::in_view::InView;
 use super::layout::{Layout, LayoutBuffers, SplitFrame};
+use super::picked::Picked;
 use super::scope::Scope;
 use super::snap;
 use super::warped::WarpPoints;
@@ -22,6 +23,7 @@ use crate::{DirectionalLight, Result, ShadowPlan, Split, Warp};
 #[derive(Clone, Debug, Default)]
 pub(super) struct SunBuffers {
     in_view: InView,
+    listed: Picked,
     layout: LayoutBuffers,
     warp_points: WarpPoints,
 }
@@ -35,7 +37,7 @@ pub(super) fn plan(
     plan: &mut ShadowPlan,
 ) -> Result<()> {
     frame.config.selection.metric().check_view(frame.view)?;
-    let SunBuffers { in_view, layout: layout_buffers, warp_points } = buffers;
+    let SunBuffers { in_view, listed: casters, layout: layout_buffers, warp_points } = buffers;
     let sun = Sun::new(light, frame);
     let scope = Scope::new(frame, &sun);
     let layout = Layout::new((frame, &sun), &scope, held, in_view, layout_buffers)?;
@@ -47,22 +49,24 @@ pub(super) fn plan(
         let split = SplitFrame { frame, sun: &sun, layout: &layout, index };
         let mut scene = Scene::of_split(&split, in_view);
         let size = MapSize::new(&split);
-        let listed = Listed::new(&split, &size, &mut scene, in_view, plan);
-        let map = snap::placed(&split, &scene, &size, &listed, &mut held.rectangle[index]);
+        let listed = Listed::new(&split, &size, &mut scene, &in_view.casters, casters);
+        let has_casters = !casters.is_empty();
+        let map = snap::placed(&split, &scene, &size, (&listed, has_casters), &mut held.rectangle[index]);
         let (map, first) = match &shown {
-            Some(all) if !map.casters.is_empty() => {
+            Some(all) if has_casters => {
                 let all = (&all.volume, all.depths());
-                covered::serving_all_it_covers(frame, &sun, (map, listed.first), all, in_view, plan)
+                covered::serving_all_it_covers(&sun, (map, listed.first), all, (&in_view.casters, casters), plan)
             }
             _ => (map, listed.first),
         };
         let mut map = depth::ranged(frame, map, first, &size, world);
         if frame.config.drop_small_casters && split.warp() == Warp::None {
             let texels_per_m = [map.u_axis / map.texel_m.x, map.v_axis / map.texel_m.y];
-            plan.drop_casters(&mut map, |caster| is_small(&frame.casters[caster as usize], texels_per_m));
+            let dropped = casters.retain(&in_view.casters, |caster| !is_small(caster, texels_per_m));
+            plan.dropped_casters.push(dropped);
         }
-        warp(&split, &scene, in_view, warp_points, &mut map, plan);
-        plan.add(map);
+        warp(&split, &scene, (in_view, casters), warp_points, &mut map);
+        plan.add_listed(map, &mut in_view.casters, casters.places());
         plan.coverage.volumes.push(scene.volume);
     }
     plan.coverage.shown = shown.map(|scene| scene.volume);
@@ -99,21 +103,17 @@ fn is_small(caster: &Placed, texels_per_m: [DVec3; 2]) -> bool {
 fn warp(
     split: &SplitFrame<'_>,
     scene: &Scene,
-    in_view: &InView,
+    (in_view, listed): (&mut InView, &Picked),
     points: &mut WarpPoints,
     map: &mut Split,
-    plan: &ShadowPlan,
 ) {
     let (frame, warp) = (split.frame, split.warp());
-    if warp == Warp::None || map.casters.is_empty() {
+    if warp == Warp::None || listed.is_empty() {
         return;
     }
-    let boxes = match frame.config.crop {
-        Crop::SceneIndependent => None,
-        Crop::SceneDependent => Some((frame.receivers, &in_view.receivers[..])),
-    };
-    points.receivers_of(&scene.volume.slice, boxes);
-    let casters = plan.caster_indices[map.casters.clone()].iter().map(|&index| &frame.casters[index as usize]);
+    let receivers = (frame.config.crop == Crop::SceneDependent).then(|| in_view.receivers.in_order());
+    points.receivers_of(&scene.volume.slice, receivers);
+    let casters = in_view.casters.ordered(listed.places());
     points.casters_of(&scene.volume.swept, scene.volume.margin, casters);
     points.warp(map, warp, frame.view, frame.margin, frame.config.crop);
 }

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::inputs::PlanInputs;
 use super::options::PlannerOptions;
 use crate::bounds::Placed;
+use crate::casters::{Crowd, Most};
 use crate::config::Stability;
 use crate::geometry::region::Fan;
 use crate::geometry::volume::{Lies, Slice};
@@ -21,8 +22,8 @@ pub(super) struct Frame<'a> {
     pub reach: FilterReach,
     pub view: &'a View,
     pub image_size: [u32; 2],
-    pub casters: &'a [Placed],
-    pub receivers: &'a [Placed],
+    pub casters: Crowd<'a>,
+    pub receivers: Crowd<'a>,
     /// Texels that a map keeps free around what it serves, at most.
     pub margin: f64,
 }
@@ -31,8 +32,8 @@ impl<'a> Frame<'a> {
     pub fn new(
         (config, options): (&'a ShadowConfig, &PlannerOptions),
         inputs: &PlanInputs<'a>,
-        casters: &'a [Placed],
-        receivers: &'a [Placed],
+        casters: Crowd<'a>,
+        receivers: Crowd<'a>,
     ) -> Self {
         let reach = options.reach(config);
         Self {
@@ -60,12 +61,12 @@ impl<'a> Frame<'a> {
 }
 
 /// Whether a view may show any of some boxes.
-pub(super) fn shows_any(view: &View, boxes: &[Placed]) -> bool {
+pub(super) fn shows_any(view: &View, boxes: &Crowd<'_>) -> bool {
     let Frustum { near, far, .. } = *view.frustum();
     let distance = |placed: &Placed| ((placed.center - view.eye()).abs() + placed.half).length();
-    let far = if far.is_finite() { far } else { boxes.iter().map(distance).fold(0.0, f64::max) };
+    let far = if far.is_finite() { far } else { boxes.most(distance).max(0.0) };
     let whole = Slice::new(view, near, far.max(1.01 * near + 0.01));
-    boxes.iter().any(|placed| whole.classify(placed.center, placed.half) != Lies::Outside)
+    boxes.any(|placed| whole.classify(placed.center, placed.half) != Lies::Outside)
 }
 
 /// A sun, and directions across its light to measure bounds along.

@@ -1,19 +1,20 @@
-//! What the whole view may show: the lists that all slices choose from.
+//! What the whole view may show: the boxes that all slices choose from.
 
 use super::frame::{Frame, Sun};
 use crate::Aabb;
 use crate::bounds::Placed;
+use crate::casters::{Gathered, Near};
 use crate::coverage::Served;
 use crate::geometry::region::Region;
 use crate::geometry::volume::{Lies, Slice};
 
-/// What the whole view may show, as indices into a frame's lists.
+/// What the whole view may show.
 #[derive(Clone, Debug, Default)]
 pub(super) struct InView {
     /// Receivers that some slice can contain.
-    pub receivers: Vec<u32>,
+    pub receivers: Gathered,
     /// Casters that some slice's sweep can meet.
-    pub casters: Vec<u32>,
+    pub casters: Gathered,
     /// Receivers that a slice cuts.
     across: Vec<u32>,
 }
@@ -22,47 +23,73 @@ impl InView {
     pub fn cull(&mut self, frame: &Frame<'_>, sun: &Sun<'_>, far: f64, whole_width: f64) {
         let frustum = frame.view.frustum();
         let whole = Slice::new(frame.view, frustum.near, far.min(frustum.far));
-        let keep = |list: &mut Vec<u32>, boxes: &[Placed], test: &dyn Fn(&Placed) -> bool| {
-            list.clear();
-            list.extend(boxes.iter().enumerate().filter(|(_, placed)| test(placed)).map(|(i, _)| i as u32));
-        };
-        keep(&mut self.receivers, frame.receivers, &|r| whole.classify(r.center, r.half) != Lies::Outside);
+        frame.receivers.near(&Near { planes: &whole.planes, margin: 0.0 }, &mut self.receivers);
         let swept = whole.swept_towards_light(sun.direction);
         // The margin around a split is a few of its texels: at most this share of its width.
         let across = whole.corners[4].distance(whole.corners[7]).max(whole.corners[0].distance(whole.corners[7]));
         let margin = frame.margin_share() * across.max(whole_width);
-        keep(&mut self.casters, frame.casters, &|c| swept.meets(c.center, c.half, margin));
+        frame.casters.near(&Near { planes: swept.planes(), margin }, &mut self.casters);
     }
 
     /// The receivers' part of a slice: its bounds in the light's plane and in the world.
-    pub fn receivers_in(&mut self, slice: &Slice, frame: &Frame<'_>, sun: &Sun<'_>) -> Served {
+    ///
+    /// What lies inside of the bounds of others is passed over: bounds do not depend on the order of receivers.
+    pub fn receivers_in(&mut self, slice: &Slice, sun: &Sun<'_>) -> Served {
+        let Self { receivers, across, .. } = self;
         let fan = &sun.fan;
         let mut region = Region::EMPTY;
         let mut bounds = Aabb::EMPTY;
-        self.across.clear();
-        for &index in &self.receivers {
-            let receiver = &frame.receivers[index as usize];
-            match slice.classify(receiver.center, receiver.half) {
-                Lies::Outside => {}
-                Lies::Inside => {
-                    region.include_box(fan, receiver.center, receiver.half);
-                    bounds = bounds.union(receiver.bounds());
+        // Few boxes make most of the bounds: those that are large, a ground above all.
+        let large = LARGE * slice.corners[0].distance(slice.corners[7]);
+        let of_large = |part: &Placed| part.half.max_element() > large;
+        let include = |region: &mut Region, bounds: &mut Aabb, receiver: &Placed| {
+            let own = receiver.bounds();
+            slice.clip_box(&own, |point| {
+                region.include_point(fan, point);
+                // Rounding leads no part out of its box.
+                *bounds = bounds.including(point.clamp(own.min, own.max));
+            });
+        };
+        for group in receivers.groups.iter().filter(|group| of_large(&group.bounds)) {
+            for receiver in receivers.boxes[group.range()].iter().filter(|it| of_large(it)) {
+                match slice.classify(receiver.center, receiver.half) {
+                    Lies::Across => include(&mut region, &mut bounds, receiver),
+                    // One inside is taken below.
+                    Lies::Inside | Lies::Outside => {}
                 }
-                Lies::Across => self.across.push(index),
             }
         }
-        for &index in &self.across {
-            let receiver = &frame.receivers[index as usize];
-            let own = receiver.bounds();
-            let changes_nothing =
-                bounds.union(own) == bounds && region.encloses_box(fan, receiver.center, receiver.half);
-            if !changes_nothing {
-                slice.clip_box(&own, |point| {
-                    region.include_point(fan, point);
-                    bounds = bounds.including(point);
-                });
+        across.clear();
+        for group in &receivers.groups {
+            let lies = slice.classify(group.bounds.center, group.bounds.half);
+            if lies == Lies::Outside || holds(&region, &bounds, sun, &group.exact, &group.bounds) {
+                continue;
+            }
+            for at in group.range() {
+                let receiver = &receivers.boxes[at];
+                match if lies == Lies::Inside { lies } else { slice.classify(receiver.center, receiver.half) } {
+                    Lies::Outside => {}
+                    Lies::Inside => {
+                        region.include_box(fan, receiver.center, receiver.half);
+                        bounds = bounds.union(receiver.bounds());
+                    }
+                    Lies::Across => across.push(at as u32),
+                }
+            }
+        }
+        for receiver in across.iter().map(|&at| &receivers.boxes[at as usize]) {
+            if !holds(&region, &bounds, sun, &receiver.bounds(), receiver) && !of_large(receiver) {
+                include(&mut region, &mut bounds, receiver);
             }
         }
         (region, bounds)
     }
 }
+
+/// Whether nothing of a box, `own` or a little more, can change the bounds of others.
+fn holds(region: &Region, bounds: &Aabb, sun: &Sun<'_>, own: &Aabb, placed: &Placed) -> bool {
+    bounds.union(*own) == *bounds && region.encloses_box(&sun.fan, placed.center, placed.half)
+}
+
+/// Share of a slice's length that half of a large receiver measures, at least.
+const LARGE: f64 = 0.25;

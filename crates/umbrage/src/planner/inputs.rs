@@ -1,8 +1,87 @@
 //! What a frame's plan is made from.
 
+use glam::DVec3;
+
 use super::options::check_image_size;
 use crate::bounds::Placed;
-use crate::{Aabb, Error, Light, Result, View};
+use crate::casters::{BoxTree, Counter, Crowd, Role};
+use crate::{Aabb, CasterSet, Error, Layers, Light, Result, View};
+
+/// The boxes of a plan's casters or receivers: a list of them, which is looked at anew in every frame, or a set that keeps them.
+///
+/// Slices, arrays, vectors and sets turn into it by themselves.
+#[derive(Clone, Copy, Debug)]
+pub enum Boxes<'a> {
+    /// World boxes. Plans call casters by their places in this list.
+    List(&'a [Aabb]),
+    /// Those of a set that share a layer with [`PlanInputs::layers`]. Plans call casters by their keys.
+    Set(&'a CasterSet),
+}
+
+impl<'a> From<&'a [Aabb]> for Boxes<'a> {
+    fn from(list: &'a [Aabb]) -> Self {
+        Self::List(list)
+    }
+}
+
+impl<'a, const N: usize> From<&'a [Aabb; N]> for Boxes<'a> {
+    fn from(list: &'a [Aabb; N]) -> Self {
+        Self::List(list)
+    }
+}
+
+impl<'a> From<&'a Vec<Aabb>> for Boxes<'a> {
+    fn from(list: &'a Vec<Aabb>) -> Self {
+        Self::List(list)
+    }
+}
+
+impl<'a> From<&'a CasterSet> for Boxes<'a> {
+    fn from(set: &'a CasterSet) -> Self {
+        Self::Set(set)
+    }
+}
+
+impl<'a> Boxes<'a> {
+    /// How many entries a list has; 0 for a set, which names its casters by keys.
+    pub(super) fn listed(&self) -> usize {
+        match self {
+            Self::List(list) => list.len(),
+            Self::Set(_) => 0,
+        }
+    }
+
+    /// Whether both are one and the same list.
+    pub(super) fn is_same_list(&self, other: &Self) -> bool {
+        matches!((self, other), (Self::List(one), Self::List(other)) if std::ptr::eq(*one, *other))
+    }
+
+    /// Checks a list and copies it into a tree.
+    pub(super) fn place(&self, name: &'static str, tree: &mut BoxTree) -> Result<()> {
+        if let Self::List(list) = self {
+            check_boxes(list, name)?;
+            tree.fill(list.iter().map(|&bounds| Placed::from(bounds)));
+        }
+        Ok(())
+    }
+
+    /// As the planner asks them.
+    pub(super) fn crowd<'b>(
+        &self,
+        tree: &'b BoxTree,
+        asks: (Layers, Role),
+        eye: DVec3,
+        counter: &'b Counter,
+    ) -> Crowd<'b>
+    where
+        'a: 'b,
+    {
+        match self {
+            Self::List(_) => Crowd::of_list(tree, eye, counter),
+            Self::Set(set) => Crowd::of_set(set, asks, eye, counter),
+        }
+    }
+}
 
 /// What the planner is told each frame.
 ///
@@ -21,11 +100,13 @@ pub struct PlanInputs<'a> {
     pub view: &'a View,
     /// The light.
     pub light: Light,
-    /// World boxes of what throws shadows. A plan's caster indices refer to this list.
-    pub casters: &'a [Aabb],
-    /// World boxes of what shows shadows; most objects are in both lists. Casters serve as receivers where this list is
-    /// empty or none of it is in view.
-    pub receivers: &'a [Aabb],
+    /// World boxes of what throws shadows, as a list or a set. A plan's caster indices refer to this list, or are the set's keys.
+    pub casters: Boxes<'a>,
+    /// World boxes of what shows shadows, as a list or a set; most objects are in both. Casters serve as receivers where there is
+    /// none here, or none in view.
+    pub receivers: Boxes<'a>,
+    /// Which casters and receivers of sets take part: those that are on one of these layers. All of a list do.
+    pub layers: Layers,
     /// World boxes that hold all that is drawn of the receivers in view and leave less air than the receivers' own:
     /// [`crate::ShadowPlan::casts_into`] then rejects parts of casters that have none of them behind. `None`: not known.
     /// For [`crate::config::Crop::SceneDependent`].
@@ -35,10 +116,23 @@ pub struct PlanInputs<'a> {
 }
 
 impl<'a> PlanInputs<'a> {
-    /// Inputs for a picture of 1920 × 1080 pixels, without receiver clusters.
+    /// Inputs for a picture of 1920 × 1080 pixels, without receiver clusters, of all layers.
     #[must_use]
-    pub fn new(view: &'a View, light: impl Into<Light>, casters: &'a [Aabb], receivers: &'a [Aabb]) -> Self {
-        Self { view, light: light.into(), casters, receivers, receiver_clusters: None, image_size: [1920, 1080] }
+    pub fn new(
+        view: &'a View,
+        light: impl Into<Light>,
+        casters: impl Into<Boxes<'a>>,
+        receivers: impl Into<Boxes<'a>>,
+    ) -> Self {
+        Self {
+            view,
+            light: light.into(),
+            casters: casters.into(),
+            receivers: receivers.into(),
+            layers: Layers::ALL,
+            receiver_clusters: None,
+            image_size: [1920, 1080],
+        }
     }
 
     /// Checks what can be wrong with lists and sizes.
@@ -46,14 +140,6 @@ impl<'a> PlanInputs<'a> {
         check_image_size(self.image_size)?;
         check_boxes(self.receiver_clusters.unwrap_or_default(), "receiver_clusters")
     }
-}
-
-/// Copies boxes as centres and half extents.
-pub(super) fn place(boxes: &[Aabb], list: &'static str, placed: &mut Vec<Placed>) -> Result<()> {
-    check_boxes(boxes, list)?;
-    placed.clear();
-    placed.extend(boxes.iter().map(|&bounds| Placed::from(bounds)));
-    Ok(())
 }
 
 fn check_boxes(boxes: &[Aabb], list: &'static str) -> Result<()> {

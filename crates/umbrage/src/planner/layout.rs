@@ -78,7 +78,7 @@ impl Layout {
     /// [`crate::Error::InvalidSetting`] for a range or planes that do not fit this camera.
     pub fn new(
         (frame, sun): (&Frame<'_>, &Sun<'_>),
-        scope: &Scope,
+        scope: &Scope<'_>,
         held: &mut Held,
         in_view: &mut InView,
         buffers: &mut LayoutBuffers,
@@ -130,7 +130,7 @@ impl Layout {
     /// Holds on to whatever serves. `shown` is the view depth up to which casters are looked for, at least.
     fn holding(
         (frame, sun): (&Frame<'_>, &Sun<'_>),
-        scope: &Scope,
+        scope: &Scope<'_>,
         (held, shown): (&mut Held, f64),
         in_view: &mut InView,
         buffers: &mut LayoutBuffers,
@@ -144,7 +144,7 @@ impl Layout {
             layout.whole_width = 2.0 * held.whole.hold(sphere.radius);
         }
         if frame.config.stability == Stability::Exact {
-            layout.around_all = Block::around(scope.receivers(frame), sun.light);
+            layout.around_all = Block::around(&frame.receivers, |r| scope.matters(r), sun.light);
         }
         in_view.cull(frame, sun, range.far.max(shown), layout.whole_width);
         layout.place_planes(frame, sun, held, in_view, buffers)?;
@@ -178,14 +178,8 @@ impl Layout {
         let is_optimal = config.scheme == SplitScheme::Optimal;
         let LayoutBuffers { placement, planes } = buffers;
         if is_optimal {
-            let sight = Sight {
-                view: frame.view,
-                fan: &sun.fan,
-                receivers: frame.receivers,
-                visible: &in_view.receivers,
-                casters: frame.casters,
-                candidates: &in_view.casters,
-            };
+            let sight =
+                Sight { view: frame.view, fan: &sun.fan, receivers: &in_view.receivers, casters: &in_view.casters };
             let most_half = self.around_all.map_or(DVec2::INFINITY, |all| all.half.truncate());
             let (margin, whole_width, image_size) = (frame.margin, self.whole_width, frame.image_size);
             let maps = Maps { config, image_size, margin, whole_width, most_half };

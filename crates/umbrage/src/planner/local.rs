@@ -11,6 +11,7 @@ use glam::{DVec2, DVec3};
 
 use super::frame::Frame;
 use crate::bounds::Placed;
+use crate::casters::{Gathered, Most};
 use crate::config::{Crop, LightKind, Range, SplitMetric, SplitScheme};
 use crate::coverage::LocalVolume;
 use crate::geometry::light_frustum::{LightFrustum, Part};
@@ -30,8 +31,10 @@ const RANGE_ROOM: f64 = 1e-3;
 /// Memory of one call that the next one uses again.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LocalBuffers {
-    receivers: Vec<u32>,
-    casters: Vec<u32>,
+    receivers: Gathered,
+    casters: Gathered,
+    /// Casters of a split, as places among those.
+    listed: Vec<u32>,
 }
 
 /// A split of one of the light's frusta.
@@ -43,12 +46,6 @@ struct LocalSplit<'a> {
     /// View depths that sample the map.
     coverage: (f64, f64),
     volume: LocalVolume,
-}
-
-/// The casters of a split and what its map has to show with them.
-struct Listed {
-    casters: std::ops::Range<usize>,
-    target: Part,
 }
 
 /// Fills a plan that has begun, frustum after frustum.
@@ -73,11 +70,11 @@ pub(super) fn plan(
         buffers.cull(frame, frustum);
         for index in 0..m {
             let split = LocalSplit::new(frame, frustum, index, &plan.planes, buffers);
-            let listed = split.list_casters(buffers, plan);
+            let target = split.list_casters(buffers);
             let at = plan.splits.len();
             let step = recovering.as_ref().filter(|(maps, _)| maps.contains(&at)).map(|&(_, step)| step);
-            let map = split.map(listed, &plan.planes, &mut held.local.0[at], step);
-            plan.add(map);
+            let map = split.map(&target, &plan.planes, &mut held.local.0[at], step);
+            plan.add_listed(map, &mut buffers.casters, &buffers.listed);
             plan.coverage.local.push(split.volume);
         }
     }
@@ -107,14 +104,10 @@ fn recovering(
 impl LocalBuffers {
     /// Keeps the receivers and casters that the light reaches in this frustum.
     fn cull(&mut self, frame: &Frame<'_>, frustum: &LightFrustum) {
-        let keep = |list: &mut Vec<u32>, boxes: &[Placed], margin: f64| {
-            list.clear();
-            let kept = boxes.iter().enumerate().filter(|(_, placed)| frustum.may_meet(placed, margin));
-            list.extend(kept.map(|(index, _)| index as u32));
-        };
-        keep(&mut self.receivers, frame.receivers, 0.0);
+        frame.receivers.gather(|placed| frustum.may_meet(placed, 0.0), &mut self.receivers);
         // The margin around a map is a few of its texels: at most this share of the frustum's width.
-        keep(&mut self.casters, frame.casters, frame.margin_share() * 2.0 * frustum.slope * frustum.range);
+        let margin = frame.margin_share() * 2.0 * frustum.slope * frustum.range;
+        frame.casters.gather(|placed| frustum.may_meet(placed, margin), &mut self.casters);
     }
 }
 
@@ -142,22 +135,21 @@ impl<'a> LocalSplit<'a> {
         (f64::from(self.size()) - 2.0 * self.frame.margin).max(2.0)
     }
 
-    /// Appends the casters of a split to the plan's list: boxes that meet the hull of the light and what the map has to show.
-    fn list_casters(&self, buffers: &LocalBuffers, plan: &mut ShadowPlan) -> Listed {
+    /// Lists the casters of a split: boxes that meet the hull of the light and what the map has to show. Returns what the map has
+    /// to show with them.
+    fn list_casters(&self, LocalBuffers { casters, listed, .. }: &mut LocalBuffers) -> Part {
         let LocalVolume { frustum, part, .. } = &self.volume;
-        let begin = plan.caster_indices.len();
+        listed.clear();
         if part.is_empty() {
-            return Listed { casters: begin..begin, target: frustum.whole() };
+            return frustum.whole();
         }
-        let casters = |index: &u32| &self.frame.casters[*index as usize];
         let casts = self.casts();
-        plan.caster_indices.extend(buffers.casters.iter().filter(|index| casts(casters(index))));
+        listed.extend((0u32..).zip(&casters.boxes).filter(|(_, caster)| casts(caster)).map(|(at, _)| at));
         // Where casters lie, seen from the light, and the depth of the first.
         let mut target = *part;
-        let listed = &plan.caster_indices[begin..];
         if !listed.is_empty() {
             let (mut lo, mut hi, mut first) = (DVec2::INFINITY, DVec2::NEG_INFINITY, f64::INFINITY);
-            for caster in listed.iter().map(casters) {
+            for caster in listed.iter().map(|&at| &casters.boxes[at as usize]) {
                 let (caster_lo, caster_hi, depth) = frustum.seen(caster, part);
                 (lo, hi, first) = (lo.min(caster_lo), hi.max(caster_hi), first.min(depth));
             }
@@ -166,7 +158,7 @@ impl<'a> LocalSplit<'a> {
                 (target.lo, target.hi) = (lo, hi);
             }
         }
-        Listed { casters: begin..plan.caster_indices.len(), target }
+        target
     }
 
     /// Whether a box can shade the part of the frustum that the map shows.
@@ -215,10 +207,10 @@ impl<'a> LocalSplit<'a> {
     }
 
     /// The split's map.
-    fn map(&self, listed: Listed, planes: &[f64], held: &mut HeldSize, step: Option<f64>) -> Split {
+    fn map(&self, target: &Part, planes: &[f64], held: &mut HeldSize, step: Option<f64>) -> Split {
         let LocalVolume { frustum, part, .. } = &self.volume;
-        let (texel, min_texel) = self.snapped(&listed.target, held, step);
-        let (w_near, w_far) = depths(&listed.target, frustum.near, self.frame.stands_still());
+        let (texel, min_texel) = self.snapped(target, held, step);
+        let (w_near, w_far) = depths(target, frustum.near, self.frame.stands_still());
         let axis_offset = frustum.axis.dot(frustum.position);
         let (size, depths) = (self.size(), (axis_offset + w_near, axis_offset + w_far));
         Split {
@@ -238,21 +230,20 @@ impl<'a> LocalSplit<'a> {
             filter_reach: self.frame.reach.radius_texels,
             warp: Some(frustum.shadow_from_world(texel, min_texel, size, (w_near, w_far))),
             light_position: Some(frustum.position),
-            casters: listed.casters,
+            casters: 0..0,
         }
     }
 }
 
 /// What a slice shows of the light's frustum: all of it, or its receivers.
-fn part_in(frame: &Frame<'_>, frustum: &LightFrustum, slice: &Slice, receivers: &[u32]) -> Part {
+fn part_in(frame: &Frame<'_>, frustum: &LightFrustum, slice: &Slice, receivers: &Gathered) -> Part {
     let mut part = Part::EMPTY;
     if frame.config.crop == Crop::SceneIndependent {
         slice.clip_slice(&frustum.volume, |point| part.include(frustum, point));
         return part;
     }
-    for &index in receivers {
-        let placed @ Placed { center, half } = frame.receivers[index as usize];
-        let bounds = placed.bounds();
+    for placed in &receivers.boxes {
+        let (Placed { center, half }, bounds) = (*placed, placed.bounds());
         match (slice.classify(center, half), frustum.volume.classify(center, half)) {
             (Lies::Outside, _) | (_, Lies::Outside) => {}
             (Lies::Inside, Lies::Inside) => bounds.corners().iter().for_each(|&p| part.include(frustum, p)),
@@ -281,11 +272,11 @@ fn shadowed_range(frame: &Frame<'_>, light: &Light, position: DVec3) -> (f64, f6
     }
     let forward = view.forward();
     let (camera_near, camera_far) = (view.frustum().near, view.frustum().far);
-    let deepest = receivers
-        .iter()
-        .filter(|r| position.clamp(r.center - r.half, r.center + r.half).distance(position) <= range)
-        .map(|r| view.view_depth(r.center) + forward.abs().dot(r.half))
-        .fold(f64::NEG_INFINITY, f64::max);
+    let is_reached = |r: &Placed| position.clamp(r.center - r.half, r.center + r.half).distance(position) <= range;
+    let deepest = receivers.most(|r| match is_reached(r) {
+        true => view.view_depth(r.center) + forward.abs().dot(r.half),
+        false => f64::NEG_INFINITY,
+    });
     let at = view.view_depth(position);
     let reach = (at - range, at + range);
     let nothing = (camera_near, 2.0 * camera_near.abs() + 1.0, false);

@@ -12,9 +12,11 @@ mod fit;
 mod frame;
 mod in_view;
 mod inputs;
+mod kept;
 mod layout;
 mod local;
 mod options;
+mod picked;
 mod range;
 mod scope;
 mod shaft;
@@ -22,13 +24,14 @@ mod slice_ends;
 mod snap;
 mod warped;
 
-use crate::bounds::Placed;
+use crate::casters::{BoxTree, Counter, Crowd, Role, Visited};
 use crate::geometry::light_frustum::LightFrustum;
 use crate::held::Held;
-use crate::{Aabb, Light, Result, ShadowConfig, ShadowPlan, View};
+use crate::{Light, Result, ShadowConfig, ShadowPlan, View};
 use directional::SunBuffers;
 use frame::Frame;
-pub use inputs::PlanInputs;
+pub use inputs::{Boxes, PlanInputs};
+use kept::Kept;
 use local::LocalBuffers;
 pub use options::PlannerOptions;
 
@@ -48,8 +51,12 @@ pub struct Planner {
 /// Memory of one call that the next one uses again. Holds nothing that a plan depends on.
 #[derive(Clone, Debug, Default)]
 struct Buffers {
-    casters: Vec<Placed>,
-    receivers: Vec<Placed>,
+    /// Casters and receivers that come as lists.
+    casters: BoxTree,
+    receivers: BoxTree,
+    /// What the last plan looked at.
+    visited: Visited,
+    kept: Kept,
     sun: SunBuffers,
     local: LocalBuffers,
     held: Held,
@@ -89,6 +96,7 @@ impl Planner {
         if !is_alike {
             self.held = Held::default();
         }
+        self.buffers.kept.clear();
         (self.config, self.options) = (config.clone(), options);
         Ok(())
     }
@@ -111,6 +119,13 @@ impl Planner {
         &self.held
     }
 
+    /// What the last plan looked at of its casters and receivers: a measure of its cost that does not depend on the machine. Nothing
+    /// if view, light and sets were those of the plan before, and what is held as well.
+    #[must_use]
+    pub fn visited(&self) -> Visited {
+        self.buffers.visited
+    }
+
     /// Replaces what is held between frames: to go on from another frame than the last one, or afresh.
     pub fn set_held(&mut self, held: Held) {
         self.held = held;
@@ -121,12 +136,12 @@ impl Planner {
     ///
     /// # Errors
     /// As [`Planner::plan_into`].
-    pub fn plan(
+    pub fn plan<'a>(
         &mut self,
-        view: &View,
+        view: &'a View,
         light: &(impl Copy + Into<Light>),
-        casters: &[Aabb],
-        receivers: &[Aabb],
+        casters: impl Into<Boxes<'a>>,
+        receivers: impl Into<Boxes<'a>>,
     ) -> Result<&ShadowPlan> {
         let inputs =
             PlanInputs { image_size: self.options.image_size, ..PlanInputs::new(view, *light, casters, receivers) };
@@ -188,16 +203,28 @@ fn plan_with(
     plan: &mut ShadowPlan,
 ) -> Result<()> {
     inputs.check()?;
-    inputs::place(inputs.casters, "casters", &mut buffers.casters)?;
-    inputs::place(inputs.receivers, "receivers", &mut buffers.receivers)?;
-    plan.begin(inputs.view, inputs.light);
-    plan.split_range.resize(inputs.casters.len(), None);
-    // A frame that is refused leaves what is held as it was.
-    let Buffers { casters, receivers, sun, local, held: next } = buffers;
-    let shows = |boxes: &[Placed]| frame::shows_any(inputs.view, boxes);
-    if receivers.is_empty() || (!shows(receivers) && shows(casters)) {
-        receivers.clone_from(casters);
+    let known = kept::Inputs::of(inputs);
+    if buffers.kept.serve(known.as_ref(), held, plan) {
+        buffers.visited = Visited::default();
+        return Ok(());
     }
+    inputs.casters.place("casters", &mut buffers.casters)?;
+    let is_one = inputs.casters.is_same_list(&inputs.receivers);
+    if !is_one {
+        inputs.receivers.place("receivers", &mut buffers.receivers)?;
+    }
+    plan.begin(inputs.view, inputs.light);
+    plan.split_range.resize(inputs.casters.listed(), None);
+    // A frame that is refused leaves what is held as it was.
+    let Buffers { casters, receivers, visited, kept, sun, local, held: next } = buffers;
+    let (eye, counter) = (inputs.view.eye(), Counter::default());
+    let trees = (&*casters, &*receivers);
+    let casters = inputs.casters.crowd(trees.0, (inputs.layers, Role::Caster), eye, &counter);
+    let receivers = if is_one { trees.0 } else { trees.1 };
+    let receivers = inputs.receivers.crowd(receivers, (inputs.layers, Role::Receiver), eye, &counter);
+    let shows = |crowd: &Crowd<'_>| frame::shows_any(inputs.view, crowd);
+    let are_replaced = receivers.is_empty() || (!shows(&receivers) && shows(&casters));
+    let receivers = if are_replaced { casters } else { receivers };
     next.clone_from(held);
     let frame = Frame::new(technique, inputs, casters, receivers);
     match &inputs.light {
@@ -214,6 +241,8 @@ fn plan_with(
     if let Some(clusters) = inputs.receiver_clusters {
         plan.coverage.mask(clusters);
     }
+    *visited = counter.get();
+    kept.keep(known, held, next, plan);
     std::mem::swap(held, next);
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Stage 1 of a sun's plan: the shadowed range, `C_0` and `C_m`.
 
 use super::frame::Frame;
-use super::scope::Scope;
+use super::scope::{Extent, Scope};
 use crate::config::{self, SplitMetric, Stability};
 use crate::held::ends::{HeldEnds, Range};
 use crate::planes::scheme::check_range;
@@ -16,7 +16,7 @@ const LEAST_RANGE: f64 = 0.01;
 ///
 /// # Errors
 /// [`crate::Error::InvalidSetting`] naming `shadow-range` if it is empty for this camera, even with nothing held.
-pub(super) fn shadowed(frame: &Frame<'_>, scope: &Scope, held: &mut HeldEnds) -> Result<Range> {
+pub(super) fn shadowed(frame: &Frame<'_>, scope: &Scope<'_>, held: &mut HeldEnds) -> Result<Range> {
     let range = held_range(frame, scope, held);
     if check_range(range.near, range.inner_far).is_ok() {
         return Ok(range);
@@ -28,7 +28,7 @@ pub(super) fn shadowed(frame: &Frame<'_>, scope: &Scope, held: &mut HeldEnds) ->
     Ok(range)
 }
 
-fn held_range(frame: &Frame<'_>, scope: &Scope, held: &mut HeldEnds) -> Range {
+fn held_range(frame: &Frame<'_>, scope: &Scope<'_>, held: &mut HeldEnds) -> Range {
     let Frame { config, view, receivers, .. } = *frame;
     if let config::Range::Metres { near, far } = config.range {
         return Range::new(near, far);
@@ -36,40 +36,42 @@ fn held_range(frame: &Frame<'_>, scope: &Scope, held: &mut HeldEnds) -> Range {
     let metric = config.selection.metric();
     let fits_view = config.range == config::Range::Visible;
     let (near, camera_far) = (view.frustum().near, view.frustum().far / metric.least_depth_share(view));
-    let deepest = match metric {
-        _ if fits_view => scope.deepest_receiver,
-        SplitMetric::ViewDepth => scope.deepest,
-        SplitMetric::Distance => scope.farthest,
+    let extent = (!fits_view).then(|| scope.extent());
+    let deepest = match (&extent, metric) {
+        (None, _) => scope.deepest_receiver(),
+        (Some(extent), SplitMetric::ViewDepth) => extent.deepest,
+        (Some(extent), SplitMetric::Distance) => extent.farthest,
     };
     // Nothing before the eye: any short range will do.
     let deepest = if deepest > near { deepest } else { 2.0 * near.abs() + 1.0 };
     let deepest = deepest.min(camera_far);
-    if fits_view && let Some((first, last)) = visible_range(view, near, deepest, receivers) {
+    if fits_view && let Some((first, last)) = visible_range(view, near, deepest, &receivers) {
         let holds = config.is_stabilised() && first > 0.0;
         let (first, last) = if holds { held.visible.hold(first, last) } else { (first, last) };
         // A single wall that faces the camera still gets slices of some depth.
         let first = first.max(near).min(last * (1.0 - LEAST_RANGE));
         return Range::new(first, last.min(camera_far));
     }
-    let near = first_shown(frame, scope, deepest, held);
+    let extent = extent.unwrap_or_else(|| scope.extent());
+    let near = first_shown(frame, &extent, deepest, held);
     let range = match config.stability {
         // Almost still maps are held by their own extents, whatever the planes: a range that is held as well would only
         // make them larger, by 8 % in the second of four splits, and saves no step.
         Stability::Tight { .. } | Stability::Approximate { .. } => Range::new(near, deepest),
-        Stability::Exact => held.far.hold(near, deepest, scope.farthest.min(camera_far)),
+        Stability::Exact => held.far.hold(near, deepest, extent.farthest.min(camera_far)),
     };
     Range { near, inner_far: range.inner_far.min(camera_far), far: range.far.min(camera_far) }
 }
 
 /// Where the range begins: with the camera; or, where that is orthographic, with the scene, as far as turning cannot bring it
 /// nearer. How far such a camera stands off changes nothing of its picture.
-fn first_shown(frame: &Frame<'_>, scope: &Scope, deepest: f64, held: &mut HeldEnds) -> f64 {
+fn first_shown(frame: &Frame<'_>, extent: &Extent, deepest: f64, held: &mut HeldEnds) -> f64 {
     let frustum = frame.view.frustum();
     if frustum.projection == Projection::Perspective {
         return frustum.near;
     }
     let aside = frustum.left.abs().max(frustum.right.abs()).hypot(frustum.bottom.abs().max(frustum.top.abs()));
-    let first = (scope.nearest * scope.nearest - aside * aside).max(0.0).sqrt();
+    let first = (extent.nearest * extent.nearest - aside * aside).max(0.0).sqrt();
     if first <= frustum.near {
         return frustum.near;
     }

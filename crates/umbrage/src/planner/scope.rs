@@ -8,7 +8,8 @@ use glam::{DVec2, DVec3};
 
 use super::frame::{Frame, Sun};
 use crate::bounds::Placed;
-use crate::geometry::volume::{lies_below, rounding};
+use crate::casters::Most;
+use crate::geometry::volume::lies_below;
 use crate::{Aabb, Projection, View};
 
 /// Receivers that fill less than this share of the picture together, and lie beyond all others, have no say in the range.
@@ -31,48 +32,55 @@ const NEAREST: f64 = 32.0;
 /// Casters without thickness whose shadows are looked for receiver by receiver; more are taken for the worst.
 const MOST_SHEETS: usize = 8;
 
-/// What of the scene matters to a frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Scope {
+/// What of the scene matters to a frame. Measured as far as it is asked for.
+#[derive(Clone, Copy)]
+pub(super) struct Scope<'a> {
+    frame: &'a Frame<'a>,
+    direction: DVec3,
     /// Metres from the eye beyond which no receiver matters.
-    pub distance: f64,
-    /// View depth of the deepest receiver of all.
-    pub deepest_receiver: f64,
-    /// That of the deepest receiver that matters, or of the deepest shadow with [`SLACK`], whichever is less.
+    distance: f64,
+}
+
+/// How far what matters goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Extent {
+    /// View depth of the deepest receiver that matters, or of the deepest shadow with [`SLACK`], whichever is less.
     pub deepest: f64,
-    /// As `deepest`, by distance from the eye.
+    /// The same by distance from the eye.
     pub farthest: f64,
     /// Metres from the eye to the box around all receivers.
     pub nearest: f64,
 }
 
-impl Scope {
-    pub fn new(frame: &Frame<'_>, sun: &Sun<'_>) -> Self {
-        let distance = visible_distance(frame);
-        let (mut bounds, mut all) = (Aabb::EMPTY, Reach::NONE);
-        let eye = frame.view.eye();
-        for receiver in frame.receivers.iter().filter(|r| r.distance_to(eye) <= distance) {
-            bounds = bounds.union(receiver.bounds());
-            all.include(frame.view, receiver);
-        }
-        let mut every = Reach::NONE;
-        frame.receivers.iter().for_each(|receiver| every.include(frame.view, receiver));
+impl<'a> Scope<'a> {
+    pub fn new(frame: &'a Frame<'a>, sun: &Sun<'_>) -> Self {
+        Self { frame, direction: sun.direction, distance: visible_distance(frame) }
+    }
+
+    /// Whether a receiver, or any in a box, matters.
+    pub fn matters(&self, receiver: &Placed) -> bool {
+        receiver.distance_to(self.frame.view.eye()) <= self.distance
+    }
+
+    /// View depth of the deepest receiver of all.
+    pub fn deepest_receiver(&self) -> f64 {
+        self.frame.receivers.most(|receiver| deepest(self.frame.view, receiver))
+    }
+
+    /// How far what matters goes.
+    pub fn extent(&self) -> Extent {
+        let &Self { frame, direction, distance } = self;
+        let matters = |receiver: &Placed| self.matters(receiver);
+        let bounds = frame.receivers.bounds(matters);
+        let all = Reach::most(frame.view, |of| frame.receivers.most(|r| if matters(r) { of(r) } else { NOTHING }));
         let nearest = if bounds.is_empty() { 0.0 } else { Placed::from(bounds).distance_to(frame.view.eye()) };
-        let shadows = Shadows { frame, direction: sun.direction, distance }.reach(&bounds);
+        let shadows = Shadows { frame, direction, distance }.reach(&bounds);
         let (mut deepest, mut farthest) = (all.deepest, all.farthest);
         if shadows.farthest > 0.0 {
             let ahead = (SLACK * shadows.deepest).max(LOOKING_AWAY * shadows.farthest);
             (deepest, farthest) = (deepest.min(ahead), farthest.min(SLACK * shadows.farthest));
         }
-        Self { distance, deepest_receiver: every.deepest, deepest, farthest, nearest }
-    }
-}
-
-impl Scope {
-    /// The receivers that matter.
-    pub fn receivers<'a>(&self, frame: &Frame<'a>) -> impl Iterator<Item = &'a Placed> + use<'a> {
-        let (eye, distance) = (frame.view.eye(), self.distance);
-        frame.receivers.iter().filter(move |receiver| receiver.distance_to(eye) <= distance)
+        Extent { deepest, farthest, nearest }
     }
 }
 
@@ -83,14 +91,32 @@ struct Reach {
     farthest: f64,
 }
 
-impl Reach {
-    const NONE: Self = Self { deepest: f64::NEG_INFINITY, farthest: 0.0 };
+/// What a box measures of which nothing is asked.
+const NOTHING: f64 = f64::NEG_INFINITY;
 
-    fn include(&mut self, view: &View, placed: &Placed) {
-        let (forward, from_eye) = (view.forward(), placed.center - view.eye());
-        self.deepest = self.deepest.max(forward.dot(from_eye) + forward.abs().dot(placed.half));
-        self.farthest = self.farthest.max((from_eye.abs() + placed.half).length());
+impl Reach {
+    const NONE: Self = Self { deepest: NOTHING, farthest: 0.0 };
+
+    /// Of some boxes, whose largest measure `most` finds.
+    fn most(view: &View, most: impl Fn(&dyn Fn(&Placed) -> f64) -> f64) -> Self {
+        let eye = view.eye();
+        Self { deepest: most(&|it| deepest(view, it)), farthest: most(&|it| farthest(eye, it)).max(0.0) }
     }
+
+    fn union(self, other: Self) -> Self {
+        Self { deepest: self.deepest.max(other.deepest), farthest: self.farthest.max(other.farthest) }
+    }
+}
+
+/// View depth of the deepest point of a box.
+fn deepest(view: &View, placed: &Placed) -> f64 {
+    let forward = view.forward();
+    forward.dot(placed.center - view.eye()) + forward.abs().dot(placed.half)
+}
+
+/// Metres from the eye to the farthest point of a box.
+fn farthest(eye: DVec3, placed: &Placed) -> f64 {
+    ((placed.center - eye).abs() + placed.half).length()
 }
 
 /// Metres from the eye beyond which the picture shows nothing, or next to nothing.
@@ -105,29 +131,87 @@ fn visible_distance(frame: &Frame<'_>) -> f64 {
         return most;
     }
     let picture = (frustum.right - frustum.left) * (frustum.top - frustum.bottom);
-    let mut shares = [0.0; CLASSES];
-    let class = |distance: f64| (distance.log2() + NEAREST).clamp(0.0, (CLASSES - 1) as f64) as usize;
-    for receiver in frame.receivers {
-        let distance = receiver.distance_to(eye);
-        if distance <= most {
-            let size = receiver.half.length() / distance.max(1e-9);
-            shares[class(distance)] += (std::f64::consts::PI * size * size / picture).min(1.0);
+    let Some(end) = Shares { frame, most, picture }.kept() else { return most };
+    let reach = |within: f64| {
+        let measure = |r: &Placed| if r.distance_to(eye) <= within { farthest(eye, r) } else { NOTHING };
+        frame.receivers.most(measure).max(0.0)
+    };
+    if reach(most).min(most) > MUCH_FARTHER * reach(end).min(most) { end } else { most }
+}
+
+/// Which shares of the picture receivers fill, by their distance.
+struct Shares<'a> {
+    frame: &'a Frame<'a>,
+    /// Metres from the eye beyond which the camera shows none.
+    most: f64,
+    /// The picture, in tangents squared.
+    picture: f64,
+}
+
+impl Shares<'_> {
+    /// The distance beyond which everything together is next to nothing; `None` if that leaves nothing out.
+    fn kept(&self) -> Option<f64> {
+        // From the farthest class to the nearest, as long as all that is left out is next to nothing. Shares are summed as whole
+        // numbers, in any order: the sum does not depend on it.
+        let mut sum = 0;
+        let mut class = self.farthest_class(f64::INFINITY)?;
+        let farthest = class;
+        loop {
+            self.add(class, &mut sum);
+            let begin = 2f64.powf(class as f64 - NEAREST);
+            if sum >= LEAST_UNITS {
+                return (class < farthest).then_some((2.0 * begin).next_down());
+            }
+            class = self.farthest_class(begin)?.min(class.checked_sub(1)?);
         }
     }
-    // From the farthest class to the nearest, as long as all that is left out is next to nothing.
-    let mut sum = 0.0;
-    let first_kept = (0..CLASSES).rev().find(|&class| {
-        sum += shares[class];
-        sum >= LEAST_SHARE
-    });
-    let Some(kept) = first_kept else { return most };
-    let end = 2f64.powf(kept as f64 + 1.0 - NEAREST).next_down();
-    let farthest = |within: f64| {
-        let near = frame.receivers.iter().filter(|r| r.distance_to(eye) <= within);
-        near.map(|r| ((r.center - eye).abs() + r.half).length()).fold(0.0, f64::max)
-    };
-    if farthest(most).min(most) > MUCH_FARTHER * farthest(end).min(most) { end } else { most }
+
+    /// The class of the farthest receiver that is nearer than `within` metres.
+    fn farthest_class(&self, within: f64) -> Option<usize> {
+        let eye = self.frame.view.eye();
+        let is_there = |distance: f64| distance <= self.most && distance < within;
+        let of = |distance: f64| class(distance) as f64;
+        // A box holds points at most so far away, or at least so near.
+        let bound = |r: &Placed| match is_there(r.distance_to(eye)) {
+            true => of(farthest(eye, r).min(self.most).min(within)),
+            false => NOTHING,
+        };
+        let measure = |r: &Placed| Some(r.distance_to(eye)).filter(|&it| is_there(it)).map_or(NOTHING, of);
+        let class = self.frame.receivers.most_within(bound, measure);
+        (class > NOTHING).then_some(class as usize)
+    }
+
+    /// Adds the shares of a class, up to what is enough.
+    fn add(&self, of: usize, sum: &mut u64) {
+        let eye = self.frame.view.eye();
+        let (begin, end) = (2f64.powf(of as f64 - NEAREST), 2f64.powf(of as f64 + 1.0 - NEAREST));
+        let begin = if of == 0 { 0.0 } else { begin * (1.0 - 1e-9) };
+        let end = if of == CLASSES - 1 { f64::INFINITY } else { end * (1.0 + 1e-9) };
+        let end = end.min(self.most);
+        let total = std::cell::Cell::new(*sum);
+        let may_be = |r: &Placed| total.get() < LEAST_UNITS && r.distance_to(eye) <= end && farthest(eye, r) >= begin;
+        self.frame.receivers.each(may_be, |_, receiver| {
+            let distance = receiver.distance_to(eye);
+            if distance <= self.most && class(distance) == of {
+                let size = receiver.half.length() / distance.max(1e-9);
+                let share = (std::f64::consts::PI * size * size / self.picture).min(1.0);
+                total.set(total.get() + (UNITS * share) as u64);
+            }
+        });
+        *sum = total.get();
+    }
 }
+
+/// The class of a distance.
+fn class(distance: f64) -> usize {
+    (distance.log2() + NEAREST).clamp(0.0, (CLASSES - 1) as f64) as usize
+}
+
+/// The whole picture in whole numbers.
+const UNITS: f64 = (1u64 << 40) as f64;
+
+/// [`LEAST_SHARE`] in those.
+const LEAST_UNITS: u64 = (LEAST_SHARE * UNITS) as u64;
 
 /// Where the shadows of a frame fall.
 struct Shadows<'a> {
@@ -143,36 +227,54 @@ impl Shadows<'_> {
         if bounds.is_empty() {
             return reach;
         }
-        let (mut sheets, mut count) = ([0; MOST_SHEETS], 0);
-        let flat = |caster: &Placed| 2.0 * caster.half.min_element() <= rounding(caster.half);
-        for (i, caster) in self.frame.casters.iter().enumerate() {
-            if lies_below(caster.center, caster.half, bounds, self.direction, 0.0) {
-                continue;
-            }
-            if flat(caster) && count < MOST_SHEETS {
-                (sheets[count], count) = (i, count + 1);
-                continue;
-            }
-            self.include(&mut reach, caster, bounds);
-        }
+        let Frame { view, casters, receivers, .. } = self.frame;
+        let sheets = self.sheets(bounds);
+        let is_sheet = |caster: &Placed| sheets.iter().flatten().any(|(_, sheet)| sheet == caster);
+        let is_void =
+            |caster: &Placed| lies_below(caster.center, caster.half, bounds, self.direction, 0.0) || is_sheet(caster);
+        let shadow = |caster: &Placed, within: &Aabb, of: &dyn Fn(&Placed) -> f64| {
+            self.shadow(caster, within).map_or(NOTHING, |shadow| of(&shadow))
+        };
+        reach = reach.union(Reach::most(view, |of| {
+            casters.most_within(
+                |it| shadow(it, bounds, of),
+                |it| if is_void(it) { NOTHING } else { shadow(it, bounds, of) },
+            )
+        }));
         // A sheet, such as a ground that something reaches below of, shades nothing of its own.
-        for caster in sheets[..count].iter().map(|&i| &self.frame.casters[i]) {
-            let others = self.frame.receivers.iter().filter(|receiver| *receiver != caster);
-            others.for_each(|receiver| self.include(&mut reach, caster, &receiver.bounds()));
+        for (_, sheet) in sheets.iter().flatten() {
+            reach = reach.union(Reach::most(view, |of| {
+                let on = |receiver: &Placed| shadow(sheet, &receiver.bounds(), of);
+                receivers.most_within(on, |receiver| if receiver == sheet { NOTHING } else { on(receiver) })
+            }));
         }
         reach
     }
 
-    /// Takes the part of `within` that a caster can shade.
-    fn include(&self, reach: &mut Reach, caster: &Placed, within: &Aabb) {
-        let Some((enter, leave)) = self.passage(caster, within) else { return };
+    /// The first casters, by name, that have no thickness and lie above something.
+    fn sheets(&self, bounds: &Aabb) -> [Option<(u32, Placed)>; MOST_SHEETS] {
+        let mut sheets = [None; MOST_SHEETS];
+        self.frame.casters.flats(|name, caster| {
+            if lies_below(caster.center, caster.half, bounds, self.direction, 0.0) {
+                return;
+            }
+            let comes_first = |sheet: &Option<(u32, Placed)>| sheet.is_none_or(|(other, _)| name < other);
+            if let Some(at) = sheets.iter().position(comes_first) {
+                sheets[at..].rotate_right(1);
+                sheets[at] = Some((name, *caster));
+            }
+        });
+        sheets
+    }
+
+    /// The part of `within` that a caster, or any in a box, can shade; `None` if that is nothing, or too far away to matter.
+    fn shadow(&self, caster: &Placed, within: &Aabb) -> Option<Placed> {
+        let (enter, leave) = self.passage(caster, within)?;
         let (begin, end) = (caster.center + enter * self.direction, caster.center + leave * self.direction);
         let lo = (begin.min(end) - caster.half).max(within.min);
         let hi = (begin.max(end) + caster.half).min(within.max);
         let shadow = Placed::from(Aabb::new(lo.min(hi), hi));
-        if shadow.distance_to(self.frame.view.eye()) <= self.distance {
-            reach.include(self.frame.view, &shadow);
-        }
+        (shadow.distance_to(self.frame.view.eye()) <= self.distance).then_some(shadow)
     }
 
     /// Between how many metres of travel along the light a caster's box meets another; `None` if it never does.

@@ -18,7 +18,7 @@ pub(super) fn placed(
     split: &SplitFrame<'_>,
     scene: &Scene,
     size: &MapSize,
-    listed: &Listed,
+    (listed, has_casters): (&Listed, bool),
     held: &mut HeldRectangle,
 ) -> Split {
     let SplitFrame { frame, sun, layout, index: i } = *split;
@@ -41,7 +41,7 @@ pub(super) fn placed(
         filter_reach: size.still_reach,
         warp: None,
         light_position: None,
-        casters: listed.casters.clone(),
+        casters: 0..0,
     };
     match frame.config.stability {
         Stability::Tight { .. } => fitted(split, &listed.target, &sun.fan, size.reach),
@@ -49,7 +49,7 @@ pub(super) fn placed(
         Stability::Approximate { steps } => {
             // A split without casters is lit, whatever its rectangle; it changes nothing that is held.
             let mut unheld = HeldRectangle::default();
-            let held = if split.casters.is_empty() { &mut unheld } else { held };
+            let held = if has_casters { held } else { &mut unheld };
             let refits = layout.refits == Some(i);
             let rectangle = held.hold(&listed.target, steps, layout.whole_width, refits);
             let radius = size.half.max_element();

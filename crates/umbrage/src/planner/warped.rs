@@ -23,16 +23,15 @@ pub(crate) struct WarpPoints {
 }
 
 impl WarpPoints {
-    /// Takes the receivers: the parts of those boxes (all of them, and the indices of those to look at) that lie inside the slice, or
-    /// the slice's corners.
-    pub fn receivers_of(&mut self, slice: &Slice, boxes: Option<(&[Placed], &[u32])>) {
+    /// Takes the receivers: the parts of those boxes that lie inside the slice, or the slice's corners.
+    pub fn receivers_of<'a>(&mut self, slice: &Slice, boxes: Option<impl Iterator<Item = &'a Placed>>) {
         let points = &mut self.receivers;
         points.clear();
-        let Some((boxes, visible)) = boxes else {
+        let Some(boxes) = boxes else {
             points.extend(slice.corners);
             return;
         };
-        for receiver in visible.iter().map(|&index| &boxes[index as usize]) {
+        for receiver in boxes {
             match slice.classify(receiver.center, receiver.half) {
                 Lies::Outside => {}
                 Lies::Inside => points.extend(receiver.bounds().corners()),

@@ -1,0 +1,122 @@
+//! What casters have in common: who asks for them, and for what.
+
+use crate::{Error, Result};
+
+/// Layers that a caster is on, or that a light or a view asks for: a set of up to [`Layers::COUNT`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Layers(u32);
+
+impl Layers {
+    /// How many layers there are.
+    pub const COUNT: u32 = u32::BITS;
+
+    /// Every layer.
+    pub const ALL: Self = Self(u32::MAX);
+
+    /// No layer: nobody asks.
+    pub const NONE: Self = Self(0);
+
+    /// One layer, counted from 0.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchLayer`] for [`Layers::COUNT`] and above.
+    pub fn one(layer: u32) -> Result<Self> {
+        1u32.checked_shl(layer).map(Self).ok_or(Error::NoSuchLayer { layer })
+    }
+
+    /// From a mask: bit `i` stands for layer `i`.
+    #[must_use]
+    pub const fn from_bits(bits: u32) -> Self {
+        Self(bits)
+    }
+
+    /// As a mask: bit `i` stands for layer `i`.
+    #[must_use]
+    pub const fn bits(self) -> u32 {
+        self.0
+    }
+
+    /// Whether any layer is in both.
+    #[must_use]
+    pub const fn meets(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+}
+
+impl Default for Layers {
+    /// The first layer.
+    fn default() -> Self {
+        Self(1)
+    }
+}
+
+impl std::ops::BitOr for Layers {
+    type Output = Self;
+
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+/// What a box of a set is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// To throw shadows.
+    Caster,
+    /// To show them.
+    Receiver,
+}
+
+/// Layers and flags of a caster. Casters share the few combinations that there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Kind {
+    pub layers: Layers,
+    pub casts: bool,
+    pub receives: bool,
+}
+
+/// Who asks a set, and for what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Ask {
+    pub layers: Layers,
+    pub role: Role,
+}
+
+impl Ask {
+    pub(super) fn is_for(self, kind: Kind) -> bool {
+        let plays = match self.role {
+            Role::Caster => kind.casts,
+            Role::Receiver => kind.receives,
+        };
+        plays && kind.layers.meets(self.layers)
+    }
+}
+
+/// All kinds of a set, by number.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Kinds(Vec<Kind>);
+
+impl Kinds {
+    /// The number of a kind.
+    pub fn number(&mut self, kind: Kind) -> Result<u16> {
+        if let Some(number) = self.0.iter().rposition(|known| *known == kind) {
+            return Ok(number as u16);
+        }
+        let number = u16::try_from(self.0.len()).map_err(|_| Error::TooManyCasterKinds)?;
+        self.0.push(kind);
+        Ok(number)
+    }
+
+    pub fn get(&self, number: u16) -> Kind {
+        self.0[usize::from(number)]
+    }
+
+    /// Whether every kind is asked for, so that none need be looked up.
+    pub fn are_all_for(&self, ask: Ask) -> bool {
+        self.0.iter().all(|&kind| ask.is_for(kind))
+    }
+
+    pub fn bytes(&self) -> usize {
+        self.0.capacity() * size_of::<Kind>()
+    }
+}

@@ -1,0 +1,548 @@
+//! The set: what an application does with it.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::curve::Curve;
+use super::kind::{Kind, Kinds, Layers};
+use super::loose::{Entry, Loose};
+use super::packed::{Packing, RUN, Run, on_lattice};
+use super::slots::{CasterHandle, MOST_LANES, MOST_RUNS, PackedPlace, Place, Slots};
+use crate::{Aabb, Error, Result};
+
+/// Whether a caster is expected to move.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Motion {
+    /// It stays where it is for a long time: a building, a tree, a piece of ground. It may be moved all the same.
+    #[default]
+    Static,
+    /// It moves in many frames: a vehicle, a walker, a door.
+    Moving,
+}
+
+/// Something that throws or shows shadows, as a [`CasterSet`] takes it.
+///
+/// ```
+/// # use umbrage::{Aabb, Caster, Layers, Motion};
+/// # use umbrage::glam::DVec3;
+/// let tree = Caster::new(Aabb::new(DVec3::ZERO, DVec3::new(4.0, 12.0, 4.0)), 7);
+/// let bird = Caster { motion: Motion::Moving, receives: false, ..tree };
+/// let unseen = Caster { layers: Layers::one(3)?, ..tree };
+/// # Ok::<(), umbrage::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Caster {
+    /// Its box in the world, metres.
+    pub bounds: Aabb,
+    /// What plans call it: the place of the object in the application's own list, for example. Casters that share a key are
+    /// drawn as one: lists hold the key once.
+    pub key: u32,
+    /// Whether it is expected to move.
+    pub motion: Motion,
+    /// Who sees it: see [`crate::PlanInputs::layers`].
+    pub layers: Layers,
+    /// Whether it throws shadows.
+    pub casts: bool,
+    /// Whether it shows shadows: it counts where the set is given as receivers.
+    pub receives: bool,
+}
+
+impl Caster {
+    /// A static caster on the first layer that throws shadows and shows them.
+    #[must_use]
+    pub fn new(bounds: impl Into<Aabb>, key: u32) -> Self {
+        let (motion, layers) = (Motion::Static, Layers::default());
+        Self { bounds: bounds.into(), key, motion, layers, casts: true, receives: true }
+    }
+
+    fn kind(&self) -> Kind {
+        Kind { layers: self.layers, casts: self.casts, receives: self.receives }
+    }
+}
+
+/// Casters and receivers by the million, kept from frame to frame.
+///
+/// A planner that is given lists looks at every box in every frame. A set keeps the boxes in trees, and the planner looks at those
+/// that matter: what a plan costs follows from what is in view, not from the size of the world.
+///
+/// ```
+/// use umbrage::{Aabb, Caster, CasterSet, DirectionalLight, Frustum, Motion, PlanInputs, Planner, ShadowConfig, View};
+/// # use umbrage::glam::DVec3;
+/// let tree = |i: u32| {
+///     let corner = DVec3::new(f64::from(i % 1000) * 10.0, 0.0, f64::from(i / 1000) * 10.0);
+///     Caster::new(Aabb::new(corner, corner + DVec3::new(4.0, 12.0, 4.0)), i)
+/// };
+/// let mut forest = CasterSet::new();
+/// forest.insert_all((0..20_000).map(tree))?;
+/// let car = Caster { motion: Motion::Moving, ..tree(20_000) };
+/// let car = forest.insert(car)?;
+///
+/// let frustum = Frustum::perspective(1.0, 1.5, 0.1, 500.0)?;
+/// let view = View::look_at_upright(DVec3::new(50.0, 10.0, 50.0), DVec3::new(90.0, 0.0, 90.0), frustum)?;
+/// let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2))?;
+/// let mut planner = Planner::new(&ShadowConfig::default())?;
+/// forest.set_bounds(car, Aabb::new(DVec3::splat(60.0), DVec3::splat(62.0)))?;
+/// let plan = planner.plan_frame(&PlanInputs::new(&view, sun, &forest, &forest))?;
+/// // Keys, rising: what the map of the first split is drawn with.
+/// println!("{:?}", plan.casters(0));
+/// # Ok::<(), umbrage::Error>(())
+/// ```
+///
+/// # Plans
+///
+/// A plan of a set is the plan of the list of the boxes that it keeps, [`CasterSet::bounds`], in the order of their keys, bit for
+/// bit. It does not depend on the order in which they came. It names casters by their keys.
+///
+/// # What is kept
+///
+/// A static box is kept in 18 bytes: rounded outwards to 2^-14 m (0.06 mm), on a lattice that is as fine 100 km from the world's
+/// origin as there. With handle, key and tree that is 32 bytes a caster where at least some ten of them stand to the square kilometre.
+/// Boxes that move, that are longer than 256 m, that are flat or that lie farther away than 17 million kilometres are kept as they
+/// are given, in some 250 bytes.
+///
+/// # Speed
+///
+/// * [`CasterSet::insert_all`] packs whatever it is given in the best order. Fill a set by it while a level is loaded, and tile by
+///   tile where a world is streamed.
+/// * Casters that come one by one are packed 16,384 at a time, which takes some ten milliseconds. [`CasterSet::pack`] puts everything
+///   in the best order again.
+/// * Moving a caster costs some tens of nanoseconds, and a part of fitting the tree of all that move.
+/// * A static caster that moves is moved where it stands if it does not go far, and is packed anew later if it does.
+///
+/// With the feature `rayon`, packing uses all cores.
+#[derive(Debug)]
+pub struct CasterSet {
+    slots: Slots,
+    kinds: Kinds,
+    /// Runs of packed casters; empty ones keep their number.
+    runs: Vec<Option<Run>>,
+    loose: Loose,
+    len: usize,
+    /// Who this is, and how often it has changed: two sets that agree in both hold the same.
+    identity: u64,
+    revision: u64,
+}
+
+impl Default for CasterSet {
+    fn default() -> Self {
+        Self {
+            slots: Slots::default(),
+            kinds: Kinds::default(),
+            runs: Vec::new(),
+            loose: Loose::default(),
+            len: 0,
+            identity: new_identity(),
+            revision: 0,
+        }
+    }
+}
+
+impl Clone for CasterSet {
+    fn clone(&self) -> Self {
+        Self {
+            slots: self.slots.clone(),
+            kinds: self.kinds.clone(),
+            runs: self.runs.clone(),
+            loose: self.loose.clone(),
+            identity: new_identity(),
+            ..*self
+        }
+    }
+}
+
+/// A number that no other set has.
+fn new_identity() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}
+
+impl CasterSet {
+    /// An empty set.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// How many casters there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Adds a caster. The handle names it until it is removed.
+    ///
+    /// # Errors
+    /// [`Error::InvalidCaster`] naming its key if its box is inverted, NaN or beyond 10^12 m; [`Error::TooManyCasters`];
+    /// [`Error::TooManyCasterKinds`]. Nothing has changed then.
+    pub fn insert(&mut self, caster: Caster) -> Result<CasterHandle> {
+        check(caster.bounds, None, caster.key)?;
+        let kind = self.kinds.number(caster.kind())?;
+        let handle = self.slots.insert(Place::Loose(self.loose.entries.len() as u32))?;
+        let slot = self.slots.index(handle)?;
+        self.loose.push(entry(&caster, kind, slot));
+        self.len += 1;
+        self.changed();
+        Ok(handle)
+    }
+
+    /// Adds many casters, and packs the static ones of them together. Returns their handles in the same order.
+    ///
+    /// # Errors
+    /// Those of [`CasterSet::insert`]. Nothing has changed then.
+    pub fn insert_all(&mut self, casters: impl IntoIterator<Item = Caster>) -> Result<Vec<CasterHandle>> {
+        let casters: Vec<Caster> = casters.into_iter().collect();
+        casters.iter().try_for_each(|caster| check(caster.bounds, None, caster.key))?;
+        let mut kinds = self.kinds.clone();
+        let numbers = casters.iter().map(|caster| kinds.number(caster.kind())).collect::<Result<Vec<_>>>()?;
+        self.slots.check_room(casters.len())?;
+        self.kinds = kinds;
+        self.slots.reserve(casters.len());
+        let (mut handles, mut packing) = (Vec::with_capacity(casters.len()), Vec::new());
+        for (caster, kind) in casters.iter().zip(numbers) {
+            let handle = self.slots.insert(Place::Loose(self.loose.entries.len() as u32))?;
+            let slot = self.slots.index(handle)?;
+            let entry = entry(caster, kind, slot);
+            if entry.is_due {
+                packing.push(entry);
+            } else {
+                self.loose.push(entry);
+            }
+            handles.push(handle);
+        }
+        self.len += casters.len();
+        self.pack_entries(&packing);
+        self.changed();
+        Ok(handles)
+    }
+
+    /// Moves a caster.
+    ///
+    /// # Errors
+    /// [`Error::InvalidCaster`] naming the handle if the box is inverted, NaN or beyond 10^12 m; [`Error::RemovedCaster`]. Nothing has
+    /// changed then.
+    pub fn set_bounds(&mut self, handle: CasterHandle, bounds: impl Into<Aabb>) -> Result<()> {
+        let bounds = bounds.into();
+        let slot = self.slots.index(handle)?;
+        let (key, kind) = self.about(slot);
+        check(bounds, Some(handle), key)?;
+        match self.slots.get(slot) {
+            Place::Loose(at) => {
+                let moves = self.loose.entries[at as usize].moves;
+                let lattice = on_lattice(bounds).filter(|_| !moves);
+                self.loose.set(at, lattice.unwrap_or(bounds), lattice.is_some());
+            }
+            Place::Packed(PackedPlace { run, lane }) => {
+                let lattice = on_lattice(bounds);
+                let layers = self.kinds.get(kind).layers;
+                let run = self.runs[run as usize].as_mut();
+                let fits = lattice.zip(run).is_some_and(|(bounds, run)| run.set(lane, bounds, layers));
+                if !fits {
+                    self.loosen(slot, &|caster| caster.bounds = bounds);
+                }
+            }
+        }
+        self.changed();
+        Ok(())
+    }
+
+    /// Replaces a caster by another under the same handle.
+    ///
+    /// # Errors
+    /// Those of [`CasterSet::set_bounds`] and [`CasterSet::insert`]. Nothing has changed then.
+    pub fn replace(&mut self, handle: CasterHandle, caster: Caster) -> Result<()> {
+        let slot = self.slots.index(handle)?;
+        check(caster.bounds, Some(handle), caster.key)?;
+        let kind = self.kinds.number(caster.kind())?;
+        self.unplace(slot);
+        let at = self.loose.push(entry(&caster, kind, slot));
+        self.slots.set(slot, Place::Loose(at));
+        self.changed();
+        Ok(())
+    }
+
+    /// Says whether a caster is expected to move from now on.
+    ///
+    /// # Errors
+    /// [`Error::RemovedCaster`].
+    pub fn set_motion(&mut self, handle: CasterHandle, motion: Motion) -> Result<()> {
+        let slot = self.slots.index(handle)?;
+        if self.caster(slot).motion != motion {
+            self.loosen(slot, &|caster| caster.motion = motion);
+            self.changed();
+        }
+        Ok(())
+    }
+
+    /// Removes a caster. Its handle names nobody from now on.
+    ///
+    /// # Errors
+    /// [`Error::RemovedCaster`].
+    pub fn remove(&mut self, handle: CasterHandle) -> Result<()> {
+        let slot = self.slots.index(handle)?;
+        self.unplace(slot);
+        self.slots.remove(slot);
+        self.len -= 1;
+        self.changed();
+        Ok(())
+    }
+
+    /// Removes all casters.
+    pub fn clear(&mut self) {
+        let taken: Vec<u32> = self.slots.iter().collect();
+        taken.into_iter().for_each(|slot| self.slots.remove(slot));
+        (self.runs, self.loose, self.len) = (Vec::new(), Loose::default(), 0);
+        self.revision += 1;
+    }
+
+    /// The box that is kept of a caster: the one that was given, rounded outwards by 0.06 mm at most.
+    ///
+    /// # Errors
+    /// [`Error::RemovedCaster`].
+    pub fn bounds(&self, handle: CasterHandle) -> Result<Aabb> {
+        Ok(self.caster(self.slots.index(handle)?).bounds)
+    }
+
+    /// A caster as it is kept.
+    ///
+    /// # Errors
+    /// [`Error::RemovedCaster`].
+    pub fn get(&self, handle: CasterHandle) -> Result<Caster> {
+        Ok(self.caster(self.slots.index(handle)?))
+    }
+
+    /// Whether a handle names a caster.
+    #[must_use]
+    pub fn contains(&self, handle: CasterHandle) -> bool {
+        self.slots.index(handle).is_ok()
+    }
+
+    /// All casters as they are kept, in the order of their handles.
+    pub fn iter(&self) -> impl Iterator<Item = (CasterHandle, Caster)> + '_ {
+        self.slots.iter().map(|slot| (self.slots.handle(slot), self.caster(slot)))
+    }
+
+    /// Packs all static casters anew, in the best order. A million take about a second of one core.
+    pub fn pack(&mut self) {
+        let mut packing = self.loose.take_due();
+        self.tell_loose();
+        for slot in self.slots.iter() {
+            if let Place::Packed(_) = self.slots.get(slot) {
+                packing.push(entry(&self.caster(slot), self.about(slot).1, slot));
+            }
+        }
+        self.loose.shrink();
+        self.runs.clear();
+        self.pack_entries(&packing);
+        self.revision += 1;
+    }
+
+    /// Bytes of memory that the set takes.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        let runs = self.runs.iter().flatten().map(Run::bytes).sum::<usize>();
+        let table = self.runs.capacity() * size_of::<Option<Run>>();
+        size_of::<Self>() + self.slots.bytes() + self.kinds.bytes() + runs + table + self.loose.bytes()
+    }
+
+    /// Two sets that agree in this hold the same.
+    pub(crate) fn stamp(&self) -> (u64, u64) {
+        (self.identity, self.revision)
+    }
+
+    pub(super) fn parts(&self) -> (&[Option<Run>], &Loose, &Kinds) {
+        (&self.runs, &self.loose, &self.kinds)
+    }
+
+    /// Key and kind of a caster.
+    fn about(&self, slot: u32) -> (u32, u16) {
+        match self.slots.get(slot) {
+            Place::Loose(at) => (self.loose.entries[at as usize].key, self.loose.entries[at as usize].kind),
+            Place::Packed(PackedPlace { run, lane }) => {
+                self.runs[run as usize].as_ref().map_or((0, 0), |run| run.about(lane))
+            }
+        }
+    }
+
+    fn caster(&self, slot: u32) -> Caster {
+        let (key, kind) = self.about(slot);
+        let Kind { layers, casts, receives } = self.kinds.get(kind);
+        let (bounds, motion) = match self.slots.get(slot) {
+            Place::Loose(at) => {
+                let Entry { bounds, moves, .. } = self.loose.entries[at as usize];
+                (bounds, if moves { Motion::Moving } else { Motion::Static })
+            }
+            Place::Packed(PackedPlace { run, lane }) => {
+                let bounds = self.runs[run as usize].as_ref().map_or(Aabb::EMPTY, |run| run.bounds(lane));
+                (bounds, Motion::Static)
+            }
+        };
+        Caster { bounds, key, motion, layers, casts, receives }
+    }
+
+    /// Changes a caster and keeps it among the loose ones.
+    fn loosen(&mut self, slot: u32, change: &dyn Fn(&mut Caster)) {
+        let (_, kind) = self.about(slot);
+        let mut caster = self.caster(slot);
+        change(&mut caster);
+        self.unplace(slot);
+        let at = self.loose.push(entry(&caster, kind, slot));
+        self.slots.set(slot, Place::Loose(at));
+    }
+
+    /// Takes a caster out of where it is kept.
+    fn unplace(&mut self, slot: u32) {
+        match self.slots.get(slot) {
+            Place::Loose(at) => {
+                if let Some(moved) = self.loose.remove(at) {
+                    self.slots.set(moved, Place::Loose(at));
+                }
+            }
+            Place::Packed(PackedPlace { run: number, lane }) => {
+                let Some(run) = &mut self.runs[number as usize] else { return };
+                run.remove(lane);
+                if 2 * run.live < run.built {
+                    self.pack_rest(number);
+                }
+            }
+        }
+    }
+
+    /// Packs anew what is left of a run.
+    fn pack_rest(&mut self, number: u32) {
+        let Some(run) = self.runs[number as usize].take() else { return };
+        let rest = |lane: u32| {
+            let ((key, kind), bounds) = (run.about(lane), run.bounds(lane));
+            (lane, Entry { bounds, code: 0, key, slot: 0, kind, moves: false, is_due: true })
+        };
+        let mut rest: Vec<(u32, Entry)> = run.places().map(rest).collect();
+        // Lanes do not know their slots: slots know their lanes.
+        let mut slot_of = vec![u32::MAX; MOST_LANES];
+        for slot in self.slots.iter() {
+            if let Place::Packed(place) = self.slots.get(slot)
+                && place.run == number
+            {
+                slot_of[place.lane as usize] = slot;
+            }
+        }
+        rest.iter_mut().for_each(|(lane, entry)| entry.slot = slot_of[*lane as usize]);
+        let rest: Vec<Entry> = rest.into_iter().map(|(_, entry)| entry).collect();
+        self.pack_entries(&rest);
+    }
+
+    /// After a change: fits and packs what it is time for.
+    fn changed(&mut self) {
+        self.revision += 1;
+        if self.loose.due >= RUN {
+            let due = self.loose.take_due();
+            self.tell_loose();
+            self.pack_entries(&due);
+        } else if self.loose.settle() {
+            self.tell_loose();
+        }
+    }
+
+    /// Tells the slots where the loose casters are.
+    fn tell_loose(&mut self) {
+        for (at, entry) in self.loose.entries.iter().enumerate() {
+            self.slots.set(entry.slot, Place::Loose(at as u32));
+        }
+    }
+
+    /// Packs casters that are nowhere.
+    fn pack_entries(&mut self, entries: &[Entry]) {
+        let bounds = entries.iter().fold(Aabb::EMPTY, |all, entry| all.including(entry.bounds.center()));
+        let curve = Curve::through(bounds);
+        let mut packing: Vec<Packing> = map_all(entries, |&Entry { bounds, key, kind, slot, .. }| Packing {
+            code: curve.code(bounds.center()),
+            bounds,
+            key,
+            kind,
+            slot,
+        });
+        sort(&mut packing);
+        let chunks: Vec<&[Packing]> = packing.chunks(RUN).collect();
+        let built = map_all(&chunks, |chunk| runs_of(chunk, &self.kinds));
+        for (run, slots) in built.into_iter().flatten() {
+            self.add_run(run, slots);
+        }
+    }
+
+    /// Keeps the casters of a run one by one, for good.
+    fn keep_loose(&mut self, run: &Run, slots: &[(u32, u32)]) {
+        for &(slot, lane) in slots {
+            let (key, kind) = run.about(lane);
+            let bounds = run.bounds(lane);
+            let at = self.loose.push(Entry { bounds, code: 0, key, slot, kind, moves: false, is_due: false });
+            self.slots.set(slot, Place::Loose(at));
+        }
+    }
+
+    fn add_run(&mut self, run: Run, slots: Vec<(u32, u32)>) {
+        let number = self.runs.iter().position(Option::is_none).unwrap_or(self.runs.len());
+        if number == MOST_RUNS {
+            // Only millions of casters that lie hundreds of metres apart need so many.
+            return self.keep_loose(&run, &slots);
+        }
+        for (slot, lane) in slots {
+            self.slots.set(slot, Place::Packed(PackedPlace { run: number as u32, lane }));
+        }
+        if number == self.runs.len() {
+            self.runs.push(None);
+        }
+        self.runs[number] = Some(run);
+    }
+}
+
+/// A run, and the lane of each of its slots.
+type Built = (Run, Vec<(u32, u32)>);
+
+/// Runs of casters in the order of their codes: one, or several where they lie far apart.
+fn runs_of(casters: &[Packing], kinds: &Kinds) -> Vec<Built> {
+    if let Some((run, places)) = Run::new(casters, kinds) {
+        let slots = casters.iter().map(|caster| caster.slot).zip(places).collect();
+        return vec![(run, slots)];
+    }
+    let (first, second) = casters.split_at(casters.len() / 2);
+    [first, second].into_iter().flat_map(|half| runs_of(half, kinds)).collect()
+}
+
+fn entry(caster: &Caster, kind: u16, slot: u32) -> Entry {
+    let moves = caster.motion == Motion::Moving;
+    let lattice = on_lattice(caster.bounds).filter(|_| !moves);
+    let bounds = lattice.unwrap_or(caster.bounds);
+    Entry { bounds, code: 0, key: caster.key, slot, kind, moves, is_due: lattice.is_some() }
+}
+
+fn check(bounds: Aabb, handle: Option<CasterHandle>, key: u32) -> Result<()> {
+    if bounds.is_accepted() {
+        return Ok(());
+    }
+    Err(Error::InvalidCaster { handle, key, min: bounds.min, max: bounds.max })
+}
+
+#[cfg(feature = "rayon")]
+fn map_all<T: Sync, U: Send>(items: &[T], map: impl Fn(&T) -> U + Sync + Send) -> Vec<U> {
+    use rayon::prelude::*;
+    items.par_iter().map(map).collect()
+}
+
+#[cfg(not(feature = "rayon"))]
+fn map_all<T, U>(items: &[T], map: impl Fn(&T) -> U) -> Vec<U> {
+    items.iter().map(map).collect()
+}
+
+#[cfg(feature = "rayon")]
+fn sort(packing: &mut [Packing]) {
+    use rayon::prelude::*;
+    packing.par_sort_unstable_by_key(|caster| (caster.code, caster.slot));
+}
+
+#[cfg(not(feature = "rayon"))]
+fn sort(packing: &mut [Packing]) {
+    packing.sort_unstable_by_key(|caster| (caster.code, caster.slot));
+}
