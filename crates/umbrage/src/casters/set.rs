@@ -526,7 +526,7 @@ fn check(bounds: Aabb, handle: Option<CasterHandle>, key: u32) -> Result<()> {
 }
 
 #[cfg(feature = "rayon")]
-fn map_all<T: Sync, U: Send>(items: &[T], map: impl Fn(&T) -> U + Sync) -> Vec<U> {
+fn map_all<T: Sync, U: Send>(items: &[T], map: impl Fn(&T) -> U + Sync + Send) -> Vec<U> {
     use rayon::prelude::*;
     items.par_iter().map(map).collect()
 }
