@@ -27,7 +27,7 @@ const LONGEST: f64 = SPAN / 4.0;
 /// The largest coordinate of a box that is packed, metres: origins are 32-bit numbers.
 const FARTHEST: f64 = ORIGIN_STEP * (1u64 << 30) as f64;
 
-/// Casters of a run, at most. A run is built as a whole: in a few milliseconds.
+/// Casters of a run, at most. A run is built as a whole: in some ten milliseconds.
 pub(super) const RUN: usize = 16_384;
 
 /// The box on the lattice around a box; `None` if it is kept as it is: large, very far away, or flat, whose place along its axis

@@ -103,7 +103,7 @@ impl Caster {
 ///
 /// * [`CasterSet::insert_all`] packs whatever it is given in the best order. Fill a set by it while a level is loaded, and tile by
 ///   tile where a world is streamed.
-/// * Casters that come one by one are packed 16,384 at a time, which takes some milliseconds. [`CasterSet::pack`] puts everything
+/// * Casters that come one by one are packed 16,384 at a time, which takes some ten milliseconds. [`CasterSet::pack`] puts everything
 ///   in the best order again.
 /// * Moving a caster costs some tens of nanoseconds, and a part of fitting the tree of all that move.
 /// * A static caster that moves is moved where it stands if it does not go far, and is packed anew later if it does.
