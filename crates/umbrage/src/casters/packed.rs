@@ -403,9 +403,8 @@ impl Run {
         let boxes = &self.boxes[leaf];
         let mut ends = [[0.0f32; WIDE]; 6];
         for (k, ends) in ends.iter_mut().enumerate() {
-            for lane in 0..WIDE {
-                let steps = u32::from(boxes.low[k][lane]) | u32::from(boxes.high[k][lane]) << 16;
-                ends[lane] = steps as i32 as f32 * STEP as f32;
+            for (end, (&low, &high)) in ends.iter_mut().zip(boxes.low[k].iter().zip(&boxes.high[k])) {
+                *end = (u32::from(low) | u32::from(high) << 16) as i32 as f32 * STEP as f32;
             }
         }
         let origin = self.origin(leaf);
