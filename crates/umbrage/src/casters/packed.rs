@@ -27,7 +27,7 @@ const LONGEST: f64 = SPAN / 4.0;
 /// The largest coordinate of a box that is packed, metres: origins are 32-bit numbers.
 const FARTHEST: f64 = ORIGIN_STEP * (1u64 << 30) as f64;
 
-/// Casters of a run, at most. A run is built as a whole: in a few milliseconds.
+/// Casters of a run, at most. A run is built as a whole: in some ten milliseconds.
 pub(super) const RUN: usize = 16_384;
 
 /// The box on the lattice around a box; `None` if it is kept as it is: large, very far away, or flat, whose place along its axis
@@ -403,9 +403,8 @@ impl Run {
         let boxes = &self.boxes[leaf];
         let mut ends = [[0.0f32; WIDE]; 6];
         for (k, ends) in ends.iter_mut().enumerate() {
-            for lane in 0..WIDE {
-                let steps = u32::from(boxes.low[k][lane]) | u32::from(boxes.high[k][lane]) << 16;
-                ends[lane] = steps as i32 as f32 * STEP as f32;
+            for (end, (&low, &high)) in ends.iter_mut().zip(boxes.low[k].iter().zip(&boxes.high[k])) {
+                *end = (u32::from(low) | u32::from(high) << 16) as i32 as f32 * STEP as f32;
             }
         }
         let origin = self.origin(leaf);
