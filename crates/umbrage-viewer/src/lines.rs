@@ -59,15 +59,28 @@ pub fn edges(bounds: &Aabb) -> [Segment; 12] {
     EDGES.map(|edge| edge.map(corner))
 }
 
-/// The frusta of a plan's splits, each with its number: slices of the view that was planned for, and boxes of maps.
+/// A split's lines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SplitLines {
+    /// The split, counted from 0 in each face.
+    pub split: usize,
+    /// Its slice of the view that was planned for; nothing for bands of distance, which have no planes.
+    pub slice: Vec<Segment>,
+    /// What its map holds.
+    pub map: Vec<Segment>,
+}
+
+/// The lines of a plan's splits, but for those that nothing throws a shadow into.
 #[must_use]
-pub fn frusta(plan: &ShadowPlan, planned: &View) -> Vec<(usize, Vec<Segment>)> {
-    let per_face = plan.splits.len() / plan.faces().max(1);
+pub fn frusta(plan: &ShadowPlan, planned: &View) -> Vec<SplitLines> {
+    let per_face = (plan.splits.len() / plan.faces().max(1)).max(1);
     let of = |(index, split): (usize, &Split)| {
-        // Bands of distance have no planes.
         let slice = plan.radial_eye.is_none().then(|| slice(planned, split.near, split.far));
-        let lines = slice.into_iter().flatten().chain(map_box(split).into_iter().flatten()).collect();
-        (if per_face > 0 { index % per_face } else { index }, lines)
+        SplitLines {
+            split: index % per_face,
+            slice: slice.into_iter().flatten().collect(),
+            map: map_box(split).into_iter().flatten().collect(),
+        }
     };
     plan.splits.iter().enumerate().filter(|(_, split)| !split.casters.is_empty()).map(of).collect()
 }
@@ -156,7 +169,7 @@ mod tests {
         let mut planner = Planner::new(&ShadowConfig::default()).expect("valid");
         let plan = planner.plan(&view, &sun, &world, &world).expect("valid");
         let all = frusta(plan, &view);
-        assert!(!all.is_empty() && all.iter().all(|(_, lines)| lines.len() == 24));
+        assert!(!all.is_empty() && all.iter().all(|lines| (lines.slice.len(), lines.map.len()) == (12, 12)));
         for split in &plan.splits {
             for end in map_box(split).expect("a box").iter().flatten() {
                 let at = split.map_from_world(*end);

@@ -14,6 +14,8 @@ use umbrage_lab::scene_request::{CameraChoice, SceneRequest};
 use umbrage_lab::scene_setup::frame_views;
 use umbrage_scene::{CameraPath, Pose, Scene};
 
+use crate::path::Following;
+
 /// The view of a gallery that a scene of the menu begins with.
 const FIRST_SHOT: &str = "middle";
 
@@ -32,9 +34,9 @@ pub struct Stage {
     pub view: View,
     /// The lights at the request's time.
     pub lights: Vec<NamedLight>,
-    /// The views of a path, where the request has one.
+    /// The path, where the request has one.
     pub path: Option<CameraPath>,
-    /// What the loader left out, and which defaults were invented.
+    /// What the loader left out.
     pub notes: Vec<String>,
 }
 
@@ -49,6 +51,15 @@ impl Stage {
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.scene.animations.iter().map(|clip| clip.duration).fold(0.0, f64::max)
+    }
+
+    /// The path of the request, to be followed from its beginning.
+    #[must_use]
+    pub fn following(&self) -> Option<Following> {
+        match (&self.request.camera, &self.path) {
+            (CameraChoice::Path { eye_height, .. }, Some(path)) => Some(Following::new(path.clone(), *eye_height)),
+            _ => None,
+        }
     }
 
     /// The view of a camera of the scene.
@@ -171,8 +182,10 @@ pub fn open(request: SceneRequest, enter: impl Fn(Step)) -> Result<Stage, Failur
     enter(Step::Posing);
     let pose = scene.pose(request.time_s)?;
     let mut notes = scene.notes.clone();
-    let views = frame_views(&request, &scene, &pose, path.as_ref(), &mut notes)?;
-    let lights = lights::chosen(&request, &scene, &pose, path.as_ref(), &mut notes)?;
+    // Which camera and which sun were taken can be seen and changed in the window.
+    let mut seen = Vec::new();
+    let views = frame_views(&request, &scene, &pose, path.as_ref(), &mut seen)?;
+    let lights = lights::chosen(&request, &scene, &pose, path.as_ref(), &mut seen)?;
     let first = views.into_iter().next().ok_or_else(|| Failure::input("--frames 0 asks for no frame"))?;
     if !first.beside.is_empty() {
         notes.push("one view at a time is shown: the first of the cameras".to_owned());

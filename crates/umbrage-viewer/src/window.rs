@@ -64,8 +64,8 @@ impl Viewer {
         let proxy = Arc::new(std::sync::Mutex::new(proxy));
         let wake = move || {
             let proxy = proxy.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            // The loop has ended once the window is closed.
-            drop(proxy.send_event(News));
+            // The loop has ended once the window is closed; nobody is to be woken then.
+            let _closed = proxy.send_event(News);
         };
         let mut session = Session::new(options.config.clone(), options.request.size);
         session.show = options.show.clone();
@@ -74,9 +74,7 @@ impl Viewer {
         let mut app = App::new(session, Arc::new(wake));
         app.bare = options.bare;
         app.open(options.request.clone());
-        let ctx = egui::Context::default();
-        ctx.set_theme(egui::Theme::Dark);
-        ctx.set_zoom_factor(options.scale);
+        let ctx = context(options.scale);
         let now = Instant::now();
         Self {
             options,
@@ -150,13 +148,13 @@ impl Viewer {
         self.devices += 1;
         let window = self.shown.take().map(|shown| shown.window);
         if self.devices > MOST_DEVICES {
-            return self.fail(events, Error::Lost(format!("it was lost {MOST_DEVICES} times")));
+            let again = self.app.command_line();
+            let why = format!("it was lost {MOST_DEVICES} times; this shows the same again: {again}");
+            return self.fail(events, Error::Lost(why));
         }
         self.app.session.say(false, "the window's graphics device was lost and opened again");
         // What was handed to the former device has to be handed over again.
-        self.ctx = egui::Context::default();
-        self.ctx.set_theme(egui::Theme::Dark);
-        self.ctx.set_zoom_factor(self.options.scale);
+        self.ctx = context(self.options.scale);
         self.app.textures = crate::textures::Textures::default();
         match Shown::open(events, window, &self.options, &self.ctx) {
             Ok(shown) => self.shown = Some(shown),
@@ -207,6 +205,19 @@ impl Viewer {
             Err(why) => self.fail(events, wrong(why)),
         }
     }
+}
+
+/// Controls that can be read beside a bright picture.
+fn context(scale: f32) -> egui::Context {
+    let ctx = egui::Context::default();
+    ctx.set_theme(egui::Theme::Dark);
+    ctx.set_zoom_factor(scale);
+    ctx.all_styles_mut(|style| {
+        style.text_styles.insert(egui::TextStyle::Small, egui::FontId::proportional(11.0));
+        style.visuals.override_text_color = Some(egui::Color32::from_gray(222));
+        style.visuals.weak_text_color = Some(egui::Color32::from_gray(165));
+    });
+    ctx
 }
 
 /// A view of a view: from behind and above, on what it looks at.
@@ -375,6 +386,10 @@ impl Shown {
     fn present(&mut self, triangles: &[egui::ClippedPrimitive], scale: f32) -> Painted {
         if self.lost.load(std::sync::atomic::Ordering::Relaxed) {
             return Painted::Lost;
+        }
+        let size = self.window.inner_size();
+        if size.width == 0 || size.height == 0 {
+            return Painted::Hidden;
         }
         let frame = match self.surface.get_current_texture() {
             wgpu::CurrentSurfaceTexture::Success(frame) | wgpu::CurrentSurfaceTexture::Suboptimal(frame) => frame,

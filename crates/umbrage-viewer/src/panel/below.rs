@@ -17,7 +17,7 @@ pub fn below(app: &mut App, ui: &mut Ui) {
                 }
             }
             if app.session.show.tab.is_none() {
-                ui.weak("open one to see what the picture is made of");
+                ui.weak("what the picture is made of");
             }
         });
     });

@@ -75,7 +75,7 @@ fn legend(session: &Session, ui: &mut Ui) {
             }
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = (rect.width() - 70.0).max(0.0) / 2.0;
-                ui.small("⅛");
+                ui.small("1/8");
                 ui.small("1");
                 ui.small("8");
             });
@@ -131,7 +131,7 @@ fn compare(session: &mut Session, ui: &mut Ui) {
     if session.other.is_some() {
         ui.horizontal(|ui| {
             ui.weak("left: the settings");
-            if ui.button("⇄ swap").clicked()
+            if ui.button("swap").clicked()
                 && let Some(other) = session.other.take()
             {
                 session.other = Some(session.config.clone());

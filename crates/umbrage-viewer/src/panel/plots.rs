@@ -124,14 +124,15 @@ pub(super) fn planes(drawn: &Drawn, ui: &mut Ui) {
     let Some(taken) = first(drawn) else { return };
     let plan = &taken.stats.plan;
     let compared = drawn.taken.get(1).map(|taken| &taken.stats.plan);
-    ui.horizontal_wrapped(|ui| {
-        let planes: Vec<String> = plan.planes.iter().map(|plane| metres(*plane)).collect();
-        ui.label(format!("planes at {}", planes.join(", ")));
-        ui.weak("below the line at 1 a texel is smaller than a pixel; above it the map's texels show at edges");
-    });
+    let planes: Vec<String> = plan.planes.iter().map(|plane| metres(*plane)).collect();
+    let text = format!(
+        "Planes at {}. Above the dashed line a texel is larger than a pixel and shows at edges.",
+        planes.join(", ")
+    );
+    ui.add(egui::Label::new(text).truncate());
     let height = drawn.shot.size[1];
     Plot::new("planes")
-        .legend(Legend::default().position(Corner::LeftTop))
+        .legend(Legend::default().position(Corner::RightTop))
         .allow_scroll(false)
         .x_axis_label("view depth, m")
         .y_axis_label("pixels per texel")
@@ -149,12 +150,12 @@ pub(super) fn planes(drawn: &Drawn, ui: &mut Ui) {
             let range =
                 [plan.planes.first(), plan.planes.last()].map(|plane| plane.copied().unwrap_or(1.0).max(1e-3).log10());
             plot.line(
-                Line::new("1", PlotPoints::from(vec![[range[0], 0.0], [range[1], 0.0]]))
+                Line::new("", PlotPoints::from(vec![[range[0], 0.0], [range[1], 0.0]]))
                     .color(nothing)
                     .style(LineStyle::dashed_loose()),
             );
-            for (index, plane) in plan.planes.iter().enumerate().filter(|(_, plane)| **plane > 0.0) {
-                plot.vline(VLine::new(format!("plane {index}"), plane.log10()).color(nothing).width(1.0));
+            for plane in plan.planes.iter().filter(|plane| **plane > 0.0) {
+                plot.vline(VLine::new("", plane.log10()).color(nothing).width(1.0));
             }
             for (index, points) in aliasing(plan, planned(drawn), height) {
                 plot.line(

@@ -5,9 +5,12 @@ use egui::{Panel, ProgressBar, ScrollArea, Slider, TextEdit, Ui};
 use super::{look, sun};
 use crate::app::App;
 use crate::camera::{Mode, SPEEDS_M_S};
-use crate::path::{Following, Recording};
+use crate::path::Recording;
 use crate::session::Session;
 use crate::stage::shipped;
+
+/// Widest field for a file, points: one that took all there is would push the panel wider with every frame.
+const FIELD: f32 = 170.0;
 
 /// The left side.
 pub fn scene(app: &mut App, ui: &mut Ui) {
@@ -43,7 +46,7 @@ fn open(app: &mut App, ui: &mut Ui) {
     ui.horizontal(|ui| {
         let field = TextEdit::singleline(&mut app.fields.file)
             .hint_text("a file, or drop one here")
-            .desired_width(ui.available_width() - 50.0);
+            .desired_width((ui.available_width() - 60.0).clamp(60.0, FIELD));
         let typed = ui.add(field);
         let entered = typed.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
         let can = !app.fields.file.trim().is_empty();
@@ -63,7 +66,7 @@ fn open(app: &mut App, ui: &mut Ui) {
 fn time(session: &mut Session, ui: &mut Ui) {
     let duration = session.stage.as_ref().map_or(1.0, |stage| stage.duration_s()).max(1e-3);
     ui.horizontal(|ui| {
-        let text = if session.playing { "⏸ stop" } else { "▶ go on" };
+        let text = if session.playing { "stand still" } else { "let it run" };
         if ui.button(text).on_hover_text("Space").clicked() {
             session.playing = !session.playing;
         }
@@ -117,22 +120,22 @@ fn paths(session: &mut Session, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         match &session.recording {
             None => {
-                let record = ui.button("⏺ record a path");
+                let record = ui.button("record a path");
                 if record.on_hover_text("Takes down where you fly, for `umbrage render --path`").clicked() {
                     session.recording = Some(Recording::default());
                 }
             }
             Some(recording) => {
-                if ui.button(format!("⏹ save {} points", recording.len())).clicked() {
+                if ui.button(format!("save the path ({} points)", recording.len())).clicked() {
                     save(session);
                 }
             }
         }
-        let own = session.stage.as_ref().and_then(|stage| stage.path.clone());
-        if let Some(path) = own {
+        let own = session.stage.as_ref().and_then(|stage| stage.following());
+        if let Some(own) = own {
             let following = session.following.is_some();
             if ui.selectable_label(following, "follow the path").clicked() {
-                session.following = (!following).then(|| Following::new(path, crate::path::EYE_HEIGHT_M));
+                session.following = (!following).then_some(own);
             }
         }
     });

@@ -123,7 +123,7 @@ fn setting(app: &mut App, row: &Row, ui: &mut Ui) {
             let text = back
                 .as_ref()
                 .map_or_else(|| "the default has no such setting".to_owned(), |back| format!("back to {back}"));
-            if ui.add_enabled(back.is_some(), egui::Button::new("⟲").small()).on_hover_text(text).clicked() {
+            if ui.add_enabled(back.is_some(), egui::Button::new("back").small()).on_hover_text(text).clicked() {
                 chosen = back;
             }
         }
@@ -319,7 +319,7 @@ fn texels(app: &mut App, row: &Row, sizes: &[u32], ui: &mut Ui) -> Choice {
 fn typed(app: &mut App, row: &Row, value: &Value, ui: &mut Ui) -> Choice {
     let entry = app.fields.typed.get(row.setting.key).cloned();
     let mut text = entry.map_or_else(|| value.to_string(), |(text, _)| text);
-    let field = ui.add(TextEdit::singleline(&mut text).desired_width(110.0));
+    let field = ui.add(TextEdit::singleline(&mut text).desired_width(130.0));
     ui.weak(row.unit());
     if field.changed() {
         let wrong = row.setting.kind.check(text.trim()).err();

@@ -42,6 +42,11 @@ pub fn viewport(app: &mut App, ui: &mut Ui) {
         app.session.resize([pixels(rect.width()), pixels(rect.height())]);
         app.fields.card_at = rect.left_bottom() + Vec2::new(12.0, -230.0);
         picture(app, ui, rect);
+        if ui.input(|input| !input.raw.hovered_files.is_empty()) {
+            let painter = ui.painter_at(rect);
+            painter.rect_stroke(rect.shrink(6.0), 6.0, Stroke::new(3.0, Color32::WHITE), egui::StrokeKind::Inside);
+            shadowed(&painter, rect.center(), Align2::CENTER_CENTER, "Let go to open it", 22.0);
+        }
         hands(app, ui, &response);
         messages(app, ui, rect);
         picked::picked(app, ui);
@@ -89,8 +94,9 @@ fn waiting(app: &App, ui: &mut Ui, rect: Rect) {
 fn wipe(app: &mut App, ui: &mut Ui, rect: Rect, second: egui::TextureId) {
     let x = rect.left() + rect.width() * app.session.show.wipe;
     let handle = Rect::from_min_max(Pos2::new(x - HANDLE, rect.top()), Pos2::new(x + HANDLE, rect.bottom()));
-    let response =
-        ui.interact(handle, ui.scope_id().with("wipe"), Sense::drag()).on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
+    let response = ui
+        .interact(handle, ui.scope_id().with("wipe"), Sense::drag())
+        .on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
     if response.dragged() {
         let moved = app.session.show.wipe + response.drag_delta().x / rect.width().max(1.0);
         app.session.show.wipe = moved.clamp(0.0, 1.0);
@@ -130,9 +136,11 @@ fn world_lines(app: &mut App, ui: &mut Ui, rect: Rect, drawn: &Arc<Drawn>) {
         && let Some(taken) = drawn.taken.first()
     {
         let planned = drawn.shot.planned_for.as_ref().unwrap_or(view);
-        for (split, segments) in lines::frusta(&taken.stats.plan, planned) {
-            draw(&segments, Stroke::new(3.0, Color32::from_black_alpha(110)));
-            draw(&segments, Stroke::new(1.5, split_colour(split)));
+        for lines in lines::frusta(&taken.stats.plan, planned) {
+            let colour = split_colour(lines.split);
+            draw(&lines.map, Stroke::new(1.0, colour.gamma_multiply(0.75)));
+            draw(&lines.slice, Stroke::new(4.0, Color32::from_black_alpha(110)));
+            draw(&lines.slice, Stroke::new(2.5, colour));
         }
     }
     let outlined = app.fields.hovered_caster.take().or(app.session.show.outlined);
@@ -221,7 +229,7 @@ fn messages(app: &mut App, ui: &mut Ui, rect: Rect) {
             let frame = Frame::popup(ui.style());
             frame.show(ui, |ui| {
                 ui.horizontal(|ui| {
-                    if ui.small_button("✕").on_hover_text("Take this line away").clicked() {
+                    if ui.small_button("×").on_hover_text("Take this line away").clicked() {
                         gone = Some(index);
                     }
                     let colour = if message.is_error { ui.visuals().error_fg_color } else { ui.visuals().text_color() };

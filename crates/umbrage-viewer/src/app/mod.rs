@@ -17,6 +17,9 @@ use crate::textures::Textures;
 /// Called, from any thread, when there is something new to show.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
+/// Time between two frames of what moves by itself.
+const FRAME: std::time::Duration = std::time::Duration::from_millis(16);
+
 /// The viewer without its window.
 pub struct App {
     /// What it knows.
@@ -134,7 +137,7 @@ impl App {
         panel::viewport(self, ui);
         panel::help(self, ui);
         if self.session.is_moving() {
-            ui.ctx().request_repaint();
+            ui.ctx().request_repaint_after(FRAME);
         } else if self.session.opening.is_some() || self.session.is_judging() {
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
         }
@@ -264,5 +267,4 @@ impl App {
 }
 
 #[cfg(test)]
-#[path = "app_tests.rs"]
 mod tests;
