@@ -103,6 +103,8 @@ impl Viewer {
         self.last = now;
         self.app.step(seconds);
         self.step_back();
+        // What comes while the controls are drawn is not in them yet.
+        let complete = self.is_complete();
         let Some(shown) = &mut self.shown else { return };
         if let Some(stage) = self.app.session.stage.as_ref().filter(|stage| Some(stage.id) != self.titled) {
             self.titled = Some(stage.id);
@@ -126,7 +128,7 @@ impl Viewer {
         if std::mem::take(&mut self.app.wants_screenshot) {
             self.snap(&triangles, output.pixels_per_point);
         }
-        self.end_with_screenshot(events, &triangles, output.pixels_per_point);
+        self.end_with_screenshot(events, complete, &triangles, output.pixels_per_point);
     }
 
     /// Holds the maps of the first view and looks at them from behind, if that was asked for.
@@ -173,8 +175,23 @@ impl Viewer {
         }
     }
 
-    /// Writes the screenshot and ends, once all that it should show is there.
-    fn end_with_screenshot(&mut self, events: &ActiveEventLoop, triangles: &[egui::ClippedPrimitive], scale: f32) {
+    /// Whether all that a screenshot should show is there.
+    fn is_complete(&self) -> bool {
+        let session = &self.app.session;
+        session.opening.is_none()
+            && session.pictures >= self.options.frames
+            && session.is_up_to_date()
+            && (!self.options.held || self.stepped_back)
+    }
+
+    /// Writes the screenshot of a complete frame and ends.
+    fn end_with_screenshot(
+        &mut self,
+        events: &ActiveEventLoop,
+        complete: bool,
+        triangles: &[egui::ClippedPrimitive],
+        scale: f32,
+    ) {
         let Some(path) = self.options.screenshot.clone() else { return };
         let session = &self.app.session;
         let error = session.messages.iter().find(|message| message.is_error).map(|message| message.text.clone());
@@ -185,13 +202,7 @@ impl Viewer {
             let why = format!("the scene was not shown within {} s", PATIENCE.as_secs());
             return self.fail(events, Error::NotShown(why));
         }
-        let is_there = session.opening.is_none()
-            && session.pictures >= self.options.frames
-            && session.is_up_to_date()
-            && (!self.options.held || self.stepped_back);
-        // The controls show a picture one frame after it came.
-        let shown = self.app.is_shown();
-        if !is_there || !shown {
+        if !complete || !self.app.is_shown() {
             return;
         }
         let Some(shown) = &mut self.shown else { return };

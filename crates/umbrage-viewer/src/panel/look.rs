@@ -1,6 +1,6 @@
 //! What explains a shadow: switches, overlays with their legends, comparisons.
 
-use egui::{Color32, ProgressBar, Sense, Ui, Vec2};
+use egui::{Align2, Color32, Pos2, ProgressBar, Rect, Sense, TextStyle, Ui, Vec2};
 use umbrage::config::Preset;
 
 use crate::app::App;
@@ -61,24 +61,7 @@ fn legend(session: &Session, ui: &mut Ui) {
     let sums = session.fitting_overlay().map(|laid| laid.sums);
     match session.show.overlay {
         Some(Overlay::Density) => {
-            let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width().min(220.0), 12.0), Sense::hover());
-            const STEPS: u8 = 48;
-            for step in 0..STEPS {
-                let share = f32::from(step) / f32::from(STEPS);
-                let [r, g, b] = density_colour(2f64.powf(f64::from(share) * 6.0 - 3.0));
-                let left = rect.left() + share * rect.width();
-                let part = egui::Rect::from_min_size(
-                    egui::pos2(left, rect.top()),
-                    Vec2::new(rect.width() / f32::from(STEPS) + 1.0, rect.height()),
-                );
-                ui.painter().rect_filled(part.intersect(rect), 0.0, Color32::from_rgb(r, g, b));
-            }
-            ui.horizontal(|ui| {
-                ui.spacing_mut().item_spacing.x = (rect.width() - 70.0).max(0.0) / 2.0;
-                ui.small("1/8");
-                ui.small("1");
-                ui.small("8");
-            });
+            scale(ui);
             if let Some(Sums::Density { median, lowest }) = sums {
                 ui.label(format!("median {median:.2}, lowest hundredth {lowest:.2} texels per pixel"));
                 ui.weak("Below 1 the map's texels show at edges.");
@@ -104,6 +87,33 @@ fn legend(session: &Session, ui: &mut Ui) {
             }
         }
         None => {}
+    }
+}
+
+/// The colours of texels per pixel with their numbers, on a logarithmic scale.
+fn scale(ui: &mut Ui) {
+    const STEPS: u8 = 48;
+    let size = Vec2::new(ui.available_width().min(220.0), 28.0);
+    let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+    let bar = Rect::from_min_size(rect.min, Vec2::new(rect.width(), 12.0));
+    let at = |share: f32| bar.left() + share * bar.width();
+    for step in 0..STEPS {
+        let [from, to] = [step, step + 1].map(|step| f32::from(step) / f32::from(STEPS));
+        let [r, g, b] = density_colour(2f64.powf(f64::from(from) * 6.0 - 3.0));
+        let part = Rect::from_x_y_ranges(at(from)..=at(to), bar.y_range());
+        ui.painter().rect_filled(part, 0.0, Color32::from_rgb(r, g, b));
+    }
+    let font = TextStyle::Small.resolve(ui.style());
+    for (share, align, text) in
+        [(0.0, Align2::LEFT_TOP, "1/8"), (0.5, Align2::CENTER_TOP, "1"), (1.0, Align2::RIGHT_TOP, "8")]
+    {
+        ui.painter().text(
+            Pos2::new(at(share), bar.bottom() + 2.0),
+            align,
+            text,
+            font.clone(),
+            ui.visuals().text_color(),
+        );
     }
 }
 

@@ -39,6 +39,12 @@ pub struct Fields {
     pub gave_way: Vec<String>,
 }
 
+/// A panel beside the picture. In a small window, or with large text, it leaves the picture its third.
+fn side(panel: egui::Panel, width: f32, ui: &egui::Ui) -> egui::Panel {
+    let third = ui.ctx().content_rect().width() / 3.0;
+    panel.default_size(width.min(third)).size_range(width.min(third).min(180.0)..=third.max(width))
+}
+
 /// Colour of a split for the controls.
 fn split_colour(split: usize) -> egui::Color32 {
     let [r, g, b] = crate::lines::split_colour(split);

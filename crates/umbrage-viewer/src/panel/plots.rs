@@ -46,6 +46,7 @@ pub(super) fn maps(app: &mut App, drawn: &Arc<Drawn>, ui: &mut Ui) {
     ui.horizontal_top(|ui| {
         for (index, (map, split)) in maps.iter().zip(&taken.stats.plan.splits).enumerate() {
             ui.vertical(|ui| {
+                ui.set_width(height.max(210.0));
                 let image = Image::new((map.texture.id(), Vec2::splat(height))).sense(Sense::hover());
                 let response = ui.add(image);
                 let painter = ui.painter_at(response.rect);
@@ -197,7 +198,7 @@ pub(super) fn times(session: &Session, drawn: &Drawn, ui: &mut Ui) {
             PlotPoints::from(points)
         };
         Plot::new("times")
-            .legend(Legend::default().position(Corner::LeftTop))
+            .legend(Legend::default().position(Corner::RightTop))
             .allow_scroll(false)
             .allow_drag(false)
             .allow_zoom(false)
@@ -266,7 +267,7 @@ pub(super) fn casters(app: &mut App, drawn: &Drawn, ui: &mut Ui) {
     ui.horizontal_top(|ui| {
         for (index, split) in taken.stats.splits.iter().enumerate() {
             ui.vertical(|ui| {
-                ui.set_min_width(150.0);
+                ui.set_width(230.0);
                 let title = format!("split {index}: {} casters, {} triangles", split.casters, split.triangles);
                 ui.label(RichText::new(title).color(split_colour(index)));
                 if split.casters == 0 {

@@ -2,7 +2,7 @@
 
 use egui::{Panel, ProgressBar, ScrollArea, Slider, TextEdit, Ui};
 
-use super::{look, sun};
+use super::{look, side, sun};
 use crate::app::App;
 use crate::camera::{Mode, SPEEDS_M_S};
 use crate::path::Recording;
@@ -14,8 +14,8 @@ const FIELD: f32 = 170.0;
 
 /// The left side.
 pub fn scene(app: &mut App, ui: &mut Ui) {
-    Panel::left("scene").default_size(250.0).size_range(180.0..=520.0).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+    side(Panel::left("scene"), 250.0, ui).show(ui, |ui| {
+        ScrollArea::both().auto_shrink(false).show(ui, |ui| {
             ui.heading("Scene");
             open(app, ui);
             ui.add_space(8.0);

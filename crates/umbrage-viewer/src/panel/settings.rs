@@ -4,19 +4,20 @@ use egui::{CollapsingHeader, ComboBox, DragValue, Panel, RichText, ScrollArea, S
 use umbrage::ShadowConfig;
 use umbrage::config::{Kind, LightKind, Preset, Value, Word};
 
+use super::side;
 use crate::app::App;
 use crate::controls::{OTHERS, Row, SECTIONS, Verdict, changes, choose, rows, section, verdict};
 use crate::share::Spelled;
 
 /// The right side.
 pub fn settings(app: &mut App, ui: &mut Ui) {
-    Panel::right("settings").default_size(320.0).size_range(220.0..=640.0).show(ui, |ui| {
+    side(Panel::right("settings"), 320.0, ui).show(ui, |ui| {
         ui.heading("Shadows");
         presets(app, ui);
         carry(app, ui);
         ui.add(TextEdit::singleline(&mut app.fields.search).hint_text("find a setting").desired_width(f32::INFINITY));
         ui.separator();
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        ScrollArea::both().auto_shrink(false).show(ui, |ui| {
             for note in &app.fields.gave_way {
                 ui.colored_label(ui.visuals().warn_fg_color, note);
             }

@@ -108,9 +108,9 @@ fn wipe(app: &mut App, ui: &mut Ui, rect: Rect, second: egui::TextureId) {
     painter.vline(x, rect.y_range(), Stroke::new(2.0, Color32::WHITE));
     painter.circle_filled(Pos2::new(x, rect.center().y), HANDLE, Color32::WHITE);
     for (at, anchor, text) in
-        [(x - 10.0, Align2::RIGHT_TOP, "the settings"), (x + 10.0, Align2::LEFT_TOP, "compared with")]
+        [(x - 10.0, Align2::RIGHT_BOTTOM, "the settings"), (x + 10.0, Align2::LEFT_BOTTOM, "compared with")]
     {
-        shadowed(&painter, Pos2::new(at, rect.top() + 8.0), anchor, text, 14.0);
+        shadowed(&painter, Pos2::new(at, rect.bottom() - 10.0), anchor, text, 14.0);
     }
 }
 
