@@ -316,7 +316,7 @@ fn map_look(truth: &Truth, index: usize, split: &Split, hit: &Hit) -> Result<Map
 
 /// The split whose map answers for a point that is seen.
 #[must_use]
-pub fn answering<'p>(plan: &'p ShadowPlan, point: DVec3) -> Option<&'p Split> {
+pub fn answering(plan: &ShadowPlan, point: DVec3) -> Option<&Split> {
     match plan.selection {
         Selection::Map => plan.splits.iter().find(|split| split.contains(point, split.filter_reach)),
         Selection::Depth => {

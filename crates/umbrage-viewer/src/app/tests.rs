@@ -46,7 +46,7 @@ impl Desk {
         let mut output = self.ctx.run_ui(input, |ui| app.ui(ui));
         output.textures_delta.clear();
         let mut texts = Vec::new();
-        output.shapes.iter().for_each(|ClippedShape { shape, clip_rect }| collect(shape, *clip_rect, &mut texts));
+        output.shapes.iter().for_each(|ClippedShape { shape, clip_rect, .. }| collect(shape, *clip_rect, &mut texts));
         texts
     }
 
@@ -83,8 +83,9 @@ fn every_setting_has_a_control_with_its_line_of_help() {
         let value = setting.get(&desk.app.session.config);
         let shown = match (&value, setting.kind) {
             (None, _) => has(&texts, "use") || has(&texts, "not used"),
-            // A colour and a switch are shown as what they are.
+            // A colour and a switch are shown as what they are, and one size stands for all.
             (Some(_), Kind::Colour | Kind::Switch) => true,
+            (Some(_), Kind::Texels) => has(&texts, "1024"),
             (Some(value), _) => has(&texts, &value.to_string()),
         };
         assert!(shown, "{} shows no value ({value:?}): {texts:?}", setting.key);
@@ -117,6 +118,21 @@ fn all_can_be_read_at_twice_the_size_in_a_small_window() {
     for wanted in ["Scene", "Shadows", "balanced", "Huge Chessboard", "Help F1"] {
         assert!(has(&texts, wanted), "{wanted} is not to be seen: {texts:?}");
     }
+}
+
+#[test]
+fn the_picture_keeps_its_size_whatever_the_status_says() {
+    let mut desk = Desk::new();
+    desk.size = egui::vec2(800.0, 500.0);
+    desk.frame(Vec::new());
+    desk.frame(Vec::new());
+    let size = desk.app.session.size;
+    desk.app.session.busy = Some("uploading the scene and building its pipelines, which takes a line of its own");
+    desk.app.session.adapter = Some("an adapter with a name that is longer than the window is wide ".repeat(4));
+    for _ in 0..5 {
+        desk.frame(Vec::new());
+    }
+    assert_eq!(desk.app.session.size, size);
 }
 
 #[test]

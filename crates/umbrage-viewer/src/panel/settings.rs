@@ -313,7 +313,8 @@ fn texels(app: &mut App, row: &Row, sizes: &[u32], ui: &mut Ui) -> Choice {
             }
         }
     });
-    choice.or_else(|| typed(app, row, &Value::Counts(sizes.to_vec()), ui))
+    let shown = if same { &sizes[..sizes.len().min(1)] } else { sizes };
+    choice.or_else(|| typed(app, row, &Value::Counts(shown.to_vec()), ui))
 }
 
 /// A value that is typed; it counts when the field is left.

@@ -7,8 +7,10 @@ use crate::app::App;
 
 /// The line at the bottom.
 pub fn status(app: &mut App, ui: &mut Ui) {
-    Panel::bottom("status").show(ui, |ui| {
-        ui.horizontal_wrapped(|ui| {
+    // One line always: a line that wraps would resize the picture, which would be drawn again and change the line.
+    let height = ui.spacing().interact_size.y + 8.0;
+    Panel::bottom("status").exact_size(height).show(ui, |ui| {
+        ui.horizontal_centered(|ui| {
             if ui.selectable_label(app.help, "Help F1").clicked() {
                 app.help = !app.help;
             }
@@ -40,7 +42,8 @@ pub fn status(app: &mut App, ui: &mut Ui) {
                 ));
                 ui.separator();
             }
-            ui.weak(session.adapter.as_deref().unwrap_or("no graphics device yet"));
+            let adapter = session.adapter.as_deref().unwrap_or("no graphics device yet");
+            ui.add(egui::Label::new(egui::RichText::new(adapter).weak()).truncate());
         });
     });
 }

@@ -326,9 +326,9 @@ impl Session {
 
     /// The next picture to ask for: none while one is on its way, or nothing has changed.
     pub fn next_order(&mut self) -> Option<Order> {
-        match self.sun.light() {
-            Ok(sun) => self.last_sun = sun.filter(|_| self.shown_sun().is_some()),
-            Err(_) => {}
+        // At night the last sun stays.
+        if let Ok(sun) = self.sun.light() {
+            self.last_sun = sun.filter(|_| self.shown_sun().is_some());
         }
         if self.in_flight {
             return None;
