@@ -23,6 +23,8 @@ pub fn below(app: &mut App, ui: &mut Ui) {
     });
     let Some(tab) = app.session.show.tab else { return };
     Panel::bottom("tab").default_size(230.0).size_range(120.0..=600.0).resizable(true).show(ui, |ui| {
+        // A panel is as high as what is in it, and what is in it here is as high as the panel.
+        ui.take_available_height();
         let Some(drawn) = app.session.drawn.clone() else {
             ui.weak("nothing is drawn yet");
             return;
