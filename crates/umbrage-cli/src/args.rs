@@ -38,6 +38,14 @@ pub enum Command {
     Bench(Box<BenchArgs>),
     /// Draw the worlds and a city from near and far with the defaults, as one page
     Gallery(GalleryArgs),
+    /// Open a window on the scene: fly, drag the sun, change settings, see why a shadow looks as it does
+    #[cfg(feature = "view")]
+    #[command(
+        mut_arg("scene", |arg| arg.required(false).default_value("chessboard")),
+        mut_arg("size", |arg| arg.default_value("1360x850").help("Pixels of the window")),
+        mut_arg("frames", |arg| arg.help("With --screenshot: pictures of the scene before it [default: 1]"))
+    )]
+    View(Box<crate::view::ViewArgs>),
     /// The procedural worlds
     Worlds {
         /// What to do with them.

@@ -20,6 +20,8 @@ pub mod shadow_args;
 pub mod switch;
 pub mod theory;
 pub mod truth;
+#[cfg(feature = "view")]
+pub mod view;
 pub mod worlds;
 
 use args::{Args, Command};
@@ -40,6 +42,8 @@ pub fn run(args: &Args) -> Result<()> {
         Command::Bench(args) => bench::run(args),
         Command::Gallery(args) => gallery::run(args),
         Command::Theory(args) => theory::run(args),
+        #[cfg(feature = "view")]
+        Command::View(args) => view::run(args),
         Command::Worlds { command } => worlds::run(command),
         Command::Adapter => adapter::run(),
     }

@@ -14,7 +14,7 @@ use umbrage_scene::{GltfOptions, HeightMapOptions, OpenOptions};
 use crate::switch::Switch;
 
 /// Scene, picture size, camera, light and time.
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub struct SceneArgs {
     /// A .glb, .gltf or .vrm; a height map (.png, .tif or .asc, with a .json beside it or the --metres options where it has
     /// no scale of its own); or a world: robot-war, chessboard, knights, mining-terrain. Left away, it is the scene of the

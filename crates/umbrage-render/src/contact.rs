@@ -1,7 +1,7 @@
 //! Contact shadows: the picture's depth, drawn before everything that asks about it.
 
 use glam::DVec3;
-use umbrage::View;
+use umbrage::{ShadowConfig, View};
 use umbrage_wgpu::{ContactFrame, ContactOptions, ContactShadows};
 
 use crate::forward::DEPTH_FORMAT;
@@ -19,6 +19,11 @@ pub(crate) struct Contact {
 }
 
 impl Contact {
+    /// Where a config asks for them and the device can.
+    pub fn wanted(gpu: &Gpu, config: &ShadowConfig, size: [u32; 2]) -> Option<Self> {
+        (config.look.contact && gpu.depth_loads()).then(|| Self::new(gpu, size, ContactOptions::default()))
+    }
+
     /// For pictures of this size.
     pub fn new(gpu: &Gpu, size: [u32; 2], options: ContactOptions) -> Self {
         let shadows = ContactShadows::new(&gpu.device);

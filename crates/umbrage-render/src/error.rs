@@ -40,6 +40,12 @@ pub enum Error {
         /// Samples of depth in a texel.
         samples: u32,
     },
+    /// A map that is used for one slice after the other is planned for the view that is sliced.
+    #[error(
+        "the maps are planned for another view than the one that is drawn, which one map that is used for slice after \
+         slice of the view cannot be; use another storage, or plan for the view itself"
+    )]
+    SlicesOfAnotherView,
     /// More lights than a picture is shaded by.
     #[error("{count} lights; a frame has at most {most}")]
     LampCount {

@@ -17,6 +17,7 @@ mod forward;
 mod geometry;
 mod gpu;
 mod lamps;
+mod live;
 mod maps;
 mod materials;
 mod mipmaps;

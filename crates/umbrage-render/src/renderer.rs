@@ -5,7 +5,7 @@ use image::{GrayAlphaImage, GrayImage, RgbaImage};
 use umbrage::config::{Coordinates, Layout, LightKind, ShadowConfig, Translucent};
 use umbrage::{Aabb, Light, ShadowPlan, View};
 use umbrage_scene::{AlphaMode, Pose, Scene};
-use umbrage_wgpu::{ContactOptions, Inputs, LightMaps, MaskFrame, MaskNormals, ShadowMask, Shadows};
+use umbrage_wgpu::{Inputs, LightMaps, MaskFrame, MaskNormals, ShadowMask, Shadows};
 use web_time::Instant;
 
 use crate::capture::Capture;
@@ -95,26 +95,28 @@ pub struct Rendered {
 pub struct Renderer {
     pub(crate) gpu: Gpu,
     pub(crate) size: [u32; 2],
-    samples: Samples,
+    pub(crate) samples: Samples,
     pub(crate) shadows: Shadows,
     /// Where the shadows of the view that is drawn are held: see [`Renderer::render_views`].
     pub(crate) view_slot: u32,
+    /// The view that maps are planned for, if it is not the one that is drawn.
+    pub(crate) planned_for: Option<View>,
     pub(crate) scene: Geometry,
     scene_meshes: SceneMeshes,
     skinned: SkinnedGeometry,
-    materials: Materials,
+    pub(crate) materials: Materials,
     pub(crate) instances: Instances,
     pub(crate) casters: Casters,
     pub(crate) forward: Forward,
     pub(crate) contact: Option<Contact>,
     /// Per node of the scene, whether its translucent surfaces throw shadows; empty where none do.
-    dithered_nodes: Vec<bool>,
+    pub(crate) dithered_nodes: Vec<bool>,
     pub(crate) probe: Probe,
     pub(crate) timer: Timer,
     pub(crate) picture: Option<PictureTarget>,
     pub(crate) mask: Option<MaskTarget>,
-    shadow_mask: Option<ShadowMask>,
-    notes: Vec<String>,
+    pub(crate) shadow_mask: Option<ShadowMask>,
+    pub(crate) notes: Vec<String>,
 }
 
 impl Renderer {
@@ -134,20 +136,14 @@ impl Renderer {
         gpu.guarded("uploading the scene", || {
             let shadows = Shadows::with_lights(&gpu.device, config, &settings.lights)?;
             let maps = shadows.maps();
-            let mut notes = shadows.notes().to_vec();
             let materials = Materials::new(gpu, scene)?;
             let timer = Timer::new(gpu, maps.map_count());
-            let contact = config.look.contact && gpu.depth_loads();
-            if config.look.contact && !contact {
-                notes.push("no loads from depth textures on GL: no contact shadows".to_owned());
-            }
-            let contact = contact.then(|| Contact::new(gpu, settings.size, ContactOptions::default()));
-            if !timer.has_timestamps() {
-                notes.push("no timestamp queries: times of the GPU are measured by the CPU's clock".to_owned());
-            }
+            let contact = Contact::wanted(gpu, config, settings.size);
+            let notes = notes_of(&shadows, contact.as_ref(), &timer);
             Ok(Self {
                 size: settings.size,
                 view_slot: 0,
+                planned_for: None,
                 scene: Geometry::of_scene(gpu, scene)?,
                 scene_meshes: SceneMeshes::of_scene(scene),
                 skinned: SkinnedGeometry::empty(gpu)?,
@@ -155,10 +151,7 @@ impl Renderer {
                 casters: Casters::new(gpu, maps, &materials, config.look.translucent),
                 forward: Forward::new(gpu, maps, &materials, settings.samples, contact.as_ref()),
                 contact,
-                dithered_nodes: match config.look.translucent {
-                    Translucent::None => Vec::new(),
-                    Translucent::Dithered => scene.nodes.iter().map(|node| node.cast_shadow).collect(),
-                },
+                dithered_nodes: dithered_nodes(scene, config),
                 samples: settings.samples,
                 probe: Probe::new(gpu, maps),
                 timer,
@@ -280,12 +273,12 @@ impl Renderer {
             plan_ms: prepared.plan_ms,
             shadow_ms,
             frame_ms,
-            splits: self.split_stats(0, frame, &recorded),
+            splits: self.split_stats(0, frame, &recorded, measured.spans_ms.as_deref()),
             shadow_draws: recorded.map_passes.iter().map(|(_, drawn, _)| drawn.draws).sum(),
             shadow_triangles: recorded.map_passes.iter().map(|(_, drawn, _)| drawn.triangles).sum(),
             more_lights: (1..self.shadows.lights().len())
                 .map(|light| LightStats {
-                    splits: self.split_stats(light, frame, &recorded),
+                    splits: self.split_stats(light, frame, &recorded, measured.spans_ms.as_deref()),
                     plan: shown.shared_plan(light),
                 })
                 .collect(),
@@ -326,7 +319,7 @@ impl Renderer {
         let view = frame.view;
         let origin = (view.eye() / ORIGIN_STEP).round() * ORIGIN_STEP;
 
-        let caster_objects: Vec<usize> = (0..pose.objects.len()).filter(|&i| self.casts(&pose.objects[i])).collect();
+        let caster_objects = self.casters_of(pose);
         let casters: Vec<Aabb> = caster_objects.iter().map(|&i| pose.objects[i].bounds).collect();
         let receivers: Vec<Aabb> = pose.objects.iter().map(|object| object.bounds).collect();
         let mut near_to_far: Vec<(f64, usize)> = (0..pose.objects.len())
@@ -335,7 +328,9 @@ impl Renderer {
             .collect();
         near_to_far.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let visible: Vec<usize> = near_to_far.into_iter().map(|(_, i)| i).collect();
-        let asks_surfaces = surfaces_alone && frame.shadows_on && frame.more_lights.is_empty();
+        let planned_for = self.planned_for.unwrap_or(*view);
+        let asks_surfaces =
+            surfaces_alone && frame.shadows_on && frame.more_lights.is_empty() && self.planned_for.is_none();
         let clusters = if asks_surfaces { self.receiver_clusters(pose, &caster_objects, &visible) } else { None };
 
         let lamps: Vec<Lamp> = [frame.light].into_iter().chain(frame.more_lights.iter().copied()).collect();
@@ -354,7 +349,7 @@ impl Renderer {
             view_slot: self.view_slot,
             enabled: frame.shadows_on,
             tint: frame.tint,
-            ..Inputs::new(view, &lights)
+            ..Inputs::new(&planned_for, &lights)
         };
         self.shadows.prepare(&self.gpu.queue, &inputs)?;
         let plan_ms = begun.elapsed().as_secs_f64() * 1e3;
@@ -474,11 +469,17 @@ impl Renderer {
     }
 
     /// Whether an object is drawn into maps.
-    fn casts(&self, object: &umbrage_scene::Object) -> bool {
+    pub(crate) fn casts(&self, object: &umbrage_scene::Object) -> bool {
         object.casts || self.dithered_nodes.get(object.node) == Some(&true)
     }
 
-    fn split_stats(&self, light: usize, frame: &Frame<'_>, recorded: &Recorded) -> Vec<SplitStats> {
+    fn split_stats(
+        &self,
+        light: usize,
+        frame: &Frame<'_>,
+        recorded: &Recorded,
+        spans_ms: Option<&[[f64; 2]]>,
+    ) -> Vec<SplitStats> {
         let plan: &ShadowPlan = self.shadows.frame().plan(light);
         let first = self.shadows.maps().first_map(light);
         let objects: Vec<&umbrage_scene::Object> =
@@ -492,6 +493,9 @@ impl Renderer {
         let stats = |(i, split): (usize, &umbrage::Split)| {
             let draws_it = |pass: usize| self.shadows.maps().passes()[pass].splits().contains(&(first + i));
             let draws = recorded.map_passes.iter().filter(|&&(pass, ..)| draws_it(pass));
+            let took = |spans: &[[f64; 2]]| {
+                draws.clone().filter_map(|&(_, _, slot)| spans.get(slot)).map(|span| span[1] - span[0]).sum()
+            };
             // Of a map that has a pass of its own, what was drawn: maybe parts of casters.
             let alone = draws.clone().find(|&&(pass, ..)| self.shadows.maps().passes()[pass].splits().len() == 1);
             SplitStats {
@@ -500,6 +504,7 @@ impl Renderer {
                 texel_m: split.texel_m.max_element(),
                 warped: split.warp.is_some() && split.light_position.is_none(),
                 casters: split.casters.len(),
+                gpu_ms: spans_ms.map(took),
                 draws: draws.map(|(_, drawn, _)| drawn.draws).sum(),
                 triangles: match alone {
                     Some((_, drawn, _)) => drawn.triangles,
@@ -512,5 +517,25 @@ impl Renderer {
             }
         };
         plan.splits.iter().enumerate().map(stats).collect()
+    }
+}
+
+/// Fallbacks that are taken.
+pub(crate) fn notes_of(shadows: &Shadows, contact: Option<&Contact>, timer: &Timer) -> Vec<String> {
+    let mut notes = shadows.notes().to_vec();
+    if shadows.config().look.contact && contact.is_none() {
+        notes.push("no loads from depth textures on GL: no contact shadows".to_owned());
+    }
+    if !timer.has_timestamps() {
+        notes.push("no timestamp queries: times of the GPU are measured by the CPU's clock".to_owned());
+    }
+    notes
+}
+
+/// Per node of a scene, whether its translucent surfaces throw shadows; empty where none do.
+pub(crate) fn dithered_nodes(scene: &Scene, config: &ShadowConfig) -> Vec<bool> {
+    match config.look.translucent {
+        Translucent::None => Vec::new(),
+        Translucent::Dithered => scene.nodes.iter().map(|node| node.cast_shadow).collect(),
     }
 }

@@ -20,6 +20,9 @@ pub struct SplitStats {
     pub warped: bool,
     /// Objects in its list: mesh nodes or instances, not primitives.
     pub casters: usize,
+    /// Milliseconds on the GPU of the passes that draw its map, which may draw others with it; `None` without timestamp
+    /// queries.
+    pub gpu_ms: Option<f64>,
     /// Draw calls that draw into its map; instances share one, and so may splits.
     pub draws: u32,
     /// Triangles of its casters. In a pass of its own those that are drawn: parts of large meshes that do not reach it are not.

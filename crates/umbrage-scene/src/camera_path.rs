@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::DVec3;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::error::read_file;
 use crate::{Error, Result};
@@ -21,28 +21,75 @@ pub struct CameraPath {
     /// Metres along the path to each point; one more entry for the way back to the first if the path is closed.
     reached: Vec<f64>,
     closed: bool,
+    /// What is looked at from each point; empty: the path ahead.
+    targets: Vec<DVec3>,
 }
 
 /// The JSON of a path. Keys that are not listed are ignored.
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 struct PathFile {
     points: Vec<[f64; 3]>,
     #[serde(default)]
     closed: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     sun_direction_to_light: Option<[f64; 3]>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    targets: Vec<[f64; 3]>,
 }
 
 impl CameraPath {
-    /// Reads a path: JSON with `points` (metres, on the ground), `closed` (default false) and `sun_direction_to_light`.
+    /// Reads a path: JSON with `points` (metres, on the ground), `closed` (default false), `sun_direction_to_light` and
+    /// `targets` (see [`CameraPath::with_targets`]).
     ///
     /// # Errors
-    /// [`Error::Read`], [`Error::Malformed`] if it is not such JSON, and as [`CameraPath::new`].
+    /// [`Error::Read`], [`Error::Malformed`] if it is not such JSON, and as [`CameraPath::new`] and
+    /// [`CameraPath::with_targets`].
     pub fn load(path: &Path) -> Result<Self> {
         let file = path.display().to_string();
         let json: PathFile = serde_json::from_slice(&read_file(path)?)
             .map_err(|error| Error::Malformed { file: file.clone(), reason: format!("is no camera path: {error}") })?;
         let sun = json.sun_direction_to_light.map(DVec3::from);
-        Self::new(&file, json.points.into_iter().map(DVec3::from).collect(), json.closed, sun)
+        let path = Self::new(&file, json.points.into_iter().map(DVec3::from).collect(), json.closed, sun)?;
+        if json.targets.is_empty() {
+            return Ok(path);
+        }
+        path.with_targets(json.targets.into_iter().map(DVec3::from).collect())
+    }
+
+    /// The same path, looking from each point at a target of its own and in between at a point in between, instead of
+    /// ahead. Targets are as far above or below the path's points as the eye would be above or below what it looks at.
+    ///
+    /// # Errors
+    /// [`Error::CameraPath`] unless there is one finite target for each point.
+    pub fn with_targets(self, targets: Vec<DVec3>) -> Result<Self> {
+        let wrong = |element: String, reason: String| Error::CameraPath { file: self.file.clone(), element, reason };
+        if targets.len() != self.points.len() {
+            let reason = format!("there are {} for {} points; give one for each", targets.len(), self.points.len());
+            return Err(wrong("targets".into(), reason));
+        }
+        if let Some(bad) = targets.iter().position(|target| !target.is_finite()) {
+            return Err(wrong(format!("targets[{bad}]"), "holds a number that is not finite".into()));
+        }
+        Ok(Self { targets, ..self })
+    }
+
+    /// The path as JSON that [`CameraPath::load`] reads.
+    ///
+    /// # Errors
+    /// [`Error::CameraPath`] if the writer fails, which it does for no path that exists.
+    pub fn to_json(&self) -> Result<String> {
+        let file = PathFile {
+            points: self.points.iter().map(DVec3::to_array).collect(),
+            closed: self.closed,
+            sun_direction_to_light: self.sun_direction_to_light.map(|sun| sun.to_array()),
+            targets: self.targets.iter().map(DVec3::to_array).collect(),
+        };
+        let failed = |error: serde_json::Error| Error::CameraPath {
+            file: self.file.clone(),
+            element: "path".into(),
+            reason: format!("cannot be written: {error}"),
+        };
+        serde_json::to_string(&file).map_err(failed)
     }
 
     /// A path through `points`, back to the first if it is `closed`; `name` stands for the file in messages.
@@ -73,7 +120,7 @@ impl CameraPath {
         for (from, to) in points.iter().zip(behind) {
             reached.push(reached[reached.len() - 1] + from.distance(*to));
         }
-        let path = Self { sun_direction_to_light, file: name.to_owned(), points, reached, closed };
+        let path = Self { sun_direction_to_light, file: name.to_owned(), points, reached, closed, targets: Vec::new() };
         if !(path.length() > 0.0 && path.length().is_finite()) {
             return Err(wrong("points".into(), "all coincide, or lie too far apart; the path has no length"));
         }
@@ -102,6 +149,11 @@ impl CameraPath {
     /// behind its last point and before its first.
     #[must_use]
     pub fn point_at(&self, distance: f64) -> DVec3 {
+        self.between(&self.points, distance)
+    }
+
+    /// What lies `distance` metres along the path, of values that belong to its points.
+    fn between(&self, values: &[DVec3], distance: f64) -> DVec3 {
         let distance = if self.closed { distance.rem_euclid(self.length()) } else { distance };
         // The last segment that starts at or before the distance; segments of no length never qualify for extrapolation.
         let segments = self.reached.len() - 1;
@@ -112,14 +164,15 @@ impl CameraPath {
             .last()
             .or_else(|| (0..segments).find(has_length))
             .expect("a path has length, so some segment has");
-        let (from, to) = (self.points[segment], self.points[(segment + 1) % self.points.len()]);
+        let (from, to) = (values[segment], values[(segment + 1) % values.len()]);
         let share = (distance - self.reached[segment]) / (self.reached[segment + 1] - self.reached[segment]);
         from.lerp(to, share)
     }
 
     /// Eye and target of frame `frame` of `frames`, `eye_height` metres above the path. The frames are spread evenly over
     /// its length: from the first point to the last, or once round without coming back to the first. The target is the
-    /// point 20 m further on, at the same height above the path.
+    /// point 20 m further on, at the same height above the path, or the path's own ([`CameraPath::with_targets`]), raised
+    /// likewise.
     ///
     /// # Errors
     /// [`Error::NoSuchElement`] if the frame is not below `frames`; [`Error::CameraPath`] if `eye_height` is not finite
@@ -135,9 +188,16 @@ impl CameraPath {
         let steps = if self.closed { frames } else { (frames - 1).max(1) };
         let distance = self.length() * frame as f64 / steps as f64;
         let above = DVec3::Y * eye_height;
-        let (eye, target) = (self.point_at(distance) + above, self.point_at(distance + LOOK_AHEAD_M) + above);
+        let seen = match &self.targets[..] {
+            [] => self.point_at(distance + LOOK_AHEAD_M),
+            targets => self.between(targets, distance),
+        };
+        let (eye, target) = (self.point_at(distance) + above, seen + above);
         if eye.distance(target) < 1e-9 * (1.0 + eye.length()) {
-            let reason = format!("the point {LOOK_AHEAD_M} m further on is the same, so the eye has nowhere to look");
+            let reason = match &self.targets[..] {
+                [] => format!("the point {LOOK_AHEAD_M} m further on is the same, so the eye has nowhere to look"),
+                _ => "its target is where the eye is, so the eye has nowhere to look".to_owned(),
+            };
             return Err(wrong(format!("frame {frame}"), reason));
         }
         Ok((eye, target))

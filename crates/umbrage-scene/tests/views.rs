@@ -240,6 +240,40 @@ fn paths_that_lead_nowhere() {
 }
 
 #[test]
+fn a_recorded_path_looks_where_it_was_looked() {
+    let targets = [[0.0, 0.0], [100.0, 50.0], [50.0, 100.0], [50.0, 50.0]].map(|[x, z]| dvec3(x, 9.0, z - 30.0));
+    let path = square(false).with_targets(targets.to_vec()).expect("a target for each point");
+    let at = |path: &CameraPath, k, n| path.pose_at(k, n, 2.0).unwrap_or_else(|error| panic!("{error}"));
+    for (k, eye, target) in [
+        (0, [0.0, 3.0, 0.0], [0.0, 11.0, -30.0]),
+        (1, [50.0, 3.0, 0.0], [50.0, 11.0, -5.0]),
+        (4, [100.0, 3.0, 100.0], [50.0, 11.0, 70.0]),
+        (6, [0.0, 3.0, 100.0], [50.0, 11.0, 20.0]),
+    ] {
+        let (e, t) = at(&path, k, 7);
+        assert_near(e, eye.into());
+        assert_near(t, target.into());
+    }
+    assert_ne!(at(&path, 1, 7).1, at(&square(false), 1, 7).1, "the path ahead is something else");
+
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("recorded.json");
+    for path in [path.clone(), square(true)] {
+        std::fs::write(&file, path.to_json().expect("JSON")).expect("a file");
+        let read = CameraPath::load(&file).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!((read.points(), read.is_closed()), (path.points(), path.is_closed()));
+        assert_eq!(at(&read, 2, 7), at(&path, 2, 7));
+    }
+
+    assert!(square(false).with_targets(targets[..3].to_vec()).is_err(), "one for each point");
+    assert!(square(false).with_targets(vec![DVec3::NAN; 4]).is_err(), "finite");
+    let own = square(false);
+    let itself = own.points().to_vec();
+    let error = own.with_targets(itself).expect("finite").pose_at(0, 7, 2.0).expect_err("nowhere to look");
+    assert!(error.to_string().contains("its target is where the eye is"), "{error}");
+}
+
+#[test]
 fn the_authors_path() {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../assets/city_candela.path.json");
     let path = CameraPath::load(&path).unwrap_or_else(|error| panic!("{error}"));

@@ -134,19 +134,54 @@ impl Truth {
         stack: &mut Vec<u32>,
     ) -> Option<Hit> {
         let ray = Ray::new(origin - self.triangles.origin, direction, t_min, t_max);
+        let (crossing, triangle) =
+            self.first_of(&ray, stack, |triangle, crossing| self.is_seen(triangle, crossing, direction))?;
+        Some(self.hit(origin, direction, &crossing, triangle))
+    }
+
+    /// The first thing that stops light on its way from a world point: either side of any caster's triangle, where its alpha
+    /// counts. `direction` need not be normalised; nothing beyond `most` metres is asked for. [`Hit::depth`] is metres from the
+    /// point, and [`Hit::lit`] says nothing.
+    ///
+    /// A map's texel stores what a ray from its centre along the light meets first.
+    ///
+    /// # Errors
+    /// [`Error::InvalidSetting`] if the point is not finite or the direction has none.
+    pub fn first_caster(&self, origin: DVec3, direction: DVec3, most: f64) -> Result<Option<Hit>> {
+        if !origin.is_finite() {
+            return Err(Error::setting("origin", format!("{origin} is not a point; give finite metres")));
+        }
+        let Some(direction) = direction.try_normalize() else {
+            return Err(Error::setting(
+                "direction",
+                format!("{direction} is no direction; give finite numbers, not all zero"),
+            ));
+        };
+        let ray = Ray::new(origin - self.triangles.origin, direction, 0.0, most.max(0.0));
+        let first = self.first_of(&ray, &mut Vec::new(), |triangle, crossing| self.blocks(triangle, crossing));
+        Ok(first.map(|(crossing, triangle)| self.hit(origin, direction, &crossing, triangle)))
+    }
+
+    /// The nearest crossing that counts; of two at one distance that of the lower number.
+    fn first_of(
+        &self,
+        ray: &Ray,
+        stack: &mut Vec<u32>,
+        counts: impl Fn(&Triangle, &Crossing) -> bool,
+    ) -> Option<(Crossing, &Triangle)> {
         let mut best: Option<(Crossing, &Triangle)> = None;
         self.tree.walk(&ray.boxes, ray.t_max, stack, |range, limit| {
             for triangle in &self.leaves[range] {
                 let Some(crossing) = ray.meets(&triangle.corners, *limit) else { continue };
                 let later = best.is_some_and(|(b, of)| b.t == crossing.t && of.number < triangle.number);
-                if !later && self.is_seen(triangle, &crossing, direction) {
+                if !later && counts(triangle, &crossing) {
                     *limit = crossing.t;
                     best = Some((crossing, triangle));
                 }
             }
             true
         });
-        best.map(|(crossing, triangle)| self.hit(origin, direction, &crossing, triangle))
+        best
     }
 
     /// A world point with its normal that nobody is known to look at.

@@ -242,3 +242,28 @@ fn a_lamp_throws_shadows_as_large_as_similar_triangles_say() {
     let soft = truth.soft(&mask, &crate::SunDisc::new(0.01, 16), &|_| {});
     assert!(soft.is_err_and(|error| error.to_string().contains("directional")), "a lamp is no disc in the sky");
 }
+
+#[test]
+fn the_first_caster_is_what_a_map_would_store() {
+    let mut stage = Stage::default();
+    let sphere = stage.add(Shape::sphere(1.0, 64), DAffine3::from_translation(DVec3::new(0.0, 5.0, 0.0)));
+    let material = stage.material(umbrage_scene::Material::default());
+    let screen = Shape::floor(3.0, 8.0).with_material(material);
+    stage.add_primitive(screen, DAffine3::IDENTITY, false);
+    let floor = stage.add(Shape::floor(30.0, 0.0), DAffine3::IDENTITY);
+    let truth = stage.truth(DVec3::ZERO);
+    let from =
+        |x: f64, direction: DVec3, most| truth.first_caster(DVec3::new(x, 20.0, 0.0), direction, most).expect("a ray");
+    // Through the screen, which casts nothing, onto the sphere's top; beside it, onto the floor.
+    let top = from(0.0, DVec3::NEG_Y * 3.0, 1e6).expect("the sphere");
+    assert_eq!(top.object as usize, sphere);
+    assert!((top.depth - 14.0).abs() < 1e-3 && top.position.y > 5.9, "{top:?}");
+    assert_eq!(from(2.0, DVec3::NEG_Y, 1e6).expect("the floor").object as usize, floor);
+    assert_eq!(from(0.0, DVec3::NEG_Y, 13.0), None, "too far");
+    assert_eq!(from(0.0, DVec3::Y, 1e6), None, "nothing is above");
+    // Both sides count: from below, the floor's back.
+    let below = truth.first_caster(DVec3::new(2.0, -5.0, 0.0), DVec3::Y, 1e6).expect("a ray").expect("the floor");
+    assert_eq!(below.object as usize, floor);
+    assert!(truth.first_caster(DVec3::NAN, DVec3::Y, 1.0).is_err());
+    assert!(truth.first_caster(DVec3::ZERO, DVec3::ZERO, 1.0).is_err());
+}

@@ -1,0 +1,38 @@
+//! Why there is no window, or no more.
+
+use std::path::PathBuf;
+
+/// [`std::result::Result`] with this crate's [`Error`].
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Why the viewer ended without doing what it was asked for.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// There is no screen.
+    #[error("there is no window system ({0}); start it on a desktop, or under Xvfb as `xvfb-run umbrage view …`")]
+    NoScreen(String),
+    /// The window system opens no window.
+    #[error("the window does not open: {0}")]
+    NoWindow(String),
+    /// No graphics adapter draws into the window.
+    #[error(
+        "no graphics adapter draws into the window ({0}); install a Vulkan driver, for example Mesa's software one \
+         (Debian, Ubuntu: apt-get install mesa-vulkan-drivers), or check WGPU_BACKEND"
+    )]
+    NoAdapter(String),
+    /// The window's device was lost, and another one does not open.
+    #[error("the window's graphics device was lost and does not come back: {0}")]
+    Lost(String),
+    /// The scene of a screenshot could not be shown.
+    #[error("{0}")]
+    NotShown(String),
+    /// A screenshot could not be written.
+    #[error("--screenshot {}: {reason}; choose a place you have the right to use", path.display())]
+    Screenshot {
+        /// Where it was to be.
+        path: PathBuf,
+        /// Why it is not.
+        reason: String,
+    },
+}

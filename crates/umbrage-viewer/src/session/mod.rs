@@ -1,0 +1,504 @@
+//! What the viewer knows and decides, without a window: what is opened, drawn, judged and shown next.
+
+mod show;
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::time::Duration;
+
+use glam::{DVec2, DVec3};
+use umbrage::config::{Layout, LightKind};
+use umbrage::{DirectionalLight, Light, ShadowConfig, View};
+use umbrage_lab::lights;
+use umbrage_lab::scene_request::SceneRequest;
+use umbrage_render::ProbePoint;
+
+use crate::camera::{Camera, Motion};
+use crate::judge::{Finding, Laid, Overlay, Picked, Question};
+use crate::path::{Following, Recording};
+use crate::stage::{Opening, Stage};
+use crate::studio::{Drawn, News, Order, Shot, Wants};
+use crate::sun::{SkyPoint, Sun};
+pub use show::{Message, Show, Tab, Times};
+
+/// How many pictures' times are kept.
+const HISTORY: usize = 240;
+/// Longest message list; older ones are forgotten.
+const MESSAGES: usize = 6;
+/// Pictures that take longer than this are drawn at half the size while something moves, milliseconds.
+const SLOW_MS: f64 = 120.0;
+/// Seconds after which nothing moves any more.
+const REST_S: f64 = 0.3;
+
+/// Everything that the viewer knows.
+#[derive(Debug)]
+pub struct Session {
+    /// The scene that is shown.
+    pub stage: Option<Arc<Stage>>,
+    /// The scene that is being opened.
+    pub opening: Option<Opening>,
+    /// The eye; of no use before there is a scene.
+    pub camera: Option<Camera>,
+    /// Shadows.
+    pub config: ShadowConfig,
+    /// Shadows to compare with.
+    pub other: Option<ShadowConfig>,
+    /// How the sun is chosen.
+    pub sun: Sun,
+    /// Seconds into the animations.
+    pub time_s: f64,
+    /// Whether time goes on.
+    pub playing: bool,
+    /// What is shown.
+    pub show: Show,
+    /// The view that maps are held for.
+    pub frozen: Option<View>,
+    /// Pixels of the picture.
+    pub size: [u32; 2],
+    /// The last picture.
+    pub drawn: Option<Arc<Drawn>>,
+    /// The overlay of a picture.
+    pub laid: Option<Laid>,
+    /// What was clicked on last.
+    pub picked: Option<Picked>,
+    /// Lines to read, oldest first.
+    pub messages: VecDeque<Message>,
+    /// What takes a moment.
+    pub busy: Option<&'static str>,
+    /// The adapter that draws.
+    pub adapter: Option<String>,
+    /// Times of the last pictures, oldest first.
+    pub times: VecDeque<Times>,
+    /// Pictures so far.
+    pub pictures: u64,
+    /// The camera path that is recorded.
+    pub recording: Option<Recording>,
+    /// The camera path that is followed.
+    pub following: Option<Following>,
+    last_sun: Option<DirectionalLight>,
+    in_flight: bool,
+    failed: Option<Shot>,
+    settled: bool,
+    judging: Option<(Shot, Option<Overlay>)>,
+    click: Option<DVec2>,
+    since_moved: f64,
+}
+
+impl Session {
+    /// A session without a scene.
+    #[must_use]
+    pub fn new(config: ShadowConfig, size: [u32; 2]) -> Self {
+        Self {
+            stage: None,
+            opening: None,
+            camera: None,
+            config,
+            other: None,
+            sun: Sun::default(),
+            time_s: 0.0,
+            playing: false,
+            show: Show::default(),
+            frozen: None,
+            size,
+            drawn: None,
+            laid: None,
+            picked: None,
+            messages: VecDeque::new(),
+            busy: None,
+            adapter: None,
+            times: VecDeque::new(),
+            pictures: 0,
+            recording: None,
+            following: None,
+            last_sun: None,
+            in_flight: false,
+            failed: None,
+            settled: false,
+            judging: None,
+            click: None,
+            since_moved: f64::INFINITY,
+        }
+    }
+
+    /// Says something.
+    pub fn say(&mut self, is_error: bool, text: impl Into<String>) {
+        let message = Message { is_error, text: text.into() };
+        if self.messages.contains(&message) {
+            return;
+        }
+        self.messages.push_back(message);
+        while self.messages.len() > MESSAGES {
+            self.messages.pop_front();
+        }
+    }
+
+    /// Opens a scene beside the one that is shown. One that is still being opened is given up.
+    pub fn open(&mut self, request: SceneRequest, wake: impl Fn() + Send + 'static) {
+        self.opening = Some(Opening::start(request, wake));
+    }
+
+    /// Takes over a scene that is open.
+    pub fn enter(&mut self, stage: Stage) {
+        let aspect = f64::from(self.size[0]) / f64::from(self.size[1].max(1));
+        let mode = self.camera.as_ref().map(|camera| camera.mode);
+        let mut camera = Camera::new(stage.view, stage.pose.bounds);
+        camera.mode = mode.unwrap_or_default();
+        camera.set_aspect(aspect);
+        for note in &stage.notes {
+            self.say(false, note.clone());
+        }
+        self.time_s = stage.request.time_s;
+        self.camera = Some(camera);
+        self.stage = Some(Arc::new(stage));
+        self.sun = Sun::OfScene;
+        (self.frozen, self.picked, self.laid, self.last_sun, self.click) = (None, None, None, None, None);
+        (self.recording, self.following, self.failed) = (None, None, None);
+        self.show.outlined = None;
+        self.times.clear();
+        let (config, given_way) = self.config.for_lights(&self.light_kinds());
+        if config != self.config {
+            given_way.into_iter().for_each(|note| self.say(false, note));
+            self.config = config;
+        }
+    }
+
+    /// What the lights of the scene are.
+    #[must_use]
+    pub fn light_kinds(&self) -> Vec<LightKind> {
+        let of_stage = self.stage.as_ref().map(|stage| lights::kinds(&stage.lights));
+        of_stage.unwrap_or_else(|| vec![LightKind::Directional])
+    }
+
+    /// The sun of the scene as it was last drawn, if its first light is one.
+    #[must_use]
+    pub fn shown_sun(&self) -> Option<DirectionalLight> {
+        let drawn = self.drawn.as_ref().filter(|drawn| self.is_of_stage(&drawn.shot));
+        let lights = drawn.map(|drawn| &drawn.lights).or(self.stage.as_ref().map(|stage| &stage.lights))?;
+        match lights.first()?.lamp.light {
+            Light::Directional(sun) => Some(sun),
+            Light::Spot(_) | Light::Point(_) => None,
+        }
+    }
+
+    fn is_of_stage(&self, shot: &Shot) -> bool {
+        self.stage.as_ref().is_some_and(|stage| stage.id == shot.stage)
+    }
+
+    /// Lets time go by: animations, paths, scenes that have been opened.
+    pub fn tick(&mut self, seconds: f64) {
+        let seconds = seconds.clamp(0.0, 1.0);
+        self.since_moved += seconds;
+        if let Some(result) = self.opening.as_ref().and_then(Opening::poll) {
+            self.opening = None;
+            match result {
+                Ok(stage) => self.enter(stage),
+                Err(why) => self.say(true, why),
+            }
+        }
+        if self.playing && self.stage.as_ref().is_some_and(|stage| stage.is_animated()) {
+            self.time_s += seconds;
+            self.since_moved = 0.0;
+        }
+        if let (Some(following), Some(camera)) = (&mut self.following, &mut self.camera) {
+            let goes_on = following.advance(camera.speed * seconds);
+            if let Some(view) = following.view(*camera.view().frustum()) {
+                camera.jump(view);
+                self.since_moved = 0.0;
+            }
+            if !goes_on {
+                self.following = None;
+            }
+        }
+        if let (Some(recording), Some(camera)) = (&mut self.recording, &self.camera) {
+            recording.pass(camera.view());
+        }
+    }
+
+    /// Whether frames follow each other by themselves.
+    #[must_use]
+    pub fn is_moving(&self) -> bool {
+        let animated = self.playing && self.stage.as_ref().is_some_and(|stage| stage.is_animated());
+        animated || self.following.is_some() || self.since_moved < REST_S
+    }
+
+    /// Moves the camera.
+    pub fn fly(&mut self, motion: &Motion) {
+        let Some(camera) = &mut self.camera else { return };
+        if !motion.is_still() {
+            camera.apply(motion);
+            self.following = None;
+            self.since_moved = 0.0;
+        }
+    }
+
+    /// Looks from elsewhere.
+    pub fn jump(&mut self, view: View) {
+        let aspect = f64::from(self.size[0]) / f64::from(self.size[1].max(1));
+        if let Some(camera) = &mut self.camera {
+            camera.jump(view);
+            camera.set_aspect(aspect);
+            self.following = None;
+        }
+    }
+
+    /// Moves the sun by so many picture heights to the right and down.
+    pub fn drag_sun(&mut self, by: DVec2) {
+        let from = match self.sun {
+            Sun::ByHand(point) => Some(point),
+            Sun::OfScene | Sun::ByDate(_) => self.shown_sun().map(|sun| SkyPoint::of_travel(sun.direction())),
+        };
+        match from {
+            Some(point) => {
+                self.sun = Sun::ByHand(point.dragged(by));
+                self.since_moved = 0.0;
+            }
+            None => self.say(false, "the first light of this scene is a lamp; there is no sun to drag"),
+        }
+    }
+
+    /// Makes the picture another size.
+    pub fn resize(&mut self, size: [u32; 2]) {
+        if size == self.size || size.contains(&0) {
+            return;
+        }
+        self.size = size;
+        if let Some(camera) = &mut self.camera {
+            camera.set_aspect(f64::from(size[0]) / f64::from(size[1]));
+        }
+    }
+
+    /// Holds the maps for the view of now, or lets go.
+    pub fn freeze(&mut self, hold: bool) {
+        let reused = |config: &ShadowConfig| config.layout == Layout::Reused;
+        if hold && (reused(&self.config) || self.other.as_ref().is_some_and(reused)) {
+            self.say(
+                false,
+                "storage reused draws the picture slice by slice and cannot hold its maps for another view; choose another storage",
+            );
+            return;
+        }
+        self.frozen = self.camera.as_ref().filter(|_| hold).map(|camera| *camera.view());
+        if hold {
+            self.show.frusta = true;
+        }
+    }
+
+    /// Another config.
+    pub fn set_config(&mut self, config: ShadowConfig) {
+        if config.layout == Layout::Reused && self.frozen.take().is_some() {
+            self.say(false, "the held maps are let go: storage reused has one map at a time");
+        }
+        self.config = config;
+    }
+
+    /// Asks what lies under a point of the picture.
+    pub fn pick(&mut self, at: DVec2) {
+        self.click = Some(at);
+    }
+
+    /// What is to be drawn now.
+    #[must_use]
+    pub fn shot(&self) -> Option<Shot> {
+        let (stage, camera) = (self.stage.as_ref()?, self.camera.as_ref()?);
+        let slow = self.times.back().is_some_and(|times| times.wall > SLOW_MS);
+        let coarse = slow && self.is_moving();
+        Some(Shot {
+            stage: stage.id,
+            time_s: self.time_s,
+            view: *camera.view(),
+            planned_for: self.frozen,
+            sun: self.last_sun,
+            configs: std::iter::once(&self.config).chain(&self.other).cloned().collect(),
+            size: if coarse { self.size.map(|edge| edge.div_ceil(2)) } else { self.size },
+            tint: self.show.tint,
+            shadows_on: self.show.shadows,
+        })
+    }
+
+    /// What is wanted beside the picture.
+    fn wants(&self, shot: &Shot) -> Wants {
+        let probe = self.picked.as_ref().filter(|picked| picked.drawn.shot == *shot).and_then(|picked| {
+            let surface = picked.surface.as_ref()?;
+            Some(ProbePoint { position: surface.position, normal: surface.normal })
+        });
+        Wants { maps: self.show.tab == Some(Tab::Maps), mask: self.show.overlay == Some(Overlay::Errors), probe }
+    }
+
+    /// The next picture to ask for: none while one is on its way, or nothing has changed.
+    pub fn next_order(&mut self) -> Option<Order> {
+        // At night the last sun stays.
+        if let Ok(sun) = self.sun.light() {
+            self.last_sun = sun.filter(|_| self.shown_sun().is_some());
+        }
+        if self.in_flight {
+            return None;
+        }
+        let shot = self.shot()?;
+        if self.failed.as_ref() == Some(&shot) {
+            return None;
+        }
+        let stage = Arc::clone(self.stage.as_ref()?);
+        let is_still = self.drawn.as_ref().is_some_and(|drawn| drawn.shot == shot);
+        let wants = if is_still { self.wants(&shot) } else { Wants::default() };
+        let is_met = is_still && self.drawn.as_ref().is_some_and(|drawn| wants.are_met_by(&drawn.wants));
+        if is_met && self.settled {
+            return None;
+        }
+        self.in_flight = true;
+        Some(Order { stage, shot, wants })
+    }
+
+    /// The order could not be given: the thread is gone.
+    pub fn order_lost(&mut self, why: &str) {
+        self.in_flight = false;
+        self.say(true, why);
+    }
+
+    /// Takes in what the studio says.
+    pub fn hear(&mut self, news: News) {
+        match news {
+            News::Adapter(adapter) => self.adapter = Some(adapter),
+            News::Busy(what) => self.busy = Some(what),
+            News::Failed { shot, why } => {
+                (self.in_flight, self.busy) = (false, None);
+                self.say(true, why);
+                self.failed = Some(*shot);
+            }
+            News::Drawn(drawn) => {
+                (self.in_flight, self.busy, self.failed) = (false, None, None);
+                // A picture of a scene that was left is nobody's.
+                if self.is_of_stage(&drawn.shot) {
+                    self.show_picture(*drawn);
+                }
+            }
+        }
+    }
+
+    fn show_picture(&mut self, drawn: Drawn) {
+        self.pictures += 1;
+        if let Some(taken) = drawn.taken.first() {
+            let stats = &taken.stats;
+            let maps = stats.shadow_ms;
+            let view = (stats.frame_ms - maps).max(0.0);
+            self.times.push_back(Times { plan: stats.plan_ms, maps, view, wall: drawn.wall_ms });
+            while self.times.len() > HISTORY {
+                self.times.pop_front();
+            }
+        }
+        let plans = |drawn: &Drawn| drawn.taken.iter().map(|taken| Arc::clone(&taken.stats.plan)).collect::<Vec<_>>();
+        // Stabilised maps go back to a fresh plan's in small steps while the camera stands.
+        let holds = drawn.shot.configs.iter().any(ShadowConfig::is_stabilised) && drawn.shot.shadows_on;
+        let before = self.drawn.as_ref().filter(|before| before.shot == drawn.shot);
+        self.settled = !holds || before.is_some_and(|before| plans(before) == plans(&drawn));
+        let notes: Vec<String> = drawn.taken.iter().flat_map(|taken| taken.notes.clone()).collect();
+        if self.drawn.as_ref().is_none_or(|before| before.shot.configs != drawn.shot.configs) {
+            notes.into_iter().for_each(|note| self.say(false, note));
+        }
+        self.drawn = Some(Arc::new(drawn));
+    }
+
+    /// Whether the picture is the one that is wanted, with all that was asked for.
+    #[must_use]
+    pub fn is_up_to_date(&self) -> bool {
+        let Some((shot, drawn)) = self.shot().zip(self.drawn.as_ref()) else { return false };
+        drawn.shot == shot
+            && self.wants(&shot).are_met_by(&drawn.wants)
+            && (self.show.overlay.is_none() || self.fitting_overlay().is_some())
+            && self.judging.is_none()
+            && self.click.is_none()
+    }
+
+    /// The overlay of the picture that is shown.
+    #[must_use]
+    pub fn fitting_overlay(&self) -> Option<&Laid> {
+        let drawn = self.drawn.as_ref()?;
+        self.laid.as_ref().filter(|laid| laid.shot == drawn.shot && Some(laid.overlay) == self.show.overlay)
+    }
+
+    /// The next question to the judge: about the picture that is shown, once nothing moves.
+    pub fn next_question(&mut self) -> Option<Question> {
+        if self.judging.is_some() {
+            return None;
+        }
+        let drawn = self.drawn.as_ref()?;
+        let shot = self.shot()?;
+        if drawn.shot != shot || self.in_flight && !self.settled {
+            return None;
+        }
+        let follows = || {
+            // What was clicked on is asked again in each new picture.
+            let picked = self.picked.as_ref().filter(|picked| picked.drawn.shot != shot)?;
+            let surface = picked.surface.as_ref()?;
+            project(&shot.view, surface.position).map(|(at, _)| at)
+        };
+        if let Some(at) = self.click.take().or_else(follows) {
+            self.judging = Some((shot, None));
+            return Some(Question::Pick(Arc::clone(drawn), at));
+        }
+        let overlay = self.show.overlay?;
+        let has_mask = overlay != Overlay::Errors || drawn.wants.mask;
+        let is_there = self.laid.as_ref().is_some_and(|laid| laid.shot == shot && laid.overlay == overlay);
+        if is_there || !has_mask || !self.settled {
+            return None;
+        }
+        self.judging = Some((shot, Some(overlay)));
+        Some(Question::Overlay(Arc::clone(drawn), overlay))
+    }
+
+    /// Whether rays are being traced.
+    #[must_use]
+    pub fn is_judging(&self) -> bool {
+        self.judging.is_some()
+    }
+
+    /// Takes in what the judge says.
+    pub fn found(&mut self, finding: Finding) {
+        let asked = self.judging.take();
+        match finding {
+            Finding::Laid(laid) => self.laid = Some(*laid),
+            Finding::Picked(picked) => {
+                if let (Some(surface), Some(camera)) = (&picked.surface, &mut self.camera) {
+                    camera.set_pivot(surface.position);
+                }
+                self.picked = Some(*picked);
+            }
+            Finding::Failed(why) => {
+                self.say(true, why);
+                match asked {
+                    // Not asked again for this picture.
+                    Some((_, Some(_))) => self.show.overlay = None,
+                    _ => self.picked = None,
+                }
+            }
+        }
+    }
+
+    /// The question could not be asked: the thread is gone.
+    pub fn question_lost(&mut self, why: &str) {
+        self.judging = None;
+        self.show.overlay = None;
+        self.say(true, why);
+    }
+
+    /// How long the scene that is being opened has taken.
+    #[must_use]
+    pub fn opening_for(&self) -> Option<Duration> {
+        self.opening.as_ref().map(Opening::elapsed)
+    }
+}
+
+/// Where a view shows a world point, in shares of the picture, and its view depth; `None` for what lies outside of it.
+#[must_use]
+pub fn project(view: &View, point: DVec3) -> Option<(DVec2, f64)> {
+    let at = view.view_from_world_point(point);
+    let depth = -at.z;
+    let lens = view.frustum();
+    let scale = lens.scale_at(depth);
+    let x = (at.x / scale - lens.left) / (lens.right - lens.left);
+    let y = (lens.top - at.y / scale) / (lens.top - lens.bottom);
+    let inside = (0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&y) && depth >= lens.near;
+    inside.then_some((DVec2::new(x, y), depth))
+}
+
+#[cfg(test)]
+mod tests;

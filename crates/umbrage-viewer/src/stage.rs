@@ -1,0 +1,285 @@
+//! Scenes, opened beside the window: what is shown stays until the next one is there.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::time::{Duration, Instant};
+
+use umbrage::View;
+use umbrage_lab::failure::Failure;
+use umbrage_lab::gallery::{SCENES, Scene as Exhibit};
+use umbrage_lab::lights::{self, NamedLight};
+use umbrage_lab::scene_request::{CameraChoice, SceneRequest};
+use umbrage_lab::scene_setup::frame_views;
+use umbrage_scene::{CameraPath, Pose, Scene};
+
+use crate::path::Following;
+
+/// The view of a gallery that a scene of the menu begins with.
+const FIRST_SHOT: &str = "middle";
+
+/// A scene that was opened, with its first view and its lights.
+#[derive(Debug)]
+pub struct Stage {
+    /// Tells one opened scene from another.
+    pub id: u64,
+    /// What was asked for.
+    pub request: SceneRequest,
+    /// The scene.
+    pub scene: Scene,
+    /// The scene at the request's time.
+    pub pose: Arc<Pose>,
+    /// The first view.
+    pub view: View,
+    /// The lights at the request's time.
+    pub lights: Vec<NamedLight>,
+    /// The path, where the request has one.
+    pub path: Option<CameraPath>,
+    /// What the loader left out.
+    pub notes: Vec<String>,
+}
+
+impl Stage {
+    /// Whether anything moves by itself.
+    #[must_use]
+    pub fn is_animated(&self) -> bool {
+        !self.scene.animations.is_empty()
+    }
+
+    /// Seconds until the longest clip starts again.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.scene.animations.iter().map(|clip| clip.duration).fold(0.0, f64::max)
+    }
+
+    /// The path of the request, to be followed from its beginning.
+    #[must_use]
+    pub fn following(&self) -> Option<Following> {
+        match (&self.request.camera, &self.path) {
+            (CameraChoice::Path { eye_height, .. }, Some(path)) => Some(Following::new(path.clone(), *eye_height)),
+            _ => None,
+        }
+    }
+
+    /// The view of a camera of the scene.
+    ///
+    /// # Errors
+    /// Why it has none.
+    pub fn camera_view(&self, index: usize, aspect: f64) -> Result<View, String> {
+        umbrage_scene::camera_view(&self.scene, &self.pose, index, aspect, self.request.near, self.request.far)
+            .map_err(|error| error.to_string())
+    }
+}
+
+/// How far an opening has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// The file is read, or the world built.
+    Reading,
+    /// The scene is posed, its cameras and lights are looked up.
+    Posing,
+    /// It is there.
+    Done,
+}
+
+impl Step {
+    const ALL: [Self; 3] = [Self::Reading, Self::Posing, Self::Done];
+
+    /// For people.
+    #[must_use]
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Reading => "reading the scene",
+            Self::Posing => "posing the scene",
+            Self::Done => "done",
+        }
+    }
+
+    /// Share of the steps that are behind.
+    #[must_use]
+    pub fn share(self) -> f32 {
+        match self {
+            Self::Reading => 0.1,
+            Self::Posing => 0.8,
+            Self::Done => 1.0,
+        }
+    }
+}
+
+/// A scene on its way.
+#[derive(Debug)]
+pub struct Opening {
+    /// What was asked for.
+    pub spec: String,
+    begun: Instant,
+    step: Arc<AtomicU8>,
+    result: Receiver<Result<Stage, String>>,
+}
+
+impl Opening {
+    /// Opens a scene on a thread of its own; `wake` is called when something is new.
+    pub fn start(request: SceneRequest, wake: impl Fn() + Send + 'static) -> Self {
+        let (sender, result) = channel();
+        let step = Arc::new(AtomicU8::new(0));
+        let at = Arc::clone(&step);
+        let spec = request.scene.clone();
+        let work = move || {
+            let enter = |step: Step| {
+                at.store(step as u8, Ordering::Relaxed);
+                wake();
+            };
+            // The window may have gone meanwhile.
+            drop(sender.send(open(request, enter).map_err(|failure| failure.to_string())));
+            enter(Step::Done);
+        };
+        let spawned = std::thread::Builder::new().name("open".to_owned()).spawn(work);
+        let opening = Self { spec, begun: Instant::now(), step, result };
+        drop(spawned);
+        opening
+    }
+
+    /// The step that is done now.
+    #[must_use]
+    pub fn step(&self) -> Step {
+        Step::ALL[usize::from(self.step.load(Ordering::Relaxed)).min(2)]
+    }
+
+    /// How long it has taken.
+    #[must_use]
+    pub fn elapsed(&self) -> Duration {
+        self.begun.elapsed()
+    }
+
+    /// The scene, once it is there.
+    pub fn poll(&self) -> Option<Result<Stage, String>> {
+        match self.result.try_recv() {
+            Ok(result) => Some(result),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => {
+                Some(Err(format!("{}: opening it ended without a result; please report this file", self.spec)))
+            }
+        }
+    }
+}
+
+/// Opens what a request names.
+///
+/// # Errors
+/// [`Failure::Input`] naming the file or option at fault.
+pub fn open(request: SceneRequest, enter: impl Fn(Step)) -> Result<Stage, Failure> {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    enter(Step::Reading);
+    let path = match &request.camera {
+        CameraChoice::Path { file, .. } => Some(CameraPath::load(file)?),
+        _ => None,
+    };
+    let scene = umbrage_scene::open(&request.scene, &request.files)?;
+    let scene = match request.move_scene {
+        Some(by) => scene.moved(by),
+        None => scene,
+    };
+    enter(Step::Posing);
+    let pose = scene.pose(request.time_s)?;
+    let mut notes = scene.notes.clone();
+    // Which camera and which sun were taken can be seen and changed in the window.
+    let mut seen = Vec::new();
+    let views = frame_views(&request, &scene, &pose, path.as_ref(), &mut seen)?;
+    let lights = lights::chosen(&request, &scene, &pose, path.as_ref(), &mut seen)?;
+    let first = views.into_iter().next().ok_or_else(|| Failure::input("--frames 0 asks for no frame"))?;
+    if !first.beside.is_empty() {
+        notes.push("one view at a time is shown: the first of the cameras".to_owned());
+    }
+    let id = NEXT.fetch_add(1, Ordering::Relaxed);
+    Ok(Stage { id, request, scene, pose: Arc::new(pose), view: first.view, lights, path, notes })
+}
+
+/// A scene of the menu.
+#[derive(Clone, Copy, Debug)]
+pub struct Shipped(&'static Exhibit);
+
+/// The worlds, and the city.
+pub fn shipped() -> impl Iterator<Item = Shipped> {
+    SCENES.iter().map(Shipped)
+}
+
+impl Shipped {
+    /// Its name.
+    #[must_use]
+    pub fn title(&self) -> &'static str {
+        self.0.title
+    }
+
+    /// A sentence about it.
+    #[must_use]
+    pub fn about(&self) -> &'static str {
+        self.0.about
+    }
+
+    /// Whether this is what a request opened.
+    #[must_use]
+    pub fn is_shown_by(&self, request: &SceneRequest) -> bool {
+        Path::new(&request.scene).ends_with(self.0.scene)
+    }
+
+    /// What opens it.
+    ///
+    /// # Errors
+    /// Where it was looked for, if it is a file and not there.
+    pub fn request(&self, size: [u32; 2]) -> Result<SceneRequest, String> {
+        let shots = self.0.shots;
+        let shot =
+            shots.iter().find(|shot| shot.name == FIRST_SHOT).or(shots.first()).ok_or("the scene has no view")?;
+        let request = self.0.request(shot, size).map_err(|failure| failure.to_string())?;
+        let is_file = self.0.scene.contains('/');
+        let scene =
+            if is_file { find(Path::new(self.0.scene))?.display().to_string() } else { self.0.scene.to_owned() };
+        Ok(SceneRequest { scene, ..request })
+    }
+}
+
+/// A file of the repository: below the working folder, or below a folder that the program lies in.
+fn find(file: &Path) -> Result<PathBuf, String> {
+    let here = std::env::current_dir().ok();
+    let program = std::env::current_exe().ok();
+    let folders = here.iter().chain(&program).flat_map(|path| path.ancestors());
+    folders.map(|folder| folder.join(file)).find(|path| path.is_file()).ok_or_else(|| {
+        format!(
+            "{}: not found below this folder or the program's; start in umbrage's repository, or drop the file here",
+            file.display()
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_shipped_scene_can_be_asked_for() {
+        assert_eq!(shipped().count(), SCENES.len());
+        for shipped in shipped() {
+            let request = shipped.request([320, 200]).expect(shipped.title());
+            assert!(shipped.is_shown_by(&request), "{}", request.scene);
+            assert_eq!(self::shipped().filter(|other| other.is_shown_by(&request)).count(), 1);
+        }
+    }
+
+    #[test]
+    fn scenes_open_beside_and_say_what_was_wrong() {
+        let wait = |request| {
+            let opening = Opening::start(request, || ());
+            loop {
+                if let Some(result) = opening.poll() {
+                    return result;
+                }
+                std::thread::yield_now();
+            }
+        };
+        let stage = wait(SceneRequest::new("chessboard", [64, 48])).expect("a world");
+        assert!(stage.is_animated() && stage.duration_s() > 0.0 && stage.lights.len() == 1);
+        assert!(stage.camera_view(0, 2.0).is_ok() && stage.camera_view(99, 2.0).is_err());
+        let error = wait(SceneRequest::new("no-such.glb", [64, 48])).expect_err("no file");
+        assert!(error.contains("no-such.glb"), "{error}");
+    }
+}

@@ -1,0 +1,360 @@
+//! The thread that draws. It has a graphics device of its own, so that the window goes on however long a picture takes, and
+//! opens another if that one is lost.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::Instant;
+
+use image::{GrayAlphaImage, GrayImage, RgbaImage};
+use umbrage::{DirectionalLight, ShadowConfig, View};
+use umbrage_lab::lights::{self, NamedLight};
+use umbrage_lab::session::adapter_description;
+use umbrage_render::{
+    Frame, FrameStats, Gpu, GpuOptions, Lamp, Outputs, ProbeAnswer, ProbePoint, RenderSettings, Renderer, Samples,
+};
+use umbrage_scene::{Pose, Poser};
+
+use crate::stage::Stage;
+
+/// Everything that a picture depends on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shot {
+    /// [`Stage::id`].
+    pub stage: u64,
+    /// Seconds into the animations.
+    pub time_s: f64,
+    /// The eye.
+    pub view: View,
+    /// The view that maps are planned for, if they are held while the eye moves on.
+    pub planned_for: Option<View>,
+    /// The sun, if it is not the scene's own light.
+    pub sun: Option<DirectionalLight>,
+    /// One config, or two that are compared.
+    pub configs: Vec<ShadowConfig>,
+    /// Pixels across and down.
+    pub size: [u32; 2],
+    /// Whether splits are coloured.
+    pub tint: bool,
+    /// Whether anything throws shadows.
+    pub shadows_on: bool,
+}
+
+/// What is wanted beside the picture; it takes time, and is asked for while nothing moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wants {
+    /// The maps as pictures.
+    pub maps: bool,
+    /// The visibility of each pixel.
+    pub mask: bool,
+    /// What the maps say of a point.
+    pub probe: Option<ProbePoint>,
+}
+
+impl Wants {
+    /// Whether what was given holds all that is wanted.
+    #[must_use]
+    pub fn are_met_by(&self, given: &Self) -> bool {
+        (given.maps || !self.maps) && (given.mask || !self.mask) && (self.probe.is_none() || self.probe == given.probe)
+    }
+
+    /// Whether nothing is wanted.
+    #[must_use]
+    pub fn is_nothing(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// A picture that is asked for.
+#[derive(Clone, Debug)]
+pub struct Order {
+    /// The scene.
+    pub stage: Arc<Stage>,
+    /// What is drawn.
+    pub shot: Shot,
+    /// What is wanted beside it.
+    pub wants: Wants,
+}
+
+/// A picture by one config.
+#[derive(Debug)]
+pub struct Taken {
+    /// The picture.
+    pub picture: RgbaImage,
+    /// The visibility mask, if it was wanted.
+    pub mask: Option<GrayAlphaImage>,
+    /// The maps, if they were wanted.
+    pub maps: Vec<GrayImage>,
+    /// Numbers and plans.
+    pub stats: FrameStats,
+    /// Objects of the pose that plans speak of as casters.
+    pub casters: Vec<usize>,
+    /// What the maps say of the point.
+    pub answer: Option<ProbeAnswer>,
+    /// Fallbacks, and what gave way to the lights.
+    pub notes: Vec<String>,
+}
+
+/// What came of an order.
+#[derive(Debug)]
+pub struct Drawn {
+    /// The scene.
+    pub stage: Arc<Stage>,
+    /// What was drawn.
+    pub shot: Shot,
+    /// What was wanted beside it.
+    pub wants: Wants,
+    /// The scene at that time.
+    pub pose: Arc<Pose>,
+    /// The lights at that time.
+    pub lights: Vec<NamedLight>,
+    /// A picture for each config.
+    pub taken: Vec<Taken>,
+    /// Milliseconds from the order to the pictures.
+    pub wall_ms: f64,
+}
+
+/// What the thread says.
+#[derive(Debug)]
+pub enum News {
+    /// The adapter that draws.
+    Adapter(String),
+    /// What takes a moment.
+    Busy(&'static str),
+    /// Pictures.
+    Drawn(Box<Drawn>),
+    /// Why there are none; the thread goes on.
+    Failed {
+        /// What was to be drawn.
+        shot: Box<Shot>,
+        /// Why it was not.
+        why: String,
+    },
+}
+
+/// The thread.
+#[derive(Debug)]
+pub struct Studio {
+    orders: Sender<Order>,
+    news: Receiver<News>,
+}
+
+impl Studio {
+    /// Starts it; `wake` is called when there is news.
+    ///
+    /// # Errors
+    /// If the system has no thread left.
+    pub fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        let (orders, inbox) = channel();
+        let (outbox, news) = channel();
+        let tell = Tell { outbox, wake: Box::new(wake) };
+        std::thread::Builder::new().name("studio".to_owned()).spawn(move || work(&inbox, &tell))?;
+        Ok(Self { orders, news })
+    }
+
+    /// Asks for a picture. False if the thread has ended.
+    #[must_use]
+    pub fn order(&self, order: Order) -> bool {
+        self.orders.send(order).is_ok()
+    }
+
+    /// What is new.
+    pub fn news(&self) -> impl Iterator<Item = News> + '_ {
+        self.news.try_iter()
+    }
+}
+
+struct Tell {
+    outbox: Sender<News>,
+    wake: Box<dyn Fn() + Send>,
+}
+
+impl Tell {
+    fn say(&self, news: News) {
+        // Nobody listens once the window is closed.
+        drop(self.outbox.send(news));
+        (self.wake)();
+    }
+}
+
+fn work(inbox: &Receiver<Order>, tell: &Tell) {
+    let mut gpu = None;
+    let mut next = inbox.recv().ok();
+    while let Some(order) = next {
+        next = with_scene(order, inbox, tell, &mut gpu);
+    }
+}
+
+/// The last order that waits, or the next that comes; `None` once nobody can order.
+fn latest(inbox: &Receiver<Order>) -> Option<Order> {
+    let first = inbox.recv().ok()?;
+    Some(inbox.try_iter().last().unwrap_or(first))
+}
+
+/// Draws one scene, until another is ordered.
+fn with_scene(first: Order, inbox: &Receiver<Order>, tell: &Tell, gpu: &mut Option<Gpu>) -> Option<Order> {
+    let stage = Arc::clone(&first.stage);
+    let mut order = first;
+    let mut set = match Poser::new(&stage.scene) {
+        Ok(poser) => {
+            Set { stage: &stage, poser, posed: (stage.request.time_s, Arc::clone(&stage.pose)), booths: Vec::new() }
+        }
+        Err(error) => {
+            tell.say(News::Failed { shot: Box::new(order.shot), why: error.to_string() });
+            return latest(inbox);
+        }
+    };
+    loop {
+        let shot = order.shot.clone();
+        match set.draw(order, tell, gpu) {
+            Ok(drawn) => tell.say(News::Drawn(Box::new(drawn))),
+            Err(failure) => {
+                if failure.lost_device {
+                    set.booths.clear();
+                    *gpu = None;
+                }
+                tell.say(News::Failed { shot: Box::new(shot), why: failure.why });
+            }
+        }
+        order = latest(inbox)?;
+        if order.stage.id != stage.id {
+            return Some(order);
+        }
+    }
+}
+
+struct Failure {
+    why: String,
+    lost_device: bool,
+}
+
+impl From<umbrage_render::Error> for Failure {
+    fn from(error: umbrage_render::Error) -> Self {
+        use umbrage_render::Error as E;
+        let lost_device = matches!(error, E::Device { .. } | E::OutOfMemory { .. } | E::NoDevice { .. });
+        Self { why: error.to_string(), lost_device }
+    }
+}
+
+/// A scene with what draws it.
+struct Set<'s> {
+    stage: &'s Arc<Stage>,
+    poser: Poser<'s>,
+    posed: (f64, Arc<Pose>),
+    booths: Vec<Booth>,
+}
+
+/// A renderer of one config.
+struct Booth {
+    renderer: Renderer,
+    lights: Vec<umbrage::config::LightKind>,
+}
+
+impl Set<'_> {
+    fn draw(&mut self, order: Order, tell: &Tell, gpu: &mut Option<Gpu>) -> Result<Drawn, Failure> {
+        let begun = Instant::now();
+        let Order { shot, wants, .. } = order;
+        let (pose, lights) = self.pose(&shot)?;
+        let gpu = open(gpu, tell)?;
+        let mut taken = Vec::new();
+        for (slot, config) in shot.configs.iter().enumerate() {
+            taken.push(self.take(slot, config, (&shot, &wants), (&pose, &lights), (gpu, tell))?);
+        }
+        // A comparison that has ended gives its memory back.
+        self.booths.truncate(shot.configs.len());
+        let wall_ms = begun.elapsed().as_secs_f64() * 1e3;
+        Ok(Drawn { stage: Arc::clone(self.stage), shot, wants, pose, lights, taken, wall_ms })
+    }
+
+    fn pose(&mut self, shot: &Shot) -> Result<(Arc<Pose>, Vec<NamedLight>), Failure> {
+        let plain = |why: String| Failure { why, lost_device: false };
+        if self.posed.0 != shot.time_s {
+            let pose = self.poser.pose(shot.time_s).map_err(|error| plain(error.to_string()))?;
+            self.posed = (shot.time_s, Arc::new(pose));
+        }
+        let pose = Arc::clone(&self.posed.1);
+        let stage = self.stage;
+        let mut lights = lights::chosen(&stage.request, &stage.scene, &pose, stage.path.as_ref(), &mut Vec::new())
+            .map_err(|failure| plain(failure.to_string()))?;
+        if let (Some(sun), Some(first)) = (shot.sun, lights.first_mut()) {
+            *first = NamedLight { name: "sun".to_owned(), lamp: sun.into() };
+        }
+        Ok((pose, lights))
+    }
+
+    fn take(
+        &mut self,
+        slot: usize,
+        config: &ShadowConfig,
+        (shot, wants): (&Shot, &Wants),
+        (pose, lights): (&Pose, &[NamedLight]),
+        (gpu, tell): (&Gpu, &Tell),
+    ) -> Result<Taken, Failure> {
+        let kinds = lights::kinds(lights);
+        let (config, mut notes) = config.for_lights(&kinds);
+        let scene = &self.stage.scene;
+        self.booths.truncate(self.booths.len().min(if self.is_made_for(slot, &kinds) { usize::MAX } else { slot }));
+        if self.booths.len() == slot {
+            tell.say(News::Busy("uploading the scene and building its pipelines"));
+            let slots = kinds.iter().copied().map(Into::into).collect();
+            let settings =
+                RenderSettings { size: shot.size, samples: Samples::default(), config: config.clone(), lights: slots };
+            self.booths.push(Booth { renderer: Renderer::new(gpu, scene, &settings)?, lights: kinds });
+        }
+        let renderer = &mut self.booths[slot].renderer;
+        if *renderer.config() != config {
+            if renderer.config().rebuilds(&config).is_some_and(|(what, _)| what > umbrage::config::Rebuilds::Nothing) {
+                tell.say(News::Busy("making shaders and maps for the new settings"));
+            }
+            renderer.plan_for(None)?;
+            renderer.set_config(scene, &config)?;
+        }
+        renderer.resize(shot.size)?;
+        renderer.plan_for(shot.planned_for)?;
+        let more_lights: Vec<Lamp> = lights[1..].iter().map(|light| light.lamp).collect();
+        let frame = Frame {
+            pose,
+            view: &shot.view,
+            light: lights[0].lamp,
+            more_lights: &more_lights,
+            shadows_on: shot.shadows_on,
+            tint: shot.tint,
+        };
+        let maps = wants.maps && config.filter.samples() == 1 && shot.shadows_on;
+        let rendered = renderer.render(&frame, Outputs { picture: true, mask: wants.mask, maps })?;
+        let answer = match wants.probe {
+            Some(point) => renderer.probe(&frame, &[point])?.into_iter().next(),
+            None => None,
+        };
+        notes.extend(rendered.stats.notes.iter().cloned());
+        Ok(Taken {
+            picture: rendered.picture.ok_or_else(|| Failure {
+                why: "the renderer gave no picture, which is a defect; please report it".to_owned(),
+                lost_device: false,
+            })?,
+            mask: rendered.mask,
+            maps: rendered.maps,
+            stats: rendered.stats,
+            casters: renderer.casters_of(pose),
+            answer,
+            notes,
+        })
+    }
+
+    /// Whether the renderer of a slot, if there is one, has maps for lights of these kinds.
+    fn is_made_for(&self, slot: usize, kinds: &[umbrage::config::LightKind]) -> bool {
+        self.booths.get(slot).is_none_or(|booth| booth.lights == kinds)
+    }
+}
+
+/// The device, opened if there is none.
+fn open<'g>(gpu: &'g mut Option<Gpu>, tell: &Tell) -> Result<&'g Gpu, Failure> {
+    match gpu {
+        Some(gpu) => Ok(gpu),
+        None => {
+            tell.say(News::Busy("opening the graphics device"));
+            let opened = gpu.insert(Gpu::new(&GpuOptions::default())?);
+            tell.say(News::Adapter(adapter_description(opened)));
+            Ok(opened)
+        }
+    }
+}
