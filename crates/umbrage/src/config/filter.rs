@@ -28,7 +28,7 @@ pub enum Filter {
         width_m: Option<f64>,
     },
     /// Castaño's kernel of 5×5 texels, 1, 3, 4, 3, 1 per axis, blended linearly between texels
-    /// ([Castano13]): that of The Witness. Its width is five texels in every split.
+    /// (\[Castano13\]): that of The Witness. Its width is five texels in every split.
     Castano5,
     /// A disc of 32 bilinear comparisons, of a radius of 3 texels if no width is given.
     Disc {
