@@ -16,9 +16,11 @@ pub mod probe;
 pub mod render;
 pub mod scene_args;
 pub mod shadow_args;
+pub mod shot_args;
 pub mod switch;
 pub mod theory;
 pub mod truth;
+pub mod tune;
 pub mod worlds;
 
 use args::{Args, Command};
@@ -36,6 +38,7 @@ pub fn run(args: &Args) -> Result<()> {
         Command::Truth(args) => truth::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Tune(args) => tune::run(args),
         Command::Bench(args) => bench::run(args),
         Command::Gallery(args) => gallery::run(args),
         Command::Theory(args) => theory::run(args),

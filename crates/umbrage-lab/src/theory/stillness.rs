@@ -75,7 +75,7 @@ fn mean_edge(split: &Split) -> f64 {
 /// The section of the page.
 pub(super) fn section(setting: &Setting) -> Result<Section> {
     let walks: Vec<Vec<ShadowPlan>> =
-        KINDS.iter().map(|(_, kind, _)| plans(setting, *kind, FRAMES)).collect::<Result<_>>()?;
+        KINDS.iter().map(|(_, kind, _)| plans(setting, kind.clone(), FRAMES)).collect::<Result<_>>()?;
 
     let mut grids = Vec::new();
     for (walk, (name, _, colour)) in walks.iter().zip(KINDS).take(3) {
