@@ -19,8 +19,10 @@ pub enum Error {
         /// What was wrong and what to do.
         reason: String,
     },
-    /// The budget pays for no map.
-    #[error("--budget {budget}: too small for one split; the least that is possible with these settings is {least}")]
+    /// The budget pays for no candidate's maps.
+    #[error(
+        "--budget {budget}: too small for every candidate; the least that is possible with these settings is {least}"
+    )]
     BudgetTooSmall {
         /// The budget.
         budget: Budget,
