@@ -43,7 +43,10 @@ pub fn plot(run: &Run, outcomes: &[Outcome], choice: &Choice, most: f64) -> Resu
         series.push(series_of.colour(Colour::Series(1 + number)));
     }
     let best = points(&mut std::iter::once(&outcomes[choice.best]));
-    series.push(Series::new("the best", Style::Points, best.clone()).colour(Colour::Ink));
+    // Its point lies on that of the candidate.
+    let also = run.candidates[outcomes[choice.best].candidate].preset.as_ref();
+    let name = also.map_or("the best".to_owned(), |preset| format!("the best (preset {preset})"));
+    series.push(Series::new(name, Style::Points, best.clone()).colour(Colour::Ink));
     series.retain(|series| !series.points.is_empty());
     let all = || series.iter().flat_map(|series| series.points.iter().copied());
     let range = |of: fn((f64, f64)) -> f64| {
@@ -111,6 +114,7 @@ fn candidates(run: &Run, outcomes: &[Outcome], choice: &Choice, most: f64) -> Ta
     let least = |title: &str| Column::best(title, Best::Lowest);
     let columns = vec![
         Column::text("candidate"),
+        Column::text(""),
         Column::text("maps"),
         least("MiB"),
         least("E %"),
@@ -120,7 +124,6 @@ fn candidates(run: &Run, outcomes: &[Outcome], choice: &Choice, most: f64) -> Ta
         least("acne %"),
         least("leak %"),
         least("draws"),
-        Column::text(""),
     ];
     let mut order: Vec<usize> = (0..outcomes.len()).collect();
     let error = |index: usize| outcomes[index].e.unwrap_or(f64::INFINITY);
@@ -143,6 +146,7 @@ fn candidates(run: &Run, outcomes: &[Outcome], choice: &Choice, most: f64) -> Ta
         words.extend(candidate.preset.iter().map(|preset| format!("preset {preset}")));
         table = table.row(vec![
             format!("`{}`", candidate.label).into(),
+            words.join(", ").into(),
             format!("{} × {}²", sizes.len(), sizes.first().copied().unwrap_or_default()).into(),
             Cell::Number(outcome.bytes as f64 / MIB, 3),
             percent(outcome.e, 3),
@@ -152,7 +156,6 @@ fn candidates(run: &Run, outcomes: &[Outcome], choice: &Choice, most: f64) -> Ta
             percent(outcome.acne, 3),
             percent(outcome.leak, 3),
             outcome.draws.map_or(Cell::Missing, |draws| Cell::Number(draws, 0)),
-            words.join(", ").into(),
         ]);
     }
     table
