@@ -7,7 +7,7 @@ use clap::{Parser, Subcommand};
 
 use crate::{
     bench::BenchArgs, compare::CompareArgs, gallery::GalleryArgs, plan::PlanArgs, probe::ProbeArgs, render::RenderArgs,
-    theory::TheoryArgs, truth::TruthArgs, worlds::WorldsCommand,
+    theory::TheoryArgs, truth::TruthArgs, tune::TuneArgs, worlds::WorldsCommand,
 };
 
 /// Sunlight and its shadows over large worlds: pictures, visibility masks, probes, and the exact truth to compare with.
@@ -34,6 +34,8 @@ pub enum Command {
     Theory(TheoryArgs),
     /// Judge techniques beside each other: contact sheets, scores, one page
     Compare(Box<CompareArgs>),
+    /// Search the best settings for a budget of memory, against the judge
+    Tune(Box<TuneArgs>),
     /// Measure what shadows cost: times and counts of techniques in turn, ratios to the first, one page
     Bench(Box<BenchArgs>),
     /// Draw the worlds and a city from near and far with the defaults, as one page

@@ -17,9 +17,11 @@ pub mod render;
 pub mod scene_args;
 pub mod scene_options;
 pub mod shadow_args;
+pub mod shot_args;
 pub mod switch;
 pub mod theory;
 pub mod truth;
+pub mod tune;
 #[cfg(feature = "view")]
 pub mod view;
 pub mod worlds;
@@ -39,6 +41,7 @@ pub fn run(args: &Args) -> Result<()> {
         Command::Truth(args) => truth::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Tune(args) => tune::run(args),
         Command::Bench(args) => bench::run(args),
         Command::Gallery(args) => gallery::run(args),
         Command::Theory(args) => theory::run(args),

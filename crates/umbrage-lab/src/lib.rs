@@ -4,7 +4,7 @@
 //! * [`technique`]: how shadows are made, as options, as settings and under a name;
 //! * [`scene_request`] and [`scene_setup`]: what is looked at, asked for and opened;
 //! * [`session`]: a device with the scene on it;
-//! * [`compare`] judges techniques by rays, [`mod@bench`] measures what they cost, [`theory`] draws what
+//! * [`compare`] judges techniques by rays, [`tune`] searches the best for a budget, [`mod@bench`] measures what they cost, [`theory`] draws what
 //!   the papers derive, [`gallery`] what the defaults draw;
 //! * [`page`]: report pages and their charts;
 //! * [`output`] makes files appear whole or not at all, [`failure`] says whose fault it is that
@@ -18,6 +18,7 @@ pub mod choose;
 pub mod compare;
 pub mod failure;
 pub mod gallery;
+pub mod journal;
 pub mod lights;
 pub mod notes;
 pub mod output;
@@ -33,3 +34,4 @@ pub mod split_views;
 pub mod sun_disc;
 pub mod technique;
 pub mod theory;
+pub mod tune;

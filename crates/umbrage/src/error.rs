@@ -51,6 +51,22 @@ pub enum Error {
         /// The key as given.
         key: String,
     },
+    /// A budget that cannot be read.
+    #[error("budget {text:?}: {reason}")]
+    InvalidBudget {
+        /// The budget as given.
+        text: String,
+        /// What was wrong and what to give instead.
+        reason: String,
+    },
+    /// A budget that does not pay for one map.
+    #[error("a budget of {budget} is too small for one split; the least that is possible is {least}")]
+    BudgetTooSmall {
+        /// The budget as given.
+        budget: crate::config::Budget,
+        /// The least that pays for one map.
+        least: crate::config::Budget,
+    },
     /// The bounds of a caster or receiver are inverted, NaN or beyond 10^12 m.
     #[error(
         "{list}[{index}] has no valid bounds ({min} to {max}); give finite corners with min <= max, within ±10^12 m"

@@ -2,16 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::switch::Switch;
+use crate::{shot_args::ShotArgs, switch::Switch};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use glam::DVec3;
-use umbrage_lab::{
-    compare::{
-        preset::{self, Preset},
-        shots::{SunSpec, sun_spec},
-    },
-    parse,
-};
+use umbrage_lab::compare::preset::{self, Preset};
 
 const TECHNIQUES_HELP: &str = "\
 A technique is KIND:SPLITS:SIZE for pssm and KIND:SIZE for single maps, then settings: the shadow options of `umbrage render` \
@@ -51,23 +44,6 @@ pub struct CompareArgs {
     /// Scenes as for `umbrage render`: .glb or .gltf files, height maps, worlds [default: the preset's]
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<String>,
-    /// Height maps: metres between posts
-    #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Scene")]
-    pub metres_per_post: Option<f64>,
-    /// Height maps: metres per unit of a pixel's value
-    #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Scene")]
-    pub metres_per_unit: Option<f64>,
-    /// Height maps: metres added to every height
-    #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
-    pub height_offset: Option<f64>,
-    /// Move scenes with their cameras and lights by this many metres, as if they lay far from the world's origin; --eye, --target and --path
-    /// are places of the world
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Scene")]
-    pub move_scene: Option<DVec3>,
-    /// Seconds into the scenes' animations
-    #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
-    pub time: f64,
-
     /// Techniques to compare, see below
     #[arg(long, value_name = "LIST", value_delimiter = ',', help_heading = "Techniques")]
     pub techniques: Vec<String>,
@@ -80,66 +56,9 @@ pub struct CompareArgs {
     /// Settings for all techniques that do not say otherwise: filter=hard:blend=0
     #[arg(long, value_name = "SETTINGS", help_heading = "Techniques")]
     pub with: Option<String>,
-    /// View depths in metres that shadows cover and scores count, for all techniques [default: the camera's near and far]
-    #[arg(long, value_name = "N..F", value_parser = parse::range, allow_hyphen_values = true, help_heading = "Techniques")]
-    pub shadow_range: Option<(f64, f64)>,
-
-    /// Pixels [default: 800x600, or the preset's]
-    #[arg(long, value_name = "WxH", value_parser = parse::size, allow_hyphen_values = true, help_heading = "Shots")]
-    pub size: Option<[u32; 2]>,
-    /// Cameras of the scenes, by name or number [default: all that have names, or an invented one]
-    #[arg(long, value_name = "NAME|INDEX,…", value_delimiter = ',', help_heading = "Shots")]
-    pub camera: Vec<String>,
-    /// Where one more camera stands, in metres
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Shots")]
-    pub eye: Option<DVec3>,
-    /// The point it looks at
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Shots")]
-    pub target: Option<DVec3>,
-    /// Vertical field of view in degrees [default: 60, or the camera's]
-    #[arg(long, value_name = "DEGREES", value_parser = parse::field_of_view, allow_hyphen_values = true, help_heading = "Shots")]
-    pub fov: Option<f64>,
-    /// Near plane in metres [default: 1, or the camera's]
-    #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Shots")]
-    pub near: Option<f64>,
-    /// Far plane in metres, or inf [default: 800, or the camera's]
-    #[arg(long, value_name = "M", value_parser = parse::positive_or_infinite, allow_hyphen_values = true, help_heading = "Shots")]
-    pub far: Option<f64>,
-    /// Move a camera along an author's path (JSON); one scene only
-    #[arg(long, value_name = "FILE", help_heading = "Shots")]
-    pub path: Option<PathBuf>,
-    /// Frames of the path, or of --step; 2 or more give flicker
-    #[arg(long, value_name = "N", allow_hyphen_values = true, help_heading = "Shots")]
-    pub frames: Option<u32>,
-    /// With --path: metres from the path up to the eye
-    #[arg(long, value_name = "M", default_value = "2", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Shots")]
-    pub eye_height: f64,
-    /// Move every other camera forward by this many metres a frame, for --frames
-    #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Shots")]
-    pub step: Option<f64>,
-    /// Turn every other camera to the left by this many degrees a frame, about the world's vertical, for --frames
-    #[arg(long, value_name = "DEGREES", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Shots")]
-    pub turn: Option<f64>,
-    /// Magnify what every other camera sees by this factor a frame, for --frames
-    #[arg(long, value_name = "FACTOR", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Shots")]
-    pub zoom: Option<f64>,
-    /// One of the scenes' lights: a directional one as their own sun, or a spot or point light in its place
-    /// [default: the first directional one]
-    #[arg(long, value_name = "NAME|INDEX", help_heading = "Shots")]
-    pub light: Option<String>,
-    /// The own sun: the way light travels; any length
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Shots")]
-    pub sun: Option<DVec3>,
-    /// Angle across the sun in degrees: techniques with pcss go by it, and soft masks are scored beside hard ones
-    /// [default: 0.53 for pcss, no soft scores]
-    #[arg(long, value_name = "DEGREES", value_parser = parse::sun_angle, allow_hyphen_values = true, help_heading = "Shots")]
-    pub sun_angle: Option<f64>,
-    /// Suns that every camera is seen under, see below [default: own]
-    #[arg(long, value_name = "SUN,…", value_delimiter = ',', value_parser = sun_spec, allow_hyphen_values = true, help_heading = "Shots")]
-    pub suns: Vec<SunSpec>,
-    /// A view counts in means and comparisons if the true shadow has this many edge pixels
-    #[arg(long, value_name = "PIXELS", default_value_t = umbrage_truth::scores::LEAST_EDGES, help_heading = "Shots")]
-    pub least_edges: usize,
+    /// Views.
+    #[command(flatten)]
+    pub shots: ShotArgs,
 
     /// Write everything into this folder: sheet.png, errors.png, scores.json, compare.html
     #[arg(short = 'o', long = "output", value_name = "DIR", help_heading = "Output")]

@@ -4,20 +4,18 @@ use std::path::Path;
 
 use umbrage_lab::{
     compare::{
-        Job, Outputs, Settings,
-        shots::{SceneShots, ShotRequest, Stride, sun_spec},
+        Job, Outputs, Preset, Settings,
+        shots::{SceneShots, ShotRequest},
     },
     failure::{Failure, Result},
-    scene_request::{CameraChoice, SceneRequest},
     technique::{
         Technique,
         text::{self, Rejected},
     },
 };
-use umbrage_scene::{HeightMapOptions, OpenOptions};
 
 use super::args::CompareArgs;
-use crate::{scene_args::light_choice, switch::Switch};
+use crate::{shot_args::ShotDefaults, switch::Switch};
 
 /// Pixels across and down where neither the options nor the preset say any.
 const DEFAULT_SIZE: [u32; 2] = [800, 600];
@@ -31,15 +29,15 @@ pub fn job(args: &CompareArgs) -> Result<Job> {
     let techniques = techniques_of(args, &mut notes)?;
     let scenes = scenes_of(args)?;
     let mut inputs: Vec<&Path> = scenes.iter().map(Path::new).collect();
-    inputs.extend([&args.path, &args.techniques_file].into_iter().flatten().map(AsRef::<Path>::as_ref));
+    inputs.extend([&args.shots.path, &args.techniques_file].into_iter().flatten().map(AsRef::<Path>::as_ref));
     outputs.check(&inputs)?;
     let shots = shot_request(args, scenes.len())?;
     let scenes = scenes.iter().map(|scene| shots.open(scene)).collect::<Result<Vec<SceneShots>>>()?;
     let settings = Settings {
         size: size(args),
-        shadow_range: args.shadow_range,
-        sun_angle: args.sun_angle,
-        least_edges: args.least_edges,
+        shadow_range: args.shots.shadow_range,
+        sun_angle: args.shots.sun_angle,
+        least_edges: args.shots.least_edges,
         columns: args.columns as usize,
         tint: args.tint || args.preset.is_some_and(|preset| preset.tint),
         image_metrics: args.image_metrics == Switch::On,
@@ -49,7 +47,7 @@ pub fn job(args: &CompareArgs) -> Result<Job> {
 }
 
 fn size(args: &CompareArgs) -> [u32; 2] {
-    args.size.or_else(|| args.preset?.size).unwrap_or(DEFAULT_SIZE)
+    args.shots.size.or_else(|| args.preset?.size).unwrap_or(DEFAULT_SIZE)
 }
 
 fn techniques_of(args: &CompareArgs, notes: &mut Vec<String>) -> Result<Vec<Technique>> {
@@ -58,7 +56,7 @@ fn techniques_of(args: &CompareArgs, notes: &mut Vec<String>) -> Result<Vec<Tech
     let mut sources = Vec::new();
     for text in preset.map_or(&[][..], |preset| preset.techniques).iter().flat_map(|text| text::each(text)) {
         let source = text::parse(&text)?;
-        match source.finish(&with, args.shadow_range) {
+        match source.finish(&with, args.shots.shadow_range) {
             Ok(_) => sources.push(source),
             Err(Rejected::NotBuilt(failure)) => notes.push(format!("left out of the preset: {failure}")),
             Err(Rejected::Wrong(failure)) => return Err(failure),
@@ -78,7 +76,7 @@ fn techniques_of(args: &CompareArgs, notes: &mut Vec<String>) -> Result<Vec<Tech
             "no technique: give --techniques (for example pssm:4:1024,ssm:2048), --techniques-file or --preset",
         ));
     }
-    Ok(text::finish(&sources, &with, args.shadow_range)?)
+    Ok(text::finish(&sources, &with, args.shots.shadow_range)?)
 }
 
 fn scenes_of(args: &CompareArgs) -> Result<Vec<String>> {
@@ -92,88 +90,20 @@ fn scenes_of(args: &CompareArgs) -> Result<Vec<String>> {
     }
 }
 
-/// Which views of each scene: what was typed, then what the preset says.
+/// What the preset says of views.
+fn shot_defaults(preset: Option<&Preset>) -> ShotDefaults {
+    preset.map_or_else(ShotDefaults::default, |preset| ShotDefaults {
+        near: preset.near,
+        far: preset.far,
+        cameras: preset.cameras,
+        suns: Some(preset.suns),
+        stride: preset.stride,
+    })
+}
+
+/// Which views of each scene.
 fn shot_request(args: &CompareArgs, scenes: usize) -> Result<ShotRequest> {
-    let preset = args.preset;
-    if args.path.is_some() && scenes > 1 {
-        return Err(Failure::input("--path goes through one scene; give one scene"));
-    }
-    if args.frames == Some(0) {
-        return Err(Failure::input("--frames 0 asks for no frame; give 1 or more"));
-    }
-    let stride = stride_of(args, preset.and_then(|preset| preset.stride))?;
-    let suns = match preset {
-        _ if !args.suns.is_empty() => Some(args.suns.clone()),
-        Some(preset) if args.sun.is_none() && args.light.is_none() => {
-            Some(preset.suns.iter().map(|text| sun_spec(text).map_err(Failure::other)).collect::<Result<_>>()?)
-        }
-        _ => None,
-    };
-    let base = SceneRequest {
-        files: OpenOptions {
-            height_map: HeightMapOptions {
-                metres_per_post: args.metres_per_post,
-                metres_per_unit: args.metres_per_unit,
-                height_offset: args.height_offset,
-                ..HeightMapOptions::default()
-            },
-            ..OpenOptions::default()
-        },
-        move_scene: args.move_scene,
-        time_s: args.time,
-        fov: args.fov,
-        near: args.near.or(preset.and_then(|preset| preset.near)),
-        far: args.far.or(preset.and_then(|preset| preset.far)),
-        light: light_choice(args.light.as_deref(), args.sun)?,
-        sun_angle: args.sun_angle,
-        ..SceneRequest::new("", size(args))
-    };
-    Ok(ShotRequest { base, cameras: cameras_of(args)?, suns, stride })
-}
-
-/// Cameras by name, by a point to look at and along a path; none: all that a scene has.
-fn cameras_of(args: &CompareArgs) -> Result<Vec<CameraChoice>> {
-    let typed = !args.camera.is_empty() || args.eye.is_some() || args.path.is_some();
-    let mut cameras: Vec<CameraChoice> = match args.preset {
-        Some(preset) if !typed => preset.cameras.iter().map(|&name| CameraChoice::Named(name.to_owned())).collect(),
-        _ => args.camera.iter().cloned().map(CameraChoice::Named).collect(),
-    };
-    match (args.eye, args.target) {
-        (Some(eye), Some(target)) => cameras.push(CameraChoice::LookAt { eye, target }),
-        (None, None) => {}
-        (Some(_), None) => return Err(Failure::input("--eye without --target: give the point to look at")),
-        (None, Some(_)) => return Err(Failure::input("--target without --eye: give the point to look from")),
-    }
-    if let Some(file) = &args.path {
-        let frames = Some(args.frames.unwrap_or(1));
-        cameras.push(CameraChoice::Path { file: file.clone(), frames, eye_height: args.eye_height });
-    }
-    Ok(cameras)
-}
-
-/// `--step`, `--turn`, `--zoom` and `--frames`, what is not said taken from the preset.
-fn stride_of(args: &CompareArgs, preset: Option<Stride>) -> Result<Option<Stride>> {
-    let typed = [("--step", args.step), ("--turn", args.turn), ("--zoom", args.zoom)];
-    if let Some((option, _)) = typed.iter().find(|(_, value)| value.is_some()) {
-        let frames = args.frames.or(preset.map(|preset| preset.frames)).unwrap_or(2);
-        if frames < 2 {
-            return Err(Failure::input(format!("{option} with --frames 1 goes nowhere; give --frames 2 or more")));
-        }
-        let still = Stride { metres: 0.0, turn: 0.0, zoom: 1.0, frames };
-        return Ok(Some(Stride {
-            metres: args.step.unwrap_or(still.metres),
-            turn: args.turn.unwrap_or(still.turn),
-            zoom: args.zoom.unwrap_or(still.zoom),
-            frames,
-        }));
-    }
-    match (args.frames, preset) {
-        (Some(frames), Some(preset)) if args.path.is_none() => Ok((frames > 1).then_some(Stride { frames, ..preset })),
-        (Some(_), None) if args.path.is_none() => Err(Failure::input(
-            "--frames needs a way to go: give --path FILE, --step M, --turn DEGREES or --zoom FACTOR",
-        )),
-        _ => Ok(preset),
-    }
+    args.shots.request(scenes, size(args), &shot_defaults(args.preset))
 }
 
 #[cfg(test)]
@@ -181,7 +111,10 @@ mod tests {
     use clap::Parser;
     use umbrage::config::{Filter, Stability};
 
-    use umbrage_lab::compare::shots::SunSpec;
+    use umbrage_lab::{
+        compare::shots::{Stride, SunSpec},
+        scene_request::CameraChoice,
+    };
 
     use super::*;
 

@@ -21,6 +21,7 @@ pub mod stillness;
 
 pub use job::{Job, Outputs, Settings};
 pub use preset::Preset;
+pub(crate) use run::points_shared_with;
 pub use run::run;
 
 #[cfg(test)]

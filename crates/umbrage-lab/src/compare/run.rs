@@ -9,7 +9,7 @@ use umbrage_truth::{Truth, scores::shared_points};
 use super::{
     columns::{self, Answer, Place, Plain, columns},
     job::{Job, Settings},
-    journal::{Finished, Journal},
+    journal::{self, Finished},
     judge::{ViewTruth, score},
     page,
     report::{self, Comparison, TechniqueReport, ViewReport, WalkReport},
@@ -19,6 +19,7 @@ use super::{
 };
 use crate::{
     failure::{Failure, Result},
+    journal::Journal,
     lights::NamedLight,
     output::Staged,
     picture::png,
@@ -39,7 +40,7 @@ pub fn run(job: Job) -> Result<()> {
     let Job { techniques, scenes, settings, outputs, notes, resume, command } = job;
     let gpu = Gpu::new(&GpuOptions::default())?;
     let of = description(&techniques, &scenes, &settings, &adapter_description(&gpu));
-    let journal = resume.as_deref().map(|path| Journal::open(path, &of)).transpose()?;
+    let journal = resume.as_deref().map(|path| journal::open(path, &of)).transpose()?;
     let shown = columns::chosen(&scenes, settings.columns);
     let views: usize = scenes.iter().flat_map(|scene| &scene.series).map(|series| series.views.len()).sum();
     let mut run = Run {
@@ -103,7 +104,7 @@ struct Run<'a> {
     views: Vec<ViewReport>,
     walks: Vec<WalkReport>,
     columns: [Vec<Column>; 2],
-    journal: Option<Journal>,
+    journal: Option<Journal<Finished>>,
 }
 
 /// A frame whose points the next one is asked about again.
@@ -371,7 +372,7 @@ fn pixel_of(view: &umbrage::View, size: [u32; 2], point: glam::DVec3) -> Option<
 }
 
 /// P_k, as the renderer is asked about it.
-fn points_shared_with(judged: &ViewTruth, next: &umbrage::View) -> Vec<ProbePoint> {
+pub(crate) fn points_shared_with(judged: &ViewTruth, next: &umbrage::View) -> Vec<ProbePoint> {
     let shared = shared_points(&judged.truth, &judged.domain, next, judged.domain.range());
     let point =
         |pixel: usize| judged.truth.hits()[pixel].map(|hit| ProbePoint { position: hit.position, normal: hit.normal });

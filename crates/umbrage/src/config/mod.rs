@@ -6,6 +6,7 @@
 //! reports share.
 
 mod apply;
+mod budget;
 mod filter;
 mod fit;
 mod layout;
@@ -22,6 +23,7 @@ mod splits;
 mod text;
 
 pub use apply::Given;
+pub use budget::Budget;
 pub use filter::{Derivatives, Filter, MomentKind, Moments, SUN_DEGREES};
 pub use fit::{Crop, ExtentSteps, Stability};
 pub use layout::{Coordinates, DepthFormat, Fallbacks, Generation, Layout, Storage};

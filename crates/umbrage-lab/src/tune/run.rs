@@ -1,0 +1,160 @@
+//! Traces, judges candidate after candidate, writes.
+
+use std::path::PathBuf;
+
+use umbrage::config::{Budget, LightKind};
+use umbrage_render::{Gpu, GpuOptions};
+
+use super::{
+    Axis, Error, Outputs, RESULTS,
+    candidates::Grid,
+    judged::{JudgedScene, judge},
+    output,
+    record::{Outcome, Run, Shard, ViewName},
+};
+use crate::{
+    compare::shots::SceneShots, failure::Result, journal::Journal, notes, progress, session::adapter_description,
+    technique::text::Settings as Given,
+};
+
+/// A search, everything checked that can be before a frame is drawn.
+#[derive(Debug)]
+pub struct Job {
+    /// What maps may take.
+    pub budget: Budget,
+    /// What is tried.
+    pub axes: Vec<Axis>,
+    /// Settings of all candidates that do not try others.
+    pub with: Given,
+    /// Whether the presets are candidates, too.
+    pub presets: bool,
+    /// Scenes, opened, with their views.
+    pub scenes: Vec<SceneShots>,
+    /// What holds for all candidates.
+    pub settings: Settings,
+    /// The most F_edge of the best, a share.
+    pub most_flicker: f64,
+    /// Where finished candidates are kept, and taken from if a run was cut off.
+    pub results: Option<PathBuf>,
+    /// Which candidates are judged.
+    pub shard: Shard,
+    /// Where things go.
+    pub outputs: Outputs,
+}
+
+/// What holds for all candidates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Pixels across and down.
+    pub size: [u32; 2],
+    /// View depths in metres that are scored; none: the camera's near and far.
+    pub shadow_range: Option<(f64, f64)>,
+    /// Degrees across the sun, for pcss.
+    pub sun_angle: Option<f64>,
+    /// Edge pixels of the true shadow that a view needs to count.
+    pub least_edges: usize,
+}
+
+/// Judges the candidates of the shard that no earlier run judged; writes the outputs, unless the shard
+/// is but a part.
+///
+/// # Errors
+/// [`crate::failure::Failure`] naming the option, file or candidate at fault.
+pub fn run(job: &Job) -> Result<()> {
+    let lights: Vec<LightKind> =
+        job.scenes.iter().flat_map(|set| &set.series).map(|series| series.light.light.into()).collect();
+    let grid = Grid {
+        axes: &job.axes,
+        with: &job.with,
+        presets: job.presets,
+        budget: job.budget,
+        range: job.settings.shadow_range,
+        lights: &lights[..lights.len().min(1)],
+    };
+    let found = grid.candidates()?;
+    let gpu = Gpu::new(&GpuOptions::default())?;
+    let run = Run {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        adapter: adapter_description(&gpu),
+        budget: job.budget.to_string(),
+        axes: job.axes.clone(),
+        with: job.with.clone(),
+        size: job.settings.size,
+        shadow_range: job.settings.shadow_range,
+        sun_angle: job.settings.sun_angle,
+        least_edges: job.settings.least_edges,
+        views: view_names(&job.scenes),
+        candidates: found.all,
+        skipped: found.skipped,
+        shard: job.shard,
+    };
+    let read = |line: &str| read_outcome(line, run.candidates.len());
+    let mut journal = job.results.as_deref().map(|path| Journal::open(path, RESULTS, &run, read)).transpose()?;
+    let mut outcomes: Vec<Outcome> = journal.as_mut().map(|journal| journal.finished.clone()).unwrap_or_default();
+    if let Some(journal) = journal.as_ref().filter(|journal| !journal.finished.is_empty() || journal.dropped > 0) {
+        notes::say([&went_on(journal)]);
+    }
+    judge_missing(job, &gpu, &run, journal.as_mut(), &mut outcomes)?;
+    if job.shard == Shard::WHOLE { output::write(&run, outcomes, job.most_flicker, &job.outputs) } else { Ok(()) }
+}
+
+fn judge_missing(
+    job: &Job,
+    gpu: &Gpu,
+    run: &Run,
+    mut journal: Option<&mut Journal<Outcome>>,
+    outcomes: &mut Vec<Outcome>,
+) -> Result<()> {
+    let is_done = |number: usize| outcomes.iter().any(|outcome| outcome.candidate == number);
+    let missing: Vec<usize> =
+        (0..run.candidates.len()).filter(|&number| job.shard.has(number) && !is_done(number)).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let bar = progress::steps((run.views.len() * (missing.len() + 1)) as u64, "views × candidates");
+    let scenes: Vec<JudgedScene<'_>> =
+        job.scenes.iter().map(|set| JudgedScene::trace(set, &job.settings, &bar)).collect::<Result<_>>()?;
+    if !scenes.iter().any(JudgedScene::counts) {
+        return Err(Error::NoView { least_edges: job.settings.least_edges }.into());
+    }
+    for number in missing {
+        let outcome = judge(gpu, &scenes, (number, &run.candidates[number]), &job.settings, &bar)?;
+        if let Some(journal) = journal.as_deref_mut() {
+            journal.append(&outcome)?;
+        }
+        outcomes.push(outcome);
+    }
+    bar.finish_and_clear();
+    Ok(())
+}
+
+/// A line of a file of results, of a run with so many candidates; what is wrong with it in words.
+pub(super) fn read_outcome(line: &str, candidates: usize) -> std::result::Result<Outcome, String> {
+    let outcome: Outcome = serde_json::from_str(line).map_err(|error| error.to_string())?;
+    if outcome.candidate < candidates {
+        return Ok(outcome);
+    }
+    Err(format!("it is of candidate {}, and there are {candidates}", outcome.candidate))
+}
+
+fn went_on(journal: &Journal<Outcome>) -> String {
+    let cut = if journal.dropped > 0 { "; another was cut off and is judged again" } else { "" };
+    format!("--results {}: {} candidates were finished before{cut}", journal.path().display(), journal.finished.len())
+}
+
+fn view_names(scenes: &[SceneShots]) -> Vec<ViewName> {
+    let of_scene = |set: &SceneShots| -> Vec<ViewName> {
+        let frames = |series: &crate::compare::shots::Series| -> Vec<ViewName> {
+            let name = |(frame, options): (usize, &Vec<String>)| ViewName {
+                scene: set.name.clone(),
+                camera: series.camera.clone(),
+                sun: series.sun_name.clone(),
+                frame,
+                options: options.clone(),
+            };
+            series.options.iter().take(series.views.len()).enumerate().map(name).collect()
+        };
+        set.series.iter().flat_map(frames).collect()
+    };
+    scenes.iter().flat_map(of_scene).collect()
+}
