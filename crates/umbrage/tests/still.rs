@@ -57,7 +57,7 @@ proptest! {
         walk in prop::array::uniform3(-0.2..0.2f64), sun in sun(), crop in crop(),
         steps in prop_oneof![Just(ExtentSteps::default()), (4u32..64).prop_map(ExtentSteps::PerDoubling), Just(ExtentSteps::Levels(64))],
     ) {
-        let stability = Stability::Approximate { steps: steps };
+        let stability = Stability::Approximate { steps };
         let settings = ShadowConfig { range: Range::Metres { near: 1.0, far: 300.0 }, crop, stability, ..Preset::Papers.config() };
         let mut planner = Planner::new(&settings)?;
         let world = [Aabb::new(place - 400.0, place + 400.0)];
