@@ -77,7 +77,7 @@ pub fn run(args: &BenchArgs) -> Result<()> {
     let techniques = text::parse_all(&texts, with)?;
     let scenes: Vec<String> = match &args.scenes[..] {
         [] if args.filters => vec![World::RobotWar.name().to_owned()],
-        [] => World::ALL.iter().map(|world| world.name().to_owned()).collect(),
+        [] => World::PAPER.iter().map(|world| world.name().to_owned()).collect(),
         given => given.to_vec(),
     };
     bench::run(&Job {

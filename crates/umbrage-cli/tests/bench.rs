@@ -27,6 +27,12 @@ fn every_technique_and_crowd_has_its_row() {
         assert_eq!(rows[1]["map_bytes"], 3 * 512 * 512 * 4);
         for row in rows {
             assert!(row["frame_ratio"]["median"].as_f64().is_some_and(|ratio| ratio > 0.0), "{row}");
+            for time in ["cpu_ms", "cpu_without_ms"] {
+                assert!(row[time]["median"].as_f64().is_some_and(|ms| ms > 0.0), "{time} of {row}");
+            }
+            for time in ["first_picture_ms", "first_picture_cpu_ms"] {
+                assert!(row[time].as_f64().is_some_and(|ms| ms > 0.0), "{time} of {row}");
+            }
             assert!(row["draws"].as_u64().is_some_and(|draws| draws > 0), "{row}");
         }
     }

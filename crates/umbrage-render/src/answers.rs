@@ -51,7 +51,7 @@ impl Renderer {
             .map(|&point| (point, self.responder(frame, self.shadows.frame().plan(0), point.position)))
             .collect();
         let mut encoder = new_encoder(gpu);
-        let pending = self.probe.record(gpu, &mut encoder, maps, prepared.origin, &asked)?;
+        let pending = self.probe_pass().record(gpu, &mut encoder, maps, prepared.origin, &asked)?;
         gpu.queue.submit([encoder.finish()]);
         let mut replies = pending.read(gpu)?;
         for (reply, (point, responder)) in replies.iter_mut().zip(&asked) {

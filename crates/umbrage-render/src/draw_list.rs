@@ -53,6 +53,8 @@ pub(crate) type Parts = Vec<Vec<Range<u32>>>;
 pub(crate) enum Show {
     /// Those of its surface.
     Surfaces,
+    /// Those of its surface, where depth is there already: the last primitive of a run first, so that the first one stays.
+    Visible,
     /// Those for shadow passes, or what a run has of them.
     Shadows,
 }
@@ -64,13 +66,25 @@ pub(crate) struct Run {
     /// The transform mirrors: front faces are clockwise.
     pub mirrored: bool,
     pub instances: Range<u32>,
-    /// In shadow passes: what is drawn of its object; `None`: all of it.
+    /// What is drawn of its object, as ranges of shadow indices; `None`: all of it.
     pub parts: Option<Parts>,
+}
+
+/// A part of a run that is drawn by itself: one range of shadow indices of one primitive.
+#[derive(Clone, Debug)]
+pub(crate) struct Piece {
+    pub source: Source,
+    pub mirrored: bool,
+    pub instances: Range<u32>,
+    pub primitive: usize,
+    pub indices: Range<u32>,
 }
 
 /// The instances of all passes of a frame, and the buffer they are uploaded into.
 pub(crate) struct Instances {
     data: Vec<Instance>,
+    /// Per instance the object that it shows.
+    objects: Vec<usize>,
     buffer: wgpu::Buffer,
 }
 
@@ -78,12 +92,18 @@ impl Instances {
     pub const STRIDE: u64 = size_of::<Instance>() as u64;
 
     pub fn new(gpu: &Gpu) -> Self {
-        Self { data: Vec::new(), buffer: instance_buffer(gpu, 64) }
+        Self { data: Vec::new(), objects: Vec::new(), buffer: instance_buffer(gpu, 64) }
     }
 
     /// Forgets the last frame.
     pub fn clear(&mut self) {
         self.data.clear();
+        self.objects.clear();
+    }
+
+    /// The object that an instance shows.
+    pub fn object(&self, instance: u32) -> usize {
+        self.objects[instance as usize]
     }
 
     /// Objects that share a source drawn together, those given first as early as that allows. Where every draw has to begin with an
@@ -134,6 +154,7 @@ impl Instances {
             }
             let count = codes.len() as u32;
             let world_from_local = &pose.objects[index].world_from_local;
+            self.objects.extend(codes.clone().map(|_| index));
             self.data.extend(codes.map(|code| Instance::new(world_from_local, origin, code)));
             match runs.last_mut() {
                 Some(run) if joins => run.instances.end += count,
@@ -213,7 +234,7 @@ impl std::ops::AddAssign for Drawn {
 
 impl Drawable<'_> {
     /// The primitives of a run.
-    fn primitives(&self, source: Source) -> (&Geometry, &[GpuPrimitive]) {
+    pub fn primitives(&self, source: Source) -> (&Geometry, &[GpuPrimitive]) {
         match source {
             Source::Mesh(mesh) => (self.scene, &self.scene.meshes[mesh]),
             Source::Skinned(slot) => (self.skinned, &self.skinned.meshes[slot]),
@@ -234,61 +255,115 @@ impl Drawable<'_> {
     }
 
     /// Draws `what` of the primitives for which `pipeline_for` has a pipeline. Bind group 1 is the material.
-    pub fn draw<'p>(
+    pub fn draw<'p, 'r>(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
-        runs: &[Run],
+        runs: impl IntoIterator<Item = &'r Run>,
         what: Show,
         pipeline_for: impl Fn(&GpuMaterial, bool) -> Option<&'p wgpu::RenderPipeline>,
     ) -> Drawn {
-        let mut drawn = Drawn::default();
-        let (mut bound_pipeline, mut bound_material, mut bound_skinned) = (None, None, None);
+        let mut bound = Bound::default();
         for run in runs {
-            let (geometry, primitives) = self.primitives(run.source);
-            let count = run.instances.end - run.instances.start;
-            let skinned = matches!(run.source, Source::Skinned(_));
-            let mut instances_bound = false;
-            for (i, primitive) in primitives.iter().enumerate() {
+            let (_, primitives) = self.primitives(run.source);
+            for rank in 0..primitives.len() {
+                let i = if what == Show::Visible { primitives.len() - 1 - rank } else { rank };
+                let primitive = &primitives[i];
                 let material = &self.materials.list[primitive.material];
                 let Some(pipeline) = pipeline_for(material, run.mirrored) else { continue };
-                let ranges = match (what, &run.parts) {
-                    (Show::Surfaces, _) => std::slice::from_ref(&primitive.indices),
-                    (Show::Shadows, None) => std::slice::from_ref(&primitive.shadow_indices),
-                    (Show::Shadows, Some(parts)) => &parts[i],
+                let whole = match what {
+                    Show::Surfaces | Show::Visible => &primitive.indices,
+                    Show::Shadows => &primitive.shadow_indices,
                 };
-                if ranges.iter().all(Range::is_empty) {
-                    continue;
-                }
-                if bound_skinned != Some(skinned) {
-                    pass.set_vertex_buffer(0, geometry.positions.slice(..));
-                    pass.set_vertex_buffer(2, geometry.surfaces.slice(..));
-                    pass.set_vertex_buffer(3, geometry.normals.slice(..));
-                    pass.set_index_buffer(geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
-                    bound_skinned = Some(skinned);
-                }
-                if !instances_bound {
-                    // An offset rather than a first instance: not every backend knows the latter.
-                    let offset = u64::from(run.instances.start) * Instances::STRIDE;
-                    pass.set_vertex_buffer(1, self.instances.buffer.slice(offset..));
-                    instances_bound = true;
-                }
-                if bound_pipeline != Some(pipeline) {
-                    pass.set_pipeline(pipeline);
-                    bound_pipeline = Some(pipeline);
-                }
-                if bound_material != Some(primitive.material) {
-                    pass.set_bind_group(1, &material.bind_group, &[]);
-                    bound_material = Some(primitive.material);
-                }
-                for indices in ranges {
-                    pass.draw_indexed(indices.clone(), 0, 0..count);
-                    drawn.draws += 1;
-                    drawn.triangles += u64::from((indices.end - indices.start) / 3 * count);
+                // Triangles stand in both lists in one order.
+                let moved = |part: &Range<u32>| {
+                    let first = whole.start + (part.start - primitive.shadow_indices.start);
+                    first..first + (part.end - part.start)
+                };
+                match &run.parts {
+                    None => self.draw_ranges(pass, &mut bound, run, primitive, pipeline, [whole.clone()]),
+                    Some(parts) => {
+                        self.draw_ranges(pass, &mut bound, run, primitive, pipeline, parts[i].iter().map(moved));
+                    }
                 }
             }
         }
-        drawn
+        bound.drawn
     }
+
+    /// Draws the shadow indices of pieces, in the order given.
+    pub fn draw_pieces<'p>(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        pieces: &[Piece],
+        pipeline_for: impl Fn(&GpuMaterial, bool) -> Option<&'p wgpu::RenderPipeline>,
+    ) -> Drawn {
+        let mut bound = Bound::default();
+        for piece in pieces {
+            let primitive = &self.primitives(piece.source).1[piece.primitive];
+            if let Some(pipeline) = pipeline_for(&self.materials.list[primitive.material], piece.mirrored) {
+                let run = Run {
+                    source: piece.source,
+                    mirrored: piece.mirrored,
+                    instances: piece.instances.clone(),
+                    parts: None,
+                };
+                self.draw_ranges(pass, &mut bound, &run, primitive, pipeline, [piece.indices.clone()]);
+            }
+        }
+        bound.drawn
+    }
+
+    /// Draws ranges of indices of one primitive, and binds what is not bound yet.
+    fn draw_ranges<'p>(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        bound: &mut Bound<'p>,
+        run: &Run,
+        primitive: &GpuPrimitive,
+        pipeline: &'p wgpu::RenderPipeline,
+        ranges: impl IntoIterator<Item = Range<u32>>,
+    ) {
+        let count = run.instances.end - run.instances.start;
+        for indices in ranges.into_iter().filter(|indices| !indices.is_empty()) {
+            let skinned = matches!(run.source, Source::Skinned(_));
+            if bound.skinned != Some(skinned) {
+                let (geometry, _) = self.primitives(run.source);
+                pass.set_vertex_buffer(0, geometry.positions.slice(..));
+                pass.set_vertex_buffer(2, geometry.surfaces.slice(..));
+                pass.set_vertex_buffer(3, geometry.normals.slice(..));
+                pass.set_index_buffer(geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
+                bound.skinned = Some(skinned);
+            }
+            if bound.instances != Some(run.instances.start) {
+                // An offset rather than a first instance: not every backend knows the latter.
+                let offset = u64::from(run.instances.start) * Instances::STRIDE;
+                pass.set_vertex_buffer(1, self.instances.buffer.slice(offset..));
+                bound.instances = Some(run.instances.start);
+            }
+            if bound.pipeline != Some(pipeline) {
+                pass.set_pipeline(pipeline);
+                bound.pipeline = Some(pipeline);
+            }
+            if bound.material != Some(primitive.material) {
+                pass.set_bind_group(1, &self.materials.list[primitive.material].bind_group, &[]);
+                bound.material = Some(primitive.material);
+            }
+            pass.draw_indexed(indices.clone(), 0, 0..count);
+            bound.drawn.draws += 1;
+            bound.drawn.triangles += u64::from((indices.end - indices.start) / 3 * count);
+        }
+    }
+}
+
+/// What a pass has bound already, and what it has drawn.
+#[derive(Default)]
+struct Bound<'p> {
+    pipeline: Option<&'p wgpu::RenderPipeline>,
+    material: Option<usize>,
+    skinned: Option<bool>,
+    /// The first instance.
+    instances: Option<u32>,
+    drawn: Drawn,
 }
 
 #[cfg(test)]

@@ -9,9 +9,11 @@ use umbrage_scene::AlphaMode;
 use umbrage_wgpu::{ShadowMaps, Slice};
 
 use crate::contact::Contact;
-use crate::draw_list::{Drawable, Drawn, Run, Show, vertex_layouts};
+use crate::draw_list::{Drawable, Drawn, Run, Show};
 use crate::lamps::{Lamp, LampUniform, MOST_LAMPS};
 use crate::materials::{GpuMaterial, Materials};
+use crate::surfaces::{Depth, Recipe, Sky, Surface, SurfacePipelines, Vertices};
+use crate::view_list::ViewList;
 use crate::{Gpu, Result, shaders};
 
 /// What the picture is drawn in before it is resolved; the samples of a pixel share one shading.
@@ -20,6 +22,7 @@ pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba
 pub(crate) const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Unorm;
 /// What the eye's depth is drawn in: reversed, 0 infinitely far away.
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
 /// Samples per pixel of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Samples {
@@ -31,7 +34,7 @@ pub enum Samples {
 }
 
 impl Samples {
-    fn count(self) -> u32 {
+    pub(crate) fn count(self) -> u32 {
         match self {
             Self::One => 1,
             Self::Four => 4,
@@ -121,20 +124,6 @@ impl FrameUniform {
     }
 }
 
-/// Pipelines of one target, by what the material and the transform ask for.
-struct SurfacePipelines([[[wgpu::RenderPipeline; 2]; 2]; 3]);
-
-impl SurfacePipelines {
-    fn of(&self, material: &GpuMaterial, mirrored: bool) -> &wgpu::RenderPipeline {
-        let alpha = match material.alpha {
-            AlphaMode::Opaque => 0,
-            AlphaMode::Mask { .. } => 1,
-            AlphaMode::Blend => 2,
-        };
-        &self.0[alpha][usize::from(material.double_sided)][usize::from(mirrored)]
-    }
-}
-
 /// What a pass over the scene is bound to.
 #[derive(Clone, Copy)]
 pub(crate) struct Bindings<'a> {
@@ -146,6 +135,14 @@ pub(crate) struct Bindings<'a> {
     pub contact: Option<&'a wgpu::BindGroup>,
 }
 
+/// Whether the picture's text asks what is lit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shading {
+    WithShadows,
+    /// No word about shadows is in it.
+    WithoutShadows,
+}
+
 /// Pipelines and the frame's uniforms.
 pub(crate) struct Forward {
     uniform: wgpu::Buffer,
@@ -153,9 +150,13 @@ pub(crate) struct Forward {
     /// The whole frame, then its slices where the picture is drawn slice by slice.
     bind_groups: Vec<wgpu::BindGroup>,
     picture: SurfacePipelines,
+    /// Depth before anything is shaded, but where the view is drawn slice by slice.
+    picture_depth: Option<SurfacePipelines>,
     mask: SurfacePipelines,
-    sky: wgpu::RenderPipeline,
-    depth: Option<SurfacePipelines>,
+    mask_depth: Option<SurfacePipelines>,
+    sky: Sky,
+    /// Depth alone, for contact shadows.
+    depth: SurfacePipelines,
 }
 
 impl Forward {
@@ -165,10 +166,13 @@ impl Forward {
         materials: &Materials,
         samples: Samples,
         contact: Option<&Contact>,
+        shadows: Shading,
     ) -> Self {
         let device = &gpu.device;
-        let coordinates: Coordinates = maps.config().coordinates;
-        let library = maps.receiver_wgsl(2);
+        let (library, coordinates): (String, Coordinates) = match shadows {
+            Shading::WithShadows => (maps.receiver_wgsl(2), maps.config().coordinates),
+            Shading::WithoutShadows => (shaders::WITHOUT_SHADOWS.to_owned(), Coordinates::World),
+        };
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("Forward::shader"),
             source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::forward(&library, coordinates, contact.is_some()))),
@@ -229,39 +233,71 @@ impl Forward {
             bind_group_layouts: &[Some(&frame_layout)],
             immediate_size: 0,
         });
-        let unclipped_depth = sliced && device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL);
-        let builder = Builder { device, module: &module, layout: &surface_layout, samples, sliced, unclipped_depth };
-        let picture = builder.pipelines([
-            builder.surface("Forward::picture_opaque", "fs_picture_opaque", PICTURE_FORMAT),
-            Surface {
-                alpha_to_coverage: samples != Samples::One,
-                ..builder.surface("Forward::picture_masked", "fs_picture_masked", PICTURE_FORMAT)
-            },
-            Surface { blend: true, ..builder.surface("Forward::picture_blend", "fs_picture_blend", PICTURE_FORMAT) },
-        ]);
-        // The third is never drawn: translucent surfaces are not in the mask.
-        let opaque =
-            || Surface { samples: 1, ..builder.surface("Forward::mask_opaque", "fs_mask_opaque", MASK_FORMAT) };
-        let mask = builder.pipelines([
-            opaque(),
-            Surface { samples: 1, ..builder.surface("Forward::mask_masked", "fs_mask_masked", MASK_FORMAT) },
-            opaque(),
-        ]);
-        let sky = Builder { layout: &sky_layout, ..builder }.sky();
-        let depth = contact.map(|_| {
-            let bare = Surface {
-                label: "Forward::depth",
-                vertex_entry: "vs_depth",
-                fragment_entry: None,
-                format: None,
-                samples: 1,
-                alpha_to_coverage: false,
-                blend: false,
-            };
-            let masked = Surface { fragment_entry: Some("fs_depth_masked"), ..bare };
-            Builder { layout: &depth_layout, ..builder }.pipelines([bare, masked, bare])
+        let depth_module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("Forward::depth_shader"),
+            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::depth())),
         });
-        Self { uniform, stride, bind_groups, picture, mask, sky, depth }
+        let samples_per_pixel = samples.count();
+        let shading = Recipe {
+            constants: vec![("LEAST_COVERAGE", samples.least_coverage()), ("SLICED", f64::from(u8::from(sliced)))],
+            unclipped_depth: sliced && device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL),
+            // A slice has no depth pass: which pixels belong to it is known only where they are shaded.
+            depth: if sliced { Depth::Drawn } else { Depth::Found },
+            ..Recipe::new(gpu, surface_layout, module)
+        };
+        let drawn_first = Recipe {
+            constants: vec![("LEAST_COVERAGE", samples.least_coverage())],
+            ..Recipe::new(gpu, depth_layout, depth_module)
+        };
+        // With several samples lavapipe seems to shade hidden pixels all the same: a depth pass did not help (docs/notes/cost.md).
+        let is_software = gpu.adapter_info.device_type == wgpu::DeviceType::Cpu;
+        let early = !sliced && !(is_software && samples != Samples::One);
+        let shading_pictures = Recipe { depth: if early { Depth::Found } else { Depth::Drawn }, ..shading.clone() };
+        let picture = |fragment_entry| Surface {
+            vertex: Vertices::Whole,
+            fragment_entry: Some(fragment_entry),
+            format: Some(PICTURE_FORMAT),
+            samples: samples_per_pixel,
+            ..Surface::default()
+        };
+        let mask = |fragment_entry| Surface { format: Some(MASK_FORMAT), samples: 1, ..picture(fragment_entry) };
+        let bare = |vertex, fragment_entry, format, samples| Surface {
+            vertex,
+            fragment_entry,
+            format,
+            samples,
+            writes: false,
+            ..Surface::default()
+        };
+        let before = |masked: &'static str, format: Option<wgpu::TextureFormat>, samples: u32| {
+            let solid = bare(Vertices::Positions, format.map(|_| "fs_solid"), format, samples);
+            let masked = bare(Vertices::Outlines, Some(masked), format, samples);
+            [solid, masked, solid]
+        };
+        let several = samples != Samples::One;
+        let [solid, mut covering, _] = before("fs_coverage", Some(PICTURE_FORMAT), samples_per_pixel);
+        covering.alpha_to_coverage = several;
+        Self {
+            uniform,
+            stride,
+            bind_groups,
+            picture_depth: early.then(|| drawn_first.pipelines("Forward::picture_depth", [solid, covering, solid])),
+            picture: shading_pictures.pipelines(
+                "Forward::picture",
+                [
+                    picture("fs_picture_opaque"),
+                    Surface { alpha_to_coverage: several && !early, ..picture("fs_picture_masked") },
+                    Surface { blend: true, ..picture("fs_picture_blend") },
+                ],
+            ),
+            mask_depth: (!sliced)
+                .then(|| drawn_first.pipelines("Forward::mask_depth", before("fs_exact", Some(MASK_FORMAT), 1))),
+            // The third is never drawn: translucent surfaces are not in the mask.
+            mask: shading
+                .pipelines("Forward::mask", [mask("fs_mask_opaque"), mask("fs_mask_masked"), mask("fs_mask_opaque")]),
+            depth: drawn_first.pipelines("Forward::depth", before("fs_exact", None, 1)),
+            sky: Sky::new(Recipe { layout: sky_layout, depth: Depth::Drawn, ..shading }, samples_per_pixel),
+        }
     }
 
     /// Writes the uniform of the whole frame, `index` 0, or of a slice, 1 and so on.
@@ -274,13 +310,10 @@ impl Forward {
         &self.bind_groups[index]
     }
 
-    /// Draws the depth of everything solid; nothing without contact shadows.
-    pub fn draw_depth(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &Drawable<'_>, solid: &[Run]) -> Drawn {
-        let Some(depth) = &self.depth else { return Drawn::default() };
+    /// Draws the depth of everything solid for contact shadows.
+    pub fn draw_depth(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &Drawable<'_>, solid: &ViewList) -> Drawn {
         pass.set_bind_group(0, self.bind_group(0), &[]);
-        drawable.draw(pass, solid, Show::Surfaces, |m, mirrored| {
-            (m.alpha != AlphaMode::Blend).then(|| depth.of(m, mirrored))
-        })
+        pick_pieces(pass, drawable, solid, &self.depth)
     }
 
     /// Draws everything solid.
@@ -289,18 +322,15 @@ impl Forward {
         pass: &mut wgpu::RenderPass<'_>,
         bindings: Bindings<'_>,
         drawable: &Drawable<'_>,
-        solid: &[Run],
+        solid: &ViewList,
     ) -> Drawn {
-        bind(pass, bindings);
-        let pick = |material: &GpuMaterial, mirrored| self.picture.of(material, mirrored);
-        drawable
-            .draw(pass, solid, Show::Surfaces, |m, mirrored| (m.alpha != AlphaMode::Blend).then(|| pick(m, mirrored)))
+        draw_visible(pass, bindings, drawable, solid, (self.picture_depth.as_ref(), &self.picture))
     }
 
     /// Draws the sky where nothing else is.
     pub fn draw_sky(&self, pass: &mut wgpu::RenderPass<'_>, bindings: Bindings<'_>) {
         bind(pass, bindings);
-        pass.set_pipeline(&self.sky);
+        pass.set_pipeline(self.sky.pipeline());
         pass.draw(0..3, 0..1);
     }
 
@@ -313,9 +343,8 @@ impl Forward {
         translucent: &[Run],
     ) -> Drawn {
         bind(pass, bindings);
-        let pick = |material: &GpuMaterial, mirrored| self.picture.of(material, mirrored);
-        drawable.draw(pass, translucent, Show::Surfaces, |m, mirrored| {
-            (m.alpha == AlphaMode::Blend).then(|| pick(m, mirrored))
+        drawable.draw(pass, translucent, Show::Surfaces, |material, mirrored| {
+            (material.alpha == AlphaMode::Blend).then(|| self.picture.of(material, mirrored))
         })
     }
 
@@ -325,13 +354,41 @@ impl Forward {
         pass: &mut wgpu::RenderPass<'_>,
         bindings: Bindings<'_>,
         drawable: &Drawable<'_>,
-        solid: &[Run],
+        solid: &ViewList,
     ) -> Drawn {
-        bind(pass, bindings);
-        drawable.draw(pass, solid, Show::Surfaces, |m, mirrored| {
-            (m.alpha != AlphaMode::Blend).then(|| self.mask.of(m, mirrored))
-        })
+        draw_visible(pass, bindings, drawable, solid, (self.mask_depth.as_ref(), &self.mask))
     }
+}
+
+/// Draws depth, where there are pipelines for it, and then what is seen.
+fn draw_visible(
+    pass: &mut wgpu::RenderPass<'_>,
+    bindings: Bindings<'_>,
+    drawable: &Drawable<'_>,
+    solid: &ViewList,
+    (depth, shading): (Option<&SurfacePipelines>, &SurfacePipelines),
+) -> Drawn {
+    bind(pass, bindings);
+    let mut drawn = depth.map_or_else(Drawn::default, |depth| pick_pieces(pass, drawable, solid, depth));
+    let pick = |material: &GpuMaterial, mirrored: bool| {
+        (material.alpha != AlphaMode::Blend).then(|| shading.of(material, mirrored))
+    };
+    drawn += match depth {
+        Some(_) => drawable.draw(pass, &solid.runs, Show::Visible, pick),
+        None => drawable.draw(pass, solid.runs.iter().rev(), Show::Surfaces, pick),
+    };
+    drawn
+}
+
+fn pick_pieces(
+    pass: &mut wgpu::RenderPass<'_>,
+    drawable: &Drawable<'_>,
+    solid: &ViewList,
+    pipelines: &SurfacePipelines,
+) -> Drawn {
+    drawable.draw_pieces(pass, &solid.pieces, |material, mirrored| {
+        (material.alpha != AlphaMode::Blend).then(|| pipelines.of(material, mirrored))
+    })
 }
 
 fn bind(pass: &mut wgpu::RenderPass<'_>, bindings: Bindings<'_>) {
@@ -339,256 +396,5 @@ fn bind(pass: &mut wgpu::RenderPass<'_>, bindings: Bindings<'_>) {
     pass.set_bind_group(2, bindings.maps, &[]);
     if let Some(contact) = bindings.contact {
         pass.set_bind_group(3, contact, &[]);
-    }
-}
-
-/// Where a pass stands among the passes that draw one target together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Turn {
-    /// Clears what was there.
-    pub first: bool,
-    /// Resolves samples; nothing is kept for a later pass.
-    pub last: bool,
-}
-
-impl Turn {
-    /// The only pass.
-    pub const ONLY: Self = Self { first: true, last: true };
-}
-
-/// The textures that a picture is drawn into.
-pub(crate) struct PictureTarget {
-    /// The resolved picture.
-    pub texture: wgpu::Texture,
-    resolved: wgpu::TextureView,
-    /// Several samples a pixel, to be resolved.
-    samples: Option<wgpu::TextureView>,
-    depth: wgpu::TextureView,
-}
-
-impl PictureTarget {
-    pub fn new(gpu: &Gpu, size: [u32; 2], samples: Samples) -> Self {
-        let texture = target_texture(gpu, "PictureTarget::resolved", size, PICTURE_FORMAT, 1);
-        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let count = samples.count();
-        let several = (count > 1).then(|| target_texture(gpu, "PictureTarget::samples", size, PICTURE_FORMAT, count));
-        let depth = target_texture(gpu, "PictureTarget::depth", size, DEPTH_FORMAT, count);
-        Self { resolved: view(&texture), samples: several.as_ref().map(view), depth: view(&depth), texture }
-    }
-
-    pub fn begin<'e>(
-        &self,
-        encoder: &'e mut wgpu::CommandEncoder,
-        turn: Turn,
-        timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
-    ) -> wgpu::RenderPass<'e> {
-        let (color, resolve_target) = match &self.samples {
-            Some(samples) => (samples, turn.last.then_some(&self.resolved)),
-            None => (&self.resolved, None),
-        };
-        let target = Target { label: "PictureTarget::pass", color, resolve_target, clear: wgpu::Color::BLACK };
-        begin(encoder, target, (&self.depth, false), turn, timestamp_writes)
-    }
-}
-
-/// The textures that a mask is drawn into.
-pub(crate) struct MaskTarget {
-    /// The mask.
-    pub texture: wgpu::Texture,
-    /// What draws it.
-    pub color: wgpu::TextureView,
-    /// Kept, for passes that come after.
-    pub depth: wgpu::TextureView,
-}
-
-impl MaskTarget {
-    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
-        let texture = target_texture(gpu, "MaskTarget::visibility", size, MASK_FORMAT, 1);
-        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let depth = target_texture(gpu, "MaskTarget::depth", size, DEPTH_FORMAT, 1);
-        Self { color: view(&texture), depth: view(&depth), texture }
-    }
-
-    pub fn begin<'e>(
-        &self,
-        encoder: &'e mut wgpu::CommandEncoder,
-        turn: Turn,
-        timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
-    ) -> wgpu::RenderPass<'e> {
-        let clear = wgpu::Color::TRANSPARENT;
-        let target = Target { label: "MaskTarget::pass", color: &self.color, resolve_target: None, clear };
-        begin(encoder, target, (&self.depth, true), turn, timestamp_writes)
-    }
-}
-
-fn target_texture(
-    gpu: &Gpu,
-    label: &str,
-    size: [u32; 2],
-    format: wgpu::TextureFormat,
-    sample_count: u32,
-) -> wgpu::Texture {
-    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
-    let read_back = sample_count == 1 && format != DEPTH_FORMAT;
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: match (read_back, format) {
-            (true, _) => usage | wgpu::TextureUsages::COPY_SRC,
-            (false, DEPTH_FORMAT) if sample_count == 1 => usage | wgpu::TextureUsages::TEXTURE_BINDING,
-            (false, _) => usage,
-        },
-        view_formats: &[],
-    })
-}
-
-/// The colours that a pass draws.
-struct Target<'a> {
-    label: &'static str,
-    color: &'a wgpu::TextureView,
-    resolve_target: Option<&'a wgpu::TextureView>,
-    /// What is there before anything is drawn.
-    clear: wgpu::Color,
-}
-
-fn begin<'e>(
-    encoder: &'e mut wgpu::CommandEncoder,
-    target: Target<'_>,
-    (depth, keep_depth): (&wgpu::TextureView, bool),
-    turn: Turn,
-    timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
-) -> wgpu::RenderPass<'e> {
-    let Target { label, color, resolve_target, clear } = target;
-    let keep_samples = if resolve_target.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
-    let keep_depth = if turn.last && !keep_depth { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
-    let load = if turn.first { wgpu::LoadOp::Clear(clear) } else { wgpu::LoadOp::Load };
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some(label),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: color,
-            depth_slice: None,
-            resolve_target,
-            ops: wgpu::Operations { load, store: keep_samples },
-        })],
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: depth,
-            depth_ops: Some(wgpu::Operations {
-                load: if turn.first { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load },
-                store: keep_depth,
-            }),
-            stencil_ops: None,
-        }),
-        timestamp_writes,
-        occlusion_query_set: None,
-        multiview_mask: None,
-    })
-}
-
-/// What makes one surface pipeline differ from another.
-#[derive(Clone, Copy)]
-struct Surface {
-    label: &'static str,
-    vertex_entry: &'static str,
-    fragment_entry: Option<&'static str>,
-    format: Option<wgpu::TextureFormat>,
-    samples: u32,
-    alpha_to_coverage: bool,
-    blend: bool,
-}
-
-struct Builder<'a> {
-    device: &'a wgpu::Device,
-    module: &'a wgpu::ShaderModule,
-    layout: &'a wgpu::PipelineLayout,
-    samples: Samples,
-    /// The picture is drawn slice by slice.
-    sliced: bool,
-    unclipped_depth: bool,
-}
-
-impl Builder<'_> {
-    fn surface(&self, label: &'static str, fragment_entry: &'static str, format: wgpu::TextureFormat) -> Surface {
-        let samples = self.samples.count();
-        let (fragment_entry, format) = (Some(fragment_entry), Some(format));
-        Surface {
-            label,
-            vertex_entry: "vs_main",
-            fragment_entry,
-            format,
-            samples,
-            alpha_to_coverage: false,
-            blend: false,
-        }
-    }
-
-    fn pipelines(&self, surfaces: [Surface; 3]) -> SurfacePipelines {
-        SurfacePipelines(surfaces.map(|surface| {
-            [Some(wgpu::Face::Back), None].map(|cull_mode| {
-                [wgpu::FrontFace::Ccw, wgpu::FrontFace::Cw].map(|front_face| {
-                    let unclipped_depth = self.unclipped_depth;
-                    let primitive =
-                        wgpu::PrimitiveState { front_face, cull_mode, unclipped_depth, ..Default::default() };
-                    self.pipeline(&surface, &vertex_layouts(), primitive, wgpu::CompareFunction::Greater)
-                })
-            })
-        }))
-    }
-
-    /// Only where nothing is: infinitely far away is depth 0.
-    fn sky(&self) -> wgpu::RenderPipeline {
-        let surface = Surface { vertex_entry: "vs_sky", ..self.surface("Forward::sky", "fs_sky", PICTURE_FORMAT) };
-        self.pipeline(&surface, &[], Default::default(), wgpu::CompareFunction::GreaterEqual)
-    }
-
-    fn pipeline(
-        &self,
-        surface: &Surface,
-        buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
-        primitive: wgpu::PrimitiveState,
-        depth_compare: wgpu::CompareFunction,
-    ) -> wgpu::RenderPipeline {
-        let constants =
-            [("LEAST_COVERAGE", self.samples.least_coverage()), ("SLICED", f64::from(u8::from(self.sliced)))];
-        let targets = [surface.format.map(|format| wgpu::ColorTargetState {
-            format,
-            blend: surface.blend.then_some(wgpu::BlendState::ALPHA_BLENDING),
-            // A picture is opaque: what a shader calls alpha there is coverage.
-            write_mask: if format == PICTURE_FORMAT { wgpu::ColorWrites::COLOR } else { wgpu::ColorWrites::ALL },
-        })];
-        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(surface.label),
-            layout: Some(self.layout),
-            vertex: wgpu::VertexState {
-                module: self.module,
-                entry_point: Some(surface.vertex_entry),
-                compilation_options: Default::default(),
-                buffers,
-            },
-            primitive,
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH_FORMAT,
-                depth_write_enabled: Some(!surface.blend),
-                depth_compare: Some(depth_compare),
-                stencil: Default::default(),
-                bias: Default::default(),
-            }),
-            multisample: wgpu::MultisampleState {
-                count: surface.samples,
-                alpha_to_coverage_enabled: surface.alpha_to_coverage,
-                ..Default::default()
-            },
-            fragment: surface.fragment_entry.map(|entry| wgpu::FragmentState {
-                module: self.module,
-                entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-                targets: &targets[..usize::from(surface.format.is_some())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
     }
 }

@@ -27,7 +27,10 @@ mod renderer;
 mod shaders;
 mod shadow_mesh;
 mod stats;
+mod surfaces;
+mod targets;
 mod timing;
+mod view_list;
 mod views;
 
 pub use error::{Error, Result};

@@ -60,6 +60,7 @@ impl Materials {
                 ),
                 layout_entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
                 layout_entry(3, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+                layout_entry(4, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
             ],
         });
         // Those too that no material names: a scene is right or it is not.
@@ -190,6 +191,11 @@ fn gpu_material(
         anisotropy_clamp,
         ..both.clone()
     });
+    let coverage = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("Materials::coverage_sampler"),
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        ..both.clone()
+    });
     // The decision of a mask is the same at every distance, so one filter serves both.
     let exact = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("Materials::exact_sampler"),
@@ -204,6 +210,7 @@ fn gpu_material(
             wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(view) },
             wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&smooth) },
             wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::Sampler(&exact) },
+            wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::Sampler(&coverage) },
         ],
     });
     GpuMaterial { bind_group, alpha: material.alpha, double_sided: material.double_sided }

@@ -7,9 +7,11 @@ use web_time::Instant;
 
 use crate::capture::Capture;
 use crate::draw_list::{Drawn, Run};
-use crate::forward::{Bindings, MaskTarget, PictureTarget, Turn};
+use crate::forward::Bindings;
 use crate::renderer::{Outputs, Renderer};
+use crate::targets::{MaskTarget, PictureTarget, Turn};
 use crate::timing::Timer;
+use crate::view_list::ViewList;
 use crate::{Gpu, Result};
 
 /// A frame that is planned and uploaded, ready to be recorded.
@@ -18,7 +20,7 @@ pub(crate) struct Prepared {
     pub plan_ms: f64,
     /// What each pass over the maps draws; none where shadows are off.
     pub caster_runs: Vec<Vec<Run>>,
-    pub solid: Vec<Run>,
+    pub solid: ViewList,
     pub translucent: Vec<Run>,
     /// The view's slices, where it is drawn slice by slice.
     pub slices: Vec<SliceRuns>,
@@ -30,7 +32,7 @@ pub(crate) struct Prepared {
 /// What lies in one slice of the view.
 pub(crate) struct SliceRuns {
     pub slice: Slice,
-    pub solid: Vec<Run>,
+    pub solid: ViewList,
     pub translucent: Vec<Run>,
 }
 

@@ -1,5 +1,7 @@
 //! The demonstration renderer: a scene, a view and lights in; a picture, a mask, maps and numbers out.
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
 use umbrage::config::{Coordinates, Layout, LightKind, ShadowConfig, Translucent};
@@ -12,14 +14,16 @@ use crate::capture::Capture;
 use crate::casters::Casters;
 use crate::contact::Contact;
 use crate::draw_list::{Drawable, Instances, once};
-use crate::forward::{Forward, FrameUniform, MASK_FORMAT, MaskTarget, PictureTarget, Samples};
+use crate::forward::{Forward, FrameUniform, MASK_FORMAT, Samples, Shading};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry, check_object};
 use crate::lamps::Lamp;
 use crate::materials::{GpuMaterial, Materials};
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint};
 use crate::record::{Clock, MapCapture, Prepared, Recorded, SliceRuns, new_encoder};
 use crate::stats::{FrameStats, LightStats, SplitStats};
+use crate::targets::{MaskTarget, PictureTarget};
 use crate::timing::{PassCounts, Timer};
+use crate::view_list::ViewList;
 use crate::{Error, Gpu, Result, cull, maps};
 
 /// The frame's origin moves in steps of this many metres, so that positions near the eye are exact to a tenth of a
@@ -111,7 +115,9 @@ pub struct Renderer {
     pub(crate) contact: Option<Contact>,
     /// Per node of the scene, whether its translucent surfaces throw shadows; empty where none do.
     pub(crate) dithered_nodes: Vec<bool>,
-    pub(crate) probe: Probe,
+    /// Made when something is asked.
+    pub(crate) probe: OnceLock<Probe>,
+    pub(crate) shading: Shading,
     pub(crate) timer: Timer,
     pub(crate) picture: Option<PictureTarget>,
     pub(crate) mask: Option<MaskTarget>,
@@ -127,6 +133,22 @@ impl Renderer {
     /// device cannot hold it, [`Error::Scene`] if the scene contradicts itself, [`Error::Plan`] and [`Error::Shadows`] if the
     /// settings are wrong.
     pub fn new(gpu: &Gpu, scene: &Scene, settings: &RenderSettings) -> Result<Self> {
+        Self::with_shading(gpu, scene, settings, Shading::WithShadows)
+    }
+
+    /// Draws a scene by shaders that never heard of shadows: what a picture costs without them, which a renderer whose shadows are
+    /// switched off does not tell. [`Frame::shadows_on`] is not looked at, and of [`RenderSettings::config`] nothing is.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn without_shadows(gpu: &Gpu, scene: &Scene, settings: &RenderSettings) -> Result<Self> {
+        let mut config = ShadowConfig::default();
+        config.look.contact = false;
+        let settings = RenderSettings { config, ..settings.clone() };
+        Self::with_shading(gpu, scene, &settings, Shading::WithoutShadows)
+    }
+
+    fn with_shading(gpu: &Gpu, scene: &Scene, settings: &RenderSettings, shading: Shading) -> Result<Self> {
         let limit = gpu.max_texture_edge();
         let [width, height] = settings.size;
         if width == 0 || height == 0 || width > limit || height > limit {
@@ -149,11 +171,12 @@ impl Renderer {
                 skinned: SkinnedGeometry::empty(gpu)?,
                 instances: Instances::new(gpu),
                 casters: Casters::new(gpu, maps, &materials, config.look.translucent),
-                forward: Forward::new(gpu, maps, &materials, settings.samples, contact.as_ref()),
+                forward: Forward::new(gpu, maps, &materials, settings.samples, contact.as_ref(), shading),
                 contact,
                 dithered_nodes: dithered_nodes(scene, config),
                 samples: settings.samples,
-                probe: Probe::new(gpu, maps),
+                probe: OnceLock::new(),
+                shading,
                 timer,
                 picture: None,
                 mask: None,
@@ -191,7 +214,8 @@ impl Renderer {
     /// [`Error::OutOfMemory`] or [`Error::Device`] if the device fails.
     pub fn render(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
-        gpu.guarded("drawing a frame", || self.render_unguarded(frame, outputs))
+        let frame = Frame { shadows_on: frame.shadows_on && self.shading == Shading::WithShadows, ..*frame };
+        gpu.guarded("drawing a frame", || self.render_unguarded(&frame, outputs))
     }
 
     /// Visibility of the first light at given points. A point that the view shows within the shadowed range gets what a pixel there would
@@ -367,7 +391,8 @@ impl Renderer {
 
         self.instances.clear();
         let caster_runs = self.caster_runs(frame, origin, &caster_objects);
-        let solid = self.instances.grouped(pose, origin, false, visible.iter().copied().map(once));
+        let grouped = self.instances.grouped(pose, origin, false, visible.iter().copied().map(once));
+        let solid = ViewList::new(&self.drawable(), pose, view, &grouped);
         let far_to_near = self.with_translucent_parts(pose, visible.iter().rev().copied());
         let translucent = self.instances.ordered(pose, origin, far_to_near.iter().copied());
         let plan = self.shadows.frame().plan(0);
@@ -384,9 +409,20 @@ impl Renderer {
                     depths.iter().any(|&depth| depth >= near) && depths.iter().any(|&depth| depth <= far)
                 };
                 let solid = visible.iter().copied().filter(lies_in).map(once);
+                let grouped = self.instances.grouped(pose, origin, false, solid);
                 SliceRuns {
                     slice,
-                    solid: self.instances.grouped(pose, origin, false, solid),
+                    solid: ViewList::new(
+                        &Drawable {
+                            scene: &self.scene,
+                            skinned: &self.skinned.geometry,
+                            materials: &self.materials,
+                            instances: &self.instances,
+                        },
+                        pose,
+                        view,
+                        &grouped,
+                    ),
                     translucent: self.instances.ordered(pose, origin, far_to_near.iter().copied().filter(lies_in)),
                 }
             })
@@ -408,6 +444,10 @@ impl Renderer {
         let drawable = self.drawable();
         let translucent = |i: &usize| drawable.has(&pose.objects[*i], |material| material.alpha == AlphaMode::Blend);
         objects.filter(translucent).collect()
+    }
+
+    pub(crate) fn probe_pass(&self) -> &Probe {
+        self.probe.get_or_init(|| Probe::new(&self.gpu, self.shadows.maps()))
     }
 
     pub(crate) fn drawable(&self) -> Drawable<'_> {

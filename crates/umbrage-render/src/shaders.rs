@@ -27,17 +27,27 @@ pub(crate) const DITHERED_MEMBERS: &str =
 /// Bind group 0 is the frame, 1 the material, 2 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares, 3 with contact shadows what
 /// [`umbrage_wgpu::contact_wgsl`] declares.
 pub(crate) fn forward(library: &str, coordinates: Coordinates, contact: bool) -> String {
-    const WITH: &str = "fn contact_visibility(position: vec3f, normal: vec3f, to_light: vec3f) -> f32 {
-    return umbrage_contact_visibility(position, normal, to_light, 0.5);
-}";
     const WITHOUT: &str =
-        "fn contact_visibility(position: vec3f, normal: vec3f, to_light: vec3f) -> f32 { return 1.0; }";
-    let contact = if contact { umbrage_wgpu::contact_wgsl(3) + WITH } else { WITHOUT.to_owned() };
+        "fn with_contact(visibility: f32, position: vec3f, normal: vec3f) -> f32 { return min(visibility, 1.0); }";
+    let contact = match contact {
+        true => umbrage_wgpu::contact_wgsl(3) + include_str!("shaders/contact.wgsl"),
+        false => WITHOUT.to_owned(),
+    };
     let surface = match coordinates {
         Coordinates::World | Coordinates::Deferred => include_str!("shaders/surface.wgsl"),
         Coordinates::Vertex => include_str!("shaders/surface_with_coordinates.wgsl"),
     };
-    [library, &contact, include_str!("shaders/scene.wgsl"), include_str!("shaders/forward.wgsl"), surface].join("\n")
+    let [scene, view] = [include_str!("shaders/scene.wgsl"), include_str!("shaders/view.wgsl")];
+    [library, &contact, scene, view, include_str!("shaders/forward.wgsl"), surface].join("\n")
+}
+
+/// Instead of the library's text: a picture without a word about shadows.
+pub(crate) const WITHOUT_SHADOWS: &str = include_str!("shaders/without_shadows.wgsl");
+
+/// Bind group 0 is the frame, 1 the material. No shadow is asked about.
+pub(crate) fn depth() -> String {
+    [include_str!("shaders/scene.wgsl"), include_str!("shaders/view.wgsl"), include_str!("shaders/depth.wgsl")]
+        .join("\n")
 }
 
 /// Bind group 0 is the points, 1 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares.
@@ -94,6 +104,8 @@ mod tests {
             for source in [
                 forward(&receiver(2, maps), Coordinates::World, true),
                 forward(&with_coordinates, Coordinates::Vertex, true),
+                forward(WITHOUT_SHADOWS, Coordinates::World, false),
+                depth(),
                 probe(&receiver(1, maps)),
                 probe(&receiver(1, Maps { coordinates: true, ..maps })),
             ] {

@@ -50,7 +50,7 @@ impl Stage {
     /// If the world has no pose or no sun, which would be a mistake in the world.
     pub fn of(world: World) -> &'static Self {
         static STAGES: [OnceLock<Stage>; 4] = [const { OnceLock::new() }; 4];
-        let index = World::ALL.iter().position(|&other| other == world).expect("all worlds are in the list");
+        let index = World::PAPER.iter().position(|&other| other == world).expect("all worlds are in the list");
         STAGES[index].get_or_init(|| {
             let scene = world.build();
             let pose = scene.pose(0.0).expect("a world has a pose");

@@ -1,9 +1,10 @@
-//! Rounds of one scene: every technique in turn, with shadows and without.
+//! Rounds of one scene: every technique in turn, and after each a renderer whose shaders never heard of shadows.
 
 use std::time::Instant;
 
+use cpu_time::ProcessTime;
 use indicatif::ProgressBar;
-use umbrage_render::{FrameStats, Gpu, Outputs, Renderer};
+use umbrage_render::{FrameStats, Gpu, LightMaps, Outputs, RenderSettings, Renderer};
 
 use super::{
     job::Job,
@@ -19,8 +20,29 @@ struct Rounds {
     shadow: Vec<f64>,
     frame: Vec<f64>,
     wall: Vec<f64>,
+    cpu: Vec<f64>,
     frame_without: Vec<f64>,
     wall_without: Vec<f64>,
+    cpu_without: Vec<f64>,
+    /// From nothing to the first picture.
+    first: Spent,
+}
+
+/// Milliseconds on the wall's clock, and of all of this process's threads.
+#[derive(Clone, Copy, Default)]
+struct Spent {
+    wall: f64,
+    cpu: f64,
+}
+
+impl Spent {
+    /// Runs `work`.
+    fn by<T>(work: impl FnOnce() -> T) -> (Self, T) {
+        let (wall, cpu) = (Instant::now(), ProcessTime::now());
+        let result = work();
+        let ms = |span: std::time::Duration| 1e3 * span.as_secs_f64();
+        (Self { wall: ms(wall.elapsed()), cpu: ms(cpu.elapsed()) }, result)
+    }
 }
 
 /// Measures `techniques` on the first shot of the setup; the first technique is the baseline of all
@@ -33,32 +55,41 @@ pub fn measure(
     bar: &ProgressBar,
 ) -> Result<Vec<Row>> {
     let mut renderers = Vec::new();
+    let mut all: Vec<Rounds> = Vec::new();
     for technique in techniques {
         let shadows = technique.shadows.for_lights(&setup.lights)?;
         let settings = shadows.render_settings(job.size, job.samples, lights::kinds(&setup.lights));
-        renderers.push(Renderer::new(gpu, &setup.scene, &settings)?);
+        let (first, renderer) = Spent::by(|| Renderer::new(gpu, &setup.scene, &settings));
+        renderers.push(renderer?);
+        all.push(Rounds { first, ..Rounds::default() });
     }
+    let lights = lights::kinds(&setup.lights).into_iter().map(LightMaps::from).collect();
+    let bare = RenderSettings { size: job.size, samples: job.samples, lights, ..RenderSettings::default() };
+    let mut without_shadows = Renderer::without_shadows(gpu, &setup.scene, &bare)?;
     let frame = |shadows_on| setup.frame(&setup.shots[0], &setup.shots[0].view, shadows_on, false);
     let outputs = Outputs { picture: true, ..Outputs::default() };
-    let timed = |renderer: &mut Renderer, shadows_on| -> Result<(f64, FrameStats)> {
-        let begin = Instant::now();
-        let stats = renderer.render(&frame(shadows_on), outputs)?.stats;
-        Ok((1e3 * begin.elapsed().as_secs_f64(), stats))
+    let timed = |renderer: &mut Renderer, shadows_on| -> Result<(Spent, FrameStats)> {
+        let (spent, rendered) = Spent::by(|| renderer.render(&frame(shadows_on), outputs));
+        Ok((spent, rendered?.stats))
     };
-    let mut all: Vec<Rounds> = techniques.iter().map(|_| Rounds::default()).collect();
     let mut last: Vec<Option<FrameStats>> = techniques.iter().map(|_| None).collect();
     for round in 0..=job.rounds {
         for ((renderer, measured), last) in renderers.iter_mut().zip(&mut all).zip(&mut last) {
-            let (wall, stats) = timed(renderer, true)?;
-            let (wall_without, without) = timed(renderer, false)?;
+            let (spent, stats) = timed(renderer, true)?;
+            let (spent_without, without) = timed(&mut without_shadows, false)?;
             // The first round fills caches and compiles; it is not counted.
-            if round > 0 {
+            if round == 0 {
+                measured.first.wall += spent.wall;
+                measured.first.cpu += spent.cpu;
+            } else {
                 measured.plan.push(stats.plan_ms);
                 measured.shadow.push(stats.shadow_ms);
                 measured.frame.push(stats.frame_ms);
-                measured.wall.push(wall);
+                measured.wall.push(spent.wall);
+                measured.cpu.push(spent.cpu);
                 measured.frame_without.push(without.frame_ms);
-                measured.wall_without.push(wall_without);
+                measured.wall_without.push(spent_without.wall);
+                measured.cpu_without.push(spent_without.cpu);
             }
             *last = Some(stats);
             bar.inc(1);
@@ -97,6 +128,10 @@ fn row(technique: &Technique, measured: &Rounds, baseline: &Rounds, stats: &Fram
         wall_ms: Summary::of(&measured.wall),
         frame_without_ms: Summary::of(&measured.frame_without),
         wall_without_ms: Summary::of(&measured.wall_without),
+        cpu_ms: Summary::of(&measured.cpu),
+        cpu_without_ms: Summary::of(&measured.cpu_without),
+        first_picture_ms: measured.first.wall,
+        first_picture_cpu_ms: measured.first.cpu,
         cost_ms: Summary::of(&cost),
         frame_ratio: ratio(&measured.frame, &baseline.frame),
         shadow_ratio: ratio(&measured.shadow, &baseline.shadow),

@@ -68,11 +68,19 @@ pub struct Row {
     pub frame_ms: Option<Summary>,
     /// The whole frame with everything the CPU does, wall clock.
     pub wall_ms: Option<Summary>,
-    /// The frame without shadows, GPU timestamps.
+    /// The frame by shaders without shadows, GPU timestamps.
     pub frame_without_ms: Option<Summary>,
-    /// The frame without shadows, wall clock.
+    /// The frame by shaders without shadows, wall clock.
     pub wall_without_ms: Option<Summary>,
-    /// Frame with shadows minus frame without.
+    /// CPU time of all threads for the whole frame.
+    pub cpu_ms: Option<Summary>,
+    /// CPU time of all threads for the frame by shaders without shadows.
+    pub cpu_without_ms: Option<Summary>,
+    /// From an open device and a loaded scene to the first picture, wall clock, milliseconds.
+    pub first_picture_ms: f64,
+    /// CPU time of all threads until the first picture, milliseconds.
+    pub first_picture_cpu_ms: f64,
+    /// Frame with shadows minus the frame by shaders without.
     pub cost_ms: Option<Summary>,
     /// Frame over the baseline's frame of the same round.
     pub frame_ratio: Option<Summary>,

@@ -1,7 +1,5 @@
 // The scene as the eye sees it: a shaded picture, or the bare visibility mask.
 
-@group(0) @binding(0) var<uniform> frame: Frame;
-
 const SUN: vec3f = vec3f(2.7, 2.5, 2.2);
 const SKY_AMBIENT: vec3f = vec3f(0.47, 0.57, 0.72);
 const GROUND_AMBIENT: vec3f = vec3f(0.25, 0.225, 0.20);
@@ -11,10 +9,6 @@ struct Vertex {
     @location(1) uv: vec2f,
     @location(2) color: vec4f,
     @location(3) normal: vec3f,
-}
-
-fn clip_of(from_eye: vec3f) -> vec4f {
-    return frame.clip_from_eye * vec4f(from_eye, 1.0);
 }
 
 // The triangle's own unit normal, turned towards the eye. Call in uniform control flow.
@@ -72,33 +66,6 @@ fn mask_at(in: Surface, query: UmbrageQuery) -> vec2f {
     return vec2f(with_contact(shadow_of(in, query).visibility, in.position, query.normal), 1.0);
 }
 
-// Contact shadows are the first light's, as dark as its others, and off where they are.
-fn with_contact(visibility: f32, position: vec3f, normal: vec3f) -> f32 {
-    let strength = select(0.0, umbrage_frames[0].strength, umbrage_frames[0].enabled != 0u);
-    let to_light = towards(frame.lamps[0], position);
-    return min(visibility, mix(1.0, contact_visibility(position, normal, to_light), strength));
-}
-
-// What the picture's depth is made from.
-struct Outline {
-    @builtin(position) clip: vec4f,
-    @location(0) uv: vec2f,
-    @location(1) color: vec4f,
-}
-
-@vertex
-fn vs_depth(vertex: Vertex, instance: Instance) -> Outline {
-    return Outline(clip_of(position_from_local(instance, vertex.local) - frame.eye), vertex.uv, vertex.color);
-}
-
-// The picture's depth, for contact shadows.
-@fragment
-fn fs_depth_masked(in: Outline) {
-    if tested_alpha(in.uv, in.color.a) < material.alpha_cutoff {
-        discard;
-    }
-}
-
 @fragment
 fn fs_picture_opaque(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let base = base_color(in);
@@ -110,18 +77,18 @@ fn fs_picture_opaque(in: Surface, @builtin(front_facing) front: bool) -> @locati
     return vec4f(shaded(in, front, base, query), 1.0);
 }
 
-// Alpha becomes coverage: a step one pixel wide around the cutoff. With one sample a pixel it is all or nothing: 0.5.
-override LEAST_COVERAGE: f32 = 0.0;
-
+// After a depth pass the test is made again for surfaces that lie in each other exactly: where alpha lets
+// through, the other one is seen.
 @fragment
 fn fs_picture_masked(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let color = base_color(in);
-    let coverage = (color.a - material.alpha_cutoff) / max(fwidth(color.a), 1e-4) + 0.5;
+    let coverage = coverage_of(in.uv, in.color.a);
     let geometric = geometric_normal(in.from_eye);
     let query = query_of(in, geometric);
     if coverage <= LEAST_COVERAGE || !is_drawn(in) {
         discard;
     }
+    // Without a depth pass alpha decides here how many samples are covered; with one nobody takes it.
     return vec4f(shaded(in, front, color, query), min(coverage, 1.0));
 }
 

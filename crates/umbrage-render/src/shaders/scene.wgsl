@@ -53,6 +53,8 @@ struct Material {
 @group(1) @binding(2) var smooth_sampler: sampler;
 // Bilinear on level 0: for decisions that the eye, the sun and the judge have to make alike.
 @group(1) @binding(3) var exact_sampler: sampler;
+// Trilinear alone: for the picture's coverage, which is asked of every leaf, hidden or not.
+@group(1) @binding(4) var coverage_sampler: sampler;
 
 // Rows of the affine transform from the mesh to the frame's origin.
 struct Instance {

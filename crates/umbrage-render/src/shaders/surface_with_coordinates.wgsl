@@ -1,7 +1,8 @@
 // What vertices hand on: world positions, and the coordinates in every split's map beside them.
 
 struct Surface {
-    @builtin(position) clip: vec4f,
+    // By the arithmetic of depth.wgsl.
+    @invariant @builtin(position) clip: vec4f,
     // Relative to the origin.
     @location(0) position: vec3f,
     // The same relative to the eye: small near it, so that its derivatives are precise.

@@ -120,7 +120,7 @@ fn names_lead_back_to_their_worlds() {
 }
 
 /// FNV-1a over everything that has an influence on a picture.
-struct Fingerprint(u64);
+pub(crate) struct Fingerprint(u64);
 
 impl Fingerprint {
     fn eat(&mut self, bytes: &[u8]) {
@@ -133,7 +133,7 @@ impl Fingerprint {
         values.into_iter().for_each(|value| self.eat(&value.to_bits().to_le_bytes()));
     }
 
-    fn of(scene: &Scene) -> u64 {
+    pub(crate) fn of(scene: &Scene) -> u64 {
         let mut print = Self(0xCBF2_9CE4_8422_2325);
         for primitive in scene.meshes.iter().flat_map(|mesh| &mesh.primitives) {
             print.eat_f32(primitive.positions.iter().flatten().copied());

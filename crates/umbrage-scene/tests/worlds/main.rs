@@ -1,19 +1,21 @@
-//! The four worlds of the paper: what they hold, that their surfaces are sound, that things stand where they should.
+//! The four worlds of the paper, and the wood beside them: what they hold, that their surfaces are sound, that things stand
+//! where they should.
 
 mod census;
 mod ground;
 mod staging;
 mod surfaces;
+mod thicket;
 
 use std::sync::OnceLock;
 
 use umbrage_scene::Scene;
 use umbrage_scene::procedural::World;
 
-/// Every world, built once for all tests.
+/// Every world of the paper, built once for all tests.
 fn worlds() -> &'static [(World, Scene)] {
     static BUILT: OnceLock<Vec<(World, Scene)>> = OnceLock::new();
-    BUILT.get_or_init(|| World::ALL.map(|world| (world, world.build())).into())
+    BUILT.get_or_init(|| World::PAPER.map(|world| (world, world.build())).into())
 }
 
 /// Whether a node is part of the ground on which the world stands.

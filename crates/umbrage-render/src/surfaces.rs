@@ -1,0 +1,217 @@
+//! Pipelines that draw surfaces, made when they are first needed: a scene needs few of the many that there could be.
+
+use std::sync::OnceLock;
+
+use umbrage_scene::AlphaMode;
+
+use crate::Gpu;
+use crate::draw_list::vertex_layouts;
+use crate::forward::{DEPTH_FORMAT, PICTURE_FORMAT};
+use crate::materials::GpuMaterial;
+
+/// What is read of a vertex.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Vertices {
+    /// Where it is.
+    Positions,
+    /// That, texture coordinates and alpha.
+    Outlines,
+    /// Everything.
+    #[default]
+    Whole,
+}
+
+impl Vertices {
+    const fn entry(self) -> &'static str {
+        match self {
+            Self::Positions => "vs_solid",
+            Self::Outlines => "vs_outline",
+            Self::Whole => "vs_main",
+        }
+    }
+
+    /// Buffers of [`vertex_layouts`] that are read.
+    const fn buffers(self) -> usize {
+        match self {
+            Self::Positions => 2,
+            Self::Outlines => 3,
+            Self::Whole => 4,
+        }
+    }
+}
+
+/// What depth is to a pass over solid surfaces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Depth {
+    /// Drawn by the pass: the nearest surface stays.
+    Drawn,
+    /// There already: what lies at that very depth is shaded.
+    Found,
+}
+
+/// What makes one surface pipeline differ from another.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surface {
+    pub vertex: Vertices,
+    pub fragment_entry: Option<&'static str>,
+    pub format: Option<wgpu::TextureFormat>,
+    /// Whether the colour is written.
+    pub writes: bool,
+    pub samples: u32,
+    pub alpha_to_coverage: bool,
+    pub blend: bool,
+}
+
+impl Default for Surface {
+    fn default() -> Self {
+        Self {
+            vertex: Vertices::default(),
+            fragment_entry: None,
+            format: None,
+            writes: true,
+            samples: 1,
+            alpha_to_coverage: false,
+            blend: false,
+        }
+    }
+}
+
+/// What the pipelines of a pass have in common.
+#[derive(Clone)]
+pub(crate) struct Recipe {
+    pub gpu: Gpu,
+    pub layout: wgpu::PipelineLayout,
+    pub module: wgpu::ShaderModule,
+    pub constants: Vec<(&'static str, f64)>,
+    pub unclipped_depth: bool,
+    pub depth: Depth,
+}
+
+/// Pipelines of one target, by what the material and the transform ask for.
+pub(crate) struct SurfacePipelines {
+    label: &'static str,
+    recipe: Recipe,
+    surfaces: [Surface; 3],
+    made: [[[OnceLock<wgpu::RenderPipeline>; 2]; 2]; 3],
+}
+
+impl SurfacePipelines {
+    pub fn of(&self, material: &GpuMaterial, mirrored: bool) -> &wgpu::RenderPipeline {
+        let alpha = match material.alpha {
+            AlphaMode::Opaque => 0,
+            AlphaMode::Mask { .. } => 1,
+            AlphaMode::Blend => 2,
+        };
+        let two_sided = material.double_sided;
+        self.made[alpha][usize::from(two_sided)][usize::from(mirrored)].get_or_init(|| {
+            let primitive = wgpu::PrimitiveState {
+                front_face: if mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+                cull_mode: (!two_sided).then_some(wgpu::Face::Back),
+                unclipped_depth: self.recipe.unclipped_depth,
+                ..Default::default()
+            };
+            let surface = &self.surfaces[alpha];
+            let compare = match self.recipe.depth {
+                Depth::Found if !surface.blend => wgpu::CompareFunction::Equal,
+                _ => wgpu::CompareFunction::Greater,
+            };
+            let buffers = &vertex_layouts()[..surface.vertex.buffers()];
+            self.recipe.pipeline(self.label, surface, surface.vertex.entry(), buffers, primitive, compare)
+        })
+    }
+}
+
+/// What is drawn where no surface is.
+pub(crate) struct Sky {
+    recipe: Recipe,
+    samples: u32,
+    made: OnceLock<wgpu::RenderPipeline>,
+}
+
+impl Sky {
+    pub fn new(recipe: Recipe, samples: u32) -> Self {
+        Self { recipe, samples, made: OnceLock::new() }
+    }
+
+    pub fn pipeline(&self) -> &wgpu::RenderPipeline {
+        self.made.get_or_init(|| {
+            let surface = Surface {
+                fragment_entry: Some("fs_sky"),
+                format: Some(PICTURE_FORMAT),
+                samples: self.samples,
+                ..Surface::default()
+            };
+            // Only where nothing is: infinitely far away is depth 0.
+            let compare = wgpu::CompareFunction::GreaterEqual;
+            self.recipe.pipeline("Forward::sky", &surface, "vs_sky", &[], Default::default(), compare)
+        })
+    }
+}
+
+impl Recipe {
+    pub fn new(gpu: &Gpu, layout: wgpu::PipelineLayout, module: wgpu::ShaderModule) -> Self {
+        let (gpu, constants) = (gpu.clone(), Vec::new());
+        Self { gpu, layout, module, constants, unclipped_depth: false, depth: Depth::Drawn }
+    }
+
+    /// Pipelines of opaque, alpha-tested and translucent surfaces, none of them made yet.
+    pub fn pipelines(&self, label: &'static str, surfaces: [Surface; 3]) -> SurfacePipelines {
+        SurfacePipelines { label, recipe: self.clone(), surfaces, made: Default::default() }
+    }
+
+    fn pipeline(
+        &self,
+        label: &'static str,
+        surface: &Surface,
+        vertex_entry: &str,
+        buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
+        primitive: wgpu::PrimitiveState,
+        depth_compare: wgpu::CompareFunction,
+    ) -> wgpu::RenderPipeline {
+        let write_mask = match surface.format {
+            _ if !surface.writes => wgpu::ColorWrites::empty(),
+            // A picture is opaque: what a shader calls alpha there is coverage.
+            Some(PICTURE_FORMAT) => wgpu::ColorWrites::COLOR,
+            _ => wgpu::ColorWrites::ALL,
+        };
+        let targets = [surface.format.map(|format| wgpu::ColorTargetState {
+            format,
+            blend: surface.blend.then_some(wgpu::BlendState::ALPHA_BLENDING),
+            write_mask,
+        })];
+        self.gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(label),
+            layout: Some(&self.layout),
+            vertex: wgpu::VertexState {
+                module: &self.module,
+                entry_point: Some(vertex_entry),
+                compilation_options: Default::default(),
+                buffers,
+            },
+            primitive,
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(self.depth == Depth::Drawn && !surface.blend),
+                depth_compare: Some(depth_compare),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: wgpu::MultisampleState {
+                count: surface.samples,
+                alpha_to_coverage_enabled: surface.alpha_to_coverage,
+                ..Default::default()
+            },
+            fragment: surface.fragment_entry.map(|entry| wgpu::FragmentState {
+                module: &self.module,
+                entry_point: Some(entry),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &self.constants,
+                    ..Default::default()
+                },
+                targets: &targets[..usize::from(surface.format.is_some())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
