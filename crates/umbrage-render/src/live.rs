@@ -1,5 +1,7 @@
 //! What may change while frames go on: the config, the picture's size, the view that maps are planned for.
 
+use std::sync::OnceLock;
+
 use umbrage::config::{Layout, Rebuilds};
 use umbrage::{ShadowConfig, View};
 use umbrage_scene::{Pose, Scene};
@@ -7,7 +9,6 @@ use umbrage_scene::{Pose, Scene};
 use crate::casters::Casters;
 use crate::contact::Contact;
 use crate::forward::Forward;
-use crate::probe::Probe;
 use crate::renderer::{Renderer, dithered_nodes, notes_of};
 use crate::timing::Timer;
 use crate::{Error, Result};
@@ -49,8 +50,8 @@ impl Renderer {
             if rebuilds == Rebuilds::Pipelines {
                 let (materials, samples) = (&self.materials, self.samples);
                 self.casters = Casters::new(&gpu, maps, materials, config.look.translucent);
-                self.forward = Forward::new(&gpu, maps, materials, samples, self.contact.as_ref());
-                self.probe = Probe::new(&gpu, maps);
+                self.forward = Forward::new(&gpu, maps, materials, samples, self.contact.as_ref(), self.shading);
+                self.probe = OnceLock::new();
                 self.shadow_mask = None;
                 self.dithered_nodes = dithered_nodes(scene, config);
             }
