@@ -89,10 +89,7 @@ impl<'a> JudgedScene<'a> {
         sums: &mut Sums,
     ) -> Result<()> {
         let Some(first) = self.series.first() else { return Ok(()) };
-        let in_candidate = |error: umbrage_render::Error| match Failure::from(error) {
-            Failure::Input(message) => Failure::Input(format!("candidate {}: {message}", candidate.label)),
-            Failure::Other(message) => Failure::Other(format!("candidate {}: {message}", candidate.label)),
-        };
+        let in_candidate = |error| named(candidate, error);
         let asked =
             ShadowRequest { config: candidate.config.clone(), options: ShadowOptions::default(), notes: Vec::new() };
         let light = NamedLight { name: String::new(), lamp: first.light };
@@ -142,6 +139,14 @@ impl<'a> JudgedScene<'a> {
             }
         }
         Ok(())
+    }
+}
+
+/// Says which candidate it was.
+fn named(candidate: &Candidate, error: umbrage_render::Error) -> Failure {
+    match Failure::from(error) {
+        Failure::Input(message) => Failure::Input(format!("candidate {}: {message}", candidate.label)),
+        Failure::Other(message) => Failure::Other(format!("candidate {}: {message}", candidate.label)),
     }
 }
 

@@ -149,8 +149,9 @@ struct Rung {
     filter: Filter,
 }
 
-/// What was measured to be best ([docs/notes/budget.md]). Each rung begins where its maps take every
-/// texel of the budget, so that no larger budget has fewer texels.
+/// The best number of splits hardly depends on the budget (docs/notes/budget.md): four, and fewer where
+/// maps of four would be narrower than 64 texels. Each rung begins where its maps take every texel of
+/// the budget, so that no larger budget has fewer texels.
 const RUNGS: [Rung; 3] = [
     Rung { texels: 0, splits: 1, filter: Filter::Pcf3 { width_m: None } },
     Rung { texels: 2 * 64 * 64, splits: 2, filter: Filter::Pcf3 { width_m: None } },
@@ -158,8 +159,8 @@ const RUNGS: [Rung; 3] = [
 ];
 
 impl ShadowConfig {
-    /// The best that was measured for a budget, over [`Preset::Balanced`]: number of splits, sizes of
-    /// maps and filter. Maps never take more than the budget; a larger budget never has fewer texels.
+    /// [`Preset::Balanced`] within a budget: number of splits, sizes of maps and filter. Maps never
+    /// take more than the budget; a larger budget never has fewer texels.
     ///
     /// ```
     /// use umbrage::config::{Budget, ShadowConfig};
