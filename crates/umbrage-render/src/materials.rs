@@ -173,10 +173,13 @@ fn gpu_material(
         Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
         Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
     });
-    // WebGPU has no anisotropy with a nearest filter.
-    let (mag_filter, anisotropy_clamp) = match texture.filter {
-        TextureFilter::Linear => (wgpu::FilterMode::Linear, 8),
-        TextureFilter::Nearest => (wgpu::FilterMode::Nearest, 1),
+    let is_plain = texture.width.max(texture.height) == 1;
+    // WebGPU has no anisotropy with a nearest filter. One texel needs none. Leaves have none: it was most of what they cost.
+    let (mag_filter, anisotropy_clamp) = match (texture.filter, material.alpha) {
+        (TextureFilter::Nearest, _) => (wgpu::FilterMode::Nearest, 1),
+        (TextureFilter::Linear, AlphaMode::Mask { .. }) => (wgpu::FilterMode::Linear, 1),
+        (TextureFilter::Linear, _) if is_plain => (wgpu::FilterMode::Linear, 1),
+        (TextureFilter::Linear, _) => (wgpu::FilterMode::Linear, 8),
     };
     let both = wgpu::SamplerDescriptor {
         address_mode_u: address[0],

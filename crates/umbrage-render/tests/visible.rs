@@ -5,7 +5,7 @@ mod common;
 use common::{SIZE, Stage, cuboid, gpu, ground, look, quad, scene, settings, sphere, sun};
 use glam::DVec3;
 use image::RgbaImage;
-use umbrage_render::{Frame, Outputs, RenderSettings, Renderer, Samples};
+use umbrage_render::{Frame, Outputs, Renderer};
 use umbrage_scene::{AlphaMode, Material, Primitive, Scene, Texture, TextureFilter, Wrap};
 
 const PICTURE: Outputs = Outputs { picture: true, mask: false, maps: false };
@@ -31,31 +31,6 @@ fn garden() -> Scene {
 fn picture(stage: &mut Stage) -> RgbaImage {
     let view = look(DVec3::new(0.0, 5.0, 14.0), DVec3::new(0.0, 1.5, 0.0));
     stage.render(&view, sun(DVec3::new(0.4, -1.0, -0.3)), PICTURE).picture.expect("a picture")
-}
-
-#[test]
-fn what_lies_behind_changes_nothing() {
-    let Some(gpu) = gpu() else { return };
-    for samples in [Samples::One, Samples::Four] {
-        let settings = RenderSettings { samples, ..settings() };
-        let alone = picture(&mut Stage::new(&gpu, &garden(), &settings));
-        // A thousand leaves below the ground, drawn before and after it by where they stand.
-        let mut hidden = garden();
-        let mut leaves = Primitive { material: 1, ..Primitive::default() };
-        for i in 0..1000 {
-            let at = DVec3::new(f64::from(i % 40) - 20.0, -3.0, f64::from(i / 40) - 12.0);
-            quad(&mut leaves, at, DVec3::X, DVec3::NEG_Z, DVec3::Y);
-        }
-        let below = scene(vec![leaves]);
-        hidden.nodes.push(umbrage_scene::Node {
-            mesh: Some(hidden.meshes.len()),
-            cast_shadow: false,
-            ..Default::default()
-        });
-        hidden.meshes.extend(below.meshes);
-        let with = picture(&mut Stage::new(&gpu, &hidden, &settings));
-        assert!(alone == with, "{samples:?}: what nobody sees is seen");
-    }
 }
 
 /// Triangles at the same place to the bit: what the list names first is seen, as if there were no depth pass.
