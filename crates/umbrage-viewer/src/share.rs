@@ -210,7 +210,7 @@ mod tests {
             Kind::Count(least, most) => (least as usize + pick % (most - least + 1) as usize).to_string(),
             Kind::Texels => (64 << (pick % 6)).to_string(),
             Kind::Colour => format!("{number},0.5,{}", 1.0 - number),
-            Kind::Switch => (pick % 2 == 0).to_string(),
+            Kind::Switch => pick.is_multiple_of(2).to_string(),
         }
     }
 

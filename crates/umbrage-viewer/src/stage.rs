@@ -259,7 +259,7 @@ mod tests {
     fn every_shipped_scene_can_be_asked_for() {
         assert_eq!(shipped().count(), SCENES.len());
         for shipped in shipped() {
-            let request = shipped.request([320, 200]).expect(shipped.title());
+            let request = shipped.request([320, 200]).unwrap_or_else(|why| panic!("{}: {why}", shipped.title()));
             assert!(shipped.is_shown_by(&request), "{}", request.scene);
             assert_eq!(self::shipped().filter(|other| other.is_shown_by(&request)).count(), 1);
         }

@@ -72,8 +72,7 @@ fn legend(session: &Session, ui: &mut Ui) {
                 Some(Sums::Errors { acne, leak, at_edges, .. }) => [Some(acne), Some(leak), Some(at_edges)],
                 _ => [None; 3],
             };
-            let texts =
-                ["acne: dark, should be lit", "leak: lit, should be dark", "at an edge: resolution explains it"];
+            let texts = ["acne: should be lit", "leak: should be dark", "edge: resolution"];
             for ((text, [r, g, b]), share) in texts.into_iter().zip(ERROR_COLOURS).zip(shares) {
                 ui.horizontal(|ui| {
                     let (rect, _) = ui.allocate_exact_size(Vec2::splat(10.0), Sense::hover());

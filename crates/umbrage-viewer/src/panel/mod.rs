@@ -42,7 +42,8 @@ pub struct Fields {
 /// A panel beside the picture. In a small window, or with large text, it leaves the picture its third.
 fn side(panel: egui::Panel, width: f32, ui: &egui::Ui) -> egui::Panel {
     let third = ui.ctx().content_rect().width() / 3.0;
-    panel.default_size(width.min(third)).size_range(width.min(third).min(180.0)..=third.max(width))
+    let least = third.min(180.0);
+    panel.default_size(width.min(third)).size_range(least..=third.max(least))
 }
 
 /// Colour of a split for the controls.

@@ -27,6 +27,8 @@ const HISTORY: usize = 240;
 const MESSAGES: usize = 6;
 /// Pictures that take longer than this are drawn at half the size while something moves, milliseconds.
 const SLOW_MS: f64 = 120.0;
+/// Pictures of one and the same view after which slow ones are not drawn again for maps that go back in small steps.
+const MOST_SLOW_REPEATS: u32 = 2;
 /// Seconds after which nothing moves any more.
 const REST_S: f64 = 0.3;
 
@@ -79,6 +81,8 @@ pub struct Session {
     in_flight: bool,
     failed: Option<Shot>,
     settled: bool,
+    /// Pictures of the shot that is shown, after its first.
+    repeats: u32,
     judging: Option<(Shot, Option<Overlay>)>,
     click: Option<DVec2>,
     since_moved: f64,
@@ -114,6 +118,7 @@ impl Session {
             in_flight: false,
             failed: None,
             settled: false,
+            repeats: 0,
             judging: None,
             click: None,
             since_moved: f64::INFINITY,
@@ -389,7 +394,9 @@ impl Session {
         // Stabilised maps go back to a fresh plan's in small steps while the camera stands.
         let holds = drawn.shot.configs.iter().any(ShadowConfig::is_stabilised) && drawn.shot.shadows_on;
         let before = self.drawn.as_ref().filter(|before| before.shot == drawn.shot);
-        self.settled = !holds || before.is_some_and(|before| plans(before) == plans(&drawn));
+        self.repeats = if before.is_some() { self.repeats + 1 } else { 0 };
+        let is_tedious = drawn.wall_ms > SLOW_MS && self.repeats >= MOST_SLOW_REPEATS;
+        self.settled = !holds || is_tedious || before.is_some_and(|before| plans(before) == plans(&drawn));
         let notes: Vec<String> = drawn.taken.iter().flat_map(|taken| taken.notes.clone()).collect();
         if self.drawn.as_ref().is_none_or(|before| before.shot.configs != drawn.shot.configs) {
             notes.into_iter().for_each(|note| self.say(false, note));

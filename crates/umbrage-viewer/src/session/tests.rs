@@ -55,7 +55,8 @@ fn nothing_is_drawn_before_there_is_a_scene_and_once_when_nothing_changes() {
 
 #[test]
 fn every_change_is_drawn() {
-    let changes: Vec<(&str, fn(&mut Session))> = vec![
+    type Change = fn(&mut Session);
+    let changes: Vec<(&str, Change)> = vec![
         ("tint", |s| s.show.tint = true),
         ("shadows", |s| s.show.shadows = false),
         ("config", |s| s.set_config(Preset::Fast.config())),
