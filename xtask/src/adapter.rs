@@ -8,7 +8,8 @@ use crate::run::{run, succeeds};
 
 const PACKAGES: [&str; 2] = ["mesa-vulkan-drivers", "libvulkan1"];
 
-/// Makes sure that `umbrage` finds an adapter, and returns its name. Installs the software driver where it may.
+/// Makes sure that `umbrage` finds an adapter, and returns its name. Installs the software driver
+/// where it may.
 pub fn ensure(umbrage: &Path) -> Result<String> {
     if let Some(name) = find(umbrage)? {
         return Ok(name);

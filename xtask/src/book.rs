@@ -24,7 +24,8 @@ struct Picture {
 
 const SIZE: &str = "--size 640x360";
 
-/// All pictures, in the order of the book. Those of symptoms name the setting that provokes them, as the book does.
+/// All pictures, in the order of the book. Those of symptoms name the setting that provokes them,
+/// as the book does.
 const PICTURES: [Picture; 7] = [
     Picture { name: "one-map", words: "render robot-war --camera near --technique ssm --preset papers" },
     Picture { name: "four-splits", words: "render robot-war --camera near --tint" },

@@ -57,12 +57,14 @@ pub fn shaders() -> Result<()> {
     run(cargo().args(["run", "--quiet", "--package", SHADERS_JOIN]))
 }
 
-/// Packs every crate that is published, in the order of their dependencies, and builds each from its package alone.
+/// Packs every crate that is published, in the order of their dependencies, and builds each from
+/// its package alone.
 pub fn package() -> Result<()> {
     run(cargo().args(["package", "--workspace", "--allow-dirty"]).args(unpublished()?))
 }
 
-/// The tests of pictures, accepting what they see as the new reference. Ceilings of scores are constants and stay as they are.
+/// The tests of pictures, accepting what they see as the new reference. Ceilings of scores are
+/// constants and stay as they are.
 pub fn bless() -> Result<()> {
     adapter::ensure(&build_umbrage(false)?)?;
     run(cargo().args(["test", "--package", "umbrage-tests"]).env(BLESS, "1").env(REQUIRE_GPU, "1"))?;
@@ -86,7 +88,8 @@ pub fn fuzz() -> Result<()> {
     Ok(())
 }
 
-/// Whether there is an adapter, after trying to install one. None is an error where the environment demands one.
+/// Whether there is an adapter, after trying to install one. None is an error where the environment
+/// demands one.
 fn has_adapter() -> Result<bool> {
     match adapter::ensure(&build_umbrage(false)?) {
         Ok(name) => {

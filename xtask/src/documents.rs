@@ -1,4 +1,5 @@
-//! What must hold of the documents: links lead somewhere, and papers are cited by keys that are explained.
+//! What must hold of the documents: links lead somewhere, and papers are cited by keys that are
+//! explained.
 
 use std::{
     collections::BTreeSet,
@@ -66,7 +67,8 @@ fn anchors(text: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// The keys of papers in a text, as docs/papers.md forms them: a capital first and two digits last, or one of the two without.
+/// The keys of papers in a text, as docs/papers.md forms them: a capital first and two digits last,
+/// or one of the two without.
 fn cited(text: &str) -> BTreeSet<String> {
     let mut keys = BTreeSet::new();
     for part in text.split('[').skip(1) {
@@ -134,4 +136,69 @@ fn links_and_keys_are_found() {
     );
     assert_eq!(cited("[PSSM06] eq. 1, [Self], [0], [x86], &[DVec3], [PCSM]").len(), 2);
     assert_eq!(explained("| key | paper |\n| [GG3-10] | F. Zhang |\n"), BTreeSet::from(["GG3-10".to_owned()]));
+}
+
+/// Columns that a line of prose may have.
+const MOST_COLUMNS: usize = 100;
+
+/// Numbers of the lines of prose that are too long: of a Markdown text's all but code, tables and
+/// links, of a source's comments.
+fn long_lines(text: &str, is_markdown: bool) -> Vec<usize> {
+    let mut code = false;
+    let mut long = Vec::new();
+    for (number, line) in (1..).zip(text.lines()) {
+        let prose = match (is_markdown, line.trim_start().strip_prefix("//")) {
+            (true, _) => line,
+            (false, Some(comment)) => comment.trim_start_matches(['/', '!']).trim_start(),
+            (false, None) => {
+                code = false;
+                continue;
+            }
+        };
+        if prose.trim_start().starts_with("```") {
+            code = !code;
+        }
+        let is_code = code || (is_markdown && line.starts_with("    "));
+        let is_unbreakable = prose.trim_start().starts_with(['|', '!', '[']) || prose.contains("://");
+        if !is_code && !is_unbreakable && line.chars().count() > MOST_COLUMNS {
+            long.push(number);
+        }
+    }
+    long
+}
+
+#[test]
+fn prose_has_lines_of_at_most_100_columns() {
+    let mut long = Vec::new();
+    for (path, text) in sources(&["md", "rs", "wesl"]) {
+        let is_markdown = path.extension().is_some_and(|ending| ending == "md");
+        long.extend(long_lines(&text, is_markdown).iter().map(|line| format!("{}:{line}", path.display())));
+    }
+    assert!(long.is_empty(), "lines of more than {MOST_COLUMNS} columns:\n{}", long.join("\n"));
+}
+
+#[test]
+fn long_lines_are_found_and_tables_are_not() {
+    let long = "x ".repeat(60);
+    assert_eq!(long_lines(&format!("{long}\n| {long} |\n```\n{long}\n```\n    {long}\n{long}"), true), [1, 7]);
+    assert_eq!(long_lines(&format!("let x = 1; {long}\n/// {long}\n    // short\n//! | {long}"), false), [2]);
+}
+
+/// Items whose page begins with another item's: "The same …" means nothing to a reader who came by
+/// a search.
+#[test]
+fn pages_of_items_stand_alone() {
+    let mut found = Vec::new();
+    for (path, text) in sources(&["rs"]) {
+        for (number, line) in (1..).zip(text.lines()) {
+            let comment = line.trim_start();
+            if ["/// ", "//! "]
+                .iter()
+                .any(|mark| comment.strip_prefix(mark).is_some_and(|it| it.starts_with("The same")))
+            {
+                found.push(format!("{}:{number}", path.display()));
+            }
+        }
+    }
+    assert!(found.is_empty(), "items explained by another one:\n{}", found.join("\n"));
 }

@@ -1,4 +1,5 @@
-//! `cargo xtask COMMAND`: the project's automation, so that a machine that has Rust needs nothing else.
+//! `cargo xtask COMMAND`: the project's automation, so that a machine that has Rust needs nothing
+//! else.
 
 mod adapter;
 mod book;

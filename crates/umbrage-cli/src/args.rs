@@ -1,7 +1,7 @@
 //! What was typed: the subcommands. Each one's own options stand in its file.
 //!
-//! One set of scene, camera, light and time options serves every subcommand; what a subcommand does not need it accepts
-//! and ignores, so one argument list serves `render`, `probe` and `truth`.
+//! One set of scene, camera, light and time options serves every subcommand; what a subcommand does
+//! not need it accepts and ignores, so one argument list serves `render`, `probe` and `truth`.
 
 use clap::{Parser, Subcommand};
 
@@ -10,7 +10,8 @@ use crate::{
     theory::TheoryArgs, truth::TruthArgs, tune::TuneArgs, worlds::WorldsCommand,
 };
 
-/// Sunlight and its shadows over large worlds: pictures, visibility masks, probes, and the exact truth to compare with.
+/// Sunlight and its shadows over large worlds: pictures, visibility masks, probes, and the exact
+/// truth to compare with.
 #[derive(Debug, Parser)]
 #[command(name = "umbrage", version, max_term_width = 110)]
 pub struct Args {
@@ -28,7 +29,8 @@ pub enum Command {
     Probe(Box<ProbeArgs>),
     /// Work out the visibility mask exactly, by rays
     Truth(Box<TruthArgs>),
-    /// Say how shadows would be made, without a GPU: planes, matrices and casters of each split, as JSON
+    /// Say how shadows would be made, without a GPU: planes, matrices and casters of each split, as
+    /// JSON
     Plan(Box<PlanArgs>),
     /// Draw the papers' theory: split schemes and aliasing, areas, fits, frusta
     Theory(TheoryArgs),
@@ -36,11 +38,13 @@ pub enum Command {
     Compare(Box<CompareArgs>),
     /// Search the best settings for a budget of memory, against the judge
     Tune(Box<TuneArgs>),
-    /// Measure what shadows cost: times and counts of techniques in turn, ratios to the first, one page
+    /// Measure what shadows cost: times and counts of techniques in turn, ratios to the first, one
+    /// page
     Bench(Box<BenchArgs>),
     /// Draw the worlds and a city from near and far with the defaults, as one page
     Gallery(GalleryArgs),
-    /// Open a window on the scene: fly, drag the sun, change settings, see why a shadow looks as it does
+    /// Open a window on the scene: fly, drag the sun, change settings, see why a shadow looks as it
+    /// does
     #[cfg(feature = "view")]
     #[command(
         mut_arg("scene", |arg| arg.required(false).default_value("chessboard")),

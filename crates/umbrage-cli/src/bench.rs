@@ -15,7 +15,8 @@ use umbrage_scene::procedural::World;
 
 use crate::switch::Switch;
 
-/// The camera of a world that is taken if none is named: shadows near, in the middle and far in one picture.
+/// The camera of a world that is taken if none is named: shadows near, in the middle and far in one
+/// picture.
 const CAMERA: &str = "middle";
 
 /// `umbrage bench`.
@@ -32,10 +33,12 @@ pub struct BenchArgs {
         default_value = "ssm:1024,pssm:2:512,pssm:3:512,pssm:3:512:scheme=optimal,pssm:4:512"
     )]
     pub techniques: Vec<String>,
-    /// All filters over four maps of 1024² instead of techniques, divided by pcf2; over robot-war if no scene is named
+    /// All filters over four maps of 1024² instead of techniques, divided by pcf2; over robot-war
+    /// if no scene is named
     #[arg(long, conflicts_with_all = ["techniques", "with"])]
     pub filters: bool,
-    /// Settings for all techniques that do not say otherwise, as for `umbrage compare`; the papers' splits meet in hard borders
+    /// Settings for all techniques that do not say otherwise, as for `umbrage compare`; the papers'
+    /// splits meet in hard borders
     #[arg(long, value_name = "SETTINGS", default_value = "preset=papers:filter=pcf2:stabilize=none:blend=0")]
     pub with: String,
     /// Rounds that are measured, after one that is not

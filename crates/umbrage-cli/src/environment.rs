@@ -2,9 +2,10 @@
 
 /// Starts the command again, in its place, with an `XDG_RUNTIME_DIR` if it has none.
 ///
-/// Mesa's Vulkan drivers look for a Wayland display when they are loaded. On a machine without a desktop the library that they ask prints
-/// "error: XDG_RUNTIME_DIR is invalid or not set in the environment", twice, which reads as a failure of a run that is none. A
-/// folder that is not there says that there is no display, and says it quietly. A process's own environment can be changed
+/// Mesa's Vulkan drivers look for a Wayland display when they are loaded. On a machine without a
+/// desktop the library that they ask prints "error: XDG_RUNTIME_DIR is invalid or not set in the
+/// environment", twice, which reads as a failure of a run that is none. A folder that is not there
+/// says that there is no display, and says it quietly. A process's own environment can be changed
 /// safely only before it begins, hence the new beginning: the same process, arguments and streams.
 #[cfg(target_os = "linux")]
 pub fn restart_with_runtime_folder() {
@@ -22,7 +23,8 @@ pub fn restart_with_runtime_folder() {
     if let Some(name) = arguments.next() {
         command.arg0(name);
     }
-    // Comes back only if the system refuses; the run is then as good as before, with the driver's line.
+    // Comes back only if the system refuses; the run is then as good as before, with the driver's
+    // line.
     drop(command.args(arguments).env(VARIABLE, NOWHERE).exec());
 }
 

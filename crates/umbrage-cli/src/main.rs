@@ -12,7 +12,8 @@ fn main() -> ExitCode {
     let args = match Args::try_parse() {
         Ok(args) => args,
         Err(error) => {
-            // Help and version go to standard output and are no error; a reader who has left is none either.
+            // Help and version go to standard output and are no error; a reader who has left is
+            // none either.
             drop(error.print());
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(DEFECT));
         }

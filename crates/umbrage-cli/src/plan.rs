@@ -34,7 +34,8 @@ pub struct PlanArgs {
     /// Depth of the matrices' normalised device coordinates
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub depth_convention: DepthConvention,
-    /// Write the plan here (JSON) instead of printing it; with --frames, NAME.json becomes NAME.0000.json and so on
+    /// Write the plan here (JSON) instead of printing it; with --frames, NAME.json becomes
+    /// NAME.0000.json and so on
     #[arg(short = 'o', long = "output", value_name = "JSON", help_heading = "Output")]
     pub output: Option<PathBuf>,
 }
@@ -61,7 +62,8 @@ struct PlanReport {
     /// Approximately stabilised: in which steps maps change their extent.
     #[serde(skip_serializing_if = "Option::is_none")]
     extent_steps: Option<ExtentStepsReport>,
-    /// `planar`: all depths of this report are view depths; `radial`: all but `coverage_m` are distances to the eye.
+    /// `planar`: all depths of this report are view depths; `radial`: all but `coverage_m` are
+    /// distances to the eye.
     bands: String,
     /// Where planes stand: `uniform`, `log`, `practical`, `manual` or `fitted`.
     scheme: String,
@@ -76,7 +78,8 @@ struct PlanReport {
     /// View depth at which the fade to lit begins, metres.
     fade_begin_m: f64,
     splits: Vec<SplitPlan>,
-    /// What `splits[].casters` refers to: for each caster its node, and its place among the node's instances.
+    /// What `splits[].casters` refers to: for each caster its node, and its place among the node's
+    /// instances.
     casters: Vec<Caster>,
     /// Defaults invented, parts of the scene left out.
     notes: Vec<String>,
@@ -105,7 +108,8 @@ struct SplitPlan {
     warped: bool,
     /// To normalised device coordinates, x right, y up, column after column; divide by w.
     shadow_from_world: [[f64; 4]; 4],
-    /// To texture coordinates (u right, v down, in 0..1) and stored depth in 0..1, column after column; divide by w.
+    /// To texture coordinates (u right, v down, in 0..1) and stored depth in 0..1, column after
+    /// column; divide by w.
     texture_from_world: [[f64; 4]; 4],
     /// Those that are drawn into the map. Empty: nothing throws a shadow here.
     casters: Vec<u32>,

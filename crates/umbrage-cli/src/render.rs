@@ -35,14 +35,15 @@ pub struct RenderArgs {
     /// Write the picture here (PNG)
     #[arg(short = 'o', long = "output", value_name = "PICTURE", help_heading = "Output")]
     pub picture: Option<PathBuf>,
-    /// Write the visibility mask here (PNG, grey and alpha: 255 lit, 0 shadowed, alpha 0 where nothing was hit)
+    /// Write the visibility mask here (PNG, grey and alpha: 255 lit, 0 shadowed, alpha 0 where
+    /// nothing was hit)
     #[arg(long, value_name = "MASK", help_heading = "Output")]
     pub visibility: Option<PathBuf>,
     /// Write each split's map into this folder, as pictures
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub maps: Option<PathBuf>,
-    /// Write two pictures of each split into this folder: the scene between the split's planes (planned as a view of its own), and as the
-    /// light sees it through the split's map
+    /// Write two pictures of each split into this folder: the scene between the split's planes
+    /// (planned as a view of its own), and as the light sees it through the split's map
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub split_views: Option<PathBuf>,
     /// Write what was done and what it cost here (JSON)
@@ -67,7 +68,8 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     let setup = SceneSetup::open_views(&request)?;
     check_views(args, &setup, &shadows)?;
     let mut session = Session::open(&request, &shadows, &setup)?;
-    // Views of splits are planned one by one and must not disturb what the frames' own maps hold on to.
+    // Views of splits are planned one by one and must not disturb what the frames' own maps hold on
+    // to.
     let mut beside = args.split_views.as_ref().map(|_| Session::open(&request, &shadows, &setup)).transpose()?;
     let mut staged = Staged::default();
     let bar = progress::steps(setup.shots.len() as u64, "frames");

@@ -16,9 +16,9 @@ use crate::switch::Switch;
 /// Scene, picture size, camera, light and time.
 #[derive(Clone, Debug, clap::Args)]
 pub struct SceneArgs {
-    /// A .glb, .gltf or .vrm; a height map (.png, .tif or .asc, with a .json beside it or the --metres options where it has
-    /// no scale of its own); or a world: robot-war, chessboard, knights, mining-terrain. Left away, it is the scene of the
-    /// report that --config names
+    /// A .glb, .gltf or .vrm; a height map (.png, .tif or .asc, with a .json beside it or the
+    /// --metres options where it has no scale of its own); or a world: robot-war, chessboard,
+    /// knights, mining-terrain. Left away, it is the scene of the report that --config names
     #[arg(value_name = "SCENE")]
     pub scene: Option<String>,
     /// Height map: metres between posts
@@ -39,8 +39,8 @@ pub struct SceneArgs {
     /// glTF: let its files lie outside of its folder, as ../textures/bark.png does
     #[arg(long, help_heading = "Scene")]
     pub parent_folders: bool,
-    /// Move the scene with its cameras and lights by this many metres, as if it lay far from the world's origin; --eye, --target and --path
-    /// are places of the world
+    /// Move the scene with its cameras and lights by this many metres, as if it lay far from the
+    /// world's origin; --eye, --target and --path are places of the world
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Scene")]
     pub move_scene: Option<DVec3>,
     /// Seconds into the scene's animations
@@ -50,7 +50,8 @@ pub struct SceneArgs {
     /// Pixels
     #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = parse::size, allow_hyphen_values = true, help_heading = "Camera")]
     pub size: [u32; 2],
-    /// One of the scene's cameras; several between commas are shown side by side by render and truth, each as large as --size
+    /// One of the scene's cameras; several between commas are shown side by side by render and
+    /// truth, each as large as --size
     #[arg(long, value_name = "NAME|INDEX,…", help_heading = "Camera")]
     pub camera: Option<String>,
     /// Where the eye stands, in metres
@@ -78,8 +79,9 @@ pub struct SceneArgs {
     #[arg(long, value_name = "M", default_value = "2", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Camera")]
     pub eye_height: f64,
 
-    /// Lights of the scene, directional, spot or point: one, several between commas, or all (at most 8). Pictures show all of
-    /// them with their shadows; masks, probes, truth and plans are of the first [default: the first directional one]
+    /// Lights of the scene, directional, spot or point: one, several between commas, or all (at
+    /// most 8). Pictures show all of them with their shadows; masks, probes, truth and plans are of
+    /// the first [default: the first directional one]
     #[arg(long, value_name = "NAME|INDEX,…", help_heading = "Light")]
     pub light: Option<String>,
     /// The way light travels; any length
@@ -88,14 +90,15 @@ pub struct SceneArgs {
     /// The way light travels in the last of --frames: the sun moves there at an even pace
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Light")]
     pub sun_to: Option<DVec3>,
-    /// With --sun-to: shadows follow in steps of this many degrees and stand still in between [default: they move every frame]
+    /// With --sun-to: shadows follow in steps of this many degrees and stand still in between
+    /// [default: they move every frame]
     #[arg(long, value_name = "DEGREES", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Light")]
     pub sun_step: Option<f64>,
     /// With --sun-step: frames over which a step is faded; 0 is sudden [default: 8]
     #[arg(long, value_name = "FRAMES", allow_hyphen_values = true, help_heading = "Light")]
     pub sun_fade: Option<u32>,
-    /// Angle across the sun in degrees: what --filter pcss and the exact soft mask of `umbrage truth` go by
-    /// [default: 0.53 for pcss; the exact mask is hard]
+    /// Angle across the sun in degrees: what --filter pcss and the exact soft mask of `umbrage
+    /// truth` go by [default: 0.53 for pcss; the exact mask is hard]
     #[arg(long, value_name = "DEGREES", value_parser = parse::sun_angle, allow_hyphen_values = true, help_heading = "Light")]
     pub sun_angle: Option<f64>,
 

@@ -1,5 +1,5 @@
-//! The options of views: which cameras of which scenes, under which suns, and how they go on from frame
-//! to frame. What judges views shares them.
+//! The options of views: which cameras of which scenes, under which suns, and how they go on from
+//! frame to frame. What judges views shares them.
 
 use std::path::PathBuf;
 
@@ -26,14 +26,15 @@ pub struct ShotArgs {
     /// Height maps: metres added to every height
     #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
     pub height_offset: Option<f64>,
-    /// Move scenes with their cameras and lights by this many metres, as if they lay far from the world's origin; --eye, --target and --path
-    /// are places of the world
+    /// Move scenes with their cameras and lights by this many metres, as if they lay far from the
+    /// world's origin; --eye, --target and --path are places of the world
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Scene")]
     pub move_scene: Option<DVec3>,
     /// Seconds into the scenes' animations
     #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
     pub time: f64,
-    /// View depths in metres that shadows cover and scores count, for everything that is judged [default: the camera's near and far]
+    /// View depths in metres that shadows cover and scores count, for everything that is judged
+    /// [default: the camera's near and far]
     #[arg(long, value_name = "N..F", value_parser = parse::range, allow_hyphen_values = true, help_heading = "Shots")]
     pub shadow_range: Option<(f64, f64)>,
     /// Pixels [default: 800x600, or a preset's; tune: 320x240]
@@ -69,21 +70,22 @@ pub struct ShotArgs {
     /// Move every other camera forward by this many metres a frame, for --frames
     #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Shots")]
     pub step: Option<f64>,
-    /// Turn every other camera to the left by this many degrees a frame, about the world's vertical, for --frames
+    /// Turn every other camera to the left by this many degrees a frame, about the world's
+    /// vertical, for --frames
     #[arg(long, value_name = "DEGREES", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Shots")]
     pub turn: Option<f64>,
     /// Magnify what every other camera sees by this factor a frame, for --frames
     #[arg(long, value_name = "FACTOR", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Shots")]
     pub zoom: Option<f64>,
-    /// One of the scenes' lights: a directional one as their own sun, or a spot or point light in its place
-    /// [default: the first directional one]
+    /// One of the scenes' lights: a directional one as their own sun, or a spot or point light in
+    /// its place [default: the first directional one]
     #[arg(long, value_name = "NAME|INDEX", help_heading = "Shots")]
     pub light: Option<String>,
     /// The own sun: the way light travels; any length
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Shots")]
     pub sun: Option<DVec3>,
-    /// Angle across the sun in degrees: pcss goes by it, and compare scores soft masks beside hard ones
-    /// [default: 0.53 for pcss, no soft scores]
+    /// Angle across the sun in degrees: pcss goes by it, and compare scores soft masks beside hard
+    /// ones [default: 0.53 for pcss, no soft scores]
     #[arg(long, value_name = "DEGREES", value_parser = parse::sun_angle, allow_hyphen_values = true, help_heading = "Shots")]
     pub sun_angle: Option<f64>,
     /// Suns that every camera is seen under, see below [default: own]
@@ -110,8 +112,8 @@ pub struct ShotDefaults {
 }
 
 impl ShotArgs {
-    /// Which views of each of so many scenes, in pictures of this size: what was typed, then what holds
-    /// otherwise.
+    /// Which views of each of so many scenes, in pictures of this size: what was typed, then what
+    /// holds otherwise.
     ///
     /// # Errors
     /// [`Failure::Input`] naming the option at fault.

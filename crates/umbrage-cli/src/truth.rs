@@ -25,7 +25,8 @@ pub struct TruthArgs {
     /// Accepted and ignored, but for the scene of a report: rays need no settings.
     #[command(flatten)]
     pub shadows: ShadowArgs,
-    /// Write the exact visibility mask here (PNG, grey and alpha); soft with --sun-angle, by 256 directions
+    /// Write the exact visibility mask here (PNG, grey and alpha); soft with --sun-angle, by 256
+    /// directions
     #[arg(short = 'o', long = "output", value_name = "MASK", help_heading = "Output")]
     pub mask: PathBuf,
     /// Write scene, camera, sun and times here (JSON)

@@ -50,7 +50,8 @@ pub struct TuneArgs {
         help_heading = "Search"
     )]
     pub budget: Option<Budget>,
-    /// Values of a setting to try, once for each setting: splits=2/3/4; share=1/0.5 for shares of the budget, preset=still/balanced
+    /// Values of a setting to try, once for each setting: splits=2/3/4; share=1/0.5 for shares of
+    /// the budget, preset=still/balanced
     #[arg(long = "try", value_name = "KEY=VALUE/…", value_parser = axis, help_heading = "Search")]
     pub axes: Vec<Axis>,
     /// Settings for all candidates that do not try others: preset=still:blend=0
@@ -84,7 +85,8 @@ pub struct TuneArgs {
     /// Write all figures here (JSON)
     #[arg(long, value_name = "JSON", help_heading = "Output")]
     pub json: Option<PathBuf>,
-    /// Keep finished candidates in this file; if the run is cut off, the same command goes on from there. The file stays
+    /// Keep finished candidates in this file; if the run is cut off, the same command goes on from
+    /// there. The file stays
     #[arg(long, value_name = "JSONL", help_heading = "Output")]
     pub results: Option<PathBuf>,
 }

@@ -20,8 +20,8 @@ pub struct ViewArgs {
     /// Shadows.
     #[command(flatten)]
     pub shadows: ShadowArgs,
-    /// Show at once: tint, frusta, held (maps held for the first view, seen from behind it), density, errors, maps, planes, times,
-    /// casters
+    /// Show at once: tint, frusta, held (maps held for the first view, seen from behind it),
+    /// density, errors, maps, planes, times, casters
     #[arg(long, value_name = "WHAT,…", value_delimiter = ',', help_heading = "Window")]
     pub show: Vec<ShowAtStart>,
     /// Compare with a preset: a wipe between two pictures

@@ -1,4 +1,5 @@
-//! `umbrage compare`: what it writes, that its scores are those of `render` and `truth`, and what it refuses.
+//! `umbrage compare`: what it writes, that its scores are those of `render` and `truth`, and what
+//! it refuses.
 
 mod common;
 

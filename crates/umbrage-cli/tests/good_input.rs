@@ -7,12 +7,14 @@ use std::{fs, process::Stdio};
 use common::{Folder, has_adapter, names, stderr};
 use image::GenericImageView;
 
-/// The tiny scene from straight above, its box in the middle; one argument list for all subcommands.
+/// The tiny scene from straight above, its box in the middle; one argument list for all
+/// subcommands.
 const ABOVE: &str = "tiny.glb --size 64x48 --eye 0,20,0 --target 0,0,0 --fov 60 --near 1 --far inf --sun -1,-2,0.5 --time 0 \
                      --technique pssm --splits 2 --map-size 256,128 --lambda 0.7 --shadow-range 1..40 --fit dependent \
                      --stabilize none --filter hard --blend 0 --far-fade 0";
 
-/// The point of the plane y = 0 that pixel (i, j) of [`ABOVE`] sees: up is −Z, so x runs right and z down.
+/// The point of the plane y = 0 that pixel (i, j) of [`ABOVE`] sees: up is −Z, so x runs right and
+/// z down.
 fn ground_under_pixel(i: u32, j: u32) -> [f64; 2] {
     let metres_per_pixel = 2.0 * 20.0 * 30f64.to_radians().tan() / 48.0;
     [(f64::from(i) + 0.5 - 32.0) * metres_per_pixel, (f64::from(j) + 0.5 - 24.0) * metres_per_pixel]
@@ -132,7 +134,8 @@ fn no_points_give_no_answers() {
     assert_eq!(fs::read(folder.at("a.bin")).expect("answers"), b"");
 }
 
-/// Between steps of the sun the very same picture; a step is faded over as many frames as were asked for.
+/// Between steps of the sun the very same picture; a step is faded over as many frames as were
+/// asked for.
 #[test]
 fn a_sun_that_moves_in_steps() {
     if !has_adapter() {
@@ -353,7 +356,8 @@ fn a_plan_needs_no_gpu_and_says_it_in_both_conventions() {
         assert_eq!(here["warped"], warped, "{here}");
         let listed = here["casters"].as_array().expect("a list");
         assert!(listed.iter().all(|c| c.as_u64().is_some_and(|c| (c as usize) < casters.len())), "{here}");
-        // z' = 2z − w for any point, the other rows are the same; texture coordinates are 0..1, v runs down, and up with OpenGL.
+        // z' = 2z − w for any point, the other rows are the same; texture coordinates are 0..1, v
+        // runs down, and up with OpenGL.
         let (a, b, t) = (&here["shadow_from_world"], &there["shadow_from_world"], &here["texture_from_world"]);
         let gl_t = &there["texture_from_world"];
         for column in 0..4 {

@@ -21,7 +21,8 @@ fn a_run_that_was_cut_off_ends_like_one_that_was_not() {
     let cut = Folder::new();
     let mut process = cut.command(COMPARE).spawn().expect("the command starts");
     let lines = || fs::read(cut.at("kept")).map_or(0, |bytes| bytes.iter().filter(|&&byte| byte == b'\n').count());
-    // What is compared and one series: as soon as that is there, the run is cut off (or is over already, which is as good).
+    // What is compared and one series: as soon as that is there, the run is cut off (or is over
+    // already, which is as good).
     while lines() < 2 && process.try_wait().expect("its state").is_none() {
         sleep(Duration::from_millis(5));
     }

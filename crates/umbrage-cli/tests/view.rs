@@ -16,7 +16,8 @@ struct Screen {
 }
 
 impl Screen {
-    /// `None`, said loudly, where there is no Xvfb; `UMBRAGE_REQUIRE_SCREEN=1` turns that into a failure.
+    /// `None`, said loudly, where there is no Xvfb; `UMBRAGE_REQUIRE_SCREEN=1` turns that into a
+    /// failure.
     fn open() -> Option<Self> {
         let server = Command::new("Xvfb")
             .args(["-displayfd", "1", "-screen", "0", "1600x1000x24", "-nolisten", "tcp"])

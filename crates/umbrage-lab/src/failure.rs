@@ -123,7 +123,8 @@ impl From<umbrage_truth::Error> for Failure {
     }
 }
 
-/// A message of the library with its settings as options: `selection map` becomes `--selection map`.
+/// A message of the library with its settings as options: `selection map` becomes `--selection
+/// map`.
 #[must_use]
 pub fn in_options(message: &str) -> String {
     let words: Vec<&str> = message.split(' ').collect();

@@ -4,8 +4,9 @@
 //! * [`technique`]: how shadows are made, as options, as settings and under a name;
 //! * [`scene_request`] and [`scene_setup`]: what is looked at, asked for and opened;
 //! * [`session`]: a device with the scene on it;
-//! * [`compare`] judges techniques by rays, [`tune`] searches the best for a budget, [`mod@bench`] measures what they cost, [`theory`] draws what
-//!   the papers derive, [`gallery`] what the defaults draw;
+//! * [`compare`] judges techniques by rays, [`tune`] searches the best for a budget, [`mod@bench`]
+//!   measures what they cost, [`theory`] draws what the papers derive, [`gallery`] what the
+//!   defaults draw;
 //! * [`page`]: report pages and their charts;
 //! * [`output`] makes files appear whole or not at all, [`failure`] says whose fault it is that
 //!   there are none.

@@ -1,4 +1,5 @@
-//! Notes for whoever sits at the terminal: what was left out, taken for something else, or invented.
+//! Notes for whoever sits at the terminal: what was left out, taken for something else, or
+//! invented.
 
 use std::{
     collections::BTreeSet,

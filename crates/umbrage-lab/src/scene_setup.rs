@@ -96,7 +96,8 @@ impl SceneSetup {
         Ok(setup)
     }
 
-    /// Reads the files that the request names, for subcommands that show several cameras side by side.
+    /// Reads the files that the request names, for subcommands that show several cameras side by
+    /// side.
     ///
     /// # Errors
     /// [`Failure::Input`] naming the file or option at fault.

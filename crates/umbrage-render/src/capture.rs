@@ -2,7 +2,8 @@
 
 use crate::{Error, Gpu, Result};
 
-/// A texture on its way back: the copy is recorded, its bytes can be read once the commands have run.
+/// A texture on its way back: the copy is recorded, its bytes can be read once the commands have
+/// run.
 pub(crate) struct Capture {
     buffer: wgpu::Buffer,
     row_bytes: usize,
@@ -62,7 +63,8 @@ impl Capture {
     }
 }
 
-/// How long a callback may be on its way after the device has nothing left to do. Only a lost device takes that long.
+/// How long a callback may be on its way after the device has nothing left to do. Only a lost
+/// device takes that long.
 const CALLBACK_PATIENCE: std::time::Duration = std::time::Duration::from_secs(60);
 
 /// Waits until everything submitted has run, and returns a mappable buffer's content.
@@ -75,7 +77,8 @@ pub(crate) fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>> {
         let _ = sender.send(result);
     });
     gpu.wait()?;
-    // Another thread that waits for the same device may have taken this buffer's callback and be about to call it.
+    // Another thread that waits for the same device may have taken this buffer's callback and be
+    // about to call it.
     receiver
         .recv_timeout(CALLBACK_PATIENCE)
         .map_err(|_| failed("the buffer was never mapped".to_owned()))?

@@ -1,4 +1,5 @@
-//! What each pass over the maps draws: the casters of its splits, and of large meshes the clusters that reach them.
+//! What each pass over the maps draws: the casters of its splits, and of large meshes the clusters
+//! that reach them.
 
 use std::ops::Range;
 
@@ -11,8 +12,8 @@ use crate::geometry::GpuPrimitive;
 use crate::renderer::{Frame, Renderer};
 use crate::shadow_mesh::{Cluster, descend};
 
-/// Triangles that each draw of an object in parts has to spare, or it is drawn whole: with others of its mesh in one draw. Gaps between
-/// its parts that spare less are drawn, too.
+/// Triangles that each draw of an object in parts has to spare, or it is drawn whole: with others
+/// of its mesh in one draw. Gaps between its parts that spare less are drawn, too.
 const LEAST_SPARED: u32 = 40;
 
 /// Triangles that are asked for together, at most, but for the ends of what is drawn.
@@ -92,7 +93,8 @@ fn has_parts(object: &Object, meshes: &[Vec<GpuPrimitive>]) -> bool {
     object.skinned.is_none() && meshes[object.mesh].iter().any(|primitive| primitive.clusters.len() > 1)
 }
 
-/// For each primitive the ranges of indices that reach a split; `None` if the object is better drawn whole.
+/// For each primitive the ranges of indices that reach a split; `None` if the object is better
+/// drawn whole.
 fn parts_in(plan: &ShadowPlan, split: usize, object: &Object, primitives: &[GpuPrimitive]) -> Option<Parts> {
     let reaches = |node: &Cluster| plan.casts_into(split, &node.bounds().transformed(&object.world_from_local));
     let mut spared = 0;
@@ -109,9 +111,11 @@ fn parts_in(plan: &ShadowPlan, split: usize, object: &Object, primitives: &[GpuP
     (spared > 0 && spared >= LEAST_SPARED * draws).then_some(parts)
 }
 
-/// The ranges of indices of a tree's leaves that reach, and what lies between them in the same block or in a narrow gap.
+/// The ranges of indices of a tree's leaves that reach, and what lies between them in the same
+/// block or in a narrow gap.
 ///
-/// Blocks are asked first. The smaller leaves are worth asking where a row of blocks begins and where it ends, and nowhere else.
+/// Blocks are asked first. The smaller leaves are worth asking where a row of blocks begins and
+/// where it ends, and nowhere else.
 fn reaching(tree: &[Cluster], reaches: impl Fn(&Cluster) -> bool) -> Vec<Range<u32>> {
     // Rows of blocks, the first and the last of each.
     let mut rows: Vec<[usize; 2]> = Vec::new();

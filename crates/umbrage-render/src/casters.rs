@@ -70,7 +70,8 @@ impl Casters {
         }
     }
 
-    /// Draws into a map that was begun. Translucent primitives throw a shadow only if they are dithered.
+    /// Draws into a map that was begun. Translucent primitives throw a shadow only if they are
+    /// dithered.
     pub fn draw(
         &self,
         pass: &mut wgpu::RenderPass<'_>,

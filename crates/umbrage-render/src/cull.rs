@@ -3,7 +3,8 @@
 use glam::DVec3;
 use umbrage::{Aabb, View};
 
-/// Whether any part of a box may be inside the view: false only if all its corners are outside of one and the same side.
+/// Whether any part of a box may be inside the view: false only if all its corners are outside of
+/// one and the same side.
 pub(crate) fn may_be_seen(view: &View, bounds: &Aabb) -> bool {
     let frustum = view.frustum();
     // How far outside a corner is, for each of the six sides; positive is outside.

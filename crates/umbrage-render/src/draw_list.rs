@@ -1,4 +1,5 @@
-//! Which objects a pass draws, where they stand relative to the origin, and the calls that draw them.
+//! Which objects a pass draws, where they stand relative to the origin, and the calls that draw
+//! them.
 
 use std::ops::Range;
 
@@ -53,7 +54,8 @@ pub(crate) type Parts = Vec<Vec<Range<u32>>>;
 pub(crate) enum Show {
     /// Those of its surface.
     Surfaces,
-    /// Those of its surface, where depth is there already: the last primitive of a run first, so that the first one stays.
+    /// Those of its surface, where depth is there already: the last primitive of a run first, so
+    /// that the first one stays.
     Visible,
     /// Those for shadow passes, or what a run has of them.
     Shadows,
@@ -106,8 +108,9 @@ impl Instances {
         self.objects[instance as usize]
     }
 
-    /// Objects that share a source drawn together, those given first as early as that allows. Where every draw has to begin with an
-    /// instance that draws nothing, each object's codes begin with one; `leads` keeps the first of a run and drops the others.
+    /// Objects that share a source drawn together, those given first as early as that allows. Where
+    /// every draw has to begin with an instance that draws nothing, each object's codes begin with
+    /// one; `leads` keeps the first of a run and drops the others.
     pub fn grouped(
         &mut self,
         pose: &Pose,
@@ -190,7 +193,8 @@ fn run_key(object: &Object) -> (Source, bool) {
     (source, object.world_from_local.matrix3.determinant() < 0.0)
 }
 
-/// How vertex buffers are laid out: slot 0 positions, 1 instances, 2 surfaces, 3 normals. A pipeline uses the first few.
+/// How vertex buffers are laid out: slot 0 positions, 1 instances, 2 surfaces, 3 normals. A
+/// pipeline uses the first few.
 pub(crate) fn vertex_layouts() -> [Option<wgpu::VertexBufferLayout<'static>>; 4] {
     const POSITION: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x3];
     const INSTANCE: [wgpu::VertexAttribute; 4] =
@@ -254,7 +258,8 @@ impl Drawable<'_> {
         chosen.map(GpuPrimitive::triangles).sum()
     }
 
-    /// Draws `what` of the primitives for which `pipeline_for` has a pipeline. Bind group 1 is the material.
+    /// Draws `what` of the primitives for which `pipeline_for` has a pipeline. Bind group 1 is the
+    /// material.
     pub fn draw<'p, 'r>(
         &self,
         pass: &mut wgpu::RenderPass<'_>,

@@ -1,7 +1,7 @@
 //! A sun that moves in steps: while one is faded, a frame is drawn under both suns and mixed.
 //!
-//! An app that draws its own shading needs no second frame: it gives both suns to one set of maps and mixes what `umbrage_shadow` says of
-//! each by the fade's weight.
+//! An app that draws its own shading needs no second frame: it gives both suns to one set of maps
+//! and mixes what `umbrage_shadow` says of each by the fade's weight.
 
 use image::{GrayAlphaImage, RgbaImage};
 use umbrage::{DirectionalLight, SunFade};
@@ -9,8 +9,9 @@ use umbrage::{DirectionalLight, SunFade};
 use crate::{Frame, Lamp, Outputs, ProbeAnswer, ProbePoint, Rendered, Renderer, Result};
 
 impl Renderer {
-    /// As [`Renderer::render`], under the suns of `fade` in place of the frame's. While two suns are shown, pictures are mixed in linear
-    /// display light and masks as they are; maps and numbers are those of the sun that is faded to, times those of both together.
+    /// As [`Renderer::render`], under the suns of `fade` in place of the frame's. While two suns
+    /// are shown, pictures are mixed in linear display light and masks as they are; maps and
+    /// numbers are those of the sun that is faded to, times those of both together.
     ///
     /// Maps of each sun are held apart, so that what stabilisation holds goes on through a fade.
     ///
@@ -36,7 +37,8 @@ impl Renderer {
         })
     }
 
-    /// As [`Renderer::probe`], under the suns of `fade` in place of the frame's. The splits are those of the sun that is faded to.
+    /// As [`Renderer::probe`], under the suns of `fade` in place of the frame's. The splits are
+    /// those of the sun that is faded to.
     ///
     /// # Errors
     /// Those of [`Renderer::probe`].

@@ -41,7 +41,8 @@ impl Samples {
         }
     }
 
-    /// Least coverage at which an alpha-tested pixel is drawn: with several samples its coverage decides how many.
+    /// Least coverage at which an alpha-tested pixel is drawn: with several samples its coverage
+    /// decides how many.
     fn least_coverage(self) -> f64 {
         match self {
             Self::One => 0.5,
@@ -241,7 +242,8 @@ impl Forward {
         let shading = Recipe {
             constants: vec![("LEAST_COVERAGE", samples.least_coverage()), ("SLICED", f64::from(u8::from(sliced)))],
             unclipped_depth: sliced && device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL),
-            // A slice has no depth pass: which pixels belong to it is known only where they are shaded.
+            // A slice has no depth pass: which pixels belong to it is known only where they are
+            // shaded.
             depth: if sliced { Depth::Drawn } else { Depth::Found },
             ..Recipe::new(gpu, surface_layout, module)
         };
@@ -249,7 +251,8 @@ impl Forward {
             constants: vec![("LEAST_COVERAGE", samples.least_coverage())],
             ..Recipe::new(gpu, depth_layout, depth_module)
         };
-        // With several samples lavapipe seems to shade hidden pixels all the same: a depth pass did not help (docs/notes/cost.md).
+        // With several samples lavapipe seems to shade hidden pixels all the same: a depth pass did
+        // not help (docs/notes/cost.md).
         let is_software = gpu.adapter_info.device_type == wgpu::DeviceType::Cpu;
         let early = !sliced && !(is_software && samples != Samples::One);
         let shading_pictures = Recipe { depth: if early { Depth::Found } else { Depth::Drawn }, ..shading.clone() };

@@ -1,7 +1,10 @@
-//! Vertices and indices on the GPU: what stands still is uploaded once, what is skinned every frame.
+//! Vertices and indices on the GPU: what stands still is uploaded once, what is skinned every
+//! frame.
 //!
-//! Vertices lie in three streams, so that a shadow pass reads positions only: positions, normals, and the *surface*
-//! (texture coordinates and colour). What is opaque has indices of its own for shadow passes where that spares vertices. Indices count from the start of the whole buffer, which spares base vertices.
+//! Vertices lie in three streams, so that a shadow pass reads positions only: positions, normals,
+//! and the *surface* (texture coordinates and colour). What is opaque has indices of its own for
+//! shadow passes where that spares vertices. Indices count from the start of the whole buffer,
+//! which spares base vertices.
 
 use std::ops::Range;
 
@@ -25,7 +28,7 @@ pub(crate) struct Surface {
 pub(crate) struct GpuPrimitive {
     pub indices: Range<u32>,
     pub material: usize,
-    /// The same triangles for shadow passes.
+    /// Indices of the mesh's triangles in the order of shadow passes.
     pub shadow_indices: Range<u32>,
     /// Those as a tree of parts; one node if they are few, none if their vertices move.
     pub clusters: Vec<Cluster>,
@@ -83,7 +86,8 @@ impl Geometry {
         let index_count: u64 = all().map(|primitive| primitive.indices.len() as u64).sum();
         gpu.check_buffer("the vertices", vertices * size_of::<Surface>() as u64)?;
         gpu.check_buffer("the indices", index_count * size_of::<u32>() as u64)?;
-        // Indices and draws count in u32, and shadow passes may have as many again: a device with enormous buffers is still bound by that.
+        // Indices and draws count in u32, and shadow passes may have as many again: a device with
+        // enormous buffers is still bound by that.
         let most = u64::from(u32::MAX) / 2;
         if vertices.max(index_count) > most {
             let [needed, limit] = [vertices.max(index_count), most].map(|count| count * size_of::<u32>() as u64);
@@ -179,7 +183,8 @@ impl SkinnedGeometry {
     }
 }
 
-/// The primitives of those meshes whose vertices a pose moves (others are empty): kept to lay out their vertices.
+/// The primitives of those meshes whose vertices a pose moves (others are empty): kept to lay out
+/// their vertices.
 pub(crate) struct SceneMeshes(Vec<Vec<Primitive>>);
 
 impl SceneMeshes {

@@ -8,7 +8,8 @@ use crate::{Error, Result, probe};
 /// What the device is asked for.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GpuOptions {
-    /// Features that are not requested though the adapter has them: to try the fallbacks, or to compare them.
+    /// Features that are not requested though the adapter has them: to try the fallbacks, or to
+    /// compare them.
     pub withhold: wgpu::Features,
 }
 
@@ -24,7 +25,8 @@ pub struct Gpu {
     faults: Faults,
 }
 
-/// The first error that no scope caught, kept until somebody asks. Later ones are mostly its consequences.
+/// The first error that no scope caught, kept until somebody asks. Later ones are mostly its
+/// consequences.
 #[derive(Clone, Debug, Default)]
 struct Faults(Arc<Mutex<Option<Fault>>>);
 
@@ -55,13 +57,15 @@ impl Fault {
 }
 
 impl Gpu {
-    /// Whether shaders can load from depth textures: not on GL, where every depth texture is for comparisons only.
+    /// Whether shaders can load from depth textures: not on GL, where every depth texture is for
+    /// comparisons only.
     pub(crate) fn depth_loads(&self) -> bool {
         self.adapter_info.backend != wgpu::Backend::Gl
     }
 
-    /// Opens the best adapter, or the one that `WGPU_BACKEND`, `WGPU_ADAPTER_NAME` and `WGPU_POWER_PREF` ask for, with the
-    /// adapter's own limits and all features that shadows or timing can use.
+    /// Opens the best adapter, or the one that `WGPU_BACKEND`, `WGPU_ADAPTER_NAME` and
+    /// `WGPU_POWER_PREF` ask for, with the adapter's own limits and all features that shadows or
+    /// timing can use.
     ///
     /// # Errors
     /// [`Error::NoAdapter`] or [`Error::NoDevice`].
@@ -90,8 +94,8 @@ impl Gpu {
         Ok(Self::from_parts(info, device, queue))
     }
 
-    /// Takes over a device that somebody else opened, for example with a window. Its uncaptured errors become this crate's
-    /// errors from then on.
+    /// Takes over a device that somebody else opened, for example with a window. Its uncaptured
+    /// errors become this crate's errors from then on.
     #[must_use]
     pub fn from_parts(adapter_info: wgpu::AdapterInfo, device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let faults = Faults::default();
@@ -100,8 +104,8 @@ impl Gpu {
         Self { adapter_info, device, queue, faults }
     }
 
-    /// Runs `work` and turns whatever the device had to complain about into an error. In a browser, where complaints come
-    /// later, they surface in the next call instead.
+    /// Runs `work` and turns whatever the device had to complain about into an error. In a browser,
+    /// where complaints come later, they surface in the next call instead.
     pub(crate) fn guarded<T>(&self, during: &'static str, work: impl FnOnce() -> Result<T>) -> Result<T> {
         #[cfg(not(target_arch = "wasm32"))]
         {
@@ -109,7 +113,8 @@ impl Gpu {
             let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
             let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
             let result = work();
-            // Scopes close in the reverse order. Memory comes first in the report: the others follow from it.
+            // Scopes close in the reverse order. Memory comes first in the report: the others
+            // follow from it.
             let validation = pollster::block_on(validation.pop());
             let internal = pollster::block_on(internal.pop());
             let memory = pollster::block_on(memory.pop());
@@ -184,8 +189,9 @@ fn lacking(usages: impl Fn(wgpu::TextureFormat) -> wgpu::TextureUsages) -> Optio
     })
 }
 
-/// The adapter that is asked for by name, or else the best one that can draw everything. An adapter that cannot is passed over: a system
-/// without a Vulkan driver often has one for OpenGL that draws into too few formats.
+/// The adapter that is asked for by name, or else the best one that can draw everything. An adapter
+/// that cannot is passed over: a system without a Vulkan driver often has one for OpenGL that draws
+/// into too few formats.
 async fn choose_adapter(instance: &wgpu::Instance) -> Result<wgpu::Adapter> {
     #[cfg(not(target_arch = "wasm32"))]
     if let Ok(wanted) = std::env::var("WGPU_ADAPTER_NAME")

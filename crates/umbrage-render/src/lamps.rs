@@ -1,8 +1,9 @@
 //! The lights of a frame, and how the picture shades by them.
 //!
-//! A picture has no exposure and glTF's candela know no screen, so all lights are shown equally bright: a sun as it is, a local light by a
-//! curve of distance over range, `(1 − (d/r)²)² / (1 + (d / 0.3 r)²)`, which is 1 at the lamp and 0 at its range, and within a
-//! spot light's cone by a smooth step from the outer to the inner angle. Their colours are the scene's.
+//! A picture has no exposure and glTF's candela know no screen, so all lights are shown equally
+//! bright: a sun as it is, a local light by a curve of distance over range, `(1 − (d/r)²)² / (1 +
+//! (d / 0.3 r)²)`, which is 1 at the lamp and 0 at its range, and within a spot light's cone by a
+//! smooth step from the outer to the inner angle. Their colours are the scene's.
 
 use glam::{DVec3, Vec3};
 use umbrage::{DirectionalLight, Light};
@@ -19,7 +20,8 @@ pub struct Lamp {
     pub light: Light,
     /// Linear RGB, 1 at most.
     pub color: Vec3,
-    /// Radians from a spot light's axis up to which it is as bright as on the axis; other lights ignore it.
+    /// Radians from a spot light's axis up to which it is as bright as on the axis; other lights
+    /// ignore it.
     pub inner_angle: f64,
 }
 

@@ -1,8 +1,9 @@
-//! umbrage's demonstration renderer: what an application around `umbrage-wgpu` looks like, and what the command and the
-//! viewer draw with. Forward shading, a few lights, no window.
+//! umbrage's demonstration renderer: what an application around `umbrage-wgpu` looks like, and what
+//! the command and the viewer draw with. Forward shading, a few lights, no window.
 //!
-//! [`Gpu`] opens a device, [`Renderer`] uploads a [`umbrage_scene::Scene`] once and then draws [`Frame`]s of it: pictures,
-//! visibility masks, depth maps and answers at given points, with [`FrameStats`] beside them.
+//! [`Gpu`] opens a device, [`Renderer`] uploads a [`umbrage_scene::Scene`] once and then draws
+//! [`Frame`]s of it: pictures, visibility masks, depth maps and answers at given points, with
+//! [`FrameStats`] beside them.
 
 mod answers;
 mod capture;

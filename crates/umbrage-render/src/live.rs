@@ -1,4 +1,5 @@
-//! What may change while frames go on: the config, the picture's size, the view that maps are planned for.
+//! What may change while frames go on: the config, the picture's size, the view that maps are
+//! planned for.
 
 use std::sync::OnceLock;
 
@@ -20,17 +21,20 @@ impl Renderer {
         self.shadows.config()
     }
 
-    /// The objects of a pose that are drawn into maps, by index: what the casters of a plan are indices into.
+    /// The objects of a pose that are drawn into maps, by index: what the casters of a plan are
+    /// indices into.
     #[must_use]
     pub fn casters_of(&self, pose: &Pose) -> Vec<usize> {
         (0..pose.objects.len()).filter(|&index| self.casts(&pose.objects[index])).collect()
     }
 
-    /// Changes the config; `scene` is the one that the renderer was made with. The scene stays on the device, and what
-    /// stabilised maps hold on to stays where the change does not concern it. Says what was made anew at most.
+    /// Changes the config; `scene` is the one that the renderer was made with. The scene stays on
+    /// the device, and what stabilised maps hold on to stays where the change does not concern it.
+    /// Says what was made anew at most.
     ///
     /// # Errors
-    /// As [`Renderer::new`], and [`Error::SlicesOfAnotherView`]. The config is then the one of before.
+    /// As [`Renderer::new`], and [`Error::SlicesOfAnotherView`]. The config is then the one of
+    /// before.
     pub fn set_config(&mut self, scene: &Scene, config: &ShadowConfig) -> Result<Rebuilds> {
         let gpu = self.gpu.clone();
         let before = self.shadows.config().clone();
@@ -81,8 +85,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// Plans the maps of all coming frames for this view, whatever view is drawn: its maps as another eye sees them. `None`:
-    /// for the view that is drawn.
+    /// Plans the maps of all coming frames for this view, whatever view is drawn: its maps as
+    /// another eye sees them. `None`: for the view that is drawn.
     ///
     /// # Errors
     /// [`Error::SlicesOfAnotherView`] where one map is used for slice after slice of the view.

@@ -68,7 +68,8 @@ impl Materials {
             check_texture(gpu, index, texture)?;
         }
         let mut bytes = 0;
-        // A texture's levels depend on what is made of its alpha. Few textures serve materials of both kinds.
+        // A texture's levels depend on what is made of its alpha. Few textures serve materials of
+        // both kinds.
         let mut views = HashMap::new();
         for (index, material) in scene.materials.iter().enumerate() {
             let Some(of) = material.base_color_texture else { continue };
@@ -113,7 +114,8 @@ fn layout_entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEnt
     wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None }
 }
 
-/// Refuses a texture without pixels, with too few or too many of them, or larger than the device takes.
+/// Refuses a texture without pixels, with too few or too many of them, or larger than the device
+/// takes.
 fn check_texture(gpu: &Gpu, index: usize, texture: &Texture) -> Result<()> {
     let (width, height) = (texture.width, texture.height);
     let limit = gpu.device.limits().max_texture_dimension_2d;
@@ -174,7 +176,8 @@ fn gpu_material(
         Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
     });
     let is_plain = texture.width.max(texture.height) == 1;
-    // WebGPU has no anisotropy with a nearest filter. One texel needs none. Leaves have none: it was most of what they cost.
+    // WebGPU has no anisotropy with a nearest filter. One texel needs none. Leaves have none: it
+    // was most of what they cost.
     let (mag_filter, anisotropy_clamp) = match (texture.filter, material.alpha) {
         (TextureFilter::Nearest, _) => (wgpu::FilterMode::Nearest, 1),
         (TextureFilter::Linear, AlphaMode::Mask { .. }) => (wgpu::FilterMode::Linear, 1),

@@ -1,4 +1,5 @@
-//! Smaller versions of a texture, averaged in linear light and, where alpha is used, weighted by it.
+//! Smaller versions of a texture, averaged in linear light and, where alpha is used, weighted by
+//! it.
 
 use std::sync::LazyLock;
 
@@ -18,8 +19,9 @@ pub(crate) enum Alpha {
     Used,
 }
 
-/// All levels of a texture, level 0 first, each as tightly packed sRGB bytes. Where alpha is used, texels that nobody sees get the
-/// colour of what is seen around them, so that a sample between both keeps its colour. Alpha is never changed in level 0.
+/// All levels of a texture, level 0 first, each as tightly packed sRGB bytes. Where alpha is used,
+/// texels that nobody sees get the colour of what is seen around them, so that a sample between
+/// both keeps its colour. Alpha is never changed in level 0.
 pub(crate) fn all_levels(texture: &Texture, alpha: Alpha) -> Vec<Vec<u8>> {
     let (mut width, mut height) = (texture.width as usize, texture.height as usize);
     let mut levels = vec![texture.rgba.clone()];
@@ -35,7 +37,8 @@ pub(crate) fn all_levels(texture: &Texture, alpha: Alpha) -> Vec<Vec<u8>> {
     levels
 }
 
-/// Gives every texel of alpha 0 the colour of its place in the next smaller level, from the smallest level up.
+/// Gives every texel of alpha 0 the colour of its place in the next smaller level, from the
+/// smallest level up.
 fn fill_unseen(levels: &mut [Vec<u8>], width: usize, height: usize) {
     let size = |level: usize| [(width >> level).max(1), (height >> level).max(1)];
     for level in (0..levels.len().saturating_sub(1)).rev() {
@@ -48,8 +51,9 @@ fn fill_unseen(levels: &mut [Vec<u8>], width: usize, height: usize) {
     }
 }
 
-/// One level from the one before. Every texel is the mean of the area it covers, so odd sizes do not shift the image.
-/// Where alpha is used, colours count as much as their alpha: what nobody sees does not bleed into what is left.
+/// One level from the one before. Every texel is the mean of the area it covers, so odd sizes do
+/// not shift the image. Where alpha is used, colours count as much as their alpha: what nobody sees
+/// does not bleed into what is left.
 fn halved(source: &[u8], from: [usize; 2], to: [usize; 2], use_of_alpha: Alpha) -> Vec<u8> {
     let (columns, rows) = (footprints(from[0], to[0]), footprints(from[1], to[1]));
     let mut target = Vec::with_capacity(to[0] * to[1] * 4);
@@ -136,7 +140,8 @@ mod tests {
     fn invisible_colour_does_not_bleed() {
         let levels = all_levels(&texture(2, 1, vec![255, 0, 0, 0, 0, 255, 0, 255]), Alpha::Used);
         assert_eq!(levels, [vec![0, 255, 0, 0, 0, 255, 0, 255], vec![0, 255, 0, 128]]);
-        // A green leaf in the middle of white nothing, sizes odd: green everywhere at every level, alpha as it was.
+        // A green leaf in the middle of white nothing, sizes odd: green everywhere at every level,
+        // alpha as it was.
         let mut leaf = [255, 255, 255, 0].repeat(9 * 7);
         leaf[4 * (3 * 9 + 4)..][..4].copy_from_slice(&[20, 180, 40, 255]);
         let alpha_of = |bytes: &[u8]| bytes.chunks(4).map(|texel| texel[3]).collect::<Vec<_>>();

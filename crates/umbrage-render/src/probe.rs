@@ -44,7 +44,8 @@ pub(crate) enum Responder {
     Nobody,
 }
 
-/// The most points of one pass; more are asked in several. A texture row that every device can draw.
+/// The most points of one pass; more are asked in several. A texture row that every device can
+/// draw.
 const ROW: u32 = 2048;
 /// See [`ROW`].
 const MOST_ROWS: u32 = 512;
@@ -113,8 +114,8 @@ impl Probe {
         Self { layout, pipeline }
     }
 
-    /// Records the question for at most [`BATCH`] points; those that nobody answers for are asked of split 0 and
-    /// corrected by the caller.
+    /// Records the question for at most [`BATCH`] points; those that nobody answers for are asked
+    /// of split 0 and corrected by the caller.
     pub fn record(
         &self,
         gpu: &Gpu,

@@ -1,5 +1,5 @@
-//! The passes of a frame, in the order in which they are recorded: all maps and then the view, or, where one map is used for one split after
-//! the other, map and view slice by slice.
+//! The passes of a frame, in the order in which they are recorded: all maps and then the view, or,
+//! where one map is used for one split after the other, map and view slice by slice.
 
 use glam::DVec3;
 use umbrage_wgpu::Slice;
@@ -25,7 +25,8 @@ pub(crate) struct Prepared {
     /// The view's slices, where it is drawn slice by slice.
     pub slices: Vec<SliceRuns>,
     pub objects_in_view: usize,
-    /// Whether maps without casters are cleared, too: nobody reads those of several lights or faces, but they may be wanted as pictures.
+    /// Whether maps without casters are cleared, too: nobody reads those of several lights or
+    /// faces, but they may be wanted as pictures.
     pub every_map: bool,
 }
 
@@ -115,7 +116,8 @@ impl Renderer {
         }
     }
 
-    /// Records passes over the maps, but for maps of several lights or faces in which there is no caster: those are not read.
+    /// Records passes over the maps, but for maps of several lights or faces in which there is no
+    /// caster: those are not read.
     pub(crate) fn draw_maps(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -160,8 +162,8 @@ impl Renderer {
         Ok(MapCapture { split, row: texels[0], corner, capture })
     }
 
-    /// Multipass: each slice's map, then what of the view lies in that slice, front to back. What is translucent comes afterwards, back to
-    /// front, and needs the maps once more.
+    /// Multipass: each slice's map, then what of the view lies in that slice, front to back. What
+    /// is translucent comes afterwards, back to front, and needs the maps once more.
     fn record_slices(
         &mut self,
         mut encoder: wgpu::CommandEncoder,
@@ -245,7 +247,8 @@ pub(crate) fn new_encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
     gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("Renderer::encoder") })
 }
 
-/// Submits a frame: at once where the GPU takes the time itself, else maps and view apart with a wait after each.
+/// Submits a frame: at once where the GPU takes the time itself, else maps and view apart with a
+/// wait after each.
 pub(crate) struct Clock {
     gpu: Gpu,
     by_cpu: bool,

@@ -1,4 +1,5 @@
-//! The demonstration renderer: a scene, a view and lights in; a picture, a mask, maps and numbers out.
+//! The demonstration renderer: a scene, a view and lights in; a picture, a mask, maps and numbers
+//! out.
 
 use std::sync::OnceLock;
 
@@ -26,8 +27,9 @@ use crate::timing::{PassCounts, Timer};
 use crate::view_list::ViewList;
 use crate::{Error, Gpu, Result, cull, maps};
 
-/// The frame's origin moves in steps of this many metres, so that positions near the eye are exact to a tenth of a
-/// millimetre in `f32` and yet stay the same from frame to frame, which is what keeps stabilised maps still.
+/// The frame's origin moves in steps of this many metres, so that positions near the eye are exact
+/// to a tenth of a millimetre in `f32` and yet stay the same from frame to frame, which is what
+/// keeps stabilised maps still.
 const ORIGIN_STEP: f64 = 1024.0;
 
 /// What is settled before the first frame.
@@ -37,7 +39,8 @@ pub struct RenderSettings {
     pub size: [u32; 2],
     /// Samples per pixel of the picture; masks have one always.
     pub samples: Samples,
-    /// Shadows. With [`Coordinates::Deferred`] masks are made from the picture's depth ([`umbrage_wgpu::ShadowMask`]).
+    /// Shadows. With [`Coordinates::Deferred`] masks are made from the picture's depth
+    /// ([`umbrage_wgpu::ShadowMask`]).
     pub config: ShadowConfig,
     /// The lights of a frame, the first one first: one sun by default.
     pub lights: Vec<LightMaps>,
@@ -65,7 +68,8 @@ pub struct Frame<'a> {
     pub light: Lamp,
     /// More lights, for the picture.
     pub more_lights: &'a [Lamp],
-    /// Whether anything throws shadows; if not, whatever faces the light is lit, and what stabilised maps hold on to stays as it was.
+    /// Whether anything throws shadows; if not, whatever faces the light is lit, and what
+    /// stabilised maps hold on to stays as it was.
     pub shadows_on: bool,
     /// Whether the picture shows each split in its own colour.
     pub tint: bool,
@@ -87,7 +91,8 @@ pub struct Outputs {
 pub struct Rendered {
     /// sRGB, opaque.
     pub picture: Option<RgbaImage>,
-    /// Grey: visibility at the pixel's centre, 255 lit to 0 in shadow or turned away. Alpha: 255 where a surface is.
+    /// Grey: visibility at the pixel's centre, 255 lit to 0 in shadow or turned away. Alpha: 255
+    /// where a surface is.
     pub mask: Option<GrayAlphaImage>,
     /// Each split's depths, stretched: black is nearest to the light, white is empty.
     pub maps: Vec<GrayImage>,
@@ -95,7 +100,8 @@ pub struct Rendered {
     pub stats: FrameStats,
 }
 
-/// Draws one scene at one size. Everything that does not change from frame to frame is on the GPU already.
+/// Draws one scene at one size. Everything that does not change from frame to frame is on the GPU
+/// already.
 pub struct Renderer {
     pub(crate) gpu: Gpu,
     pub(crate) size: [u32; 2],
@@ -129,15 +135,16 @@ impl Renderer {
     /// Uploads a scene and makes everything that a frame needs.
     ///
     /// # Errors
-    /// [`Error::ImageSize`], [`Error::TextureSize`], [`Error::BufferSize`] or [`Error::OutOfMemory`] if the
-    /// device cannot hold it, [`Error::Scene`] if the scene contradicts itself, [`Error::Plan`] and [`Error::Shadows`] if the
-    /// settings are wrong.
+    /// [`Error::ImageSize`], [`Error::TextureSize`], [`Error::BufferSize`] or
+    /// [`Error::OutOfMemory`] if the device cannot hold it, [`Error::Scene`] if the scene
+    /// contradicts itself, [`Error::Plan`] and [`Error::Shadows`] if the settings are wrong.
     pub fn new(gpu: &Gpu, scene: &Scene, settings: &RenderSettings) -> Result<Self> {
         Self::with_shading(gpu, scene, settings, Shading::WithShadows)
     }
 
-    /// Draws a scene by shaders that never heard of shadows: what a picture costs without them, which a renderer whose shadows are
-    /// switched off does not tell. [`Frame::shadows_on`] is not looked at, and of [`RenderSettings::config`] nothing is.
+    /// Draws a scene by shaders that never heard of shadows: what a picture costs without them,
+    /// which a renderer whose shadows are switched off does not tell. [`Frame::shadows_on`] is not
+    /// looked at, and of [`RenderSettings::config`] nothing is.
     ///
     /// # Errors
     /// As [`Renderer::new`].
@@ -189,7 +196,8 @@ impl Renderer {
         })
     }
 
-    /// Forgets what stabilised maps hold on to, as if nothing had been drawn yet: for views that do not follow each other.
+    /// Forgets what stabilised maps hold on to, as if nothing had been drawn yet: for views that do
+    /// not follow each other.
     pub fn restart(&mut self) {
         self.shadows.restart();
     }
@@ -209,20 +217,23 @@ impl Renderer {
     /// Draws a frame and waits for what was asked for.
     ///
     /// # Errors
-    /// [`Error::Plan`] if camera, range or bounds are wrong, [`Error::Scene`] if the pose is not one of this scene,
-    /// [`Error::LampSlots`], [`Error::LampCount`] or [`Error::Shadows`] if the lights are not those that the renderer was made for,
-    /// [`Error::OutOfMemory`] or [`Error::Device`] if the device fails.
+    /// [`Error::Plan`] if camera, range or bounds are wrong, [`Error::Scene`] if the pose is not
+    /// one of this scene, [`Error::LampSlots`], [`Error::LampCount`] or [`Error::Shadows`] if the
+    /// lights are not those that the renderer was made for, [`Error::OutOfMemory`] or
+    /// [`Error::Device`] if the device fails.
     pub fn render(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
         let frame = Frame { shadows_on: frame.shadows_on && self.shading == Shading::WithShadows, ..*frame };
         gpu.guarded("drawing a frame", || self.render_unguarded(&frame, outputs))
     }
 
-    /// Visibility of the first light at given points. A point that the view shows within the shadowed range gets what a pixel there would
-    /// get; any other is answered by the first split whose map covers it, or is lit where none does.
+    /// Visibility of the first light at given points. A point that the view shows within the
+    /// shadowed range gets what a pixel there would get; any other is answered by the first split
+    /// whose map covers it, or is lit where none does.
     ///
     /// # Errors
-    /// [`Error::Probe`] naming a point that is not finite or has no normal, and those of [`Renderer::render`].
+    /// [`Error::Probe`] naming a point that is not finite or has no normal, and those of
+    /// [`Renderer::render`].
     pub fn probe(&mut self, frame: &Frame<'_>, points: &[ProbePoint]) -> Result<Vec<ProbeAnswer>> {
         probe::check(points)?;
         let gpu = self.gpu.clone();
@@ -281,7 +292,8 @@ impl Renderer {
                 let maps = || spans.iter().enumerate().filter(|&(i, _)| over_maps(i)).map(|(_, span)| span);
                 let last = recorded.map_passes.last().map_or(0, |&(_, _, slot)| slot);
                 let shadow_ms = match prepared.slices.is_empty() {
-                    // What turns depths into moments is no pass of ours; it is over when the next one begins.
+                    // What turns depths into moments is no pass of ours; it is over when the next
+                    // one begins.
                     true if is_prefiltered && maps().next().is_some() && last + 1 < spans.len() => spans[last + 1][0],
                     true => maps().map(|span| span[1]).fold(0.0, f64::max),
                     // Between the maps there is the view.
@@ -334,7 +346,8 @@ impl Renderer {
         })
     }
 
-    /// Plans, uploads what moves, and sorts what is to be drawn. With `surfaces_alone` nothing but what is drawn asks the maps.
+    /// Plans, uploads what moves, and sorts what is to be drawn. With `surfaces_alone` nothing but
+    /// what is drawn asks the maps.
     pub(crate) fn prepare(&mut self, frame: &Frame<'_>, surfaces_alone: bool) -> Result<Prepared> {
         let pose = frame.pose;
         for (index, object) in pose.objects.iter().enumerate() {
@@ -401,7 +414,8 @@ impl Renderer {
             .into_iter()
             .map(|slice| {
                 let split = &plan.splits[slice.split];
-                // What is nearer than the first split or farther than the last one is drawn with them.
+                // What is nearer than the first split or farther than the last one is drawn with
+                // them.
                 let near = if slice.split == 0 { f64::NEG_INFINITY } else { split.near };
                 let far = if slice.split == last { f64::INFINITY } else { split.far };
                 let lies_in = |object: &usize| {

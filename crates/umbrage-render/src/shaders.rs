@@ -7,7 +7,7 @@ pub(crate) fn casters(library: &str) -> String {
     [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster.wgsl")].join("\n")
 }
 
-/// The same for casters with holes; the library's text has [`MASKED_MEMBERS`].
+/// WGSL of casters with holes; the library's text has [`MASKED_MEMBERS`].
 pub(crate) fn masked_casters(library: &str) -> String {
     [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster_masked.wgsl")].join("\n")
 }
@@ -15,7 +15,7 @@ pub(crate) fn masked_casters(library: &str) -> String {
 /// What a caster with holes hands to its fragments.
 pub(crate) const MASKED_MEMBERS: &str = "@location(0) uv: vec2f, @location(1) alpha: f32,";
 
-/// The same for casters that let some light through; the library's text has [`DITHERED_MEMBERS`].
+/// WGSL of casters that let some light through; the library's text has [`DITHERED_MEMBERS`].
 pub(crate) fn dithered_casters(library: &str) -> String {
     [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster_dithered.wgsl")].join("\n")
 }
@@ -24,8 +24,8 @@ pub(crate) fn dithered_casters(library: &str) -> String {
 pub(crate) const DITHERED_MEMBERS: &str =
     "@location(0) uv: vec2f, @location(1) alpha: f32, @location(2) @interpolate(flat) offset: vec2f,";
 
-/// Bind group 0 is the frame, 1 the material, 2 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares, 3 with contact shadows what
-/// [`umbrage_wgpu::contact_wgsl`] declares.
+/// Bind group 0 is the frame, 1 the material, 2 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`]
+/// declares, 3 with contact shadows what [`umbrage_wgpu::contact_wgsl`] declares.
 pub(crate) fn forward(library: &str, coordinates: Coordinates, contact: bool) -> String {
     const WITHOUT: &str =
         "fn with_contact(visibility: f32, position: vec3f, normal: vec3f) -> f32 { return min(visibility, 1.0); }";

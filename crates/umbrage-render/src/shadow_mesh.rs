@@ -1,5 +1,6 @@
-//! Large meshes for the shadow passes, which ask for positions only: vertices that differ in nothing but their surface are one, and
-//! runs of triangles have boxes of their own, so that a map draws those parts of a mesh that can shade what it serves.
+//! Large meshes for the shadow passes, which ask for positions only: vertices that differ in
+//! nothing but their surface are one, and runs of triangles have boxes of their own, so that a map
+//! draws those parts of a mesh that can shade what it serves.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -16,7 +17,8 @@ const LEAST_TRIANGLES: usize = 128;
 /// What merging has to save, as a share of the vertices, to be worth indices of its own.
 const LEAST_SAVED: f64 = 0.05;
 
-/// Consecutive triangles, in a tree of such runs: a node is followed by the nodes that it consists of.
+/// Consecutive triangles, in a tree of such runs: a node is followed by the nodes that it consists
+/// of.
 #[derive(Clone, Debug)]
 pub(crate) struct Cluster {
     /// Where they lie in the index buffer.
@@ -40,7 +42,8 @@ impl Cluster {
     }
 }
 
-/// Calls `each` with nodes of a tree and where they stand in it, from the root on; what a node consists of follows if the answer is `true`.
+/// Calls `each` with nodes of a tree and where they stand in it, from the root on; what a node
+/// consists of follows if the answer is `true`.
 pub(crate) fn descend(tree: &[Cluster], mut each: impl FnMut(usize, &Cluster) -> bool) {
     let mut at = 0;
     while let Some(node) = tree.get(at) {
@@ -57,7 +60,8 @@ pub(crate) struct Merged {
 }
 
 impl Merged {
-    /// `None` if that spares too little. Positions count as the same if their bits are, so what is drawn stays the same to the bit.
+    /// `None` if that spares too little. Positions count as the same if their bits are, so what is
+    /// drawn stays the same to the bit.
     pub fn of(positions: &[[f32; 3]], indices: &[u32]) -> Option<Self> {
         let mut numbers = HashMap::with_capacity(positions.len());
         let mut merged = Self { positions: Vec::new(), indices: Vec::with_capacity(indices.len()) };
@@ -74,8 +78,9 @@ impl Merged {
     }
 }
 
-/// Halves triangles (three indices each, which lie at `first` in the index buffer) in the order in which they stand, down to runs of a few:
-/// what is modelled or optimised for a vertex cache lies together, and a whole mesh is drawn as it was. A small mesh is one node.
+/// Halves triangles (three indices each, which lie at `first` in the index buffer) in the order in
+/// which they stand, down to runs of a few: what is modelled or optimised for a vertex cache lies
+/// together, and a whole mesh is drawn as it was. A small mesh is one node.
 pub(crate) fn clusters(positions: &[[f32; 3]], indices: &[u32], first: u32) -> Vec<Cluster> {
     let mut tree = Vec::new();
     if !indices.is_empty() {

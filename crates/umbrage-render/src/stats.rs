@@ -20,12 +20,13 @@ pub struct SplitStats {
     pub warped: bool,
     /// Objects in its list: mesh nodes or instances, not primitives.
     pub casters: usize,
-    /// Milliseconds on the GPU of the passes that draw its map, which may draw others with it; `None` without timestamp
-    /// queries.
+    /// Milliseconds on the GPU of the passes that draw its map, which may draw others with it;
+    /// `None` without timestamp queries.
     pub gpu_ms: Option<f64>,
     /// Draw calls that draw into its map; instances share one, and so may splits.
     pub draws: u32,
-    /// Triangles of its casters. In a pass of its own those that are drawn: parts of large meshes that do not reach it are not.
+    /// Triangles of its casters. In a pass of its own those that are drawn: parts of large meshes
+    /// that do not reach it are not.
     pub triangles: u64,
     /// Bytes of its map.
     pub bytes: u64,
@@ -47,17 +48,21 @@ pub struct LightStats {
 pub struct FrameStats {
     /// The plan that the first light's maps were drawn by.
     pub plan: Arc<ShadowPlan>,
-    /// Milliseconds on the CPU of `umbrage_wgpu::Shadows::prepare`: planning, listing casters, handing both to the GPU.
+    /// Milliseconds on the CPU of `umbrage_wgpu::Shadows::prepare`: planning, listing casters,
+    /// handing both to the GPU.
     pub plan_ms: f64,
-    /// Milliseconds from the beginning of the first map to the end of the last, on the GPU; 0 if none was drawn.
+    /// Milliseconds from the beginning of the first map to the end of the last, on the GPU; 0 if
+    /// none was drawn.
     pub shadow_ms: f64,
     /// Milliseconds from the beginning of the first pass to the end of the last, on the GPU.
     pub frame_ms: f64,
-    /// Of the first light, nearest first; of a point light those of its first face, then those of the next.
+    /// Of the first light, nearest first; of a point light those of its first face, then those of
+    /// the next.
     pub splits: Vec<SplitStats>,
     /// Draw calls into all maps.
     pub shadow_draws: u32,
-    /// Triangles submitted to all maps, counting every instance; multiview draws each of them into several.
+    /// Triangles submitted to all maps, counting every instance; multiview draws each of them into
+    /// several.
     pub shadow_triangles: u64,
     /// The other lights.
     pub more_lights: Vec<LightStats>,

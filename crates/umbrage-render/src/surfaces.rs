@@ -1,4 +1,5 @@
-//! Pipelines that draw surfaces, made when they are first needed: a scene needs few of the many that there could be.
+//! Pipelines that draw surfaces, made when they are first needed: a scene needs few of the many
+//! that there could be.
 
 use std::sync::OnceLock;
 

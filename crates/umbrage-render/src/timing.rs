@@ -5,8 +5,8 @@ use crate::{Gpu, Result};
 
 /// Passes of a frame beside those of its maps: the mask and the picture.
 const VIEW_PASSES: u32 = 2;
-/// Passes for each map at most: drawn slice by slice, a map goes with the mask and the picture, and once more with the picture for what is
-/// translucent.
+/// Passes for each map at most: drawn slice by slice, a map goes with the mask and the picture, and
+/// once more with the picture for what is translucent.
 const PASSES_OF_A_MAP: u32 = 5;
 /// Bytes between the answers of two passes: where a resolved query may be put.
 const STRIDE: u64 = wgpu::QUERY_RESOLVE_BUFFER_ALIGNMENT;
@@ -23,7 +23,8 @@ pub struct PassCounts {
     pub vertices: u64,
     /// Triangles left after clipping.
     pub primitives: u64,
-    /// Runs of a fragment shader. Opaque casters have none, but some drivers count their pixels all the same.
+    /// Runs of a fragment shader. Opaque casters have none, but some drivers count their pixels all
+    /// the same.
     pub fragments: u64,
 }
 
@@ -35,7 +36,8 @@ impl std::ops::AddAssign for PassCounts {
     }
 }
 
-/// When each pass of a frame began and ended, and what it counted; passes in the order in which they were recorded.
+/// When each pass of a frame began and ended, and what it counted; passes in the order in which
+/// they were recorded.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Measured {
     /// Milliseconds since the first pass began; `None` without timestamp queries.
@@ -138,7 +140,8 @@ impl Timer {
             queries.record(encoder, std::iter::once(0..2 * self.slots.len() as u32));
         }
         if let Some(queries) = &self.statistics {
-            // One by one: of the queries of a multiview pass the first has the sum, and not every driver answers for the others.
+            // One by one: of the queries of a multiview pass the first has the sum, and not every
+            // driver answers for the others.
             queries.record(encoder, self.slots.iter().map(|slot| slot.query..slot.query + 1));
         }
     }

@@ -1,8 +1,10 @@
-//! What the view draws: whole objects, and of large meshes the parts that it may show, near ones first.
+//! What the view draws: whole objects, and of large meshes the parts that it may show, near ones
+//! first.
 //!
-//! Depth is drawn before anything is shaded, so that a pixel is shaded once. Near parts go first there: they spare the alpha tests
-//! of what they hide. In the passes that shade, the order of draws is that of [`Instances::grouped`], turned around: what was drawn
-//! first wins where surfaces lie in each other exactly, as it would without a depth pass.
+//! Depth is drawn before anything is shaded, so that a pixel is shaded once. Near parts go first
+//! there: they spare the alpha tests of what they hide. In the passes that shade, the order of
+//! draws is that of [`Instances::grouped`], turned around: what was drawn first wins where surfaces
+//! lie in each other exactly, as it would without a depth pass.
 
 use std::ops::Range;
 
@@ -17,7 +19,8 @@ use crate::shadow_mesh::descend;
 /// Triangles that a mesh has at least, or it is drawn whole and together with others like it.
 const LEAST_TRIANGLES: u64 = 2048;
 
-/// Triangles of the parts that are left out or drawn by themselves, at most. Lower: more draws. Higher: more that nobody sees.
+/// Triangles of the parts that are left out or drawn by themselves, at most. Lower: more draws.
+/// Higher: more that nobody sees.
 const PART: u32 = 1024;
 
 /// What is solid in a view.

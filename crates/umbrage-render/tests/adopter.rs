@@ -1,5 +1,5 @@
-//! What is measured is what an adopter gets: an application of its own around `umbrage_wgpu::Shadows` draws the masks that
-//! the renderer draws, pixel for pixel.
+//! What is measured is what an adopter gets: an application of its own around
+//! `umbrage_wgpu::Shadows` draws the masks that the renderer draws, pixel for pixel.
 
 mod common;
 

@@ -8,7 +8,8 @@ use image::RgbaImage;
 use umbrage_render::{Outputs, RenderSettings, Samples};
 use umbrage_scene::{AlphaMode, Material, Primitive, Scene, Texture, TextureFilter, Wrap};
 
-/// Dark green leaves on a ground that is as dark and as green, round dots of texture among texels that are white where nobody sees them.
+/// Dark green leaves on a ground that is as dark and as green, round dots of texture among texels
+/// that are white where nobody sees them.
 fn leaves() -> Scene {
     let mut card = Primitive { material: 1, ..Primitive::default() };
     quad(&mut card, DVec3::Y * 3.0, DVec3::X * 12.0, DVec3::NEG_Z * 12.0, DVec3::Y);
@@ -53,7 +54,8 @@ fn a_picture_is_opaque() {
 fn leaves_have_no_fringes_of_what_nobody_sees() {
     let Some(picture) = picture(&settings()) else { return };
     let [width, height] = [picture.width(), picture.height()];
-    // The lower half shows leaves and ground and nothing else. White mixed in would make red as bright as green.
+    // The lower half shows leaves and ground and nothing else. White mixed in would make red as
+    // bright as green.
     let pale = (height / 2..height)
         .flat_map(|y| (0..width).map(move |x| (x, y)))
         .map(|(x, y)| picture.get_pixel(x, y).0)

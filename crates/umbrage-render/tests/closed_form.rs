@@ -7,8 +7,9 @@ use glam::{DQuat, DVec2, DVec3, Vec3Swizzles as _};
 use umbrage_render::{Outputs, ProbePoint};
 use umbrage_scene::{AlphaMode, Material, MorphTarget, Node, Primitive, Skin, Texture, TextureFilter, Wrap};
 
-/// Compares a mask with `occluded(point on the ground, towards the light, growth in metres)` on those pixels that show the
-/// ground at y = 0 and nothing before it (`covered(eye, ray)`), leaving out a band of `band` metres around shadow edges.
+/// Compares a mask with `occluded(point on the ground, towards the light, growth in metres)` on
+/// those pixels that show the ground at y = 0 and nothing before it (`covered(eye, ray)`), leaving
+/// out a band of `band` metres around shadow edges.
 fn compare(
     mask: &image::GrayAlphaImage,
     view: &umbrage::View,
@@ -165,7 +166,8 @@ fn only_double_sided_surfaces_are_seen_from_behind_but_all_cast() {
         let mut scene = scene(vec![ground(0.0, 30.0), ceiling]);
         scene.materials.push(Material { double_sided, ..Default::default() });
         if mirrored {
-            // Mirrored in x the same triangles wind the other way, and a viewer is to see the same side as before.
+            // Mirrored in x the same triangles wind the other way, and a viewer is to see the same
+            // side as before.
             scene.nodes[1].local.scale.x = -1.0;
         }
         let mask = Stage::new(&gpu, &scene, &settings()).mask(&view, light);

@@ -1,5 +1,5 @@
-//! Both methods of Listing 4.1.4 of \[PCSM\] decide alike: map coordinates that fragments make of a position, and those that vertices
-//! make for every split.
+//! Both methods of Listing 4.1.4 of \[PCSM\] decide alike: map coordinates that fragments make of a
+//! position, and those that vertices make for every split.
 
 mod common;
 
@@ -13,7 +13,8 @@ use umbrage::{SpotLight, Warp};
 use umbrage_render::{Frame, Outputs, RenderSettings, Renderer};
 use umbrage_scene::{Primitive, Scene};
 
-/// Pixels that two masks decide differently, by more than rounding of a grey, and all that they hit.
+/// Pixels that two masks decide differently, by more than rounding of a grey, and all that they
+/// hit.
 fn differences(a: &GrayAlphaImage, b: &GrayAlphaImage) -> (usize, usize) {
     assert_eq!(a.dimensions(), b.dimensions());
     let differ = a.pixels().zip(b.pixels()).filter(|(a, b)| a.0[1] != b.0[1] || a.0[0].abs_diff(b.0[0]) > 2).count();

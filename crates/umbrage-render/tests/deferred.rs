@@ -1,4 +1,5 @@
-//! A mask made from the picture's depth says what one made from the surfaces says, but for pixels on edges.
+//! A mask made from the picture's depth says what one made from the surfaces says, but for pixels
+//! on edges.
 
 mod common;
 

@@ -97,7 +97,8 @@ fn fallbacks_and_depth_formats_draw_the_same_shadow() {
         assert!(rendered.stats.frame_ms > 0.0 && rendered.stats.shadow_ms > 0.0);
         assert_eq!(rendered.maps.len(), 2);
     }
-    // Without timestamps the CPU's clock is read, and 16-bit maps without depth clip control keep their near planes back.
+    // Without timestamps the CPU's clock is read, and 16-bit maps without depth clip control keep
+    // their near planes back.
     let d16 = configured(ShadowConfig { depth_format: DepthFormat::D16Unorm, ..config() });
     for (settings, notes) in [(settings(), 1), (d16, 2)] {
         let said = Stage::new(&bare, &scene, &settings).render(&view, light, ALL).stats.notes;

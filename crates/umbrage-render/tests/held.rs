@@ -10,7 +10,8 @@ use umbrage_render::{Frame, Gpu, Outputs};
 
 const SUN: DVec3 = DVec3::new(1.0, -0.6, 0.2);
 
-/// The splits of a camera that turns. Between its frames one under the opposite sun is drawn, with shadows or without, or none.
+/// The splits of a camera that turns. Between its frames one under the opposite sun is drawn, with
+/// shadows or without, or none.
 fn splits(gpu: &Gpu, between: Option<bool>) -> Vec<Vec<Split>> {
     let stability = Stability::Approximate { steps: ExtentSteps::PerDoubling(8) };
     let settings = configured(ShadowConfig { stability, crop: Crop::SceneIndependent, ..config() });

@@ -67,7 +67,8 @@ fn a_changed_config_draws_what_a_new_renderer_draws() {
         different += usize::from(changed != first);
         assert!(changed == fresh(&gpu, &configured(config.clone())), "{config:?}");
     }
-    // The comparison can say no: wider filters are seen. The other configs draw the same shadows in other ways.
+    // The comparison can say no: wider filters are seen. The other configs draw the same shadows in
+    // other ways.
     assert!(different >= 2, "{different} pictures differ");
     assert_eq!(stage.renderer.set_config(&town(), &configs()[7]).expect("no change"), Rebuilds::Nothing);
 }

@@ -47,7 +47,8 @@ fn a_translucent_pane_keeps_back_what_its_alpha_says() {
 
 #[test]
 fn contact_shadows_find_what_a_map_cannot() {
-    // A step of 4 cm under a grazing sun, in texels of two metres; and the bare ground, which stays lit.
+    // A step of 4 cm under a grazing sun, in texels of two metres; and the bare ground, which stays
+    // lit.
     let mut step = Primitive::default();
     quad(&mut step, DVec3::new(0.0, 0.02, 0.0), DVec3::X * 3.0, DVec3::Y * 0.02, DVec3::Z);
     let view = look(DVec3::new(0.0, 1.2, 2.0), DVec3::new(0.0, 0.0, 0.0));

@@ -96,7 +96,8 @@ fn banded(metric: SplitMetric) -> RenderSettings {
 fn radial_bands_are_as_right_as_planar_ones() {
     let Some(gpu) = gpu() else { return };
     let light = DVec3::new(1.0, -0.4, 0.1);
-    // The boxes in the middle, and in the corners of the view, where distance exceeds view depth most.
+    // The boxes in the middle, and in the corners of the view, where distance exceeds view depth
+    // most.
     for target in [DVec3::new(0.5, 1.0, -8.0), DVec3::new(9.0, -2.0, -5.0), DVec3::new(-9.0, 6.0, -3.0)] {
         let view = look(DVec3::new(-1.0, 2.5, 9.0), target);
         let truth = truth(&view, light);
@@ -109,7 +110,8 @@ fn radial_bands_are_as_right_as_planar_ones() {
     }
 }
 
-/// How many of the points that a turning camera shows before and after a turn of 15° have changed their split, and how many there are.
+/// How many of the points that a turning camera shows before and after a turn of 15° have changed
+/// their split, and how many there are.
 fn changed(gpu: &Gpu, metric: SplitMetric) -> (usize, usize) {
     let eye = DVec3::new(-1.0, 2.5, 9.0);
     let boxes = BOXES.iter().map(|&(min, max)| cuboid(min, max));

@@ -1,4 +1,5 @@
-//! Shadows of translucent casters stand still: of a dithered pane no texel of a stabilised map changes while the camera walks and turns.
+//! Shadows of translucent casters stand still: of a dithered pane no texel of a stabilised map
+//! changes while the camera walks and turns.
 
 mod common;
 
@@ -117,8 +118,8 @@ fn no_texel_of_a_dithered_shadow_changes() {
     }
 }
 
-/// The tally can say no: tight maps take another place within the pattern with every frame, and so does a map of which one only
-/// knows to the nearest texel how far it has moved.
+/// The tally can say no: tight maps take another place within the pattern with every frame, and so
+/// does a map of which one only knows to the nearest texel how far it has moved.
 #[test]
 fn unstabilised_dither_swims() {
     let Some(tally) = walk(Stability::tight(), DVec3::ZERO, Split::texels_moved_since) else { return };

@@ -33,7 +33,8 @@ fn picture(stage: &mut Stage) -> RgbaImage {
     stage.render(&view, sun(DVec3::new(0.4, -1.0, -0.3)), PICTURE).picture.expect("a picture")
 }
 
-/// Triangles at the same place to the bit: what the list names first is seen, as if there were no depth pass.
+/// Triangles at the same place to the bit: what the list names first is seen, as if there were no
+/// depth pass.
 #[test]
 fn the_first_of_two_surfaces_at_one_place_is_seen() {
     let Some(gpu) = gpu() else { return };

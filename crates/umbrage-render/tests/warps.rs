@@ -25,7 +25,8 @@ fn warped(warps: &[Warp], crop: Crop, filter: Filter, depth_format: DepthFormat)
     })
 }
 
-/// Pixels of the ground whose decision differs from the ray's, and all of them; how many splits were warped.
+/// Pixels of the ground whose decision differs from the ray's, and all of them; how many splits
+/// were warped.
 fn wrong(gpu: &umbrage_render::Gpu, settings: &RenderSettings, view: &View, light: DVec3) -> (usize, usize, usize) {
     let light = sun(light);
     let boxes = BOXES.iter().map(|&(min, max)| cuboid(min, max));
@@ -82,8 +83,8 @@ fn filters_formats_and_loose_fits_make_no_acne() {
     for warp in WARPS {
         let settings = warped(&[warp], Crop::SceneIndependent, Filter::Pcf3 { width_m: None }, DepthFormat::D16Unorm);
         let (decided, all, _) = wrong(&gpu, &settings, &from_eye_height(), SUNS[0]);
-        // A map that has to begin at the camera's near plane spends many texels on the first metre and has coarse ones in the
-        // distance.
+        // A map that has to begin at the camera's near plane spends many texels on the first metre
+        // and has coarse ones in the distance.
         assert!(decided <= 150, "{warp:?}: {decided} of {all}");
     }
 }

@@ -18,7 +18,8 @@ pub struct CameraPath {
     pub sun_direction_to_light: Option<DVec3>,
     file: String,
     points: Vec<DVec3>,
-    /// Metres along the path to each point; one more entry for the way back to the first if the path is closed.
+    /// Metres along the path to each point; one more entry for the way back to the first if the
+    /// path is closed.
     reached: Vec<f64>,
     closed: bool,
     /// What is looked at from each point; empty: the path ahead.
@@ -38,8 +39,8 @@ struct PathFile {
 }
 
 impl CameraPath {
-    /// Reads a path: JSON with `points` (metres, on the ground), `closed` (default false), `sun_direction_to_light` and
-    /// `targets` (see [`CameraPath::with_targets`]).
+    /// Reads a path: JSON with `points` (metres, on the ground), `closed` (default false),
+    /// `sun_direction_to_light` and `targets` (see [`CameraPath::with_targets`]).
     ///
     /// # Errors
     /// [`Error::Read`], [`Error::Malformed`] if it is not such JSON, and as [`CameraPath::new`] and
@@ -56,8 +57,9 @@ impl CameraPath {
         path.with_targets(json.targets.into_iter().map(DVec3::from).collect())
     }
 
-    /// The same path, looking from each point at a target of its own and in between at a point in between, instead of
-    /// ahead. Targets are as far above or below the path's points as the eye would be above or below what it looks at.
+    /// This path, looking from each point at a target of its own and in between at a point in
+    /// between, instead of ahead. Targets are as far above or below the path's points as the eye
+    /// would be above or below what it looks at.
     ///
     /// # Errors
     /// [`Error::CameraPath`] unless there is one finite target for each point.
@@ -92,11 +94,12 @@ impl CameraPath {
         serde_json::to_string(&file).map_err(failed)
     }
 
-    /// A path through `points`, back to the first if it is `closed`; `name` stands for the file in messages.
+    /// A path through `points`, back to the first if it is `closed`; `name` stands for the file in
+    /// messages.
     ///
     /// # Errors
-    /// [`Error::CameraPath`] if there are fewer than two different points, or numbers are not finite, or the sun has no
-    /// direction.
+    /// [`Error::CameraPath`] if there are fewer than two different points, or numbers are not
+    /// finite, or the sun has no direction.
     pub fn new(name: &str, points: Vec<DVec3>, closed: bool, sun_direction_to_light: Option<DVec3>) -> Result<Self> {
         let wrong = |element: String, reason: &str| Error::CameraPath {
             file: name.to_owned(),
@@ -145,8 +148,8 @@ impl CameraPath {
         &self.points
     }
 
-    /// The point `distance` metres along the path. A closed path goes round and round; an open one goes straight on
-    /// behind its last point and before its first.
+    /// The point `distance` metres along the path. A closed path goes round and round; an open one
+    /// goes straight on behind its last point and before its first.
     #[must_use]
     pub fn point_at(&self, distance: f64) -> DVec3 {
         self.between(&self.points, distance)
@@ -155,7 +158,8 @@ impl CameraPath {
     /// What lies `distance` metres along the path, of values that belong to its points.
     fn between(&self, values: &[DVec3], distance: f64) -> DVec3 {
         let distance = if self.closed { distance.rem_euclid(self.length()) } else { distance };
-        // The last segment that starts at or before the distance; segments of no length never qualify for extrapolation.
+        // The last segment that starts at or before the distance; segments of no length never
+        // qualify for extrapolation.
         let segments = self.reached.len() - 1;
         let has_length = |s: &usize| self.reached[s + 1] > self.reached[*s];
         let segment = (0..segments)
@@ -169,14 +173,15 @@ impl CameraPath {
         from.lerp(to, share)
     }
 
-    /// Eye and target of frame `frame` of `frames`, `eye_height` metres above the path. The frames are spread evenly over
-    /// its length: from the first point to the last, or once round without coming back to the first. The target is the
-    /// point 20 m further on, at the same height above the path, or the path's own ([`CameraPath::with_targets`]), raised
-    /// likewise.
+    /// Eye and target of frame `frame` of `frames`, `eye_height` metres above the path. The frames
+    /// are spread evenly over its length: from the first point to the last, or once round without
+    /// coming back to the first. The target is the point 20 m further on, at the same height above
+    /// the path, or the path's own ([`CameraPath::with_targets`]), raised likewise.
     ///
     /// # Errors
-    /// [`Error::NoSuchElement`] if the frame is not below `frames`; [`Error::CameraPath`] if `eye_height` is not finite
-    /// or the point 20 m further on is the very same (a closed path of 20 m, for one).
+    /// [`Error::NoSuchElement`] if the frame is not below `frames`; [`Error::CameraPath`] if
+    /// `eye_height` is not finite or the point 20 m further on is the very same (a closed path of
+    /// 20 m, for one).
     pub fn pose_at(&self, frame: usize, frames: usize, eye_height: f64) -> Result<(DVec3, DVec3)> {
         if frame >= frames {
             return Err(Error::NoSuchElement { kind: "frame", index: frame, count: frames });

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 /// [`std::result::Result`] with this crate's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Why a scene could not be read, posed, framed or written. Every message names the file and the element at fault.
+/// Why a scene could not be read, posed, framed or written. Every message names the file and the
+/// element at fault.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -75,7 +76,8 @@ pub enum Error {
         /// The extension's name.
         extension: String,
     },
-    /// A URI that may not be followed: absolute, with a scheme, or leading out of the file's folder.
+    /// A URI that may not be followed: absolute, with a scheme, or leading out of the file's
+    /// folder.
     #[error("{file}: {element}: the URI \"{uri}\" {reason}; external files have to lie in the folder of the glTF file")]
     UnsafeUri {
         /// The file.

@@ -9,17 +9,19 @@ use crate::{Error, Lens, LightKind, Pose, Result, Scene};
 /// How much larger than the scene an invented view is. Ours: a border of a few pixels.
 const FRAMING_MARGIN: f64 = 1.04;
 
-/// Least near distance of an invented view, as a share of its far distance. Ours: a ten-thousandth leaves a logarithmic
-/// split room and a 32-bit depth buffer precision.
+/// Least near distance of an invented view, as a share of its far distance. Ours: a ten-thousandth
+/// leaves a logarithmic split room and a 32-bit depth buffer precision.
 const LEAST_NEAR_SHARE: f64 = 1e-4;
 
 /// The view of a camera of the scene, for a picture of `aspect` (width over height).
 ///
-/// The vertical angle (or height) of the lens is kept and the width follows the picture. `near` and `far` in metres
-/// take precedence over the camera's own; without either, far is infinite for a perspective camera.
+/// The vertical angle (or height) of the lens is kept and the width follows the picture. `near` and
+/// `far` in metres take precedence over the camera's own; without either, far is infinite for a
+/// perspective camera.
 ///
 /// # Errors
-/// [`Error::NoSuchElement`], [`Error::Camera`] if its node is flat, or [`Error::View`] if the distances are not usable.
+/// [`Error::NoSuchElement`], [`Error::Camera`] if its node is flat, or [`Error::View`] if the
+/// distances are not usable.
 pub fn camera_view(
     scene: &Scene,
     pose: &Pose,
@@ -53,7 +55,8 @@ pub fn camera_view(
 /// The way the light of a light of the scene travels along its axis, a unit vector in the world.
 ///
 /// # Errors
-/// [`Error::NoSuchElement`], or [`Error::Light`] if it shines from a point to all sides or its node has no direction.
+/// [`Error::NoSuchElement`], or [`Error::Light`] if it shines from a point to all sides or its node
+/// has no direction.
 pub fn light_direction(scene: &Scene, pose: &Pose, index: usize) -> Result<DVec3> {
     let count = scene.lights.len();
     let missing = || Error::NoSuchElement { kind: "light", index, count };
@@ -70,13 +73,14 @@ pub fn light_direction(scene: &Scene, pose: &Pose, index: usize) -> Result<DVec3
         .ok_or_else(|| unusable("stands on a node without a direction (its scale is 0)"))
 }
 
-/// A light of the scene as the planner knows it, in the world, at the moment of the pose: a directional light along its node's −Z,
-/// a spot light with its outer cone, or a point light. glTF's lights keep their range whatever their node's scale is. One of unlimited
-/// range gets the distance to the farthest corner of what the pose shows.
+/// A light of the scene as the planner knows it, in the world, at the moment of the pose: a
+/// directional light along its node's −Z, a spot light with its outer cone, or a point light.
+/// glTF's lights keep their range whatever their node's scale is. One of unlimited range gets the
+/// distance to the farthest corner of what the pose shows.
 ///
 /// # Errors
-/// [`Error::NoSuchElement`]; [`Error::Light`] if its node has no direction, or naming what makes it none that can throw shadows (a
-/// cone wider than the planner takes).
+/// [`Error::NoSuchElement`]; [`Error::Light`] if its node has no direction, or naming what makes it
+/// none that can throw shadows (a cone wider than the planner takes).
 pub fn scene_light(scene: &Scene, pose: &Pose, index: usize) -> Result<Light> {
     let count = scene.lights.len();
     let missing = || Error::NoSuchElement { kind: "light", index, count };
@@ -102,7 +106,8 @@ fn light_error(scene: &Scene, index: usize, reason: impl Into<String>) -> Error 
     Error::Light { scene: scene.name.clone(), light: element("lights", index, name), reason: reason.into() }
 }
 
-/// A sun for scenes without one: from the south-west, 45° up. The way its light travels, a unit vector.
+/// A sun for scenes without one: from the south-west, 45° up. The way its light travels, a unit
+/// vector.
 ///
 /// An invented view looks from the south-east, so shadows fall to the right, away from the eye.
 #[must_use]
@@ -111,10 +116,11 @@ pub fn invented_sun() -> DVec3 {
     DVec3::new(across * turn.sin(), -across, -across * turn.cos())
 }
 
-/// A view for scenes without a camera: from the south-east, a bit above, the whole scene in the picture.
+/// A view for scenes without a camera: from the south-east, a bit above, the whole scene in the
+/// picture.
 ///
-/// `fov_y` is the full vertical angle in radians. `near` and `far` in metres follow from the scene where they are
-/// `None`. A scene without triangles is looked at from 10 m away.
+/// `fov_y` is the full vertical angle in radians. `near` and `far` in metres follow from the scene
+/// where they are `None`. A scene without triangles is looked at from 10 m away.
 ///
 /// # Errors
 /// [`Error::View`] if an angle, the aspect or a distance is out of range.
@@ -128,7 +134,8 @@ pub fn invented_view(pose: &Pose, fov_y: f64, aspect: f64, near: Option<f64>, fa
     let back = DVec3::new(0.62, 0.45, 0.85).normalize();
     let axes = View::look_at_upright(center + back, center, lens)?.world_from_view_rotation();
 
-    // The nearest eye on the line along `back` from which no corner lies outside a side of the frustum.
+    // The nearest eye on the line along `back` from which no corner lies outside a side of the
+    // frustum.
     let mut distance: f64 = 0.0;
     let mut reach: f64 = 0.0;
     for corner in corners {
@@ -143,7 +150,8 @@ pub fn invented_view(pose: &Pose, fov_y: f64, aspect: f64, near: Option<f64>, fa
     let farthest = (distance + reach) * 1.1;
     let far = far.unwrap_or(farthest);
     let nearest = (0.5 * (distance - reach)).max(farthest * LEAST_NEAR_SHARE);
-    // A given far distance may end before the scene begins; the picture is then empty, not an error.
+    // A given far distance may end before the scene begins; the picture is then empty, not an
+    // error.
     let near = near.unwrap_or(if nearest < far { nearest } else { far * 0.01 });
     let lens = Frustum::perspective(fov_y, aspect, near, far)?;
     Ok(View::look_at_upright(center + back * distance, center, lens)?)

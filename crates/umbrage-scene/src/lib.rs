@@ -3,8 +3,10 @@
 //! Right-handed, +Y up, metres; conventions and names of spaces are those of the crate `umbrage`.
 //!
 //! * [`open`] takes whatever a user names: a world, a glTF file, a height map.
-//! * [`Scene`] is geometry stored once and nodes that place it; [`Scene::pose`] is a scene at one moment.
-//! * [`camera_view`], [`light_direction`] and their invented counterparts say from where and by which sun it is seen.
+//! * [`Scene`] is geometry stored once and nodes that place it; [`Scene::pose`] is a scene at one
+//!   moment.
+//! * [`camera_view`], [`light_direction`] and their invented counterparts say from where and by
+//!   which sun it is seen.
 //! * [`CameraPath`] walks through it, [`export_glb`] writes it down.
 //!
 //! ```

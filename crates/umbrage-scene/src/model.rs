@@ -1,4 +1,5 @@
-//! The scene as everybody else sees it: meshes, materials, nodes, cameras, lights; no file format, no GPU.
+//! The scene as everybody else sees it: meshes, materials, nodes, cameras, lights; no file format,
+//! no GPU.
 
 use glam::{DAffine3, DQuat, DVec3, Mat4};
 use umbrage::Aabb;
@@ -10,7 +11,8 @@ pub struct Scene {
     pub name: String,
     /// Stored geometry.
     pub meshes: Vec<Mesh>,
-    /// Never empty once loaded if there is a primitive: primitives without a material point at a default one.
+    /// Never empty once loaded if there is a primitive: primitives without a material point at a
+    /// default one.
     pub materials: Vec<Material>,
     /// Pictures that materials refer to.
     pub textures: Vec<Texture>,
@@ -22,7 +24,8 @@ pub struct Scene {
     pub lights: Vec<SceneLight>,
     /// Skeletons.
     pub skins: Vec<Skin>,
-    /// Clips. A pose plays clip 0 and every later clip whose nodes no earlier clip moves, each in a loop.
+    /// Clips. A pose plays clip 0 and every later clip whose nodes no earlier clip moves, each in a
+    /// loop.
     pub animations: Vec<Animation>,
     /// What was left out or invented while loading, for the report.
     pub notes: Vec<String>,
@@ -35,7 +38,8 @@ pub struct Mesh {
     pub name: String,
     /// One draw each.
     pub primitives: Vec<Primitive>,
-    /// How far each morph target of the primitives is applied where no node says otherwise; 0 where it is shorter.
+    /// How far each morph target of the primitives is applied where no node says otherwise; 0 where
+    /// it is shorter.
     pub weights: Vec<f32>,
 }
 
@@ -52,9 +56,11 @@ impl Mesh {
 pub struct Primitive {
     /// Local positions in metres.
     pub positions: Vec<[f32; 3]>,
-    /// Unit normals, one per position; a loader computes flat ones (splitting vertices) where the file has none.
+    /// Unit normals, one per position; a loader computes flat ones (splitting vertices) where the
+    /// file has none.
     pub normals: Vec<[f32; 3]>,
-    /// Texture coordinates of the base colour (KHR_texture_transform already applied); empty if there are none.
+    /// Texture coordinates of the base colour (KHR_texture_transform already applied); empty if
+    /// there are none.
     pub uvs: Vec<[f32; 2]>,
     /// Linear RGB(A) vertex colours, multiplied into the base colour; empty if there are none.
     pub colors: Vec<[f32; 4]>,
@@ -66,14 +72,16 @@ pub struct Primitive {
     pub joints: Vec<[u16; 4]>,
     /// Their weights; sum 1.
     pub weights: Vec<[f32; 4]>,
-    /// Shapes that a weight each blends into the base shape; the primitives of a mesh share the weights.
+    /// Shapes that a weight each blends into the base shape; the primitives of a mesh share the
+    /// weights.
     pub targets: Vec<MorphTarget>,
-    /// Whether a posed shape takes its normals from its triangles, because the file has none. No two triangles then
-    /// share a vertex if there are morph targets.
+    /// Whether a posed shape takes its normals from its triangles, because the file has none. No
+    /// two triangles then share a vertex if there are morph targets.
     pub flat: bool,
 }
 
-/// Differences to the base shape: vertex + weight · difference (glTF 2.0 specification, section 3.7.2.2).
+/// Differences to the base shape: vertex + weight · difference (glTF 2.0 specification, section
+/// 3.7.2.2).
 #[derive(Clone, Debug, Default)]
 pub struct MorphTarget {
     /// Metres, one per vertex; empty if no vertex moves.
@@ -176,9 +184,11 @@ pub struct Node {
     pub mesh: Option<usize>,
     /// Index into [`Scene::skins`]; the mesh is then placed by the joints alone.
     pub skin: Option<usize>,
-    /// EXT_mesh_gpu_instancing: the mesh once per entry, relative to the node. Empty: once, at the node.
+    /// EXT_mesh_gpu_instancing: the mesh once per entry, relative to the node. Empty: once, at the
+    /// node.
     pub instances: Vec<Trs>,
-    /// How far each morph target of the mesh is applied, instead of [`Mesh::weights`]; empty: as the mesh says.
+    /// How far each morph target of the mesh is applied, instead of [`Mesh::weights`]; empty: as
+    /// the mesh says.
     pub weights: Vec<f32>,
     /// Whether the mesh throws shadows (`extras.castShadow`, true unless it says false).
     pub cast_shadow: bool,
@@ -347,7 +357,8 @@ pub enum Interpolation {
 /// The scene at one moment: what a renderer draws and a ray meets.
 #[derive(Clone, Debug, Default)]
 pub struct Pose {
-    /// One per mesh node, or per instance of one, in node order then instance order; nodes without triangles are left out.
+    /// One per mesh node, or per instance of one, in node order then instance order; nodes without
+    /// triangles are left out.
     pub objects: Vec<Object>,
     /// World transform of every node.
     pub world_from_node: Vec<DAffine3>,
@@ -368,7 +379,8 @@ pub struct Object {
     pub mesh: usize,
     /// Places the vertices: those of the mesh, or those of [`Object::skinned`].
     pub world_from_local: DAffine3,
-    /// Index into [`Pose::skinned`], whose vertices take the place of the mesh's; instances share an entry.
+    /// Index into [`Pose::skinned`], whose vertices take the place of the mesh's; instances share
+    /// an entry.
     pub skinned: Option<usize>,
     /// Exact world bounds of the vertices.
     pub bounds: Aabb,
@@ -379,7 +391,8 @@ pub struct Object {
 /// Vertices of a skinned or morphed mesh at one moment, one entry per primitive of the mesh.
 #[derive(Clone, Debug, Default)]
 pub struct SkinnedMesh {
-    /// The world point that skinned positions are relative to; zero where a node places what is only morphed.
+    /// The world point that skinned positions are relative to; zero where a node places what is
+    /// only morphed.
     pub origin: DVec3,
     /// Positions in metres, per primitive, in the space that [`Object::world_from_local`] places.
     pub positions: Vec<Vec<[f32; 3]>>,

@@ -1,11 +1,12 @@
-//! Morph targets: shapes that weights blend into a base shape. Source: glTF 2.0 specification, section 3.7.2.2.
+//! Morph targets: shapes that weights blend into a base shape. Source: glTF 2.0 specification,
+//! section 3.7.2.2.
 
 use glam::DVec3;
 
 use crate::{Mesh, Primitive, SkinnedMesh};
 
-/// The vertices of a mesh under weights of its morph targets, in the mesh's own space. Weights beyond the targets count
-/// for nothing, targets beyond the weights have weight 0.
+/// The vertices of a mesh under weights of its morph targets, in the mesh's own space. Weights
+/// beyond the targets count for nothing, targets beyond the weights have weight 0.
 pub(crate) fn morphed(mesh: &Mesh, weights: &[f64]) -> SkinnedMesh {
     let (positions, normals) = mesh.primitives.iter().map(|primitive| morphed_primitive(primitive, weights)).unzip();
     SkinnedMesh { origin: DVec3::ZERO, positions, normals }

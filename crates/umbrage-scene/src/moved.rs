@@ -5,8 +5,8 @@ use glam::DVec3;
 use crate::{Node, Scene, Trs};
 
 impl Scene {
-    /// The same scene, `by` metres from where it stood, with its cameras and lights: everything hangs from a new first node, so
-    /// that what moves goes on as before and nothing stored loses digits.
+    /// This scene, `by` metres from where it stood, with its cameras and lights: everything hangs
+    /// from a new first node, so that what moves goes on as before and nothing stored loses digits.
     #[must_use]
     pub fn moved(mut self, by: DVec3) -> Self {
         let root = Node { name: "moved".into(), local: Trs { translation: by, ..Trs::IDENTITY }, ..Node::default() };

@@ -16,11 +16,12 @@ pub struct OpenOptions {
     pub gltf: GltfOptions,
 }
 
-/// Opens a world by its name; a file that is a .glb whatever it is called; or a file by its extension: .gltf, or .png,
-/// .webp, .tif or .asc for a height map.
+/// Opens a world by its name; a file that is a .glb whatever it is called; or a file by its
+/// extension: .gltf, or .png, .webp, .tif or .asc for a height map.
 ///
 /// # Errors
-/// [`Error::UnknownScene`] if it is none of these; otherwise as [`load_gltf`] and [`load_height_map`].
+/// [`Error::UnknownScene`] if it is none of these; otherwise as [`load_gltf`] and
+/// [`load_height_map`].
 pub fn open(spec: &str, options: &OpenOptions) -> Result<Scene> {
     if let Some(world) = World::from_name(spec) {
         return Ok(world.build());

@@ -4,7 +4,8 @@ use std::io::Cursor;
 
 use image::{DynamicImage, ImageFormat, ImageReader, Limits, RgbaImage};
 
-/// Longest edge of a picture in pixels: what the largest GPUs take. Larger ones are an error, not a surprise.
+/// Longest edge of a picture in pixels: what the largest GPUs take. Larger ones are an error, not a
+/// surprise.
 pub(crate) const MOST_PIXELS_AN_EDGE: u32 = 16_384;
 
 /// The format of a picture, one of `formats`.
@@ -31,7 +32,8 @@ pub(crate) fn size(bytes: &[u8], format: ImageFormat) -> Result<[u32; 2], String
     Ok([width, height])
 }
 
-/// Decodes a picture; `most_bytes` bounds the memory for its pixels as the file has them. The error says what is wrong.
+/// Decodes a picture; `most_bytes` bounds the memory for its pixels as the file has them. The error
+/// says what is wrong.
 pub(crate) fn decode(bytes: &[u8], format: ImageFormat, most_bytes: u64) -> Result<DynamicImage, String> {
     let [width, height] = size(bytes, format)?;
     let mut limits = Limits::default();
@@ -52,8 +54,8 @@ pub(crate) fn decode(bytes: &[u8], format: ImageFormat, most_bytes: u64) -> Resu
     })
 }
 
-/// A picture with each edge halved so many times, rounded up, by means of squares of pixels: colours in linear light and
-/// weighted by alpha, so that a hidden colour does not show.
+/// A picture with each edge halved so many times, rounded up, by means of squares of pixels:
+/// colours in linear light and weighted by alpha, so that a hidden colour does not show.
 pub(crate) fn halved(picture: DynamicImage, halvings: u32) -> RgbaImage {
     if halvings == 0 {
         return picture.into_rgba8();

@@ -18,12 +18,14 @@ pub struct Poser<'s> {
     mesh_morphs: Vec<bool>,
     /// Which clips play: no earlier one that plays moves a node of theirs.
     plays: Vec<bool>,
-    /// Transform and bounds of each object whose vertices are the mesh's, from the last pose; in the order of objects.
+    /// Transform and bounds of each object whose vertices are the mesh's, from the last pose; in
+    /// the order of objects.
     known_bounds: Vec<(DAffine3, Aabb)>,
 }
 
 impl Scene {
-    /// The scene `time_s` seconds after its clips began. To pose a scene many times use a [`Poser`].
+    /// The scene `time_s` seconds after its clips began. To pose a scene many times use a
+    /// [`Poser`].
     ///
     /// # Errors
     /// [`Error::InvalidScene`] as [`Scene::validate`], [`Error::Pose`] as [`Poser::pose`].
@@ -86,7 +88,8 @@ impl<'s> Poser<'s> {
     /// The scene `time_s` seconds after its clips began; each clip that plays is looped on its own.
     ///
     /// # Errors
-    /// [`Error::Pose`] if the time is not finite, or naming the node whose transform or mesh is not.
+    /// [`Error::Pose`] if the time is not finite, or naming the node whose transform or mesh is
+    /// not.
     pub fn pose(&mut self, time_s: f64) -> Result<Pose> {
         if !time_s.is_finite() {
             return Err(self.error("time", format!("{time_s} s is not a finite number of seconds")));
@@ -190,9 +193,10 @@ impl<'s> Poser<'s> {
         Ok((world_from_node, weights))
     }
 
-    /// Linear blend skinning in `f64`. Source: glTF 2.0 specification, section 3.7.3.3: the node's own transform counts
-    /// for nothing, each joint takes the vertex from mesh space through its bind pose into the world.
-    /// Morph targets come before: `shape` is the mesh with them, if it has some.
+    /// Linear blend skinning in `f64`. Source: glTF 2.0 specification, section 3.7.3.3: the node's
+    /// own transform counts for nothing, each joint takes the vertex from mesh space through its
+    /// bind pose into the world. Morph targets come before: `shape` is the mesh with them, if it
+    /// has some.
     fn skin(
         &self,
         pose: &Pose,
@@ -245,8 +249,8 @@ impl<'s> Poser<'s> {
     }
 }
 
-/// A normal under a linear map: by its cofactor matrix, which is the inverse transpose up to scale and exists for flat
-/// maps too. The normal stays as it was where the map leaves nothing of it.
+/// A normal under a linear map: by its cofactor matrix, which is the inverse transpose up to scale
+/// and exists for flat maps too. The normal stays as it was where the map leaves nothing of it.
 fn posed_normal(linear: &DMat3, normal: [f32; 3]) -> [f32; 3] {
     let m = linear;
     let cofactor = DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
@@ -272,7 +276,8 @@ fn shape_bounds(mesh: &Mesh, shape: &SkinnedMesh, world_from_local: &DAffine3) -
     Aabb::from_points(points().map(|point| world_from_local.transform_point3(point)))
 }
 
-/// The same, by way of the local box where that gives the same answer: when no axis turns into another.
+/// World bounds of a mesh, by way of its local box where that gives the exact answer: when no axis
+/// turns into another.
 fn world_bounds(mesh: &Mesh, local: Aabb, world_from_local: &DAffine3) -> Aabb {
     let m = world_from_local.matrix3;
     if DMat3::from_diagonal(DVec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z)) == m {

@@ -1,4 +1,5 @@
-//! Values of animated properties between keys. Source: glTF 2.0 specification, appendix C (interpolation).
+//! Values of animated properties between keys. Source: glTF 2.0 specification, appendix C
+//! (interpolation).
 
 use glam::{DQuat, DVec3, DVec4};
 
@@ -44,8 +45,8 @@ impl Between {
 }
 
 impl Channel {
-    /// Puts the channel's value at `time` (seconds, within the clip) into `local` or `weights`. Before the first key it is
-    /// the first, behind the last the last.
+    /// Puts the channel's value at `time` (seconds, within the clip) into `local` or `weights`.
+    /// Before the first key it is the first, behind the last the last.
     pub(crate) fn apply(&self, time: f64, local: &mut Trs, weights: &mut Vec<f64>) {
         match &self.values {
             Keys::Translation(keys) => local.translation = self.vector(keys, time),

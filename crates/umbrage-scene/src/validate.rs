@@ -4,7 +4,8 @@ use crate::error::element;
 use crate::{Error, Interpolation, Keys, Mesh, Primitive, Result, Scene};
 
 impl Scene {
-    /// Checks every index, length and number, so that whatever walks the scene afterwards cannot go astray.
+    /// Checks every index, length and number, so that whatever walks the scene afterwards cannot go
+    /// astray.
     ///
     /// The loaders call it; call it yourself on scenes made by hand. It looks at every vertex once.
     ///

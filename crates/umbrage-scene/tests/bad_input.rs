@@ -1,4 +1,5 @@
-//! Files that are missing, cut short, or lie: a typed error that names the file and the part at fault, never a panic.
+//! Files that are missing, cut short, or lie: a typed error that names the file and the part at
+//! fault, never a panic.
 
 mod common;
 

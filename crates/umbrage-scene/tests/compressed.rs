@@ -141,7 +141,8 @@ fn draco_streams_that_are_none() {
     for attributes in [json!({ "POSITION": 9 }), json!({ "NORMAL": 1 }), json!({ "POSITION": "x" })] {
         let mut glb = draco(&whole);
         glb.primitive()["extensions"]["KHR_draco_mesh_compression"]["attributes"] = attributes;
-        // Without its positions in the stream a primitive has those of its accessor, which is all zeros.
+        // Without its positions in the stream a primitive has those of its accessor, which is all
+        // zeros.
         if let Err(error) = glb.load() {
             assert!(error.to_string().contains("meshes[0].primitives[0]"), "{error}");
         }
@@ -156,7 +157,8 @@ fn draco_streams_that_are_none() {
     assert!(scene.notes[0].contains("KHR_draco_mesh_compression"), "{:?}", scene.notes);
 }
 
-/// Bytes of elements as a stream of mode 0, version 0, in which each group of each byte stands as it is.
+/// Bytes of elements as a stream of mode 0, version 0, in which each group of each byte stands as
+/// it is.
 fn attributes(bytes: &[u8], stride: usize) -> Vec<u8> {
     let count = bytes.len() / stride;
     let most = ((8192 / stride) & !15).min(256);

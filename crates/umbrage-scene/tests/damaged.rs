@@ -1,4 +1,5 @@
-//! Files damaged at random never bring the loader down, and what still loads can be posed and written.
+//! Files damaged at random never bring the loader down, and what still loads can be posed and
+//! written.
 
 mod common;
 

@@ -1,5 +1,5 @@
-//! What people's files have that the specification does not want, or hardly anybody uses: read, with a note where
-//! something is left out.
+//! What people's files have that the specification does not want, or hardly anybody uses: read,
+//! with a note where something is left out.
 
 mod common;
 

@@ -198,7 +198,8 @@ fn height_over(triangles: &[[DVec3; 3]], x: f64, z: f64) -> Option<f64> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Tiles cover the map without gaps or overlaps: the area is right and heights are those of the cut quads.
+    /// Tiles cover the map without gaps or overlaps: the area is right and heights are those of the
+    /// cut quads.
     #[test]
     fn tiles_are_the_map(width in 2_u32..150, height in 2_u32..150, seed in any::<u32>(), at in prop::array::uniform2(0.0..1.0)) {
         let grey = |i: u32, j: u32| ((i.wrapping_mul(7919) ^ j.wrapping_mul(104_729) ^ seed) % 1000) as u16;
@@ -213,7 +214,8 @@ proptest! {
         let (i, j) = ((u as u32).min(width - 2), (v as u32).min(height - 2));
         let (s, t) = (u - f64::from(i), v - f64::from(j));
         let y = |di: u32, dj: u32| f64::from(grey(i + di, j + dj)) + 20.0;
-        // Below the diagonal (t > s) the triangle has the south-west post, above it the north-east one.
+        // Below the diagonal (t > s) the triangle has the south-west post, above it the north-east
+        // one.
         let expected: f64 = if t > s {
             y(0, 0) + t * (y(0, 1) - y(0, 0)) + s * (y(1, 1) - y(0, 1))
         } else {
@@ -238,7 +240,8 @@ proptest! {
     }
 }
 
-/// The size and the side file of a real terrain: 1197 × 643 posts at 30 m, heights of 315 to 2295 m in whole metres.
+/// The size and the side file of a real terrain: 1197 × 643 posts at 30 m, heights of 315 to 2295 m
+/// in whole metres.
 #[test]
 fn a_terrain_of_many_tiles_is_as_large_as_its_side_file_says() {
     let (width, height) = (1197, 643);

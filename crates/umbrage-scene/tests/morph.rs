@@ -1,4 +1,5 @@
-//! Morph targets: their shapes, in bounds, under skins, instances and animation, and through export.
+//! Morph targets: their shapes, in bounds, under skins, instances and animation, and through
+//! export.
 
 mod common;
 

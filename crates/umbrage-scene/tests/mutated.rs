@@ -1,7 +1,8 @@
-//! Files mutated by the thousand: the loader neither panics nor takes more memory than a small file may cost.
+//! Files mutated by the thousand: the loader neither panics nor takes more memory than a small file
+//! may cost.
 //!
-//! Every mutation follows from a seed and a number, which a failure names. `cargo xtask fuzz` runs 10^5 of them;
-//! `UMBRAGE_FUZZ_FILES` and `UMBRAGE_FUZZ_SEED` choose others.
+//! Every mutation follows from a seed and a number, which a failure names. `cargo xtask fuzz` runs
+//! 10^5 of them; `UMBRAGE_FUZZ_FILES` and `UMBRAGE_FUZZ_SEED` choose others.
 
 mod common;
 
@@ -12,7 +13,8 @@ use serde_json::Value;
 /// Files of a run in CI.
 const FILES: u64 = 2000;
 
-/// Bytes that a file under 1 MB may take while it is loaded, posed and written, at the default budget.
+/// Bytes that a file under 1 MB may take while it is loaded, posed and written, at the default
+/// budget.
 const MOST_BYTES: u64 = 512 << 20;
 
 /// Vigna's SplitMix64 (2015): numbers that follow from a seed alone, on every machine.
@@ -55,7 +57,8 @@ const LIES: [&str; 16] = [
     "5126",
 ];
 
-/// Changes one value somewhere in a JSON: lies, leaves out, doubles, or puts what belongs elsewhere.
+/// Changes one value somewhere in a JSON: lies, leaves out, doubles, or puts what belongs
+/// elsewhere.
 fn bend(json: &mut Value, numbers: &mut Numbers) {
     let mut at = json;
     // The document itself stays an object: what else it could be is tested without a fuzzer.

@@ -73,7 +73,8 @@ fn linear_and_step_translations() {
 
 #[test]
 fn cubic_splines_are_the_cubics_they_came_from() {
-    // x = t³ − 2 t² + 3 over [0, 2] and on to [2, 3]: keys with their true derivatives give the polynomial back.
+    // x = t³ − 2 t² + 3 over [0, 2] and on to [2, 3]: keys with their true derivatives give the
+    // polynomial back.
     let (f, df) = (|t: f64| t.powi(3) - 2.0 * t * t + 3.0, |t: f64| 3.0 * t * t - 4.0 * t);
     let times = [0.0, 2.0, 3.0];
     let keys = times.iter().flat_map(|&t| [df(t), f(t), df(t)]).map(|x| [x as f32, 0.0, 0.0]).collect();
@@ -121,7 +122,8 @@ fn scales_and_clips() {
     };
     let mut scene =
         scene_of(vec![Node { mesh: Some(0), ..Node::default() }, Node { mesh: Some(0), ..Node::default() }]);
-    // The second clip moves what the first moves and does not play; the third plays at its own length.
+    // The second clip moves what the first moves and does not play; the third plays at its own
+    // length.
     scene.animations = vec![clip(0, 3.0, 2.0), clip(0, 9.0, 1.0), clip(1, 5.0, 4.0)];
     let pose = pose(&scene, 3.0);
     assert!((pose.world_from_node[0].matrix3.x_axis.x - 2.0).abs() < NEAR);

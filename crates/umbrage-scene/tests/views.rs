@@ -137,7 +137,8 @@ fn empty_scenes_and_points_have_views() {
 }
 
 proptest! {
-    /// From props of a centimetre to terrain of 100 km, anywhere, flat or not: all in the picture, most of it filled.
+    /// From props of a centimetre to terrain of 100 km, anywhere, flat or not: all in the picture,
+    /// most of it filled.
     #[test]
     fn invented_views_show_the_whole_scene(
         center in prop::array::uniform3(-1e5..1e5),

@@ -117,8 +117,9 @@ fn joined(sources: &Path, (root, features, name): &Root) -> Result<Text> {
     let counts: Vec<String> = (2..=MOST_MAPS).map(|map| format!("maps_{map}")).collect();
     let known = FEATURES.into_iter().chain(counts.iter().map(String::as_str));
     let features = Features {
-        // All other conditions are choices that a receiver's text may be made without at run time: `ReceiverText` of
-        // `umbrage-shaders` knows them. They stay in the texts of receivers; every other text has all of them.
+        // All other conditions are choices that a receiver's text may be made without at run time:
+        // `ReceiverText` of `umbrage-shaders` knows them. They stay in the texts of receivers;
+        // every other text has all of them.
         default: if *root == "receiver::api" { Feature::Keep } else { Feature::Enable },
         flags: known.map(|name| (name.to_owned(), features.iter().any(|wanted| wanted == name).into())).collect(),
     };
@@ -126,10 +127,12 @@ fn joined(sources: &Path, (root, features, name): &Root) -> Result<Text> {
     compiler.set_custom_mangler(names.clone());
     compiler.set_options(CompileOptions {
         features,
-        // A root has no entry point of its own (the app has it): all of it is kept, and what it uses of `lib`.
+        // A root has no entry point of its own (the app has it): all of it is kept, and what it
+        // uses of `lib`.
         keep_root: true,
-        // The constant of the bind group's index is declared at run time, by `umbrage_shaders::receiver`, and the two functions
-        // that read maps by the text of `shaders/maps` that it adds: unknown here. Undeclared names are found by naga instead,
+        // The constant of the bind group's index is declared at run time, by
+        // `umbrage_shaders::receiver`, and the two functions that read maps by the text of
+        // `shaders/maps` that it adds: unknown here. Undeclared names are found by naga instead,
         // which validates every text in the tests of `umbrage-shaders`.
         validate: false,
         ..CompileOptions::default()

@@ -52,7 +52,8 @@ fn changed_modules_are_seen() {
     assert!(message.contains("filter"), "{message}");
 }
 
-/// The comparison must say no: a file that is missing, spoilt or too many. Writing mends all of them.
+/// The comparison must say no: a file that is missing, spoilt or too many. Writing mends all of
+/// them.
 #[test]
 fn spoilt_folders_are_seen_and_mended() {
     let folder = tempfile::tempdir().expect("a folder");

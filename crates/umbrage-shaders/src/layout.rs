@@ -5,8 +5,8 @@ use bytemuck::{Pod, Zeroable};
 /// The most splits a [`Frame`] holds.
 pub const MAX_SPLITS: usize = 8;
 
-/// The most splits whose shadow coordinates vertex shaders hand on: four `vec3f` beside what a shader hands on anyway, of the 15 that
-/// every device has.
+/// The most splits whose shadow coordinates vertex shaders hand on: four `vec3f` beside what a
+/// shader hands on anyway, of the 15 that every device has.
 pub const MAX_COORDINATES: usize = 4;
 
 /// How one map answers, in [`Frame::filter_kind`]. Kernels of fixed taps are numbered from 0, discs
@@ -28,7 +28,8 @@ pub enum FilterKind {
     Castano5 = 5,
     /// A disc of 32 hardware taps.
     Disc = 8,
-    /// A disc as wide as the penumbra of a sun with a size; without depth loads as [`FilterKind::Disc`].
+    /// A disc as wide as the penumbra of a sun with a size; without depth loads as
+    /// [`FilterKind::Disc`].
     Pcss = 9,
     /// The mean of an exponential of depth.
     Esm = 16,
@@ -36,7 +37,7 @@ pub enum FilterKind {
     Vsm = 17,
     /// Two moments of an exponential of depth.
     Evsm2 = 18,
-    /// The same, and two of a falling exponential.
+    /// Two moments of a rising exponential of depth and two of a falling one.
     Evsm4 = 19,
     /// Four moments of depth.
     Msm = 20,
@@ -121,21 +122,25 @@ pub enum TransitionKind {
 pub enum BiasKind {
     /// Every texel is compared with the receiver's plane at its centre.
     Plane = 0,
-    /// All texels are compared with one depth, nearer by what the slope makes of the filter's reach.
+    /// All texels are compared with one depth, nearer by what the slope makes of the filter's
+    /// reach.
     Slope = 1,
 }
 
 /// One split: where its map lies and which view depths it serves.
 ///
-/// The rows take positions in metres relative to the frame's origin (with 1 as the fourth coordinate). In a warped map and in that of a
-/// local light what the first three give is to be divided by what the fourth gives, which is positive at every receiver. A local
-/// light's depth is `depth_offset − B/w`: its depth row is `(0, 0, 0, −B)` and w the metres along the axis.
+/// The rows take positions in metres relative to the frame's origin (with 1 as the fourth
+/// coordinate). In a warped map and in that of a local light what the first three give is to be
+/// divided by what the fourth gives, which is positive at every receiver. A local light's depth is
+/// `depth_offset − B/w`: its depth row is `(0, 0, 0, −B)` and w the metres along the axis.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Split {
-    /// Place along the map's u (right) on the light's plane: `xyz` in texels per metre, `w` in texels, in `[0, 1)`.
+    /// Place along the map's u (right) on the light's plane: `xyz` in texels per metre, `w` in
+    /// texels, in `[0, 1)`.
     pub u_row: [f32; 4],
-    /// The same along v (down).
+    /// Place along the map's v (down) on the light's plane: `xyz` in texels per metre, `w` in
+    /// texels, in `[0, 1)`.
     pub v_row: [f32; 4],
     /// Depth in the map: `xyz` per metre, `w` without unit; 0 nearest the light, 1 farthest.
     pub depth_row: [f32; 4],
@@ -151,29 +156,33 @@ pub struct Split {
     pub far: f32,
     /// Where its blend into the next split begins: view depth in metres, `far` if there is none.
     pub blend_begin: f32,
-    /// Metres between depth 0 and depth 1; in a warped map where `w_row` gives 1, elsewhere as many times as many. 1 for local lights,
-    /// where no one number says it.
+    /// Metres between depth 0 and depth 1; in a warped map where `w_row` gives 1, elsewhere as many
+    /// times as many. 1 for local lights, where no one number says it.
     pub depth_range_m: f32,
-    /// The step in metres by which the texture's format rounds depth, 0 if it is no coarser than `f32`. Scales as
-    /// `depth_range_m` does.
+    /// The step in metres by which the texture's format rounds depth, 0 if it is no coarser than
+    /// `f32`. Scales as `depth_range_m` does.
     pub depth_step_m: f32,
     /// 1 if nothing throws a shadow here: the map is not read and everything is lit.
     pub is_empty: u32,
-    /// Edge in texels of the square that clip space covers: at least `size`, by a power of two where there is room. What lies
-    /// outside the map is cut by the scissor, exactly, and not by the clipper, which would round where triangles cross the edge.
+    /// Edge in texels of the square that clip space covers: at least `size`, by a power of two
+    /// where there is room. What lies outside the map is cut by the scissor, exactly, and not by
+    /// the clipper, which would round where triangles cross the edge.
     pub viewport_texels: f32,
     /// Texels from the left and upper edge of that square to the map's.
     pub guard_texels: f32,
-    /// Upper left corner of the map in its layer, in texels; 0 unless the layer holds several maps as tiles.
+    /// Upper left corner of the map in its layer, in texels; 0 unless the layer holds several maps
+    /// as tiles.
     pub corner: [f32; 2],
     /// Width and height of its layer in texels.
     pub layer_texels: [f32; 2],
-    /// The layer of the texture, the face of the cube or the number of the texture that holds the map.
+    /// The layer of the texture, the face of the cube or the number of the texture that holds the
+    /// map.
     pub layer: u32,
-    /// Added to the depth that the rows give: 0, but for a local light's A, which is greater than 0.
+    /// Added to the depth that the rows give: 0, but for a local light's A, which is greater
+    /// than 0.
     pub depth_offset: f32,
-    /// 1 if a local light's map stores depth that grows evenly with the metres along its axis, 0 at its near plane and 1 at its far one,
-    /// instead of `A − B/w`.
+    /// 1 if a local light's map stores depth that grows evenly with the metres along its axis, 0 at
+    /// its near plane and 1 at its far one, instead of `A − B/w`.
     pub is_linear: u32,
     /// Texels around a sample that the filter may read.
     pub filter_reach: f32,
@@ -198,8 +207,8 @@ pub struct CasterPass {
 /// [`Frame::slice`] where every map is there.
 pub const EVERY_SLICE: u32 = u32::MAX;
 
-/// All that a receiver needs for one light and one view; for a point light, for one face of its cube. What receivers bind is an array of
-/// frames: of every light's, six for a point light.
+/// All that a receiver needs for one light and one view; for a point light, for one face of its
+/// cube. What receivers bind is an array of frames: of every light's, six for a point light.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Frame {
@@ -213,7 +222,8 @@ pub struct Frame {
     pub light_position: [f32; 3],
     /// How far a local light shines, metres; 0 for a sun.
     pub light_range_m: f32,
-    /// View depth in metres at which the fade to lit begins; the last split's `far` if there is none.
+    /// View depth in metres at which the fade to lit begins; the last split's `far` if there is
+    /// none.
     pub fade_begin: f32,
     /// Splits in use.
     pub split_count: u32,
@@ -223,11 +233,13 @@ pub struct Frame {
     pub enabled: u32,
     /// 1: answers carry their split's debug colour.
     pub tint: u32,
-    /// Full width of the filter across the light in metres, in every split; 0: as many texels as its kind says.
+    /// Full width of the filter across the light in metres, in every split; 0: as many texels as
+    /// its kind says.
     pub filter_width_m: f32,
     /// tan(a/2) of the sun's angle a across.
     pub sun_tangent: f32,
-    /// How far the disc's pattern turns from pixel to pixel at most: 0 not at all, 2π all the way. Radians.
+    /// How far the disc's pattern turns from pixel to pixel at most: 0 not at all, 2π all the way.
+    /// Radians.
     pub turn_per_pixel: f32,
     /// A [`TransitionKind`].
     pub transition: u32,
@@ -237,7 +249,8 @@ pub struct Frame {
     pub first_frame: u32,
     /// How many frames this frame's light uses: 1, or 6 for a point light.
     pub face_count: u32,
-    /// What the light of a place in full shadow is multiplied by: linear red, green and blue, 0 to 1.
+    /// What the light of a place in full shadow is multiplied by: linear red, green and blue,
+    /// 0 to 1.
     pub shadow_colour: [f32; 3],
     /// A [`BiasKind`].
     pub bias_kind: u32,
@@ -247,9 +260,11 @@ pub struct Frame {
     pub is_radial: u32,
     /// A [`SelectionKind`].
     pub selection: u32,
-    /// With [`SelectionKind::Map`]: share of a map's half edge over which it blends into the next that contains the point.
+    /// With [`SelectionKind::Map`]: share of a map's half edge over which it blends into the next
+    /// that contains the point.
     pub map_blend: f32,
-    /// The only split whose map there is, where one map is used again and again; [`EVERY_SLICE`] where all are there.
+    /// The only split whose map there is, where one map is used again and again; [`EVERY_SLICE`]
+    /// where all are there.
     pub slice: u32,
     /// Up to the alignment of 16 bytes.
     pub _padding: [u32; 1],
@@ -261,12 +276,15 @@ pub struct Frame {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct MomentSplit {
-    /// From stored depth to the z of moments, -1 at the first and 1 at the last place that is seen: `z = depth[0] · stored + depth[1]`.
+    /// From stored depth to the z of moments, -1 at the first and 1 at the last place that is seen:
+    /// `z = depth[0] · stored + depth[1]`.
     pub depth: [f32; 2],
-    /// Half width in texels along u and v, 1 or more, of the tent that blur and linear sampling make of an edge.
+    /// Half width in texels along u and v, 1 or more, of the tent that blur and linear sampling
+    /// make of an edge.
     pub radius: [f32; 2],
-    /// 1: all pixels of a quad use one split. The same in all splits; here and not beside them because Mesa's software driver (22.3) crashes
-    /// over control flow that hangs on a constant place in a second uniform buffer.
+    /// 1: all pixels of a quad use one split. The same in all splits; here and not beside them
+    /// because Mesa's software driver (22.3) crashes over control flow that hangs on a constant
+    /// place in a second uniform buffer.
     pub quads: u32,
     /// Up to the alignment of 16 bytes.
     pub _padding: [u32; 3],

@@ -1,16 +1,21 @@
 //! umbrage's WGSL as plain strings, and the structs that it shares with Rust.
 //!
-//! This crate knows no GPU interface: any renderer that takes WGSL can use it, given a depth texture array, a comparison
-//! sampler and a uniform buffer. `umbrage-wgpu` is that renderer's half for wgpu.
+//! This crate knows no GPU interface: any renderer that takes WGSL can use it, given a depth
+//! texture array, a comparison sampler and a uniform buffer. `umbrage-wgpu` is that renderer's half
+//! for wgpu.
 //!
-//! * `shaders/lib` has functions without bindings, `shaders/pass` the roots with bindings, `shaders/maps` the maps' own bindings
-//!   and the two functions that read them. `src/wgsl` has what they join to: ordinary WGSL, in which every name begins with
-//!   `umbrage`, in one case or another.
-//! * A root is text to put before one's own shader. It declares no entry point and no override, so it adds nothing to a
-//!   pipeline's constants: an override would become a constant of the *app's* pipeline, to be repeated wherever it makes one.
-//! * What varies (filter, selection, strength) is a value in the [`layout::Frame`] uniform, unless [`ReceiverText`] fixes it:
-//!   a text is then made without the rest, which compiles faster and runs faster. Another choice is another text.
-//! * The index of the bind group is the app's choice: [`caster`] and [`receiver`] declare it as a WGSL constant.
+//! * `shaders/lib` has functions without bindings, `shaders/pass` the roots with bindings,
+//!   `shaders/maps` the maps' own bindings and the two functions that read them. `src/wgsl` has
+//!   what they join to: ordinary WGSL, in which every name begins with `umbrage`, in one case or
+//!   another.
+//! * A root is text to put before one's own shader. It declares no entry point and no override, so
+//!   it adds nothing to a pipeline's constants: an override would become a constant of the *app's*
+//!   pipeline, to be repeated wherever it makes one.
+//! * What varies (filter, selection, strength) is a value in the [`layout::Frame`] uniform, unless
+//!   [`ReceiverText`] fixes it: a text is then made without the rest, which compiles faster and
+//!   runs faster. Another choice is another text.
+//! * The index of the bind group is the app's choice: [`caster`] and [`receiver`] declare it as a
+//!   WGSL constant.
 //!
 //! | binding of [`receiver`] | what |
 //! |---|---|
@@ -19,7 +24,8 @@
 //! | 2 | `sampler_comparison` with `LessEqual`, clamped to the edge; nearest for [`layout::FilterKind::Hard`], else linear |
 //! | 3 … | [`Bound::Separate`]: a `texture_depth_2d` for each split. [`Bound::Cube`]: its faces as layers, where loads are possible |
 //!
-//! With [`Maps::r32f`] the textures are `f32` that need no filtering; there is no comparison sampler then, but a cube has a plain one at 2.
+//! With [`Maps::r32f`] the textures are `f32` that need no filtering; there is no comparison
+//! sampler then, but a cube has a plain one at 2.
 //!
 //! | binding of [`caster`] | what |
 //! |---|---|
@@ -50,11 +56,12 @@ pub enum Bound {
     Separate(usize),
 }
 
-/// The passes from depth to moments, `shaders/pass/moments.wesl`: entry points `vs_all`, `fs_convert`, `fs_blur_u`, `fs_blur_v` and
-/// `fs_halve`, constants `KIND`, `POSITIVE_EXPONENT` and `NEGATIVE_EXPONENT`.
+/// The passes from depth to moments, `shaders/pass/moments.wesl`: entry points `vs_all`,
+/// `fs_convert`, `fs_blur_u`, `fs_blur_v` and `fs_halve`, constants `KIND`, `POSITIVE_EXPONENT` and
+/// `NEGATIVE_EXPONENT`.
 pub const MOMENT_PASSES: &str = text!("moment_passes");
 
-/// The same from depth with four samples a texel.
+/// WGSL of the passes from depth with four samples a texel to moments.
 pub const MOMENT_PASSES_OF_SAMPLES: &str = text!("moment_passes_of_samples");
 
 /// How a receiver reads its maps.
@@ -64,7 +71,8 @@ pub struct Maps {
     pub bound: Bound,
     /// They are colours of one 32-bit float, not depth, and compared by hand.
     pub r32f: bool,
-    /// Depth textures can be compared with but not loaded from (GL, WebGL2): [`layout::FilterKind::Pcss`] is an ordinary disc.
+    /// Depth textures can be compared with but not loaded from (GL, WebGL2):
+    /// [`layout::FilterKind::Pcss`] is an ordinary disc.
     pub without_loads: bool,
     /// Length of the array of frames.
     pub frames: u32,
@@ -89,15 +97,18 @@ impl Default for Maps {
 /// How moments are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MomentMaps {
-    /// Bindings 1: `texture_2d_array<f32>`, 2: a linear and anisotropic sampler, 3: uniform [`layout::Moments`].
+    /// Bindings 1: `texture_2d_array<f32>`, 2: a linear and anisotropic sampler, 3: uniform
+    /// [`layout::Moments`].
     Sampled,
-    /// The same with a sampler that is linear only; the shader takes up to 16 samples where an anisotropic one would.
+    /// Read with a sampler that is linear only; the shader takes up to 16 samples where an
+    /// anisotropic one would.
     Taps,
-    /// The same without a sampler.
+    /// Read without a sampler: the shader weighs texels itself.
     ByHand,
 }
 
-/// How casters are instanced into the maps of several splits in one pass; neither: each pass draws one split.
+/// How casters are instanced into the maps of several splits in one pass; neither: each pass draws
+/// one split.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Casters {
     /// By multiview, into layers.
@@ -134,17 +145,19 @@ pub fn caster(group: u32, casters: Casters, members: &str) -> String {
     )
 }
 
-/// A whole pass to put behind a [`receiver`]: the entry points `umbrage_mask_vertex` and `umbrage_mask_fragment` turn a picture's depth
-/// (and its normals, if there is a texture of them) into a mask of what is lit.
+/// A whole pass to put behind a [`receiver`]: the entry points `umbrage_mask_vertex` and
+/// `umbrage_mask_fragment` turn a picture's depth (and its normals, if there is a texture of them)
+/// into a mask of what is lit.
 #[must_use]
 pub fn mask(group: u32, normals: bool) -> String {
     let text = if normals { text!("mask_with_normals") } else { text!("mask") };
     format!("const UMBRAGE_MASK_GROUP = {group}u;\n{text}\n")
 }
 
-/// Text to put before a shader that asks for contact shadows:
-/// `fn umbrage_contact_visibility(position: vec3f, normal: vec3f, to_light: vec3f, noise: f32) -> f32`. Binding 0 is its uniform, 1 the picture's depth as
-/// `texture_depth_2d`. It may stand beside [`receiver`] in one module.
+/// Text to put before a shader that asks for contact shadows: `fn
+/// umbrage_contact_visibility(position: vec3f, normal: vec3f, to_light: vec3f, noise: f32) -> f32`.
+/// Binding 0 is its uniform, 1 the picture's depth as `texture_depth_2d`. It may stand beside
+/// [`receiver`] in one module.
 #[must_use]
 pub fn contact(group: u32) -> String {
     format!("const UMBRAGE_CONTACT_GROUP = {group}u;\n{}\n", text!("contact"))

@@ -107,7 +107,8 @@ impl From<Maps> for ReceiverText {
 }
 
 impl ReceiverText {
-    /// Whether the text has what stands behind a condition of that name: whatever joined texts keep.
+    /// Whether the text has what stands behind a condition of that name: whatever joined texts
+    /// keep.
     fn has(&self, name: &str) -> bool {
         /// Whether a choice is this one, or open.
         fn may<T: Copy + PartialEq>(choice: Option<T>, these: &[T]) -> bool {

@@ -1,11 +1,13 @@
-//! The receiver's decisions on the CPU, in `f32` and under the names that `shaders/lib` and `shaders/pass` use, for tests.
+//! The receiver's decisions on the CPU, in `f32` and under the names that `shaders/lib` and
+//! `shaders/pass` use, for tests.
 
 use crate::layout::{Frame, Split};
 
 pub mod bias;
 pub mod moments;
 
-/// `filter::MOST_BLOCKER_M`: metres from a surface within which casters give it a penumbra as wide as the sun asks for.
+/// `filter::MOST_BLOCKER_M`: metres from a surface within which casters give it a penumbra as wide
+/// as the sun asks for.
 pub const MOST_BLOCKER_M: f32 = 200.0;
 
 /// `filter::DISC_RADIUS`: texels of a disc that was given no width.
@@ -18,7 +20,8 @@ pub fn tent_integral(x: f32, r: f32) -> f32 {
     0.5 + y - 0.5 * y * y.abs()
 }
 
-/// `filter::tent_tap` along one axis: the place of the hardware tap over texels `first` and `first + 1`, and its weight.
+/// `filter::tent_tap` along one axis: the place of the hardware tap over texels `first` and
+/// `first + 1`, and its weight.
 #[must_use]
 pub fn tent_tap(first: f32, centre: f32, r: f32) -> (f32, f32) {
     let left = first - centre;
@@ -27,8 +30,9 @@ pub fn tent_tap(first: f32, centre: f32, r: f32) -> (f32, f32) {
     (first + 0.5 + (above - between) / weight.max(1e-9), weight)
 }
 
-/// `filter::half_width` along one axis: half the kernel in texels, from its width and the texel in metres; `own` where `width_m` is 0.
-/// Never more than `most`, 1 or more texels, which is what the taps reach.
+/// `filter::half_width` along one axis: half the kernel in texels, from its width and the texel in
+/// metres; `own` where `width_m` is 0. Never more than `most`, 1 or more texels, which is what the
+/// taps reach.
 #[must_use]
 pub fn half_width(width_m: f32, texel_m: f32, own: f32, most: f32) -> f32 {
     if width_m > 0.0 { (0.5 * width_m / texel_m).clamp(1.0, most) } else { own.min(most) }

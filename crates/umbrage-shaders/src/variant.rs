@@ -2,8 +2,8 @@
 //! translation), at run time.
 //!
 //! `umbrage-shaders-join` resolves what is known when the texts are joined and keeps the conditions
-//! of a receiver's choices in them. What may follow such a condition here is a declaration, a member
-//! of a struct, a statement or a block.
+//! of a receiver's choices in them. What may follow such a condition here is a declaration, a
+//! member of a struct, a statement or a block.
 
 /// `text` with every `@if(condition)` resolved: `is_on` says which names are true.
 pub(crate) fn resolved(text: &str, is_on: impl Fn(&str) -> bool) -> String {

@@ -1,7 +1,9 @@
-//! What a fragment pays for each filter, counted in the receiver's text and not on a clock: the instructions that are left when every
-//! call is replaced by what it calls, as drivers do. Loops count once, branches all.
+//! What a fragment pays for each filter, counted in the receiver's text and not on a clock: the
+//! instructions that are left when every call is replaced by what it calls, as drivers do. Loops
+//! count once, branches all.
 //!
-//! `cargo test -p umbrage-shaders --test cost -- --nocapture` prints the table of docs/notes/cost.md.
+//! `cargo test -p umbrage-shaders --test cost -- --nocapture` prints the table of
+//! docs/notes/cost.md.
 
 use std::collections::HashMap;
 
@@ -59,7 +61,8 @@ fn instructions(source: &str) -> usize {
     counter.block(&entry.function.body)
 }
 
-/// The text of the default but for the filter: optimal planes, chosen by what maps contain, blended, by the receiver's plane.
+/// The text of the default but for the filter: optimal planes, chosen by what maps contain,
+/// blended, by the receiver's plane.
 fn text(filter: FilterKind) -> ReceiverText {
     let moments = matches!(filter, FilterKind::Esm | FilterKind::Vsm | FilterKind::Evsm4 | FilterKind::Msm);
     ReceiverText {
@@ -91,7 +94,8 @@ fn the_default_costs_little_more_than_one_comparison() {
     assert!(ratio <= MOST, "the default's receiver has {ratio:.2} times the instructions of a single comparison's");
 }
 
-/// Instructions of the default's receiver, a tent of three texels, over those of a single 2×2 comparison.
+/// Instructions of the default's receiver, a tent of three texels, over those of a single 2×2
+/// comparison.
 const MOST: f64 = 1.3;
 
 #[test]

@@ -12,7 +12,8 @@ fn place() -> impl Strategy<Value = f32> {
     ]
 }
 
-/// The weight that a tent's taps give to each texel from `first` on, as a linear sampler spreads them.
+/// The weight that a tent's taps give to each texel from `first` on, as a linear sampler spreads
+/// them.
 fn texel_weights(centre: f32, r: f32, taps: usize) -> (f32, Vec<f32>) {
     let first = (centre - r).floor();
     let mut weights = vec![0.0; 2 * taps];
@@ -47,7 +48,8 @@ proptest! {
             (1.0f32..=3.5).prop_map(|r| (r, 4)),
         ], centre in place()) {
         let (first, weights) = texel_weights(centre, r, taps);
-        // f32 holds a place near 1000 to 6e-5 of a texel, and a tent's integral is no steeper than 1/r.
+        // f32 holds a place near 1000 to 6e-5 of a texel, and a tent's integral is no steeper than
+        // 1/r.
         let tolerance = 3e-4;
         prop_assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{weights:?} do not sum to 1");
         for (k, &weight) in weights.iter().enumerate() {

@@ -24,7 +24,8 @@ fn in_wgsl(source: &str, name: &str) -> (usize, Vec<Member>) {
     (layouter[handle].size as usize, members)
 }
 
-/// Every member of a Rust struct, named here one by one; the count of bytes shows if one was forgotten.
+/// Every member of a Rust struct, named here one by one; the count of bytes shows if one was
+/// forgotten.
 macro_rules! in_rust {
     ($name:ident: $($member:ident),*) => {{
         fn size_of_member<T, M>(_: fn(&T) -> &M) -> usize {

@@ -45,7 +45,8 @@ proptest! {
         }
     }
 
-    /// A caster before a receiver, some of each in the filter: all kinds know the share (exponential ones where depth differs enough).
+    /// A caster before a receiver, some of each in the filter: all kinds know the share
+    /// (exponential ones where depth differs enough).
     #[test]
     fn two_planes_give_the_share_of_each(caster in -1.0f32..0.5, gap in 0.2f32..0.5, share in 0.0f32..=1.0) {
         let receiver = caster + gap;
@@ -88,8 +89,8 @@ proptest! {
     }
 }
 
-/// Two casters behind each other: a quarter of the filter holds a high one, the rest one close to the receiver. All of it is shadow; a variance
-/// cannot say so, four moments nearly can.
+/// Two casters behind each other: a quarter of the filter holds a high one, the rest one close to
+/// the receiver. All of it is shadow; a variance cannot say so, four moments nearly can.
 #[test]
 fn more_moments_leak_less() {
     let depths = [(-0.9, 0.25), (0.5, 0.75)];

@@ -175,7 +175,8 @@ fn casters_may_take_their_built_ins_themselves() {
     }
 }
 
-/// As many textures as there are maps, and no more: an app's own textures count against the same limit.
+/// As many textures as there are maps, and no more: an app's own textures count against the same
+/// limit.
 #[test]
 fn separate_maps_bind_no_texture_too_many() {
     for count in 1..=8 {
@@ -273,7 +274,8 @@ fn kinds(maps: Maps) -> impl Iterator<Item = FilterKind> {
     FilterKind::ALL.into_iter().filter(move |kind| kind.is_of_moments() == maps.moments.is_some())
 }
 
-/// What `ReceiverText` leaves to choose, one after the other; each with the value at `pick`, counted around.
+/// What `ReceiverText` leaves to choose, one after the other; each with the value at `pick`,
+/// counted around.
 fn chosen(pick: [usize; 8], maps: Maps) -> ReceiverText {
     fn of<T: Copy>(values: &[T], at: usize) -> T {
         values[at % values.len()]

@@ -1,4 +1,5 @@
-//! Writes the room with lamps that the tests judge, as binary glTF: `cargo run -p umbrage-tests --example room -- room.glb`.
+//! Writes the room with lamps that the tests judge, as binary glTF: `cargo run -p umbrage-tests
+//! --example room -- room.glb`.
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args().nth(1).ok_or("give the file to write, for example room.glb")?;

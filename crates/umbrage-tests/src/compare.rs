@@ -1,8 +1,8 @@
 //! Whether two images are the same, and by how much they are not.
 //!
-//! The references are drawn by Mesa's software Vulkan. Another driver, or another version of it, rounds elsewhere: a pixel whose
-//! centre lies within a rounding error of a shadow's or an object's edge may fall to the other side. That, and nothing
-//! more, is what the tolerances leave room for.
+//! The references are drawn by Mesa's software Vulkan. Another driver, or another version of it,
+//! rounds elsewhere: a pixel whose centre lies within a rounding error of a shadow's or an object's
+//! edge may fall to the other side. That, and nothing more, is what the tolerances leave room for.
 
 use std::fmt;
 
@@ -10,31 +10,38 @@ use image::{GrayAlphaImage, Rgb, RgbImage};
 
 /// The share of a mask's pixels that may decide otherwise (lit, dark, or nothing there).
 ///
-/// 160 × 120 pixels are 19,200, so 0.002 lets 38 of them flip. The masks kept here have 1,100 to 2,000 pixels beside an edge: one in forty
-/// of those may fall to the other side, while a mask that moves by one pixel flips half of them.
+/// 160 × 120 pixels are 19,200, so 0.002 lets 38 of them flip. The masks kept here have 1,100 to
+/// 2,000 pixels beside an edge: one in forty of those may fall to the other side, while a mask that
+/// moves by one pixel flips half of them.
 pub const MASK_DECISIONS: f64 = 0.002;
 
-/// The mean of `|visibility - reference|` over the pixels that show a surface in either mask, visibility from 0 to 1.
+/// The mean of `|visibility - reference|` over the pixels that show a surface in either mask,
+/// visibility from 0 to 1.
 ///
-/// 0.002 is one pixel of 500 wholly wrong, or every pixel wrong by half a step of the mask's 255. It sees what decisions do not: a
-/// penumbra that became wider or softer keeps its middle where it was.
+/// 0.002 is one pixel of 500 wholly wrong, or every pixel wrong by half a step of the mask's 255.
+/// It sees what decisions do not: a penumbra that became wider or softer keeps its middle where it
+/// was.
 pub const MASK_VISIBILITY: f64 = 0.002;
 
-/// The mean of `|value - reference|` over a picture's pixels and channels, in linear light from 0 to 1.
+/// The mean of `|value - reference|` over a picture's pixels and channels, in linear light from 0
+/// to 1.
 ///
-/// Around sRGB 128 one step is 0.0036 of linear light, so 0.002 is a mid-grey picture of which a little more than half is one step
-/// off; or one pixel of 50 that lost a light of 0.1, as sand does that falls into shadow.
+/// Around sRGB 128 one step is 0.0036 of linear light, so 0.002 is a mid-grey picture of which a
+/// little more than half is one step off; or one pixel of 50 that lost a light of 0.1, as sand does
+/// that falls into shadow.
 pub const PICTURE_MEAN: f64 = 0.002;
 
-/// A pixel of a picture is an outlier if a channel differs by more than this, in linear light from 0 to 1.
+/// A pixel of a picture is an outlier if a channel differs by more than this, in linear light from
+/// 0 to 1.
 ///
-/// 0.02 is six steps of sRGB around 128: less than shadows change anything that is lit, more than rounding does.
+/// 0.02 is six steps of sRGB around 128: less than shadows change anything that is lit, more than
+/// rounding does.
 pub const PICTURE_OUTLIER: f64 = 0.02;
 
 /// The share of a picture's pixels that may be outliers.
 ///
-/// 96 × 72 pixels are 6,912, so 0.01 lets 69 of them differ, as along a silhouette of 280 pixels at every fourth of which one of the
-/// four samples falls to the other side.
+/// 96 × 72 pixels are 6,912, so 0.01 lets 69 of them differ, as along a silhouette of 280 pixels at
+/// every fourth of which one of the four samples falls to the other side.
 pub const PICTURE_OUTLIERS: f64 = 0.01;
 
 /// What a reference image is.
@@ -207,9 +214,10 @@ pub fn linear(srgb: u8) -> f64 {
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
-/// Where two images of one size and kind differ. Masks: the reference in dim grey, red where the image is brighter, blue where it is
-/// darker, yellow where one has a surface and the other nothing. Pictures: four times the difference of each channel.
-/// `None` where [`compare`] has no verdict either.
+/// Where two images of one size and kind differ. Masks: the reference in dim grey, red where the
+/// image is brighter, blue where it is darker, yellow where one has a surface and the other
+/// nothing. Pictures: four times the difference of each channel. `None` where [`compare`] has no
+/// verdict either.
 #[must_use]
 pub fn difference(expected: &Golden, actual: &Golden) -> Option<RgbImage> {
     if expected.size() != actual.size() {

@@ -1,4 +1,5 @@
-//! Reference images: small PNG files beside the tests, compared, shown where they differ, and replaced only on demand.
+//! Reference images: small PNG files beside the tests, compared, shown where they differ, and
+//! replaced only on demand.
 
 use std::{
     env, fs, io,
@@ -114,8 +115,9 @@ pub enum Failure {
 }
 
 impl Goldens {
-    /// Compares an image with the reference of that name. What differs is shown in [`Goldens::failures`], or becomes the
-    /// reference in [`Mode::Bless`]; a reference that has the very same pixels is left alone.
+    /// Compares an image with the reference of that name. What differs is shown in
+    /// [`Goldens::failures`], or becomes the reference in [`Mode::Bless`]; a reference that has the
+    /// very same pixels is left alone.
     ///
     /// # Errors
     /// [`Failure`], whose message says where to look.
@@ -150,7 +152,8 @@ impl Goldens {
         })
     }
 
-    /// What is wrong with the folder as a whole: files that no image of `names` is compared with, files that weigh too much.
+    /// What is wrong with the folder as a whole: files that no image of `names` is compared with,
+    /// files that weigh too much.
     ///
     /// # Errors
     /// [`Failure::Io`] if the folder cannot be read.

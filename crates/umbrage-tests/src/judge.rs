@@ -78,8 +78,9 @@ pub struct Exceeded {
 }
 
 impl Ceiling {
-    /// How far above the measurement a ceiling is: room for drivers that round otherwise. On one driver scores do not move at
-    /// all, and masks of PSSM(4;512²) that lie a pixel aside have four to twelve times its error.
+    /// How far above the measurement a ceiling is: room for drivers that round otherwise. On one
+    /// driver scores do not move at all, and masks of PSSM(4;512²) that lie a pixel aside have four
+    /// to twelve times its error.
     pub const ROOM: f64 = 1.15;
 
     /// A ceiling above what was measured.
@@ -105,8 +106,9 @@ impl fmt::Display for Exceeded {
     }
 }
 
-/// The mean of `|mask - truth|` and the number of pixels over the pixels whose hit `counts`. A pixel that the mask leaves
-/// transparent is wholly wrong. `None` if no pixel counts or the mask has another size.
+/// The mean of `|mask - truth|` and the number of pixels over the pixels whose hit `counts`. A
+/// pixel that the mask leaves transparent is wholly wrong. `None` if no pixel counts or the mask
+/// has another size.
 #[must_use]
 pub fn mean_difference(
     truth: &TruthMask,

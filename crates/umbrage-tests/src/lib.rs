@@ -1,9 +1,11 @@
-//! Regressions of pictures and scores, for development only: this crate is never published and nothing depends on it.
+//! Regressions of pictures and scores, for development only: this crate is never published and
+//! nothing depends on it.
 //!
-//! [`compare`] says whether two images are the same, within named tolerances; [`golden`] keeps the reference images and shows what
-//! differs; [`stage`] has the worlds, a device and the techniques; [`judge`] measures techniques against the exact truth;
-//! [`room`] is a scene with lamps.
-//! `tests/comparators.rs` proves that every comparison can say no; `tests/regressions` holds the references and the ceilings.
+//! [`compare`] says whether two images are the same, within named tolerances; [`golden`] keeps the
+//! reference images and shows what differs; [`stage`] has the worlds, a device and the techniques;
+//! [`judge`] measures techniques against the exact truth; [`room`] is a scene with lamps.
+//! `tests/comparators.rs` proves that every comparison can say no; `tests/regressions` holds the
+//! references and the ceilings.
 
 pub mod compare;
 pub mod golden;

@@ -1,7 +1,8 @@
 //! A room with lamps: for lights that stand somewhere.
 //!
-//! Walls, floor and ceiling are boxes of 20 cm around 9 × 3 × 7 m. A pendant lamp hangs over a table with stools; a spot light
-//! looks from under a shelf across a slatted screen, with boxes behind it; a washer shines down a wall that it nearly touches.
+//! Walls, floor and ceiling are boxes of 20 cm around 9 × 3 × 7 m. A pendant lamp hangs over a
+//! table with stools; a spot light looks from under a shelf across a slatted screen, with boxes
+//! behind it; a washer shines down a wall that it nearly touches.
 
 use umbrage_scene::{Lens, LightKind, Material, Mesh, Node, Primitive, Scene, SceneCamera, SceneLight, Trs};
 
@@ -15,7 +16,8 @@ const WOOD: [f32; 3] = [0.48, 0.30, 0.16];
 const BLUE: [f32; 3] = [0.16, 0.28, 0.48];
 const RED: [f32; 3] = [0.55, 0.14, 0.10];
 
-/// The room. Cameras: `door`, `table`, `wall`. Lights: `pendant` (point), `reading` and `washer` (spot).
+/// The room. Cameras: `door`, `table`, `wall`. Lights: `pendant` (point), `reading` and `washer`
+/// (spot).
 #[must_use]
 pub fn room() -> Scene {
     let mut scene = Scene { name: "room".to_owned(), ..Scene::default() };

@@ -136,8 +136,9 @@ pub struct Technique {
 }
 
 impl Technique {
-    /// PSSM with maps of one size: practical scheme with λ = 0.5, fitted to the scene, not stabilised, one nearest texel, no blend, no
-    /// fade, 32-bit depth: the tightest, hardest and most exact that there is, so that nothing hides an error.
+    /// PSSM with maps of one size: practical scheme with λ = 0.5, fitted to the scene, not
+    /// stabilised, one nearest texel, no blend, no fade, 32-bit depth: the tightest, hardest and
+    /// most exact that there is, so that nothing hides an error.
     #[must_use]
     pub fn pssm(splits: usize, map_size: u32) -> Self {
         let config = ShadowConfig {
@@ -159,7 +160,8 @@ impl Technique {
         Self { name: "ssm".to_owned(), ..Self::pssm(1, map_size) }
     }
 
-    /// What a user gets who chooses nothing: four maps, exact stillness, 3 × 3 filter, blend and fade.
+    /// What a user gets who chooses nothing: four maps, exact stillness, 3 × 3 filter, blend and
+    /// fade.
     #[must_use]
     pub fn default_of_the_command() -> Self {
         let mut technique = Self::pssm(4, 1024);

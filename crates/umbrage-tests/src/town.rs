@@ -4,7 +4,8 @@ use umbrage_scene::Scene;
 
 use crate::room::{cuboid, material, place};
 
-/// 60 boxes, 1 to 10 m high, on 240 × 240 m of flat ground around the origin. No cameras, no lights.
+/// 60 boxes, 1 to 10 m high, on 240 × 240 m of flat ground around the origin. No cameras, no
+/// lights.
 #[must_use]
 pub fn town() -> Scene {
     let mut scene = Scene { name: "town".to_owned(), ..Scene::default() };

@@ -27,7 +27,7 @@ fn mask_of([width, height]: [u32; 2]) -> GrayAlphaImage {
     })
 }
 
-/// The same, shaded.
+/// The mask's scene, shaded.
 fn picture() -> RgbImage {
     let mask = mask();
     RgbImage::from_fn(96, 72, |x, y| match mask.get_pixel(x, y + 30).0 {

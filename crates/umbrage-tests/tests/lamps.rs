@@ -1,4 +1,5 @@
-//! Lights that stand somewhere, several at once, and several views: masks against the truth by rays, and against those drawn alone.
+//! Lights that stand somewhere, several at once, and several views: masks against the truth by
+//! rays, and against those drawn alone.
 
 use image::GrayAlphaImage;
 use umbrage::config::{DepthFormat, ShadowConfig, Stability};
@@ -59,8 +60,9 @@ fn mask(renderer: &mut Renderer, frame: &Frame<'_>) -> GrayAlphaImage {
 fn masks_of_lamps_are_nearly_true() {
     let Some(gpu) = gpu() else { return };
     let room = Room::new();
-    // A point light in a room; a spot light through a slatted screen, with the shelf behind it; one that grazes a wall. In each
-    // pair the first camera sees the light's own place, the second has it behind or above.
+    // A point light in a room; a spot light through a slatted screen, with the shelf behind it; one
+    // that grazes a wall. In each pair the first camera sees the light's own place, the second has
+    // it behind or above.
     let cases = [
         ("pendant", ["door", "table"], [Ceiling::above(0.00146), Ceiling::above(0.00174)]),
         ("reading", ["door", "wall"], [Ceiling::above(0.00543), Ceiling::above(0.00512)]),
@@ -109,7 +111,8 @@ fn linear_depth_decides_as_perspective_depth_does() {
             mask(&mut renderer, &room.frame(&view, light, &[]))
         });
         let different = perspective.pixels().zip(linear.pixels()).filter(|(a, b)| a != b).count();
-        // One nearest texel, one comparison: what differs is rounding, at edges that a texel's centre grazes.
+        // One nearest texel, one comparison: what differs is rounding, at edges that a texel's
+        // centre grazes.
         assert!(different <= 20, "{name}: {different} pixels of {}", SIZE[0] * SIZE[1]);
     }
 }

@@ -1,8 +1,9 @@
-//! How long the truth of a scene takes and how much memory: `cargo run --release -p umbrage-truth --example time_truth --
-//! SCENE [--eye x,y,z --target x,y,z --sun x,y,z] [--soft SAMPLES] [-o MASK]`.
+//! How long the truth of a scene takes and how much memory: `cargo run --release -p umbrage-truth
+//! --example time_truth -- SCENE [--eye x,y,z --target x,y,z --sun x,y,z] [--soft SAMPLES] [-o
+//! MASK]`.
 //!
-//! The scene is loaded before the clock starts; posing, building and tracing are timed. Peak memory is the whole process's,
-//! scene included, as Linux counts it.
+//! The scene is loaded before the clock starts; posing, building and tracing are timed. Peak memory
+//! is the whole process's, scene included, as Linux counts it.
 #![expect(clippy::print_stdout, reason = "an example that prints what it measured")]
 
 use std::error::Error;

@@ -1,5 +1,5 @@
-//! Alpha-tested surfaces: base colour alpha × texture alpha × vertex alpha against the cutoff, as a GPU samples it at
-//! level 0, bilinear, without mip levels.
+//! Alpha-tested surfaces: base colour alpha × texture alpha × vertex alpha against the cutoff, as a
+//! GPU samples it at level 0, bilinear, without mip levels.
 
 use umbrage_scene::{AlphaMode, Material, Primitive, Scene, TextureFilter, Wrap};
 
@@ -27,7 +27,8 @@ pub(crate) struct AlphaPicture {
 }
 
 impl AlphaTest {
-    /// The test that a primitive needs; `None` if its material has none. `picture` tells where the texture's alpha is kept.
+    /// The test that a primitive needs; `None` if its material has none. `picture` tells where the
+    /// texture's alpha is kept.
     pub(crate) fn new(primitive: &Primitive, material: &Material, picture: Option<usize>) -> Option<Self> {
         let AlphaMode::Mask { cutoff } = material.alpha else { return None };
         Some(Self {
@@ -40,7 +41,8 @@ impl AlphaTest {
         })
     }
 
-    /// Whether the surface is there, `weights` being the barycentric coordinates of the point in triangle `triangle`.
+    /// Whether the surface is there, `weights` being the barycentric coordinates of the point in
+    /// triangle `triangle`.
     pub(crate) fn passes(&self, pictures: &[AlphaPicture], triangle: usize, weights: [f64; 3]) -> bool {
         let corners: [usize; 3] = std::array::from_fn(|i| self.indices[3 * triangle + i] as usize);
         let mut alpha = self.base;
@@ -129,7 +131,8 @@ mod tests {
         assert_eq!(repeat.sample([0.25, 0.5]), 0.0);
         assert_eq!(repeat.sample([0.75, 0.5]), 1.0);
         assert!((repeat.sample([0.5, 0.5]) - 0.5).abs() < 1e-15);
-        // The border texel mixes with its neighbour on the other side, with itself, or with itself again.
+        // The border texel mixes with its neighbour on the other side, with itself, or with itself
+        // again.
         assert!((repeat.sample([0.0, 0.5]) - 0.5).abs() < 1e-15);
         assert_eq!(picture(Wrap::Clamp).sample([0.0, 0.5]), 0.0);
         assert_eq!(picture(Wrap::Mirror).sample([0.0, 0.5]), 0.0);

@@ -1,9 +1,10 @@
 //! The tree of boxes: built by `obvhs`, walked here so that no rounding can lose a hit.
 //!
-//! `obvhs` builds the binary tree (PLOC, Meister and Bittner 2018, with parallel reinsertion, 2017). Its own traversal
-//! compares `f32` boxes without an error margin, which is right for pictures; a judge needs every box test to err on the
-//! side of looking inside. The walk below therefore rounds the ray's origin to both sides and widens the interval of
-//! each box by the rounding error of its three operations (Ize, "Robust BVH Ray Traversal", JCGT 2013).
+//! `obvhs` builds the binary tree (PLOC, Meister and Bittner 2018, with parallel reinsertion,
+//! 2017). Its own traversal compares `f32` boxes without an error margin, which is right for
+//! pictures; a judge needs every box test to err on the side of looking inside. The walk below
+//! therefore rounds the ray's origin to both sides and widens the interval of each box by the
+//! rounding error of its three operations (Ize, "Robust BVH Ray Traversal", JCGT 2013).
 
 use std::ops::Range;
 use std::time::Duration;
@@ -17,16 +18,16 @@ use obvhs::bvh2::node::Bvh2Node;
 use crate::trace::EDGE_ERROR;
 use crate::triangles::{round_down, round_up};
 
-/// Bound on the relative error of a slab's distance: rounding of direction, inverse, difference and product, half an
-/// ulp each, doubled for safety.
+/// Bound on the relative error of a slab's distance: rounding of direction, inverse, difference and
+/// product, half an ulp each, doubled for safety.
 const SLAB_ERROR: f32 = 4.0 * f32::EPSILON;
 
 /// Direction components closer to 0 than this are taken as this, so that the inverse stays finite.
 const LEAST_DIRECTION: f64 = 1e-25;
 
-/// Metres by which a ray's origin is blurred to either side, beyond its rounding and one ulp more. The blur is never 0, neither near
-/// the origin nor far from it: a flat box that holds an axis-parallel ray is then met, and the error of
-/// [`LEAST_DIRECTION`] is covered up to 1e16 m.
+/// Metres by which a ray's origin is blurred to either side, beyond its rounding and one ulp more.
+/// The blur is never 0, neither near the origin nor far from it: a flat box that holds an
+/// axis-parallel ray is then met, and the error of [`LEAST_DIRECTION`] is covered up to 1e16 m.
 const ORIGIN_BLUR: f64 = 1e-9;
 
 /// A binary tree of boxes; leaves are ranges of the order that [`Tree::build`] answers.
@@ -44,7 +45,8 @@ pub(crate) struct BoxRay {
 
 impl BoxRay {
     pub(crate) fn new(origin: DVec3, direction: DVec3, t_min: f64) -> Self {
-        // A ray meets what it passes within the rounding of its own coordinates and of the corners', for which boxes have room.
+        // A ray meets what it passes within the rounding of its own coordinates and of the
+        // corners', for which boxes have room.
         let blur = ORIGIN_BLUR + 2.0 * EDGE_ERROR * origin.abs().max_element();
         let each = |f: &dyn Fn(f64) -> f32, v: DVec3| Vec3A::new(f(v.x), f(v.y), f(v.z));
         let inverse = |d: f64| {
@@ -88,8 +90,8 @@ impl Tree {
         size_of_val(self.nodes.as_slice())
     }
 
-    /// Visits every leaf that the ray may meet between its own `t_min` and `t_max`, roughly from near to far. `visit` may
-    /// lower `t_max`, and ends the walk by answering `false`.
+    /// Visits every leaf that the ray may meet between its own `t_min` and `t_max`, roughly from
+    /// near to far. `visit` may lower `t_max`, and ends the walk by answering `false`.
     #[inline(always)]
     pub(crate) fn walk(
         &self,

@@ -1,24 +1,27 @@
 //! When two surfaces lie on each other, as far as the scene's own numbers can tell.
 //!
-//! Vertices are stored in `f32`, relative to their object. Two surfaces that were meant to coincide, the faces of a leaf or a decal on a
-//! wall, therefore lie apart by the rounding of their local coordinates and of the rotations and scales between them. That
-//! distance belongs to the data: it grows with the scene and moves with it. It is neither a length nor a share of how far the scene is
-//! from the world's origin, for nodes place objects in `f64`.
+//! Vertices are stored in `f32`, relative to their object. Two surfaces that were meant to
+//! coincide, the faces of a leaf or a decal on a wall, therefore lie apart by the rounding of their
+//! local coordinates and of the rotations and scales between them. That distance belongs to the
+//! data: it grows with the scene and moves with it. It is neither a length nor a share of how far
+//! the scene is from the world's origin, for nodes place objects in `f64`.
 
 use glam::{DAffine3, DMat3, DVec3};
 use umbrage_scene::{Pose, Scene};
 
 use crate::triangles::Surface;
 
-/// Share of a coordinate in `f32` by which it may be off: four roundings, one of the file and three of the tools before it.
+/// Share of a coordinate in `f32` by which it may be off: four roundings, one of the file and three
+/// of the tools before it.
 const F32_ERROR: f64 = 4.0 / (1_u64 << 24) as f64;
 
 /// Share of a coordinate in `f64` by which it may be off after all the arithmetic here.
 pub(crate) const F64_ERROR: f64 = 8.0 / (1_u64 << 53) as f64;
 
-/// Share of the smaller object's radius that the rounding of two objects' translations may make of the tolerance. A translation may
-/// be exact, be it ever so large: whoever moves a scene in `f64` moves it by one. Its rounding is therefore believed only
-/// while it is too small to take a shadow away from an object.
+/// Share of the smaller object's radius that the rounding of two objects' translations may make of
+/// the tolerance. A translation may be exact, be it ever so large: whoever moves a scene in `f64`
+/// moves it by one. Its rounding is therefore believed only while it is too small to take a shadow
+/// away from an object.
 const MOST_TRANSLATION_ERROR: f64 = 1.0 / 4096.0;
 
 /// An entry of a matrix that is smaller than this share of its row is 0, rounded.
@@ -71,13 +74,15 @@ impl Contact {
     /// At least what a surface adds to [`Contact::tolerance`], in metres, cheaply.
     pub(crate) fn most(&self, surface: &Surface) -> f64 {
         let placed = &self.placed[surface.object as usize];
-        // Vertices, at most √3 times a corner's distance, and transforms, at most √3 times it again.
+        // Vertices, at most √3 times a corner's distance, and transforms, at most √3 times it
+        // again.
         (4.0 * F32_ERROR + MOST_TRANSLATION_ERROR) * placed.radius + F64_ERROR * (placed.radius + placed.pivot.length())
     }
 
-    /// How far a point of one surface may be from the plane of another's triangle, in metres, though they were meant to coincide: `there`
-    /// is the triangle's surface with its corners, `here` the point's surface, if that is known, and the point. Both are relative to
-    /// the world point `origin`; `normal` is the triangle's unit normal.
+    /// How far a point of one surface may be from the plane of another's triangle, in metres,
+    /// though they were meant to coincide: `there` is the triangle's surface with its corners,
+    /// `here` the point's surface, if that is known, and the point. Both are relative to the world
+    /// point `origin`; `normal` is the triangle's unit normal.
     pub(crate) fn tolerance(
         &self,
         there: (&Surface, &[DVec3; 3]),
@@ -121,7 +126,8 @@ impl Contact {
     }
 }
 
-/// Bound on how far a point is off along `normal` because its coordinates were rounded, relative to their rounding.
+/// Bound on how far a point is off along `normal` because its coordinates were rounded, relative to
+/// their rounding.
 fn vertex_error(of: &Placed, from_pivot: DVec3, normal: DVec3) -> f64 {
     let longest = 3_f64.sqrt() * from_pivot.length();
     match of.local_from_world {
@@ -134,14 +140,16 @@ fn vertex_error(of: &Placed, from_pivot: DVec3, normal: DVec3) -> f64 {
     }
 }
 
-/// The same because the rotation and the scale between the object and the node with the linear part `common` were rounded.
+/// Metres by which a point may be off because the rotation and the scale between the object and the
+/// node with the linear part `common` were rounded.
 fn transform_error(of: &Placed, common: DMat3, from_pivot: DVec3, normal: DVec3) -> f64 {
     let longest = 3_f64.sqrt() * from_pivot.length();
     let Some(common_from_world) = inverse(common) else { return longest };
     let placed = common_from_world * from_pivot;
     let rows = (common_from_world * of.world_from_local).transpose();
     let is_turned = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| {
-        // One entry is a scale, which moves a point along that axis. Several are a rotation: it moves a point by its distance.
+        // One entry is a scale, which moves a point along that axis. Several are a rotation: it
+        // moves a point by its distance.
         let size = row.abs();
         size.element_sum() - size.max_element() > NO_ENTRY * size.max_element()
     });

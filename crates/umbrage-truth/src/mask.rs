@@ -11,7 +11,8 @@ use umbrage::{Light, View};
 use crate::truth::{Seen, sun};
 use crate::{Error, Hit, Result, Truth};
 
-/// Pixels of a block that is traced together, along each side, so that neighbouring rays find the tree in the cache.
+/// Pixels of a block that is traced together, along each side, so that neighbouring rays find the
+/// tree in the cache.
 const BLOCK: usize = 8;
 
 /// What every pixel centre of a view sees, and whether the light reaches it.
@@ -25,9 +26,10 @@ pub struct TruthMask {
 }
 
 impl Truth {
-    /// Traces one ray through each pixel centre and one from there to the light. `light_travel` is the way the light travels
-    /// and need not be normalised; `size` is width and height in pixels. `progress` hears the share that is done, in
-    /// `[0, 1]`, from several threads, not always in order. The result does not depend on the number of threads.
+    /// Traces one ray through each pixel centre and one from there to the light. `light_travel` is
+    /// the way the light travels and need not be normalised; `size` is width and height in pixels.
+    /// `progress` hears the share that is done, in `[0, 1]`, from several threads, not always in
+    /// order. The result does not depend on the number of threads.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] if the image has no pixels or the light no direction.
@@ -41,8 +43,8 @@ impl Truth {
         self.mask_under(view, &sun(light_travel)?, size, progress)
     }
 
-    /// The same under any light. Rays to a local light end there; what its range and cone do not reach is not shadowed (and not
-    /// scored: see [`crate::scores::Domain`]).
+    /// The mask under any light. Rays to a local light end there; what its range and cone do not
+    /// reach is not shadowed (and not scored: see [`crate::scores::Domain`]).
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] if the image has no pixels.
@@ -92,10 +94,12 @@ fn ray_of(view: &View, pixel: [usize; 2], size: [usize; 2]) -> (DVec3, DVec3) {
 }
 
 impl TruthMask {
-    /// What is known otherwise than by rays, by a closed form for example: one entry for each pixel, row after row.
+    /// What is known otherwise than by rays, by a closed form for example: one entry for each
+    /// pixel, row after row.
     ///
     /// # Errors
-    /// [`Error::SizeMismatch`] for more or fewer entries than pixels, [`Error::InvalidSetting`] for a light without direction.
+    /// [`Error::SizeMismatch`] for more or fewer entries than pixels, [`Error::InvalidSetting`] for
+    /// a light without direction.
     pub fn from_hits(size: [usize; 2], to_light: DVec3, hits: Vec<Option<Hit>>) -> Result<Self> {
         if hits.len() != size[0] * size[1] {
             return Err(Error::SizeMismatch {
@@ -132,7 +136,8 @@ impl TruthMask {
         truth.seen(origin, direction, hit)
     }
 
-    /// As a mask image: 255 lit, 0 shadowed or turned away from the light; alpha 255, or 0 where nothing was hit.
+    /// As a mask image: 255 lit, 0 shadowed or turned away from the light; alpha 255, or 0 where
+    /// nothing was hit.
     #[must_use]
     pub fn to_image(&self) -> GrayAlphaImage {
         mask_image(self.size, self.hits.iter().map(|hit| hit.map(|hit| f32::from(u8::from(hit.lit)))))
@@ -148,7 +153,8 @@ pub(crate) fn mask_image(size: [usize; 2], values: impl Iterator<Item = Option<f
     image
 }
 
-/// Reads a mask as `umbrage render --visibility` and `umbrage truth` write it: grey and alpha, 8 bits.
+/// Reads a mask as `umbrage render --visibility` and `umbrage truth` write it: grey and alpha, 8
+/// bits.
 ///
 /// # Errors
 /// [`Error::Image`] if the file is missing or no image.

@@ -14,19 +14,20 @@ use crate::{Error, Result, Truth, TruthMask};
 /// Fewest and most directions of a set.
 const SAMPLES: std::ops::RangeInclusive<u32> = 1..=1 << 20;
 
-/// A sun of a given size, and the directions by which it is looked at. They are the same for every point.
+/// A sun of a given size, and the directions by which it is looked at. They are the same for every
+/// point.
 ///
-/// The directions are Vogel's spiral (H. Vogel, "A better way to construct the sunflower head", Mathematical Biosciences
-/// 44, 1979): direction i of N stands at radius √((i + ½)/N) and angle i·π(3 − √5) on the disc, so that every one serves
-/// the same area.
+/// The directions are Vogel's spiral (H. Vogel, "A better way to construct the sunflower head",
+/// Mathematical Biosciences 44, 1979): direction i of N stands at radius √((i + ½)/N) and angle
+/// i·π(3 − √5) on the disc, so that every one serves the same area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunDisc {
     /// Angle across the disc in radians; the real sun has 0.0093 (0.53°). More than 0, at most π/2.
     pub angular_diameter: f64,
     /// How many directions: 256 for quick tests, 1,024 for tables.
     pub samples: u32,
-    /// Turns the spiral by this angle in radians. Sets with different turns are different sets, and how far their results
-    /// lie apart is the noise floor.
+    /// Turns the spiral by this angle in radians. Sets with different turns are different sets, and
+    /// how far their results lie apart is the noise floor.
     pub turn: f64,
 }
 
@@ -37,7 +38,7 @@ impl SunDisc {
         Self { angular_diameter, samples, turn: 0.0 }
     }
 
-    /// The same disc seen by another set of directions, for the noise floor.
+    /// This disc seen by another set of directions, for the noise floor.
     #[must_use]
     pub const fn other_set(self) -> Self {
         Self { turn: self.turn + 1.0, ..self }
@@ -83,11 +84,12 @@ pub struct SoftTruth {
 }
 
 impl Truth {
-    /// Looks from every hit of a hard mask into all directions of the disc. Directions below the surface's own horizon
-    /// (n·l' ≤ 0) count as shadow. `progress` as in [`Truth::mask`].
+    /// Looks from every hit of a hard mask into all directions of the disc. Directions below the
+    /// surface's own horizon (n·l' ≤ 0) count as shadow. `progress` as in [`Truth::mask`].
     ///
     /// # Errors
-    /// [`Error::InvalidSetting`] naming the field of the disc that is out of range, or that the mask's light is no sun.
+    /// [`Error::InvalidSetting`] naming the field of the disc that is out of range, or that the
+    /// mask's light is no sun.
     pub fn soft(&self, mask: &TruthMask, disc: &SunDisc, progress: &(dyn Fn(f32) + Sync)) -> Result<SoftTruth> {
         if mask.light().position().is_some() {
             let reason = "a lamp has no angle across; give it with a directional light";
@@ -108,10 +110,12 @@ impl Truth {
         Ok(SoftTruth { size: [width, height], visibility })
     }
 
-    /// V*_A of world points with their normals, no triangle being known as the point's own; see [`Truth::visibility_at`].
+    /// V*_A of world points with their normals, no triangle being known as the point's own; see
+    /// [`Truth::visibility_at`].
     ///
     /// # Errors
-    /// [`Error::InvalidSetting`] if the light has no direction, the disc is out of range or a point is not finite.
+    /// [`Error::InvalidSetting`] if the light has no direction, the disc is out of range or a point
+    /// is not finite.
     pub fn soft_visibility_at(
         &self,
         points: &[(DVec3, DVec3)],
@@ -153,7 +157,8 @@ impl SoftTruth {
         self.size
     }
 
-    /// One entry per pixel, row by row from the upper left, in `[0, 1]`; `None` where the ray meets nothing.
+    /// One entry per pixel, row by row from the upper left, in `[0, 1]`; `None` where the ray meets
+    /// nothing.
     #[must_use]
     pub fn visibility(&self) -> &[Option<f32>] {
         &self.visibility
@@ -179,7 +184,8 @@ mod tests {
             assert_eq!(directions.len(), 1024);
             let widest = directions.iter().map(|d| d.angle_between(axis)).fold(0.0, f64::max);
             assert!(widest < 0.05 && widest > 0.0499, "{widest}");
-            // The mean is the axis, and half of the disc lies on either side of any plane through the axis.
+            // The mean is the axis, and half of the disc lies on either side of any plane through
+            // the axis.
             let mean = directions.iter().sum::<DVec3>() / 1024.0;
             assert!(mean.normalize().angle_between(axis) < 1e-4);
             for side in [axis.any_orthonormal_pair().0, axis.any_orthonormal_pair().1] {

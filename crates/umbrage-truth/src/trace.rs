@@ -1,16 +1,18 @@
 //! Rays against triangles in `f64`.
 //!
-//! The test is the watertight one of Woop, Benthin and Wald (JCGT 2013): a ray through an edge or a corner that two
-//! triangles share meets at least one of them, because both compute the very same edge function. All of it is in `f64`; the
-//! paper's fallback to higher precision where an edge function is 0 is replaced by counting such a point as inside. Edges of two objects
-//! share no corner bit for bit, so a point counts as inside, too, where an edge function is 0 within its rounding.
+//! The test is the watertight one of Woop, Benthin and Wald (JCGT 2013): a ray through an edge or a
+//! corner that two triangles share meets at least one of them, because both compute the very same
+//! edge function. All of it is in `f64`; the paper's fallback to higher precision where an edge
+//! function is 0 is replaced by counting such a point as inside. Edges of two objects share no
+//! corner bit for bit, so a point counts as inside, too, where an edge function is 0 within its
+//! rounding.
 
 use glam::DVec3;
 
 use crate::bvh::BoxRay;
 
-/// How far from an edge a ray may pass and still meet it, as a share of the coordinates of both: a corner that was placed, moved and
-/// sheared is rounded so often.
+/// How far from an edge a ray may pass and still meet it, as a share of the coordinates of both: a
+/// corner that was placed, moved and sheared is rounded so often.
 pub(crate) const EDGE_ERROR: f64 = 16.0 * f64::EPSILON;
 
 /// A ray with everything that its tests share. `t` is in units of the direction's length.
@@ -59,8 +61,8 @@ impl Ray {
         }
     }
 
-    /// Where the ray meets a triangle with `t_min <= t <= t_max`, from either side. A triangle seen exactly edge-on is
-    /// not met.
+    /// Where the ray meets a triangle with `t_min <= t <= t_max`, from either side. A triangle seen
+    /// exactly edge-on is not met.
     #[inline(always)]
     pub(crate) fn meets(&self, corners: &[DVec3; 3], t_max: f64) -> Option<Crossing> {
         let [x, y, z] = self.axes;
@@ -79,7 +81,8 @@ impl Ray {
             let aside = [a.0, a.1, b.0, b.1, c.0, c.1].into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
             let ahead = a.2.abs().max(b.2.abs()).max(c.2.abs()) / sz.abs();
             let tolerance = EDGE_ERROR * (aside + ahead + self.reach);
-            // An edge is at most √8 times as long as its corners are aside, and its function is its length times its distance.
+            // An edge is at most √8 times as long as its corners are aside, and its function is its
+            // length times its distance.
             let error = 3.0 * tolerance * aside;
             // A triangle that is no larger than its rounding has no edges to speak of.
             if determinant.abs() <= 8.0 * error || (least < -error && most > error) {
@@ -95,7 +98,8 @@ impl Ray {
         (t >= self.t_min && t <= t_max).then_some(Crossing { t, weights })
     }
 
-    /// Where the ray passes an edge of a triangle within `tolerance`; corners are sheared, the ray being their third axis.
+    /// Where the ray passes an edge of a triangle within `tolerance`; corners are sheared, the ray
+    /// being their third axis.
     #[cold]
     fn meets_edge(&self, corners: [(f64, f64, f64); 3], tolerance: f64, t_max: f64) -> Option<Crossing> {
         (0..3).find_map(|first| {
@@ -119,7 +123,8 @@ mod tests {
 
     #[test]
     fn shared_edges_and_corners_are_closed() {
-        // A fan around a corner, seen along every axis: rays through the corner and along the shared edges always meet it.
+        // A fan around a corner, seen along every axis: rays through the corner and along the
+        // shared edges always meet it.
         let rim: Vec<DVec3> =
             (0..7).map(|i| DVec3::from_angle_on_floor(f64::from(i) * std::f64::consts::TAU / 7.0)).collect();
         for axis in 0..3 {
@@ -141,7 +146,8 @@ mod tests {
 
     #[test]
     fn edges_that_agree_up_to_rounding_are_closed() {
-        // Two walls that meet along z = 1 at y = 1, one ulp apart; rays through the edge from all over.
+        // Two walls that meet along z = 1 at y = 1, one ulp apart; rays through the edge from all
+        // over.
         let edge = 1.0_f64;
         let above = edge.next_up();
         let roof = [DVec3::new(-1.0, above, -1.0), DVec3::new(1.0, above, -1.0), DVec3::new(0.0, above, above)];

@@ -11,7 +11,8 @@ use crate::alpha::{AlphaPicture, AlphaTest};
 use crate::trace::EDGE_ERROR;
 use crate::{Error, Result};
 
-/// Farther than this from the origin, in metres, `f32` boxes and their inverse directions would overflow.
+/// Farther than this from the origin, in metres, `f32` boxes and their inverse directions would
+/// overflow.
 const FARTHEST: f64 = 1e12;
 
 /// One primitive of one object, as rays see it. Its triangles are numbered from `first` on.
@@ -44,7 +45,8 @@ pub(crate) struct Triangle {
     pub surface: u32,
 }
 
-/// All triangles that a ray can meet. Translucent primitives are left out: they are neither hit nor do they occlude.
+/// All triangles that a ray can meet. Translucent primitives are left out: they are neither hit nor
+/// do they occlude.
 #[derive(Debug)]
 pub(crate) struct Triangles {
     pub origin: DVec3,
@@ -169,7 +171,8 @@ impl Triangles {
             Some(skinned) => &pose.skinned[skinned].positions[surface.primitive as usize],
             None => &primitive.positions,
         };
-        // Subtracting here and not from the finished points keeps the digits that a far origin would cost.
+        // Subtracting here and not from the finished points keeps the digits that a far origin
+        // would cost.
         let relative_from_local = DAffine3 {
             matrix3: object.world_from_local.matrix3,
             translation: object.world_from_local.translation - self.origin,
@@ -178,7 +181,8 @@ impl Triangles {
     }
 }
 
-/// A primitive with the transform that places it. Equal positions become equal corners, bit for bit.
+/// A primitive with the transform that places it. Equal positions become equal corners, bit for
+/// bit.
 struct Placed<'a> {
     primitive: &'a Primitive,
     positions: &'a [[f32; 3]],

@@ -11,12 +11,14 @@ use crate::trace::{Crossing, Ray};
 use crate::triangles::{Surface, Triangle, Triangles};
 use crate::{Error, Result};
 
-/// How far a shadow ray's start is lifted off its surface, towards where the surface is seen from, as a share of the numbers that
-/// the point is made of. The start then lies in the eye's own part of space, whatever edge or crease the point is on: 2^-40
-/// is some thousand times what `f64` rounds a point by, and a ten-thousandth of what a vertex in `f32` is rounded by.
+/// How far a shadow ray's start is lifted off its surface, towards where the surface is seen from,
+/// as a share of the numbers that the point is made of. The start then lies in the eye's own part
+/// of space, whatever edge or crease the point is on: 2^-40 is some thousand times what `f64`
+/// rounds a point by, and a ten-thousandth of what a vertex in `f32` is rounded by.
 const LIFT: f64 = 1.0 / (1_u64 << 40) as f64;
 
-/// The exact geometry of a posed scene. It borrows nothing; build it once per pose and ask as often as needed.
+/// The exact geometry of a posed scene. It borrows nothing; build it once per pose and ask as often
+/// as needed.
 ///
 /// Around 110 bytes per triangle.
 pub struct Truth {
@@ -27,11 +29,12 @@ pub struct Truth {
     contact: Contact,
 }
 
-/// Least cosine between the normals of surfaces that can lie on each other: 0.6°, more than rounding turns all but the smallest triangles.
+/// Least cosine between the normals of surfaces that can lie on each other: 0.6°, more than
+/// rounding turns all but the smallest triangles.
 const PARALLEL: f64 = 0.999_95;
 
-/// How far behind its start a shadow ray begins, in lifts: as much as rounding moves crossings with planes that light meets at a
-/// millionth.
+/// How far behind its start a shadow ray begins, in lifts: as much as rounding moves crossings with
+/// planes that light meets at a millionth.
 const BEHIND: f64 = 1e6;
 
 /// A point that is looked at, from which the light is asked for.
@@ -43,7 +46,8 @@ pub(crate) struct Seen {
     normal: DVec3,
     /// Unit vector from the point to where it is seen from.
     to_eye: DVec3,
-    /// Bound on how far the numbers that the point is made of reach, in metres: its rounding follows from it.
+    /// Bound on how far the numbers that the point is made of reach, in metres: its rounding
+    /// follows from it.
     reach: f64,
     /// The number of the triangle that it lies on, if that is known.
     own: Option<u32>,
@@ -60,19 +64,21 @@ pub struct Hit {
     pub depth: f64,
     /// Index into the pose's objects.
     pub object: u32,
-    /// The triangle's number, counted through all objects and primitives without the translucent ones.
+    /// The triangle's number, counted through all objects and primitives without the translucent
+    /// ones.
     pub triangle: u32,
     /// V*: the surface faces the light and nothing stands between.
     pub lit: bool,
 }
 
 impl Truth {
-    /// Spreads out the pose's triangles and builds the tree over them. `near_point` is a world point near the cameras that
-    /// will be asked for: boxes are most exact around it. Hits are `f64` wherever it lies.
+    /// Spreads out the pose's triangles and builds the tree over them. `near_point` is a world
+    /// point near the cameras that will be asked for: boxes are most exact around it. Hits are
+    /// `f64` wherever it lies.
     ///
     /// # Errors
-    /// [`Error::InvalidGeometry`] and [`Error::TooManyTriangles`] for a scene that no ray can meet, and
-    /// [`Error::InvalidSetting`] for a near point that is not finite.
+    /// [`Error::InvalidGeometry`] and [`Error::TooManyTriangles`] for a scene that no ray can meet,
+    /// and [`Error::InvalidSetting`] for a near point that is not finite.
     pub fn build(scene: &Scene, pose: &Pose, near_point: DVec3) -> Result<Self> {
         if !near_point.is_finite() {
             return Err(Error::setting("near_point", format!("{near_point} is not a point; give finite metres")));
@@ -96,9 +102,11 @@ impl Truth {
         size_of_val(self.leaves.as_slice()) + self.tree.bytes()
     }
 
-    /// Hard visibility of world points: 1 if nothing stands between the point and the light, else 0; 0 where the normal is
-    /// turned away from the light. `light_travel` is the way the light travels. No triangle is known to be the point's own, and no eye
-    /// looks at it: it is taken as seen along its normal, and what it lies on within τ (see [the crate's page](crate)) is its own surface.
+    /// Hard visibility of world points: 1 if nothing stands between the point and the light, else
+    /// 0; 0 where the normal is turned away from the light. `light_travel` is the way the light
+    /// travels. No triangle is known to be the point's own, and no eye looks at it: it is taken as
+    /// seen along its normal, and what it lies on within τ (see [the crate's page](crate)) is its
+    /// own surface.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] if the light has no direction or a point is not finite.
@@ -106,8 +114,8 @@ impl Truth {
         self.visibility_under(points, &sun(light_travel)?)
     }
 
-    /// The same under any light. Occluders of a local light count up to the light itself; what its range and cone do not reach is
-    /// not shadowed.
+    /// What the eye sees under any light. Occluders of a local light count up to the light itself;
+    /// what its range and cone do not reach is not shadowed.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] if a point is not finite.
@@ -124,8 +132,8 @@ impl Truth {
             .collect())
     }
 
-    /// The first triangle that a primary ray meets with `t` in `[t_min, t_max]`, `origin` in the world. Of two at the same
-    /// distance the one with the lower number.
+    /// The first triangle that a primary ray meets with `t` in `[t_min, t_max]`, `origin` in the
+    /// world. Of two at the same distance the one with the lower number.
     pub(crate) fn first_hit(
         &self,
         origin: DVec3,
@@ -139,9 +147,9 @@ impl Truth {
         Some(self.hit(origin, direction, &crossing, triangle))
     }
 
-    /// The first thing that stops light on its way from a world point: either side of any caster's triangle, where its alpha
-    /// counts. `direction` need not be normalised; nothing beyond `most` metres is asked for. [`Hit::depth`] is metres from the
-    /// point, and [`Hit::lit`] says nothing.
+    /// The first thing that stops light on its way from a world point: either side of any caster's
+    /// triangle, where its alpha counts. `direction` need not be normalised; nothing beyond `most`
+    /// metres is asked for. [`Hit::depth`] is metres from the point, and [`Hit::lit`] says nothing.
     ///
     /// A map's texel stores what a ray from its centre along the light meets first.
     ///
@@ -201,14 +209,16 @@ impl Truth {
         Seen { point: eye + way, normal: hit.normal, to_eye: -direction.normalize(), reach, own: Some(hit.triangle) }
     }
 
-    /// Whether a surface faces the light and nothing stands between; `point` is the seen point in the world.
+    /// Whether a surface faces the light and nothing stands between; `point` is the seen point in
+    /// the world.
     pub(crate) fn is_lit(&self, seen: &Seen, point: DVec3, light: &Light, stack: &mut Vec<u32>) -> bool {
         let to_light = light.to_light(point);
         let distance = light.position().map_or(f64::INFINITY, |position| position.distance(point));
         seen.normal.dot(to_light) > 0.0 && (!light.reaches(point) || self.sees_light(seen, to_light, distance, stack))
     }
 
-    /// Whether nothing stands between a point and a light `distance` metres away. `to_light` is a unit vector.
+    /// Whether nothing stands between a point and a light `distance` metres away. `to_light` is a
+    /// unit vector.
     pub(crate) fn sees_light(&self, seen: &Seen, to_light: DVec3, distance: f64, stack: &mut Vec<u32>) -> bool {
         let ray = seen.shadow_ray(to_light, distance);
         let mut free = true;
@@ -228,11 +238,14 @@ impl Truth {
         self.blocks(triangle, &crossing) && !self.is_own_surface(triangle, &crossing, seen, to_light)
     }
 
-    /// Whether a triangle that the shadow ray meets is one with the surface that the ray starts from.
+    /// Whether a triangle that the shadow ray meets is one with the surface that the ray starts
+    /// from.
     ///
-    /// A parallel one is if the point lies in its plane, as far as the scene's data can tell: a decal, the other face of a leaf, the
-    /// neighbour across a seam. Any other is none: the wall beside a crease stops light however near the crease the point is. Only where
-    /// rounding hides on which side of the wall the point is, light counts as stopped if the wall parts it from the eye.
+    /// A parallel one is if the point lies in its plane, as far as the scene's data can tell: a
+    /// decal, the other face of a leaf, the neighbour across a seam. Any other is none: the wall
+    /// beside a crease stops light however near the crease the point is. Only where rounding hides
+    /// on which side of the wall the point is, light counts as stopped if the wall parts it from
+    /// the eye.
     fn is_own_surface(&self, triangle: &Triangle, crossing: &Crossing, seen: &Seen, to_light: DVec3) -> bool {
         let Some(normal) = area_normal(triangle).try_normalize() else { return true };
         let from_plane = (crossing.t * normal.dot(to_light)).abs();
@@ -269,7 +282,8 @@ impl Truth {
         &self.triangles.surfaces[triangle.surface as usize]
     }
 
-    /// Whether the eye sees this point of a triangle: not the back of a single-sided one, not where alpha is too low.
+    /// Whether the eye sees this point of a triangle: not the back of a single-sided one, not where
+    /// alpha is too low.
     fn is_seen(&self, triangle: &Triangle, crossing: &Crossing, direction: DVec3) -> bool {
         let surface = self.surface(triangle);
         let normal = area_normal(triangle);
@@ -293,7 +307,7 @@ impl Truth {
         })
     }
 
-    /// The same first hit without the tree: what the tree is tested against.
+    /// The first hit of a ray without the tree: what the tree is tested against.
     #[cfg(test)]
     pub(crate) fn first_hit_by_brute_force(
         &self,
@@ -310,7 +324,7 @@ impl Truth {
             .map(|(crossing, triangle)| self.hit(origin, direction, &crossing, triangle))
     }
 
-    /// The same visibility without the tree.
+    /// Whether a seen point sees the light, without the tree: what the tree is tested against.
     #[cfg(test)]
     pub(crate) fn sees_light_by_brute_force(&self, seen: &Seen, to_light: DVec3, distance: f64) -> bool {
         let ray = seen.shadow_ray(to_light, distance);
@@ -320,8 +334,9 @@ impl Truth {
 
 impl Seen {
     fn shadow_ray(&self, to_light: DVec3, distance: f64) -> Ray {
-        // It begins a little behind its start: on a crease whose wall the eye looks along, the start is in the wall itself, and where light
-        // runs along that wall, too, rounding moves the crossing far.
+        // It begins a little behind its start: on a crease whose wall the eye looks along, the
+        // start is in the wall itself, and where light runs along that wall, too, rounding moves
+        // the crossing far.
         let lift = LIFT * self.reach;
         Ray::new(self.point + lift * self.to_eye, to_light, -BEHIND * lift, distance)
     }

@@ -1,4 +1,5 @@
-//! The settings of shadows as rows of controls, made from [`SETTINGS`]: a new setting shows up by itself.
+//! The settings of shadows as rows of controls, made from [`SETTINGS`]: a new setting shows up by
+//! itself.
 
 use umbrage::ShadowConfig;
 use umbrage::config::{Kind, LightKind, Preset, Rebuilds, SETTINGS, Setting, Value};
@@ -36,7 +37,8 @@ impl Row {
         }
     }
 
-    /// A value that can stand for the setting where it has none: the default's, some preset's, or the least.
+    /// A value that can stand for the setting where it has none: the default's, some preset's, or
+    /// the least.
     #[must_use]
     pub fn stand_in(&self) -> String {
         let presets = Preset::ALL.iter().find_map(|preset| self.setting.get(&preset.config()));
@@ -71,7 +73,8 @@ pub enum Verdict {
     Chosen,
     /// Nothing else changes.
     Free,
-    /// It goes with something that is chosen only if that gives way: why, in the words of the rules.
+    /// It goes with something that is chosen only if that gives way: why, in the words of the
+    /// rules.
     Excluded(Vec<String>),
     /// It cannot be made: why, and what to do.
     Impossible(String),
@@ -123,7 +126,8 @@ pub fn changes(before: &ShadowConfig, after: &ShadowConfig) -> Vec<String> {
     changed.map(say).collect()
 }
 
-/// Headings of the panel and the keys below them. What stands under none of them goes under [`OTHERS`].
+/// Headings of the panel and the keys below them. What stands under none of them goes under
+/// [`OTHERS`].
 pub const SECTIONS: &[(&str, &[&str])] = &[
     (
         "Splits",

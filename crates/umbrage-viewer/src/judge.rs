@@ -1,4 +1,5 @@
-//! The thread that traces rays: what shadows should be, how coarse maps are, and what was clicked on.
+//! The thread that traces rays: what shadows should be, how coarse maps are, and what was clicked
+//! on.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -107,7 +108,8 @@ pub struct MapLook {
     pub texel_m: DVec2,
     /// How much nearer to the light the texel's surface may be, metres.
     pub bias: Bias,
-    /// What the texel's centre sees of the scene: the object, and how far before the receiver's plane at that texel, metres.
+    /// What the texel's centre sees of the scene: the object, and how far before the receiver's
+    /// plane at that texel, metres.
     pub stored: Option<(usize, f64)>,
 }
 
@@ -255,7 +257,8 @@ impl Court {
         let blocker = if hit.lit || hit.normal.dot(to_light) <= 0.0 {
             None
         } else {
-            // A little above the surface: the truth knows which triangle is its own, a plain ray does not.
+            // A little above the surface: the truth knows which triangle is its own, a plain ray
+            // does not.
             let lifted = hit.position + hit.normal * 1e-6 * (1.0 + hit.depth);
             truth.first_caster(lifted, to_light, distance).map_err(|error| error.to_string())?
         };
@@ -300,7 +303,8 @@ fn map_look(truth: &Truth, index: usize, split: &Split, hit: &Hit) -> Result<Map
     };
     let (from, to) = (along(0.0), along(1.0));
     let first = truth.first_caster(from, to - from, from.distance(to)).map_err(|error| error.to_string())?;
-    // The receiver's plane, continued to the texel's centre: what an exact map of a flat surface would store.
+    // The receiver's plane, continued to the texel's centre: what an exact map of a flat surface
+    // would store.
     let direction = (to - from).normalize_or_zero();
     let facing = hit.normal.dot(direction);
     let plane = if facing.abs() > 1e-6 { hit.normal.dot(hit.position - from) / facing } else { f64::NAN };

@@ -1,4 +1,5 @@
-//! Lines in the world: frusta of splits, boxes of their maps, boxes of casters, as a camera sees them.
+//! Lines in the world: frusta of splits, boxes of their maps, boxes of casters, as a camera sees
+//! them.
 
 use glam::{DVec2, DVec3};
 use umbrage::{Aabb, ShadowPlan, Split, View};
@@ -6,8 +7,8 @@ use umbrage::{Aabb, ShadowPlan, Split, View};
 /// A line between two world points.
 pub type Segment = [DVec3; 2];
 
-/// Edges of a box whose corners are numbered as a slice's: four near ones (bottom left, bottom right, top left, top right),
-/// then four far ones.
+/// Edges of a box whose corners are numbered as a slice's: four near ones (bottom left, bottom
+/// right, top left, top right), then four far ones.
 const EDGES: [[usize; 2]; 12] =
     [[0, 1], [1, 3], [3, 2], [2, 0], [4, 5], [5, 7], [7, 6], [6, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
 
@@ -64,7 +65,8 @@ pub fn edges(bounds: &Aabb) -> [Segment; 12] {
 pub struct SplitLines {
     /// The split, counted from 0 in each face.
     pub split: usize,
-    /// Its slice of the view that was planned for; nothing for bands of distance, which have no planes.
+    /// Its slice of the view that was planned for; nothing for bands of distance, which have no
+    /// planes.
     pub slice: Vec<Segment>,
     /// What its map holds.
     pub map: Vec<Segment>,
@@ -85,7 +87,8 @@ pub fn frusta(plan: &ShadowPlan, planned: &View) -> Vec<SplitLines> {
     plan.splits.iter().enumerate().filter(|(_, split)| !split.casters.is_empty()).map(of).collect()
 }
 
-/// A line as a camera sees it, in shares of the picture from the upper left; `None` if it sees nothing of it.
+/// A line as a camera sees it, in shares of the picture from the upper left; `None` if it sees
+/// nothing of it.
 #[must_use]
 pub fn on_screen(view: &View, segment: Segment) -> Option<[DVec2; 2]> {
     let lens = view.frustum();

@@ -4,7 +4,8 @@ use glam::DVec3;
 use umbrage::{Frustum, View};
 use umbrage_scene::CameraPath;
 
-/// Metres from a path's points up to the eye, unless the command is told otherwise (`--eye-height`).
+/// Metres from a path's points up to the eye, unless the command is told otherwise
+/// (`--eye-height`).
 pub const EYE_HEIGHT_M: f64 = 2.0;
 /// Metres from the eye to its target.
 const TARGET_M: f64 = 20.0;

@@ -24,7 +24,8 @@ impl Spelled {
             let given = all.iter().filter(|setting| !same.contains(setting)).cloned().collect();
             Self { preset, given }
         });
-        // What a setting that is left away would mean beside others may differ: then everything is said.
+        // What a setting that is left away would mean beside others may differ: then everything is
+        // said.
         let long = Preset::ALL.iter().map(|&preset| Self { preset, given: all.clone() });
         let mut right: Vec<Self> =
             short.chain(long).filter(|spelled| spelled.config().as_ref() == Ok(config)).collect();

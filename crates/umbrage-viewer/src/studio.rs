@@ -1,5 +1,5 @@
-//! The thread that draws. It has a graphics device of its own, so that the window goes on however long a picture takes, and
-//! opens another if that one is lost.
+//! The thread that draws. It has a graphics device of its own, so that the window goes on however
+//! long a picture takes, and opens another if that one is lost.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};

@@ -140,7 +140,8 @@ mod tests {
 
     #[test]
     fn the_sun_is_where_almanacs_say() {
-        // Solstice in Vienna: 65.2° high at local noon, which is 12:00 − 16.37° / 15° an hour + 2 min.
+        // Solstice in Vienna: 65.2° high at local noon, which is 12:00 − 16.37° / 15° an hour + 2
+        // min.
         let noon = Almanac { hour: 12.0 - 16.37 / 15.0 + 0.03, ..Almanac::default() }.sky_point().expect("a day");
         assert!((noon.elevation - (90.0 - 48.21 + 23.44)).abs() < 0.05, "{noon:?}");
         assert!((noon.bearing - 180.0).abs() < 0.7, "{noon:?}");

@@ -56,7 +56,8 @@ impl Textures {
         for (slot, taken) in drawn.taken.iter().enumerate() {
             let image = opaque(&taken.picture);
             match self.pictures.get_mut(slot) {
-                // Pixels of the picture are pixels of the window; a smaller one is magnified smoothly.
+                // Pixels of the picture are pixels of the window; a smaller one is magnified
+                // smoothly.
                 Some(texture) => texture.set(image, TextureOptions::LINEAR),
                 None => self.pictures.push(ctx.load_texture("picture", image, TextureOptions::LINEAR)),
             }

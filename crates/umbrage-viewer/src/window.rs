@@ -23,7 +23,8 @@ use crate::{Error, Options, Result};
 const MOST_DEVICES: u32 = 5;
 /// How long a screenshot may take to be complete, at most.
 const PATIENCE: Duration = Duration::from_secs(600);
-/// Metres, as a share of the distance to what is looked at, from held maps to the eye that looks at them.
+/// Metres, as a share of the distance to what is looked at, from held maps to the eye that looks at
+/// them.
 const STEP_BACK: f64 = 0.9;
 
 /// Something on another thread is new.

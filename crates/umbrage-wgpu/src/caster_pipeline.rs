@@ -30,7 +30,8 @@ pub struct CasterPipeline<'a> {
     /// What `vertex` hands to `fragment`: members of the struct `UmbrageCast`.
     pub members: &'a str,
     /// Whether `wgsl` has an entry point `fragment`, which discards. It returns
-    /// `umbrage_caster_depth(at)` of its `@builtin(position)` at location 0, for maps that are colours.
+    /// `umbrage_caster_depth(at)` of its `@builtin(position)` at location 0, for maps that are
+    /// colours.
     pub discards: bool,
     /// The application's own bind groups, from group 1 on.
     pub bind_group_layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
@@ -90,7 +91,8 @@ impl Shadows {
     /// [`Shadows::set_lights`] answers [`umbrage::config::Rebuilds::Pipelines`].
     ///
     /// # Errors
-    /// [`crate::Error::Device`] if the device refuses shader or states, [`crate::Error::DeviceLost`].
+    /// [`crate::Error::Device`] if the device refuses shader or states,
+    /// [`crate::Error::DeviceLost`].
     pub fn caster_pipeline(&self, options: &CasterPipeline<'_>) -> Result<wgpu::RenderPipeline> {
         let maps = self.maps();
         made(maps.device(), "making a pipeline for casters", || Ok(pipeline(maps, options)))

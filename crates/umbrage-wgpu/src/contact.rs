@@ -10,7 +10,8 @@ use crate::{Error, Result};
 pub struct ContactOptions {
     /// How far from a surface to look for what shades it, metres towards the light.
     pub length_m: f32,
-    /// How thick what the camera sees is taken to be, metres: shadows end where something passes farther than this before the surface.
+    /// How thick what the camera sees is taken to be, metres: shadows end where something passes
+    /// farther than this before the surface.
     pub thickness_m: f32,
 }
 
@@ -39,8 +40,8 @@ impl ContactOptions {
 /// The camera of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactFrame {
-    /// Positions relative to the eye, along the world's axes, to the clip space that the depth was drawn in. Any depth that a GPU takes,
-    /// reversed and infinite ones too.
+    /// Positions relative to the eye, along the world's axes, to the clip space that the depth was
+    /// drawn in. Any depth that a GPU takes, reversed and infinite ones too.
     pub clip_from_eye: DMat4,
     /// The eye in the world.
     pub eye: DVec3,
@@ -95,8 +96,9 @@ impl Uniform {
     }
 }
 
-/// A uniform and a bind group layout for `umbrage_contact_visibility` ([`contact_wgsl`]). The app draws its picture's depth first, with one
-/// sample a pixel, into a texture that it may bind as `texture_depth_2d`. Not on GL and WebGL2, which cannot load from one.
+/// A uniform and a bind group layout for `umbrage_contact_visibility` ([`contact_wgsl`]). The app
+/// draws its picture's depth first, with one sample a pixel, into a texture that it may bind as
+/// `texture_depth_2d`. Not on GL and WebGL2, which cannot load from one.
 #[derive(Debug)]
 pub struct ContactShadows {
     uniform: wgpu::Buffer,
@@ -168,9 +170,10 @@ impl ContactShadows {
     }
 }
 
-/// Text to put before a shader that asks for contact shadows, beside [`crate::ShadowMaps::receiver_wgsl`] or without it; `group` is the
-/// index at which the app binds [`ContactShadows::bind_group`]. `umbrage_contact_visibility(position, normal, to_light, noise) -> f32` is to be
-/// multiplied with, or taken the smaller of, what the maps say.
+/// Text to put before a shader that asks for contact shadows, beside
+/// [`crate::ShadowMaps::receiver_wgsl`] or without it; `group` is the index at which the app binds
+/// [`ContactShadows::bind_group`]. `umbrage_contact_visibility(position, normal, to_light, noise)
+/// -> f32` is to be multiplied with, or taken the smaller of, what the maps say.
 #[must_use]
 pub fn contact_wgsl(group: u32) -> String {
     umbrage_shaders::contact(group)

@@ -5,13 +5,14 @@ use std::task::{Context, Poll, Waker};
 
 use crate::{Error, Result};
 
-/// Runs `work` and turns the device's complaints about it into an error. A browser answers later than
-/// that: its complaints go where the application has them go.
+/// Runs `work` and turns the device's complaints about it into an error. A browser answers later
+/// than that: its complaints go where the application has them go.
 pub(crate) fn guarded<T>(device: &wgpu::Device, during: &'static str, work: impl FnOnce() -> Result<T>) -> Result<T> {
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let result = work();
-    // Scopes close in the reverse order. Memory comes first in the report: the other follows from it.
+    // Scopes close in the reverse order. Memory comes first in the report: the other follows from
+    // it.
     let validation = now(validation.pop());
     let memory = now(memory.pop());
     match (memory, validation) {
@@ -21,8 +22,8 @@ pub(crate) fn guarded<T>(device: &wgpu::Device, during: &'static str, work: impl
     }
 }
 
-/// [`guarded`] for work that makes resources: those of a lost device are invalid, and `wgpu` says so to
-/// nobody but the application's callback.
+/// [`guarded`] for work that makes resources: those of a lost device are invalid, and `wgpu` says
+/// so to nobody but the application's callback.
 pub(crate) fn made<T>(device: &wgpu::Device, during: &'static str, work: impl FnOnce() -> Result<T>) -> Result<T> {
     let made = guarded(device, during, work);
     if is_lost(device) { Err(Error::DeviceLost) } else { made }

@@ -1,7 +1,7 @@
 //! Parallel-split (cascaded) shadow maps for any wgpu application.
 //!
-//! [`Shadows`] plans, owns maps and uniforms, and answers one WGSL call. It opens no device, owns no
-//! window and knows no mesh: the application draws its casters with its own vertex formats.
+//! [`Shadows`] plans, owns maps and uniforms, and answers one WGSL call. It opens no device, owns
+//! no window and knows no mesh: the application draws its casters with its own vertex formats.
 //!
 //! # Adopting it
 //!
@@ -10,22 +10,23 @@
 //! 3. **Receive.** Put [`Shadows::receiver_wgsl`] before your shader, multiply the sun's light by
 //!    `umbrage_visibility(position, normal)`, and put [`Shadows::bind_group_layout`] into your
 //!    pipeline's layout.
-//! 4. **Each frame:** [`Shadows::prepare`] with the camera, the light and bounding boxes; draw the casters
-//!    of every map of [`ShadowFrame::maps`]; [`Shadows::prefilter`]; then your own pass with
-//!    [`Shadows::bind_group`].
+//! 4. **Each frame:** [`Shadows::prepare`] with the camera, the light and bounding boxes; draw the
+//!    casters of every map of [`ShadowFrame::maps`]; [`Shadows::prefilter`]; then your own pass
+//!    with [`Shadows::bind_group`].
 //!
 //! `examples/hello_shadows` is a whole program. [`ShadowConfig`] has everything that can be chosen;
-//! [`Shadows`] says what a change costs. [`ShadowMaps`] and [`umbrage::Planner`] are the low level, for
-//! engines that plan or draw otherwise.
+//! [`Shadows`] says what a change costs. [`ShadowMaps`] and [`umbrage::Planner`] are the low level,
+//! for engines that plan or draw otherwise.
 //!
-//! Positions in both shaders are metres relative to [`Inputs::origin`]. The normal is the surface's own,
-//! not an interpolated or mapped one, turned towards the eye: the bias comes from it. A fragment shader
-//! without one takes `normalize(cross(dpdy(position), dpdx(position)))`.
+//! Positions in both shaders are metres relative to [`Inputs::origin`]. The normal is the surface's
+//! own, not an interpolated or mapped one, turned towards the eye: the bias comes from it. A
+//! fragment shader without one takes `normalize(cross(dpdy(position), dpdx(position)))`.
 //!
 //! # Casters with shaders of their own
 //!
-//! A vertex shader returns `umbrage_cast(position, instance)` of the position relative to the origin,
-//! where `instance` is its parameter `UmbrageInstance`. What stands before that is its own affair:
+//! A vertex shader returns `umbrage_cast(position, instance)` of the position relative to the
+//! origin, where `instance` is its parameter `UmbrageInstance`. What stands before that is its own
+//! affair:
 //!
 //! **Instanced**, with matrices in a storage buffer in group 1:
 //!
@@ -63,9 +64,9 @@
 //!
 //! `umbrage_fragment_query` belongs in uniform control flow. It knows the fragment's pixel, which
 //! dithered borders and turned discs need, and what the pixel covers, which filters of moments want
-//! ([`Filter::is_prefiltered`], with [`ShadowMaps::prefilter`] between steps 4 and 5); without it they
-//! look at their finest level, which shimmers far away. Everything else works in any control flow
-//! and in every stage.
+//! ([`Filter::is_prefiltered`], with [`ShadowMaps::prefilter`] between steps 4 and 5); without it
+//! they look at their finest level, which shimmers far away. Everything else works in any control
+//! flow and in every stage.
 //!
 //! Casters' and receivers' texts belong into two shader modules: both declare what they share.
 

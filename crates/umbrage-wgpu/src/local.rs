@@ -1,4 +1,5 @@
-//! Lights that stand somewhere: how their maps become uniforms, and how several lights share one list of frames.
+//! Lights that stand somewhere: how their maps become uniforms, and how several lights share one
+//! list of frames.
 
 use glam::{DMat4, DVec3, DVec4};
 use umbrage::{Light, ShadowPlan};
@@ -11,8 +12,9 @@ use crate::{Error, Result};
 /// The cosine that says a light has no cone.
 const NO_CONE: f32 = -2.0;
 
-/// One split of a local light. Its matrix is taken apart: w is metres along the axis, and depth `A − B/w` keeps its two numbers
-/// apart, because `(A w − B)/w` in `f32` would lose with every metre from the origin what A alone does not.
+/// One split of a local light. Its matrix is taken apart: w is metres along the axis, and depth `A
+/// − B/w` keeps its two numbers apart, because `(A w − B)/w` in `f32` would lose with every metre
+/// from the origin what A alone does not.
 pub(crate) fn split(
     index: usize,
     split: &umbrage::Split,
@@ -124,7 +126,8 @@ mod tests {
                 let relative = (point - origin).as_vec3();
                 let found = twin::map_from_world(&uniform, relative.to_array()).map(f64::from);
                 let exact = planned.map_from_world(origin + relative.as_dvec3());
-                // Sums of terms near 400 m lose some 1e-4 m, over a texel of so many metres here; twice for w.
+                // Sums of terms near 400 m lose some 1e-4 m, over a texel of so many metres here;
+                // twice for w.
                 let texel = planned.texel_edges(point).min_element();
                 let texels = 3e-4 * (1.0 + exact.truncate().length() / 1024.0) / texel + 1e-3;
                 prop_assert!((found[0] - exact.x).abs() < texels && (found[1] - exact.y).abs() < texels, "{found:?} instead of {exact}");

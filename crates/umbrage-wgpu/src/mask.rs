@@ -11,20 +11,20 @@ use crate::{Error, Result, ShadowMaps};
 /// Where the mask's pass takes its normals from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum MaskNormals {
-    /// From the depth of neighbouring pixels. Exact on planes; wrong where a surface is a pixel or two wide, which then may shade itself
-    /// or lie turned away from the light.
+    /// From the depth of neighbouring pixels. Exact on planes; wrong where a surface is a pixel or
+    /// two wide, which then may shade itself or lie turned away from the light.
     #[default]
     FromDepth,
-    /// From a texture as large as the depth, `texture_2d<f32>` with a format that has a sign: unit vectors of the world, of the
-    /// surfaces themselves and not of their shading.
+    /// From a texture as large as the depth, `texture_2d<f32>` with a format that has a sign: unit
+    /// vectors of the world, of the surfaces themselves and not of their shading.
     Texture,
 }
 
 /// The camera that drew the depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaskFrame {
-    /// Positions relative to the eye, along the world's axes, to the clip space that the depth was drawn in. Any depth that a GPU takes,
-    /// reversed and infinite ones too.
+    /// Positions relative to the eye, along the world's axes, to the clip space that the depth was
+    /// drawn in. Any depth that a GPU takes, reversed and infinite ones too.
     pub clip_from_eye: DMat4,
     /// The eye in the world.
     pub eye: DVec3,
@@ -68,8 +68,9 @@ impl Uniform {
     }
 }
 
-/// A pass that asks [`ShadowMaps`] for every pixel of a picture whose depth is drawn already, for applications that shade later: red is
-/// the first light's visibility (1 where nothing was drawn), green 1 where something was.
+/// A pass that asks [`ShadowMaps`] for every pixel of a picture whose depth is drawn already, for
+/// applications that shade later: red is the first light's visibility (1 where nothing was drawn),
+/// green 1 where something was.
 ///
 /// Positions are rebuilt from depth with one sample a pixel; they agree with the surfaces' own to
 /// rounding (`docs/notes/coordinates.md`).
@@ -86,8 +87,9 @@ impl ShadowMask {
     /// For masks of `format` (`R8Unorm` holds what is lit, `Rg8Unorm` also where something is).
     ///
     /// # Errors
-    /// [`Error::MaskNeedsDepthLoads`] where depth textures cannot be loaded from, [`Error::Config`] with
-    /// [`umbrage::config::Layout::Reused`], whose maps are gone when the picture's depth is complete.
+    /// [`Error::MaskNeedsDepthLoads`] where depth textures cannot be loaded from, [`Error::Config`]
+    /// with [`umbrage::config::Layout::Reused`], whose maps are gone when the picture's depth is
+    /// complete.
     pub fn new(
         device: &wgpu::Device,
         maps: &ShadowMaps,
@@ -97,7 +99,8 @@ impl ShadowMask {
         if device.adapter_info().backend == wgpu::Backend::Gl {
             return Err(Error::MaskNeedsDepthLoads);
         }
-        // Where one map is used again and again, all but the last are gone when the picture's depth is complete.
+        // Where one map is used again and again, all but the last are gone when the picture's depth
+        // is complete.
         ShadowConfig { coordinates: Coordinates::Deferred, ..maps.config().clone() }.validate()?;
         let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
             binding,
@@ -176,7 +179,8 @@ impl ShadowMask {
         Ok(())
     }
 
-    /// The group that [`ShadowMask::draw`] wants: the picture's depth and, with [`MaskNormals::Texture`], its normals.
+    /// The group that [`ShadowMask::draw`] wants: the picture's depth and, with
+    /// [`MaskNormals::Texture`], its normals.
     ///
     /// # Errors
     /// [`Error::MaskNormals`] if normals are missing or not asked for.

@@ -1,4 +1,5 @@
-//! From depth maps to moments: conversion, blur and mip levels, and the textures that receivers read.
+//! From depth maps to moments: conversion, blur and mip levels, and the textures that receivers
+//! read.
 
 use umbrage::config::{Derivatives, Fallbacks, MomentKind, Moments as MomentFilter};
 use umbrage::{MAX_SPLITS, ShadowPlan};
@@ -11,19 +12,22 @@ use crate::{Error, Filter, Result, device};
 /// What a device keeps moments in. Chosen when the maps are made, the first that it can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MomentStorage {
-    /// 32-bit floats through the hardware's sampler: needs `FLOAT32_FILTERABLE` (see [`crate::optional_features`]).
+    /// 32-bit floats through the hardware's sampler: needs `FLOAT32_FILTERABLE` (see
+    /// [`crate::optional_features`]).
     F32,
     /// 16-bit floats, for the exponential filters, with exponents that fit. They leak more light.
     F16,
-    /// 32-bit floats that the receiver's shader filters itself, for filters that 16 bits are too few for.
+    /// 32-bit floats that the receiver's shader filters itself, for filters that 16 bits are too
+    /// few for.
     F32Manual,
 }
 
-/// Kernels are this many texels wide at most to each side; maps have as much room around what they serve.
+/// Kernels are this many texels wide at most to each side; maps have as much room around what they
+/// serve.
 const MOST_RADIUS: f64 = 15.0;
 
-/// Width of a kernel that was given none, in texels of the finest map; the same in metres in all others, where it is no less than
-/// linear sampling itself.
+/// Width of a kernel that was given none, in texels of the finest map; the same in metres in all
+/// others, where it is no less than linear sampling itself.
 const DEFAULT_TEXELS: f64 = 8.0;
 
 /// Levels end at maps of 4 texels: no pixel sees more of a map than that.
@@ -44,8 +48,9 @@ impl MomentStorage {
         Ok(if matches!(kind, MomentKind::Vsm | MomentKind::Msm) { Self::F32Manual } else { Self::F16 })
     }
 
-    /// Exponents of the rising and the falling exponential, the largest whose squares fit: e^(2·40) of 3e38, e^(2·5.5) of 65504. The
-    /// falling one is A. Lauritzen's 5 where there is room, as larger ones only add noise. One moment is no square.
+    /// Exponents of the rising and the falling exponential, the largest whose squares fit: e^(2·40)
+    /// of 3e38, e^(2·5.5) of 65504. The falling one is A. Lauritzen's 5 where there is room, as
+    /// larger ones only add noise. One moment is no square.
     fn exponents(self, kind: MomentKind) -> [f32; 2] {
         match (self, kind) {
             (Self::F16, MomentKind::Esm) => [9.0, 0.0],
@@ -66,7 +71,8 @@ impl MomentStorage {
         }
     }
 
-    /// What to tell of a device that keeps moments otherwise than in 32-bit floats with the hardware's filter.
+    /// What to tell of a device that keeps moments otherwise than in 32-bit floats with the
+    /// hardware's filter.
     pub(crate) fn note(self, kind: MomentKind) -> Option<String> {
         match self {
             Self::F32 => None,
@@ -115,7 +121,8 @@ struct SplitTargets {
 }
 
 impl Moments {
-    /// `depths` has one view for each split; `edge` is that of a layer, of which there are `layers`.
+    /// `depths` has one view for each split; `edge` is that of a layer, of which there are
+    /// `layers`.
     pub fn new(
         device: &wgpu::Device,
         &MomentFilter { kind, samples, .. }: &MomentFilter,
@@ -127,8 +134,9 @@ impl Moments {
             return Err(Error::NoDepthLoads { filter: kind.word() });
         }
         let storage = MomentStorage::choose(kind, device.features(), fallbacks)?;
-        // Mesa's software driver (seen with 22.3) gives an anisotropic sample the differences between neighbouring pixels' places, whatever
-        // derivatives or level it was told: wrong on every border of splits, and outside fragment shaders.
+        // Mesa's software driver (seen with 22.3) gives an anisotropic sample the differences
+        // between neighbouring pixels' places, whatever derivatives or level it was told: wrong on
+        // every border of splits, and outside fragment shaders.
         let own_taps = device.adapter_info().device_type == wgpu::DeviceType::Cpu;
         let format = storage.format(kind);
         let level_count = edge.max(LEAST_LEVEL).ilog2() - LEAST_LEVEL.ilog2() + 1;

@@ -16,7 +16,8 @@ pub fn texture_format(format: DepthFormat) -> wgpu::TextureFormat {
     }
 }
 
-/// The step between stored depths as a share of the depth range; 0 where it is no coarser than `f32`.
+/// The step between stored depths as a share of the depth range; 0 where it is no coarser than
+/// `f32`.
 pub(crate) fn depth_step(format: DepthFormat) -> f64 {
     match format {
         DepthFormat::D32Float | DepthFormat::R32Float => 0.0,

@@ -12,7 +12,8 @@ use crate::maps::storage::Tile;
 use crate::options::{bias_kind, depth_step, filter_kind, reach_within, transition_kind};
 use crate::{Error, FrameOptions, LightMaps, Result, local};
 
-/// The square of texels that clip space covers when a split is drawn: the map and a guard band around it.
+/// The square of texels that clip space covers when a split is drawn: the map and a guard band
+/// around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Viewport {
     /// Edge in texels.
@@ -22,13 +23,14 @@ pub(crate) struct Viewport {
 }
 
 impl Viewport {
-    /// The widest guard band worth having, as a multiple of the map. Ours: a triangle that reaches from the map past one and a
-    /// half maps more is clipped, and its edges may then move by 1/512 texel between frames. A power of two, so that the step
-    /// from texels to clip space stays exact.
+    /// The widest guard band worth having, as a multiple of the map. Ours: a triangle that reaches
+    /// from the map past one and a half maps more is clipped, and its edges may then move by 1/512
+    /// texel between frames. A power of two, so that the step from texels to clip space stays
+    /// exact.
     const WIDEST: u32 = 4;
 
-    /// For a map of `size` texels. `largest` is the device's limit for viewports: its `max_texture_dimension_2d`, or 0 where they
-    /// may not be larger than what is drawn to.
+    /// For a map of `size` texels. `largest` is the device's limit for viewports: its
+    /// `max_texture_dimension_2d`, or 0 where they may not be larger than what is drawn to.
     pub fn around(size: u32, largest: u32) -> Self {
         let mut edge = size;
         while edge < Self::WIDEST * size && 2 * u64::from(edge) <= u64::from(largest) {
@@ -60,7 +62,8 @@ impl Place {
     }
 }
 
-/// The uniform that receivers read: the frames of each light's slot. Their splits are what casters read. `places` are those of all maps.
+/// The uniform that receivers read: the frames of each light's slot. Their splits are what casters
+/// read. `places` are those of all maps.
 pub(crate) fn frames(
     plans: &[&ShadowPlan],
     config: &ShadowConfig,
@@ -214,9 +217,10 @@ fn split(index: usize, split: &umbrage::Split, depth_step: f64, place: Place, or
     if let Some(shadow_from_world) = split.warp {
         return warped(index, split, shadow_from_world, depth_step, place, origin);
     }
-    // The light's plane in texels. What the origin adds (less the fraction of a map that is not stabilised) is split into a fraction,
-    // which stays with the row, and whole texels, which join the map's offset: a place before the offset then depends on the
-    // point and the origin alone, and offsets are whole numbers (see `from_caster` in shaders/lib/map.wesl).
+    // The light's plane in texels. What the origin adds (less the fraction of a map that is not
+    // stabilised) is split into a fraction, which stays with the row, and whole texels, which join
+    // the map's offset: a place before the offset then depends on the point and the origin alone,
+    // and offsets are whole numbers (see `from_caster` in shaders/lib/map.wesl).
     let corner = split.min_texel.floor();
     let constant =
         DVec2::new(split.u_axis.dot(origin), split.v_axis.dot(origin)) / split.texel_m - (split.min_texel - corner);
@@ -400,7 +404,8 @@ mod tests {
             let relative = (point - origin).as_vec3();
             let at = twin::map_from_world(&uniform, relative.to_array());
             let exact = planned.map_from_world(point);
-            // A position 1000 m from the origin is known to 6e-5 m, three times over; then 1e5 texels to 2^-7 at most.
+            // A position 1000 m from the origin is known to 6e-5 m, three times over; then 1e5
+            // texels to 2^-7 at most.
             let texels = 3.0 * (6e-5 / texel) + 3.0 * (1000.0 / texel) * 2f64.powi(-24) + 1e-3;
             prop_assert!((f64::from(at[0]) - exact.x).abs() < texels, "{at:?} instead of {exact}");
             prop_assert!((f64::from(at[1]) - exact.y).abs() < texels, "{at:?} instead of {exact}");
@@ -436,7 +441,8 @@ mod tests {
             let relative = (point - origin).as_vec3();
             let found = twin::map_from_world(&uniform, relative.to_array());
             let exact = planned.map_from_world(origin + relative.as_dvec3());
-            // Sums of terms near 1000 m lose some 1e-4 m, divided by a w of 3 m or more, times 1024 texels.
+            // Sums of terms near 1000 m lose some 1e-4 m, divided by a w of 3 m or more, times 1024
+            // texels.
             let [x, y, z] = found.map(f64::from);
             prop_assert!((x - exact.x).abs() < 0.1 && (y - exact.y).abs() < 0.1, "{found:?} instead of {exact}");
             prop_assert!((z - exact.z).abs() < 2e-4, "{found:?} instead of {exact}");
@@ -460,14 +466,16 @@ mod tests {
         }
     }
 
-    /// Source 003, Listings 4.1.4 and 4.1.5: map coordinates that a vertex shader hands on, and those that a fragment makes of an
-    /// interpolated position. The source calls the second wrong; perspective-correct interpolation is exact for both, as both are affine
-    /// in the position, and in `f32` they differ by rounding alone.
+    /// Source 003, Listings 4.1.4 and 4.1.5: map coordinates that a vertex shader hands on, and
+    /// those that a fragment makes of an interpolated position. The source calls the second wrong;
+    /// perspective-correct interpolation is exact for both, as both are affine in the position, and
+    /// in `f32` they differ by rounding alone.
     #[test]
     fn coordinates_of_vertices_and_of_fragments_agree_to_rounding() {
         let planned = split_near(DVec3::new(0.3, -1.0, 0.4), DVec3::new(20.0, 0.0, -30.0), 0.1, 1024);
         let uniform = split(0, &planned, 0.0, alone(1024), DVec3::ZERO).expect("a valid split");
-        // One large triangle of ground under a camera at (0, 5, 20) that looks down -Z: w is the distance along -Z.
+        // One large triangle of ground under a camera at (0, 5, 20) that looks down -Z: w is the
+        // distance along -Z.
         let corners = [DVec3::new(-60.0, 0.0, 15.0), DVec3::new(70.0, 0.0, 15.0), DVec3::new(10.0, 2.0, -400.0)];
         let w = corners.map(|corner| (20.0 - corner.z) as f32);
         let (mut between, mut of_fragments) = (0.0_f64, 0.0_f64);
@@ -485,7 +493,8 @@ mod tests {
                 let at_vertices = corners.map(|corner| twin::map_from_world(&uniform, corner.as_vec3().to_array()));
                 let by_vertex = [0, 1, 2].map(|axis| perspective([0, 1, 2].map(|k: usize| at_vertices[k][axis])));
                 let exact = planned.map_from_world(glam::Vec3::from_array(position).as_dvec3());
-                // What counts is where the maps are: those of far vertices are thousands of texels away.
+                // What counts is where the maps are: those of far vertices are thousands of texels
+                // away.
                 if exact.truncate().abs().max_element() > 2048.0 {
                     continue;
                 }
@@ -498,7 +507,8 @@ mod tests {
         eprintln!("fragment against vertex: {between:.6} texels; fragment against f64: {of_fragments:.6} texels");
         assert!(between < 0.01, "the two methods differ by {between} texels");
         assert!(of_fragments < 0.001, "an interpolated position is {of_fragments} texels off");
-        // Interpolation that is not perspective-correct would be off by whole shadows: the comparison can say no.
+        // Interpolation that is not perspective-correct would be off by whole shadows: the
+        // comparison can say no.
         let flat = |values: [f32; 3]| values.iter().sum::<f32>() / 3.0;
         let shares: Vec<f32> = w.iter().map(|w| 1.0 / w).collect();
         let middle = |k: usize| twin::map_from_world(&uniform, corners[k].as_vec3().to_array())[1];

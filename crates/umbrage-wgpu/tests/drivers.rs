@@ -1,5 +1,6 @@
-//! Driver defects that umbrage works around (docs/drivers.md), each drawn without the workaround. **A test that fails here says that
-//! the defect is gone:** then the workaround goes, and its row on that page. They run on the driver that has the defects alone.
+//! Driver defects that umbrage works around (docs/drivers.md), each drawn without the workaround.
+//! **A test that fails here says that the defect is gone:** then the workaround goes, and its row
+//! on that page. They run on the driver that has the defects alone.
 
 use std::num::NonZeroU32;
 
@@ -36,8 +37,9 @@ impl Gpu {
         Some(Self { device, queue })
     }
 
-    /// Draws `instances` of three vertices by the entry points `vs` and `fs`, whose answer is one `f32`, with `texture` at
-    /// binding 0 of group 0 and a sampler at 1, and returns each layer. Nothing drawn is -1.
+    /// Draws `instances` of three vertices by the entry points `vs` and `fs`, whose answer is one
+    /// `f32`, with `texture` at binding 0 of group 0 and a sampler at 1, and returns each layer.
+    /// Nothing drawn is -1.
     fn draw(&self, wgsl: &str, multiview: bool, instances: u32, texture: &wgpu::TextureView) -> Vec<Vec<f32>> {
         let format = wgpu::TextureFormat::R32Float;
         let device = &self.device;
@@ -198,7 +200,8 @@ const WHOLE: &str = "
 fn multiview_forgets_the_layer_of_clipped_triangles() {
     let Some(gpu) = Gpu::new(wgpu::Features::MULTIVIEW) else { return };
     let nothing = gpu.numbered_levels();
-    // Corners before the near plane, so that the triangle is clipped; the first instance draws nothing where there is a second.
+    // Corners before the near plane, so that the triangle is clipped; the first instance draws
+    // nothing where there is a second.
     let text = |lead: &str| {
         format!(
             "@vertex fn vs(@builtin(vertex_index) i: u32, @builtin(instance_index) k: u32) -> @builtin(position) vec4f {{
@@ -223,7 +226,8 @@ fn multiview_forgets_the_layer_of_clipped_triangles() {
 #[test]
 fn anisotropic_samples_ignore_their_gradients() {
     let Some(gpu) = Gpu::new(wgpu::Features::empty()) else { return };
-    // The place is the same everywhere, so differences between neighbours are 0; the gradients ask for level 3.
+    // The place is the same everywhere, so differences between neighbours are 0; the gradients ask
+    // for level 3.
     let text = WHOLE.to_owned()
         + "@fragment fn fs() -> @location(0) f32 {
                let d = 8.0 / 64.0;

@@ -1,4 +1,5 @@
-//! Several lights in one bind group, spot and point lights: against closed forms, each other, and what must be refused.
+//! Several lights in one bind group, spot and point lights: against closed forms, each other, and
+//! what must be refused.
 
 mod common;
 
@@ -208,7 +209,8 @@ fn lights_have_map_sizes_of_their_own() {
         let mut alone = World::of_lights(gpu, &config(map_sizes, PCF3, ""), &[light]);
         alone.draw(&plans[index], &FrameOptions::default(), &triangles());
         for ((one, all), it) in alone.ask(&asks).iter().zip(&together).zip(&asks) {
-            // A sampler weighs in steps of 1/256 from coordinates that round otherwise in another layer's size.
+            // A sampler weighs in steps of 1/256 from coordinates that round otherwise in another
+            // layer's size.
             let off = (one.visibility - all.visibility[index]).abs();
             assert!(off < 1.0 / 64.0, "light {index} at {}: {off}", it.position());
             assert_eq!(one.split, all.split[index], "light {index} at {}", it.position());

@@ -45,8 +45,8 @@ fn shadows_have_the_colour_and_the_strength_that_they_are_given() {
     assert_eq!(lights(0.25, [0.0, 0.5, 1.0]), [[0.75, 0.875, 1.0, 0.75], lit]);
 }
 
-/// How many decisions over a tilted plane that nothing shades but itself are not lit, asked about with a normal `aside` degrees from its
-/// own.
+/// How many decisions over a tilted plane that nothing shades but itself are not lit, asked about
+/// with a normal `aside` degrees from its own.
 fn dark_on_a_bare_plane(world: &mut World, bias: ReceiverBias, aside: f32) -> usize {
     let light = DVec3::new(0.7, -0.5, 0.3).normalize();
     world.set(&format!("bias={bias}"));
@@ -66,7 +66,8 @@ fn planes_do_not_shade_themselves_and_the_slope_forgives_normals_that_point_asid
         assert_eq!(dark(ReceiverBias::Plane, 0.0), 0, "{filter:?}");
         assert_eq!(dark(ReceiverBias::Slope, 0.0), 0, "{filter:?}");
         assert_eq!(dark(ReceiverBias::Slope, 25.0), 0, "{filter:?}");
-        // One texel alone knows nothing but its depth; several are followed to where they lead, which is this plane.
+        // One texel alone knows nothing but its depth; several are followed to where they lead,
+        // which is this plane.
         if filter == Filter::Hard {
             let found = dark(ReceiverBias::Plane, 90.0);
             assert!(found > 50, "a plane that is another's: {found}");

@@ -1,5 +1,6 @@
-//! Memory stays where it is, however many frames are drawn: Mesa's software driver compiles a shader again for each set of values that
-//! its branches hang on alone, and keeps every one of them (docs/notes/memory-of-casters.md).
+//! Memory stays where it is, however many frames are drawn: Mesa's software driver compiles a
+//! shader again for each set of values that its branches hang on alone, and keeps every one of them
+//! (docs/notes/memory-of-casters.md).
 //!
 //! Counted as the process's resident memory, so one test draws everything, one way after the other.
 #![cfg(target_os = "linux")]

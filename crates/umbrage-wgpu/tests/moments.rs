@@ -31,8 +31,8 @@ fn one_map(light: DVec3, size: u32) -> ShadowPlan {
     plan
 }
 
-/// A sunlit plane is lit under every angle and with every width; a steep one under a wide blur loses a little of it
-/// to what four moments or a falling exponential make of its own depths.
+/// A sunlit plane is lit under every angle and with every width; a steep one under a wide blur
+/// loses a little of it to what four moments or a falling exponential make of its own depths.
 #[test]
 fn planes_do_not_shade_themselves() {
     for filter in ALL {
@@ -79,7 +79,8 @@ fn walls_throw_shadows_in_every_storage() {
         let mut triangles = ground(400.0);
         triangles.extend(cuboid(Vec3::new(18.0, 0.0, -4.0), Vec3::new(19.0, 6.0, 4.0)));
         world.draw(&one_map(SLANTED, 256), &FrameOptions::default(), &triangles);
-        // The light goes 0.375 m along x and 0.25 m along z a metre down: the shadow of the wall reaches to x = 21.25.
+        // The light goes 0.375 m along x and 0.25 m along z a metre down: the shadow of the wall
+        // reaches to x = 21.25.
         let dark: Vec<Vec3> = (-25..25).map(|k| Vec3::new(20.0, 0.0, 0.1 * k as f32)).collect();
         let lit: Vec<Vec3> = (-60..60).map(|k| Vec3::new(24.0, 0.0, 0.1 * k as f32)).collect();
         for answer in world.ask(&up(&dark)) {
@@ -91,7 +92,8 @@ fn walls_throw_shadows_in_every_storage() {
     }
 }
 
-/// What the shader filters by itself is what the sampler filters, to the eight bits of a sampler's weights.
+/// What the shader filters by itself is what the sampler filters, to the eight bits of a sampler's
+/// weights.
 #[test]
 fn by_hand_is_as_by_sampler() {
     let mut answers = Vec::new();
@@ -143,7 +145,8 @@ fn a_map_reads_itself_only() {
     }
 }
 
-/// Every level has the mean of the first, whether its edge is odd or not; what lies outside a smaller map counts as far away.
+/// Every level has the mean of the first, whether its edge is odd or not; what lies outside a
+/// smaller map counts as far away.
 #[test]
 fn levels_keep_the_mean() {
     let source = "
@@ -180,7 +183,8 @@ fn levels_keep_the_mean() {
     }
 }
 
-/// Four samples make smooth what one cuts: the mean visibility along an edge is the same, and its steps are smaller.
+/// Four samples make smooth what one cuts: the mean visibility along an edge is the same, and its
+/// steps are smaller.
 #[test]
 fn four_samples_smooth_edges() {
     let mut roughness = Vec::new();

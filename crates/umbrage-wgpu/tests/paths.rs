@@ -1,4 +1,5 @@
-//! Every valid pair of generation and storage answers alike, and no filter ever sees a neighbour's texels.
+//! Every valid pair of generation and storage answers alike, and no filter ever sees a neighbour's
+//! texels.
 
 mod common;
 
@@ -79,7 +80,8 @@ fn check_pairs(sizes: &[u32], filter: Filter, depth_format: DepthFormat) {
         }
         let answers = answers(&mut world, &plan);
         let expected = expected.get_or_insert_with(|| answers.clone());
-        // A direction into a cube and a place in an atlas round differently: a linear sampler's weights are steps of 1/256.
+        // A direction into a cube and a place in an atlas round differently: a linear sampler's
+        // weights are steps of 1/256.
         let count = different(&answers, expected, 1.0 / 64.0);
         let tiles = matches!(layout, Layout::Atlas | Layout::InstancedAtlas | Layout::MixedArray);
         let most = if tiles { answers.len() / 2000 } else { 0 };
@@ -121,8 +123,8 @@ fn floats_say_what_depth_says() {
     }
 }
 
-/// A neighbour that is black all over must not darken anything: splits 1 and 3 are filled right before the light, splits 0 and 2 are asked
-/// along all their edges.
+/// A neighbour that is black all over must not darken anything: splits 1 and 3 are filled right
+/// before the light, splits 0 and 2 are asked along all their edges.
 #[test]
 fn filters_never_see_a_neighbour() {
     let sizes = [128u32; 4];
@@ -134,7 +136,8 @@ fn filters_never_see_a_neighbour() {
         ] {
             let Some(gpu) = Gpu::new() else { return };
             let mut world = World::new(gpu, &laid_out(&sizes, filter, layout, format));
-            // All four look straight down on squares of 40 m, 1000 m apart; those of 1 and 3 are covered by a roof 90 m up.
+            // All four look straight down on squares of 40 m, 1000 m apart; those of 1 and 3 are
+            // covered by a roof 90 m up.
             let mut plan = plan(DVec3::NEG_Y, DVec3::ZERO, &sizes, &[1.0, 2.0, 3.0, 4.0, 5.0], &[40.0; 4]);
             for (i, split) in plan.splits.iter_mut().enumerate() {
                 split.min_texel += split.u_axis.dot(DVec3::X * 1000.0 * i as f64) / split.texel_m.x * glam::DVec2::X
@@ -251,7 +254,8 @@ fn more_separate_maps_than_textures_are_refused() {
     let Some(gpu) = Gpu::new() else { return };
     let limits = wgpu::Limits { max_sampled_textures_per_shader_stage: 16, ..Default::default() };
     assert!(gpu.device.limits().max_sampled_textures_per_shader_stage >= limits.max_sampled_textures_per_shader_stage);
-    // No device has fewer than 16, and there are 8 splits at most: one light alone never meets the limit.
+    // No device has fewer than 16, and there are 8 splits at most: one light alone never meets the
+    // limit.
     let eight = laid_out(&[64; 8], PCF3, Layout::Separate, DepthFormat::D32Float);
     gpu.checked(|| ShadowMaps::new(&gpu.device, &eight, &SUN).expect("eight textures"));
     let message = Error::TooManyTextures { count: 24, limit: 16 }.to_string();

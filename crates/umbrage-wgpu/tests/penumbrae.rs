@@ -22,7 +22,7 @@ fn disc_share(x: f64) -> f64 {
     1.0 - (x.acos() - x * (1.0 - x * x).sqrt()) / std::f64::consts::PI
 }
 
-/// The same of a tent of half width 1.
+/// Share of a tent of half width 1 that lies left of `x`.
 fn tent_share(x: f64) -> f64 {
     let x = x.clamp(-1.0, 1.0);
     0.5 + x - 0.5 * x * x.abs()
@@ -51,7 +51,8 @@ fn ask_splits(splits: usize) -> String {
     )
 }
 
-/// Full widths of the edge in each split, in metres, if it has the form `share`; `maps` are the widths of the splits' maps.
+/// Full widths of the edge in each split, in metres, if it has the form `share`; `maps` are the
+/// widths of the splits' maps.
 fn widths<const N: usize>(filter: Filter, softness: &str, maps: [f64; N], share: fn(f64) -> f64) -> Option<[f64; N]> {
     let sizes = [SIZE; N];
     let mut world = World::new(Gpu::new()?, &config(&sizes, filter, softness));
@@ -85,7 +86,7 @@ fn check<const N: usize>(found: [f64; N], expected: f64, what: &str) {
     check_borders(found, what);
 }
 
-/// The same width on both sides of every border between splits.
+/// Penumbrae are equally wide on both sides of every border between splits.
 fn check_borders<const N: usize>(found: [f64; N], what: &str) {
     for sides in found.windows(2) {
         assert!(
@@ -95,7 +96,8 @@ fn check_borders<const N: usize>(found: [f64; N], what: &str) {
     }
 }
 
-/// Four splits, so three borders; 0.8 m are 2.2 texels of the coarsest map and more of the others, but no more than the filter may take.
+/// Four splits, so three borders; 0.8 m are 2.2 texels of the coarsest map and more of the others,
+/// but no more than the filter may take.
 #[test]
 fn edges_are_as_wide_on_both_sides_of_every_border() {
     for (filter, softness, maps) in [
@@ -128,8 +130,8 @@ fn tents_are_as_wide_as_they_are_told_up_to_their_texels() {
     assert!((capped[0] / (7.0 / 64.0) - 1.0).abs() < 0.1, "{capped:?}");
 }
 
-/// Moments of two planes know the share of each, so an edge is the tent's; what is cut off as a leak (here as much as floors of variance let
-/// through) narrows it alike everywhere.
+/// Moments of two planes know the share of each, so an edge is the tent's; what is cut off as a
+/// leak (here as much as floors of variance let through) narrows it alike everywhere.
 #[test]
 fn blurs_are_as_wide_as_they_are_told_in_every_split() {
     for filter in [ESM, VSM, EVSM2, EVSM4, MSM] {

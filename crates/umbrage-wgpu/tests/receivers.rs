@@ -1,4 +1,5 @@
-//! What receivers are told, against closed forms: a box on the ground, splits side by side, blend, fade, range.
+//! What receivers are told, against closed forms: a box on the ground, splits side by side, blend,
+//! fade, range.
 
 mod common;
 
@@ -48,7 +49,8 @@ fn check_box(light: DVec3, shadow_length: f32, filter: Filter, depth_format: Dep
     world.draw(&plan, &FrameOptions::default(), &box_on_ground());
     let points = ground_points();
     let texel = plan.splits[0].texel_m.x as f32;
-    // A slanted texel is √2 longer on the ground; the bias grows with the filter and lets light in under a caster that is lower.
+    // A slanted texel is √2 longer on the ground; the bias grows with the filter and lets light in
+    // under a caster that is lower.
     let reach = match filter {
         // Without a width, and under the sun's own angle: not the widest that they may be.
         Filter::Disc { .. } => 4.0,
@@ -100,7 +102,8 @@ fn sixteen_bits_of_depth_are_enough() {
     }
 }
 
-/// A plane that the light grazes under every angle does not shade itself: closed form, everything is lit.
+/// A plane that the light grazes under every angle does not shade itself: closed form, everything
+/// is lit.
 #[test]
 fn planes_do_not_shade_themselves() {
     let Some(gpu) = Gpu::new() else { return };
@@ -138,7 +141,8 @@ fn splits_blend_and_fade_without_a_jump() {
     let mut world = World::new(gpu, &stored(&[256, 128], PCF5, DepthFormat::D32Float));
     let plan = two_splits();
     let frame = FrameOptions { tint: true, ..FrameOptions::default() };
-    // A long wall along the line of sight: its shadow's edge runs through the border and on through the fade.
+    // A long wall along the line of sight: its shadow's edge runs through the border and on through
+    // the fade.
     let mut triangles = ground(200.0);
     triangles.extend(cuboid(Vec3::new(-10.0, 0.0, -0.4), Vec3::new(120.0, 2.0, 0.4)));
     world.draw(&plan, &frame, &triangles);
@@ -147,7 +151,8 @@ fn splits_blend_and_fade_without_a_jump() {
         let points: Vec<Vec3> = (0..6200).map(|i| Vec3::new(i as f32 * 0.01, 0.0, z)).collect();
         let answers = world.ask(&up(&points));
         for (pair, point) in answers.windows(2).zip(&points) {
-            // Pcf5 and a band of 1.5 m change by less than this over a centimetre; a hard border would show as a jump.
+            // Pcf5 and a band of 1.5 m change by less than this over a centimetre; a hard border
+            // would show as a jump.
             let step = (pair[1].visibility - pair[0].visibility).abs();
             assert!(step < 0.03, "visibility jumps by {step} at {point}");
         }
@@ -196,7 +201,8 @@ fn check_own_corner(filter: Filter, reach: f64) {
     plan.planes = vec![1.0, 2.0, 400.0];
     (plan.splits[0].far, plan.splits[0].blend_begin, plan.splits[1].near, plan.splits[1].far) = (2.0, 2.0, 2.0, 400.0);
     (plan.splits[1].blend_begin, plan.fade_begin) = (400.0, 400.0);
-    // First everything dark in both layers and in all of them, then an empty world in the second map only.
+    // First everything dark in both layers and in all of them, then an empty world in the second
+    // map only.
     let roof = [
         Vec3::new(-500.0, 50.0, -500.0),
         Vec3::new(500.0, 50.0, -500.0),
@@ -239,7 +245,8 @@ fn facing_strength_enabled_and_empty_splits() {
         world.draw(plan, &frame, &box_on_ground());
         world.ask(&asks).iter().map(|a| (a.visibility, a.split)).collect::<Vec<_>>()
     };
-    // Below the box; from below; a plane that the light runs along; behind the eye; out of range and turned away.
+    // Below the box; from below; a plane that the light runs along; behind the eye; out of range
+    // and turned away.
     let frame = FrameOptions::default();
     assert_eq!(answers(&mut world, &plan, frame), [(0.0, 0), (0.0, 0), (0.0, 0), (1.0, 0), (0.0, -1)]);
     world.set("shadow-strength=0.25");
@@ -251,8 +258,8 @@ fn facing_strength_enabled_and_empty_splits() {
     assert_eq!(answers(&mut world, &plan, frame)[..2], [(1.0, 0), (0.0, 0)]);
 }
 
-/// With and without `DEPTH_CLIP_CONTROL`: a caster before the near plane is kept by the first and by the planner's care only in
-/// the second.
+/// With and without `DEPTH_CLIP_CONTROL`: a caster before the near plane is kept by the first and
+/// by the planner's care only in the second.
 #[test]
 fn casters_before_the_near_plane_survive_with_depth_clamp() {
     for withheld in [wgpu::Features::empty(), wgpu::Features::DEPTH_CLIP_CONTROL] {
@@ -286,7 +293,8 @@ fn borders_blend_dither_or_are_hard() {
         let mut world = World::new(gpu.take().or_else(Gpu::new).expect("there was one"), &asked);
         world.draw(&plan, &FrameOptions::default(), &triangles);
         for (answer, point) in world.ask(&up(&points)).iter().zip(&points) {
-            // Without a pixel a dithered border lies in the middle of its band, which is 19 to 20.5.
+            // Without a pixel a dithered border lies in the middle of its band, which is 19 to
+            // 20.5.
             let split = usize::from(point.x >= border);
             if (point.x - border).abs() > 1e-3_f32 {
                 assert_eq!(answer.split, split as i32, "{transition} at {point}");

@@ -1,5 +1,6 @@
-//! No seam shows where splits meet, for any filter; with naive derivatives one does. The seam score of `umbrage_truth::scores` against
-//! closed-form truth: a plain strewn with boxes, of which only the shadows are seen.
+//! No seam shows where splits meet, for any filter; with naive derivatives one does. The seam score
+//! of `umbrage_truth::scores` against closed-form truth: a plain strewn with boxes, of which only
+//! the shadows are seen.
 
 mod common;
 
@@ -38,7 +39,8 @@ fn boxes(seed: u64) -> Vec<Aabb> {
 /// The place of the ground that a pixel shows, if it does.
 fn ground_at(x: u32, y: u32) -> Option<DVec3> {
     let ndc = |i: u32| (2.0 * (f64::from(i) + 0.5) / f64::from(SIZE) - 1.0) * HALF;
-    // The picture's lower edge looks steeply down, its upper edge a little below the horizon; it is tilted, so that borders run askew.
+    // The picture's lower edge looks steeply down, its upper edge a little below the horizon; it is
+    // tilted, so that borders run askew.
     let down = 0.1 + 0.5 * (ndc(y) + HALF) + 0.1 * ndc(x);
     let depth = EYE_HEIGHT / down;
     (RANGE.0..RANGE.1).contains(&depth).then(|| DVec3::new(depth, 0.0, depth * ndc(x)))
@@ -83,7 +85,8 @@ fn plan(filter: &Filter, boxes: &[Aabb]) -> ShadowPlan {
     planner.plan(&view, &DirectionalLight::new(TRAVEL).expect("a direction"), boxes, &[ground]).expect("a plan").clone()
 }
 
-/// Derivatives of the place in each pixel's own map, as hardware would take them: metres that make them.
+/// Derivatives of the place in each pixel's own map, as hardware would take them: metres that make
+/// them.
 const NAIVE: &str = "
 fn umbrage_fragment_query(position: vec3f, normal: vec3f, dx: vec3f, dy: vec3f, pixel: vec2f) -> UmbrageQuery {
     let own = umbrage_select_split_at(0u, umbrage_frame_view_depth(0u, position));
@@ -173,7 +176,7 @@ fn no_filter_shows_a_seam() {
     }
 }
 
-/// The same score says no to derivatives that are taken across borders.
+/// The score says no to derivatives that are taken across borders.
 #[test]
 fn naive_derivatives_show_one() {
     let scenes = Scene::all(&[5]);

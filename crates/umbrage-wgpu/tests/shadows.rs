@@ -1,4 +1,5 @@
-//! The front door: what it costs to change something, what a refused frame leaves behind, several lights and views.
+//! The front door: what it costs to change something, what a refused frame leaves behind, several
+//! lights and views.
 
 mod common;
 
@@ -114,8 +115,8 @@ impl Pipelines {
     }
 }
 
-/// The table of `Setting::rebuilds`, walked: every setting of every config below is changed, and pipelines that were
-/// made before go on drawing wherever the table says that they do.
+/// The table of `Setting::rebuilds`, walked: every setting of every config below is changed, and
+/// pipelines that were made before go on drawing wherever the table says that they do.
 #[test]
 fn the_table_says_what_keeps_pipelines_valid() {
     let Some(gpu) = Gpu::new() else { return };
@@ -178,7 +179,8 @@ fn shadows_stand_still_through_changes_that_do_not_concern_them() {
     assert!(fresh.iter().zip(&held).any(|(fresh, held)| fresh.texel_m != held.texel_m));
 }
 
-/// A window that is dragged larger pixel by pixel is planned for as it is, and still maps stay where they are.
+/// A window that is dragged larger pixel by pixel is planned for as it is, and still maps stay
+/// where they are.
 #[test]
 fn a_resized_picture_moves_no_still_map() {
     let Some(gpu) = Gpu::new() else { return };

@@ -31,9 +31,9 @@ fn plan(config: &ShadowConfig, casters: &[Aabb], receivers: &[Aabb]) -> ShadowPl
 }
 
 /// Whether one of the casters that are left out of a split's list may have changed its answer at a
-/// point. It covers one texel at most, whose centre lies a quarter of a texel from its middle or less.
-/// A filter reads texels whose centres lie within its reach and half a texel, and the next one to each
-/// for the slope of what it holds.
+/// point. It covers one texel at most, whose centre lies a quarter of a texel from its middle or
+/// less. A filter reads texels whose centres lie within its reach and half a texel, and the next
+/// one to each for the slope of what it holds.
 fn may_differ(all: &ShadowPlan, fewer: &ShadowPlan, split: usize, casters: &[Aabb], point: DVec3) -> bool {
     let map = &all.splits[split];
     let at = map.map_from_world(point);

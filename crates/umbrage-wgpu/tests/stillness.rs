@@ -1,9 +1,10 @@
 //! Maps of a world that stands still are the same texels when the camera moves by whole texels.
 //!
-//! Which triangle a texel shows is the same without exception. Its depth is the same up to the rasteriser's own rounding:
-//! lavapipe, for one, evaluates a triangle's depth as `a + b·x + c·y` from the target's corner, so that a shift rounds
-//! differently. For a triangle that the light sees edge-on, `b` and `c` are as large as its area is small and nothing is
-//! left of `a`, wherever it lies; such slivers are drawn by every rasteriser as it can and are left out here.
+//! Which triangle a texel shows is the same without exception. Its depth is the same up to the
+//! rasteriser's own rounding: lavapipe, for one, evaluates a triangle's depth as `a + b·x + c·y`
+//! from the target's corner, so that a shift rounds differently. For a triangle that the light sees
+//! edge-on, `b` and `c` are as large as its area is small and nothing is left of `a`, wherever it
+//! lies; such slivers are drawn by every rasteriser as it can and are left out here.
 
 mod common;
 
@@ -18,10 +19,12 @@ const WIDTH_M: f64 = 60.0;
 /// Depths may differ by this share of the 200 m range: 32 steps of an f32 just below 1, 0.4 mm.
 const ROUNDING: f32 = 1.9073486e-6;
 
-/// A triangle is drawn if its height above its longest edge, as the light sees it, is at least this many texels.
+/// A triangle is drawn if its height above its longest edge, as the light sees it, is at least this
+/// many texels.
 const LEAST_HEIGHT: f64 = 0.25;
 
-/// Triangles of all sizes around the origin, from a linear congruential generator (Knuth's constants).
+/// Triangles of all sizes around the origin, from a linear congruential generator (Knuth's
+/// constants).
 fn soup(count: usize) -> Vec<Vec3> {
     let mut state = 2025u64;
     let mut next = || {
@@ -96,8 +99,9 @@ fn whole_texels_change_nothing() {
     }
 }
 
-/// What receivers are told stands still with the maps: points of the triangles themselves, at any place of the map, under every
-/// filter. A linear sampler weighs in steps of 1/256 from a coordinate that does round.
+/// What receivers are told stands still with the maps: points of the triangles themselves, at any
+/// place of the map, under every filter. A linear sampler weighs in steps of 1/256 from a
+/// coordinate that does round.
 #[test]
 fn whole_texels_change_no_answer() {
     let mut compared = 0;
@@ -124,7 +128,8 @@ fn whole_texels_change_no_answer() {
         let still = answers(&mut world, DVec2::ZERO);
         for shift in [DVec2::new(1.0, 0.0), DVec2::new(-7.0, 12.0)] {
             let moved = answers(&mut world, shift);
-            // Points that one of the maps does not cover, or covers at its edge, are lit there and left out.
+            // Points that one of the maps does not cover, or covers at its edge, are lit there and
+            // left out.
             let plan = plan(light, origin, &[SIZE], &[0.1, 100.0], &[WIDTH_M]);
             for ((a, b), it) in still.iter().zip(&moved).zip(&asks) {
                 if plan.splits[0].contains(origin + it.position().as_dvec3(), 16.0) {

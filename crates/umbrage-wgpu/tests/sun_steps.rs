@@ -63,7 +63,8 @@ fn seen(frames: u32, fade: f64) -> Option<Vec<Vec<f32>>> {
     Some(frames.collect())
 }
 
-/// The most that any point's visibility changes from one frame to the next, and from the first frame to the last.
+/// The most that any point's visibility changes from one frame to the next, and from the first
+/// frame to the last.
 fn changes(frames: &[Vec<f32>]) -> (f32, f32) {
     let most = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     let steps = frames.windows(2).map(|pair| most(&pair[0], &pair[1])).fold(0.0, f32::max);

@@ -51,8 +51,8 @@ fn tent_taps_agree() {
     assert_eq!(output.len(), 20_000);
 }
 
-/// Nine taps give 6×6 texels the weights that [Castano13] derives for a sample a share `s` of the way
-/// from one texel's centre to the next: (1 − s, 3 − 2s, 4 − s, 3 + s, 1 + 2s, s) / 12 per axis.
+/// Nine taps give 6×6 texels the weights that [Castano13] derives for a sample a share `s` of the
+/// way from one texel's centre to the next: (1 − s, 3 − 2s, 4 − s, 3 + s, 1 + 2s, s) / 12 per axis.
 #[test]
 fn castano_s_taps_weigh_texels_as_published() {
     let Some(gpu) = Gpu::new() else { return };
@@ -130,7 +130,8 @@ fn discs_widths_and_noise_agree() {
     for (index, (&[i, turn, width, texel], &[x, y, wide, noise])) in input.iter().zip(&output).enumerate() {
         let most = if index % 2 == 1 { 2.0 } else { 15.0 };
         let [twin_x, twin_y] = twin::vogel(i as u32, 32, turn);
-        // Sines of angles up to 80: WGSL promises 2^-11 near 0 and nothing beyond; drivers keep 1e-4.
+        // Sines of angles up to 80: WGSL promises 2^-11 near 0 and nothing beyond; drivers keep
+        // 1e-4.
         assert!((x - twin_x).abs() < 1e-3 && (y - twin_y).abs() < 1e-3, "{x} {y}, {twin_x} {twin_y}");
         assert!((wide - twin::half_width(width, texel, 2.5, most)).abs() < 1e-4);
         assert!((noise - twin::gradient_noise([i + 0.5, i * 2.0 + 0.5])).abs() < 1e-3);
@@ -189,7 +190,8 @@ struct BiasAsk {
     position: [f32; 4],
     normal: [f32; 4],
     to_light: [f32; 4],
-    /// Offset in texels, what the texel stores, and texels of reach without a plane; negative for with one.
+    /// Offset in texels, what the texel stores, and texels of reach without a plane; negative for
+    /// with one.
     tap: [f32; 4],
     /// What the next texels store, and two numbers that stand for nothing.
     beyond: [f32; 4],
@@ -318,7 +320,8 @@ fn bias_decided(at: &twin::bias::Receiver, ask: &BiasAsk, stored: f32) -> u32 {
         | u32::from(at.meets_receiver(offset, stored, beyond)) << 2
 }
 
-/// Decisions of the twin that hold a little nearer and a little farther, and how many of them the GPU does not share.
+/// Decisions of the twin that hold a little nearer and a little farther, and how many of them the
+/// GPU does not share.
 fn bias_disagreements(
     asks: &[BiasAsk],
     answers: &[BiasAnswer],
@@ -328,7 +331,8 @@ fn bias_disagreements(
     for (ask, answer) in asks.iter().zip(answers) {
         let at = twin(ask);
         let span = at.tolerance.past + (at.slope[0] * ask.tap[0] + at.slope[1] * ask.tap[1]).abs();
-        // A tangent of a grazed surface is a quotient of small numbers, and all that is aside grows with the way there.
+        // A tangent of a grazed surface is a quotient of small numbers, and all that is aside grows
+        // with the way there.
         let aside_m = (ask.tap[0] * at.texel_m[0]).hypot(ask.tap[1] * at.texel_m[1]);
         let unsure = 2e-5 + 1e-3 * span + 0.02 * aside_m / at.range_m;
         let [near, here, far] = [-unsure, 0.0, unsure].map(|by| bias_decided(&at, ask, ask.tap[2] + by));
@@ -377,7 +381,8 @@ fn bias_agrees_in_every_kind_of_map() {
     let [sure, wrong] = bias_disagreements(&asks, &answers, bias_receiver);
     assert_eq!(wrong, 0, "of {sure}");
     assert!(sure > 12_000 && seen.iter().flatten().all(|&count| count > 1000), "{sure} {seen:?}");
-    // The comparison can say no: to a constant bias that is larger by half a texel, to a plane that is not followed.
+    // The comparison can say no: to a constant bias that is larger by half a texel, to a plane that
+    // is not followed.
     let biased = |ask: &BiasAsk| {
         let at = bias_receiver(ask);
         twin::bias::Receiver { depth: at.depth - 0.5 * at.texel_m[0] / at.range_m, ..at }

@@ -1,6 +1,7 @@
-//! 600 frames of walking, turning and zooming past things that stand still, at 0, 10 and 100 km from the world's origin: exactly
-//! stabilised maps show every static texel that a visible point can ask for as the frame before showed it. Equal means: the
-//! same texels are empty, and the depths of the others lie no farther apart than the rasteriser's own rounding (see
+//! 600 frames of walking, turning and zooming past things that stand still, at 0, 10 and 100 km
+//! from the world's origin: exactly stabilised maps show every static texel that a visible point
+//! can ask for as the frame before showed it. Equal means: the same texels are empty, and the
+//! depths of the others lie no farther apart than the rasteriser's own rounding (see
 //! `stillness.rs`): 2^-19 of the range, which is 0.2 mm here.
 
 mod common;
@@ -82,7 +83,8 @@ struct Tally {
     still: usize,
     /// Pairs of frames of one split between which a step was taken or the origin moved.
     stepped: usize,
-    /// Texels that only one of the maps covers. A tight one covers no more than its casters can shade.
+    /// Texels that only one of the maps covers. A tight one covers no more than its casters can
+    /// shade.
     outside: usize,
     /// Texels compared, those with something in them, and those that differ.
     texels: usize,
@@ -121,7 +123,8 @@ fn drawn(world: &mut World, planner: &mut Planner, town: &Town, sun: &Directiona
     Frame { plan, origin, view, maps }
 }
 
-/// The texels around every point that both frames show through this split: its own and its eight neighbours, as the filters see them.
+/// The texels around every point that both frames show through this split: its own and its eight
+/// neighbours, as the filters see them.
 fn compare(tally: &mut Tally, before: &Frame, now: &Frame, split: usize, points: &[DVec3]) {
     let (old, new) = (&before.plan.splits[split], &now.plan.splits[split]);
     let shift = new.texels_moved_since(old).filter(|_| before.origin == now.origin);
@@ -198,7 +201,8 @@ fn no_static_texel_changes_while_step_and_origin_stand() {
 fn nor_does_one_of_an_approximate_map_between_its_steps() {
     let Some(mut world) = world() else { return };
     let town = Town::new(DVec3::new(7_071.3, 12.7, -7_071.1));
-    // While it turns and zooms a map takes a step of 9 % every tenth frame at most, a finer one every fifth.
+    // While it turns and zooms a map takes a step of 9 % every tenth frame at most, a finer one
+    // every fifth.
     for (steps, frames) in [(ExtentSteps::PerDoubling(8), 10), (ExtentSteps::default(), 5)] {
         let tally = walk(&mut world, &town, &settings(Stability::Approximate { steps }), FRAMES);
         eprintln!("approximate, {steps:?}: {tally:?}");
@@ -208,7 +212,8 @@ fn nor_does_one_of_an_approximate_map_between_its_steps() {
     }
 }
 
-/// A sun that moves in steps leaves every map alone between two of them, and there are as many steps as its way is long.
+/// A sun that moves in steps leaves every map alone between two of them, and there are as many
+/// steps as its way is long.
 #[test]
 fn between_steps_of_the_sun_no_static_texel_changes() {
     let Some(mut world) = world() else { return };
@@ -222,7 +227,8 @@ fn between_steps_of_the_sun_no_static_texel_changes() {
     }
 }
 
-/// The texels of 150 frames, as many as go by before the zoom takes a step of its own, and the steps that the sun took.
+/// The texels of 150 frames, as many as go by before the zoom takes a step of its own, and the
+/// steps that the sun took.
 fn walk_under_stepped_sun(world: &mut World, town: &Town) -> (Tally, usize) {
     let mut planner = Planner::new(&settings(Stability::Exact)).expect("valid");
     let mut stepped = SteppedSun::new(0.01, 8.0).expect("valid");
@@ -230,7 +236,8 @@ fn walk_under_stepped_sun(world: &mut World, town: &Town) -> (Tally, usize) {
     for k in 0..150 {
         let sun = DQuat::from_rotation_z(0.0004 * f64::from(k)) * DVec3::new(0.3, -1.0, 0.2);
         let fade = stepped.follow(&DirectionalLight::new(sun).expect("a direction"), 1.0).expect("a time");
-        // The maps of the sun that is left are drawn as they were before the fade, so those of the other are looked at.
+        // The maps of the sun that is left are drawn as they were before the fade, so those of the
+        // other are looked at.
         let now = drawn(world, &mut planner, town, &fade.to, k);
         if let Some((before, old)) = &before {
             let taken = old.to != fade.to;

@@ -1,7 +1,8 @@
 //! What does a plan cost by a set of casters, and what by the list of the same boxes?
 //!
-//! A wood of 10,000 trees to the square kilometre, of 10² to 10⁶ trees, one in a hundred of which moves in every frame. The camera
-//! walks and turns; four splits reach 800 m. Lists must be equal before anything is timed.
+//! A wood of 10,000 trees to the square kilometre, of 10² to 10⁶ trees, one in a hundred of which
+//! moves in every frame. The camera walks and turns; four splits reach 800 m. Lists must be equal
+//! before anything is timed.
 
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,5 @@
-//! The planner alone: no GPU, a text report of where shadow maps lie. For engines that draw maps themselves.
+//! The planner alone: no GPU, a text report of where shadow maps lie. For engines that draw maps
+//! themselves.
 //!
 //! `cargo run -p umbrage --example plan_report`
 
@@ -54,7 +55,8 @@ pub fn report() -> Result<String, Box<dyn Error>> {
         writeln!(text, "{index:>5}  {near:>6.1}..{far:>6.1} m  {size:>5}²  {texel_cm:>4.1} cm  {casters:>4} of 40")?;
     }
 
-    // What a shader of your own needs of a split: its matrix from the world, for your depth convention.
+    // What a shader of your own needs of a split: its matrix from the world, for your depth
+    // convention.
     let first = &plan.splits[0];
     let feet = DVec3::new(-6.0, 0.0, 0.0);
     let place = first.map_from_world(feet);

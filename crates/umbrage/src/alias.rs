@@ -1,16 +1,18 @@
-//! Predicted aliasing: how many pixels a shadow map's texel covers on screen, before a frame is drawn.
+//! Predicted aliasing: how many pixels a shadow map's texel covers on screen, before a frame is
+//! drawn.
 
 use glam::{DMat2, DVec2, DVec3};
 
 use crate::{Projection, Split, View};
 
 impl Split {
-    /// Perspective part of the aliasing at view depth `d`: pixels that one texel (its larger edge) spans on a surface that
-    /// faces the camera, `m_p = t_w H / (2 d tan(fov_y/2))`; its inverse is texels per pixel. Above 1 the shadow's edge shows
-    /// the map's texels.
+    /// Perspective part of the aliasing at view depth `d`: pixels that one texel (its larger edge)
+    /// spans on a surface that faces the camera, `m_p = t_w H / (2 d tan(fov_y/2))`; its inverse is
+    /// texels per pixel. Above 1 the shadow's edge shows the map's texels.
     ///
-    /// Source: *Parallel-Split Shadow Maps* eq. 1, `dp/ds ∝ (1/z)(dz/ds)`, with the texel's width from the split's matrix in
-    /// place of the source's unit map. A warped map's texel is that of the view's axis at `d`.
+    /// Source: *Parallel-Split Shadow Maps* eq. 1, `dp/ds ∝ (1/z)(dz/ds)`, with the texel's width
+    /// from the split's matrix in place of the source's unit map. A warped map's texel is that of
+    /// the view's axis at `d`.
     #[must_use]
     pub fn pixels_per_texel(&self, view: &View, image_height: u32, d: f64) -> f64 {
         let f = view.frustum();
@@ -21,8 +23,9 @@ impl Split {
         texel.max_element() * f64::from(image_height) / ((f.top - f.bottom) * f.scale_at(d))
     }
 
-    /// The same at a point of a surface with unit `normal`, projection aliasing included: `1/σ_min(J)`, where
-    /// `J = ∂texel/∂pixel` is taken through the receiver's plane. Infinite where the view grazes the surface.
+    /// Pixels per texel at a point of a surface with unit `normal`, projection aliasing included:
+    /// `1/σ_min(J)`, where `J = ∂texel/∂pixel` is taken through the receiver's plane. Infinite
+    /// where the view grazes the surface.
     #[must_use]
     pub fn pixels_per_texel_at(&self, view: &View, image_size: [u32; 2], point: DVec3, normal: DVec3) -> f64 {
         let f = view.frustum();
@@ -31,7 +34,8 @@ impl Split {
         let rotation = view.world_from_view_rotation();
         let pixel = DVec2::new(f.right - f.left, f.top - f.bottom) * scale
             / DVec2::new(f64::from(image_size[0]), f64::from(image_size[1]));
-        // A step of one pixel moves the point in the image plane's direction, then along the ray back onto the plane.
+        // A step of one pixel moves the point in the image plane's direction, then along the ray
+        // back onto the plane.
         let ray = match f.projection {
             Projection::Perspective => point - view.eye(),
             Projection::Orthographic => view.forward(),

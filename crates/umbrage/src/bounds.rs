@@ -12,8 +12,9 @@ pub(crate) const LEAST_METRES: f64 = 1e-9;
 
 /// An axis-aligned box in world space, in metres.
 ///
-/// The bounds of a caster or a receiver. A box may be flat (a plane) or a single point; it may not be inverted,
-/// infinite or NaN when it is handed to the planner, which answers such a box with an error that names it.
+/// The bounds of a caster or a receiver. A box may be flat (a plane) or a single point; it may not
+/// be inverted, infinite or NaN when it is handed to the planner, which answers such a box with an
+/// error that names it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     /// The corner with the smallest coordinates.

@@ -1,4 +1,5 @@
-//! What a plan's lists are complete for: the points that a map may be asked about, and the parts that shade them.
+//! What a plan's lists are complete for: the points that a map may be asked about, and the parts
+//! that shade them.
 
 use glam::DVec3;
 
@@ -46,7 +47,8 @@ impl CoverageVolume {
     }
 }
 
-/// Whether a caster may leave a shadow on the receivers of a slice, within `margin` metres beside them.
+/// Whether a caster may leave a shadow on the receivers of a slice, within `margin` metres beside
+/// them.
 pub(crate) fn can_shade(caster: &Placed, swept: &SweptVolume, served: Option<&Served>, fan: &Fan, margin: f64) -> bool {
     let &Placed { center, half } = caster;
     swept.meets(center, half, margin)

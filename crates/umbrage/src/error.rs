@@ -3,7 +3,8 @@
 /// [`std::result::Result`] with this crate's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Why the planner refused its input. Every message names the field, what was wrong and what to give instead.
+/// Why the planner refused its input. Every message names the field, what was wrong and what to
+/// give instead.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {

@@ -12,13 +12,13 @@
 //! | shadow NDC | x, y in [−1,1], y up | z in \[0,1\], 0 nearest to the light |
 //! | shadow texture | u right, v **down** | texels, [0, size]² per split |
 //!
-//! Column vectors, column-major matrices, radians. A transform is named `target_from_source`. Splits count from 0;
-//! `C_0 = n` and `C_m = f` are the ends of the shadowed range.
+//! Column vectors, column-major matrices, radians. A transform is named `target_from_source`.
+//! Splits count from 0; `C_0 = n` and `C_m = f` are the ends of the shadowed range.
 //!
 //! # Speed in a development build
 //!
-//! Planning is some fifty times slower without optimisation. Let Cargo optimise the planner in an application's `dev`
-//! profile, too:
+//! Planning is some fifty times slower without optimisation. Let Cargo optimise the planner in an
+//! application's `dev` profile, too:
 //!
 //! ```toml
 //! [profile.dev.package.umbrage]

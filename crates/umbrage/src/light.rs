@@ -5,14 +5,16 @@ use glam::DVec3;
 use crate::bounds::MOST_METRES;
 use crate::{Error, Result};
 
-/// Share of a local light's range within which nothing casts, unless a light is told otherwise: a lamp's own glass.
+/// Share of a local light's range within which nothing casts, unless a light is told otherwise: a
+/// lamp's own glass.
 const NEAR_SHARE: f64 = 1.0 / 256.0;
 
 /// The least distance that a local light may shine, metres.
 const LEAST_RANGE: f64 = 1e-6;
 
-/// The widest angle, in radians, between a spot light's axis and the rim of its cone: 85°. Ours: a map of the whole cone then
-/// covers 2 tan 85° = 23 times the distance, and wider is what a point light is for.
+/// The widest angle, in radians, between a spot light's axis and the rim of its cone: 85°. Ours: a
+/// map of the whole cone then covers 2 tan 85° = 23 times the distance, and wider is what a point
+/// light is for.
 const WIDEST_CONE: f64 = 85.0 * std::f64::consts::PI / 180.0;
 
 /// A sun: light that travels in one direction everywhere.
@@ -22,7 +24,8 @@ pub struct DirectionalLight {
 }
 
 impl DirectionalLight {
-    /// `direction` is the way the light travels (from the sun to the ground); it need not be normalised.
+    /// `direction` is the way the light travels (from the sun to the ground); it need not be
+    /// normalised.
     ///
     /// # Errors
     /// [`Error::InvalidLight`] if the vector is zero or not finite.
@@ -36,8 +39,9 @@ impl DirectionalLight {
         self.direction
     }
 
-    /// The light's own basis, fixed to the light and never to the camera: unit vectors along a map's u (right) and
-    /// v (down). Together with [`DirectionalLight::direction`] (depth) they are a right-handed frame (u, v, depth).
+    /// The light's own basis, fixed to the light and never to the camera: unit vectors along a
+    /// map's u (right) and v (down). Together with [`DirectionalLight::direction`] (depth) they are
+    /// a right-handed frame (u, v, depth).
     #[must_use]
     pub fn map_axes(&self) -> (DVec3, DVec3) {
         map_axes(self.direction)
@@ -55,12 +59,12 @@ pub struct SpotLight {
 }
 
 impl SpotLight {
-    /// A light at `position` (world, metres) that shines along `direction` (any length) as far as `range` metres, up to
-    /// `outer_angle` radians from its axis: half of the cone's opening.
+    /// A light at `position` (world, metres) that shines along `direction` (any length) as far as
+    /// `range` metres, up to `outer_angle` radians from its axis: half of the cone's opening.
     ///
     /// # Errors
-    /// [`Error::InvalidLight`] naming the parameter: a position or direction that is not finite, no direction, an angle that is not
-    /// in (0, 85°], a range outside of 10^-6 to 10^12 m.
+    /// [`Error::InvalidLight`] naming the parameter: a position or direction that is not finite, no
+    /// direction, an angle that is not in (0, 85°], a range outside of 10^-6 to 10^12 m.
     pub fn new(position: DVec3, direction: DVec3, outer_angle: f64, range: f64) -> Result<Self> {
         if !(outer_angle > 0.0 && outer_angle <= WIDEST_CONE) {
             return Err(Error::light(
@@ -75,8 +79,8 @@ impl SpotLight {
         Ok(Self { position, direction: unit_direction(direction)?, outer_angle, range, near: range * NEAR_SHARE })
     }
 
-    /// The same light with another distance, in metres, within which nothing casts (its own lamp). The default is 1/256 of the
-    /// range; a map's precision grows with it.
+    /// This light with another distance, in metres, within which nothing casts (its own lamp). The
+    /// default is 1/256 of the range; a map's precision grows with it.
     ///
     /// # Errors
     /// [`Error::InvalidLight`] unless 0 < `near` < range.
@@ -127,7 +131,8 @@ impl PointLight {
     /// A light at `position` (world, metres) that shines as far as `range` metres.
     ///
     /// # Errors
-    /// [`Error::InvalidLight`] naming the parameter: a position beyond 10^12 m, a range outside of 10^-6 to 10^12 m.
+    /// [`Error::InvalidLight`] naming the parameter: a position beyond 10^12 m, a range outside of
+    /// 10^-6 to 10^12 m.
     pub fn new(position: DVec3, range: f64) -> Result<Self> {
         let (position, range) = (place(position)?, reach(range)?);
         Ok(Self { position, range, near: range * NEAR_SHARE })
@@ -195,8 +200,8 @@ impl Light {
         }
     }
 
-    /// How many maps show its surroundings once: 6 for a point light, one for each face of a cube, else 1. A plan has this many times as
-    /// many splits as its settings.
+    /// How many maps show its surroundings once: 6 for a point light, one for each face of a cube,
+    /// else 1. A plan has this many times as many splits as its settings.
     #[must_use]
     pub fn faces(&self) -> usize {
         match self {
@@ -205,7 +210,8 @@ impl Light {
         }
     }
 
-    /// The unit vector from a world point towards the light. At the very place of a local light it has no direction and is 0.
+    /// The unit vector from a world point towards the light. At the very place of a local light it
+    /// has no direction and is 0.
     #[must_use]
     pub fn to_light(&self, point: DVec3) -> DVec3 {
         match self {
@@ -216,7 +222,8 @@ impl Light {
         }
     }
 
-    /// Whether a world point lies within the light's range and cone. Outside nothing is asked of its maps.
+    /// Whether a world point lies within the light's range and cone. Outside nothing is asked of
+    /// its maps.
     #[must_use]
     pub fn reaches(&self, point: DVec3) -> bool {
         match self {
@@ -230,8 +237,8 @@ impl Light {
         }
     }
 
-    /// The face of a point light in whose frustum a world point lies (see [`Light::FACE_AXES`]); 0 for other lights. Where two
-    /// meet, x goes before y and y before z, as in the WGSL.
+    /// The face of a point light in whose frustum a world point lies (see [`Light::FACE_AXES`]); 0
+    /// for other lights. Where two meet, x goes before y and y before z, as in the WGSL.
     #[must_use]
     pub fn face_of(&self, point: DVec3) -> usize {
         let Self::Point(light) = self else { return 0 };

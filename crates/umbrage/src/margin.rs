@@ -3,15 +3,15 @@
 use crate::config::Filter;
 use crate::{Error, Result, ShadowConfig};
 
-/// Texels that a map keeps free besides the filter's reach: half for the texel that a sample's rounding may choose, one for the
-/// normal offset of the receiver's bias.
+/// Texels that a map keeps free besides the filter's reach: half for the texel that a sample's
+/// rounding may choose, one for the normal offset of the receiver's bias.
 pub(crate) const EDGE_TEXELS: f64 = 1.5;
 
 /// Texels beyond a kernel's half width that its outermost taps read.
 const TAP: f64 = 1.0;
 
-/// The fewest texels that a filter of known metres is given: that of a disc three texels wide, which such a filter falls back to where
-/// depth cannot be loaded.
+/// The fewest texels that a filter of known metres is given: that of a disc three texels wide,
+/// which such a filter falls back to where depth cannot be loaded.
 const LEAST_REACH: f64 = 4.0;
 
 /// How far a filter reads from the sample: the margin that each map keeps around what it serves.
@@ -55,8 +55,8 @@ impl FilterReach {
         }
     }
 
-    /// Edge in texels of the smallest map that holds the filter's margins: one texel beside them, and
-    /// one for moving in whole texels.
+    /// Edge in texels of the smallest map that holds the filter's margins: one texel beside them,
+    /// and one for moving in whole texels.
     pub(crate) fn least_map_size(self, is_stabilised: bool) -> u32 {
         let moving = if is_stabilised { 5.0 } else { 4.0 };
         (2.0 * self.radius_texels + moving).ceil() as u32
@@ -67,11 +67,12 @@ impl FilterReach {
         Self { half_width_m: None, ..self }
     }
 
-    /// Texels around the sample in a map of `size` texels whose shorter edge has to show `edge` metres; `spare` texels of that edge are for
-    /// neither.
+    /// Texels around the sample in a map of `size` texels whose shorter edge has to show `edge`
+    /// metres; `spare` texels of that edge are for neither.
     ///
-    /// With a kernel of half width h the edge takes e + 2 h metres and 2 + spare texels, so a texel is (e + 2 h) / (size − 2 − spare) and the
-    /// reach 1 + h / texel, unless that is more than the filter's most: then it is that, and the filter narrower than asked for.
+    /// With a kernel of half width h the edge takes e + 2 h metres and 2 + spare texels, so a texel
+    /// is (e + 2 h) / (size − 2 − spare) and the reach 1 + h / texel, unless that is more than the
+    /// filter's most: then it is that, and the filter narrower than asked for.
     pub(crate) fn texels(self, edge: f64, size: u32, spare: f64) -> f64 {
         let Some(half_width) = self.half_width_m else { return self.radius_texels };
         let texel = (edge + 2.0 * half_width) / (f64::from(size) - 2.0 * TAP - spare);

@@ -12,7 +12,8 @@ pub const MAX_SPLITS: usize = 8;
 
 /// The shadow maps of one light for one view.
 ///
-/// All positions are `f64` world metres; a renderer subtracts its own origin before it goes to `f32`.
+/// All positions are `f64` world metres; a renderer subtracts its own origin before it goes to
+/// `f32`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShadowPlan {
     /// The splits, nearest first; of a point light those of its first face, then those of the next.
@@ -21,9 +22,11 @@ pub struct ShadowPlan {
     pub planes: Vec<f64>,
     /// The plane that measures view depth: `xyz · point + w`, in metres.
     pub view_depth_plane: DVec4,
-    /// With [`crate::config::SplitMetric::Distance`] the eye, metres: all depths of this plan are then distances to it. `None`: view depths.
+    /// With [`crate::config::SplitMetric::Distance`] the eye, metres: all depths of this plan are
+    /// then distances to it. `None`: view depths.
     pub radial_eye: Option<DVec3>,
-    /// The way light travels, a unit vector; the axis of a spot light. A point light has none and the value is straight down.
+    /// The way light travels, a unit vector; the axis of a spot light. A point light has none and
+    /// the value is straight down.
     pub light_direction: DVec3,
     /// The light that was planned for; `None` stands for a sun along `light_direction`.
     pub light: Option<Light>,
@@ -31,16 +34,21 @@ pub struct ShadowPlan {
     pub fade_begin: f64,
     /// Which map answers for a point.
     pub selection: Selection,
-    /// With [`Selection::Map`]: share of a map's half edge over which it blends into the next that contains the point.
+    /// With [`Selection::Map`]: share of a map's half edge over which it blends into the next that
+    /// contains the point.
     pub blend: f64,
-    /// Indices into the planner's caster list, or keys of its set, split after split; see [`ShadowPlan::casters`].
+    /// Indices into the planner's caster list, or keys of its set, split after split; see
+    /// [`ShadowPlan::casters`].
     pub caster_indices: Vec<u32>,
-    /// For each split how many casters its list leaves out by [`crate::ShadowConfig::drop_small_casters`].
+    /// For each split how many casters its list leaves out by
+    /// [`crate::ShadowConfig::drop_small_casters`].
     pub dropped_casters: Vec<u32>,
-    /// For each caster of a list the first and the last split it is drawn in, `None` if it is drawn in none. The range is a
-    /// bound: the lists are exact. Empty for a set, whose keys may be any numbers: see [`ShadowPlan::splits_of`].
+    /// For each caster of a list the first and the last split it is drawn in, `None` if it is drawn
+    /// in none. The range is a bound: the lists are exact. Empty for a set, whose keys may be any
+    /// numbers: see [`ShadowPlan::splits_of`].
     pub split_range: Vec<Option<(u8, u8)>>,
-    /// What the lists are complete for; see [`ShadowPlan::casts_into`] and [`ShadowPlan::covering_split`].
+    /// What the lists are complete for; see [`ShadowPlan::casts_into`] and
+    /// [`ShadowPlan::covering_split`].
     pub coverage: PlanCoverage,
 }
 
@@ -99,7 +107,8 @@ impl ShadowPlan {
         self.dropped_casters.resize(self.splits.len(), 0);
     }
 
-    /// What chooses the split of a world point, metres: its view depth, or with radial bands its distance to the eye.
+    /// What chooses the split of a world point, metres: its view depth, or with radial bands its
+    /// distance to the eye.
     #[must_use]
     pub fn depth_at(&self, point: DVec3) -> f64 {
         match self.radial_eye {
@@ -114,21 +123,21 @@ impl ShadowPlan {
         self.light.map_or(1, |light| light.faces())
     }
 
-    /// Whether a part of a caster of `split` can throw a shadow on anything that the split serves: the test that casters were
-    /// listed by, for the part's own world box. An application that keeps large meshes in clusters skips those that it
-    /// rejects.
+    /// Whether a part of a caster of `split` can throw a shadow on anything that the split serves:
+    /// the test that casters were listed by, for the part's own world box. An application that
+    /// keeps large meshes in clusters skips those that it rejects.
     ///
     /// Conservative: skipping what it rejects never changes a visible pixel. With
-    /// [`crate::PlanInputs::receiver_clusters`] it also rejects parts with no such cluster behind them. Always `true` for
-    /// local lights and with [`Selection::Map`].
+    /// [`crate::PlanInputs::receiver_clusters`] it also rejects parts with no such cluster behind
+    /// them. Always `true` for local lights and with [`Selection::Map`].
     #[must_use]
     pub fn casts_into(&self, split: usize, part: &Aabb) -> bool {
         self.coverage.casts_into(split, part)
     }
 
-    /// The first split whose map holds every caster that can shade `point`, for points that the view does not show (points
-    /// that it shows use the split of their view depth). A split without casters answers "lit", but not with
-    /// [`Selection::Map`]. `None`: no map answers.
+    /// The first split whose map holds every caster that can shade `point`, for points that the
+    /// view does not show (points that it shows use the split of their view depth). A split without
+    /// casters answers "lit", but not with [`Selection::Map`]. `None`: no map answers.
     #[must_use]
     pub fn covering_split(&self, point: DVec3) -> Option<usize> {
         let in_map = |split: &Split| split.contains(point, split.filter_reach);
@@ -144,8 +153,9 @@ impl ShadowPlan {
         let mut covering = self.splits.iter().enumerate().filter(|(i, _)| self.coverage.contains(*i, point));
         match self.selection {
             Selection::Interval(_) => covering.find(|(_, split)| split.casters.is_empty() || in_map(split)),
-            // Later maps leave out casters whose shadows lie over an earlier one, so that one has to answer or nobody
-            // does. It does not answer for points before its depth range, where nobody looked for casters.
+            // Later maps leave out casters whose shadows lie over an earlier one, so that one has
+            // to answer or nobody does. It does not answer for points before its depth range, where
+            // nobody looked for casters.
             Selection::Map => covering
                 .find(|(_, split)| !split.casters.is_empty() && split.lies_over(point, split.filter_reach))
                 .filter(|(_, split)| in_map(split)),
@@ -153,14 +163,16 @@ impl ShadowPlan {
         .map(|(i, _)| i)
     }
 
-    /// The splits that a caster, by its index or key, is drawn in: bit `i` stands for split `i`. 0: none.
+    /// The splits that a caster, by its index or key, is drawn in: bit `i` stands for split `i`. 0:
+    /// none.
     #[must_use]
     pub fn splits_of(&self, caster: u32) -> u64 {
         let is_in = |&split: &usize| self.casters(split).binary_search(&caster).is_ok();
         (0..self.splits.len()).filter(is_in).fold(0, |splits, split| splits | 1 << split)
     }
 
-    /// The casters of split `index`, rising: indices into the list given to the planner, or keys of its set.
+    /// The casters of split `index`, rising: indices into the list given to the planner, or keys of
+    /// its set.
     #[must_use]
     pub fn casters(&self, index: usize) -> &[u32] {
         &self.caster_indices[self.splits[index].casters.clone()]
@@ -169,16 +181,18 @@ impl ShadowPlan {
 
 /// One slice of the view and the map that serves it.
 ///
-/// A plain map is an orthographic picture taken along [`Split::depth_axis`]. With `p` a world point,
-/// `texel = ((u_axis·p)/texel_m.x − min_texel.x, (v_axis·p)/texel_m.y − min_texel.y)` is its place in the map in texels, v down,
-/// `[0, size]²`, and `depth = (depth_axis·p − depth_near)/(depth_far − depth_near)` what the map stores.
+/// A plain map is an orthographic picture taken along [`Split::depth_axis`]. With `p` a world
+/// point, `texel = ((u_axis·p)/texel_m.x − min_texel.x, (v_axis·p)/texel_m.y − min_texel.y)` is its
+/// place in the map in texels, v down, `[0, size]²`, and `depth = (depth_axis·p −
+/// depth_near)/(depth_far − depth_near)` what the map stores.
 ///
-/// A warped map is the picture that [`Split::warp`] takes. The axes, `min_texel` and the depths are then those of the plain map
-/// that it replaces; [`Split::map_from_world`] and its neighbours answer for either kind.
+/// A warped map is the picture that [`Split::warp`] takes. The axes, `min_texel` and the depths are
+/// then those of the plain map that it replaces; [`Split::map_from_world`] and its neighbours
+/// answer for either kind.
 ///
-/// The map of a local light is a perspective picture taken from [`Split::light_position`] along [`Split::depth_axis`], which
-/// [`Split::warp`] takes, too: w is the depth along that axis in metres, and the stored depth is `A − B/w`, 0 at `depth_near` and 1 at
-/// `depth_far`.
+/// The map of a local light is a perspective picture taken from [`Split::light_position`] along
+/// [`Split::depth_axis`], which [`Split::warp`] takes, too: w is the depth along that axis in
+/// metres, and the stored depth is `A − B/w`, 0 at `depth_near` and 1 at `depth_far`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Split {
     /// Where the slice begins, `C_i`: a view depth in metres; see [`ShadowPlan::radial_eye`].
@@ -187,8 +201,8 @@ pub struct Split {
     pub far: f64,
     /// View depth at which the blend into the next split begins; `far` if there is none.
     pub blend_begin: f64,
-    /// The view depths, with radial bands too, that may sample this map: the slice widened by the previous split's blend band and a pixel
-    /// quad.
+    /// The view depths, with radial bands too, that may sample this map: the slice widened by the
+    /// previous split's blend band and a pixel quad.
     pub coverage: (f64, f64),
     /// Edge of the map in texels.
     pub size: u32,
@@ -196,36 +210,40 @@ pub struct Split {
     pub u_axis: DVec3,
     /// World direction of the map's v (down), a unit vector.
     pub v_axis: DVec3,
-    /// World direction of depth, a unit vector: the way light travels, or the axis of a local light's picture.
+    /// World direction of depth, a unit vector: the way light travels, or the axis of a local
+    /// light's picture.
     pub depth_axis: DVec3,
-    /// Metres per texel along u and v. A warped map and that of a local light have this size of texel in the middle of their
-    /// receivers only, see [`Split::texel_edges`].
+    /// Metres per texel along u and v. A warped map and that of a local light have this size of
+    /// texel in the middle of their receivers only, see [`Split::texel_edges`].
     pub texel_m: DVec2,
-    /// The map's upper left corner in texels of the light's plane (of a local light: from the axis); whole numbers when the split is
-    /// stabilised.
+    /// The map's upper left corner in texels of the light's plane (of a local light: from the
+    /// axis); whole numbers when the split is stabilised.
     pub min_texel: DVec2,
     /// Metres along `depth_axis` at depth 0.
     pub depth_near: f64,
     /// Metres along `depth_axis` at depth 1.
     pub depth_far: f64,
-    /// Metres along `depth_axis` of the first and the last place that is seen through this map, with room for the bias: what filters of
-    /// depth's moments spread their numbers over. A caster may lie before it.
+    /// Metres along `depth_axis` of the first and the last place that is seen through this map,
+    /// with room for the bias: what filters of depth's moments spread their numbers over. A caster
+    /// may lie before it.
     pub receiver_depths: (f64, f64),
-    /// Texels around a sample that a filter may read: what lies on screen lies that far inside the map.
-    /// [`crate::FilterReach::radius_texels`], or less where the filter's width is known in metres.
+    /// Texels around a sample that a filter may read: what lies on screen lies that far inside the
+    /// map. [`crate::FilterReach::radius_texels`], or less where the filter's width is known in
+    /// metres.
     pub filter_reach: f64,
-    /// Shadow NDC (x, y in [−1,1], y up, z in \[0,1\]) from world, to be divided by w; `None` for a plain map. w is positive at every
-    /// receiver, and does not change along parallel light.
+    /// Shadow NDC (x, y in [−1,1], y up, z in \[0,1\]) from world, to be divided by w; `None` for a
+    /// plain map. w is positive at every receiver, and does not change along parallel light.
     pub warp: Option<DMat4>,
     /// Where the light stands, metres; `None` for parallel light.
     pub light_position: Option<DVec3>,
-    /// This split's part of [`ShadowPlan::caster_indices`]. Empty: nothing throws a shadow here and the split is lit.
+    /// This split's part of [`ShadowPlan::caster_indices`]. Empty: nothing throws a shadow here and
+    /// the split is lit.
     pub casters: std::ops::Range<usize>,
 }
 
 impl Split {
-    /// Where a world point lies in the map: texels (v down) and stored depth. NaN behind a warped map's projection centre, where
-    /// it shows nothing.
+    /// Where a world point lies in the map: texels (v down) and stored depth. NaN behind a warped
+    /// map's projection centre, where it shows nothing.
     #[must_use]
     pub fn map_from_world(&self, point: DVec3) -> DVec3 {
         if let Some(shadow_from_world) = self.warp {
@@ -247,14 +265,16 @@ impl Split {
         self.light_position.map_or(self.depth_axis, |light| (point - light).try_normalize().unwrap_or(self.depth_axis))
     }
 
-    /// The same as a matrix to NDC (x right, y up, both in [−1,1], z in \[0,1\]); to be divided by w, which is 1 in a plain map.
+    /// The split's map as a matrix to NDC (x right, y up, both in [−1,1], z in \[0,1\]); to be
+    /// divided by w, which is 1 in a plain map.
     #[must_use]
     pub fn shadow_from_world(&self) -> DMat4 {
         self.warp.unwrap_or_else(|| self.plain_shadow_from_world())
     }
 
-    /// [`Split::shadow_from_world`] for an engine of the given convention. All draw the same map: where NDC's y points down
-    /// it is turned, and OpenGL's z lies in [−1,1] (`z' = 2z − w`), which its depth range puts back into \[0,1\].
+    /// [`Split::shadow_from_world`] for an engine of the given convention. All draw the same map:
+    /// where NDC's y points down it is turned, and OpenGL's z lies in [−1,1] (`z' = 2z − w`), which
+    /// its depth range puts back into \[0,1\].
     #[must_use]
     pub fn shadow_from_world_in(&self, convention: DepthConvention) -> DMat4 {
         let to_convention = match convention {
@@ -265,8 +285,9 @@ impl Split {
         to_convention * self.shadow_from_world()
     }
 
-    /// To the map as a texture of an engine of the given convention: u and v in \[0,1\], v down or, with OpenGL's, up, and the depth that the
-    /// map stores there, in \[0,1\] with either; to be divided by w, which is 1 in a plain map.
+    /// To the map as a texture of an engine of the given convention: u and v in \[0,1\], v down or,
+    /// with OpenGL's, up, and the depth that the map stores there, in \[0,1\] with either; to be
+    /// divided by w, which is 1 in a plain map.
     #[must_use]
     pub fn texture_from_world(&self, convention: DepthConvention) -> DMat4 {
         let up = match convention {
@@ -278,8 +299,8 @@ impl Split {
         texture_from_shadow * self.shadow_from_world()
     }
 
-    /// [`Split::shadow_from_world_in`] for points relative to `origin`, a world point near the camera: entries stay small
-    /// enough for `f32` 100 km from the world's origin.
+    /// [`Split::shadow_from_world_in`] for points relative to `origin`, a world point near the
+    /// camera: entries stay small enough for `f32` 100 km from the world's origin.
     #[must_use]
     pub fn shadow_from_relative(&self, origin: DVec3, convention: DepthConvention) -> DMat4 {
         self.shadow_from_world_in(convention) * DMat4::from_translation(origin)
@@ -305,9 +326,9 @@ impl Split {
         )
     }
 
-    /// By how many texels (u, v) this map has moved since `earlier`, a map of the same split: what was at texel `t` then is at `t` less the
-    /// shift now, with the same depth. `None` if the two do not share a grid: a step was taken in between, the map is not
-    /// stabilised, or not a sun's.
+    /// By how many texels (u, v) this map has moved since `earlier`, a map of the same split: what
+    /// was at texel `t` then is at `t` less the shift now, with the same depth. `None` if the two
+    /// do not share a grid: a step was taken in between, the map is not stabilised, or not a sun's.
     #[must_use]
     pub fn texels_moved_since(&self, earlier: &Self) -> Option<DVec2> {
         let grid = |s: &Self| {
@@ -318,21 +339,23 @@ impl Split {
         shared.then_some(shift)
     }
 
-    /// Whether a world point lies inside the map, `margin` texels away from its edge, and within its depth range.
+    /// Whether a world point lies inside the map, `margin` texels away from its edge, and within
+    /// its depth range.
     #[must_use]
     pub fn contains(&self, point: DVec3, margin: f64) -> bool {
         self.lies_over(point, margin) && (0.0..=1.0).contains(&self.map_from_world(point).z)
     }
 
-    /// Whether a world point lies over the map's rectangle, `margin` texels away from its edge, at any depth.
+    /// Whether a world point lies over the map's rectangle, `margin` texels away from its edge, at
+    /// any depth.
     pub(crate) fn lies_over(&self, point: DVec3, margin: f64) -> bool {
         let at = self.map_from_world(point);
         let inside = margin..=f64::from(self.size) - margin;
         inside.contains(&at.x) && inside.contains(&at.y)
     }
 
-    /// How u and v change with the world around a point, in texels per metre. Both vectors lie across the light. The same
-    /// everywhere in a plain map.
+    /// How u and v change with the world around a point, in texels per metre. Both vectors lie
+    /// across the light. The same everywhere in a plain map.
     #[must_use]
     pub fn texel_gradients(&self, point: DVec3) -> [DVec3; 2] {
         let Some(shadow_from_world) = self.warp else {
@@ -344,8 +367,8 @@ impl Split {
         [texels * (x - w * (at.x / at.w)), -texels * (y - w * (at.y / at.w))]
     }
 
-    /// A texel's edges along u and v at a world point, as vectors across the light in metres: the steps that change u alone
-    /// and v alone, by one.
+    /// A texel's edges along u and v at a world point, as vectors across the light in metres: the
+    /// steps that change u alone and v alone, by one.
     #[must_use]
     pub fn texel_steps(&self, point: DVec3) -> [DVec3; 2] {
         let [u, v] = self.texel_gradients(point);

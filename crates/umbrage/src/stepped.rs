@@ -2,11 +2,13 @@
 
 use crate::{DirectionalLight, Error, Result};
 
-/// Follows a moving sun in steps, so that shadows stand still between two of them, and says how to fade from one to the next.
+/// Follows a moving sun in steps, so that shadows stand still between two of them, and says how to
+/// fade from one to the next.
 ///
-/// A map drawn for a sun that moves a little every frame shows every edge in other texels every frame, whatever stands still of it. A sun
-/// that stays where it is until it has fallen `step` behind, and is then cross-faded to its true place, changes nothing in between, and
-/// costs a second set of maps while it fades. Ours: \[PCSM\] has a static light.
+/// A map drawn for a sun that moves a little every frame shows every edge in other texels every
+/// frame, whatever stands still of it. A sun that stays where it is until it has fallen `step`
+/// behind, and is then cross-faded to its true place, changes nothing in between, and costs a
+/// second set of maps while it fades. Ours: \[PCSM\] has a static light.
 ///
 /// ```
 /// # use umbrage::{DirectionalLight, SteppedSun};
@@ -52,8 +54,9 @@ impl SunFade {
 }
 
 impl SteppedSun {
-    /// `step` in radians: how far behind the true sun shadows may fall. `fade` is how long a step is faded, in whatever unit
-    /// [`SteppedSun::follow`] is told (seconds, frames); 0 is a sudden step.
+    /// `step` in radians: how far behind the true sun shadows may fall. `fade` is how long a step
+    /// is faded, in whatever unit [`SteppedSun::follow`] is told (seconds, frames); 0 is a sudden
+    /// step.
     ///
     /// # Errors
     /// [`Error::InvalidLight`] for a step outside (0, π], or a fade that is negative or not finite.
@@ -68,11 +71,12 @@ impl SteppedSun {
         Ok(Self { step, duration: fade, fade: None })
     }
 
-    /// The suns to draw with, now that the true one stands at `sun` and `elapsed` has passed since the last call. The first call
-    /// shows the sun where it is.
+    /// The suns to draw with, now that the true one stands at `sun` and `elapsed` has passed since
+    /// the last call. The first call shows the sun where it is.
     ///
-    /// A sun that moves more than a step while one is being faded is taken up where it is after that fade, so shadows fall at most a step and
-    /// what the sun moves in a fade behind. A sun that trembles by less than a step changes nothing.
+    /// A sun that moves more than a step while one is being faded is taken up where it is after
+    /// that fade, so shadows fall at most a step and what the sun moves in a fade behind. A sun
+    /// that trembles by less than a step changes nothing.
     ///
     /// # Errors
     /// [`Error::InvalidLight`] if `elapsed` is negative or not finite.

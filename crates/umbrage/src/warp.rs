@@ -1,8 +1,10 @@
-//! Warps: perspective reparameterisations of a directional light's map (PSM, LiSPSM, TSM), for one map or inside a split.
+//! Warps: perspective reparameterisations of a directional light's map (PSM, LiSPSM, TSM), for one
+//! map or inside a split.
 //!
-//! Each is a matrix to shadow NDC in which receivers near the eye get more texels. Light stays parallel to the map's depth: what
-//! shades a point shares its texel, nearer to the light at smaller depth. All three are compared with the plain map of the
-//! same fit; none can be stabilised, as the warp follows the camera.
+//! Each is a matrix to shadow NDC in which receivers near the eye get more texels. Light stays
+//! parallel to the map's depth: what shades a point shares its texel, nearer to the light at
+//! smaller depth. All three are compared with the plain map of the same fit; none can be
+//! stabilised, as the warp follows the camera.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
@@ -14,18 +16,21 @@ pub enum Warp {
     /// Evenly: one texel is the same length everywhere.
     #[default]
     None,
-    /// Perspective shadow maps: a map of the camera's own post-perspective space.
-    /// M. Stamminger, G. Drettakis, *Perspective Shadow Maps*, SIGGRAPH 2002. The virtual camera slides back until every caster is
-    /// in front of it, as there and in S. Kozlov, *GPU Gems*, chapter 14. Our deviations: both perspectives are one matrix, so
-    /// that nothing is divided twice and what is behind the eye keeps its order; depth is linear along the light; and the warp
-    /// fades as view and light become parallel, where the source's is torn apart.
+    /// Perspective shadow maps: a map of the camera's own post-perspective space. M. Stamminger, G.
+    /// Drettakis, *Perspective Shadow Maps*, SIGGRAPH 2002. The virtual camera slides back until
+    /// every caster is in front of it, as there and in S. Kozlov, *GPU Gems*, chapter 14. Our
+    /// deviations: both perspectives are one matrix, so that nothing is divided twice and what is
+    /// behind the eye keeps its order; depth is linear along the light; and the warp fades as view
+    /// and light become parallel, where the source's is torn apart.
     Psm,
-    /// Light space perspective shadow maps, `n_opt = (z_n + √(z_n z_f)) / sin γ` with γ between view and light.
-    /// M. Wimmer, D. Scherzer, W. Purgathofer, *Light Space Perspective Shadow Maps*, EGSR 2004.
+    /// Light space perspective shadow maps, `n_opt = (z_n + √(z_n z_f)) / sin γ` with γ between
+    /// view and light. M. Wimmer, D. Scherzer, W. Purgathofer, *Light Space Perspective Shadow
+    /// Maps*, EGSR 2004.
     Lispsm,
-    /// Trapezoidal shadow maps: the first `focus` of the slice's depth gets 80 % of the map.
-    /// T. Martin, T.-S. Tan, *Anti-aliasing and Continuity with Trapezoidal Shadow Maps*, EGSR 2004. Our deviation: the trapezoid
-    /// opens to a rectangle by sin γ as view and light become parallel, where the source's degenerates.
+    /// Trapezoidal shadow maps: the first `focus` of the slice's depth gets 80 % of the map. T.
+    /// Martin, T.-S. Tan, *Anti-aliasing and Continuity with Trapezoidal Shadow Maps*, EGSR 2004.
+    /// Our deviation: the trapezoid opens to a rectangle by sin γ as view and light become
+    /// parallel, where the source's degenerates.
     Tsm {
         /// Share of the slice's depth range, 0 to 1.
         focus: f64,
@@ -71,7 +76,8 @@ impl std::str::FromStr for Warp {
 /// Share of the depth range that a trapezoidal map focuses on where nothing says another.
 const USUAL_FOCUS: f64 = 0.3;
 
-/// Where the focus line of a trapezoid lands: the near 80 % of the map, as NDC from +1 (near) to −1 (far).
+/// Where the focus line of a trapezoid lands: the near 80 % of the map, as NDC from +1 (near) to −1
+/// (far).
 const FOCUS_LINE: f64 = -0.6;
 
 /// A projection distance beyond this many slice lengths is no warp at all to `f32`.
@@ -86,16 +92,19 @@ pub struct WarpTarget<'a> {
     pub slice: (f64, f64),
     /// The way light travels, a unit vector.
     pub light: DVec3,
-    /// World points whose convex hull holds every receiver of the slice. All of them land inside the map.
+    /// World points whose convex hull holds every receiver of the slice. All of them land inside
+    /// the map.
     pub receivers: &'a [DVec3],
-    /// World points whose convex hull holds every caster. All that can shade a receiver keep a depth of 0 or more.
+    /// World points whose convex hull holds every caster. All that can shade a receiver keep a
+    /// depth of 0 or more.
     pub casters: &'a [DVec3],
     /// Share of the map's half edge that is kept free for the filter.
     pub margin: f64,
 }
 
 impl Warp {
-    /// The matrix to shadow NDC (x, y in [−1,1], z in \[0,1\] from the light on), to be divided by w.
+    /// The matrix to shadow NDC (x, y in [−1,1], z in \[0,1\] from the light on), to be divided by
+    /// w.
     ///
     /// Returns `None` if there is nothing to show, or nothing but a point.
     #[must_use]
@@ -116,7 +125,8 @@ impl Warp {
             },
             Self::Lispsm => (near + (near * far).sqrt()) / sine,
             Self::Tsm { focus } => {
-                // The focus point lies on the line through the centres of the near and far faces, as the light sees it.
+                // The focus point lies on the line through the centres of the near and far faces,
+                // as the light sees it.
                 let axis = |d: f64| frame.along(target.view.eye() + target.view.forward() * d);
                 let focus_at = (axis(near + focus * (far - near)) - begin).clamp(0.0, length);
                 let denominator = length - 2.0 * focus_at - length * FOCUS_LINE;
@@ -129,7 +139,8 @@ impl Warp {
     }
 }
 
-/// The light's space turned so that one axis follows the view: across, along (ahead as the light sees it), depth.
+/// The light's space turned so that one axis follows the view: across, along (ahead as the light
+/// sees it), depth.
 struct LightFrame {
     across: DVec3,
     ahead: DVec3,
@@ -150,18 +161,21 @@ impl LightFrame {
         self.ahead.dot(point - self.eye)
     }
 
-    /// Rows of `(x, y, w)`, relative to the eye, of the map whose projection centre lies `distance` before `begin` along the view.
+    /// Rows of `(x, y, w)`, relative to the eye, of the map whose projection centre lies `distance`
+    /// before `begin` along the view.
     fn perspective(&self, begin: f64, distance: f64) -> [DVec4; 3] {
-        // w grows from `distance` at the near end of the receivers; y falls from there as the trapezoid's −1/w does.
+        // w grows from `distance` at the near end of the receivers; y falls from there as the
+        // trapezoid's −1/w does.
         [self.across.extend(0.0), DVec4::NEG_W, self.ahead.extend(distance - begin)]
     }
 
-    /// The same for a parallel projection.
+    /// Rows of a parallel projection.
     fn parallel(&self) -> [DVec4; 3] {
         [self.across.extend(0.0), self.ahead.extend(0.0), DVec4::W]
     }
 
-    /// The matrix with these rows, fitted to the receivers. w may not change along the light and has to be positive at them.
+    /// The matrix with these rows, fitted to the receivers. w may not change along the light and
+    /// has to be positive at them.
     fn fitted(&self, target: &WarpTarget<'_>, [x, y, w]: [DVec4; 3]) -> Option<DMat4> {
         let relative = |p: &DVec3| (*p - self.eye).extend(1.0);
         let (w_lo, w_hi) = bounds(target.receivers.iter().map(|p| w.dot(relative(p))))?;
@@ -172,7 +186,8 @@ impl LightFrame {
         let project = |row: DVec4, p: &DVec3| row.dot(relative(p)) / w.dot(relative(p));
         let (x_lo, x_hi) = bounds(target.receivers.iter().map(|p| project(x, p)))?;
         let (y_lo, y_hi) = bounds(target.receivers.iter().map(|p| project(y, p)))?;
-        // Depth starts at the first point of all, so that nothing that can shade lies before it; w is the same all along a ray.
+        // Depth starts at the first point of all, so that nothing that can shade lies before it; w
+        // is the same all along a ray.
         let first = target
             .receivers
             .iter()
@@ -191,12 +206,15 @@ impl LightFrame {
     }
 }
 
-/// Rows of `(x, y, w)` for a map of the camera's post-perspective cube, relative to the frame's eye. `None` if the cube has no depth.
+/// Rows of `(x, y, w)` for a map of the camera's post-perspective cube, relative to the frame's
+/// eye. `None` if the cube has no depth.
 ///
-/// In that space the light has a source (or a sink) at a finite point, just beyond the far plane; the map is its picture of the cube.
-/// The nearer the light comes to the view's axis, the nearer comes that point to the cube's far side, and the picture is torn apart.
-/// Its plane is then turned towards the far plane, just as far as it takes to keep w within `(near/far)^sin γ`, γ being the angle
-/// between view and light: turned all the way, the two perspectives cancel and the map is plain.
+/// In that space the light has a source (or a sink) at a finite point, just beyond the far plane;
+/// the map is its picture of the cube. The nearer the light comes to the view's axis, the nearer
+/// comes that point to the cube's far side, and the picture is torn apart. Its plane is then turned
+/// towards the far plane, just as far as it takes to keep w within `(near/far)^sin γ`, γ being the
+/// angle between view and light: turned all the way, the two perspectives cancel and the map is
+/// plain.
 fn psm(target: &WarpTarget<'_>) -> Option<[DVec4; 3]> {
     let view = target.view;
     let (near, far) = target.slice;
@@ -216,7 +234,8 @@ fn psm(target: &WarpTarget<'_>) -> Option<[DVec4; 3]> {
     let sum = target.receivers.iter().map(|&p| post4(p)).map(|p| p.truncate() / p.w).sum::<DVec3>();
     let centre = sum / target.receivers.len() as f64;
     let to_light = post_from_relative * (-target.light).extend(0.0);
-    // The light's source or sink; rays are parallel there where the light is parallel to the picture.
+    // The light's source or sink; rays are parallel there where the light is parallel to the
+    // picture.
     let meeting = (to_light.w.abs() > 1e-9).then(|| to_light.truncate() / to_light.w);
     let along_rays = meeting.map_or(to_light.truncate(), |point| point - centre).try_normalize()?;
     let across = along_rays.cross(DVec3::Z).try_normalize().unwrap_or_else(|| along_rays.any_orthonormal_vector());
@@ -229,10 +248,12 @@ fn psm(target: &WarpTarget<'_>) -> Option<[DVec4; 3]> {
     });
     let in_world = |row: DVec4| post_from_relative.transpose() * row;
     let perspective = in_world(w);
-    // The same with the far plane for its picture plane, `(scale − z) / (scale − centre.z)`, is a constant in the world.
+    // The same with the far plane for its picture plane, `(scale − z) / (scale − centre.z)`, is a
+    // constant in the world.
     let plain = n * scale / (scale - centre.z);
     let (least, most) = bounds(target.receivers.iter().map(|&p| perspective.dot((p - view.eye()).extend(1.0))))?;
-    // Light across the view may have all of the camera's own perspective, from near to far; light along it none.
+    // Light across the view may have all of the camera's own perspective, from near to far; light
+    // along it none.
     let share = (n / f).powf(view.forward().cross(target.light).length());
     let lacking = share * most - least;
     let turn = if lacking > 0.0 { lacking / (lacking + plain * (1.0 - share)) } else { 0.0 };
@@ -245,7 +266,8 @@ fn bounds(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     (lo <= hi).then_some((lo, hi))
 }
 
-/// Texels per metre of a warped map at a world point, along two directions: the Jacobian's columns, for bias and analysis.
+/// Texels per metre of a warped map at a world point, along two directions: the Jacobian's columns,
+/// for bias and analysis.
 #[must_use]
 pub fn texels_along(shadow_from_world: &DMat4, size: u32, point: DVec3, direction: DVec3) -> DVec2 {
     let (at, step) = (*shadow_from_world * point.extend(1.0), *shadow_from_world * direction.extend(0.0));

@@ -83,7 +83,8 @@ fn warps_do_not_stand_still() {
     }
 }
 
-/// A planner goes on holding what it holds through every change that plans do not depend on, and through no other.
+/// A planner goes on holding what it holds through every change that plans do not depend on, and
+/// through no other.
 #[test]
 fn a_change_of_what_is_not_planned_leaves_a_planner_alone() {
     let lens = Frustum::perspective(1.0, 1.0, 0.1, 1000.0).expect("valid");
@@ -174,7 +175,8 @@ fn bounds() {
     assert!(plan.splits.iter().all(|s| s.shadow_from_world().is_finite()), "{plan:?}");
 }
 
-/// Huge but finite numbers are refused by name, with the bounds; those within them give plans without NaN.
+/// Huge but finite numbers are refused by name, with the bounds; those within them give plans
+/// without NaN.
 #[test]
 fn numbers_without_meaning() {
     let lens = Frustum::perspective(1.0, 1.0, 1.0, 100.0).expect("valid");

@@ -23,13 +23,15 @@ proptest! {
         prop_assert!(bias.depth_per_texel.is_finite() && bias.constant_m > 0.0 && bias.corner_per_texel.min_element() > 0.0);
         prop_assert!((bias.depth_per_texel / split.texel_m).length() <= STEEPEST * (1.0 + 1e-9));
         if facing > 0.03 {
-            // A point of the plane that lies `step` texels aside in the map is deeper by what the bias says.
+            // A point of the plane that lies `step` texels aside in the map is deeper by what the
+            // bias says.
             let step = DVec2::from(step);
             let across = split.u_axis * (step.x * split.texel_m.x) + split.v_axis * (step.y * split.texel_m.y);
             let on_plane = across - split.depth_axis * (normal.dot(across) / normal.dot(split.depth_axis));
             let deeper = split.depth_axis.dot(on_plane);
             prop_assert!((bias.depth_per_texel.dot(step) - deeper).abs() <= 1e-9 * (1.0 + deeper.abs()));
-            // Without the plane no place within reach is compared as if it were deeper than the plane is there, and less is not enough.
+            // Without the plane no place within reach is compared as if it were deeper than the
+            // plane is there, and less is not enough.
             let flat = bias.without_plane(step.abs());
             prop_assert!(-flat.constant_m <= deeper - bias.constant_m + 1e-9 * (1.0 + deeper.abs()));
             prop_assert!(flat.constant_m <= bias.constant_m + bias.depth_per_texel.abs().dot(step.abs()) + 1e-9);

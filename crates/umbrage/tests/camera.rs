@@ -118,7 +118,8 @@ proptest! {
         let size = (frustum.right - frustum.left).max(frustum.top - frustum.bottom);
         prop_assert!(close(read.left, frustum.left, size) && close(read.right, frustum.right, size));
         prop_assert!(close(read.bottom, frustum.bottom, size) && close(read.top, frustum.top, size));
-        // Rounding in z = A d + B loses far/near digits of the far plane; OpenGL's form loses them in near too.
+        // Rounding in z = A d + B loses far/near digits of the far plane; OpenGL's form loses them
+        // in near too.
         let ratio = (frustum.far / frustum.near).min(1e9);
         prop_assert!(close(read.near, frustum.near, frustum.near * (1.0 + 1e-6 * ratio)), "near {} {}", read.near, frustum.near);
         let far_ok = if frustum.far / frustum.near > 1e5 { read.far > 0.5e5 * frustum.near } else { (read.far - frustum.far).abs() <= 1e-9 * ratio * frustum.far };

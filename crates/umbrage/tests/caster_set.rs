@@ -1,4 +1,5 @@
-//! A set of casters is as good as the list of its boxes: plans are the same bit for bit, whatever was done to it before.
+//! A set of casters is as good as the list of its boxes: plans are the same bit for bit, whatever
+//! was done to it before.
 
 use std::collections::BTreeMap;
 

@@ -68,7 +68,8 @@ fn a_plane_stands_in_the_gap_between_two_rows() {
 
 #[test]
 fn a_caster_is_listed_by_the_reach_of_a_filter_in_the_map_that_it_leaves() {
-    // 3 texels of a map of all ground up to 800 m are some 6 m, of a map of the rows beyond the plane 0.15 m.
+    // 3 texels of a map of all ground up to 800 m are some 6 m, of a map of the rows beyond the
+    // plane 0.15 m.
     let world = rows(&[40.0, 42.0, 200.0, 203.0]);
     let mut planner =
         Planner::new(&ShadowConfig { scheme: SplitScheme::Manual { planes: vec![48.0] }, ..tight(2) }).expect("valid");
@@ -144,7 +145,8 @@ fn a_range_without_room_is_refused() {
     }
 }
 
-/// How often the planes change while the camera walks 30 m and turns by half a radian in 300 frames.
+/// How often the planes change while the camera walks 30 m and turns by half a radian in 300
+/// frames.
 fn changes(stability: Stability) -> usize {
     let world = rows(&(0..30).map(|i| 15.0 + 13.0 * f64::from(i)).collect::<Vec<_>>());
     let mut planner = Planner::new(&ShadowConfig { stability, ..fitted(4) }).expect("valid settings");

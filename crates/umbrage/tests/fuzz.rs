@@ -1,5 +1,5 @@
-//! A fuzzer of plans: any camera, sun and scene against what every plan has to keep. 512 cases in a plain test run;
-//! `cargo xtask fuzz` or `UMBRAGE_FUZZ_CASES` asks for more.
+//! A fuzzer of plans: any camera, sun and scene against what every plan has to keep. 512 cases in a
+//! plain test run; `cargo xtask fuzz` or `UMBRAGE_FUZZ_CASES` asks for more.
 
 use glam::{DQuat, DVec2, DVec3, EulerRot};
 use proptest::prelude::*;
@@ -108,7 +108,8 @@ fn lens() -> impl Strategy<Value = Frustum> {
     })
 }
 
-/// Some frames: a camera that walks, turns or stands, at first along the sun, nearly so, or anywhere.
+/// Some frames: a camera that walks, turns or stands, at first along the sun, nearly so, or
+/// anywhere.
 fn any_case() -> impl Strategy<Value = Case> {
     let off = prop_oneof![Just(0.0), Just(1e-15), Just(1e-9), Just(1e-6), Just(1e-3), Just(1.0)];
     let steps = prop::collection::vec((prop_oneof![Just(0.0), 0.0..3.0f64], -0.3..0.3f64), 0..4);
@@ -166,7 +167,8 @@ fn shown(view: &View, boxes: &[Aabb]) -> Vec<(usize, DVec3)> {
     points
 }
 
-/// Where the ray from `point` towards the light leaves a box, if it passes through it more than a millimetre away.
+/// Where the ray from `point` towards the light leaves a box, if it passes through it more than a
+/// millimetre away.
 fn shaded_from(bounds: &Aabb, point: DVec3, direction: DVec3) -> Option<DVec3> {
     let (mut enter, mut leave) = (1e-3, f64::INFINITY);
     for axis in 0..3 {
@@ -183,7 +185,8 @@ fn shaded_from(bounds: &Aabb, point: DVec3, direction: DVec3) -> Option<DVec3> {
     (enter <= leave).then_some(point - direction * leave)
 }
 
-/// The splits whose maps are asked about a shown point, as the shader chooses them; `None` beyond the range.
+/// The splits whose maps are asked about a shown point, as the shader chooses them; `None` beyond
+/// the range.
 fn asked(plan: &ShadowPlan, point: DVec3) -> Option<Vec<usize>> {
     let depth = plan.depth_at(point);
     if depth > plan.planes[plan.splits.len()] {

@@ -1,5 +1,6 @@
-//! Spot and point lights: no caster lost, every shadowed receiver inside its map, nothing listed that the light cannot show; against
-//! brute force, with boxes and slices on both sides of the light's plane.
+//! Spot and point lights: no caster lost, every shadowed receiver inside its map, nothing listed
+//! that the light cannot show; against brute force, with boxes and slices on both sides of the
+//! light's plane.
 
 use glam::{DQuat, DVec3, EulerRot};
 use proptest::prelude::*;
@@ -51,8 +52,8 @@ fn settings() -> impl Strategy<Value = (ShadowConfig, f64)> {
     )
 }
 
-/// Lights before, beside and behind the eye, at it, on the line of sight; inside boxes and on their faces (grazing), all of it 100 km
-/// away now and then.
+/// Lights before, beside and behind the eye, at it, on the line of sight; inside boxes and on their
+/// faces (grazing), all of it 100 km away now and then.
 fn cases() -> impl Strategy<Value = Case> {
     let lens = (0.3..2.2f64, 0.5..2.5f64, any::<bool>()).prop_map(|(fov, aspect, perspective)| {
         if perspective {
@@ -110,7 +111,8 @@ fn cases() -> impl Strategy<Value = Case> {
         })
 }
 
-/// Points of the boxes' surfaces, and some of the air between, that the view shows and the light reaches: with their view depths.
+/// Points of the boxes' surfaces, and some of the air between, that the view shows and the light
+/// reaches: with their view depths.
 fn lit_points(case: &Case, plan: &ShadowPlan) -> Vec<(usize, DVec3, f64)> {
     let frustum = case.view.frustum();
     let far = plan.planes.last().copied().expect("a plan has planes").min(frustum.far);
@@ -151,7 +153,8 @@ fn lit_points(case: &Case, plan: &ShadowPlan) -> Vec<(usize, DVec3, f64)> {
     points
 }
 
-/// Where, as shares of the way from the light to `point`, the segment passes through a box, leaving a millimetre before the point.
+/// Where, as shares of the way from the light to `point`, the segment passes through a box, leaving
+/// a millimetre before the point.
 fn shading(bounds: &Aabb, light: DVec3, point: DVec3) -> Option<(f64, f64)> {
     let way = point - light;
     let (mut enter, mut leave) = (0.0_f64, 1.0 - 1e-3 / way.length());
@@ -211,8 +214,8 @@ proptest! {
                     let Some((enter, leave)) = shading(bounds, light, point).filter(|_| index != owner) else { continue };
                     prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} lost caster {index}, which shades {point} at {depth} m ({enter} to {leave})");
                     prop_assert!(s.contains(point, case.radius_texels), "{point} at {depth} m lies at {at} in split {split}");
-                    // Whatever of the caster lies beyond the light's near distance is stored, at the place of what it shades
-                    // and nearer.
+                    // Whatever of the caster lies beyond the light's near distance is stored, at
+                    // the place of what it shades and nearer.
                     let caster = light + leave * (point - light);
                     let stored = s.map_from_world(caster);
                     if s.depth_axis.dot(caster - light) > s.depth_near - s.depth_axis.dot(light) {
@@ -233,7 +236,8 @@ proptest! {
 
     #[test]
     fn a_speck_anywhere_between_the_light_and_what_it_lights_is_listed(case in cases(), shares in prop::collection::vec(0.01..0.999f64, 400)) {
-        // Specks put on the very rays: next to the outline of slices and maps, where a wrong plane shows.
+        // Specks put on the very rays: next to the outline of slices and maps, where a wrong plane
+        // shows.
         let mut planner = planner(&case)?;
         let plan = planned(&case, &mut planner)?;
         let light = case.light.position().expect("a local light");
@@ -362,7 +366,8 @@ fn a_lamp_in_a_room_has_the_faces_that_are_seen() {
         let mut planner = Planner::new(&settings).expect("valid");
         let plan = planner.plan(&view, &lamp, &boxes, &boxes).expect("valid");
         assert_eq!(plan.faces(), 6);
-        // Down are the table and the chest; nothing stands between the lamp and the ceiling above it.
+        // Down are the table and the chest; nothing stands between the lamp and the ceiling above
+        // it.
         assert!(plan.casters(3).contains(&6) && plan.casters(3).contains(&7), "{:?}", plan.casters(3));
         assert!(!plan.casters(2).contains(&6) && !plan.casters(2).contains(&7), "{:?}", plan.casters(2));
         // A lamp's shadows do not fade where the room ends.

@@ -1,4 +1,5 @@
-//! The planner's promises, against brute force: no caster lost, every receiver inside its map, lists no longer than needed.
+//! The planner's promises, against brute force: no caster lost, every receiver inside its map,
+//! lists no longer than needed.
 
 use glam::{DQuat, DVec3, EulerRot};
 use proptest::prelude::*;
@@ -11,8 +12,8 @@ use umbrage::{
     Warp,
 };
 
-/// A world of boxes on and around a ground, a view and a sun, biased to the awkward: a sun straight down or level, a view into
-/// it, boxes behind the eye, flat boxes, boxes larger than the view.
+/// A world of boxes on and around a ground, a view and a sun, biased to the awkward: a sun straight
+/// down or level, a view into it, boxes behind the eye, flat boxes, boxes larger than the view.
 #[derive(Clone, Debug)]
 struct Case {
     settings: ShadowConfig,
@@ -152,12 +153,14 @@ fn visible_points(case: &Case, far: f64) -> Vec<(usize, DVec3, f64)> {
     points
 }
 
-/// Whether the ray from `point` towards the light passes through the box, more than a millimetre away.
+/// Whether the ray from `point` towards the light passes through the box, more than a millimetre
+/// away.
 fn shades(bounds: &Aabb, point: DVec3, direction: DVec3) -> bool {
     shading_end(bounds, point, direction).is_some()
 }
 
-/// How far from `point` the ray towards the light leaves a box that it passes through more than a millimetre away.
+/// How far from `point` the ray towards the light leaves a box that it passes through more than a
+/// millimetre away.
 fn shading_end(bounds: &Aabb, point: DVec3, direction: DVec3) -> Option<f64> {
     let (mut enter, mut leave) = (1e-3, f64::INFINITY);
     for axis in 0..3 {
@@ -175,7 +178,7 @@ fn shading_end(bounds: &Aabb, point: DVec3, direction: DVec3) -> Option<f64> {
     (enter <= leave).then_some(leave)
 }
 
-/// The same case with radial bands, where they are possible.
+/// A case with radial bands, where they are possible.
 fn radial(case: Case) -> Option<Case> {
     let range = if case.settings.range == Range::Visible { Range::Camera } else { case.settings.range };
     let selection = Selection::Interval(SplitMetric::Distance);
@@ -254,7 +257,8 @@ proptest! {
         let inputs = PlanInputs::new(&case.view, case.light, &case.boxes, &case.boxes);
         let plan = match planner.plan_frame(&PlanInputs { receiver_clusters, ..inputs }) {
             Ok(plan) => plan.clone(),
-            // A short range before an endless one may leave no room for eight planes; that is an answer too.
+            // A short range before an endless one may leave no room for eight planes; that is an
+            // answer too.
             Err(umbrage::Error::InvalidSetting { .. }) => return Ok(()),
             Err(other) => return Err(TestCaseError::fail(other.to_string())),
         };
@@ -272,8 +276,8 @@ proptest! {
                     prop_assert!(inside, "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
                 }
                 for (index, bounds) in case.boxes.iter().enumerate() {
-                    // A box does not count as shading its own skin, nor does a touching one: what lies less than a millimetre
-                    // under the point is the point's own surface.
+                    // A box does not count as shading its own skin, nor does a touching one: what
+                    // lies less than a millimetre under the point is the point's own surface.
                     let Some(end) = shading_end(bounds, point, direction).filter(|_| index != owner) else { continue };
                     prop_assert!(plan.casters(split).contains(&(index as u32)), "split {split} lost caster {index}, which shades {point} at {depth} m");
                     let (at, reach) = (point - direction * end, 0.02 * (bounds.max - bounds.min));
@@ -326,8 +330,9 @@ proptest! {
             prop_assert!((ndc.x - (2.0 * at.x / size - 1.0)).abs() < 1e-9 * (1.0 + ndc.x.abs()));
             prop_assert!((ndc.y - (1.0 - 2.0 * at.y / size)).abs() < 1e-9 * (1.0 + ndc.y.abs()));
             prop_assert!((ndc.z - at.z).abs() < 1e-9 * (1.0 + ndc.z.abs()));
-            // What an engine of either kind makes of its matrix is what it looks up: OpenGL's viewport and depth range turn NDC into
-            // coordinates by (1 + ndc)/2 in all three, the others' turn y and leave z.
+            // What an engine of either kind makes of its matrix is what it looks up: OpenGL's
+            // viewport and depth range turn NDC into coordinates by (1 + ndc)/2 in all three, the
+            // others' turn y and leave z.
             for (convention, [flip, depth]) in [(ZeroToOne, [-1.0, 0.0]), (MinusOneToOne, [1.0, 0.5])] {
                 let ndc = split.shadow_from_world_in(convention).project_point3(point);
                 let drawn = DVec3::new(0.5 + 0.5 * ndc.x, 0.5 + 0.5 * flip * ndc.y, depth + (1.0 - depth) * ndc.z);
@@ -503,8 +508,8 @@ fn a_range_without_end_stops_at_the_scene() {
     let tight = planes_of(Stability::tight());
     assert_eq!(tight[0], 0.1);
     assert!((tight[4] - 70.0).abs() < 1e-9, "{tight:?}");
-    // The inner planes are the same; the last one lies where turning and some walking do not move it: the farthest corner, 70.4 m away,
-    // and half a step more.
+    // The inner planes are the same; the last one lies where turning and some walking do not move
+    // it: the farthest corner, 70.4 m away, and half a step more.
     let still = planes_of(Stability::Exact);
     assert_eq!(still[..4], tight[..4]);
     assert!((still[4] / (70.0f64.powi(2) + 26.0).sqrt() - 2f64.powf(1.0 / 16.0)).abs() < 1e-9, "{still:?}");

@@ -98,8 +98,8 @@ fn settings() -> impl Strategy<Value = ShadowConfig> {
 }
 
 proptest! {
-    // One plan in some thousand takes two maps in one frame: where a plane moves towards the eye, the map that begins
-    // there may need more. Cases are those of one seed until that is mended.
+    // One plan in some thousand takes two maps in one frame: where a plane moves towards the eye,
+    // the map that begins there may need more. Cases are those of one seed until that is mended.
     #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(7), ..ProptestConfig::with_cases(64) })]
 
     /// Any walk, turn and zoom, then 60 frames of one view.

@@ -1,4 +1,5 @@
-//! What has no say: very far objects, ground beyond all shadows, how far an orthographic camera stands off.
+//! What has no say: very far objects, ground beyond all shadows, how far an orthographic camera
+//! stands off.
 
 use glam::DVec3;
 use umbrage::config::{ExtentSteps, Preset, Range, Selection, SplitScheme, Stability};
@@ -16,7 +17,8 @@ fn view(near: f64, far: f64) -> View {
     View::look_at_upright(DVec3::new(4.0, 5.0, 10.0), DVec3::new(0.0, 0.5, -1.0), lens).expect("a view")
 }
 
-/// Boxes of a metre or two within 10 m, sunk into the ground by a hand's breadth, on a flat ground of so many metres.
+/// Boxes of a metre or two within 10 m, sunk into the ground by a hand's breadth, on a flat ground
+/// of so many metres.
 fn things(half: f64) -> Vec<Aabb> {
     let mut boxes: Vec<Aabb> = (0..14)
         .map(|i| {
@@ -33,7 +35,8 @@ fn plan(settings: &ShadowConfig, view: &View, boxes: &[Aabb]) -> ShadowPlan {
     planner.plan(view, &sun(), boxes, boxes).expect("a plan").clone()
 }
 
-/// The finest map that a shown point asks: edge of its texel, and length of its depth range, metres.
+/// The finest map that a shown point asks: edge of its texel, and length of its depth range,
+/// metres.
 fn texel_at(plan: &ShadowPlan, point: DVec3) -> (f64, f64) {
     let split = plan.splits.iter().find(|split| plan.depth_at(point) < split.far).expect("the point is in range");
     assert!(split.contains(point, split.filter_reach) || split.casters.is_empty(), "{point} in {split:?}");
@@ -138,7 +141,8 @@ fn every_direction_of_sight_along_the_sun_has_axes_and_casters() {
                         assert!(frame.abs_diff_eq(sun.direction(), 1e-10), "{d} {off} {stability:?}: {split:?}");
                         assert!(split.u_axis.dot(split.v_axis).abs() < 1e-10, "{d} {off} {stability:?}: {split:?}");
                     }
-                    // The cube before the eye throws a shadow on what lies behind it, and has a list that says so.
+                    // The cube before the eye throws a shadow on what lies behind it, and has a
+                    // list that says so.
                     assert!(plan.splits.iter().any(|split| !split.casters.is_empty()), "{d} {off} {stability:?}");
                 }
             }

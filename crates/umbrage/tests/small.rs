@@ -64,8 +64,8 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
 
     /// Maps lie where they lay; a list loses what is under half a texel both ways and nothing else.
-    /// So a map changes in one texel for each caster that is left out, at most, and its answers within
-    /// the filter's reach of those.
+    /// So a map changes in one texel for each caster that is left out, at most, and its answers
+    /// within the filter's reach of those.
     #[test]
     fn lists_lose_what_is_small_and_nothing_else(config in config(), sun in sun(), boxes in boxes()) {
         let all = plans(&config, &sun, &boxes);

@@ -66,8 +66,9 @@ fn bad_input() {
 }
 
 proptest! {
-    /// However the sun moves: what is shown of any point moves by no more than time allows, never to a sun that was not there, and never farther
-    /// behind than a step and what the sun moves in one fade.
+    /// However the sun moves: what is shown of any point moves by no more than time allows, never
+    /// to a sun that was not there, and never farther behind than a step and what the sun moves in
+    /// one fade.
     #[test]
     fn nothing_jumps_and_nothing_lags(
         step in 0.001..0.1f64, fade in 0.0..8.0f64, moves in prop::collection::vec(-0.03..0.05f64, 2..80),

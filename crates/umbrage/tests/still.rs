@@ -20,7 +20,8 @@ proptest! {
         let corners: Vec<DVec3> = frustum.corners_at(near).into_iter().chain(frustum.corners_at(near * ratio)).collect();
         let reach = |center: DVec3| corners.iter().map(|c| c.distance(center)).fold(0.0, f64::max);
         prop_assert!(reach(sphere.center) <= sphere.radius * (1.0 + 1e-9));
-        // The least radius is where no step improves it: the radius about a centre is convex, so local is global.
+        // The least radius is where no step improves it: the radius about a centre is convex, so
+        // local is global.
         for step in [1e-2, 1e-4] {
             for axis in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z] {
                 prop_assert!(reach(sphere.center + axis * step * sphere.radius) >= sphere.radius * (1.0 - 1e-9));
@@ -50,7 +51,8 @@ proptest! {
         }
     }
 
-    /// The approximate kind, too, has no other places than whole texels of a grid that is the light's and the step's alone.
+    /// The approximate kind, too, has no other places than whole texels of a grid that is the
+    /// light's and the step's alone.
     #[test]
     fn approximate_maps_move_in_whole_texels_and_seldom_take_a_step(
         place in place(), eye in prop::array::uniform3(-50.0..50.0f64), turn in prop::array::uniform3(-3.0..3.0f64),
@@ -70,7 +72,8 @@ proptest! {
                 if let Some(before) = &before
                     && crop == Crop::SceneIndependent
                 {
-                    // What a slice measures does not change while the eye walks, so no step is taken at all.
+                    // What a slice measures does not change while the eye walks, so no step is
+                    // taken at all.
                     prop_assert!(split.texels_moved_since(&before.splits[i]).is_some(), "frame {k}, split {i}");
                 }
             }
@@ -92,7 +95,8 @@ proptest! {
         for turn in turns {
             let view = turned_view(place, turn)?;
             let plan = held.plan(&view, &sun, &world, &world)?;
-            // The tightest map turns with the view, so its rectangle can be smaller by what 2.8 degrees are worth.
+            // The tightest map turns with the view, so its rectangle can be smaller by what 2.8
+            // degrees are worth.
             let mut tight = of(Stability::tight())?;
             let tight = tight.plan(&view, &sun, &world, &world)?;
             let sphere = exact.plan(&view, &sun, &world, &world)?;
@@ -105,7 +109,8 @@ proptest! {
         }
     }
 
-    /// Zooming, turning and walking back and forth by less than a step settles: what comes round again changes nothing any more.
+    /// Zooming, turning and walking back and forth by less than a step settles: what comes round
+    /// again changes nothing any more.
     #[test]
     fn back_and_forth_settles(
         place in place(), first in 0.3..1.2f64, base in 0.3..1.2f64, pose in prop::array::uniform3(-3.0..3.0f64),
@@ -138,7 +143,8 @@ proptest! {
         }
     }
 
-    /// A long zoom takes one change for each step of 19 % between the narrowest and the widest lens, and the map always holds the slice.
+    /// A long zoom takes one change for each step of 19 % between the narrowest and the widest
+    /// lens, and the map always holds the slice.
     #[test]
     fn a_long_zoom_changes_the_texel_in_steps(place in place(), from in 0.3..1.2f64, to in 0.3..1.2f64) {
         let settings = ShadowConfig { range: Range::Metres { near: 1.0, far: 300.0 }, stability: Stability::Exact, ..Preset::Papers.config() };
@@ -159,7 +165,8 @@ proptest! {
         prop_assert!(f64::from(changes) <= steps + 1.0, "{changes} changes over {steps} steps");
     }
 
-    /// The far end of the range is the scene's; for exactly stabilised maps it is held in steps, too, while the eye walks to and fro.
+    /// The far end of the range is the scene's; for exactly stabilised maps it is held in steps,
+    /// too, while the eye walks to and fro.
     #[test]
     fn the_range_is_held(
         place in place(), yaw in -3.0..3.0f64, walks in prop::collection::vec(0.0..1.0f64, 4..40), approximate in any::<bool>(),
@@ -173,7 +180,8 @@ proptest! {
             // 10 m of 200 m or more: less than a step.
             let view = turned_view(place + DQuat::from_rotation_y(yaw) * DVec3::Z * (10.0 * walk - 5.0), [yaw, -0.1, 0.0])?;
             let plan = planner.plan(&view, &sun, &world, &world)?;
-            // Turning an exactly stabilised camera changes little, so its range may end with the farthest point in any direction.
+            // Turning an exactly stabilised camera changes little, so its range may end with the
+            // farthest point in any direction.
             let far_end = plan.planes[4] / (1.0 - 1e-9);
             let greatest = |end: &dyn Fn(DVec3) -> f64| world[0].corners().map(end).into_iter().fold(0.0, f64::max);
             let deepest = greatest(&|corner| view.view_depth(corner));
@@ -188,8 +196,8 @@ proptest! {
     }
 }
 
-/// Turning and walking about a scene, without a range of one's own: the far end changes rarely, and only the last map with it, which does
-/// not move at all while it shows the whole scene.
+/// Turning and walking about a scene, without a range of one's own: the far end changes rarely, and
+/// only the last map with it, which does not move at all while it shows the whole scene.
 #[test]
 fn turning_and_walking_about_a_scene_leave_all_maps_alone() {
     let place = DVec3::new(1e4, 0.0, -1e4);
@@ -224,8 +232,8 @@ fn turning_and_walking_about_a_scene_leave_all_maps_alone() {
 }
 
 proptest! {
-    /// A map is along each axis as long as its slice's sphere or the whole scene asks for, whichever is less, and shows all of the slice
-    /// that is in the scene.
+    /// A map is along each axis as long as its slice's sphere or the whole scene asks for,
+    /// whichever is less, and shows all of the slice that is in the scene.
     #[test]
     fn no_map_exceeds_the_scene(
         place in place(), eye in prop::array::uniform3(-300.0..300.0f64), turn in prop::array::uniform3(-3.0..3.0f64), sun in sun(),
@@ -304,7 +312,8 @@ fn tight_maps_do_not_stand_still() {
     assert!(a.splits.iter().zip(&b.splits).all(|(a, b)| b.texels_moved_since(a).is_none()));
 }
 
-/// Into a zoom of a third and out again, as slowly and as often as one likes: what a map shows is the same, and comes back the same.
+/// Into a zoom of a third and out again, as slowly and as often as one likes: what a map shows is
+/// the same, and comes back the same.
 #[test]
 fn a_zoom_of_a_third_and_back_changes_nothing() {
     let mut planner = Planner::new(&Preset::Papers.config()).expect("valid");

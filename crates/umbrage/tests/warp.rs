@@ -1,4 +1,5 @@
-//! Warps by property: receivers stay inside, order along the light stays, and the published parameters mean what they say.
+//! Warps by property: receivers stay inside, order along the light stays, and the published
+//! parameters mean what they say.
 
 use glam::{DQuat, DVec3, EulerRot};
 use proptest::prelude::*;
@@ -75,7 +76,8 @@ fn the_trapezoids_focus_line_lands_at_four_fifths() {
 
 #[test]
 fn light_spaces_distance_is_wimmers() {
-    // A perspective about a centre n before the slice gives it texels as 1/w²: the ratio of densities tells n.
+    // A perspective about a centre n before the slice gives it texels as 1/w²: the ratio of
+    // densities tells n.
     for angle in [90.0f64, 40.0, 10.0] {
         let view = view(DVec3::new(0.0, 100.0, 0.0), DVec3::NEG_Z);
         let radians = angle.to_radians();

@@ -1,4 +1,5 @@
-//! Warped splits through the planner: that they are warped at all, what their texels are, and what is refused.
+//! Warped splits through the planner: that they are warped at all, what their texels are, and what
+//! is refused.
 
 use glam::{DQuat, DVec3};
 use umbrage::config::{Crop, Preset, Range, Stability};
@@ -15,7 +16,8 @@ fn settings(warps: &[Warp], splits: usize) -> ShadowConfig {
     }
 }
 
-/// A ground with posts, seen from 15 m up; the light comes from `bearing` degrees beside the view and `up` degrees above the ground.
+/// A ground with posts, seen from 15 m up; the light comes from `bearing` degrees beside the view
+/// and `up` degrees above the ground.
 fn plan(settings: ShadowConfig, bearing: f64, up: f64) -> (View, ShadowPlan) {
     let mut world: Vec<Aabb> = (0..200)
         .map(|i| {
@@ -65,7 +67,8 @@ fn warps_are_in_force_wherever_light_and_view_do_not_meet() {
 
 #[test]
 fn across_the_view_a_perspective_map_follows_the_eye() {
-    // Light from the side: the camera's own perspective, so that a texel grows as depth does, across the view.
+    // Light from the side: the camera's own perspective, so that a texel grows as depth does,
+    // across the view.
     let (view, plan) = plan(ShadowConfig { crop: Crop::SceneIndependent, ..settings(&[Warp::Psm], 1) }, 90.0, 60.0);
     let spread = spread(&view, &plan);
     assert!((3.0..80.0).contains(&spread), "{spread}");

@@ -14,7 +14,8 @@ pub enum Kind {
 pub enum Scale {
     /// Everything that docs/results.md shows.
     Full,
-    /// The least that has every key: it proves that the jobs and the page fit each other, and its figures mean nothing.
+    /// The least that has every key: it proves that the jobs and the page fit each other, and its
+    /// figures mean nothing.
     Tiny,
 }
 
@@ -31,7 +32,8 @@ pub struct Job {
     full: &'static str,
     /// What is typed instead of that to prove the job.
     tiny: &'static str,
-    /// Minutes that the full job may take on two cores and Mesa's software driver; the sum is bounded by a test.
+    /// Minutes that the full job may take on two cores and Mesa's software driver; the sum is
+    /// bounded by a test.
     pub minutes: u32,
 }
 
@@ -59,7 +61,8 @@ impl Job {
 #[cfg(test)]
 const MOST_MINUTES: u32 = 30;
 
-/// Half the size that the view rule was made for, and half its edges: a quarter of the time, and means that agree.
+/// Half the size that the view rule was made for, and half its edges: a quarter of the time, and
+/// means that agree.
 const HALF_SIZE: &str = "--size 400x300 --least-edges 1000";
 
 const ONE_VIEW: &str = "chessboard --camera middle --size 96x72 --least-edges 1";

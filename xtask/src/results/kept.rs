@@ -1,7 +1,8 @@
 //! What is kept of a run: the figures that docs/results.md shows and the build that they are of.
 //!
-//! The structs read the report of `umbrage compare` or `umbrage bench`, leaving out what they do not name, and write the
-//! kept file. A key that they name and do not find is an error: a page without a figure would look as if there were none.
+//! The structs read the report of `umbrage compare` or `umbrage bench`, leaving out what they do
+//! not name, and write the kept file. A key that they name and do not find is an error: a page
+//! without a figure would look as if there were none.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned};
 
@@ -177,7 +178,8 @@ pub struct Counts {
     pub vertices: u64,
 }
 
-/// Reads `null` as nothing and refuses a key that is not there, which serde's own reading of an [`Option`] does not.
+/// Reads `null` as nothing and refuses a key that is not there, which serde's own reading of an
+/// [`Option`] does not.
 fn present<'de, D: Deserializer<'de>, T: DeserializeOwned>(deserializer: D) -> Result<Option<T>, D::Error> {
     Option::deserialize(deserializer)
 }

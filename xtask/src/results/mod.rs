@@ -1,7 +1,8 @@
 //! `cargo xtask results`: docs/results.md from figures of one build.
 //!
-//! The jobs run one after the other; each leaves its figures, with the build that they are of, in `docs/results/NAME.json`. The
-//! page is rendered from these files alone, and only if all of them are of one build.
+//! The jobs run one after the other; each leaves its figures, with the build that they are of, in
+//! `docs/results/NAME.json`. The page is rendered from these files alone, and only if all of them
+//! are of one build.
 
 mod jobs;
 mod kept;
@@ -32,11 +33,13 @@ use crate::{
 pub enum Ask {
     /// Run all jobs, then render.
     All,
-    /// Run the jobs whose kept figures are of another build, then render: goes on where a run was broken off.
+    /// Run the jobs whose kept figures are of another build, then render: goes on where a run was
+    /// broken off.
     Resume,
     /// Render from the kept figures.
     Render,
-    /// Run all jobs as small as they can be into out/results, and render there: proves that jobs and page fit each other.
+    /// Run all jobs as small as they can be into out/results, and render there: proves that jobs
+    /// and page fit each other.
     Tiny,
 }
 
@@ -66,7 +69,8 @@ fn page_file() -> PathBuf {
     root().join("docs/results.md")
 }
 
-/// Runs the jobs. A page for the documents needs a commit that says what was measured, so tracked files may not differ from it.
+/// Runs the jobs. A page for the documents needs a commit that says what was measured, so tracked
+/// files may not differ from it.
 fn measure(folder: &Path, scale: Scale, resume: bool) -> Result<()> {
     let umbrage = build_umbrage(scale == Scale::Full)?;
     let build = build(&umbrage)?;
@@ -139,7 +143,8 @@ fn build(umbrage: &Path) -> Result<Build> {
     })
 }
 
-/// JSON with one line for each value that holds no object with arrays: short, and a changed figure is a changed line.
+/// JSON with one line for each value that holds no object with arrays: short, and a changed figure
+/// is a changed line.
 fn compact(value: &serde_json::Value) -> String {
     let mut text = String::new();
     write(&mut text, value, 0);

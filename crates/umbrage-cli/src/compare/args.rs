@@ -41,7 +41,8 @@ Presets, each reproduced by one command such as `umbrage compare --preset ladder
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = TECHNIQUES_HELP)]
 pub struct CompareArgs {
-    /// Scenes as for `umbrage render`: .glb or .gltf files, height maps, worlds [default: the preset's]
+    /// Scenes as for `umbrage render`: .glb or .gltf files, height maps, worlds [default: the
+    /// preset's]
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<String>,
     /// Techniques to compare, see below
@@ -66,7 +67,8 @@ pub struct CompareArgs {
     /// Write the contact sheet here (PNG)
     #[arg(long, value_name = "PNG", help_heading = "Output")]
     pub sheet: Option<PathBuf>,
-    /// Write the sheet of errors here (PNG): leaks red, acne blue, on the truth in grey; along a walk, flips yellow
+    /// Write the sheet of errors here (PNG): leaks red, acne blue, on the truth in grey; along a
+    /// walk, flips yellow
     #[arg(long, value_name = "PNG", help_heading = "Output")]
     pub errors: Option<PathBuf>,
     /// Write all scores here (JSON)
@@ -75,8 +77,8 @@ pub struct CompareArgs {
     /// Write one page with sheets, tables and plots here (HTML)
     #[arg(long, value_name = "HTML", help_heading = "Output")]
     pub html: Option<PathBuf>,
-    /// Keep what is finished in this file while the run goes on; if it is cut off, the same command goes on from there. The file goes away
-    /// in the end
+    /// Keep what is finished in this file while the run goes on; if it is cut off, the same command
+    /// goes on from there. The file goes away in the end
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub resume: Option<PathBuf>,
     /// Columns of the sheets; of more shots, evenly chosen ones are shown

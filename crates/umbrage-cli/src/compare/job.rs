@@ -1,4 +1,5 @@
-//! What `umbrage compare` is to do: options and preset taken together, everything checked that can be before a frame is drawn.
+//! What `umbrage compare` is to do: options and preset taken together, everything checked that can
+//! be before a frame is drawn.
 
 use std::path::Path;
 

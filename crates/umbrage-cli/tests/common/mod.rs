@@ -30,7 +30,7 @@ impl Folder {
         new
     }
 
-    /// The same with one more file.
+    /// A folder with one more file.
     pub fn with(name: &str, bytes: impl AsRef<[u8]>) -> Self {
         let mut new = Self::new();
         fs::write(new.at(name), bytes).expect("the extra file");

@@ -1,4 +1,5 @@
-//! Rounds of one scene: every technique in turn, and after each a renderer whose shaders never heard of shadows.
+//! Rounds of one scene: every technique in turn, and after each a renderer whose shaders never
+//! heard of shadows.
 
 use std::time::Instant;
 

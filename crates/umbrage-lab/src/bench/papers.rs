@@ -1,7 +1,8 @@
 //! What the papers measured, to stand beside our ratios.
 
-/// *Parallel-Split Shadow Maps for Large-scale Virtual Environments*, Table 1: frames per second on a GeForce 6800 Ultra of no
-/// concern to us; their ratios are. PSSM(4)'s 29.93 in Robot War beside PSSM(3)'s 28.40 is as printed and suspect.
+/// *Parallel-Split Shadow Maps for Large-scale Virtual Environments*, Table 1: frames per second on
+/// a GeForce 6800 Ultra of no concern to us; their ratios are. PSSM(4)'s 29.93 in Robot War beside
+/// PSSM(3)'s 28.40 is as printed and suspect.
 const TABLE_1: [(&str, [f64; 4]); 4] = [
     ("robot-war", [46.40, 32.84, 28.40, 29.93]),
     ("chessboard", [67.29, 58.00, 50.08, 47.22]),

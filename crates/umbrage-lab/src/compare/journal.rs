@@ -32,8 +32,8 @@ pub struct Finished {
     pub columns: [Vec<Column>; 2],
 }
 
-/// Opens the journal at `path` or begins one. `of` says what is compared; a journal of anything else
-/// is refused.
+/// Opens the journal at `path` or begins one. `of` says what is compared; a journal of anything
+/// else is refused.
 ///
 /// # Errors
 /// As [`Journal::open`].

@@ -67,7 +67,8 @@ const LADDER: Preset = Preset {
     tint: false,
 };
 
-/// *Parallel-Split Shadow Maps*, Figure 8: SSM, PSM, LiSPSM, TSM (1024²), PSSM(2, 3, 4; 512²); columns (a) to (d).
+/// *Parallel-Split Shadow Maps*, Figure 8: SSM, PSM, LiSPSM, TSM (1024²), PSSM(2, 3, 4; 512²);
+/// columns (a) to (d).
 const FIGURE_8: Preset = Preset {
     name: "figure8",
     about: "The paper's Figure 8, columns (a) to (d)",
@@ -145,8 +146,9 @@ const SUNS: Preset = Preset {
     tint: false,
 };
 
-/// *Practical Cascaded Shadow Maps*, Figure 4.1.9: the split by view depth and the first map that contains the point, each split in its
-/// colour; spheres, as in the source, so that borders by map are seen as their squares.
+/// *Practical Cascaded Shadow Maps*, Figure 4.1.9: the split by view depth and the first map that
+/// contains the point, each split in its colour; spheres, as in the source, so that borders by map
+/// are seen as their squares.
 const SELECTION: Preset = Preset {
     name: "selection",
     about: "Splits chosen by view depth and by map, coloured: Figure 4.1.9 of Practical Cascaded Shadow Maps",
@@ -159,8 +161,8 @@ const SELECTION: Preset = Preset {
     ..FIGURE_8
 };
 
-/// *Parallel-Split Shadow Maps on Programmable GPUs*, Figure 10-8: a single map of 2048² beside three splits of 1024² by the
-/// multipass method, with the book's own fit, λ = 0.5 and filter.
+/// *Parallel-Split Shadow Maps on Programmable GPUs*, Figure 10-8: a single map of 2048² beside
+/// three splits of 1024² by the multipass method, with the book's own fit, λ = 0.5 and filter.
 const GEMS_FIGURE: Preset = Preset {
     name: "gems-figure",
     about: "SSM(2048) beside PSSM(3; 1024): GPU Gems 3, Figure 10-8",
@@ -183,7 +185,8 @@ const GEMS_RESULTS: Preset = Preset {
     ..GEMS_FIGURE
 };
 
-/// *Practical Cascaded Shadow Maps*, Figures 4.1.2 to 4.1.6: what flickers when the observer goes on. A frame is 0.15 m and 0.003 rad.
+/// *Practical Cascaded Shadow Maps*, Figures 4.1.2 to 4.1.6: what flickers when the observer goes
+/// on. A frame is 0.15 m and 0.003 rad.
 const STILLNESS: Preset = Preset {
     name: "stillness",
     about: "The kinds of stabilisation along a walk",
@@ -199,8 +202,8 @@ const STILLNESS: Preset = Preset {
     ..FIGURE_8
 };
 
-/// *Parallel-Split Variance Shadow Maps*, its five pictures: one shadow map and one variance shadow map of 1024², four splits of 512², the
-/// same in colours, and as variance shadow maps.
+/// *Parallel-Split Variance Shadow Maps*, its five pictures: one shadow map and one variance shadow
+/// map of 1024², four splits of 512², the same in colours, and as variance shadow maps.
 const PSVSM: Preset = Preset {
     name: "psvsm",
     about: "The five pictures of parallel-split variance shadow maps",

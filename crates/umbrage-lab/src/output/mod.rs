@@ -1,8 +1,9 @@
 //! Files appear whole or not at all.
 //!
-//! Every output is first written in full into a hidden folder of the run, in its target's own folder; only when all of them are there
-//! are they renamed into place. Whatever goes wrong before that (a full disk, a lost device, a bad frame) leaves nothing. An
-//! interrupted run leaves its finished frames ([`clean_up_on_signals`]), and what a killed one leaves goes with the next.
+//! Every output is first written in full into a hidden folder of the run, in its target's own
+//! folder; only when all of them are there are they renamed into place. Whatever goes wrong before
+//! that (a full disk, a lost device, a bad frame) leaves nothing. An interrupted run leaves its
+//! finished frames ([`clean_up_on_signals`]), and what a killed one leaves goes with the next.
 
 use std::{
     collections::{HashMap, HashSet},
@@ -23,8 +24,8 @@ pub use signals::clean_up_on_signals;
 /// Links that are followed, one to the next; systems give up at as many.
 const MOST_LINKS: usize = 40;
 
-/// `NAME.png` of frame 7 is `NAME.0007.png`; a name without extension gets the number at its end. Without a frame the
-/// name stays.
+/// `NAME.png` of frame 7 is `NAME.0007.png`; a name without extension gets the number at its end.
+/// Without a frame the name stays.
 #[must_use]
 pub fn numbered_file(path: &Path, frame: Option<u32>) -> PathBuf {
     match (frame, path.file_stem(), path.extension()) {
@@ -54,8 +55,8 @@ pub fn numbered_folder(path: &Path, frame: Option<u32>) -> PathBuf {
     }
 }
 
-/// Refuses, before any work is done, outputs that cannot be written: two in one file, one that would replace an input,
-/// a folder that does not exist or may not be written to.
+/// Refuses, before any work is done, outputs that cannot be written: two in one file, one that
+/// would replace an input, a folder that does not exist or may not be written to.
 ///
 /// # Errors
 /// [`Failure::Input`] naming the path.
@@ -77,7 +78,8 @@ pub fn check(files: &[&Path], folders: &[&Path], inputs: &[&Path]) -> Result<()>
             return Err(Failure::input(format!("{} is an input; write the output elsewhere", path.display())));
         }
         let folder = folder_of(&target);
-        // The only sure way to learn whether a folder can be written to. The probe has no name where systems allow it.
+        // The only sure way to learn whether a folder can be written to. The probe has no name
+        // where systems allow it.
         tempfile::tempfile_in(folder).map_err(|error| Failure::file("write", path, &error))?;
         if !seen.insert(target) {
             return Err(Failure::input(format!("{} is named for two outputs; give each its own", path.display())));
@@ -105,7 +107,8 @@ struct Pending {
 enum Entry {
     /// A file, written and closed, or a folder of such files.
     Written { path: PathBuf, target: PathBuf },
-    /// A pipe, a terminal, a device: nothing to rename, so it is written when everything else is ready.
+    /// A pipe, a terminal, a device: nothing to rename, so it is written when everything else is
+    /// ready.
     Special { bytes: Vec<u8>, target: PathBuf },
 }
 
@@ -121,12 +124,14 @@ impl Staged {
     /// Writes a file that is to appear at `target`, in place of what may be there.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming the target: it is a folder, its folder is missing, the disk is full, …
+    /// [`Failure::Input`] naming the target: it is a folder, its folder is missing, the disk is
+    /// full, …
     pub fn file(&mut self, target: &Path, bytes: Vec<u8>) -> Result<()> {
         self.pending().file(target, bytes)
     }
 
-    /// Writes a folder of files that is to appear at `target`. If that folder exists already, the files appear in it.
+    /// Writes a folder of files that is to appear at `target`. If that folder exists already, the
+    /// files appear in it.
     ///
     /// # Errors
     /// As [`Staged::file`].
@@ -134,7 +139,8 @@ impl Staged {
         self.pending().folder(target, files)
     }
 
-    /// Says that what was written so far is whole frames, which are worth keeping if the run is interrupted.
+    /// Says that what was written so far is whole frames, which are worth keeping if the run is
+    /// interrupted.
     pub fn finish_frame(&mut self) {
         let mut pending = self.pending();
         pending.finished = pending.entries.len();
@@ -143,8 +149,8 @@ impl Staged {
     /// Puts everything in place. A reader of a pipe who has left is no error.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming the target that refused; those that came before it are taken back, except that a file that was
-    /// replaced stays replaced.
+    /// [`Failure::Input`] naming the target that refused; those that came before it are taken back,
+    /// except that a file that was replaced stays replaced.
     pub fn commit(self) -> Result<()> {
         // Locked to the end: a signal waits until everything is in place.
         self.pending().commit()
@@ -203,7 +209,8 @@ impl Pending {
         })
     }
 
-    /// Puts finished frames in place, forgets everything else, and answers how many files or folders that were.
+    /// Puts finished frames in place, forgets everything else, and answers how many files or
+    /// folders that were.
     #[cfg(unix)]
     fn keep_finished(&mut self) -> usize {
         let entries = std::mem::take(&mut self.entries);
@@ -272,7 +279,8 @@ fn is_special(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|meta| !meta.is_file() && !meta.is_dir())
 }
 
-/// The path with links followed and `.` and `..` gone; its last part need not exist, nor what a link at its end leads to.
+/// The path with links followed and `.` and `..` gone; its last part need not exist, nor what a
+/// link at its end leads to.
 fn resolve(path: &Path) -> Result<PathBuf> {
     let failed = |error: io::Error| Failure::file("write", path, &error);
     let mut target = path.to_path_buf();

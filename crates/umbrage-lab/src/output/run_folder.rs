@@ -1,7 +1,8 @@
 //! The hidden folder in which a run keeps what is not finished, beside where it is to appear.
 //!
-//! A run holds a lock on a file in its folder for as long as it lives. The system takes the lock from a run that was killed, so the
-//! next run that writes to the same place knows whose folders nobody will come back to.
+//! A run holds a lock on a file in its folder for as long as it lives. The system takes the lock
+//! from a run that was killed, so the next run that writes to the same place knows whose folders
+//! nobody will come back to.
 
 use std::{
     fs,
@@ -67,7 +68,8 @@ fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.sync_all()
 }
 
-/// Removes folders whose runs are gone. Best effort: a folder that cannot be removed is nobody's failure.
+/// Removes folders whose runs are gone. Best effort: a folder that cannot be removed is nobody's
+/// failure.
 fn remove_abandoned(place: &Path) {
     let Ok(entries) = fs::read_dir(place) else { return };
     for entry in entries.flatten() {

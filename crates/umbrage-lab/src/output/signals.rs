@@ -14,8 +14,9 @@ pub(super) fn watch(pending: &Arc<Mutex<Pending>>) {
     all.push(Arc::downgrade(pending));
 }
 
-/// From now on SIGINT (Ctrl-C), SIGTERM and SIGHUP put finished frames in place and remove everything hidden, before they end the process
-/// as they would have. Other systems than Unix end it at once.
+/// From now on SIGINT (Ctrl-C), SIGTERM and SIGHUP put finished frames in place and remove
+/// everything hidden, before they end the process as they would have. Other systems than Unix end
+/// it at once.
 pub fn clean_up_on_signals() {
     #[cfg(unix)]
     {

@@ -9,9 +9,9 @@
 //!           | "filter" "=" "each"               every filter in turn
 //! ```
 //!
-//! The settings are those of `umbrage render`, over the default or over the preset that `preset=NAME` names, so everything that
-//! command can do can be compared, with the same defaults and the same messages, and each row of a comparison can be drawn
-//! alone.
+//! The settings are those of `umbrage render`, over the default or over the preset that
+//! `preset=NAME` names, so everything that command can do can be compared, with the same defaults
+//! and the same messages, and each row of a comparison can be drawn alone.
 
 use std::path::Path;
 
@@ -27,7 +27,8 @@ const KINDS: [&str; 5] = ["pssm", "ssm", "psm", "lispsm", "tsm"];
 /// Kinds that are spoken of and do not exist yet.
 const PLANNED: [&str; 1] = ["sdsm"];
 
-/// Options that say what is looked at rather than how shadows are made: they hold for the whole comparison, or not at all.
+/// Options that say what is looked at rather than how shadows are made: they hold for the whole
+/// comparison, or not at all.
 const NOT_SETTINGS: [(&str, &str); 3] = [
     ("shadow-range", "it decides which pixels are scored and is one for all; give --shadow-range beside --techniques"),
     ("shadows", "a technique without shadows has no score; leave it away"),
@@ -218,8 +219,8 @@ pub fn parse_all(texts: &[String], with: &str) -> Result<Vec<Technique>> {
     Ok(finish(&sources, &parse_with(with)?, None)?)
 }
 
-/// Checks sources and makes techniques of them. `with` holds for all that do not say otherwise, the last entry of a key wins.
-/// Techniques of one name are numbered.
+/// Checks sources and makes techniques of them. `with` holds for all that do not say otherwise, the
+/// last entry of a key wins. Techniques of one name are numbered.
 ///
 /// # Errors
 /// What [`TechniqueSource::finish`] refuses.
@@ -245,7 +246,8 @@ impl TechniqueSource {
     /// Checks all settings.
     ///
     /// # Errors
-    /// [`Rejected::NotBuilt`] for a kind that is planned, else [`Rejected::Wrong`], both naming the technique and the setting.
+    /// [`Rejected::NotBuilt`] for a kind that is planned, else [`Rejected::Wrong`], both naming the
+    /// technique and the setting.
     pub fn finish(&self, with: &Settings, range: Option<(f64, f64)>) -> Result<Technique, Rejected> {
         let wrong = |what: String| Rejected::Wrong(Failure::input(format!("technique {:?}: {what}", self.source)));
         self.check_kind()?;

@@ -1,12 +1,14 @@
 //! `umbrage theory`: the papers' theory as data and plots, computed by the crate `umbrage`; nothing
 //! is typed in.
 //!
-//! * `aliasing`: the three split schemes over depth and dp/ds (\[PSSM06\] Figure 4, \[GG3-10\] Figure 10-4);
+//! * `aliasing`: the three split schemes over depth and dp/ds (\[PSSM06\] Figure 4, \[GG3-10\]
+//!   Figure 10-4);
 //! * `area`: Σ Area(B_i)/Area(B) over the light's direction (\[PSSM06\] Figure 5);
 //! * `fits`: independent against dependent fit (\[GG3-10\] Figures 10-5 and 10-6);
 //! * `wireframe`: slices and light frusta in space;
 //! * `levels`: the mip level across a border of splits (\[PCSM\] Figures 4.1.10 to 4.1.14);
-//! * `stillness`: why shadows flicker, and what keeps them still (\[PCSM\] Figures 4.1.3, 4.1.4 and 4.1.6).
+//! * `stillness`: why shadows flicker, and what keeps them still (\[PCSM\] Figures 4.1.3, 4.1.4 and
+//!   4.1.6).
 //!
 //! Papers by key: `docs/papers.md`.
 

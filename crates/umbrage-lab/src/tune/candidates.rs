@@ -1,4 +1,5 @@
-//! What is tried: every combination of some settings' values, at map sizes that the budget pays for.
+//! What is tried: every combination of some settings' values, at map sizes that the budget pays
+//! for.
 
 use std::collections::BTreeMap;
 
@@ -70,8 +71,8 @@ pub fn axis(text: &str) -> std::result::Result<Axis, Error> {
     Ok(Axis { key: key.to_owned(), values })
 }
 
-/// What is tried where nothing says otherwise: numbers of splits and filters, with the whole budget and
-/// a quarter of it.
+/// What is tried where nothing says otherwise: numbers of splits and filters, with the whole budget
+/// and a quarter of it.
 #[must_use]
 pub fn usual_axes() -> Vec<Axis> {
     let axis = |key: &str, values: &[&str]| Axis {
@@ -257,8 +258,8 @@ fn maps(config: &ShadowConfig, lights: &[LightKind]) -> usize {
     layers * faces
 }
 
-/// Bytes of one texel of every map, at most: depth, a depth buffer beside colours, moments with their
-/// levels and the texture between two blurs.
+/// Bytes of one texel of every map, at most: depth, a depth buffer beside colours, moments with
+/// their levels and the texture between two blurs.
 fn texel_bytes(config: &ShadowConfig, maps: usize) -> u64 {
     let maps = maps as u64;
     let depth = config.depth_format.texel_bytes() * u64::from(config.filter.samples());

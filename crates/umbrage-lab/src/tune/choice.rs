@@ -11,12 +11,13 @@ use umbrage::config::Budget;
 pub struct Choice {
     /// The best.
     pub best: usize,
-    /// Those that no other beats in both error and bytes, by bytes; of those that flicker little and
-    /// fit the budget.
+    /// Those that no other beats in both error and bytes, by bytes; of those that flicker little
+    /// and fit the budget.
     pub front: Vec<usize>,
 }
 
-/// Whether a candidate flickers no more than the share `most`; one whose camera never moves does not.
+/// Whether a candidate flickers no more than the share `most`; one whose camera never moves does
+/// not.
 #[must_use]
 pub fn is_still(outcome: &Outcome, most: f64) -> bool {
     outcome.flicker.is_none_or(|flicker| flicker <= most)

@@ -18,8 +18,8 @@ use crate::{
 /// divided.
 ///
 /// # Errors
-/// [`Error`] naming the files of different runs, or what is missing; [`Failure::Input`] naming a file
-/// that cannot be read or a line that is damaged.
+/// [`Error`] naming the files of different runs, or what is missing; [`Failure::Input`] naming a
+/// file that cannot be read or a line that is damaged.
 pub fn merge(files: &[PathBuf], most_flicker: f64, outputs: &Outputs) -> Result<()> {
     let (run, outcomes) = read(files)?;
     output::write(&run, outcomes, most_flicker, outputs)

@@ -2,9 +2,9 @@
 //!
 //! [`candidates`] are all combinations of some settings' values, with maps as large as the budget
 //! allows, and the presets. [`run()`] has the truth traced once and every candidate draw and answer
-//! the same views; each one's [`record::Outcome`] is a line of a [`crate::journal`], so that a run can
-//! be cut off, spread over machines and merged ([`merge`]). [`choice`] says which is best, [`output`]
-//! writes it, the plot and the page.
+//! the same views; each one's [`record::Outcome`] is a line of a [`crate::journal`], so that a run
+//! can be cut off, spread over machines and merged ([`merge`]). [`choice`] says which is best,
+//! [`output`] writes it, the plot and the page.
 
 pub mod candidates;
 pub mod choice;

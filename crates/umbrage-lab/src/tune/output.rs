@@ -88,7 +88,8 @@ struct Skipped<'a> {
 /// Chooses, and writes what was asked for, whole or not at all.
 ///
 /// # Errors
-/// [`super::Error`] where there is no best; [`Failure::Input`] naming a file that cannot be written.
+/// [`super::Error`] where there is no best; [`Failure::Input`] naming a file that cannot be
+/// written.
 pub fn write(run: &Run, mut outcomes: Vec<Outcome>, most: f64, outputs: &Outputs) -> Result<()> {
     outcomes.sort_by_key(|outcome| outcome.candidate);
     let choice = choose(run, &outcomes, most)?;

@@ -55,8 +55,8 @@ pub struct Settings {
     pub least_edges: usize,
 }
 
-/// Judges the candidates of the shard that no earlier run judged; writes the outputs, unless the shard
-/// is but a part.
+/// Judges the candidates of the shard that no earlier run judged; writes the outputs, unless the
+/// shard is but a part.
 ///
 /// # Errors
 /// [`crate::failure::Failure`] naming the option, file or candidate at fault.

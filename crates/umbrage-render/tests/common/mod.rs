@@ -10,7 +10,8 @@ use umbrage::{DirectionalLight, Frustum, View};
 use umbrage_render::{Frame, Gpu, GpuOptions, Outputs, RenderSettings, Rendered, Renderer, Samples};
 use umbrage_scene::{Material, Mesh, Node, Pose, Primitive, Scene, Trs};
 
-/// The device, or `None` (said loudly) where there is no adapter. `UMBRAGE_REQUIRE_GPU=1` turns that into a failure.
+/// The device, or `None` (said loudly) where there is no adapter. `UMBRAGE_REQUIRE_GPU=1` turns
+/// that into a failure.
 pub fn gpu() -> Option<Gpu> {
     static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
     GPU.get_or_init(|| match Gpu::new(&GpuOptions::default()) {

@@ -8,15 +8,16 @@ use serde_json::{Map, Value, json};
 use crate::{Error, Node, Result, Scene, Trs};
 use binary::Binary;
 
-/// Writes a scene as .glb: meshes once however often they are placed, cameras, lights (KHR_lights_punctual), materials
-/// with PNG textures, instances (EXT_mesh_gpu_instancing), skins, animations and `extras.castShadow`.
+/// Writes a scene as .glb: meshes once however often they are placed, cameras, lights
+/// (KHR_lights_punctual), materials with PNG textures, instances (EXT_mesh_gpu_instancing), skins,
+/// animations and `extras.castShadow`.
 ///
-/// Transforms become `f32`, as glTF has no other numbers: far from its node's parent a thing moves by up to 2⁻²⁴ of the
-/// distance. Primitives without triangles are left out.
+/// Transforms become `f32`, as glTF has no other numbers: far from its node's parent a thing moves
+/// by up to 2⁻²⁴ of the distance. Primitives without triangles are left out.
 ///
 /// # Errors
-/// [`Error::InvalidScene`] as [`Scene::validate`]; [`Error::Export`] if a number does not fit into `f32`, or the file
-/// would be larger than the 4 GiB that a .glb can have.
+/// [`Error::InvalidScene`] as [`Scene::validate`]; [`Error::Export`] if a number does not fit into
+/// `f32`, or the file would be larger than the 4 GiB that a .glb can have.
 pub fn export_glb(scene: &Scene) -> Result<Vec<u8>> {
     scene.validate()?;
     let mut binary = Binary::default();

@@ -62,7 +62,8 @@ fn primitive(primitive: &Primitive, binary: &mut Binary) -> Value {
     json
 }
 
-/// A morph target. glTF wants one attribute at least, so a target without differences gets those of positions.
+/// A morph target. glTF wants one attribute at least, so a target without differences gets those of
+/// positions.
 fn target(primitive: &Primitive, target: &MorphTarget, binary: &mut Binary) -> Value {
     let mut attributes = Map::new();
     if !target.positions.is_empty() {

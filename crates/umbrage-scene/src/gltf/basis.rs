@@ -1,5 +1,5 @@
-//! Pictures of KHR_texture_basisu: KTX 2.0 files of Basis Universal. Source of the header: the KTX 2.0 specification,
-//! section 3.
+//! Pictures of KHR_texture_basisu: KTX 2.0 files of Basis Universal. Source of the header: the KTX
+//! 2.0 specification, section 3.
 
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
 use image::{DynamicImage, RgbaImage};
@@ -11,7 +11,8 @@ const MAGIC: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
 /// Most pixels. Ours: 8192².
 const MOST_PIXELS: u64 = 1 << 26;
 
-/// Most bytes of a level once a general-purpose compression is undone: a byte for each pixel and some to spare.
+/// Most bytes of a level once a general-purpose compression is undone: a byte for each pixel and
+/// some to spare.
 const MOST_LEVEL_BYTES: u64 = 2 * MOST_PIXELS;
 
 /// Whether bytes begin as a KTX 2.0 file does.
@@ -36,7 +37,8 @@ pub(super) fn size(bytes: &[u8]) -> Result<[u32; 2], String> {
     if width == 0 || height == 0 { Err(format!("is {width}×{height} pixels")) } else { Ok([width, height]) }
 }
 
-/// The picture with its edges halved so often: the level of that size, or one made of the smallest there is.
+/// The picture with its edges halved so often: the level of that size, or one made of the smallest
+/// there is.
 pub(super) fn decode(bytes: &[u8], halvings: u32) -> Result<RgbaImage, String> {
     let broken = |error: basisu::Error| format!("is a KTX file that cannot be transcoded: {error:?}");
     let transcoder = Transcoder::new(bytes).map_err(broken)?;

@@ -1,8 +1,8 @@
 //! How much a file may make of what it has: many parts can refer to the same few bytes, or to none.
 //!
-//! Each limit is an amount that every file may have and an amount for each byte of the file and the files it names. The
-//! numbers are ours: several times what real files make of a byte, and for a file of 1 MB little enough to be loaded in
-//! seconds and some hundred MiB.
+//! Each limit is an amount that every file may have and an amount for each byte of the file and the
+//! files it names. The numbers are ours: several times what real files make of a byte, and for a
+//! file of 1 MB little enough to be loaded in seconds and some hundred MiB.
 
 use std::cell::Cell;
 
@@ -88,7 +88,8 @@ impl Document<'_> {
         self.used.most(part).saturating_sub(self.used.parts[part as usize].get())
     }
 
-    /// Counts `amount` more of a part on behalf of `user`; an error beyond the limit, and then it does not count.
+    /// Counts `amount` more of a part on behalf of `user`; an error beyond the limit, and then it
+    /// does not count.
     pub(super) fn count(&self, part: Part, amount: u64, user: &str) -> Result<()> {
         let used = &self.used.parts[part as usize];
         let (most, sum) = (self.used.most(part), used.get().saturating_add(amount));

@@ -1,4 +1,5 @@
-//! Buffers and accessors. Every range is checked before a byte is read; nothing is trusted because the JSON says so.
+//! Buffers and accessors. Every range is checked before a byte is read; nothing is trusted because
+//! the JSON says so.
 
 use std::borrow::Cow;
 use std::cell::OnceCell;
@@ -198,7 +199,8 @@ pub(super) fn packed(
     Ok(Packed { index, bytes, component, normalized: accessor.normalized })
 }
 
-/// Copies wanted ones of `count` elements of `size` bytes out of strided bytes; `None` if they do not fit.
+/// Copies wanted ones of `count` elements of `size` bytes out of strided bytes; `None` if they do
+/// not fit.
 fn gather(
     bytes: &[u8],
     offset: u64,

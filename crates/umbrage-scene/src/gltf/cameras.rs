@@ -47,7 +47,8 @@ pub(super) fn load(
             }
         }
         (Checked::Valid(CameraType::Orthographic), _, Some(o)) => {
-            // A negative magnification mirrors the picture; the specification advises against it and nobody needs it.
+            // A negative magnification mirrors the picture; the specification advises against it
+            // and nobody needs it.
             need(o.xmag.abs() > 0.0 && o.xmag.is_finite(), "xmag", o.xmag, "a finite number other than 0")?;
             need(o.ymag.abs() > 0.0 && o.ymag.is_finite(), "ymag", o.ymag, "a finite number other than 0")?;
             need(o.znear >= 0.0 && o.znear.is_finite(), "znear", o.znear, "a finite number of 0 or more")?;

@@ -10,7 +10,8 @@ const HEADER: usize = 12;
 const CHUNK_HEADER: usize = 8;
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// Splits a .glb into its chunks; anything else is taken for the JSON of a .gltf. The error says what is wrong.
+/// Splits a .glb into its chunks; anything else is taken for the JSON of a .gltf. The error says
+/// what is wrong.
 pub(super) fn split(bytes: &[u8]) -> Result<Chunks<'_>, String> {
     if !bytes.starts_with(b"glTF") {
         let json = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
@@ -35,7 +36,8 @@ pub(super) fn split(bytes: &[u8]) -> Result<Chunks<'_>, String> {
 
     let mut rest = body;
     let mut chunks = Vec::new();
-    // Chunks of unknown type behind the first two are to be ignored, as are less than 8 trailing bytes.
+    // Chunks of unknown type behind the first two are to be ignored, as are less than 8 trailing
+    // bytes.
     while rest.len() >= CHUNK_HEADER && chunks.len() < 2 {
         let (header, data) = rest.split_at(CHUNK_HEADER);
         let size = u32::from_le_bytes([header[0], header[1], header[2], header[3]]) as usize;
@@ -54,7 +56,8 @@ pub(super) fn split(bytes: &[u8]) -> Result<Chunks<'_>, String> {
     }
 }
 
-/// A JSON without its padding: blanks, as the specification wants them, are none of our business, zeros are.
+/// A JSON without its padding: blanks, as the specification wants them, are none of our business,
+/// zeros are.
 fn unpadded(json: &[u8]) -> &[u8] {
     let end = json.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
     &json[..end]

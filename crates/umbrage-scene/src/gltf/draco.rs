@@ -31,7 +31,8 @@ pub(super) struct Decoded {
     attributes: BTreeMap<String, u32>,
 }
 
-/// Decodes the stream of a primitive; `None` if it has none, or one that cannot be read beside accessors with the same.
+/// Decodes the stream of a primitive; `None` if it has none, or one that cannot be read beside
+/// accessors with the same.
 pub(super) fn decode(document: &Document<'_>, json: &JsonPrimitive, user: &str) -> Result<Option<Decoded>> {
     let Some(extension) = json.extensions.as_ref().and_then(|extensions| extensions.others.get(NAME)) else {
         return Ok(None);
@@ -78,7 +79,8 @@ impl Decoded {
         self.mesh.faces().as_flattened().iter().map(|point| point.0).collect()
     }
 
-    /// The wanted elements of an attribute that an accessor describes; `None` if the stream has it not.
+    /// The wanted elements of an attribute that an accessor describes; `None` if the stream has it
+    /// not.
     pub(super) fn packed(
         &self,
         document: &Document<'_>,

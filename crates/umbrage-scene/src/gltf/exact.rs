@@ -1,5 +1,5 @@
-//! The numbers of nodes as the file has them. The `gltf` crate keeps them in `f32`, which moves what stands far from the origin: 4 m at
-//! 100,000 km. A camera beside it moves otherwise.
+//! The numbers of nodes as the file has them. The `gltf` crate keeps them in `f32`, which moves
+//! what stands far from the origin: 4 m at 100,000 km. A camera beside it moves otherwise.
 
 use serde::Deserialize;
 
@@ -21,8 +21,8 @@ pub(super) struct Exact {
 }
 
 impl Exact {
-    /// Reads them once more from a JSON that has been read. Of a JSON that is not as it should be nothing is known here, and the numbers
-    /// that have been read stand.
+    /// Reads them once more from a JSON that has been read. Of a JSON that is not as it should be
+    /// nothing is known here, and the numbers that have been read stand.
     pub(super) fn of(json: &[u8]) -> Self {
         serde_json::from_slice(json).unwrap_or_default()
     }
@@ -32,7 +32,8 @@ impl Exact {
     }
 }
 
-/// Numbers in `f64`, or those in `f32` where they are not known better: where both are not the same number, rounded.
+/// Numbers in `f64`, or those in `f32` where they are not known better: where both are not the same
+/// number, rounded.
 pub(super) fn or_rounded<const N: usize>(exact: Option<[f64; N]>, rounded: [f32; N]) -> [f64; N] {
     let agrees = |(exact, rounded): (&f64, &f32)| *exact as f32 == *rounded;
     exact.filter(|exact| exact.iter().zip(&rounded).all(agrees)).unwrap_or(rounded.map(f64::from))

@@ -1,6 +1,7 @@
 //! Which extensions a file may require.
 
-/// Extensions that are read, and those by prefixes that change nothing but shading, sound or metadata.
+/// Extensions that are read, and those by prefixes that change nothing but shading, sound or
+/// metadata.
 const READ: [&str; 11] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",

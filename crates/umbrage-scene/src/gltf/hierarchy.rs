@@ -15,7 +15,8 @@ pub(super) struct Hierarchy {
     pub(super) parent: Vec<Option<usize>>,
     /// Whether each node of the file belongs to the scene that is shown.
     pub(super) shown: Vec<bool>,
-    /// Whether each node of the file is visible (KHR_node_visibility), which its ancestors have to be, too.
+    /// Whether each node of the file is visible (KHR_node_visibility), which its ancestors have to
+    /// be, too.
     pub(super) visible: Vec<bool>,
 }
 
@@ -82,8 +83,9 @@ pub(super) fn sort(document: &Document<'_>) -> Result<Hierarchy> {
     Ok(Hierarchy { order, parent, shown, visible })
 }
 
-/// The nodes of the default scene, or of the first one; all of them if the file has no scenes. A node that the scene
-/// lists besides its parent is shown once, under its parent; one whose parent is not of the scene becomes a root.
+/// The nodes of the default scene, or of the first one; all of them if the file has no scenes. A
+/// node that the scene lists besides its parent is shown once, under its parent; one whose parent
+/// is not of the scene becomes a root.
 fn shown(document: &Document<'_>, order: &[usize], parent: &mut [Option<usize>]) -> Result<Vec<bool>> {
     let root = &document.root;
     if root.scenes.is_empty() && root.scene.is_none() {

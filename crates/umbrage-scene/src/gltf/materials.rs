@@ -23,7 +23,8 @@ pub(super) struct TextureCoordinates {
 }
 
 impl TextureCoordinates {
-    /// Translation × rotation × scale, as KHR_texture_transform has it (its rotation is counter-clockwise with v down).
+    /// Translation × rotation × scale, as KHR_texture_transform has it (its rotation is
+    /// counter-clockwise with v down).
     pub(super) fn apply(&self, [u, v]: [f32; 2]) -> [f32; 2] {
         if self.offset == [0.0; 2] && self.rotation == 0.0 && self.scale == [1.0; 2] {
             return [u, v];
@@ -78,7 +79,8 @@ pub(super) fn load(document: &Document<'_>) -> Result<Loaded> {
     Ok((materials, textures.list, coordinates))
 }
 
-/// The texture of a material. One that cannot be read is left out, unless an alpha mask depends on it.
+/// The texture of a material. One that cannot be read is left out, unless an alpha mask depends on
+/// it.
 fn texture(
     document: &Document<'_>,
     textures: &Textures,
@@ -178,7 +180,8 @@ mod tests {
 
     #[test]
     fn texture_transform_turns_as_the_extension_says() {
-        // The extension's own example: offset (0, 1), rotation π/2, scale (0.5, 0.5) takes (u, v) to (v, −u)/2 + (0, 1).
+        // The extension's own example: offset (0, 1), rotation π/2, scale (0.5, 0.5) takes (u, v)
+        // to (v, −u)/2 + (0, 1).
         let transform =
             TextureCoordinates { set: 0, offset: [0.0, 1.0], rotation: std::f64::consts::FRAC_PI_2, scale: [0.5, 0.5] };
         let [u, v] = transform.apply([1.0, 0.25]);

@@ -11,7 +11,8 @@ use super::{Document, draco, targets};
 use crate::error::element;
 use crate::{Material, Mesh, Primitive, Result};
 
-/// How far the sum of weights may be from 1 before it is put right. Ours: several times what rounding to 16 bits does.
+/// How far the sum of weights may be from 1 before it is put right. Ours: several times what
+/// rounding to 16 bits does.
 const WEIGHT_TOLERANCE: f32 = 1e-4;
 
 /// Loads all meshes. Adds a default material if a primitive has none.

@@ -1,11 +1,12 @@
 //! glTF 2.0 as users have it: .glb, or .gltf with its files beside it.
 //!
-//! The JSON is parsed by the `gltf` crate's types. Everything that follows an index, a length or a URI is done here and
-//! checked here: that crate's own accessors and its validation panic on files that lie (an accessor beyond its
-//! buffer, a `POSITION` that does not exist, a .glb header shorter than itself).
+//! The JSON is parsed by the `gltf` crate's types. Everything that follows an index, a length or a
+//! URI is done here and checked here: that crate's own accessors and its validation panic on files
+//! that lie (an accessor beyond its buffer, a `POSITION` that does not exist, a .glb header shorter
+//! than itself).
 //!
-//! What a shape does not depend on never stops a file: an unreadable texture, animation, camera or light is left out,
-//! and [`Scene::notes`] says so.
+//! What a shape does not depend on never stops a file: an unreadable texture, animation, camera or
+//! light is left out, and [`Scene::notes`] says so.
 
 mod animations;
 mod basis;
@@ -48,10 +49,11 @@ const TEXTURE_BYTES: u64 = 512 << 20;
 /// How glTF files are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GltfOptions {
-    /// Most bytes of all textures of a scene together, at four bytes a pixel and without mip levels, default 512 MiB.
-    /// Pictures that need more are scaled down, with a note.
+    /// Most bytes of all textures of a scene together, at four bytes a pixel and without mip
+    /// levels, default 512 MiB. Pictures that need more are scaled down, with a note.
     pub texture_bytes: u64,
-    /// Whether relative URIs may lead out of the file's folder, as `../textures/bark.png` does; default no.
+    /// Whether relative URIs may lead out of the file's folder, as `../textures/bark.png` does;
+    /// default no.
     pub parent_folders: bool,
 }
 
@@ -61,16 +63,16 @@ impl Default for GltfOptions {
     }
 }
 
-/// Loads a .glb or .gltf file with the files it refers to, which have to lie in its folder or below unless
-/// [`GltfOptions::parent_folders`] says otherwise.
+/// Loads a .glb or .gltf file with the files it refers to, which have to lie in its folder or below
+/// unless [`GltfOptions::parent_folders`] says otherwise.
 ///
-/// Points and lines are left out, as are textures, animations, cameras and lights that cannot be read;
-/// [`Scene::notes`] names them. Primitives without normals get flat ones.
+/// Points and lines are left out, as are textures, animations, cameras and lights that cannot be
+/// read; [`Scene::notes`] names them. Primitives without normals get flat ones.
 ///
 /// # Errors
-/// [`Error::Read`], [`Error::NotAFile`], [`Error::External`], [`Error::Malformed`], [`Error::Invalid`],
-/// [`Error::UnsupportedExtension`], [`Error::UnsafeUri`], or [`Error::Image`] for a texture that an alpha mask depends
-/// on, each naming the file and the element at fault.
+/// [`Error::Read`], [`Error::NotAFile`], [`Error::External`], [`Error::Malformed`],
+/// [`Error::Invalid`], [`Error::UnsupportedExtension`], [`Error::UnsafeUri`], or [`Error::Image`]
+/// for a texture that an alpha mask depends on, each naming the file and the element at fault.
 pub fn load_gltf(path: &Path, options: &GltfOptions) -> Result<Scene> {
     let bytes = read_file(path)?;
     let file = path.display().to_string();

@@ -12,7 +12,8 @@ use super::{Document, cameras, lights};
 use crate::error::element;
 use crate::{Node, Result, Scene, Skin, Trs};
 
-/// How far the last row of a matrix may be from 0 0 0 1. Ours: a hundred times what single precision leaves of products.
+/// How far the last row of a matrix may be from 0 0 0 1. Ours: a hundred times what single
+/// precision leaves of products.
 const AFFINE_TOLERANCE: f64 = 1e-4;
 
 /// Where the nodes of the file have gone.
@@ -21,8 +22,8 @@ pub(super) struct Places {
     pub(super) of_file_node: Vec<usize>,
 }
 
-/// Adds nodes, skins, cameras and lights to a scene that has its meshes. Cameras and lights that make no sense are left
-/// out.
+/// Adds nodes, skins, cameras and lights to a scene that has its meshes. Cameras and lights that
+/// make no sense are left out.
 pub(super) fn load(document: &Document<'_>, scene: &mut Scene) -> Result<Places> {
     let hierarchy = hierarchy::sort(document)?;
     let mut places = Places { of_file_node: vec![usize::MAX; document.root.nodes.len()] };

@@ -5,8 +5,8 @@ use gltf::json::mesh::Mode;
 
 use crate::Primitive;
 
-/// How far the squared length of a normal may be from 1 before it is put right. Ours: several times what rounding to 16
-/// bits does to it, and nothing that can be seen.
+/// How far the squared length of a normal may be from 1 before it is put right. Ours: several times
+/// what rounding to 16 bits does to it, and nothing that can be seen.
 const UNIT_TOLERANCE: f32 = 1e-4;
 
 /// No vertex, or none any more.
@@ -28,8 +28,9 @@ pub(super) fn triangles(mode: Mode, corners: Vec<u32>) -> Vec<u32> {
     (0..count).map(triangle).filter(|t| !is_stitch(t)).flatten().collect()
 }
 
-/// The vertices that triangles use, in order, and the indices made to count in them; `None` if all are used. Leaving the
-/// rest out keeps bounds those of what is seen and buffers shared by many primitives from being stored many times.
+/// The vertices that triangles use, in order, and the indices made to count in them; `None` if all
+/// are used. Leaving the rest out keeps bounds those of what is seen and buffers shared by many
+/// primitives from being stored many times.
 pub(super) fn used_vertices(indices: &mut [u32], vertices: u32) -> Option<Vec<u32>> {
     // A few triangles of a large buffer: their number decides the time, not that of the vertices.
     if indices.len() < vertices as usize / 16 {
@@ -91,11 +92,13 @@ fn face_normal(primitive: &Primitive, triangle: &[u32]) -> DVec3 {
     (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Y)
 }
 
-/// Flat normals, as glTF wants where the file has none. Vertices are shared only by triangles of the same plane.
+/// Flat normals, as glTF wants where the file has none. Vertices are shared only by triangles of
+/// the same plane.
 pub(super) fn flat_normals(primitive: &mut Primitive) {
     let mut kept: Vec<u32> = Vec::new();
     let mut normals: Vec<[f32; 3]> = Vec::new();
-    // Per old vertex the last new one made of it, per new one that before: short lists, as few planes meet in a vertex.
+    // Per old vertex the last new one made of it, per new one that before: short lists, as few
+    // planes meet in a vertex.
     let mut last = vec![NONE; primitive.positions.len()];
     let mut before: Vec<u32> = Vec::new();
     let mut indices = Vec::with_capacity(primitive.indices.len());
@@ -122,7 +125,8 @@ pub(super) fn flat_normals(primitive: &mut Primitive) {
     (primitive.normals, primitive.indices) = (normals, indices);
 }
 
-/// Makes normals unit vectors. Those without length take the mean of their triangles; returns whether there were any.
+/// Makes normals unit vectors. Those without length take the mean of their triangles; returns
+/// whether there were any.
 pub(super) fn repair_normals(primitive: &mut Primitive) -> bool {
     let mut lost = false;
     for normal in &mut primitive.normals {

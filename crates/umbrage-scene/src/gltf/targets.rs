@@ -10,7 +10,8 @@ use crate::{MorphTarget, Result};
 /// Bytes of the differences of one vertex.
 const VERTEX_BYTES: u64 = size_of::<[f32; 3]>() as u64;
 
-/// The morph targets of a primitive with so many vertices in the file, of which the `wanted` are kept.
+/// The morph targets of a primitive with so many vertices in the file, of which the `wanted` are
+/// kept.
 pub(super) fn load(
     document: &Document<'_>,
     json: &[JsonTarget],

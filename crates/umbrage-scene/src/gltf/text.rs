@@ -1,4 +1,5 @@
-//! The JSON of a glTF document: parsed, put in terms that the `gltf` crate's types know, with the place of what is wrong.
+//! The JSON of a glTF document: parsed, put in terms that the `gltf` crate's types know, with the
+//! place of what is wrong.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
@@ -20,7 +21,8 @@ pub(super) const NO_NODE: usize = u32::MAX as usize;
 /// The largest whole number up to which every whole number is an `f64`.
 const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
 
-/// Elements whose JSON is not what it has to be, although the scene does not depend on them: what is wrong, by index.
+/// Elements whose JSON is not what it has to be, although the scene does not depend on them: what
+/// is wrong, by index.
 #[derive(Debug, Default)]
 pub(super) struct Broken {
     pub(super) animations: BTreeMap<usize, String>,
@@ -62,7 +64,8 @@ pub(super) fn parse(file: &str, bytes: &[u8], notes: &Notes) -> Result<(json::Ro
     Ok((root, broken))
 }
 
-/// Puts an element that says nothing in the place of each that cannot be read, so that indices stay what they are.
+/// Puts an element that says nothing in the place of each that cannot be read, so that indices stay
+/// what they are.
 fn replace_broken<T: DeserializeOwned>(list: &mut [Value], with: &Value) -> BTreeMap<usize, String> {
     let mut broken = BTreeMap::new();
     for (index, value) in list.iter_mut().enumerate() {
@@ -87,7 +90,8 @@ fn text<'b>(bytes: &'b [u8], notes: &Notes) -> Cow<'b, str> {
     text
 }
 
-/// Refuses any other version of glTF by its name; before version 2 the lists of a document were objects.
+/// Refuses any other version of glTF by its name; before version 2 the lists of a document were
+/// objects.
 fn check_version(value: &Value) -> Result<(), String> {
     let Some(document) = value.as_object() else { return Err("its JSON is not a glTF document: no object".into()) };
     let version = match document.get("asset").and_then(|asset| asset.get("version")) {
@@ -111,8 +115,9 @@ fn check_version(value: &Value) -> Result<(), String> {
     }
 }
 
-/// Puts what glTF allows, or what its writers take for allowed, in terms that the `gltf` crate's types know: whole
-/// numbers written as `24.0`, scenes without nodes, channels without a target node, a version that is a number.
+/// Puts what glTF allows, or what its writers take for allowed, in terms that the `gltf` crate's
+/// types know: whole numbers written as `24.0`, scenes without nodes, channels without a target
+/// node, a version that is a number.
 fn adapt(value: &mut Value) {
     make_whole(value);
     if let Some(Value::Number(version)) = value.pointer("/asset/version") {

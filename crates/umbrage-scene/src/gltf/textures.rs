@@ -11,8 +11,9 @@ use crate::error::element;
 use crate::picture::MOST_PIXELS_AN_EDGE;
 use crate::{Result, Texture, TextureFilter, Wrap};
 
-/// Bytes of textures that every file may have, and those for each byte of its encoded pictures. Ours: photographs take up
-/// to some 40 bytes a byte on the whole; what takes more is so plain that it loses little by being smaller.
+/// Bytes of textures that every file may have, and those for each byte of its encoded pictures.
+/// Ours: photographs take up to some 40 bytes a byte on the whole; what takes more is so plain that
+/// it loses little by being smaller.
 const BYTES_OF_EVERY_FILE: u64 = 128 << 20;
 const BYTES_PER_ENCODED_BYTE: u64 = 40;
 
@@ -37,8 +38,8 @@ pub(super) struct Textures {
 }
 
 impl Textures {
-    /// Loads the textures with these indices in the file; `users` name who wants them. Pictures that cannot be read are
-    /// no error here: that is for those who want them to decide.
+    /// Loads the textures with these indices in the file; `users` name who wants them. Pictures
+    /// that cannot be read are no error here: that is for those who want them to decide.
     pub(super) fn load(document: &Document<'_>, users: &BTreeMap<usize, String>) -> Result<Self> {
         let mut wishes = BTreeMap::new();
         for (&index, user) in users {

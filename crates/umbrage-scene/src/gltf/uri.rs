@@ -69,10 +69,11 @@ pub(super) fn read_external(
     })
 }
 
-/// The relative path that a URI reference names, with `.` and `..` resolved; it never leaves the folder unless `parents`
-/// allows it to.
+/// The relative path that a URI reference names, with `.` and `..` resolved; it never leaves the
+/// folder unless `parents` allows it to.
 fn relative_path(uri: &str, parents: bool) -> Result<PathBuf, &'static str> {
-    // RFC 3986 section 4.2: in a relative reference no colon stands before the first slash. This covers http:, file: and C:.
+    // RFC 3986 section 4.2: in a relative reference no colon stands before the first slash. This
+    // covers http:, file: and C:.
     if uri.split('/').next().is_some_and(|first| first.contains(':')) {
         return Err("has a scheme or a drive");
     }

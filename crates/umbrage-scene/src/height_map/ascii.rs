@@ -1,4 +1,5 @@
-//! Heights from ESRI ASCII grids (.asc): a header of names and numbers, then rows of heights, the northern one first.
+//! Heights from ESRI ASCII grids (.asc): a header of names and numbers, then rows of heights, the
+//! northern one first.
 
 use std::path::Path;
 
@@ -6,7 +7,8 @@ use glam::DVec2;
 
 use super::raster::{Metres, Raster, check_size};
 
-/// The largest cells that may be degrees, where nothing says what they are: some 5 km on the ground.
+/// The largest cells that may be degrees, where nothing says what they are: some 5 km on the
+/// ground.
 const LARGEST_DEGREES: f64 = 0.05;
 
 /// The numbers of a header.

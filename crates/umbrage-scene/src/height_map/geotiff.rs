@@ -1,4 +1,5 @@
-//! Heights from GeoTIFF. Source: OGC GeoTIFF 1.1 (19-008r4), and the tag for missing data that GDAL writes.
+//! Heights from GeoTIFF. Source: OGC GeoTIFF 1.1 (19-008r4), and the tag for missing data that GDAL
+//! writes.
 
 use std::io::Cursor;
 

@@ -16,12 +16,15 @@ use crate::{Error, Result, Scene};
 use raster::{Metres, Raster};
 use terrain::Field;
 
-/// What a height map means in metres. Each field takes precedence over the side file, and that over the map itself.
+/// What a height map means in metres. Each field takes precedence over the side file, and that over
+/// the map itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HeightMapOptions {
-    /// Metres between neighbouring posts, in x and z; above 0. Needed where neither map nor side file says it.
+    /// Metres between neighbouring posts, in x and z; above 0. Needed where neither map nor side
+    /// file says it.
     pub metres_per_post: Option<f64>,
-    /// Metres of height for one step of grey, or for each metre of a map that has metres; above 0, default 1.
+    /// Metres of height for one step of grey, or for each metre of a map that has metres; above 0,
+    /// default 1.
     pub metres_per_unit: Option<f64>,
     /// Height in metres of grey 0 or of 0 m; default that of the side file, or 0.
     pub height_offset: Option<f64>,
@@ -52,17 +55,20 @@ struct SideFile {
     row0: Option<String>,
 }
 
-/// Loads a height map as terrain: a PNG or WebP (grey of 8 or 16 bits, alone or in colours with or without alpha or in a
-/// palette; Terrarium or Mapbox colours), a GeoTIFF (.tif) or an ESRI ASCII grid (.asc).
+/// Loads a height map as terrain: a PNG or WebP (grey of 8 or 16 bits, alone or in colours with or
+/// without alpha or in a palette; Terrarium or Mapbox colours), a GeoTIFF (.tif) or an ESRI ASCII
+/// grid (.asc).
 ///
-/// With W × H posts, post (i, j) stands at x = (i − (W−1)/2)·cell, z = (j − (H−1)/2)·cell and y = value · metres per
-/// unit + offset. Row 0 is north, which is −Z. Each quad is cut along the diagonal from (i, j) to (i+1, j+1); quads with a
-/// corner without data are left out. Normals are smooth. The terrain throws shadows; it is cut into tiles of 64 × 64
-/// quads, each a node of its own.
+/// With W × H posts, post (i, j) stands at x = (i − (W−1)/2)·cell, z = (j − (H−1)/2)·cell and y =
+/// value · metres per unit + offset. Row 0 is north, which is −Z. Each quad is cut along the
+/// diagonal from (i, j) to (i+1, j+1); quads with a corner without data are left out. Normals are
+/// smooth. The terrain throws shadows; it is cut into tiles of 64 × 64 quads, each a node of its
+/// own.
 ///
 /// # Errors
-/// [`Error::Read`], [`Error::NotAFile`], or [`Error::HeightMap`] naming the map or side file: no scale known, a scale that is
-/// not above 0, a side file that does not fit the map, colours that are no heights, a map that is too small or too large.
+/// [`Error::Read`], [`Error::NotAFile`], or [`Error::HeightMap`] naming the map or side file: no
+/// scale known, a scale that is not above 0, a side file that does not fit the map, colours that
+/// are no heights, a map that is too small or too large.
 pub fn load_height_map(path: &Path, options: &HeightMapOptions) -> Result<Scene> {
     let wrong = |reason: String| Error::HeightMap { path: path.to_owned(), reason };
     let bytes = read_file(path)?;

@@ -6,8 +6,8 @@ use super::HeightEncoding;
 use super::raster::{Metres, Raster, check_size};
 use crate::picture;
 
-/// Greatest mean step between neighbours, in metres, that terrain has. Ours: coarse maps of whole mountain chains have some
-/// 100 m, pictures of anything else thousands.
+/// Greatest mean step between neighbours, in metres, that terrain has. Ours: coarse maps of whole
+/// mountain chains have some 100 m, pictures of anything else thousands.
 const ROUGHEST: f64 = 300.0;
 
 /// Reds of Terrarium heights from −11,264 to 9,216 m: deeper and higher is nothing on Earth.

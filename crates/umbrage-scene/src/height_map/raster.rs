@@ -38,8 +38,9 @@ impl Metres {
 
 /// Most posts of a file of so many bytes; the error says what to do about more.
 ///
-/// 67 million, 8192², are the most at all: their terrain takes some 3 GiB. A file has a million whatever its size and four
-/// for each byte, twice what terrain packs into one, so that a small file cannot fill the memory. Both are ours.
+/// 67 million, 8192², are the most at all: their terrain takes some 3 GiB. A file has a million
+/// whatever its size and four for each byte, twice what terrain packs into one, so that a small
+/// file cannot fill the memory. Both are ours.
 pub(super) fn check_size(width: usize, height: usize, bytes: usize) -> Result<(), String> {
     const MOST: usize = 1 << 26;
     let most = (bytes.saturating_mul(4)).saturating_add(1 << 20).min(MOST);

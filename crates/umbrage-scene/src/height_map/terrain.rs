@@ -6,8 +6,9 @@ use super::Scale;
 use super::raster::Raster;
 use crate::{Material, Mesh, Node, Primitive, Scene, Trs};
 
-/// Quads along the edge of a tile. Ours: small enough to be culled, large enough to be drawn fast; positions inside a
-/// tile are relative to its middle, so that `f32` is exact to a fraction of a millimetre at 30 m posts.
+/// Quads along the edge of a tile. Ours: small enough to be culled, large enough to be drawn fast;
+/// positions inside a tile are relative to its middle, so that `f32` is exact to a fraction of a
+/// millimetre at 30 m posts.
 const TILE_QUADS: usize = 64;
 
 /// A grid of heights in metres.
@@ -37,8 +38,8 @@ impl Field {
         (DVec2::new(i, j) - middle) * self.scale.cell
     }
 
-    /// From central differences, one-sided at the border and beside posts without data: the same on both sides of a seam
-    /// between tiles.
+    /// From central differences, one-sided at the border and beside posts without data: the same on
+    /// both sides of a seam between tiles.
     fn normal(&self, i: usize, j: usize) -> [f32; 3] {
         let here = self.y(i, j);
         let slope = |[before, after]: [(usize, usize); 2], cell: f64| {
@@ -89,8 +90,8 @@ impl Field {
         Ok(scene)
     }
 
-    /// The posts from `first` to `last`, both included, relative to their middle; quads with a corner without data are left
-    /// out, and `None` is a tile without any.
+    /// The posts from `first` to `last`, both included, relative to their middle; quads with a
+    /// corner without data are left out, and `None` is a tile without any.
     fn tile(&self, first: [usize; 2], last: [usize; 2]) -> Option<(Primitive, DVec3)> {
         let across = last[0] - first[0] + 1;
         let local = |i: usize, j: usize| (j - first[1]) * across + (i - first[0]);

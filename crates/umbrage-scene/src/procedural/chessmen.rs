@@ -1,4 +1,5 @@
-//! Staunton chessmen, turned and carved: they face +Z, stand on y = 0 and are 36 to 85 m tall, for squares of 87.5 m.
+//! Staunton chessmen, turned and carved: they face +Z, stand on y = 0 and are 36 to 85 m tall, for
+//! squares of 87.5 m.
 
 use glam::{DVec3, dvec3};
 
@@ -46,7 +47,8 @@ impl Piece {
     }
 }
 
-/// The foot that all pieces have: plinth, bead and the sweep up to the stem. Ends at the stem's radius, open upwards.
+/// The foot that all pieces have: plinth, bead and the sweep up to the stem. Ends at the stem's
+/// radius, open upwards.
 fn foot(radius: f64, height: f64, stem: f64) -> Vec<[f64; 2]> {
     let mut profile = vec![[0.0, 0.0], [radius * 0.97, 0.0], [radius, 0.06 * height], [radius, 0.2 * height]];
     for i in 1..=3 {
@@ -126,7 +128,8 @@ fn bishop() -> Vec<Solid> {
     profile.push([5.4, 40.6]);
     let body = Solid::lathe(&profile, 22);
 
-    // The mitre: an egg whose rings crowd together at the notch and lean there; the ring inside is drawn in.
+    // The mitre: an egg whose rings crowd together at the notch and lean there; the ring inside is
+    // drawn in.
     let (base, top, widest, notch) = (40.4, 57.5, 7.6, 0.6);
     let lips = [notch - 0.05, notch - 0.035, notch, notch + 0.035, notch + 0.05];
     let heights = [0.0, 0.06, 0.14, 0.24, 0.35, 0.46].into_iter().chain(lips).chain([0.74, 0.84, 0.92, 0.965]);
@@ -208,7 +211,8 @@ fn knight() -> Vec<Solid> {
     profile.extend([[11.4, 13.4], [11.4, 14.6], [0.0, 15.4]]);
     let body = Solid::lathe(&profile, 26);
 
-    // Drawn from its left side, looking along +X: (back or crest), (chest, throat or chin), half thickness.
+    // Drawn from its left side, looking along +X: (back or crest), (chest, throat or chin), half
+    // thickness.
     let sections = [
         ([-10.2, 14.2], [10.0, 14.2], 9.2),
         ([-10.6, 18.0], [9.6, 18.0], 8.8),
@@ -276,7 +280,8 @@ fn knight() -> Vec<Solid> {
     vec![body, carved.turned(DVec3::Y, -90.0)]
 }
 
-/// A place on the horse's crest (0 at the withers, 1 between the ears) and the way out of the neck there.
+/// A place on the horse's crest (0 at the withers, 1 between the ears) and the way out of the neck
+/// there.
 fn sections_crest(sections: &[([f64; 2], [f64; 2], f64)], t: f64) -> (DVec3, DVec3) {
     let at = mix(1.2, 7.3, t);
     let (index, share) = (at.floor() as usize, at.fract());

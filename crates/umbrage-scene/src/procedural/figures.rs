@@ -1,5 +1,5 @@
-//! Walkers of the desert: a knight in plate armour (10 m tall at scale 1) and a dwarf (7.4 m). They face +Z and stand
-//! on y = 0 in mid-stride.
+//! Walkers of the desert: a knight in plate armour (10 m tall at scale 1) and a dwarf (7.4 m). They
+//! face +Z and stand on y = 0 in mid-stride.
 
 use glam::{DVec3, dvec3};
 
@@ -69,8 +69,8 @@ pub(super) fn rounded(knots: &[(DVec3, f64)], steps: usize) -> Vec<(DVec3, f64)>
     path
 }
 
-/// A bell that hangs from the waist: open below, with pleats that grow towards the hem. `[radius, height]` of waist
-/// and hem.
+/// A bell that hangs from the waist: open below, with pleats that grow towards the hem. `[radius,
+/// height]` of waist and hem.
 fn skirt(waist: [f64; 2], hem: [f64; 2], pleats: f64, depth: f64) -> Solid {
     let rows = 8;
     let outside = (0..=rows).map(|i| {

@@ -19,7 +19,8 @@ impl Leaf {
     pub(super) const ALL: [Self; 7] =
         [Self::Oval, Self::Round, Self::Lance, Self::Lobed, Self::Needles, Self::Scales, Self::Pinnate];
 
-    /// Pairs of leaves on a twig; their length and half width as shares of the picture's width; lobes of their edge.
+    /// Pairs of leaves on a twig; their length and half width as shares of the picture's width;
+    /// lobes of their edge.
     const fn shape(self) -> (u32, f64, f64, f64) {
         match self {
             Self::Oval => (5, 0.40, 0.11, 0.0),

@@ -1,5 +1,5 @@
-//! Arithmetic that gives the same bits on every machine: `libm` for the transcendental functions, `f64` vectors (which
-//! `glam` computes without SIMD), and one small random generator.
+//! Arithmetic that gives the same bits on every machine: `libm` for the transcendental functions,
+//! `f64` vectors (which `glam` computes without SIMD), and one small random generator.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -14,7 +14,8 @@ pub(super) fn turn(axis: DVec3, degrees: f64) -> DQuat {
     DQuat::from_xyzw(axis.x * sin, axis.y * sin, axis.z * sin, cos)
 }
 
-/// The rotation that brings −Z to `direction` (any length) and keeps +Y as far up as it can: how cameras and lights look.
+/// The rotation that brings −Z to `direction` (any length) and keeps +Y as far up as it can: how
+/// cameras and lights look.
 pub(super) fn looking_along(direction: DVec3) -> DQuat {
     let back = -direction.normalize();
     let up = if back.y.abs() > 1.0 - 1e-9 { DVec3::NEG_Z } else { DVec3::Y };

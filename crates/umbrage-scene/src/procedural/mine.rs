@@ -1,4 +1,5 @@
-//! The world "Mining Terrain": an open-cast mine with benches, clawbots at work in it, windmills on the hills around.
+//! The world "Mining Terrain": an open-cast mine with benches, clawbots at work in it, windmills on
+//! the hills around.
 
 use glam::{DVec2, DVec3, dvec3};
 
@@ -35,7 +36,8 @@ fn natural_height(place: DVec2) -> f64 {
     stepped + 0.5 * noise::plane_octaves(33, place / 22.0, 2, 0.5)
 }
 
-/// A level place for a machine: its ground is level to `radius` and joins the hills 16 m further out.
+/// A level place for a machine: its ground is level to `radius` and joins the hills 16 m further
+/// out.
 struct Pad {
     place: DVec2,
     radius: f64,

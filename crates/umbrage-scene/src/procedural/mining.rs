@@ -25,8 +25,8 @@ pub(super) struct Clawbot {
     pub(super) tracks: Mesh,
     /// Turns about Y on the tracks, around [`TURRET`].
     pub(super) trunk: Mesh,
-    /// The moving jaw of the left claw (+X), relative to its hinge [`HINGE`]; it opens by turning about +Y. Its mirror
-    /// image is the right one's.
+    /// The moving jaw of the left claw (+X), relative to its hinge [`HINGE`]; it opens by turning
+    /// about +Y. Its mirror image is the right one's.
     pub(super) jaws: [Mesh; 2],
 }
 
@@ -216,7 +216,8 @@ fn eyes() -> Solid {
     eye.and(lens)
 }
 
-/// One half of a lobster's claw in the XZ plane, growing along +Z from the origin and bent towards −X, with teeth.
+/// One half of a lobster's claw in the XZ plane, growing along +Z from the origin and bent towards
+/// −X, with teeth.
 fn half_claw(length: f64) -> Solid {
     let arc = |t: f64| dvec3(0.62 * sin_cos(180.0 * libm::pow(t, 0.85)).0 - 0.42 * t, 0.0, length * t);
     let path: Vec<_> = (0..=16)
@@ -398,7 +399,8 @@ fn canvas() -> Solid {
     Solid::all((0..4).map(|i| one.clone().turned(DVec3::Z, 90.0 * f64::from(i))))
 }
 
-/// A boulder of radius about 1, another one for every seed; its lower third belongs into the ground.
+/// A boulder of radius about 1, another one for every seed; its lower third belongs into the
+/// ground.
 pub(super) fn rock(name: &str, seed: u64, material: usize) -> Mesh {
     let stone = Solid::cube_sphere(26).bent(|p| {
         // Planes that cut the ball make a broken stone; noise makes it rough.

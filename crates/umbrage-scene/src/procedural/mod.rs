@@ -1,5 +1,6 @@
-//! The four worlds of the paper on parallel-split shadow maps (Zhang, Sun, Xu, Lun 2006, section 5 and table 1) and a
-//! dense wood beside them, built from nothing: the same triangles on every machine.
+//! The four worlds of the paper on parallel-split shadow maps (Zhang, Sun, Xu, Lun 2006, section 5
+//! and table 1) and a dense wood beside them, built from nothing: the same triangles on every
+//! machine.
 
 mod chessmen;
 mod desert;
@@ -22,21 +23,23 @@ use crate::Scene;
 
 /// A procedural world.
 ///
-/// Metres, +Y up. Every world has the cameras `near`, `middle`, `far`, `dueling` (looks nearly into the light at time
-/// 0) and `aerial`, and a directional light `sun` that moves slowly.
+/// Metres, +Y up. Every world has the cameras `near`, `middle`, `far`, `dueling` (looks nearly into
+/// the light at time 0) and `aerial`, and a directional light `sun` that moves slowly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum World {
     /// 160 robots on a plain of 1.44 km²; 240 thousand triangles.
     RobotWar,
     /// 32 chessmen on a board of 0.49 km²; 51 thousand triangles.
     Chessboard,
-    /// 15 dwarfs and 15 knights that walk, 15 palms and 15 cactuses on a desert of 1.6 km²; 1 million triangles.
+    /// 15 dwarfs and 15 knights that walk, 15 palms and 15 cactuses on a desert of 1.6 km²; 1
+    /// million triangles.
     Knights,
-    /// 10 clawbots and 15 windmills that move, 20 rocks and 10 pines on an open-cast mine of 2.56 km²; 1.3 million
-    /// triangles.
+    /// 10 clawbots and 15 windmills that move, 20 rocks and 10 pines on an open-cast mine of 2.56
+    /// km²; 1.3 million triangles.
     MiningTerrain,
-    /// A wood of 1.44 hectares whose foliage is alpha-tested cards, 152 materials, each merged into one mesh; 1.1
-    /// million triangles. It is no world of the paper: it measures what hidden leaves cost.
+    /// A wood of 1.44 hectares whose foliage is alpha-tested cards, 152 materials, each merged into
+    /// one mesh; 1.1 million triangles. It is no world of the paper: it measures what hidden leaves
+    /// cost.
     Thicket,
 }
 

@@ -45,12 +45,14 @@ pub(super) fn space(seed: u64, at: DVec3) -> f64 {
     mix(face(0.0), face(1.0), fade(f.z))
 }
 
-/// A sum of octaves of [`plane`]: each has twice the frequency and `gain` times the height of the one before.
+/// A sum of octaves of [`plane`]: each has twice the frequency and `gain` times the height of the
+/// one before.
 pub(super) fn plane_octaves(seed: u64, at: DVec2, octaves: u32, gain: f64) -> f64 {
     octave_sum(octaves, gain, |octave, frequency| plane(seed + u64::from(octave), at * frequency))
 }
 
-/// A sum of octaves of [`space`]: each has twice the frequency and `gain` times the height of the one before.
+/// A sum of octaves of [`space`]: each has twice the frequency and `gain` times the height of the
+/// one before.
 pub(super) fn space_octaves(seed: u64, at: DVec3, octaves: u32, gain: f64) -> f64 {
     octave_sum(octaves, gain, |octave, frequency| space(seed + u64::from(octave), at * frequency))
 }

@@ -1,4 +1,5 @@
-//! Palms and cactuses for the desert, pines for the mine. All stand on y = 0, their feet a little below it.
+//! Palms and cactuses for the desert, pines for the mine. All stand on y = 0, their feet a little
+//! below it.
 
 use glam::{DVec3, dvec3};
 
@@ -69,7 +70,8 @@ pub(super) fn palm(name: &str, seed: u64, colours: PalmsColours) -> Mesh {
     sculpture.finish(name)
 }
 
-/// One leaf of a palm: a rib that bends under its weight and leaflets on both sides. `[bearing, rise, length]`.
+/// One leaf of a palm: a rib that bends under its weight and leaflets on both sides. `[bearing,
+/// rise, length]`.
 fn frond(
     sculpture: &mut Sculpture,
     [rib, leaf]: [usize; 2],
@@ -230,7 +232,8 @@ pub(super) fn pine(name: &str, seed: u64, colours: PinesColours) -> Mesh {
     sculpture.finish(name)
 }
 
-/// A bough of needles for a card: transparent around twigs and needles, the branch's root at the bottom.
+/// A bough of needles for a card: transparent around twigs and needles, the branch's root at the
+/// bottom.
 pub(super) fn bough_texture() -> Texture {
     const WIDTH: u32 = 128;
     const HEIGHT: u32 = 256;

@@ -1,4 +1,5 @@
-//! War robots: four makes, about 1,480 triangles each. They face +Z, stand on y = 0 and are 10 m tall at scale 1.
+//! War robots: four makes, about 1,480 triangles each. They face +Z, stand on y = 0 and are 10 m
+//! tall at scale 1.
 
 use glam::{DVec3, dvec3};
 

@@ -15,11 +15,13 @@ pub(super) struct Sculpture {
 }
 
 impl Sculpture {
-    /// Adds a solid of one material. Edges sharper than `crease` degrees stay sharp, others are shaded smooth.
+    /// Adds a solid of one material. Edges sharper than `crease` degrees stay sharp, others are
+    /// shaded smooth.
     pub(super) fn add(&mut self, material: usize, crease: f64, solid: &Solid) -> &mut Self {
         let primitive = self.primitives.entry(material).or_insert_with(|| Primitive { material, ..Default::default() });
         let corner_normals = corner_normals(solid, crease);
-        // A corner is a vertex of its own where its normal differs from that of its neighbours at the same point.
+        // A corner is a vertex of its own where its normal differs from that of its neighbours at
+        // the same point.
         let mut vertices: Vec<Vec<([f32; 3], u32)>> = vec![Vec::new(); solid.points.len()];
         for (face, normals) in solid.faces.iter().zip(corner_normals) {
             for (&point, normal) in face.iter().zip(normals) {
@@ -41,9 +43,9 @@ impl Sculpture {
         self
     }
 
-    /// Adds an open sheet through rows of points, seen from the side on which rows run to the right and follow one
-    /// another upwards. All of it has one normal: the ground's, or for foliage the way out of the crown, which is
-    /// softer than each leaf's own.
+    /// Adds an open sheet through rows of points, seen from the side on which rows run to the right
+    /// and follow one another upwards. All of it has one normal: the ground's, or for foliage the
+    /// way out of the crown, which is softer than each leaf's own.
     pub(super) fn sheet(&mut self, material: usize, rows: &[Vec<DVec3>], normal: DVec3) -> &mut Self {
         let primitive = self.primitives.entry(material).or_insert_with(|| Primitive { material, ..Default::default() });
         let (across, first) = (rows[0].len() as u32, primitive.positions.len() as u32);
@@ -61,7 +63,8 @@ impl Sculpture {
         self
     }
 
-    /// Adds a sheet that shows the whole picture of its material: the first row is the picture's bottom.
+    /// Adds a sheet that shows the whole picture of its material: the first row is the picture's
+    /// bottom.
     pub(super) fn card(&mut self, material: usize, rows: &[Vec<DVec3>], normal: DVec3) -> &mut Self {
         self.sheet(material, rows, normal);
         if let Some(primitive) = self.primitives.get_mut(&material) {
@@ -79,8 +82,8 @@ impl Sculpture {
     }
 }
 
-/// One unit normal per corner of each face: the mean of the faces at the point that are within `crease` degrees of the
-/// corner's own, weighted by their angles at the point.
+/// One unit normal per corner of each face: the mean of the faces at the point that are within
+/// `crease` degrees of the corner's own, weighted by their angles at the point.
 fn corner_normals(solid: &Solid, crease: f64) -> Vec<[DVec3; 3]> {
     let at = |i: u32| solid.points[i as usize];
     let face_normals: Vec<DVec3> =

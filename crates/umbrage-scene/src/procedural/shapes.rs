@@ -1,7 +1,8 @@
 //! Solids: closed surfaces made of triangles that turn counter-clockwise seen from outside.
 //!
-//! Everything here is a loft, a skin stretched over a row of rings, except boxes and the subdivided cube. Normals are
-//! not stored: they follow from the faces when a model is finished, smooth below a crease angle and hard above it.
+//! Everything here is a loft, a skin stretched over a row of rings, except boxes and the subdivided
+//! cube. Normals are not stored: they follow from the faces when a model is finished, smooth below
+//! a crease angle and hard above it.
 
 use std::collections::BTreeMap;
 
@@ -26,7 +27,8 @@ pub(super) enum End {
 }
 
 impl Solid {
-    /// A skin over `rings`, which have the same number of points and run counter-clockwise seen from the last ring.
+    /// A skin over `rings`, which have the same number of points and run counter-clockwise seen
+    /// from the last ring.
     pub(super) fn loft(start: End, rings: &[Vec<DVec3>], end: End) -> Self {
         let around = rings[0].len();
         let mut solid = Self::default();
@@ -64,7 +66,8 @@ impl Solid {
     fn close(&mut self, ring: &[u32], end: End) {
         match end {
             End::Flat => {
-                // A zigzag from side to side keeps the triangles fatter than a fan from one corner would.
+                // A zigzag from side to side keeps the triangles fatter than a fan from one corner
+                // would.
                 let (mut low, mut high) = (0, ring.len() - 1);
                 while high - low >= 2 {
                     self.faces.push([ring[low], ring[low + 1], ring[high]]);
@@ -127,8 +130,8 @@ impl Solid {
         solid
     }
 
-    /// A straight block on the ground, `[width, depth]` below and above; 28 triangles, 12 if its vertical edges are not
-    /// cut.
+    /// A straight block on the ground, `[width, depth]` below and above; 28 triangles, 12 if its
+    /// vertical edges are not cut.
     pub(super) fn block(below: [f64; 2], above: [f64; 2], height: f64, cut: f64) -> Self {
         Self::stack(&[(0.0, below), (height, above)], cut)
     }
@@ -146,8 +149,8 @@ impl Solid {
         Self::loft(End::Flat, &rings, End::Flat)
     }
 
-    /// A body of revolution about Y. The profile is `[radius, height]` and runs so that the solid lies to its left (up
-    /// the outside); ends with radius 0 are points, others are closed flat.
+    /// A body of revolution about Y. The profile is `[radius, height]` and runs so that the solid
+    /// lies to its left (up the outside); ends with radius 0 are points, others are closed flat.
     pub(super) fn lathe(profile: &[[f64; 2]], segments: usize) -> Self {
         let (mut middle, mut start, mut end) = (profile, End::Flat, End::Flat);
         if let [[radius, y], rest @ ..] = middle
@@ -186,7 +189,8 @@ impl Solid {
         solid
     }
 
-    /// A sector of a hoop with rectangular profile, between two radii, heights and angles in degrees.
+    /// A sector of a hoop with rectangular profile, between two radii, heights and angles in
+    /// degrees.
     pub(super) fn sector(radii: [f64; 2], heights: [f64; 2], angles: [f64; 2], segments: usize) -> Self {
         let section = |angle: f64| {
             let (sin, cos) = sin_cos(angle);
@@ -228,8 +232,8 @@ impl Solid {
         Self::sweep(path, &circle(segments).collect::<Vec<_>>())
     }
 
-    /// A convex outline of size 1 (counter-clockwise, x to the right of the path, y towards its upper side), scaled
-    /// and carried along a path without twisting.
+    /// A convex outline of size 1 (counter-clockwise, x to the right of the path, y towards its
+    /// upper side), scaled and carried along a path without twisting.
     pub(super) fn sweep(path: &[(DVec3, f64)], outline: &[DVec2]) -> Self {
         let count = path.len();
         let tangent = |i: usize| (path[(i + 1).min(count - 1)].0 - path[i.saturating_sub(1)].0).normalize();
@@ -239,7 +243,8 @@ impl Solid {
         let (mut rings, mut start, mut end) = (Vec::new(), End::Flat, End::Flat);
         for (i, &(center, radius)) in path.iter().enumerate() {
             forward = tangent(i);
-            // Carrying the side along and making it perpendicular again is the frame with the least twist, nearly.
+            // Carrying the side along and making it perpendicular again is the frame with the least
+            // twist, nearly.
             side = (side - forward * side.dot(forward)).normalize();
             let up = forward.cross(side);
             if radius == 0.0 {
@@ -251,9 +256,9 @@ impl Solid {
         Self::loft(start, &rings, end)
     }
 
-    /// A body drawn in profile: each section is a rounded oval whose long axis runs from one point of the profile (in
-    /// the XY plane) to another and whose half thickness along Z is the last number. Seen from +Z, with the body
-    /// growing upwards, the first point is on the left.
+    /// A body drawn in profile: each section is a rounded oval whose long axis runs from one point
+    /// of the profile (in the XY plane) to another and whose half thickness along Z is the last
+    /// number. Seen from +Z, with the body growing upwards, the first point is on the left.
     pub(super) fn profile(sections: &[([f64; 2], [f64; 2], f64)], segments: usize, squareness: f64) -> Self {
         let rings: Vec<Vec<DVec3>> = sections
             .iter()
@@ -266,8 +271,8 @@ impl Solid {
         Self::loft(End::Flat, &rings, End::Flat)
     }
 
-    /// A thick sheet: `at(u, v)` gives front and back of the sheet at shares 0 to 1 of its width and height; the front is
-    /// seen with u to the right and v up.
+    /// A thick sheet: `at(u, v)` gives front and back of the sheet at shares 0 to 1 of its width
+    /// and height; the front is seen with u to the right and v up.
     pub(super) fn slab(columns: usize, rows: usize, at: impl Fn(f64, f64) -> (DVec3, DVec3)) -> Self {
         let rings: Vec<Vec<DVec3>> = (0..=rows)
             .map(|row| {
@@ -276,11 +281,13 @@ impl Solid {
                 front.chain((0..=columns).rev().map(|column| pair(column).1)).collect()
             })
             .collect();
-        // The zigzag of a flat end joins front and back in pairs, so a wavy sheet is closed as well as a straight one.
+        // The zigzag of a flat end joins front and back in pairs, so a wavy sheet is closed as well
+        // as a straight one.
         Self::loft(End::Flat, &rings, End::Flat)
     }
 
-    /// A ball of radius 1 made from a cube with `cells` × `cells` squares a side; 12·cells² triangles.
+    /// A ball of radius 1 made from a cube with `cells` × `cells` squares a side; 12·cells²
+    /// triangles.
     pub(super) fn cube_sphere(cells: i32) -> Self {
         let mut solid = Self::default();
         let mut known = BTreeMap::new();
@@ -369,7 +376,8 @@ impl Solid {
     }
 }
 
-/// Unit vectors around a circle, counter-clockwise. Seen from above, that is (x, ·, −y) in the world.
+/// Unit vectors around a circle, counter-clockwise. Seen from above, that is (x, ·, −y) in the
+/// world.
 fn circle(segments: usize) -> impl Iterator<Item = DVec2> {
     (0..segments).map(move |i| {
         let (sin, cos) = sin_cos(360.0 * i as f64 / segments as f64);

@@ -1,4 +1,5 @@
-//! What all worlds share: materials by colour, nodes, cameras, the moving sun, clips, and scattering things apart.
+//! What all worlds share: materials by colour, nodes, cameras, the moving sun, clips, and
+//! scattering things apart.
 
 use glam::{DVec2, DVec3};
 
@@ -58,8 +59,8 @@ impl Stage {
         self.scene.cameras.push(SceneCamera { name: name.to_owned(), node, lens });
     }
 
-    /// The sun: at time 0 it stands at `start`, in two minutes it goes to `noon` and back, over a great circle at an
-    /// even pace but for a rest at either end.
+    /// The sun: at time 0 it stands at `start`, in two minutes it goes to `noon` and back, over a
+    /// great circle at an even pace but for a rest at either end.
     pub(super) fn sun(&mut self, start: SkyPoint, noon: SkyPoint) {
         const KEYS: usize = 97;
         const PERIOD_S: f64 = 120.0;
@@ -112,8 +113,9 @@ impl SkyPoint {
     }
 }
 
-/// Places on a square of the ground (x, z) around the origin, such that circles of the given radii around them stay
-/// apart and inside. Larger circles should come first. Places that `fits` refuses stay free.
+/// Places on a square of the ground (x, z) around the origin, such that circles of the given radii
+/// around them stay apart and inside. Larger circles should come first. Places that `fits` refuses
+/// stay free.
 pub(super) fn scatter(random: &mut Random, edge: f64, radii: &[f64], fits: impl Fn(DVec2) -> bool) -> Vec<DVec2> {
     const TRIES: usize = 100_000;
     let mut places: Vec<DVec2> = Vec::new();

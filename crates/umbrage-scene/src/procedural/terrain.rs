@@ -5,7 +5,8 @@ use glam::{DVec2, DVec3, dvec3};
 use super::stage::Stage;
 use crate::{Mesh, Node, Primitive, Trs};
 
-/// Heights at the posts of a square grid around the origin; between the posts the ground is the mesh's own triangles.
+/// Heights at the posts of a square grid around the origin; between the posts the ground is the
+/// mesh's own triangles.
 pub(super) struct Terrain {
     edge: f64,
     tiles: usize,
@@ -21,14 +22,16 @@ pub(super) struct Surface<'a> {
     pub(super) cast_shadow: bool,
 }
 
-/// The diagonal that divides a square: from north-west to south-east, or from south-west to north-east.
+/// The diagonal that divides a square: from north-west to south-east, or from south-west to
+/// north-east.
 #[derive(Clone, Copy)]
 enum Cut {
     Falling,
     Rising,
 }
 
-/// A grid of 1/1024 m: coordinates on it are exact in `f32` relative to a tile and in the world, so tiles meet exactly.
+/// A grid of 1/1024 m: coordinates on it are exact in `f32` relative to a tile and in the world, so
+/// tiles meet exactly.
 fn on_grid(metres: f64) -> f64 {
     (metres * 1024.0).round() / 1024.0
 }
@@ -71,7 +74,8 @@ impl Terrain {
     pub(super) fn height_at(&self, place: DVec2) -> f64 {
         let cells = self.posts() - 1;
         let locate = |coordinate: f64| {
-            // The posts are at most one grid step from even spacing: the estimate is right or next to right.
+            // The posts are at most one grid step from even spacing: the estimate is right or next
+            // to right.
             let estimate =
                 ((coordinate / self.edge + 0.5) * cells as f64).floor().clamp(0.0, cells as f64 - 1.0) as usize;
             let cell = if coordinate < self.coordinate(estimate) {
@@ -106,7 +110,8 @@ impl Terrain {
         if (north_west - south_east).abs() <= (north_east - south_west).abs() { Cut::Falling } else { Cut::Rising }
     }
 
-    /// The lowest ground on a circle and in its middle: where something wide has to stand so as not to float.
+    /// The lowest ground on a circle and in its middle: where something wide has to stand so as not
+    /// to float.
     pub(super) fn lowest_around(&self, place: DVec2, radius: f64) -> f64 {
         (0..12)
             .map(|i| {

@@ -1,7 +1,9 @@
-//! The world "Thicket": a dense wood whose foliage is cards with holes, merged by material as exporters merge it.
+//! The world "Thicket": a dense wood whose foliage is cards with holes, merged by material as
+//! exporters merge it.
 //!
-//! It is no world of the paper. It is what is hard for a renderer: a million small triangles, more than half of them
-//! alpha-tested, 152 materials, every one of them all over the wood, so that no object is near or far.
+//! It is no world of the paper. It is what is hard for a renderer: a million small triangles, more
+//! than half of them alpha-tested, 152 materials, every one of them all over the wood, so that no
+//! object is near or far.
 
 use std::collections::BTreeMap;
 

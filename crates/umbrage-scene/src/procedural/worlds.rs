@@ -113,8 +113,8 @@ pub(super) fn chessboard() -> Scene {
     stage.scene
 }
 
-/// The men of one side after the ten half moves 1 e4 e5 2 Nf3 Nc6 3 Bc4 Bc5 4 c3 Nf6 5 d3 d6, nobody taken: files and
-/// ranks count from 0.
+/// The men of one side after the ten half moves 1 e4 e5 2 Nf3 Nc6 3 Bc4 Bc5 4 c3 Nf6 5 d3 d6,
+/// nobody taken: files and ranks count from 0.
 fn position(side: &str) -> Vec<([u8; 2], Piece)> {
     let white = side == "white";
     let rank = |from_own_side: u8| if white { from_own_side } else { 7 - from_own_side };
@@ -139,7 +139,8 @@ fn position(side: &str) -> Vec<([u8; 2], Piece)> {
     men
 }
 
-/// Two by two squares around the origin, the light ones at north-west and south-east, each of 2 × 2 cells.
+/// Two by two squares around the origin, the light ones at north-west and south-east, each of 2 × 2
+/// cells.
 fn four_squares(square: f64, [light, dark]: [usize; 2]) -> Mesh {
     let mut sculpture = super::sculpt::Sculpture::default();
     for (column, row) in [(0, 0), (1, 0), (0, 1), (1, 1)] {

@@ -26,7 +26,8 @@ impl Glb {
         Self { json: json!({ "asset": { "version": "2.0" } }), binary: Vec::new() }
     }
 
-    /// One node with one triangle in the plane z = 0, facing +Z, with indices; all its parts are number 0.
+    /// One node with one triangle in the plane z = 0, facing +Z, with indices; all its parts are
+    /// number 0.
     pub fn triangle() -> Self {
         let mut glb = Self::empty();
         let positions = glb.floats("VEC3", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);

@@ -171,7 +171,8 @@ fn worlds_are_the_same_every_time() {
     }
 }
 
-/// Measurements are only comparable where these agree. Whoever changes a world on purpose writes the new number here.
+/// Measurements are only comparable where these agree. Whoever changes a world on purpose writes
+/// the new number here.
 #[test]
 fn worlds_are_the_same_on_every_machine() {
     let known = [0xA0F5_7759_9F75_F67C, 0x355C_B2D1_3CAA_E70C, 0xF668_0F60_E68A_DBC0, 0x4A1B_FF89_10A1_B2CF];

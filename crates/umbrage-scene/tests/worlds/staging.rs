@@ -1,4 +1,5 @@
-//! Things stand on the ground, apart from each other and inside the world, at all times; cameras and suns are as told.
+//! Things stand on the ground, apart from each other and inside the world, at all times; cameras
+//! and suns are as told.
 
 use glam::{DVec2, DVec3, Vec3, Vec3Swizzles as _};
 use umbrage_scene::procedural::World;
@@ -49,7 +50,8 @@ fn feet_are_on_the_ground() {
             let pose = scene.pose(time).expect("a world has a pose");
             for (root, _) in standing(scene) {
                 let name = &scene.nodes[root].name;
-                // How far the lowest vertex is above the ground under it, and how deep anything reaches.
+                // How far the lowest vertex is above the ground under it, and how deep anything
+                // reaches.
                 let above = |point: DVec3| point.y - ground.height(point.xz()).expect("inside the world");
                 let lowest = vertices(scene, &pose, root).map(above).fold(f64::MAX, f64::min);
                 let deepest = match name.split(' ').next() {
@@ -201,7 +203,8 @@ fn clips_are_loops_without_a_jump() {
                             2.0 * f64::from(dot.abs().min(1.0)).acos().to_degrees()
                         };
                         assert!(keys.iter().all(|key| turn(key, key) < 0.2), "{}: unit quaternions", clip.name);
-                        // Slerp has one shortest way between neighbours, and the last key is the first.
+                        // Slerp has one shortest way between neighbours, and the last key is the
+                        // first.
                         assert!(keys.windows(2).all(|pair| turn(&pair[0], &pair[1]) < 60.0), "{}", clip.name);
                         assert!(turn(&keys[0], &keys[keys.len() - 1]) < 0.2, "{}", clip.name);
                     }

@@ -38,7 +38,8 @@ fn unsound(primitive: &Primitive) -> Option<String> {
         let [a, b, c] = [0, 1, 2].map(|k| corner(primitive, triangle[k]));
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
         let height = (b - a).cross(c - a).length() / longest;
-        // A thousandth of the longest side is thin; a millimetre is small; less is a mistake of construction.
+        // A thousandth of the longest side is thin; a millimetre is small; less is a mistake of
+        // construction.
         let fine = height > 2e-4 * longest && longest > 1e-3;
         (!fine).then(|| format!("degenerate triangle {a} {b} {c}"))
     })
@@ -89,7 +90,8 @@ fn leaky(triangles: &[[DVec3; 3]]) -> Option<String> {
     for face in &faces {
         let [a, b, c] = face.map(|i| points[i]);
         let entry = volumes.entry(root(&mut part, face[0])).or_insert((0.0, a));
-        // Relative to a point of the part, so that small parts far from the origin keep their digits.
+        // Relative to a point of the part, so that small parts far from the origin keep their
+        // digits.
         let origin = entry.1;
         entry.0 += (a - origin).dot((b - origin).cross(c - origin)) / 6.0;
     }

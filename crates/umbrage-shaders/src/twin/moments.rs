@@ -26,7 +26,8 @@ pub fn of_depth(kind: FilterKind, exponents: [f32; 2], z: f32) -> [f32; 4] {
     }
 }
 
-/// `moments::chebyshev`: the most of a distribution with these two moments that can lie at `t` or beyond.
+/// `moments::chebyshev`: the most of a distribution with these two moments that can lie at `t` or
+/// beyond.
 #[must_use]
 pub fn chebyshev(mean: f32, square: f32, least_variance: f32, t: f32) -> f32 {
     if t <= mean {
@@ -68,7 +69,7 @@ pub fn hamburger(moments: [f32; 4], t: f32) -> f32 {
 pub struct Spread {
     /// Standard deviation within a texel.
     pub texel: f32,
-    /// The same of the receiver's plane within the filter.
+    /// Standard deviation of the receiver's plane within the filter.
     pub plane: f32,
     /// What was taken off as constant bias.
     pub bias: f32,
@@ -105,7 +106,8 @@ pub fn blur_reach(radius: f32) -> f32 {
     (radius * radius + 0.5).sqrt().floor()
 }
 
-/// `moments::blur_weight`: the weight of the texel `k` texels aside in a blur of half width `radius` texels.
+/// `moments::blur_weight`: the weight of the texel `k` texels aside in a blur of half width
+/// `radius` texels.
 #[must_use]
 pub fn blur_weight(k: f32, radius: f32) -> f32 {
     let n = blur_reach(radius);

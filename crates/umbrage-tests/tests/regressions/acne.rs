@@ -1,4 +1,5 @@
-//! No acne and no leak to speak of at the defaults: wrong decisions farther from true edges than the maps' resolution explains.
+//! No acne and no leak to speak of at the defaults: wrong decisions farther from true edges than
+//! the maps' resolution explains.
 
 use glam::DVec3;
 use image::GrayAlphaImage;
@@ -13,8 +14,9 @@ const SIZE: [u32; 2] = [200, 150];
 const CAMERAS: [&str; 2] = ["near", "dueling"];
 /// Degrees above the horizon, at the bearing of the world's own sun.
 const ELEVATIONS: [f64; 3] = [80.0, 20.0, 5.0];
-/// The most of either, of those pixels of a world's views that lie so far from edges (and so of all scored ones, too). Single views of this
-/// size have too few of them to tell a share of a thousandth.
+/// The most of either, of those pixels of a world's views that lie so far from edges (and so of all
+/// scored ones, too). Single views of this size have too few of them to tell a share of a
+/// thousandth.
 const MOST: f64 = 0.001;
 
 /// Acne and leak, pooled over a world's views, of masks and of the same masks moved aside.

@@ -1,4 +1,5 @@
-//! Scores may not slip: E, the share of wrong decisions, of a few techniques at fixed settings in every world.
+//! Scores may not slip: E, the share of wrong decisions, of a few techniques at fixed settings in
+//! every world.
 
 use std::sync::OnceLock;
 
@@ -12,14 +13,15 @@ use umbrage_truth::scores::{LEAST_EDGES, MisShadowed};
 const SIZE: [u32; 2] = [200, 150];
 /// The views of each world; their decisions are scored as one.
 const CAMERAS: [&str; 4] = ["near", "middle", "far", "dueling"];
-/// The view rule (at least [`LEAST_EDGES`] edge pixels) is meant for 800 × 600; edges are lines, so a picture of a quarter of the
-/// width has a quarter of them.
+/// The view rule (at least [`LEAST_EDGES`] edge pixels) is meant for 800 × 600; edges are lines, so
+/// a picture of a quarter of the width has a quarter of them.
 const LEAST_EDGES_HERE: usize = LEAST_EDGES / 4;
-/// How many of [`CAMERAS`] must satisfy the view rule in each world, lest the scores speak of nothing.
+/// How many of [`CAMERAS`] must satisfy the view rule in each world, lest the scores speak of
+/// nothing.
 const LEAST_VIEWS: usize = 3;
 
-/// Share of pixels that the judge sees and the renderer leaves empty: those whose centre lies on a silhouette before the sky. Measured:
-/// 2 pixels in the four views of Robot War.
+/// Share of pixels that the judge sees and the renderer leaves empty: those whose centre lies on a
+/// silhouette before the sky. Measured: 2 pixels in the four views of Robot War.
 const MISSING: f64 = 0.001;
 
 /// E in one world of each of [`techniques`], in their order.
@@ -31,8 +33,9 @@ struct Ceilings {
     ssm: Ceiling,
 }
 
-/// What was measured, with the room of [`Ceiling::ROOM`] above it. Where a score becomes better, lower it; where one must become worse, the
-/// commit says why. The tests print the numbers of today; nothing changes these but a person.
+/// What was measured, with the room of [`Ceiling::ROOM`] above it. Where a score becomes better,
+/// lower it; where one must become worse, the commit says why. The tests print the numbers of
+/// today; nothing changes these but a person.
 const CEILINGS: [Ceilings; 4] = [
     Ceilings {
         world: World::RobotWar,
@@ -160,11 +163,11 @@ fn mining_terrain_is_as_right_as_it_was() {
     check(World::MiningTerrain);
 }
 
-/// PSSM(3;512²), three quarters of the memory of SSM(1024²), has at most this share of its error in Robot War: what first light
-/// promised. Measured: 0.40.
+/// PSSM(3;512²), three quarters of the memory of SSM(1024²), has at most this share of its error in
+/// Robot War: what first light promised. Measured: 0.40.
 const PSSM3_OF_SSM_ROBOT_WAR: f64 = 0.5;
-/// The same over all worlds, measured: 0.625, with the room of [`Ceiling::ROOM`]. It is not 0.5: Huge Chessboard has 0.86, Knights 0.75, Mining
-/// Terrain 0.68.
+/// Error of three splits over that of one map, over all worlds, measured: 0.625, with the room of
+/// [`Ceiling::ROOM`]. It is not 0.5: Huge Chessboard has 0.86, Knights 0.75, Mining Terrain 0.68.
 const PSSM3_OF_SSM: f64 = 0.72;
 
 /// How techniques stand to each other, which is what the papers claim.

@@ -1,4 +1,5 @@
-//! Every technique, filter, fit, stabilisation and depth format, each in some world: a covering set, not the whole product.
+//! Every technique, filter, fit, stabilisation and depth format, each in some world: a covering
+//! set, not the whole product.
 
 use std::path::Path;
 
@@ -14,7 +15,8 @@ use umbrage_tests::stage::{Stage, Technique, gpu};
 const MASK_SIZE: [u32; 2] = [160, 120];
 /// Pixels of a picture: colours do not pack as well as masks do.
 const PICTURE_SIZE: [u32; 2] = [96, 72];
-/// Edge of the maps in masks. At [`MASK_SIZE`] larger ones are so exact that techniques look the same.
+/// Edge of the maps in masks. At [`MASK_SIZE`] larger ones are so exact that techniques look the
+/// same.
 const MAP: u32 = 256;
 
 /// What is drawn of a shot.
@@ -163,8 +165,8 @@ fn references_are_few_small_and_all_used() {
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
 
-/// A tolerance that lets one technique pass for another would let any change pass. References of one view, drawn by
-/// techniques that should differ there, must differ by more than is tolerated.
+/// A tolerance that lets one technique pass for another would let any change pass. References of
+/// one view, drawn by techniques that should differ there, must differ by more than is tolerated.
 #[test]
 fn references_tell_techniques_apart() {
     let (shots, goldens) = (shots(), goldens());
@@ -187,7 +189,8 @@ fn references_tell_techniques_apart() {
     assert!(pairs >= 13, "6 pairs of split counts, 6 of filters, 1 of fits, but only {pairs} were compared");
 }
 
-/// The same for pictures: one hard map in place of four soft ones has to be seen in every one of them.
+/// Pictures tell techniques apart: one hard map in place of four soft ones has to be seen in every
+/// one of them.
 #[test]
 fn pictures_tell_techniques_apart() {
     let goldens = goldens();

@@ -1,5 +1,5 @@
-//! What must not change unnoticed: pictures, masks and scores of every technique in the four worlds. One binary, so that every
-//! world is built once.
+//! What must not change unnoticed: pictures, masks and scores of every technique in the four
+//! worlds. One binary, so that every world is built once.
 
 mod acne;
 mod ceilings;

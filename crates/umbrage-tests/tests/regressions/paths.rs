@@ -1,4 +1,5 @@
-//! Every pair of generation and storage draws every world alike, and whatever a device lacks, everything renders.
+//! Every pair of generation and storage draws every world alike, and whatever a device lacks,
+//! everything renders.
 
 use image::GrayAlphaImage;
 use umbrage::config::{DepthFormat, Filter, Generation, Layout};
@@ -11,10 +12,12 @@ const LAYOUTS: [Layout; 9] = Layout::ALL;
 
 const SIZE: [u32; 2] = [160, 120];
 
-/// The share of pixels that may differ where maps are tiles: their edges are clipped and their texels have other coordinates.
+/// The share of pixels that may differ where maps are tiles: their edges are clipped and their
+/// texels have other coordinates.
 const TILES: f64 = 0.0005;
 
-/// The mask of a world's camera `middle`, or `None`, said loudly, where the device cannot take this path.
+/// The mask of a world's camera `middle`, or `None`, said loudly, where the device cannot take this
+/// path.
 fn mask(gpu: &Gpu, world: World, technique: &Technique, layout: Layout) -> Option<GrayAlphaImage> {
     let mut technique = technique.clone();
     technique.settings.config.layout = layout;
@@ -73,7 +76,8 @@ fn another_resolution_is_no_path() {
 fn sizes_and_floats_change_nothing() {
     let mut technique = Technique::pssm(4, 256);
     technique.settings.config.map_sizes = vec![256, 192, 128, 128];
-    // Where sizes matter: packed, apart, with one viewport for several layers, and packed in layers.
+    // Where sizes matter: packed, apart, with one viewport for several layers, and packed in
+    // layers.
     check(World::Knights, &technique, &[LAYOUTS[1], LAYOUTS[2], LAYOUTS[5], LAYOUTS[8]]);
     let Some(gpu) = gpu() else { return };
     let depth = mask(gpu, World::Knights, &technique, LAYOUTS[0]).expect("a mask");
@@ -111,8 +115,8 @@ fn probes_answer_alike() {
     assert_eq!(answers(Layout::Separate), expected);
 }
 
-/// With each optional feature withheld in turn, and with all of them, every path that is asked for renders, and the report names what was
-/// taken.
+/// With each optional feature withheld in turn, and with all of them, every path that is asked for
+/// renders, and the report names what was taken.
 #[test]
 fn whatever_a_device_lacks_everything_renders() {
     if gpu().is_none() {
@@ -157,7 +161,8 @@ fn whatever_a_device_lacks_everything_renders() {
             let mask = rendered.mask.expect("a mask");
             let expected = expected.get_or_insert_with(|| mask.clone());
             let found = difference(&mask, expected);
-            // Cut at the slices' borders, where depth cannot be left unclipped, triangles round otherwise.
+            // Cut at the slices' borders, where depth cannot be left unclipped, triangles round
+            // otherwise.
             assert!(found <= TILES, "{generation:?} without {withhold:?}: {:.4} % differ", 100.0 * found);
         }
     }

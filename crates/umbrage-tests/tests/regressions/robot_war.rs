@@ -1,4 +1,5 @@
-//! What first light promised of Robot War: right on the plain, few casters per split, and probes that say what masks say.
+//! What first light promised of Robot War: right on the plain, few casters per split, and probes
+//! that say what masks say.
 
 use umbrage_render::{Outputs, ProbePoint};
 use umbrage_scene::procedural::World;
@@ -9,15 +10,17 @@ use umbrage_tests::stage::{Stage, Technique, gpu};
 const SIZE: [u32; 2] = [800, 600];
 /// The views.
 const CAMERAS: [&str; 2] = ["near", "dueling"];
-/// Mean of |mask - truth| over the plain without stabilisation, four splits of 512²: what first light promised. Measured: 0.0027 and
-/// 0.0032.
+/// Mean of |mask - truth| over the plain without stabilisation, four splits of 512²: what first
+/// light promised. Measured: 0.0027 and 0.0032.
 const PLAIN: f64 = 0.0055;
-/// The same with exact stabilisation. Measured: 0.0056 in both.
+/// Ceiling of the error with exact stabilisation. Measured: 0.0056 in both.
 const PLAIN_EXACT: f64 = 0.0085;
-/// Casters, summed over four splits. Engines draw 450 to 640 where there are 160 robots. Measured: 62.
+/// Casters, summed over four splits. Engines draw 450 to 640 where there are 160 robots.
+/// Measured: 62.
 const PAIRS: usize = 200;
-/// Share of points at which a probe may decide otherwise than the mask: the truth's points and the rasteriser's differ by
-/// rounding, so one pixel of 500, all of them at edges. Measured: one of 10,000.
+/// Share of points at which a probe may decide otherwise than the mask: the truth's points and the
+/// rasteriser's differ by rounding, so one pixel of 500, all of them at edges. Measured: one of
+/// 10,000.
 const PROBES: f64 = 0.002;
 
 #[test]

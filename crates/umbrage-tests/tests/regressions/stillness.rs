@@ -1,5 +1,6 @@
-//! Flicker along a walk of 0.15 m and 0.003 rad a frame that magnifies, at the default range, 0, 10 and 100 km from the world's origin: what
-//! `umbrage compare --preset stillness` measures over 600 frames (docs/results.md), over a few. Limits are those asked for.
+//! Flicker along a walk of 0.15 m and 0.003 rad a frame that magnifies, at the default range, 0, 10
+//! and 100 km from the world's origin: what `umbrage compare --preset stillness` measures over 600
+//! frames (docs/results.md), over a few. Limits are those asked for.
 
 use glam::{DQuat, DVec3};
 use umbrage::config::{ExtentSteps, Stability, Transition};

@@ -9,7 +9,8 @@ use super::footprint::pixels_per_texel;
 use super::{Answers, Domain, TexelGradient};
 use crate::{Result, TruthMask};
 
-/// A wrong decision this many pixels from a true edge, and [`EDGE_TEXELS`] beyond, may be the edge's.
+/// A wrong decision this many pixels from a true edge, and [`EDGE_TEXELS`] beyond, may be the
+/// edge's.
 pub const EDGE_PIXELS: f64 = 2.0;
 /// See [`EDGE_PIXELS`]: times m, the pixels that a texel covers there.
 pub const EDGE_TEXELS: f64 = 1.5;
@@ -55,7 +56,8 @@ impl AcneAndLeak {
         share(self.leak, self.beyond)
     }
 
-    /// Share of Ω_f that lies beyond the edges' reach: where maps are coarse little does, and small rates say little.
+    /// Share of Ω_f that lies beyond the edges' reach: where maps are coarse little does, and small
+    /// rates say little.
     #[must_use]
     pub fn beyond_rate(&self) -> f64 {
         share(self.beyond, self.pixels)
@@ -66,8 +68,8 @@ fn share(of: usize, pixels: usize) -> f64 {
     if pixels == 0 { 0.0 } else { of as f64 / pixels as f64 }
 }
 
-/// Counts acne and leak. `gradient` answers, for a world point and its view depth, how the map that serves it lies there; where
-/// none does m is 0.
+/// Counts acne and leak. `gradient` answers, for a world point and its view depth, how the map that
+/// serves it lies there; where none does m is 0.
 ///
 /// # Errors
 /// As [`super::mis_shadowed`], and [`crate::Error::SizeMismatch`] if the mask is another frame's.

@@ -14,17 +14,20 @@ pub struct Answers {
 }
 
 impl Answers {
-    /// From a mask as `umbrage render --visibility` writes it: grey / 255, no answer where alpha is 0.
+    /// From a mask as `umbrage render --visibility` writes it: grey / 255, no answer where
+    /// alpha is 0.
     #[must_use]
     pub fn from_mask(image: &GrayAlphaImage) -> Self {
         let visibility = image.pixels().map(|p| (p.0[1] > 0).then(|| f32::from(p.0[0]) / 255.0)).collect();
         Self { size: [image.width() as usize, image.height() as usize], visibility }
     }
 
-    /// From one answer for each pixel of Ω_f, in the order of [`Domain::pixels`]: `umbrage probe` asked for [`Domain::points`].
+    /// From one answer for each pixel of Ω_f, in the order of [`Domain::pixels`]: `umbrage probe`
+    /// asked for [`Domain::points`].
     ///
     /// # Errors
-    /// [`Error::SizeMismatch`] if there are more or fewer, [`Error::NotAVisibility`] for one outside `[0, 1]`.
+    /// [`Error::SizeMismatch`] if there are more or fewer, [`Error::NotAVisibility`] for one
+    /// outside `[0, 1]`.
     pub fn from_points(domain: &Domain, answers: &[f32]) -> Result<Self> {
         check_size("the list of answers", [answers.len(), 1], [domain.pixels().len(), 1])?;
         check_visibilities("answer", answers.iter().copied().enumerate())?;
@@ -38,7 +41,8 @@ impl Answers {
     /// From one answer for each pixel of an image.
     ///
     /// # Errors
-    /// [`Error::SizeMismatch`] if there are more or fewer than pixels, [`Error::NotAVisibility`] for one outside `[0, 1]`.
+    /// [`Error::SizeMismatch`] if there are more or fewer than pixels, [`Error::NotAVisibility`]
+    /// for one outside `[0, 1]`.
     pub fn from_pixels(size: [usize; 2], visibility: Vec<Option<f32>>) -> Result<Self> {
         check_size("the list of answers", [visibility.len(), 1], [size[0] * size[1], 1])?;
         check_visibilities("pixel", visibility.iter().enumerate().filter_map(|(i, v)| v.map(|v| (i, v))))?;

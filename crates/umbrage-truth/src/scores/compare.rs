@@ -2,7 +2,8 @@
 
 use crate::{Error, Result};
 
-/// One technique against another over the same views: the first's score minus the second's, so less than 0 is better.
+/// One technique against another over the same views: the first's score minus the second's, so less
+/// than 0 is better.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Paired {
@@ -26,12 +27,12 @@ impl Paired {
     }
 }
 
-/// Compares two techniques by their scores in the same views, view by view. Leave out views that do not count
-/// ([`super::Domain::counts_as_view`]) before.
+/// Compares two techniques by their scores in the same views, view by view. Leave out views that do
+/// not count ([`super::Domain::counts_as_view`]) before.
 ///
 /// # Errors
-/// [`Error::SizeMismatch`] if the lists differ in length, [`Error::NothingToScore`] if they are empty, and
-/// [`Error::InvalidSetting`] for a score that is not finite.
+/// [`Error::SizeMismatch`] if the lists differ in length, [`Error::NothingToScore`] if they are
+/// empty, and [`Error::InvalidSetting`] for a score that is not finite.
 pub fn paired(first: &[f64], second: &[f64]) -> Result<Paired> {
     super::domain::check_size("the second technique's list of scores", [second.len(), 1], [first.len(), 1])?;
     if first.is_empty() {
@@ -65,12 +66,14 @@ pub enum MemoryAt {
     MoreThan(f64),
 }
 
-/// The memory at which a technique's error first falls to `limit` (0.005, say) as memory grows. `measured` holds pairs of
-/// memory (texels or bytes, more than 0) and error. Between two measurements ln(memory) is linear in ln(error), as it is where
-/// error falls with a power of memory; an error of 0 is taken as 1e-9 there.
+/// The memory at which a technique's error first falls to `limit` (0.005, say) as memory grows.
+/// `measured` holds pairs of memory (texels or bytes, more than 0) and error. Between two
+/// measurements ln(memory) is linear in ln(error), as it is where error falls with a power of
+/// memory; an error of 0 is taken as 1e-9 there.
 ///
 /// # Errors
-/// [`Error::NothingToScore`] for no measurement, [`Error::InvalidSetting`] for numbers out of range.
+/// [`Error::NothingToScore`] for no measurement, [`Error::InvalidSetting`] for numbers out of
+/// range.
 pub fn memory_at(measured: &[(f64, f64)], limit: f64) -> Result<MemoryAt> {
     let valid = |&(memory, error): &(f64, f64)| memory > 0.0 && memory.is_finite() && error >= 0.0 && error.is_finite();
     if let Some(bad) = measured.iter().position(|pair| !valid(pair)) {

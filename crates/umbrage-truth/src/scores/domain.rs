@@ -25,8 +25,8 @@ pub struct Domain {
 }
 
 impl Domain {
-    /// Ω_f of a mask for a shadowed range `[n, f]` in metres of view depth. What a local light's range and cone do not reach does
-    /// not belong to it.
+    /// Ω_f of a mask for a shadowed range `[n, f]` in metres of view depth. What a local light's
+    /// range and cone do not reach does not belong to it.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] unless 0 < n < f < ∞.
@@ -105,7 +105,8 @@ impl Domain {
         self.edges.len() >= LEAST_EDGES
     }
 
-    /// World positions and geometric normals of Ω_f, in the order of [`Domain::pixels`]: what to ask `umbrage probe`.
+    /// World positions and geometric normals of Ω_f, in the order of [`Domain::pixels`]: what to
+    /// ask `umbrage probe`.
     ///
     /// # Errors
     /// [`Error::SizeMismatch`] if this is not the mask that the domain was made of.

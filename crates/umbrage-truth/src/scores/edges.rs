@@ -47,7 +47,8 @@ pub fn edge_distance(domain: &Domain, answers: &Answers) -> Result<Option<EdgeDi
     }))
 }
 
-/// B(V): pixels with a right or lower neighbour on the same surface, both in Ω_f, that decides otherwise.
+/// B(V): pixels with a right or lower neighbour on the same surface, both in Ω_f, that decides
+/// otherwise.
 pub(super) fn edges_of(domain: &Domain, lit: impl Fn(usize) -> bool) -> Vec<usize> {
     let [width, _] = domain.size();
     let count = domain.size()[0] * domain.size()[1];
@@ -65,10 +66,12 @@ pub(super) fn same_surface(domain: &Domain, pixel: usize, other: usize) -> bool 
     domain.contains(other) && (z - other_z).abs() < SAME_SURFACE * z.min(other_z)
 }
 
-/// Squared distance in pixels from every pixel to the nearest of `seeds`, exact; infinite without seeds.
+/// Squared distance in pixels from every pixel to the nearest of `seeds`, exact; infinite without
+/// seeds.
 ///
-/// Felzenszwalb and Huttenlocher, "Distance Transforms of Sampled Functions" (2012): the lower envelope of parabolas, first
-/// down the columns, then along the rows. (The crate `edt` is exact too, but takes seconds where this takes milliseconds.)
+/// Felzenszwalb and Huttenlocher, "Distance Transforms of Sampled Functions" (2012): the lower
+/// envelope of parabolas, first down the columns, then along the rows. (The crate `edt` is exact
+/// too, but takes seconds where this takes milliseconds.)
 pub(super) fn squared_distances(width: usize, height: usize, seeds: &[usize]) -> Vec<f64> {
     let mut grid = vec![f64::INFINITY; width * height];
     for &seed in seeds {

@@ -39,7 +39,8 @@ pub struct FlickerFrame<'a> {
     pub mask: &'a TruthMask,
     /// Ω_f of this frame.
     pub domain: &'a Domain,
-    /// The geometry of this frame, if things move: then only points whose truth is the same in both frames are kept.
+    /// The geometry of this frame, if things move: then only points whose truth is the same in both
+    /// frames are kept.
     pub truth: Option<&'a Truth>,
 }
 
@@ -47,7 +48,8 @@ impl Flicker {
     /// Counts one more pair of frames. A pair that shares no point is left out.
     ///
     /// # Errors
-    /// [`Error::SizeMismatch`] if the two lists differ in length, [`Error::NotAVisibility`] for an answer outside `[0, 1]`.
+    /// [`Error::SizeMismatch`] if the two lists differ in length, [`Error::NotAVisibility`] for an
+    /// answer outside `[0, 1]`.
     pub fn add(&mut self, pair: FramePair) -> Result<()> {
         check_size("the next frame's list of answers", [pair.next.len(), 1], [pair.now.len(), 1])?;
         check_visibilities("answer of this frame", pair.now.iter().copied().enumerate())?;
@@ -80,8 +82,8 @@ impl Flicker {
     }
 }
 
-/// P_k: those pixels of Ω_f of a frame whose points lie in the next frame's frustum, cut by 3 % at each border, and inside its
-/// shadowed range. Indices into the image.
+/// P_k: those pixels of Ω_f of a frame whose points lie in the next frame's frustum, cut by 3 % at
+/// each border, and inside its shadowed range. Indices into the image.
 #[must_use]
 pub fn shared_points(mask: &TruthMask, domain: &Domain, next: &View, next_range: (f64, f64)) -> Vec<usize> {
     let frustum = next.frustum();
@@ -103,12 +105,13 @@ pub fn shared_points(mask: &TruthMask, domain: &Domain, next: &View, next_range:
     domain.pixels().iter().copied().filter(stays).collect()
 }
 
-/// F along a whole path. `probe` is the technique: asked for frame k (counted from 0) and world points with normals, it answers
-/// V̂_k there. It is asked for the points of frame k twice, once in frame k and once in frame k + 1.
+/// F along a whole path. `probe` is the technique: asked for frame k (counted from 0) and world
+/// points with normals, it answers V̂_k there. It is asked for the points of frame k twice, once in
+/// frame k and once in frame k + 1.
 ///
 /// # Errors
-/// What `probe` fails with, or what [`Flicker::add`] and [`Truth::visibility_at`] refuse; [`Error::NothingToScore`] for
-/// fewer than two frames.
+/// What `probe` fails with, or what [`Flicker::add`] and [`Truth::visibility_at`] refuse;
+/// [`Error::NothingToScore`] for fewer than two frames.
 pub fn flicker_along<E: From<Error>>(
     frames: &[FlickerFrame],
     mut probe: impl FnMut(usize, &[(DVec3, DVec3)]) -> Result<Vec<f32>, E>,
@@ -138,7 +141,8 @@ pub fn flicker_along<E: From<Error>>(
 }
 
 impl FramePair<'_> {
-    /// Flips between whole images at the same pixels: what is left of [`Flicker`] for a camera that stands still.
+    /// Flips between whole images at the same pixels: what is left of [`Flicker`] for a camera that
+    /// stands still.
     ///
     /// # Errors
     /// [`Error::SizeMismatch`] unless all three have one size.

@@ -8,7 +8,8 @@ use super::domain::check_size;
 use super::stats::percentile;
 use crate::{Hit, Result, TruthMask};
 
-/// How a map's texel coordinates change with the world at one point: the rows of `∂(texel)/∂(world)`, in texels per metre.
+/// How a map's texel coordinates change with the world at one point: the rows of
+/// `∂(texel)/∂(world)`, in texels per metre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TexelGradient {
     /// Gradient of the horizontal texel coordinate.
@@ -42,8 +43,9 @@ pub struct Footprint {
     pub pixels: usize,
 }
 
-/// m and m_p over those pixels of Ω_f that a map serves. `gradient` answers, for a world point and its view depth, how the
-/// map that serves it lies there, and `None` if none does. `None` comes back if no pixel is served.
+/// m and m_p over those pixels of Ω_f that a map serves. `gradient` answers, for a world point and
+/// its view depth, how the map that serves it lies there, and `None` if none does. `None` comes
+/// back if no pixel is served.
 ///
 /// # Errors
 /// [`crate::Error::SizeMismatch`] if the mask is another frame's.
@@ -92,7 +94,8 @@ fn world_from_pixel(view: &View, size: [usize; 2], pixel: usize, normal: DVec3, 
     let axes = view.world_from_view_rotation();
     let right = axes.x_axis * (frustum.right - frustum.left) / width;
     let down = -axes.y_axis * (frustum.top - frustum.bottom) / height;
-    // One pixel on, the ray's point at this depth moves by `step`; the plane then moves it along the ray.
+    // One pixel on, the ray's point at this depth moves by `step`; the plane then moves it along
+    // the ray.
     let scale = match frustum.projection {
         Projection::Perspective => depth,
         Projection::Orthographic => 1.0,

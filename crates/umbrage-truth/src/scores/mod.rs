@@ -1,12 +1,15 @@
 //! How wrong shadows are: decisions at world points, not pixels of a shaded picture.
 //!
-//! A [`Domain`] is the truth's side of one frame, an [`Answers`] the technique's. Everything else takes both.
+//! A [`Domain`] is the truth's side of one frame, an [`Answers`] the technique's. Everything else
+//! takes both.
 //!
 //! # Definitions
-//! Frame k, light direction l (towards the light), W × H pixels, one ray through each pixel centre; `p` is the first hit, `n_g`
-//! its geometric normal turned towards the eye, `z` its view depth. **Ω_f** ([`Domain`]) are the pixels with a hit, `n_g·l > 0.02`
-//! and `z` inside the shadowed range `[n, f]`. **V\*** is the truth, **V̂** in `[0, 1]` the technique's answer; the hard decision is
-//! `V̂ ≥ ½`. A pixel of Ω_f that the technique's image leaves transparent counts as a wrong decision everywhere.
+//! Frame k, light direction l (towards the light), W × H pixels, one ray through each pixel centre;
+//! `p` is the first hit, `n_g` its geometric normal turned towards the eye, `z` its view depth.
+//! **Ω_f** ([`Domain`]) are the pixels with a hit, `n_g·l > 0.02` and `z` inside the shadowed range
+//! `[n, f]`. **V\*** is the truth, **V̂** in `[0, 1]` the technique's answer; the hard decision is
+//! `V̂ ≥ ½`. A pixel of Ω_f that the technique's image leaves transparent counts as a wrong
+//! decision everywhere.
 //!
 //! | name | formula | here |
 //! |---|---|---|
@@ -22,12 +25,12 @@
 //! | seam | E within 2 px of a split's border over the larger E of both sides at 3 to 12 px; at most 1.1, pooled over 2,000 pixels or more | [`seams`] |
 //! | E_soft, E_pen | `mean │V̂ − V*_A│` over Ω_f, and over its part with `0.02 < V*_A < 0.98` | [`soft_error`] |
 //!
-//! A view counts only if `│B*│ ≥ 2000` ([`Domain::counts_as_view`]); techniques are compared per view ([`paired`]), and one
-//! number for a technique is the memory at which E falls to 0.5 % ([`memory_at`]). Image metrics ([`similarity`]) stand beside and never
-//! gate.
+//! A view counts only if `│B*│ ≥ 2000` ([`Domain::counts_as_view`]); techniques are compared per
+//! view ([`paired`]), and one number for a technique is the memory at which E falls to 0.5 %
+//! ([`memory_at`]). Image metrics ([`similarity`]) stand beside and never gate.
 //!
-//! The measures and their limits are this project's own. m follows Lloyd et al., "Warping and Partitioning for Low Error
-//! Shadow Maps" (2006).
+//! The measures and their limits are this project's own. m follows Lloyd et al., "Warping and
+//! Partitioning for Low Error Shadow Maps" (2006).
 
 mod acne;
 mod answers;

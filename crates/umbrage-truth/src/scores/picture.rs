@@ -15,8 +15,8 @@ const GREY: (f32, f32) = (60.0, 190.0);
 /// Pixels that are not scored are dimmed to this share.
 const NOT_SCORED: f32 = 0.5;
 
-/// The truth in grey (light where lit, dimmed outside Ω_f, black where nothing was hit), wrong decisions in full colour:
-/// leaks red, acne blue.
+/// The truth in grey (light where lit, dimmed outside Ω_f, black where nothing was hit), wrong
+/// decisions in full colour: leaks red, acne blue.
 ///
 /// # Errors
 /// [`crate::Error::SizeMismatch`] unless all three have one size.
@@ -30,7 +30,7 @@ pub fn false_colour(mask: &TruthMask, domain: &Domain, answers: &Answers) -> Res
     }))
 }
 
-/// The same for soft shadows: the colour is as strong as the difference.
+/// Errors of soft shadows in false colour: the colour is as strong as the difference.
 ///
 /// # Errors
 /// As [`false_colour`].

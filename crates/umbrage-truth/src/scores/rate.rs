@@ -61,7 +61,8 @@ impl std::ops::AddAssign for MisShadowed {
 /// Counts the wrong decisions over Ω_f.
 ///
 /// # Errors
-/// [`crate::Error::SizeMismatch`] if the answers have another size, [`crate::Error::NothingToScore`] if Ω_f is empty.
+/// [`crate::Error::SizeMismatch`] if the answers have another size,
+/// [`crate::Error::NothingToScore`] if Ω_f is empty.
 pub fn mis_shadowed(domain: &Domain, answers: &Answers) -> Result<MisShadowed> {
     answers.check(domain)?;
     let mut count = MisShadowed::default();

@@ -20,13 +20,13 @@ pub struct Seams {
     pub seam: MisShadowed,
     /// At [`BESIDE_PX`] on the near side.
     pub nearer: MisShadowed,
-    /// The same on the far side.
+    /// At [`BESIDE_PX`] on the far side.
     pub farther: MisShadowed,
 }
 
 impl Seams {
-    /// E of the seam over the larger E of its sides: 1 or less is no seam. Infinite where only the seam has errors, `None` where there
-    /// are none at all.
+    /// E of the seam over the larger E of its sides: 1 or less is no seam. Infinite where only the
+    /// seam has errors, `None` where there are none at all.
     #[must_use]
     pub fn ratio(&self) -> Option<f64> {
         let beside = self.nearer.rate().max(self.farther.rate());
@@ -58,8 +58,9 @@ impl std::ops::AddAssign for Seams {
     }
 }
 
-/// Decisions around the given borders, each a value of `measure`: of a pixel's view depth ([`Domain::depth`]), or of its distance from
-/// the eye where bands are radial. A pixel that is near two borders counts for the nearer one.
+/// Decisions around the given borders, each a value of `measure`: of a pixel's view depth
+/// ([`Domain::depth`]), or of its distance from the eye where bands are radial. A pixel that is
+/// near two borders counts for the nearer one.
 ///
 /// # Errors
 /// As [`super::mis_shadowed`], and [`Error::InvalidSetting`] for borders that do not rise.

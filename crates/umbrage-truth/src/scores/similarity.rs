@@ -10,17 +10,20 @@ use crate::{Error, Result};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Similarity {
-    /// Mean ꟻLIP error in `[0, 1]`, 0 for equal pictures (Andersson et al., "FLIP: A Difference Evaluator for Alternating
-    /// Images", 2020), at its authors' default of 67 pixels per degree. `None` if the feature `flip` is off.
+    /// Mean ꟻLIP error in `[0, 1]`, 0 for equal pictures (Andersson et al., "FLIP: A Difference
+    /// Evaluator for Alternating Images", 2020), at its authors' default of 67 pixels per degree.
+    /// `None` if the feature `flip` is off.
     pub flip: Option<f64>,
-    /// Mean structural similarity, 1 for equal pictures (Wang et al., 2004), the least of the three channels.
+    /// Mean structural similarity, 1 for equal pictures (Wang et al., 2004), the least of the three
+    /// channels.
     pub ssim: f64,
 }
 
 /// Compares a picture with the one it should be.
 ///
 /// # Errors
-/// [`Error::SizeMismatch`] if the sizes differ, [`Error::NothingToScore`] for pictures without pixels, [`Error::Metric`] if a metric fails.
+/// [`Error::SizeMismatch`] if the sizes differ, [`Error::NothingToScore`] for pictures without
+/// pixels, [`Error::Metric`] if a metric fails.
 pub fn similarity(reference: &RgbImage, picture: &RgbImage) -> Result<Similarity> {
     let size = |image: &RgbImage| [image.width() as usize, image.height() as usize];
     check_size("the picture", size(picture), size(reference))?;

@@ -21,9 +21,9 @@ pub struct SoftError {
     pub penumbra_pixels: usize,
 }
 
-/// How far the answers are from V*_A. The noise floor is what this says of the truth by another set of directions:
-/// `soft_error(&domain, &soft, &Answers::from_pixels(soft.size(), other.visibility().to_vec())?)`.
-/// A pixel without an answer is off by 1.
+/// How far the answers are from V*_A. The noise floor is what this says of the truth by another set
+/// of directions: `soft_error(&domain, &soft, &Answers::from_pixels(soft.size(),
+/// other.visibility().to_vec())?)`. A pixel without an answer is off by 1.
 ///
 /// # Errors
 /// As [`super::mis_shadowed`].

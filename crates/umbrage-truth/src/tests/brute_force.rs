@@ -74,8 +74,8 @@ fn soup() -> impl Strategy<Value = Stage> {
     )
 }
 
-/// How a ray is chosen: from a random point in a random or axis-parallel direction, or at a corner, an edge or the middle
-/// of a random triangle.
+/// How a ray is chosen: from a random point in a random or axis-parallel direction, or at a corner,
+/// an edge or the middle of a random triangle.
 fn aim() -> impl Strategy<Value = (DVec3, DVec3, usize, u8)> {
     (point(), point(), any::<prop::sample::Index>(), 0..8_u8).prop_map(|(a, b, i, kind)| (a, b, i.index(1 << 20), kind))
 }
@@ -161,7 +161,8 @@ proptest! {
     fn two_triangle_tests_agree(a in point(), b in point(), c in point(), from in point(), to in point()) {
         let corners = [a, b, c];
         let direction = (to - from).try_normalize().unwrap_or(DVec3::X);
-        // Neither test is asked about what lies within rounding: an edge-on triangle, or a ray along its rim.
+        // Neither test is asked about what lies within rounding: an edge-on triangle, or a ray
+        // along its rim.
         let area = (b - a).cross(c - a);
         let steep = area.normalize_or_zero().dot(direction).abs();
         let longest = (b - a).length().max((c - a).length()).max((c - b).length());
@@ -180,7 +181,8 @@ proptest! {
 
 #[test]
 fn a_flat_triangle_far_away_holds_rays_along_an_axis() {
-    // An origin whose f64 cannot tell a nanometre: found by the property above when the box walk blurred by that alone.
+    // An origin whose f64 cannot tell a nanometre: found by the property above when the box walk
+    // blurred by that alone.
     for far in [4.7e8_f32, -4.7e8, 1e5, 0.0] {
         let mut stage = Stage::default();
         let shape = Shape {

@@ -6,7 +6,8 @@ use umbrage::{Light, PointLight, SpotLight};
 use super::scenes::{Shape, Stage, view};
 use crate::TruthMask;
 
-/// Checks every hit on object `floor` against `lit`, which may abstain; answers how many of either kind were checked.
+/// Checks every hit on object `floor` against `lit`, which may abstain; answers how many of either
+/// kind were checked.
 fn check_floor(mask: &TruthMask, floor: usize, lit: impl Fn(DVec3) -> Option<bool>) -> [usize; 2] {
     let mut counted = [0; 2];
     for hit in mask.hits().iter().flatten().filter(|hit| hit.object as usize == floor) {
@@ -46,7 +47,8 @@ fn the_ellipse_has_the_area_it_should() {
     stage.add(Shape::sphere(1.0, 64), DAffine3::from_translation(DVec3::new(0.0, 5.0, 0.0)));
     stage.add(Shape::floor(40.0, 0.0), DAffine3::IDENTITY);
     let sun = DVec3::new(1.0, -1.0, 0.0);
-    // From below the floor, straight up, 12 x 12 m of it in 240 x 240 pixels: 400 pixels a square metre.
+    // From below the floor, straight up, 12 x 12 m of it in 240 x 240 pixels: 400 pixels a square
+    // metre.
     let frustum = umbrage::Frustum::orthographic(12.0, 12.0, 0.5, 100.0).unwrap();
     let eye = DVec3::new(5.0, 20.0, 0.0);
     let view = umbrage::View::look_at_upright(eye, DVec3::new(5.0, 0.0, 0.0), frustum).unwrap();
@@ -87,7 +89,8 @@ fn check_box(sun: DVec3, eye: DVec3) -> [usize; 2] {
     let (low, high) = (DVec3::new(-1.0, 0.0, -1.0), DVec3::new(1.0, 2.0, 1.0));
     let to_light = -sun.normalize();
     let mask = stage.mask(&view(eye, DVec3::new(0.0, 0.5, 0.0)), sun, [160, 120]);
-    // A convex box does not shadow the faces that look at the light, and those that look away are dark.
+    // A convex box does not shadow the faces that look at the light, and those that look away are
+    // dark.
     for hit in mask.hits().iter().flatten().filter(|hit| hit.object as usize == cuboid) {
         assert_eq!(hit.lit, hit.normal.dot(to_light) > 0.0, "{hit:?}");
     }
@@ -209,7 +212,8 @@ fn points_are_answered_as_pixels_are() {
 
 #[test]
 fn a_lamp_throws_shadows_as_large_as_similar_triangles_say() {
-    // A plate of 1 m half way between a lamp and the ground, one above the lamp, and one out of its reach.
+    // A plate of 1 m half way between a lamp and the ground, one above the lamp, and one out of its
+    // reach.
     let mut stage = Stage::default();
     stage.add(Shape::floor(30.0, 0.0), DAffine3::IDENTITY);
     stage.add(Shape::floor(0.5, 2.0), DAffine3::IDENTITY);

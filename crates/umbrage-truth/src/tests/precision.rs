@@ -19,7 +19,8 @@ enum ScaledBy {
     Nodes,
 }
 
-/// Hills, boxes, a sphere, a fence of thin slats, leaves of two single-sided faces, a decal and a lid: what rounding can hurt.
+/// Hills, boxes, a sphere, a fence of thin slats, leaves of two single-sided faces, a decal and a
+/// lid: what rounding can hurt.
 fn village(scale: f64, by: ScaledBy, moved: DVec3) -> Stage {
     let mut stage = Stage::default();
     let mut add = |mut shape: Shape, at: DAffine3, single_sided: bool| {
@@ -56,7 +57,8 @@ fn village(scale: f64, by: ScaledBy, moved: DVec3) -> Stage {
         slats.append(Shape::quad([[x, 0.0, 0.0], [x + 0.1, 0.0, 0.0], [x + 0.1, 1.5, 0.0], [x, 1.5, 0.0]]));
     }
     add(slats, turned(-0.3, [-6.0, 0.3, -2.0]), false);
-    // Both faces of each leaf in one mesh, in two meshes, and in two nodes of which one is turned over as exporters turn.
+    // Both faces of each leaf in one mesh, in two meshes, and in two nodes of which one is turned
+    // over as exporters turn.
     let leaf = || Shape::quad([[-1.3, 0.7, 1.1], [1.2, 0.9, 1.3], [1.1, 0.8, -1.2], [-1.2, 1.1, -0.9]]);
     let other_face = |mut shape: Shape| {
         shape.indices.chunks_exact_mut(3).for_each(|triangle| triangle.swap(1, 2));
@@ -146,7 +148,8 @@ fn a_comparison_of_villages_says_no() {
 
 #[test]
 fn a_small_box_has_its_shadow_on_any_ground_at_any_place() {
-    // The box's shadow on flat ground under this sun: the box swept by its height along (1, 0, 0.5).
+    // The box's shadow on flat ground under this sun: the box swept by its height along (1, 0,
+    // 0.5).
     let sun = DVec3::new(1.0, -1.0, 0.5);
     for (edge, ground) in [(1e-3, 1.0), (1e-3, 1e3), (1e-3, 1e5), (1e-4, 10.0), (1.0, 1e6)] {
         for moved in [DVec3::ZERO, DVec3::new(1e8, 0.0, -1e8), DVec3::splat(5e8)] {
@@ -162,7 +165,8 @@ fn a_small_box_has_its_shadow_on_any_ground_at_any_place() {
             let mut counted = [0; 2];
             for hit in mask.hits().iter().flatten().filter(|hit| hit.object as usize == floor) {
                 let p = (hit.position - moved) / edge;
-                // Where the light that reaches p enters and leaves the box's slabs, as heights above the ground.
+                // Where the light that reaches p enters and leaves the box's slabs, as heights
+                // above the ground.
                 let slab = |at: f64, slope: f64| {
                     let (a, b) = ((at - 0.5) / slope, (at + 0.5) / slope);
                     (a.min(b), a.max(b))
@@ -255,8 +259,9 @@ fn faces_in_two_nodes_that_were_meant_to_coincide_count_as_one() {
 
 #[test]
 fn a_turn_that_two_objects_share_takes_no_shadow() {
-    // Z up in the files, as tools write it: the root's quaternion is rounded to f32, which tilts 5 km of ground by 0.1 mm. But it tilts the
-    // box of 1 mm as well, which has a turn of its own besides.
+    // Z up in the files, as tools write it: the root's quaternion is rounded to f32, which tilts 5
+    // km of ground by 0.1 mm. But it tilts the box of 1 mm as well, which has a turn of its own
+    // besides.
     let up = DQuat::from_xyzw(f64::from(-0.703_107_f32), 0.0, 0.0, f64::from(0.711_1_f32)).normalize();
     let edge = 1e-3_f32;
     let mut scene = Scene { materials: vec![Material::default()], ..Scene::default() };
@@ -283,7 +288,8 @@ fn a_turn_that_two_objects_share_takes_no_shadow() {
     assert!(dark > 300 && on_ground.len() - dark > 3000, "{dark} of {}", on_ground.len());
 }
 
-/// A box without thickness from -1 to 1: as one mesh, or with each wall an object that is turned into its place.
+/// A box without thickness from -1 to 1: as one mesh, or with each wall an object that is turned
+/// into its place.
 fn closed_box(scale: f64, as_objects: bool, moved: DVec3) -> Stage {
     let mut stage = Stage::default();
     let place = DAffine3 { matrix3: DMat3::from_diagonal(DVec3::splat(scale)), translation: moved };

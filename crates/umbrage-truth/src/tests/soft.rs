@@ -15,7 +15,8 @@ fn share_of_disc(c: f64) -> f64 {
 
 #[test]
 fn a_half_plane_throws_the_segment_of_a_disc() {
-    // Everything west of x = 0 is roofed at height 10; the sun is straight above and 10 degrees wide.
+    // Everything west of x = 0 is roofed at height 10; the sun is straight above and 10 degrees
+    // wide.
     let mut stage = Stage::default();
     stage.add(
         Shape::quad([[-1e3, 10.0, 1e3], [0.0, 10.0, 1e3], [0.0, 10.0, -1e3], [-1e3, 10.0, -1e3]]),

@@ -20,7 +20,8 @@ fn the_eye_passes_through_back_faces_but_light_does_not() {
     let mut stage = Stage::default();
     stage.add(Shape::floor(20.0, 0.0), DAffine3::IDENTITY);
     assert_eq!(middle(&stage, SLANTED), Some((0, true)));
-    // A single-sided ceiling that faces down: unseen from above, and yet its shadow lies on the floor.
+    // A single-sided ceiling that faces down: unseen from above, and yet its shadow lies on the
+    // floor.
     let mut ceiling = Shape::floor(5.0, 2.0);
     ceiling.indices = vec![0, 2, 1, 0, 3, 2];
     let single = stage.material(Material::default());
@@ -123,7 +124,8 @@ fn a_leaf_is_there_where_its_texture_says_so() {
         }
     }
     assert!(counted.iter().all(|&n| n > 200), "{counted:?}");
-    // Vertex alpha multiplies: 0.6 of 1 passes the cutoff in the middle of the opaque half, 0.4 nowhere.
+    // Vertex alpha multiplies: 0.6 of 1 passes the cutoff in the middle of the opaque half, 0.4
+    // nowhere.
     for (alpha, expected) in [(0.6, 1), (0.4, 0)] {
         let mask =
             half_leaf(Some(alpha)).mask(&view(DVec3::new(-3.0, 9.0, 0.1), DVec3::new(-3.0, 0.0, 0.0)), sun, [3, 3]);

@@ -39,7 +39,8 @@ pub struct Fields {
     pub gave_way: Vec<String>,
 }
 
-/// A panel beside the picture. In a small window, or with large text, it leaves the picture its third.
+/// A panel beside the picture. In a small window, or with large text, it leaves the picture its
+/// third.
 fn side(panel: egui::Panel, width: f32, ui: &egui::Ui) -> egui::Panel {
     let third = ui.ctx().content_rect().width() / 3.0;
     let least = third.min(180.0);

@@ -9,7 +9,8 @@ use crate::path::Recording;
 use crate::session::Session;
 use crate::stage::shipped;
 
-/// Widest field for a file, points: one that took all there is would push the panel wider with every frame.
+/// Widest field for a file, points: one that took all there is would push the panel wider with
+/// every frame.
 const FIELD: f32 = 170.0;
 
 /// The left side.

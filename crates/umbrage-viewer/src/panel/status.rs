@@ -7,7 +7,8 @@ use crate::app::App;
 
 /// The line at the bottom.
 pub fn status(app: &mut App, ui: &mut Ui) {
-    // One line always: a line that wraps would resize the picture, which would be drawn again and change the line.
+    // One line always: a line that wraps would resize the picture, which would be drawn again and
+    // change the line.
     let height = ui.spacing().interact_size.y + 8.0;
     Panel::bottom("status").exact_size(height).show(ui, |ui| {
         ui.horizontal_centered(|ui| {

@@ -1,4 +1,5 @@
-//! What the viewer knows and decides, without a window: what is opened, drawn, judged and shown next.
+//! What the viewer knows and decides, without a window: what is opened, drawn, judged and shown
+//! next.
 
 mod show;
 
@@ -25,9 +26,11 @@ pub use show::{Message, Show, Tab, Times};
 const HISTORY: usize = 240;
 /// Longest message list; older ones are forgotten.
 const MESSAGES: usize = 6;
-/// Pictures that take longer than this are drawn at half the size while something moves, milliseconds.
+/// Pictures that take longer than this are drawn at half the size while something moves,
+/// milliseconds.
 const SLOW_MS: f64 = 120.0;
-/// Pictures of one and the same view after which slow ones are not drawn again for maps that go back in small steps.
+/// Pictures of one and the same view after which slow ones are not drawn again for maps that go
+/// back in small steps.
 const MOST_SLOW_REPEATS: u32 = 2;
 /// Seconds after which nothing moves any more.
 const REST_S: f64 = 0.3;
@@ -494,7 +497,8 @@ impl Session {
     }
 }
 
-/// Where a view shows a world point, in shares of the picture, and its view depth; `None` for what lies outside of it.
+/// Where a view shows a world point, in shares of the picture, and its view depth; `None` for what
+/// lies outside of it.
 #[must_use]
 pub fn project(view: &View, point: DVec3) -> Option<(DVec2, f64)> {
     let at = view.view_from_world_point(point);

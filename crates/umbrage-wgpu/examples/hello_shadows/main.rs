@@ -1,8 +1,8 @@
 //! Shadows in a small wgpu program: boxes on a plain, and a camera that walks around them.
 //!
-//! `cargo run -p umbrage-wgpu --example hello_shadows` opens a window;
-//! `cargo run -p umbrage-wgpu --example hello_shadows -- --picture out.png` writes one picture.
-//! What shadows add to the program stands in `Scene::new`, `Scene::draw` and the two shaders, at the marks ◐.
+//! `cargo run -p umbrage-wgpu --example hello_shadows` opens a window; `cargo run -p umbrage-wgpu
+//! --example hello_shadows -- --picture out.png` writes one picture. What shadows add to the
+//! program stands in `Scene::new`, `Scene::draw` and the two shaders, at the marks ◐.
 
 mod support;
 
@@ -61,7 +61,8 @@ impl Scene {
             ..CasterPipeline::default()
         })?;
 
-        // The application's pipeline, with the shadows' text before its own shader and their layout in group 1.
+        // The application's pipeline, with the shadows' text before its own shader and their layout
+        // in group 1.
         let (camera, camera_layout, camera_group) = support::camera(device);
         let text = shadows.receiver_wgsl(1) + SHADER;
         let groups = [Some(&camera_layout), Some(shadows.bind_group_layout())];
@@ -90,7 +91,8 @@ impl Scene {
         let clip_from_world = view.clip_from_relative(DVec3::ZERO).as_mat4();
         queue.write_buffer(&self.camera, 0, bytemuck::bytes_of(&clip_from_world));
 
-        // ◐ The frame's light and boxes. Every box but the plain throws a shadow, and all show them.
+        // ◐ The frame's light and boxes. Every box but the plain throws a shadow, and all show
+        // them.
         let sun = [Light::from(DirectionalLight::new(-TO_SUN)?)];
         let inputs = Inputs {
             casters: &self.bounds[1..],
@@ -127,7 +129,8 @@ impl Scene {
     }
 }
 
-/// A plain and boxes of many heights on it, as vertices (a position and a normal each) and as bounds.
+/// A plain and boxes of many heights on it, as vertices (a position and a normal each) and as
+/// bounds.
 fn world() -> (Vec<[Vec3; 2]>, Vec<Aabb>) {
     let mut vertices = Vec::new();
     let plain = cuboid(&mut vertices, DVec3::new(-400.0, -1.0, -400.0), DVec3::new(800.0, 1.0, 800.0));

@@ -1,4 +1,5 @@
-//! What any wgpu program has and shadows have nothing to do with: a device, a window or a picture, a pipeline.
+//! What any wgpu program has and shadows have nothing to do with: a device, a window or a picture,
+//! a pipeline.
 
 use std::error::Error;
 use std::sync::Arc;

@@ -1,4 +1,5 @@
-//! Bind groups: what casters are told of their splits, what receivers are told of the frame, and the maps they read.
+//! Bind groups: what casters are told of their splits, what receivers are told of the frame, and
+//! the maps they read.
 
 use umbrage::config::{Filter, Storage};
 use umbrage_shaders::layout;
@@ -30,7 +31,8 @@ impl Uniforms {
         Self::new(device, "ShadowMaps::caster", layout, bytes, passes.len(), Vec::new())
     }
 
-    /// What receivers are told: the frames, once for all splits, and where one map is reused, once more for each; and the maps.
+    /// What receivers are told: the frames, once for all splits, and where one map is reused, once
+    /// more for each; and the maps.
     pub fn of_receivers(device: &wgpu::Device, it: &Received, targets: &Targets, moments: Option<&Moments>) -> Self {
         let count = if it.storage == Storage::Reused { 1 + it.maps } else { 1 };
         let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
@@ -56,7 +58,7 @@ impl Uniforms {
         Self::new(device, "ShadowMaps::receiver", layout, bytes, count, resources.collect())
     }
 
-    /// The same for maps of moments.
+    /// Layout of the bind group for maps of moments.
     fn of_moments(device: &wgpu::Device, moments: &Moments, visibility: wgpu::ShaderStages, bytes: u64) -> Self {
         let mut entries = vec![uniform_entry(bytes, visibility)];
         entries.extend(moments.receiver_entries(visibility));

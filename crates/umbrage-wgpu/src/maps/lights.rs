@@ -53,12 +53,14 @@ impl Slot {
 impl ShadowMaps {
     /// [`ShadowMaps::prepare`] for several lights: one plan for each, all of them for one view.
     ///
-    /// Split `i` of light `l`'s plan is drawn as map `first_map(l) + i`: see [`ShadowMaps::first_map`]. Shaders ask with
-    /// `umbrage_shadow(query)` of a query whose `light` is `l`.
+    /// Split `i` of light `l`'s plan is drawn as map `first_map(l) + i`: see
+    /// [`ShadowMaps::first_map`]. Shaders ask with `umbrage_shadow(query)` of a query whose `light`
+    /// is `l`.
     ///
     /// # Errors
-    /// Those of [`ShadowMaps::prepare`]; [`Error::LightCount`] if there is not one plan for each light, [`Error::LightKind`] if a
-    /// light's maps do not serve its plan. Nothing has been written then.
+    /// Those of [`ShadowMaps::prepare`]; [`Error::LightCount`] if there is not one plan for each
+    /// light, [`Error::LightKind`] if a light's maps do not serve its plan. Nothing has been
+    /// written then.
     pub fn prepare_lights(&mut self, queue: &wgpu::Queue, plans: &[&ShadowPlan], options: &FrameOptions) -> Result<()> {
         let frames = uniforms::frames(plans, &self.config, &self.slots, &self.places, options)?;
         let device = self.device.clone();
@@ -100,7 +102,8 @@ impl ShadowMaps {
         Ok(())
     }
 
-    /// The map of a light's first split; those of its other splits follow, in the order of its plan.
+    /// The map of a light's first split; those of its other splits follow, in the order of its
+    /// plan.
     ///
     /// # Panics
     /// If there is no such light.
@@ -110,7 +113,8 @@ impl ShadowMaps {
         self.slots[light].first_map
     }
 
-    /// The number of maps of all lights together; [`ShadowMaps::splits`] where there is one sun or spot light.
+    /// The number of maps of all lights together; [`ShadowMaps::splits`] where there is one sun or
+    /// spot light.
     #[must_use]
     pub fn map_count(&self) -> usize {
         self.slots.iter().map(Slot::map_count).sum()

@@ -31,11 +31,13 @@ use crate::options::{filter_kind, texture_format, transition_kind};
 use crate::uniforms::{Place, Viewport};
 use crate::{Error, FrameOptions, LightMaps, Result, device};
 
-/// Features that make shadows better where an adapter has them; [`device_descriptor`] requests them.
+/// Features that make shadows better where an adapter has them; [`device_descriptor`] requests
+/// them.
 ///
-/// `DEPTH_CLIP_CONTROL` lets near planes of 16-bit maps lie at the receivers ([`ShadowMaps::depth_clamp`]), `MULTIVIEW` draws the
-/// layers of [`Generation::Layered`] and [`Generation::Mixed`] at once, `CLIP_DISTANCES` keeps the tiles of
-/// [`Generation::Instanced`] and [`Generation::Mixed`] apart, `FLOAT32_FILTERABLE` lets the hardware filter moments in full
+/// `DEPTH_CLIP_CONTROL` lets near planes of 16-bit maps lie at the receivers
+/// ([`ShadowMaps::depth_clamp`]), `MULTIVIEW` draws the layers of [`Generation::Layered`] and
+/// [`Generation::Mixed`] at once, `CLIP_DISTANCES` keeps the tiles of [`Generation::Instanced`] and
+/// [`Generation::Mixed`] apart, `FLOAT32_FILTERABLE` lets the hardware filter moments in full
 /// precision ([`MomentStorage`]).
 #[must_use]
 pub fn optional_features() -> wgpu::Features {
@@ -45,8 +47,9 @@ pub fn optional_features() -> wgpu::Features {
         | wgpu::Features::FLOAT32_FILTERABLE
 }
 
-/// What to request a device with: the application's own needs, and every feature and limit that makes shadows better and that
-/// the adapter has. Without them other ways are taken, and notes say so.
+/// What to request a device with: the application's own needs, and every feature and limit that
+/// makes shadows better and that the adapter has. Without them other ways are taken, and notes say
+/// so.
 ///
 /// ```no_run
 /// # use umbrage_wgpu::{device_descriptor, wgpu};
@@ -68,13 +71,13 @@ pub fn device_descriptor<'a>(adapter: &wgpu::Adapter, own: wgpu::DeviceDescripto
     descriptor
 }
 
-/// The shadow maps of one light for one view, or of several lights ([`ShadowMaps::prepare_lights`]), on the GPU: the low level
-/// below [`crate::Shadows`].
+/// The shadow maps of one light for one view, or of several lights
+/// ([`ShadowMaps::prepare_lights`]), on the GPU: the low level below [`crate::Shadows`].
 ///
-/// [`Layout`] says where maps are kept and how they are drawn. Each frame: [`ShadowMaps::prepare`], every pass of
-/// [`ShadowMaps::passes`] from [`ShadowMaps::begin_pass`], [`ShadowMaps::prefilter`], then any pass of the app with
-/// [`ShadowMaps::receiver_bind_group`]. With [`Layout::Reused`] the app's pass is taken apart into slices, each after its map: see
-/// [`ShadowMaps::slice_bind_group`].
+/// [`Layout`] says where maps are kept and how they are drawn. Each frame: [`ShadowMaps::prepare`],
+/// every pass of [`ShadowMaps::passes`] from [`ShadowMaps::begin_pass`], [`ShadowMaps::prefilter`],
+/// then any pass of the app with [`ShadowMaps::receiver_bind_group`]. With [`Layout::Reused`] the
+/// app's pass is taken apart into slices, each after its map: see [`ShadowMaps::slice_bind_group`].
 #[derive(Debug)]
 pub struct ShadowMaps {
     device: wgpu::Device,
@@ -100,13 +103,16 @@ pub struct ShadowMaps {
 
 impl ShadowMaps {
     /// Makes the textures, buffers and bind groups for these lights, one at least: kinds
-    /// ([`umbrage::config::LightKind`]) or [`LightMaps`]. Before the first [`ShadowMaps::prepare`] every answer is 0.
+    /// ([`umbrage::config::LightKind`]) or [`LightMaps`]. Before the first [`ShadowMaps::prepare`]
+    /// every answer is 0.
     ///
     /// # Errors
-    /// [`Error::Config`] for a config that is wrong or does not go with the lights; [`Error::MapTooLarge`],
-    /// [`Error::TooManyLayers`], [`Error::AtlasTooLarge`], [`Error::TooManyTextures`], [`Error::TooManyLights`],
-    /// [`Error::MissingFeature`], [`Error::NoFilterableFloats`] and [`Error::NoDepthLoads`] for what the device cannot do;
-    /// [`Error::Device`] and [`Error::OutOfMemory`] for what the device complains about, [`Error::DeviceLost`].
+    /// [`Error::Config`] for a config that is wrong or does not go with the lights;
+    /// [`Error::MapTooLarge`], [`Error::TooManyLayers`], [`Error::AtlasTooLarge`],
+    /// [`Error::TooManyTextures`], [`Error::TooManyLights`], [`Error::MissingFeature`],
+    /// [`Error::NoFilterableFloats`] and [`Error::NoDepthLoads`] for what the device cannot do;
+    /// [`Error::Device`] and [`Error::OutOfMemory`] for what the device complains about,
+    /// [`Error::DeviceLost`].
     pub fn new<L: Clone + Into<LightMaps>>(device: &wgpu::Device, config: &ShadowConfig, lights: &[L]) -> Result<Self> {
         let lights: Vec<LightMaps> = lights.iter().cloned().map(Into::into).collect();
         device::made(device, "making shadow maps", || Self::new_unguarded(device, config, &lights))
@@ -178,11 +184,12 @@ impl ShadowMaps {
         })
     }
 
-    /// Takes another config, from the next [`ShadowMaps::prepare`] on, that asks for no other maps or pipelines: see
-    /// [`umbrage::config::Setting::rebuilds`].
+    /// Takes another config, from the next [`ShadowMaps::prepare`] on, that asks for no other maps
+    /// or pipelines: see [`umbrage::config::Setting::rebuilds`].
     ///
     /// # Errors
-    /// [`Error::Config`] if it is wrong, [`Error::NeedsNewMaps`] naming a setting that asks for more. The maps are unchanged then.
+    /// [`Error::Config`] if it is wrong, [`Error::NeedsNewMaps`] naming a setting that asks for
+    /// more. The maps are unchanged then.
     pub fn set_config(&mut self, config: &ShadowConfig) -> Result<()> {
         let lights: Vec<LightMaps> =
             self.slots.iter().map(|slot| LightMaps::with_sizes(slot.kind, &slot.sizes)).collect();
@@ -199,22 +206,25 @@ impl ShadowMaps {
     /// Hands a frame's plan to the GPU. Takes effect with the next submission to `queue`.
     ///
     /// # Errors
-    /// [`Error::PlanMismatch`] if the plan was made for other maps, [`Error::InvalidPlan`] or [`Error::InvalidSplit`] if it holds a
-    /// number that cannot be used, [`Error::InvalidFrameOption`], [`Error::FilterTooWide`]. Nothing has been written then.
+    /// [`Error::PlanMismatch`] if the plan was made for other maps, [`Error::InvalidPlan`] or
+    /// [`Error::InvalidSplit`] if it holds a number that cannot be used,
+    /// [`Error::InvalidFrameOption`], [`Error::FilterTooWide`]. Nothing has been written then.
     /// [`Error::Device`] for what the device complains about, [`Error::DeviceLost`].
     pub fn prepare(&mut self, queue: &wgpu::Queue, plan: &ShadowPlan, options: &FrameOptions) -> Result<()> {
         self.prepare_lights(queue, &[plan], options)
     }
 
-    /// The passes that draw the maps, in order: with [`Generation::PerSplit`] and [`Generation::Multipass`] one for each map.
+    /// The passes that draw the maps, in order: with [`Generation::PerSplit`] and
+    /// [`Generation::Multipass`] one for each map.
     #[must_use]
     pub fn passes(&self) -> &[MapPass] {
         &self.passes
     }
 
-    /// Begins pass `pass` of [`ShadowMaps::passes`]: its maps are cleared, viewport and scissor are set and have to stay. Bind
-    /// [`ShadowMaps::caster_bind_group`] of the same pass and draw what [`MapPass::casters`] says in any order. Begin every pass, the first
-    /// one first: it clears what the others share.
+    /// Begins pass `pass` of [`ShadowMaps::passes`]: its maps are cleared, viewport and scissor are
+    /// set and have to stay. Bind [`ShadowMaps::caster_bind_group`] of the same pass and draw what
+    /// [`MapPass::casters`] says in any order. Begin every pass, the first one first: it clears
+    /// what the others share.
     ///
     /// # Panics
     /// If there is no such pass.
@@ -245,8 +255,9 @@ impl ShadowMaps {
         render
     }
 
-    /// Turns the depths that were drawn into what receivers read: for filters of moments conversion, blur and mip levels
-    /// ([`Filter::is_prefiltered`]), for all others nothing. Call it after the casters and before any receiver.
+    /// Turns the depths that were drawn into what receivers read: for filters of moments
+    /// conversion, blur and mip levels ([`Filter::is_prefiltered`]), for all others nothing. Call
+    /// it after the casters and before any receiver.
     pub fn prefilter(&self, encoder: &mut wgpu::CommandEncoder) {
         if let Some(moments) = &self.moments {
             moments.record(encoder);
@@ -266,7 +277,8 @@ impl ShadowMaps {
     }
 
     /// What a vertex shader needs to draw casters; `group` is the index at which the app binds
-    /// [`ShadowMaps::caster_bind_group`]. It stands before everything else in its module. The vertex shader is the same for every path:
+    /// [`ShadowMaps::caster_bind_group`]. It stands before everything else in its module. The
+    /// vertex shader is the same for every path:
     ///
     /// ```wgsl
     /// @vertex fn vertex(@location(0) position: vec3f, instance: UmbrageInstance) -> UmbrageCast {
@@ -278,8 +290,8 @@ impl ShadowMaps {
         self.caster_wgsl_with(group, "")
     }
 
-    /// The same for vertex shaders that have more to return: `members` joins the struct `UmbrageCast`, for example
-    /// `"@location(0) uv: vec2f,"`.
+    /// WGSL of casters whose vertex shaders have more to return: `members` joins the struct
+    /// `UmbrageCast`, for example `"@location(0) uv: vec2f,"`.
     #[must_use]
     pub fn caster_wgsl_with(&self, group: u32, members: &str) -> String {
         let casters = match self.layout.generation() {
@@ -292,9 +304,11 @@ impl ShadowMaps {
     }
 
     /// What any shader needs to ask for visibility; `group` is the index at which the app binds
-    /// [`ShadowMaps::receiver_bind_group`]. With [`Coordinates::Vertex`] vertex shaders may make the coordinates of every split's map
-    /// (`umbrage_shadow_coordinates` and `umbrage_shadow_from_coordinates`, see `umbrage_shaders::Maps::coordinates`). On GL and WebGL2, where depth textures
-    /// cannot be loaded from, [`Filter::Pcss`] is [`Filter::Disc`], unless the format is [`DepthFormat::R32Float`].
+    /// [`ShadowMaps::receiver_bind_group`]. With [`Coordinates::Vertex`] vertex shaders may make
+    /// the coordinates of every split's map (`umbrage_shadow_coordinates` and
+    /// `umbrage_shadow_from_coordinates`, see `umbrage_shaders::Maps::coordinates`). On GL and
+    /// WebGL2, where depth textures cannot be loaded from, [`Filter::Pcss`] is [`Filter::Disc`],
+    /// unless the format is [`DepthFormat::R32Float`].
     #[must_use]
     pub fn receiver_wgsl(&self, group: u32) -> String {
         umbrage_shaders::receiver(group, self.receiver_text())
@@ -354,7 +368,8 @@ impl ShadowMaps {
         &self.config
     }
 
-    /// Where maps are kept and how they are drawn: the config's layout, or what the device can do instead.
+    /// Where maps are kept and how they are drawn: the config's layout, or what the device can do
+    /// instead.
     #[must_use]
     pub fn layout(&self) -> Layout {
         self.layout
@@ -388,24 +403,25 @@ impl ShadowMaps {
         &self.notes
     }
 
-    /// Bytes of all maps, of depth buffers beside maps that are colours, and for filters of moments of these with their levels and of the
-    /// texture between two blurs.
+    /// Bytes of all maps, of depth buffers beside maps that are colours, and for filters of moments
+    /// of these with their levels and of the texture between two blurs.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.targets.bytes() + self.moments.as_ref().map_or(0, Moments::bytes)
     }
 
-    /// Whether casters before a map's near plane are flattened onto it, so that the plane may lie at the receivers: what
-    /// [`umbrage::PlannerOptions::depth_clamp`] wants. So it is for 16-bit maps on a device with `DEPTH_CLIP_CONTROL` (see
-    /// [`optional_features`]). Floats hold the depth of a whole world; 16 bits want the shorter range, and pay for it with maps
-    /// that step along the light.
+    /// Whether casters before a map's near plane are flattened onto it, so that the plane may lie
+    /// at the receivers: what [`umbrage::PlannerOptions::depth_clamp`] wants. So it is for 16-bit
+    /// maps on a device with `DEPTH_CLIP_CONTROL` (see [`optional_features`]). Floats hold the
+    /// depth of a whole world; 16 bits want the shorter range, and pay for it with maps that step
+    /// along the light.
     #[must_use]
     pub fn depth_clamp(&self) -> bool {
         self.depth_clip_control && self.config.depth_format == DepthFormat::D16Unorm
     }
 
-    /// The layer of [`ShadowMaps::map_texture`] that holds the map of split `split`, and the map's upper left corner there in
-    /// texels. The map is a square of `map_sizes[split]` texels.
+    /// The layer of [`ShadowMaps::map_texture`] that holds the map of split `split`, and the map's
+    /// upper left corner there in texels. The map is a square of `map_sizes[split]` texels.
     ///
     /// # Panics
     /// If `split` is not less than [`ShadowMaps::map_count`].
@@ -415,8 +431,8 @@ impl ShadowMaps {
         (self.targets.layer(tile.layer), tile.corner)
     }
 
-    /// The texture that holds the map of split `split`, where [`ShadowMaps::map_place`] says. Can be copied from, but not with several
-    /// samples a texel.
+    /// The texture that holds the map of split `split`, where [`ShadowMaps::map_place`] says. Can
+    /// be copied from, but not with several samples a texel.
     ///
     /// # Panics
     /// If `split` is not less than [`ShadowMaps::splits`].
@@ -440,7 +456,8 @@ impl ShadowMaps {
         &self.casters.groups[pass]
     }
 
-    /// Depth state for a pipeline that draws casters. It has no slope bias: receivers know their own slope.
+    /// Depth state for a pipeline that draws casters. It has no slope bias: receivers know their
+    /// own slope.
     #[must_use]
     pub fn caster_depth_stencil(&self) -> wgpu::DepthStencilState {
         let format = self.config.depth_format;
@@ -460,15 +477,17 @@ impl ShadowMaps {
         wgpu::MultisampleState { count: self.config.filter.samples(), ..Default::default() }
     }
 
-    /// Primitive state for a pipeline that draws casters: triangle lists, both faces (single-sided walls cast, too).
+    /// Primitive state for a pipeline that draws casters: triangle lists, both faces (single-sided
+    /// walls cast, too).
     #[must_use]
     pub fn caster_primitive(&self) -> wgpu::PrimitiveState {
         wgpu::PrimitiveState { cull_mode: None, unclipped_depth: self.depth_clip_control, ..Default::default() }
     }
 
-    /// Colour targets of a pipeline that draws casters: none, but one with [`DepthFormat::R32Float`]. Casters then need a fragment
-    /// shader that returns `umbrage_caster_depth(at)` of its `@builtin(position)` at location 0; one that is there anyway, to discard,
-    /// may return it in any format.
+    /// Colour targets of a pipeline that draws casters: none, but one with
+    /// [`DepthFormat::R32Float`]. Casters then need a fragment shader that returns
+    /// `umbrage_caster_depth(at)` of its `@builtin(position)` at location 0; one that is there
+    /// anyway, to discard, may return it in any format.
     #[must_use]
     pub fn caster_targets(&self) -> &[Option<wgpu::ColorTargetState>] {
         match &self.colour_target {
@@ -483,22 +502,25 @@ impl ShadowMaps {
         self.multiview_mask
     }
 
-    /// Layout of the group that [`ShadowMaps::receiver_wgsl`] declares, visible to vertex, fragment and compute shaders.
+    /// Layout of the group that [`ShadowMaps::receiver_wgsl`] declares, visible to vertex, fragment
+    /// and compute shaders.
     #[must_use]
     pub fn receiver_layout(&self) -> &wgpu::BindGroupLayout {
         &self.receivers.layout
     }
 
-    /// The group to bind where visibility is asked for. With [`Layout::Reused`] it answers for whatever map was drawn last: bind
-    /// [`ShadowMaps::slice_bind_group`] instead.
+    /// The group to bind where visibility is asked for. With [`Layout::Reused`] it answers for
+    /// whatever map was drawn last: bind [`ShadowMaps::slice_bind_group`] instead.
     #[must_use]
     pub fn receiver_bind_group(&self) -> &wgpu::BindGroup {
         &self.receivers.groups[0]
     }
 
-    /// With [`Layout::Reused`], the group to bind after pass `split` and before the next: visibility is that of the slice whose map is
-    /// there, and `umbrage_in_slice(position)` says what to discard because it belongs to another. Draw slices front to back, each with the
-    /// matrix and the depth range of its [`Slice`] ([`Slice::all`]). With any other storage it is [`ShadowMaps::receiver_bind_group`].
+    /// With [`Layout::Reused`], the group to bind after pass `split` and before the next:
+    /// visibility is that of the slice whose map is there, and `umbrage_in_slice(position)` says
+    /// what to discard because it belongs to another. Draw slices front to back, each with the
+    /// matrix and the depth range of its [`Slice`] ([`Slice::all`]). With any other storage it is
+    /// [`ShadowMaps::receiver_bind_group`].
     ///
     /// # Panics
     /// If `split` is not less than [`ShadowMaps::splits`].
@@ -534,7 +556,8 @@ fn check_sizes(slots: &[Slot], limits: &wgpu::Limits) -> Result<()> {
     Ok(())
 }
 
-/// A guard band around every map, except in browsers: those that are older than the rule reject a viewport that leaves its target.
+/// A guard band around every map, except in browsers: those that are older than the rule reject a
+/// viewport that leaves its target.
 fn largest_viewport(device: &wgpu::Device) -> u32 {
     let in_browser = device.adapter_info().backend == wgpu::Backend::BrowserWebGpu;
     if in_browser { 0 } else { device.limits().max_texture_dimension_2d }

@@ -7,7 +7,8 @@ use umbrage::{MAX_SPLITS, ShadowPlan};
 
 use super::choose::Abilities;
 
-/// One pass that draws casters into the maps of one split or of several; see [`crate::ShadowMaps::passes`].
+/// One pass that draws casters into the maps of one split or of several; see
+/// [`crate::ShadowMaps::passes`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MapPass {
     splits: Range<usize>,
@@ -39,7 +40,8 @@ impl MapPass {
         }
     }
 
-    /// The splits whose maps it draws; with several lights the maps, see [`crate::ShadowMaps::first_map`].
+    /// The splits whose maps it draws; with several lights the maps, see
+    /// [`crate::ShadowMaps::first_map`].
     #[must_use]
     pub fn splits(&self) -> Range<usize> {
         self.splits.clone()
@@ -51,11 +53,13 @@ impl MapPass {
         self.views
     }
 
-    /// Whether every draw has to begin with an instance of a code that draws nothing, the one before the first of [`MapPass::instances`]' own,
-    /// which is part of that range then. An app that draws many instances in one call needs one of them in each call.
+    /// Whether every draw has to begin with an instance of a code that draws nothing, the one
+    /// before the first of [`MapPass::instances`]' own, which is part of that range then. An app
+    /// that draws many instances in one call needs one of them in each call.
     ///
-    /// Mesa's software driver (seen with 22.3) remembers which layer it draws into when it draws a batch that needs no clipping, and
-    /// draws batches that do into the layer it remembers. Each instance is a batch, so an empty one makes it remember the right layer.
+    /// Mesa's software driver (seen with 22.3) remembers which layer it draws into when it draws a
+    /// batch that needs no clipping, and draws batches that do into the layer it remembers. Each
+    /// instance is a batch, so an empty one makes it remember the right layer.
     #[must_use]
     pub fn leads(&self) -> bool {
         self.leads
@@ -66,12 +70,14 @@ impl MapPass {
         self.alone
     }
 
-    /// The instances that a caster of the splits in `mask` (bit `i`: split `i`) is drawn with; none if none of them is drawn here. A
-    /// caster that is an instance of the app's own gets one instance for each number of the range, with that number as its code.
+    /// The instances that a caster of the splits in `mask` (bit `i`: split `i`) is drawn with; none
+    /// if none of them is drawn here. A caster that is an instance of the app's own gets one
+    /// instance for each number of the range, with that number as its code.
     #[must_use]
     pub fn instances(&self, mask: u8) -> Range<u32> {
         if self.alone {
-            // With several lights there are more maps than bits, and the app knows which plan and which split are drawn.
+            // With several lights there are more maps than bits, and the app knows which plan and
+            // which split are drawn.
             let here = self.splits.start >= 8 || mask & (1 << self.splits.start) != 0;
             return 0..u32::from(here);
         }
@@ -86,8 +92,8 @@ impl MapPass {
         code + tile(first) - u32::from(self.leads)..code + tile(last) + 1
     }
 
-    /// What to draw, where there is one sun or spot light: the plan's casters, as indices into the list given to the planner or keys
-    /// of its set, each with its instances.
+    /// What to draw, where there is one sun or spot light: the plan's casters, as indices into the
+    /// list given to the planner or keys of its set, each with its instances.
     pub fn casters(&self, plan: &ShadowPlan) -> impl Iterator<Item = (u32, Range<u32>)> + use<> {
         let mut list = Vec::new();
         self.list(plan, &mut list);
@@ -101,7 +107,8 @@ impl MapPass {
             list.extend(casters.iter().map(|&caster| (caster, 0..1)));
             return;
         }
-        // Lists rise: the least of their first casters is the next one, in all splits whose list it heads.
+        // Lists rise: the least of their first casters is the next one, in all splits whose list it
+        // heads.
         let mut left: [&[u32]; MAX_SPLITS] = [&[]; MAX_SPLITS];
         for split in self.splits() {
             left[split] = plan.casters(split);

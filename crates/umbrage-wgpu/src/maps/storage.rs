@@ -28,7 +28,8 @@ pub(crate) struct Arrangement {
 }
 
 impl Arrangement {
-    /// For maps of these edges drawn in these passes, on a device whose textures are at most `largest` texels wide.
+    /// For maps of these edges drawn in these passes, on a device whose textures are at most
+    /// `largest` texels wide.
     pub fn new(
         storage: Storage,
         generation: Generation,
@@ -83,12 +84,14 @@ impl Arrangement {
     }
 }
 
-/// Corners of squares that do not overlap, in the order of their edges, and the width and height of the rectangle around them: the
-/// smallest that we find, none if it would be more than `largest` wide or high.
+/// Corners of squares that do not overlap, in the order of their edges, and the width and height of
+/// the rectangle around them: the smallest that we find, none if it would be more than `largest`
+/// wide or high.
 ///
-/// Crates that pack rectangles fill a rectangle of a given size; here there are eight squares at most and the size is what is
-/// looked for. So every width that is a sum of some edges is tried, with the largest square first and each as high up and then as far to
-/// the left as there is room (B. Baker et al., "Orthogonal packings in two dimensions", 1980).
+/// Crates that pack rectangles fill a rectangle of a given size; here there are eight squares at
+/// most and the size is what is looked for. So every width that is a sum of some edges is tried,
+/// with the largest square first and each as high up and then as far to the left as there is room
+/// (B. Baker et al., "Orthogonal packings in two dimensions", 1980).
 fn packed(sizes: &[u32], largest: u32) -> Option<(Vec<[u32; 2]>, [u32; 2])> {
     let mut order: Vec<usize> = (0..sizes.len()).collect();
     order.sort_by_key(|&i| std::cmp::Reverse(sizes[i]));
@@ -115,7 +118,8 @@ fn placed(sizes: &[u32], order: &[usize], width: u32) -> Vec<[u32; 2]> {
     let mut corners = vec![[0; 2]; sizes.len()];
     for (count, &i) in order.iter().enumerate() {
         let before = &order[..count];
-        // The highest and leftmost place touches an edge of another square, or of the strip, on both axes.
+        // The highest and leftmost place touches an edge of another square, or of the strip, on
+        // both axes.
         let ends = |axis: usize| before.iter().map(|&j| corners[j][axis] + sizes[j]).chain([0]).collect::<Vec<_>>();
         let (lefts, mut tops) = (ends(0), ends(1));
         tops.sort_unstable();

@@ -27,7 +27,8 @@ struct Attachments {
 }
 
 impl Targets {
-    /// `sizes` are the edges of all maps; the layout's `storage`, `it` and `passes` have been chosen.
+    /// `sizes` are the edges of all maps; the layout's `storage`, `it` and `passes` have been
+    /// chosen.
     pub fn new(
         device: &wgpu::Device,
         config: &ShadowConfig,
@@ -177,8 +178,8 @@ fn view(texture: &wgpu::Texture, first: u32, count: u32) -> wgpu::TextureView {
     })
 }
 
-/// wgpu guesses a GL texture's kind from its number of layers: one is no array, and a multiple of six squares is a cube. A spare
-/// layer makes it an array.
+/// wgpu guesses a GL texture's kind from its number of layers: one is no array, and a multiple of
+/// six squares is a cube. A spare layer makes it an array.
 fn array_layers(layers: u32, [width, height]: [u32; 2], backend: wgpu::Backend) -> u32 {
     let mistaken = layers == 1 || (layers.is_multiple_of(6) && width == height);
     if backend == wgpu::Backend::Gl && mistaken { layers + 1 } else { layers }

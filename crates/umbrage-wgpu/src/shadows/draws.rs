@@ -35,8 +35,8 @@ impl Draws {
                 let casters = if split < plans[light].splits.len() { plans[light].casters(split) } else { &[] };
                 self.list.extend(casters.iter().map(|&caster| (caster, 0..1)));
             }
-            // A map without casters is not read: one of several lights need not even be cleared. Those of one
-            // light are, as they share textures.
+            // A map without casters is not read: one of several lights need not even be cleared.
+            // Those of one light are, as they share textures.
             if alone || self.list.len() > begin {
                 self.passes.push(index);
             }

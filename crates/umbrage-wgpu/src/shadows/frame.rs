@@ -55,8 +55,9 @@ impl<'a> ShadowFrame<'a> {
     }
 
     /// The slices in which the picture is drawn where one map is used for one split after the other
-    /// ([`umbrage::config::Layout::Reused`]); none with any other layout and none without shadows. Draw
-    /// [`ShadowFrame::map`] of a slice's split, then what of the picture lies in it, front to back.
+    /// ([`umbrage::config::Layout::Reused`]); none with any other layout and none without shadows.
+    /// Draw [`ShadowFrame::map`] of a slice's split, then what of the picture lies in it, front to
+    /// back.
     #[must_use]
     pub fn slices(&self, view: &View) -> Vec<Slice> {
         let is_sliced = self.shadows.enabled && self.shadows.maps.layout() == umbrage::config::Layout::Reused;
@@ -64,8 +65,8 @@ impl<'a> ShadowFrame<'a> {
     }
 }
 
-/// One pass that draws casters: into one map, or with a layered, instanced or mixed layout into those
-/// of several splits at once.
+/// One pass that draws casters: into one map, or with a layered, instanced or mixed layout into
+/// those of several splits at once.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowMap<'a> {
     shadows: &'a Shadows,
@@ -102,10 +103,11 @@ impl<'a> ShadowMap<'a> {
         self.shadows.draws.of_pass(self.pass).iter().cloned()
     }
 
-    /// The casters as runs of neighbours: indices `a..b` that are all drawn with the same instances.
+    /// The casters as runs of neighbours: indices `a..b` that are all drawn with the same
+    /// instances.
     ///
-    /// Where casters are instances of one mesh and [`ShadowMap::takes_instances`], a run is one draw:
-    /// `pass.draw_indexed(indices, 0, casters)`.
+    /// Where casters are instances of one mesh and [`ShadowMap::takes_instances`], a run is one
+    /// draw: `pass.draw_indexed(indices, 0, casters)`.
     pub fn runs(&self) -> impl Iterator<Item = (Range<u32>, Range<u32>)> + use<'a> {
         draws::runs(self.shadows.draws.of_pass(self.pass))
     }

@@ -21,12 +21,12 @@ pub struct Inputs<'a> {
     pub lights: &'a [Light],
     /// Bounds of what throws shadows. [`crate::ShadowMap::casters`] speaks of them by index.
     pub casters: &'a [Aabb],
-    /// Bounds of what shows shadows, most casters among them. Where the list is empty, or holds nothing
-    /// that is in view, casters serve as receivers.
+    /// Bounds of what shows shadows, most casters among them. Where the list is empty, or holds
+    /// nothing that is in view, casters serve as receivers.
     pub receivers: &'a [Aabb],
-    /// A set that takes the place of both lists, which stay empty then: casters and receivers by the
-    /// thousand, kept from frame to frame. [`crate::ShadowMap::casters`] speaks of its casters by their
-    /// keys.
+    /// A set that takes the place of both lists, which stay empty then: casters and receivers by
+    /// the thousand, kept from frame to frame. [`crate::ShadowMap::casters`] speaks of its casters
+    /// by their keys.
     pub set: Option<&'a CasterSet>,
     /// Which members of the set take part: those that are on one of these layers.
     pub layers: Layers,
@@ -35,8 +35,8 @@ pub struct Inputs<'a> {
     /// not known.
     pub receiver_clusters: Option<&'a [Aabb]>,
     /// World point that positions in the application's shaders are relative to. Keep it within a
-    /// kilometre or two of the eye and move it in whole steps: static shadows stand still between two
-    /// steps.
+    /// kilometre or two of the eye and move it in whole steps: static shadows stand still between
+    /// two steps.
     pub origin: DVec3,
     /// Pixels of the picture, across and down.
     pub image_size: [u32; 2],
@@ -50,7 +50,8 @@ pub struct Inputs<'a> {
 }
 
 impl<'a> Inputs<'a> {
-    /// A frame without casters and receivers, of 1920 × 1080 pixels, relative to the world's origin.
+    /// A frame without casters and receivers, of 1920 × 1080 pixels, relative to the world's
+    /// origin.
     #[must_use]
     pub fn new(view: &'a View, lights: &'a [Light]) -> Self {
         Self {

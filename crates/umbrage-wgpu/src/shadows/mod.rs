@@ -20,8 +20,8 @@ use crate::{Error, FrameOptions, LightMaps, Result, ShadowMaps};
 ///
 /// Each frame: [`Shadows::prepare`], every map of [`ShadowFrame::maps`] drawn with its casters,
 /// [`Shadows::prefilter`], then the application's own pass with [`Shadows::bind_group`]. What the
-/// filter reaches, whether the device clamps depth, how many layers it draws at once and what a pixel
-/// covers is worked out here.
+/// filter reaches, whether the device clamps depth, how many layers it draws at once and what a
+/// pixel covers is worked out here.
 ///
 /// # Changes while it runs
 ///
@@ -39,19 +39,19 @@ use crate::{Error, FrameOptions, LightMaps, Result, ShadowMaps};
 /// # Several views
 ///
 /// Views share the maps, one after the other: prepare, draw and submit one view before the next is
-/// prepared. Give each its own [`Inputs::view_slot`], under which its stabilised maps are held. Views
-/// that are drawn in one submission take a `Shadows` each.
+/// prepared. Give each its own [`Inputs::view_slot`], under which its stabilised maps are held.
+/// Views that are drawn in one submission take a `Shadows` each.
 ///
 /// # A lost device
 ///
-/// A driver that is reset or updated, or an adapter that is unplugged, takes the device and all that
-/// was made with it. [`Shadows::prepare`] says [`Error::DeviceLost`] from then on; so does
+/// A driver that is reset or updated, or an adapter that is unplugged, takes the device and all
+/// that was made with it. [`Shadows::prepare`] says [`Error::DeviceLost`] from then on; so does
 /// [`Shadows::new`] with that device. An application requests a new adapter and a new device, makes
 /// its own resources and `Shadows` anew and draws the frame again, as the example `hello_shadows`
 /// does. What stabilised maps hold is lost with `Shadows`: their texels may move once.
 ///
-/// A device that is lost between `prepare` and the end of the frame is told of at the next `prepare`.
-/// What the frame still records is without effect: wgpu reports some of it to
+/// A device that is lost between `prepare` and the end of the frame is told of at the next
+/// `prepare`. What the frame still records is without effect: wgpu reports some of it to
 /// [`wgpu::Device::on_uncaptured_error`], which should not panic then. A browser tells nobody but
 /// [`wgpu::Device::set_device_lost_callback`], which belongs to the application.
 #[derive(Debug)]
@@ -66,8 +66,8 @@ pub struct Shadows {
     planners: BTreeMap<u32, Vec<Planner>>,
     /// What the planners held before the frame that is planned.
     held: Vec<Held>,
-    /// The last frame's plans, one for each light. Their buffers serve the next frame once nobody else
-    /// holds them.
+    /// The last frame's plans, one for each light. Their buffers serve the next frame once nobody
+    /// else holds them.
     plans: Vec<Arc<ShadowPlan>>,
     enabled: bool,
     draws: Draws,
@@ -118,10 +118,10 @@ impl Shadows {
     ///
     /// # Errors
     /// [`Error::LightCount`] or [`Error::LightKind`] if the lights are not those that the maps were
-    /// made for, [`Error::Config`] naming a box that is no box or a camera that the range does not go
-    /// with, [`Error::InvalidFrameOption`] for an origin that is not finite, [`Error::SetAndLists`],
-    /// [`Error::FilterTooWide`], [`Error::Device`] for what the device complains about,
-    /// [`Error::DeviceLost`]. A refused frame does not change the next.
+    /// made for, [`Error::Config`] naming a box that is no box or a camera that the range does not
+    /// go with, [`Error::InvalidFrameOption`] for an origin that is not finite,
+    /// [`Error::SetAndLists`], [`Error::FilterTooWide`], [`Error::Device`] for what the device
+    /// complains about, [`Error::DeviceLost`]. A refused frame does not change the next.
     pub fn prepare(&mut self, queue: &wgpu::Queue, inputs: &Inputs<'_>) -> Result<ShadowFrame<'_>> {
         self.check(inputs)?;
         let slot = inputs.view_slot;
@@ -217,15 +217,15 @@ impl Shadows {
     }
 
     /// WGSL that stands before a vertex shader that draws casters; `group` is the index at which
-    /// [`ShadowMap::bind_group`] is bound. [`Shadows::caster_pipeline`] does the rest for the common
-    /// case.
+    /// [`ShadowMap::bind_group`] is bound. [`Shadows::caster_pipeline`] does the rest for the
+    /// common case.
     #[must_use]
     pub fn caster_wgsl(&self, group: u32) -> String {
         self.maps.caster_wgsl(group)
     }
 
-    /// [`Shadows::caster_wgsl`] for vertex shaders that hand more to their fragments: `members` joins
-    /// the struct that they return, for example `"@location(0) uv: vec2f,"`.
+    /// [`Shadows::caster_wgsl`] for vertex shaders that hand more to their fragments: `members`
+    /// joins the struct that they return, for example `"@location(0) uv: vec2f,"`.
     #[must_use]
     pub fn caster_wgsl_with(&self, group: u32, members: &str) -> String {
         self.maps.caster_wgsl_with(group, members)

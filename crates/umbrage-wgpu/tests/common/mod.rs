@@ -1,4 +1,5 @@
-//! What the GPU tests share: a device, plans made by hand, a pass that draws triangles and a pass that asks points.
+//! What the GPU tests share: a device, plans made by hand, a pass that draws triangles and a pass
+//! that asks points.
 #![allow(dead_code, reason = "each test file uses its own part of this module")]
 
 use bytemuck::{Pod, Zeroable};
@@ -21,7 +22,8 @@ pub const MSM: Filter = Filter::Moments(Moments::new(MomentKind::Msm));
 /// Maps of one sun.
 pub const SUN: [LightKind; 1] = [LightKind::Directional];
 
-/// The papers' config with other maps, another filter, and settings over it, `key=value` with spaces between.
+/// The papers' config with other maps, another filter, and settings over it, `key=value` with
+/// spaces between.
 pub fn config(map_sizes: &[u32], filter: Filter, settings: &str) -> ShadowConfig {
     with(ShadowConfig { map_sizes: map_sizes.to_vec(), filter, ..Preset::Papers.config() }, settings)
 }
@@ -49,7 +51,8 @@ pub struct Gpu {
 }
 
 impl Gpu {
-    /// With every optional feature that the adapter has. `None`, and a line on stderr, without an adapter.
+    /// With every optional feature that the adapter has. `None`, and a line on stderr, without an
+    /// adapter.
     pub fn new() -> Option<Self> {
         Self::without(wgpu::Features::empty())
     }
@@ -102,8 +105,8 @@ impl Gpu {
         buffer
     }
 
-    /// Runs one compute shader, entry point `main`, workgroup of 64, over `input` at binding 0 of group 0 into as many `O` at
-    /// binding 1, with `maps` in group 1 if its text says so.
+    /// Runs one compute shader, entry point `main`, workgroup of 64, over `input` at binding 0 of
+    /// group 0 into as many `O` at binding 1, with `maps` in group 1 if its text says so.
     pub fn compute<I: Pod, O: Pod>(&self, source: &str, input: &[I], maps: Option<&ShadowMaps>) -> Vec<O> {
         let bytes = size_of::<O>() as u64 * input.len() as u64;
         self.checked(|| {
@@ -176,8 +179,8 @@ impl Gpu {
 }
 
 impl Gpu {
-    /// Draws three vertices with entry points `vs` and `fs` over a square of `size` floating-point pixels, `maps` in group 2 after two
-    /// uniforms, as an app may have them.
+    /// Draws three vertices with entry points `vs` and `fs` over a square of `size` floating-point
+    /// pixels, `maps` in group 2 after two uniforms, as an app may have them.
     pub fn fragments(&self, source: &str, size: u32, maps: &ShadowMaps) -> Vec<[f32; 4]> {
         assert_eq!(16 * size % wgpu::COPY_BYTES_PER_ROW_ALIGNMENT, 0, "rows without gaps");
         self.checked(|| {
@@ -413,7 +416,7 @@ impl World {
         self.draw_all(&[plan], options, triangles);
     }
 
-    /// The same for the plans of several lights.
+    /// Draws the maps of several lights.
     pub fn draw_all(&mut self, plans: &[&ShadowPlan], options: &FrameOptions, triangles: &[Vec3]) {
         self.maps.prepare_lights(&self.gpu.queue, plans, options).expect("valid plans");
         self.gpu.checked(|| {
@@ -498,9 +501,11 @@ impl World {
     }
 }
 
-/// A plan with one entry of `sizes` per split: slices from view depth `planes[i]` to `planes[i + 1]`, every map a square of
-/// `widths[i]` metres around the world's point `center`, depth from 100 m before it to 100 m behind it. The eye looks along +X
-/// from x = 0. Splits have a caster (index 0) each.
+/// A plan with one entry of `sizes` per split.
+///
+/// Slices go from view depth `planes[i]` to `planes[i + 1]`; every map is a square of `widths[i]`
+/// metres around the world's point `center`, with depth from 100 m before it to 100 m behind it. The
+/// eye looks along +X from x = 0. Splits have a caster (index 0) each.
 pub fn plan(light: DVec3, center: DVec3, sizes: &[u32], planes: &[f64], widths: &[f64]) -> ShadowPlan {
     let light = DirectionalLight::new(light).expect("a direction");
     let (u, v) = light.map_axes();

@@ -7,7 +7,8 @@ use super::matrix::{Matrix, ROUNDING};
 use crate::bounds::MOST_METRES;
 use crate::{Error, Result};
 
-/// The largest cosine between two axes of a camera that counts as a right angle, for matrices in `f32`.
+/// The largest cosine between two axes of a camera that counts as a right angle, for matrices in
+/// `f32`.
 const SKEW: f64 = 1e-3;
 
 /// By what share a depth row may point aside of the line of sight.
@@ -36,7 +37,8 @@ pub(super) fn camera(matrix: Matrix, depth: DepthConvention) -> Result<(DVec3, D
     if is_perspective { perspective(x, y, z, w, depth) } else { orthographic(x, y, z, depth) }.ok_or_else(foreign)
 }
 
-/// The camera's axes for a direction of sight; the frustum's own x may run the other way, which the flag says.
+/// The camera's axes for a direction of sight; the frustum's own x may run the other way, which the
+/// flag says.
 fn axes(x: DVec3, y: DVec3, forward: DVec3) -> Option<(DMat3, bool)> {
     let (right, up) = (x.try_normalize()?, y.try_normalize()?);
     if right.dot(up).abs() > SKEW || right.dot(forward).abs() > SKEW || up.dot(forward).abs() > SKEW {
@@ -82,8 +84,8 @@ fn perspective(x: DVec4, y: DVec4, z: DVec4, w: DVec4, depth: DepthConvention) -
     Some((eye, axes, if is_mirrored { frustum.mirrored() } else { frustum }))
 }
 
-/// From rows that are scaled so that w is 1. Such a camera looks along the direction that makes it right-handed: if it was
-/// mirrored, it shows the same part of the world from the other side.
+/// From rows that are scaled so that w is 1. Such a camera looks along the direction that makes it
+/// right-handed: if it was mirrored, it shows the same part of the world from the other side.
 fn orthographic(x: DVec4, y: DVec4, z: DVec4, depth: DepthConvention) -> Option<(DVec3, DMat3, Frustum)> {
     let forward = y.truncate().cross(x.truncate()).try_normalize()?;
     let (axes, _) = axes(x.truncate(), y.truncate(), forward)?;

@@ -12,12 +12,13 @@ const WIDEST: f64 = 1e6;
 /// The least width and height of a view, as tangents or in metres.
 const NARROWEST: f64 = 1e-9;
 
-/// What an engine's graphics interface takes for granted: needed to read near and far back from a camera's projection, and to hand
-/// maps to the engine ([`crate::Split::shadow_from_world_in`], [`crate::Split::texture_from_world`]).
+/// What an engine's graphics interface takes for granted: needed to read near and far back from a
+/// camera's projection, and to hand maps to the engine ([`crate::Split::shadow_from_world_in`],
+/// [`crate::Split::texture_from_world`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthConvention {
-    /// NDC y up and depth in \[0,1\], textures' v down: wgpu, Direct3D, Metal, Vulkan with a negative viewport height. A
-    /// camera's depth may run either way (reversed or not).
+    /// NDC y up and depth in \[0,1\], textures' v down: wgpu, Direct3D, Metal, Vulkan with a
+    /// negative viewport height. A camera's depth may run either way (reversed or not).
     ZeroToOne,
     /// NDC y down and depth in \[0,1\], textures' v down: Vulkan with a positive viewport height.
     ZeroToOneYDown,
@@ -43,9 +44,9 @@ pub enum Projection {
 
 /// What a camera sees, in its own view space (right-handed, looks down −Z).
 ///
-/// The four sides are `x/d` and `y/d` at view depth `d` for a perspective frustum and plain `x` and `y` in metres for an
-/// orthographic one. They need not be symmetric. `near` and `far` are view depths in metres; `far` may be infinite
-/// for a perspective frustum.
+/// The four sides are `x/d` and `y/d` at view depth `d` for a perspective frustum and plain `x` and
+/// `y` in metres for an orthographic one. They need not be symmetric. `near` and `far` are view
+/// depths in metres; `far` may be infinite for a perspective frustum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(missing_docs, reason = "the sides are described together above")]
 pub struct Frustum {
@@ -59,7 +60,8 @@ pub struct Frustum {
 }
 
 impl Frustum {
-    /// A symmetric perspective frustum. `fov_y` is the full vertical angle in radians, `aspect` width over height.
+    /// A symmetric perspective frustum. `fov_y` is the full vertical angle in radians, `aspect`
+    /// width over height.
     ///
     /// # Errors
     /// [`Error::InvalidCamera`] naming the parameter that is out of range.
@@ -92,8 +94,8 @@ impl Frustum {
         .validated()
     }
 
-    /// Reads a frustum back from a projection matrix: perspective or orthographic, reversed or not, with a finite or
-    /// infinite far plane, symmetric or off-axis.
+    /// Reads a frustum back from a projection matrix: perspective or orthographic, reversed or not,
+    /// with a finite or infinite far plane, symmetric or off-axis.
     ///
     /// Entries that are zero but for the rounding of `f32` are taken for zero.
     ///
@@ -159,9 +161,9 @@ impl Frustum {
         .validated()
     }
 
-    /// Checks that sides are in order and within 10^6 (tangents) or 10^12 (metres), that near is at least 10^-9 m (any
-    /// finite view depth for an orthographic frustum) and far greater, at most 10^12 m or infinite (not for an
-    /// orthographic one).
+    /// Checks that sides are in order and within 10^6 (tangents) or 10^12 (metres), that near is at
+    /// least 10^-9 m (any finite view depth for an orthographic frustum) and far greater, at most
+    /// 10^12 m or infinite (not for an orthographic one).
     ///
     /// # Errors
     /// [`Error::InvalidCamera`] naming the first field that is wrong.
@@ -209,7 +211,8 @@ impl Frustum {
         }
     }
 
-    /// The four corners in view space at view depth `d`: bottom-left, bottom-right, top-left, top-right.
+    /// The four corners in view space at view depth `d`: bottom-left, bottom-right, top-left,
+    /// top-right.
     #[must_use]
     pub fn corners_at(&self, d: f64) -> [DVec3; 4] {
         let s = self.scale_at(d);
@@ -229,7 +232,8 @@ impl Frustum {
         let (ox, oy) = ((r + l) / (r - l), (t + b) / (t - b));
         match self.projection {
             Projection::Perspective => {
-                // ndc = (p d-independent) : z = (A·z + B) / d with A = n/(f−n), B = n f/(f−n); A → 0, B → n at f = ∞.
+                // ndc = (p d-independent) : z = (A·z + B) / d with A = n/(f−n), B = n f/(f−n); A →
+                // 0, B → n at f = ∞.
                 let (a, bz) = if f.is_finite() { (n / (f - n), n * f / (f - n)) } else { (0.0, n) };
                 DMat4::from_cols(
                     DVec4::new(sx, 0.0, 0.0, 0.0),

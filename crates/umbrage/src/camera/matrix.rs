@@ -42,11 +42,13 @@ impl From<[f32; 16]> for Matrix {
     }
 }
 
-/// Entries of a projection below this share of their row's largest are rounding: some ulps of `f32`.
+/// Entries of a projection below this share of their row's largest are rounding: some ulps of
+/// `f32`.
 pub(super) const ROUNDING: f64 = 1e-6;
 
 impl Matrix {
-    /// A projection of which those entries are zero that are so in every projection, but for rounding.
+    /// A projection of which those entries are zero that are so in every projection, but for
+    /// rounding.
     pub(super) fn without_rounding(self) -> DMat4 {
         let [mut x, mut y, mut z, mut w] = [0, 1, 2, 3].map(|i| self.0.row(i));
         let clear = |entry: &mut f64, beside: f64| {
@@ -59,7 +61,8 @@ impl Matrix {
         let (depth, scale) = (z.z.abs().max(z.w.abs()), w.z.abs().max(w.w.abs()));
         [&mut z.x, &mut z.y].into_iter().for_each(|entry| clear(entry, depth));
         [&mut w.x, &mut w.y, &mut w.z, &mut w.w].into_iter().for_each(|entry| clear(entry, scale));
-        // A perspective projection moves nothing aside, an orthographic one turns nothing with depth.
+        // A perspective projection moves nothing aside, an orthographic one turns nothing with
+        // depth.
         let is_perspective = w.z != 0.0;
         clear(if is_perspective { &mut x.w } else { &mut x.z }, x.x);
         clear(if is_perspective { &mut y.w } else { &mut y.z }, y.y);

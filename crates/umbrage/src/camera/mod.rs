@@ -24,7 +24,8 @@ impl View {
     /// A view from `eye` towards `target`. `up` may not be parallel to the line of sight.
     ///
     /// # Errors
-    /// [`Error::InvalidCamera`] if eye and target coincide, a number is not finite, or `up` is along the line of sight.
+    /// [`Error::InvalidCamera`] if eye and target coincide, a number is not finite, or `up` is
+    /// along the line of sight.
     pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, frustum: Frustum) -> Result<Self> {
         check_eye(eye)?;
         if !target.is_finite() {
@@ -51,8 +52,9 @@ impl View {
         Self::look_at(eye, target, if along_y { DVec3::NEG_Z } else { DVec3::Y }, frustum)
     }
 
-    /// A view from the camera's transform; only rotation and translation are used (a camera has no scale). A transform that
-    /// mirrors is taken as the mirrored camera that it is: the frustum's left and right are those of its own x.
+    /// A view from the camera's transform; only rotation and translation are used (a camera has no
+    /// scale). A transform that mirrors is taken as the mirrored camera that it is: the frustum's
+    /// left and right are those of its own x.
     ///
     /// # Errors
     /// [`Error::InvalidCamera`] if the matrix is not finite or its axes are degenerate.
@@ -71,7 +73,8 @@ impl View {
         Ok(Self { eye, world_from_view: world_from_view_rotation, frustum: frustum.validated()? })
     }
 
-    /// A view from the two matrices an engine has at hand. Left-handed and mirrored cameras are taken as they are.
+    /// A view from the two matrices an engine has at hand. Left-handed and mirrored cameras are
+    /// taken as they are.
     ///
     /// # Errors
     /// As [`View::from_world_from_view`] and [`Frustum::from_projection_matrix`].
@@ -88,13 +91,16 @@ impl View {
         Self::from_world_from_view(world_from_view.0, Frustum::from_projection_matrix(clip_from_view, depth)?)
     }
 
-    /// A view from its view-projection matrix alone: perspective or orthographic, right- or left-handed, reversed or not,
-    /// with a finite or infinite far plane, symmetric or off-axis, mirrored or not.
+    /// A view from its view-projection matrix alone: perspective or orthographic, right- or
+    /// left-handed, reversed or not, with a finite or infinite far plane, symmetric or off-axis,
+    /// mirrored or not.
     ///
-    /// The eye of an orthographic camera is not in its matrix: it is put a hundredth of the range's length before near.
+    /// The eye of an orthographic camera is not in its matrix: it is put a hundredth of the range's
+    /// length before near.
     ///
     /// # Errors
-    /// [`Error::InvalidCamera`] if the matrix is singular, holds NaN, or is no projection of a rotated camera.
+    /// [`Error::InvalidCamera`] if the matrix is singular, holds NaN, or is no projection of a
+    /// rotated camera.
     pub fn from_clip_from_world(clip_from_world: impl Into<Matrix>, depth: DepthConvention) -> Result<Self> {
         let (eye, axes, frustum) = decompose::camera(clip_from_world.into(), depth)?;
         Ok(Self { eye: check_eye(eye)?, world_from_view: axes, frustum: frustum.validated()? })
@@ -124,7 +130,7 @@ impl View {
         &self.frustum
     }
 
-    /// The same eye with another frustum.
+    /// This eye with another frustum.
     ///
     /// # Errors
     /// [`Error::InvalidCamera`] if the frustum is not valid.
@@ -150,15 +156,16 @@ impl View {
         self.world_from_view.transpose() * (point_in_world - self.eye)
     }
 
-    /// The eight corners of the slice between view depths `a` and `b`, in the world: first the four of
-    /// [`Frustum::corners_at`] at `a`, then those at `b`.
+    /// The eight corners of the slice between view depths `a` and `b`, in the world: first the four
+    /// of [`Frustum::corners_at`] at `a`, then those at `b`.
     #[must_use]
     pub fn slice_corners(&self, a: f64, b: f64) -> [DVec3; 8] {
         let (near, far) = (self.frustum.corners_at(a), self.frustum.corners_at(b));
         std::array::from_fn(|i| self.world_from_view_point(if i < 4 { near[i] } else { far[i - 4] }))
     }
 
-    /// `view_from_world` relative to `origin`: what the GPU gets when its positions are relative to that world point.
+    /// `view_from_world` relative to `origin`: what the GPU gets when its positions are relative to
+    /// that world point.
     #[must_use]
     pub fn view_from_relative(&self, origin: DVec3) -> DMat4 {
         let rotation = self.world_from_view.transpose();
@@ -171,9 +178,10 @@ impl View {
         self.frustum.clip_from_view() * self.view_from_relative(origin)
     }
 
-    /// A world-space ray through a point of the image: `x` and `y` in \[0,1\] from the upper left corner. Returns the
-    /// ray's origin and its direction, scaled so that one unit is one metre of view depth. A perspective ray starts in the
-    /// eye, an orthographic one on the plane through it.
+    /// A world-space ray through a point of the image: `x` and `y` in \[0,1\] from the upper left
+    /// corner. Returns the ray's origin and its direction, scaled so that one unit is one metre of
+    /// view depth. A perspective ray starts in the eye, an orthographic one on the plane through
+    /// it.
     #[must_use]
     pub fn ray_through(&self, x: f64, y: f64) -> (DVec3, DVec3) {
         let f = &self.frustum;

@@ -1,7 +1,8 @@
 //! The order in which neighbours in space are neighbours in memory.
 //!
-//! Source: \[Hilbert04\]. Two cells that follow each other along the curve share a face, so
-//! that any run of casters lies together; Morton's order, which leaps, asked 1.7 times as many nodes and boxes of the same frames.
+//! Source: \[Hilbert04\]. Two cells that follow each other along the curve share a face, so that
+//! any run of casters lies together; Morton's order, which leaps, asked 1.7 times as many nodes and
+//! boxes of the same frames.
 
 use glam::DVec3;
 

@@ -2,7 +2,8 @@
 
 use crate::{Error, Result};
 
-/// Layers that a caster is on, or that a light or a view asks for: a set of up to [`Layers::COUNT`].
+/// Layers that a caster is on, or that a light or a view asks for: a set of up to
+/// [`Layers::COUNT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Layers(u32);
 

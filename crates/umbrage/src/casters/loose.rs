@@ -1,5 +1,6 @@
-//! Casters that are kept one by one, as they were given: those that move, those that have just come, and boxes that the lattice of
-//! the packed ones does not suit. A small tree over them is refitted as they move.
+//! Casters that are kept one by one, as they were given: those that move, those that have just
+//! come, and boxes that the lattice of the packed ones does not suit. A small tree over them is
+//! refitted as they move.
 
 use super::curve::Curve;
 use super::kind::{Ask, Kinds};
@@ -82,7 +83,8 @@ impl Loose {
         self.tree.shrink();
     }
 
-    /// Fits the nodes once about every caster may have moved. Says whether casters have changed places.
+    /// Fits the nodes once about every caster may have moved. Says whether casters have changed
+    /// places.
     pub fn settle(&mut self) -> bool {
         if self.changes < self.entries.len().max(LEAST_CHANGES) {
             return false;

@@ -1,8 +1,8 @@
 //! Static casters in 18 bytes each, sixteen to a leaf, and trees over them.
 //!
-//! A box lies on a lattice of [`STEP`] that is the whole world's: it is rounded outwards once, and what is kept of it depends on
-//! nothing else. Its six coordinates are 24-bit numbers of steps from its leaf's origin, so that the lattice is as fine 100 km
-//! from the world's origin as there.
+//! A box lies on a lattice of [`STEP`] that is the whole world's: it is rounded outwards once, and
+//! what is kept of it depends on nothing else. Its six coordinates are 24-bit numbers of steps from
+//! its leaf's origin, so that the lattice is as fine 100 km from the world's origin as there.
 
 use glam::DVec3;
 
@@ -30,8 +30,8 @@ const FARTHEST: f64 = ORIGIN_STEP * (1u64 << 30) as f64;
 /// Casters of a run, at most. A run is built as a whole: in some ten milliseconds.
 pub(super) const RUN: usize = 16_384;
 
-/// The box on the lattice around a box; `None` if it is kept as it is: large, very far away, or flat, whose place along its axis
-/// says whether it lies below something.
+/// The box on the lattice around a box; `None` if it is kept as it is: large, very far away, or
+/// flat, whose place along its axis says whether it lies below something.
 pub(super) fn on_lattice(bounds: Aabb) -> Option<Aabb> {
     let is_flat = |bounds: Aabb| Placed::from(bounds).is_flat();
     let kept = Aabb::new((bounds.min / STEP).floor() * STEP, (bounds.max / STEP).ceil() * STEP);
@@ -51,7 +51,8 @@ pub(super) struct Packing {
     pub slot: u32,
 }
 
-/// Sixteen boxes, or fewer: for each of the six coordinates the lower two bytes of all, and the upper one.
+/// Sixteen boxes, or fewer: for each of the six coordinates the lower two bytes of all, and the
+/// upper one.
 #[derive(Clone, Copy, Debug)]
 struct Boxes {
     low: [[u16; WIDE]; 6],
@@ -120,8 +121,8 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// A run of casters in the order of their codes. Says for each its place. `None` if they lie so far apart, or are of so many
-    /// kinds, that there is not room for all: half as many have it.
+    /// A run of casters in the order of their codes. Says for each its place. `None` if they lie so
+    /// far apart, or are of so many kinds, that there is not room for all: half as many have it.
     pub fn new(casters: &[Packing], kinds: &Kinds) -> Option<(Self, Vec<u32>)> {
         let leaves = casters.len().div_ceil(WIDE);
         let mut run = Self {
@@ -398,7 +399,8 @@ impl Tree for AskedRun<'_> {
 }
 
 impl Run {
-    /// Of the boxes `asked` of a leaf those that may come near the planes, and those of them that `f32` cannot be sure of.
+    /// Of the boxes `asked` of a leaf those that may come near the planes, and those of them that
+    /// `f32` cannot be sure of.
     fn sieve(&self, leaf: usize, ask: &Near<'_>, planes: u32, asked: u16) -> (u16, u16) {
         let boxes = &self.boxes[leaf];
         let mut ends = [[0.0f32; WIDE]; 6];

@@ -12,7 +12,8 @@ use crate::{Aabb, Error, Result};
 /// Whether a caster is expected to move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Motion {
-    /// It stays where it is for a long time: a building, a tree, a piece of ground. It may be moved all the same.
+    /// It stays where it is for a long time: a building, a tree, a piece of ground. It may be moved
+    /// all the same.
     #[default]
     Static,
     /// It moves in many frames: a vehicle, a walker, a door.
@@ -33,8 +34,8 @@ pub enum Motion {
 pub struct Caster {
     /// Its box in the world, metres.
     pub bounds: Aabb,
-    /// What plans call it: the place of the object in the application's own list, for example. Casters that share a key are
-    /// drawn as one: lists hold the key once.
+    /// What plans call it: the place of the object in the application's own list, for example.
+    /// Casters that share a key are drawn as one: lists hold the key once.
     pub key: u32,
     /// Whether it is expected to move.
     pub motion: Motion,
@@ -61,8 +62,9 @@ impl Caster {
 
 /// Casters and receivers by the million, kept from frame to frame.
 ///
-/// A planner that is given lists looks at every box in every frame. A set keeps the boxes in trees, and the planner looks at those
-/// that matter: what a plan costs follows from what is in view, not from the size of the world.
+/// A planner that is given lists looks at every box in every frame. A set keeps the boxes in trees,
+/// and the planner looks at those that matter: what a plan costs follows from what is in view, not
+/// from the size of the world.
 ///
 /// ```
 /// use umbrage::{Aabb, Caster, CasterSet, DirectionalLight, Frustum, Motion, PlanInputs, Planner, ShadowConfig, View};
@@ -89,24 +91,28 @@ impl Caster {
 ///
 /// # Plans
 ///
-/// A plan of a set is the plan of the list of the boxes that it keeps, [`CasterSet::bounds`], in the order of their keys, bit for
-/// bit. It does not depend on the order in which they came. It names casters by their keys.
+/// A plan of a set is the plan of the list of the boxes that it keeps, [`CasterSet::bounds`], in
+/// the order of their keys, bit for bit. It does not depend on the order in which they came. It
+/// names casters by their keys.
 ///
 /// # What is kept
 ///
-/// A static box is kept in 18 bytes: rounded outwards to 2^-14 m (0.06 mm), on a lattice that is as fine 100 km from the world's
-/// origin as there. With handle, key and tree that is 32 bytes a caster where at least some ten of them stand to the square kilometre.
-/// Boxes that move, that are longer than 256 m, that are flat or that lie farther away than 17 million kilometres are kept as they
-/// are given, in some 250 bytes.
+/// A static box is kept in 18 bytes: rounded outwards to 2^-14 m (0.06 mm), on a lattice that is as
+/// fine 100 km from the world's origin as there. With handle, key and tree that is 32 bytes a
+/// caster where at least some ten of them stand to the square kilometre. Boxes that move, that are
+/// longer than 256 m, that are flat or that lie farther away than 17 million kilometres are kept as
+/// they are given, in some 250 bytes.
 ///
 /// # Speed
 ///
-/// * [`CasterSet::insert_all`] packs whatever it is given in the best order. Fill a set by it while a level is loaded, and tile by
-///   tile where a world is streamed.
-/// * Casters that come one by one are packed 16,384 at a time, which takes some ten milliseconds. [`CasterSet::pack`] puts everything
-///   in the best order again.
-/// * Moving a caster costs some tens of nanoseconds, and a part of fitting the tree of all that move.
-/// * A static caster that moves is moved where it stands if it does not go far, and is packed anew later if it does.
+/// * [`CasterSet::insert_all`] packs whatever it is given in the best order. Fill a set by it while
+///   a level is loaded, and tile by tile where a world is streamed.
+/// * Casters that come one by one are packed 16,384 at a time, which takes some ten milliseconds.
+///   [`CasterSet::pack`] puts everything in the best order again.
+/// * Moving a caster costs some tens of nanoseconds, and a part of fitting the tree of all that
+///   move.
+/// * A static caster that moves is moved where it stands if it does not go far, and is packed anew
+///   later if it does.
 ///
 /// With the feature `rayon`, packing uses all cores.
 #[derive(Debug)]
@@ -177,8 +183,8 @@ impl CasterSet {
     /// Adds a caster. The handle names it until it is removed.
     ///
     /// # Errors
-    /// [`Error::InvalidCaster`] naming its key if its box is inverted, NaN or beyond 10^12 m; [`Error::TooManyCasters`];
-    /// [`Error::TooManyCasterKinds`]. Nothing has changed then.
+    /// [`Error::InvalidCaster`] naming its key if its box is inverted, NaN or beyond 10^12 m;
+    /// [`Error::TooManyCasters`]; [`Error::TooManyCasterKinds`]. Nothing has changed then.
     pub fn insert(&mut self, caster: Caster) -> Result<CasterHandle> {
         check(caster.bounds, None, caster.key)?;
         let kind = self.kinds.number(caster.kind())?;
@@ -190,7 +196,8 @@ impl CasterSet {
         Ok(handle)
     }
 
-    /// Adds many casters, and packs the static ones of them together. Returns their handles in the same order.
+    /// Adds many casters, and packs the static ones of them together. Returns their handles in the
+    /// same order.
     ///
     /// # Errors
     /// Those of [`CasterSet::insert`]. Nothing has changed then.
@@ -223,8 +230,8 @@ impl CasterSet {
     /// Moves a caster.
     ///
     /// # Errors
-    /// [`Error::InvalidCaster`] naming the handle if the box is inverted, NaN or beyond 10^12 m; [`Error::RemovedCaster`]. Nothing has
-    /// changed then.
+    /// [`Error::InvalidCaster`] naming the handle if the box is inverted, NaN or beyond 10^12 m;
+    /// [`Error::RemovedCaster`]. Nothing has changed then.
     pub fn set_bounds(&mut self, handle: CasterHandle, bounds: impl Into<Aabb>) -> Result<()> {
         let bounds = bounds.into();
         let slot = self.slots.index(handle)?;
@@ -299,7 +306,8 @@ impl CasterSet {
         self.revision += 1;
     }
 
-    /// The box that is kept of a caster: the one that was given, rounded outwards by 0.06 mm at most.
+    /// The box that is kept of a caster: the one that was given, rounded outwards by 0.06 mm at
+    /// most.
     ///
     /// # Errors
     /// [`Error::RemovedCaster`].

@@ -4,7 +4,8 @@ use std::fmt;
 
 use crate::{Error, Result};
 
-/// Names a caster of a [`crate::CasterSet`] until it is removed. A handle of a removed caster never names another one.
+/// Names a caster of a [`crate::CasterSet`] until it is removed. A handle of a removed caster never
+/// names another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct CasterHandle {
     index: u32,
@@ -61,7 +62,8 @@ pub(super) struct Slots {
     free: u32,
 }
 
-/// A slot of this generation serves nobody any more: its next handle would be one that has been given out.
+/// A slot of this generation serves nobody any more: its next handle would be one that has been
+/// given out.
 const RETIRED: u8 = u8::MAX;
 
 impl Default for Slots {

@@ -1,8 +1,9 @@
 //! Wide trees of boxes, and what all of them are asked.
 //!
-//! Every question is one of three: which boxes pass a test ([`each`]), what the largest of their measures is ([`most`]), and which
-//! come near a convex volume ([`near`]). A test or a measure has to be *monotone*: what holds of a box holds of any box around it.
-//! Nodes are then asked the question of their boxes, and what a node denies none of its boxes is asked.
+//! Every question is one of three: which boxes pass a test ([`each`]), what the largest of their
+//! measures is ([`most`]), and which come near a convex volume ([`near`]). A test or a measure has
+//! to be *monotone*: what holds of a box holds of any box around it. Nodes are then asked the
+//! question of their boxes, and what a node denies none of its boxes is asked.
 
 use std::cell::Cell;
 
@@ -17,7 +18,8 @@ pub(crate) const WIDE: usize = 16;
 /// Levels of nodes above the leaves, at most: 16^8 boxes and more.
 const MOST_LEVELS: usize = 8;
 
-/// Share of a coordinate by which rounding may move what a test or measure sees of a box, with room to spare.
+/// Share of a coordinate by which rounding may move what a test or measure sees of a box, with room
+/// to spare.
 const ROUNDING: f64 = 1e-13;
 
 /// What questions have cost, whatever machine they ran on.
@@ -37,8 +39,8 @@ pub(crate) fn count(counter: &Counter, nodes: usize, boxes: usize) {
     counter.set(Visited { nodes: all_nodes + nodes as u64, boxes: all_boxes + boxes as u64 });
 }
 
-/// A tree of nodes in groups of up to [`WIDE`]. Group `g` of level 0 has the leaves from `WIDE * g` on, that of a higher level the
-/// groups of the level below; the top level is one group.
+/// A tree of nodes in groups of up to [`WIDE`]. Group `g` of level 0 has the leaves from `WIDE * g`
+/// on, that of a higher level the groups of the level below; the top level is one group.
 pub(crate) trait Tree {
     /// Levels of groups; 0 if there is no box.
     fn levels(&self) -> usize;
@@ -49,8 +51,8 @@ pub(crate) trait Tree {
     /// Calls `each` with the boxes of a leaf that are asked for, by their places in the tree.
     fn leaf(&self, leaf: usize, each: &mut dyn FnMut(usize, &Placed));
 
-    /// Calls `each` with the lanes of a group that come within `margin` of those planes whose bits are set in `asked`, and with the
-    /// planes that still have to be asked inside of them.
+    /// Calls `each` with the lanes of a group that come within `margin` of those planes whose bits
+    /// are set in `asked`, and with the planes that still have to be asked inside of them.
     fn near_lanes(&self, level: usize, group: usize, ask: &Near<'_>, asked: u32, each: &mut dyn FnMut(usize, u32)) {
         for lane in 0..WIDE {
             if let Some(node) = self.node(level, group, lane)
@@ -61,7 +63,8 @@ pub(crate) trait Tree {
         }
     }
 
-    /// Calls `each` with those boxes of a leaf that are near; the planes of `asked` are to be looked at. Says how many it tested.
+    /// Calls `each` with those boxes of a leaf that are near; the planes of `asked` are to be
+    /// looked at. Says how many it tested.
     fn near_boxes(&self, leaf: usize, ask: &Near<'_>, asked: u32, each: &mut dyn FnMut(usize, &Placed)) -> usize {
         let mut tested = 0;
         self.leaf(leaf, &mut |place, placed| {
@@ -82,12 +85,14 @@ pub(crate) struct Near<'a> {
 }
 
 impl Near<'_> {
-    /// Whether a box comes within the margin of all planes: [`crate::geometry::volume::SweptVolume::meets`].
+    /// Whether a box comes within the margin of all planes:
+    /// [`crate::geometry::volume::SweptVolume::meets`].
     pub fn meets(&self, placed: &Placed) -> bool {
         self.planes.iter().all(|plane| plane.nearest(placed.center, placed.half) <= self.margin)
     }
 
-    /// The planes of `asked` that a box inside of a node need not lie behind; `None` if none of them can be near.
+    /// The planes of `asked` that a box inside of a node need not lie behind; `None` if none of
+    /// them can be near.
     fn left_of(&self, node: &Placed, asked: u32) -> Option<u32> {
         let mut left = 0;
         for (bit, plane) in self.planes.iter().enumerate().filter(|(bit, _)| asked >> bit & 1 == 1) {
@@ -101,7 +106,8 @@ impl Near<'_> {
     }
 }
 
-/// Calls `visit` with every box that passes `test`, which has to be monotone, by its place in the tree.
+/// Calls `visit` with every box that passes `test`, which has to be monotone, by its place in the
+/// tree.
 pub(crate) fn each(
     tree: &impl Tree,
     counter: &Counter,
@@ -140,8 +146,8 @@ fn each_below(
     }
 }
 
-/// The largest measure of any box and `best`. `bound` has to be at least the measure of every box inside of the box that it is
-/// asked for, but for rounding.
+/// The largest measure of any box and `best`. `bound` has to be at least the measure of every box
+/// inside of the box that it is asked for, but for rounding.
 pub(crate) fn most(
     tree: &impl Tree,
     counter: &Counter,
@@ -192,8 +198,8 @@ fn most_below(
     best
 }
 
-/// Calls `visit` with the boxes that come near a volume, leaf by leaf, by their places in the tree; `end` after each leaf that
-/// had any.
+/// Calls `visit` with the boxes that come near a volume, leaf by leaf, by their places in the tree;
+/// `end` after each leaf that had any.
 pub(crate) fn near(
     tree: &impl Tree,
     counter: &Counter,
@@ -234,7 +240,8 @@ fn near_below(
     }
 }
 
-/// A box that has room for the rounding of tests and measures that are taken `farthest` metres from the origin.
+/// A box that has room for the rounding of tests and measures that are taken `farthest` metres from
+/// the origin.
 pub(crate) fn with_room(Placed { center, half }: Placed, farthest: f64) -> Placed {
     let room = ROUNDING * ((center.abs() + half).element_sum() + farthest);
     Placed { center, half: half + DVec3::splat(room) }
@@ -359,7 +366,8 @@ impl BoxTree {
         }
     }
 
-    /// Gives every level the nodes that the number of boxes asks for: after a leaf has come or gone.
+    /// Gives every level the nodes that the number of boxes asks for: after a leaf has come or
+    /// gone.
     fn refit_tail(&mut self) {
         self.height = 0;
         let mut len = self.boxes.len();
@@ -371,7 +379,8 @@ impl BoxTree {
             let children = below.last().map_or(&self.boxes[..], |nodes| &nodes[..]);
             let nodes = &mut at[0];
             len = children.len().div_ceil(WIDE);
-            // The last of those that were there may have lost or won a child; so may its neighbour have.
+            // The last of those that were there may have lost or won a child; so may its neighbour
+            // have.
             nodes.truncate(len.saturating_sub(2));
             let begin = nodes.len();
             nodes.extend(children[begin * WIDE..].chunks(WIDE).map(around));

@@ -7,8 +7,8 @@ use super::{Filter, Preset, ShadowConfig};
 use crate::margin::FilterReach;
 use crate::{Error, Result};
 
-/// Edges of maps are multiples of so many texels: devices keep textures in tiles of 8² and larger, and
-/// the rest of a tile would be paid for and not used.
+/// Edges of maps are multiples of so many texels: devices keep textures in tiles of 8² and larger,
+/// and the rest of a tile would be paid for and not used.
 const EDGE_STEP: u32 = 8;
 
 /// The widest map in texels: the widest texture that every WebGPU device has.
@@ -149,9 +149,9 @@ struct Rung {
     filter: Filter,
 }
 
-/// The best number of splits hardly depends on the budget (docs/notes/budget.md): four, and fewer where
-/// maps of four would be narrower than 64 texels. Each rung begins where its maps take every texel of
-/// the budget, so that no larger budget has fewer texels.
+/// The best number of splits hardly depends on the budget (docs/notes/budget.md): four, and fewer
+/// where maps of four would be narrower than 64 texels. Each rung begins where its maps take every
+/// texel of the budget, so that no larger budget has fewer texels.
 const RUNGS: [Rung; 3] = [
     Rung { texels: 0, splits: 1, filter: Filter::Pcf3 { width_m: None } },
     Rung { texels: 2 * 64 * 64, splits: 2, filter: Filter::Pcf3 { width_m: None } },
@@ -171,8 +171,8 @@ impl ShadowConfig {
     /// ```
     ///
     /// # Errors
-    /// [`Error::BudgetTooSmall`] if it does not pay for the map of a single split; it says the least
-    /// that does.
+    /// [`Error::BudgetTooSmall`] if it does not pay for the map of a single split; it says the
+    /// least that does.
     pub fn for_budget(budget: Budget) -> Result<Self> {
         let balanced = Preset::Balanced.config();
         let texel_bytes = balanced.depth_format.texel_bytes();

@@ -108,8 +108,8 @@ pub const SUN_DEGREES: f64 = 0.53;
 /// Texels that a disc of no given width reaches: its radius of 3 and a tap's own.
 const DISC_REACH: f64 = 4.0;
 
-/// Metres from a surface within which casters give it a penumbra as wide as the sun asks for; equal to
-/// `MOST_BLOCKER_M` of `filter.wesl`.
+/// Metres from a surface within which casters give it a penumbra as wide as the sun asks for; equal
+/// to `MOST_BLOCKER_M` of `filter.wesl`.
 const MOST_BLOCKER_M: f64 = 200.0;
 
 impl Filter {

@@ -7,9 +7,10 @@ named! {
     /// What a map is cropped to. Source: \[GG3-10\] section 10.3.
     ///
     /// A scene-independent map is cropped to the corners of its slice. Its near plane stays at the
-    /// scene's, so that no caster in between is lost. A scene-dependent one is cropped to the receivers
-    /// in its slice, and there to where casters can throw a shadow on them. Exactly stabilised maps
-    /// have the same rectangle either way: their depth and their list of casters depend on the scene.
+    /// scene's, so that no caster in between is lost. A scene-dependent one is cropped to the
+    /// receivers in its slice, and there to where casters can throw a shadow on them. Exactly
+    /// stabilised maps have the same rectangle either way: their depth and their list of casters
+    /// depend on the scene.
     pub enum Crop as "crop" {
         /// The slice, its receivers and its casters: scene-dependent
         #[default]
@@ -25,15 +26,15 @@ pub enum Stability {
     /// The tightest map in every frame; edges crawl when the camera moves.
     Tight {
         /// How maps spread their texels: empty for evenly, one for all, or one for each split. A
-        /// split gets its plain map where a warp has nothing to gain: with the light along the view,
-        /// or an orthographic camera.
+        /// split gets its plain map where a warp has nothing to gain: with the light along the
+        /// view, or an orthographic camera.
         warps: Vec<Warp>,
     },
     /// The tight rectangle on axes that are fixed to the light, its extent rounded up to steps and
     /// moved in whole texels.
     ///
-    /// Maps are sharper than exactly still ones. Static shadows change only in frames in which a step
-    /// is taken. Source: \[PCSM\], "Approximated solution".
+    /// Maps are sharper than exactly still ones. Static shadows change only in frames in which a
+    /// step is taken. Source: \[PCSM\], "Approximated solution".
     Approximate {
         /// The steps of the extent.
         steps: ExtentSteps,
@@ -80,8 +81,8 @@ pub enum ExtentSteps {
     /// This many equal steps of the unsplit light frustum: 8 to 4096. `s_q = 64 / ceil(64 / s)` for
     /// 64 of them, as in \[PCSM\], Listing 4.1.2, to compare with.
     ///
-    /// A near split of a long range falls to the first levels. The unsplit frustum has to stand still
-    /// itself; the source does not say how, ours is the sphere around the whole range.
+    /// A near split of a long range falls to the first levels. The unsplit frustum has to stand
+    /// still itself; the source does not say how, ours is the sphere around the whole range.
     Levels(u32),
 }
 

@@ -110,10 +110,10 @@ pub struct ShadowConfig {
     pub crop: Crop,
     /// Whether shadows stand still while the camera moves.
     pub stability: Stability,
-    /// Whether a sun's maps leave out casters whose whole shadow is under half a texel along both of
-    /// a map's axes, split by split. Such a caster covers one texel of the map or none; which one
-    /// changes with every step of the map. Maps that are warped, and those of spot and point lights,
-    /// show all casters.
+    /// Whether a sun's maps leave out casters whose whole shadow is under half a texel along both
+    /// of a map's axes, split by split. Such a caster covers one texel of the map or none; which
+    /// one changes with every step of the map. Maps that are warped, and those of spot and point
+    /// lights, show all casters.
     pub drop_small_casters: bool,
     /// How a map is looked up.
     pub filter: Filter,
@@ -210,7 +210,8 @@ impl ShadowConfig {
         RULES.iter().find(|rule| rule.is_broken_by(self, lights)).map(|rule| rule.conflict(self))
     }
 
-    /// The first rule that a plan for this kind of light would break by a choice that it makes by itself.
+    /// The first rule that a plan for this kind of light would break by a choice that it makes by
+    /// itself.
     pub(crate) fn conflict_of_plan(&self, kind: LightKind) -> Option<Conflict> {
         Rule::of_plans().find(|rule| rule.is_broken_by(self, &[kind])).map(|rule| rule.conflict(self))
     }
@@ -242,8 +243,8 @@ impl ShadowConfig {
             && (stability, *drop_small_casters) == (&other.stability, other.drop_small_casters)
     }
 
-    /// The config that a light of this kind gets: what excludes the kind of light is replaced by the
-    /// usual choice. The second value names what was replaced.
+    /// The config that a light of this kind gets: what excludes the kind of light is replaced by
+    /// the usual choice. The second value names what was replaced.
     #[must_use]
     pub fn for_lights(&self, lights: &[LightKind]) -> (Self, Vec<String>) {
         let (mut config, mut notes) = (self.clone(), Vec::new());

@@ -1,6 +1,7 @@
 //! Words for the values of plain enums: one list says the Rust name, the word and one line of help.
 
-/// Declares an enum without data whose values have a word each, in config files and on the command line.
+/// Declares an enum without data whose values have a word each, in config files and on the command
+/// line.
 ///
 /// The enum gets `ALL`, `WORDS` (word and help, in order), `word()`, `Display` and `FromStr`.
 macro_rules! named {

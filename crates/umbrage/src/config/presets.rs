@@ -16,7 +16,8 @@ named! {
         Balanced = "balanced",
         /// The tightest maps in every frame; edges crawl while the camera moves
         Sharp = "sharp",
-        /// Exactly still maps, which change only in rare steps of planes or range; coarser than balanced
+        /// Exactly still maps, which change only in rare steps of planes or range; coarser than
+        /// balanced
         Still = "still",
         /// The settings of the papers: λ = 0.5, exactly still, chosen by view depth
         Papers = "papers",
@@ -45,7 +46,8 @@ impl Preset {
             look: Look::default(),
         };
         // Planes of least predicted error over the depths that are seen, and the finest map that
-        // contains a point: the same texels where there is something to see (docs/notes/default.md).
+        // contains a point: the same texels where there is something to see
+        // (docs/notes/default.md).
         let balanced = ShadowConfig {
             scheme: SplitScheme::Optimal,
             range: Range::Visible,

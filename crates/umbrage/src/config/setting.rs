@@ -22,7 +22,8 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// The setting's value in a config; `None` where the config's other choices leave no room for it.
+    /// The setting's value in a config; `None` where the config's other choices leave no room for
+    /// it.
     #[must_use]
     pub fn get(&self, config: &ShadowConfig) -> Option<Value> {
         (self.get)(config)

@@ -17,7 +17,8 @@ pub enum SplitScheme {
         /// Share of the logarithmic scheme, 0 to 1.
         lambda: f64,
         /// Metres added to the inner planes `C_1 .. C_{m−1}`: none, one for all, or one for each.
-        /// The source adds δ to all planes, which would move near and far; ours moves the inner ones.
+        /// The source adds δ to all planes, which would move near and far; ours moves the inner
+        /// ones.
         delta: Vec<f64>,
     },
     /// Inner planes `C_1 .. C_{m−1}` as view depths in metres, rising strictly.
@@ -80,12 +81,13 @@ pub enum Range {
     /// camera stands still.
     #[default]
     Camera,
-    /// The view depths between which the view shows receivers, by their boxes clipped to the frustum.
+    /// The view depths between which the view shows receivers, by their boxes clipped to the
+    /// frustum.
     ///
-    /// An empty foreground, or a lens with a tiny near plane, would spend splits on air. Exactly and
-    /// approximately stabilised maps move both ends in geometric steps of 19 %, with hysteresis, and
-    /// stand still in between. The logarithmic and the optimal scheme go best with it
-    /// (`docs/notes/fitted-planes.md`).
+    /// An empty foreground, or a lens with a tiny near plane, would spend splits on air. Exactly
+    /// and approximately stabilised maps move both ends in geometric steps of 19 %, with
+    /// hysteresis, and stand still in between. The logarithmic and the optimal scheme go best with
+    /// it (`docs/notes/fitted-planes.md`).
     Visible,
     /// View depths in metres. Receivers nearer than the first use split 0; beyond the second they
     /// are lit.
@@ -104,16 +106,17 @@ pub enum Selection {
     Interval(SplitMetric),
     /// Map-based: the first (finest) split whose map contains the point.
     ///
-    /// Shadows are sharper where maps reach beyond their slices, and most so where view and light are
-    /// nearly parallel. A map's list holds all casters that can shade what the map covers and no
-    /// earlier one takes. Source: \[PCSM\], "Non-optimized split selection". Deviations: the
-    /// filter's margin and the depth are part of the question, and the blend band lies along the map's
-    /// edge.
+    /// Shadows are sharper where maps reach beyond their slices, and most so where view and light
+    /// are nearly parallel. A map's list holds all casters that can shade what the map covers and
+    /// no earlier one takes. Source: \[PCSM\], "Non-optimized split selection". Deviations: the
+    /// filter's margin and the depth are part of the question, and the blend band lies along the
+    /// map's edge.
     Map,
 }
 
 impl Selection {
-    /// What the planes between splits measure; view depth where maps are chosen by what they contain.
+    /// What the planes between splits measure; view depth where maps are chosen by what they
+    /// contain.
     #[must_use]
     pub const fn metric(self) -> SplitMetric {
         match self {

@@ -7,10 +7,12 @@ use crate::bounds::Placed;
 use crate::light::map_axes;
 use crate::{Aabb, PointLight, SpotLight};
 
-/// The least share of a map's longer edge that its shorter one is, for receivers that the light sees edge-on.
+/// The least share of a map's longer edge that its shorter one is, for receivers that the light
+/// sees edge-on.
 const LEAST_EDGE: f64 = 1e-3;
 
-/// What a spot light shines into, or one face of a point light: a square pyramid, from `near` to `range` along its axis.
+/// What a spot light shines into, or one face of a point light: a square pyramid, from `near` to
+/// `range` along its axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LightFrustum {
     pub position: DVec3,
@@ -24,7 +26,8 @@ pub(crate) struct LightFrustum {
     pub volume: Slice,
 }
 
-/// The part of a light's frustum that a map has to show: bounds in its post-perspective space, and in the world.
+/// The part of a light's frustum that a map has to show: bounds in its post-perspective space, and
+/// in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Part {
     pub lo: DVec2,
@@ -65,7 +68,8 @@ impl LightFrustum {
         self.depth(placed.center) - self.axis.abs().dot(placed.half)
     }
 
-    /// Whether any of a box may lie in the frustum, widened by `margin` metres, from the light's very place on.
+    /// Whether any of a box may lie in the frustum, widened by `margin` metres, from the light's
+    /// very place on.
     pub fn may_meet(&self, placed: &Placed, margin: f64) -> bool {
         let nearest = self.position.clamp(placed.center - placed.half, placed.center + placed.half);
         nearest.distance(self.position) <= self.range + margin
@@ -79,8 +83,8 @@ impl LightFrustum {
         DVec2::new(self.u.dot(from_light), self.v.dot(from_light)) / self.axis.dot(from_light)
     }
 
-    /// What a map shows of a caster: its bounds within those of `part`, and the depth of its first point. One that comes nearer than
-    /// `near` may be anywhere.
+    /// What a map shows of a caster: its bounds within those of `part`, and the depth of its first
+    /// point. One that comes nearer than `near` may be anywhere.
     pub fn seen(&self, caster: &Placed, part: &Part) -> (DVec2, DVec2, f64) {
         let first = self.nearest_depth(caster);
         if first < self.near {
@@ -105,7 +109,8 @@ impl LightFrustum {
         }
     }
 
-    /// To shadow NDC, with w the depth along the axis in metres and `z/w = far/(far − near) − near far/((far − near) w)`.
+    /// To shadow NDC, with w the depth along the axis in metres and `z/w = far/(far − near) − near
+    /// far/((far − near) w)`.
     pub fn shadow_from_world(&self, texel: DVec2, min_texel: DVec2, size: u32, (near, far): (f64, f64)) -> DMat4 {
         let half = 0.5 * f64::from(size);
         let row = |axis: DVec3, constant: f64| axis.extend(constant - axis.dot(self.position));

@@ -1,8 +1,10 @@
-//! Where the receivers of a split lie along the light: what has none of them behind it throws no shadow that anybody sees.
+//! Where the receivers of a split lie along the light: what has none of them behind it throws no
+//! shadow that anybody sees.
 //!
-//! Source: Bittner, Mattausch, Silvennoinen and Wimmer, *Shadow Caster Culling for Efficient Shadow Mapping*, I3D 2011. They draw
-//! the receivers into a mask on the GPU and ask it by occlusion queries; ours is a small grid on the CPU, made from boxes, so that it is known
-//! before anything is drawn.
+//! Source: Bittner, Mattausch, Silvennoinen and Wimmer, *Shadow Caster Culling for Efficient Shadow
+//! Mapping*, I3D 2011. They draw the receivers into a mask on the GPU and ask it by occlusion
+//! queries; ours is a small grid on the CPU, made from boxes, so that it is known before anything
+//! is drawn.
 
 use glam::{DVec2, DVec3};
 
@@ -12,17 +14,20 @@ use crate::Aabb;
 /// Cells along each edge of the grid.
 const CELLS: usize = 64;
 
-/// Steepest receiver, as depth along the light over length across it, whose plane a filter is followed along beyond the
-/// receiver's own box.
+/// Steepest receiver, as depth along the light over length across it, whose plane a filter is
+/// followed along beyond the receiver's own box.
 const STEEPEST: f64 = 4.0;
 
-/// A world axis that the light crosses is least steep to where its rise over one metre of the axis is at least this.
+/// A world axis that the light crosses is least steep to where its rise over one metre of the axis
+/// is at least this.
 const LEAST_RISE: f64 = 0.1;
 
-/// A grid across the light that holds, cell by cell, how far down the light the receivers of a split reach.
+/// A grid across the light that holds, cell by cell, how far down the light the receivers of a
+/// split reach.
 ///
-/// The grid lies in a plane square to a world axis and is looked at along the light, so that a box that is flat along this axis,
-/// a piece of ground, has the same height everywhere: *height* is the coordinate along that axis, counted towards the light.
+/// The grid lies in a plane square to a world axis and is looked at along the light, so that a box
+/// that is flat along this axis, a piece of ground, has the same height everywhere: *height* is the
+/// coordinate along that axis, counted towards the light.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct ReceiverMask {
     /// World axes: the one of heights and those of the grid.
@@ -38,7 +43,8 @@ pub(crate) struct ReceiverMask {
 }
 
 impl ReceiverMask {
-    /// The mask of what lies in `slice` of the boxes `parts`; `bounds` is around all of that. Filters reach `margin` metres.
+    /// The mask of what lies in `slice` of the boxes `parts`; `bounds` is around all of that.
+    /// Filters reach `margin` metres.
     pub fn fill(&mut self, slice: &Slice, bounds: &Aabb, parts: &[Aabb], direction: DVec3, margin: f64) {
         let extent = bounds.max - bounds.min;
         let crossed_fast = |axis: usize| match direction[axis].abs() {
@@ -50,7 +56,8 @@ impl ReceiverMask {
         self.sign = -direction[axis].signum();
         let rise = direction[axis].abs();
         self.slope = DVec2::new(direction[self.axes[1]], direction[self.axes[2]]) / rise;
-        // Across the light `margin` metres are at most so many in the grid's plane, and so much of height.
+        // Across the light `margin` metres are at most so many in the grid's plane, and so much of
+        // height.
         let reach = margin / rise;
         let room = margin * ((1.0 - rise * rise).max(0.0).sqrt() + STEEPEST * rise);
 
@@ -137,7 +144,8 @@ impl ReceiverMask {
         (lo - reach, lo + self.cell + reach)
     }
 
-    /// Lowest and highest a box gets over a cell; the first is above the second where it does not get there.
+    /// Lowest and highest a box gets over a cell; the first is above the second where it does not
+    /// get there.
     fn heights_of_box(&self, center: DVec3, half: DVec3, column: usize, row: usize, reach: f64) -> (f64, f64) {
         let (lo, hi) = self.rectangle(column, row, reach);
         let (middle, thickness) = (self.height(center), half[self.axes[0]]);
@@ -153,14 +161,15 @@ impl ReceiverMask {
         heights
     }
 
-    /// The same of a slice.
+    /// Heights between which a slice lies over a column and row.
     fn heights_of_slice(&self, slice: &Slice, column: usize, row: usize, reach: f64) -> (f64, f64) {
         let (lo, hi) = self.rectangle(column, row, reach);
         let (middle, half) = (0.5 * (lo + hi), 0.5 * (hi - lo));
         let mut heights = (f64::NEG_INFINITY, f64::INFINITY);
         for plane in &slice.planes {
             let across = DVec2::new(plane.normal[self.axes[1]], plane.normal[self.axes[2]]);
-            // The plane's distance from where the light crosses height h, over the middle: `at + rise h`.
+            // The plane's distance from where the light crosses height h, over the middle: `at +
+            // rise h`.
             let rise = self.sign * plane.normal[self.axes[0]] - across.dot(self.slope);
             let at = across.dot(middle) - plane.offset - across.abs().dot(half);
             match rise {

@@ -5,8 +5,9 @@ use glam::{DVec2, DVec3};
 use super::volume::Lies;
 use crate::bounds::Placed;
 
-/// Directions over half a turn. A map's rectangle may stand on any pair that is a quarter turn apart, so the step between
-/// candidate rectangles is 180° / 32 = 5.6°, which costs at most 5 % of an edge against the smallest rectangle of all.
+/// Directions over half a turn. A map's rectangle may stand on any pair that is a quarter turn
+/// apart, so the step between candidate rectangles is 180° / 32 = 5.6°, which costs at most 5 % of
+/// an edge against the smallest rectangle of all.
 pub(crate) const DIRECTIONS: usize = 32;
 
 /// Share of a coordinate by which rounding may move the bounds of a box, with room to spare.
@@ -28,7 +29,8 @@ pub(crate) struct Fan {
 type Spans = ([f64; DIRECTIONS], [f64; DIRECTIONS]);
 
 impl Fan {
-    /// The first direction is `first` (a unit vector of the light's plane), the others follow towards `first + 90°`.
+    /// The first direction is `first` (a unit vector of the light's plane), the others follow
+    /// towards `first + 90°`.
     pub fn new(first: DVec3, depth: DVec3) -> Self {
         let second = depth.cross(first);
         let directions = std::array::from_fn(|i| {
@@ -39,7 +41,8 @@ impl Fan {
         Self { directions, depth, axes }
     }
 
-    /// Where the middle of a box lies along every direction, and half of what the box measures there.
+    /// Where the middle of a box lies along every direction, and half of what the box measures
+    /// there.
     fn spans(&self, center: DVec3, half: DVec3) -> Spans {
         let [x, y, z] = &self.axes;
         let (mut at, mut reach) = ([0.0; DIRECTIONS], [0.0; DIRECTIONS]);
@@ -50,7 +53,8 @@ impl Fan {
         (at, reach)
     }
 
-    /// Direction `u` (of the first half) and the one a quarter turn further: with depth a right-handed frame (u, v, depth).
+    /// Direction `u` (of the first half) and the one a quarter turn further: with depth a
+    /// right-handed frame (u, v, depth).
     pub fn axes(&self, u: usize) -> (DVec3, DVec3) {
         (self.directions[u], self.directions[u + DIRECTIONS / 2])
     }
@@ -103,14 +107,15 @@ impl Region {
         self.depth = (self.depth.0.min(other.depth.0), self.depth.1.max(other.depth.1));
     }
 
-    /// The same with each bound moved into `limits`, depth left as it is.
+    /// This region with each bound moved into `limits`, depth left as it is.
     pub fn within(&self, limits: &Self) -> Self {
         let bound = |own: &[f64; DIRECTIONS]| std::array::from_fn(|k| own[k].clamp(limits.lo[k], limits.hi[k]));
         Self { lo: bound(&self.lo), hi: bound(&self.hi), depth: self.depth }
     }
 
-    /// Whether the box lies inside in every direction and in depth, so that including any part of it changes nothing. One that
-    /// touches the bounds does not: rounding might carry a part of it over them.
+    /// Whether the box lies inside in every direction and in depth, so that including any part of
+    /// it changes nothing. One that touches the bounds does not: rounding might carry a part of it
+    /// over them.
     pub fn encloses_box(&self, fan: &Fan, center: DVec3, half: DVec3) -> bool {
         let room = ROUNDING * (center.abs() + half).element_sum();
         let (depth, reach) = (fan.depth.dot(center), fan.depth.abs().dot(half) + room);
@@ -125,7 +130,8 @@ impl Region {
         !(0..DIRECTIONS).fold(false, |any, k| any | sticks_out(k))
     }
 
-    /// Whether a box comes within `margin` metres in the light's plane and does not lie behind everything.
+    /// Whether a box comes within `margin` metres in the light's plane and does not lie behind
+    /// everything.
     pub fn can_be_shadowed_by(&self, fan: &Fan, center: DVec3, half: DVec3, margin: f64) -> bool {
         if fan.depth.dot(center) - fan.depth.abs().dot(half) > self.depth.1 {
             return false;
@@ -138,8 +144,8 @@ impl Region {
         !(0..DIRECTIONS).fold(false, |any, k| any | is_beside(k))
     }
 
-    /// How the boxes in a box lie to what comes within `margin` metres in the light's plane and does not lie behind everything:
-    /// [`Region::can_be_shadowed_by`] for all of them.
+    /// How the boxes in a box lie to what comes within `margin` metres in the light's plane and
+    /// does not lie behind everything: [`Region::can_be_shadowed_by`] for all of them.
     pub fn shadowed_by_all(&self, fan: &Fan, Placed { center, half }: &Placed, margin: f64) -> Lies {
         let room = ROUNDING * (center.abs() + *half).element_sum();
         let (depth, reach) = (fan.depth.dot(*center), fan.depth.abs().dot(*half) + room);
@@ -160,8 +166,8 @@ impl Region {
         }
     }
 
-    /// Whether including what lies of a box in `within`, as [`Region::include_box_within`] does, changes nothing of the bounds
-    /// across the light; or of any box in it.
+    /// Whether including what lies of a box in `within`, as [`Region::include_box_within`] does,
+    /// changes nothing of the bounds across the light; or of any box in it.
     pub fn encloses_box_within(&self, fan: &Fan, Placed { center, half }: &Placed, within: &Self) -> bool {
         let room = ROUNDING * (center.abs() + *half).element_sum();
         let (at, reach) = fan.spans(*center, *half);
@@ -192,7 +198,8 @@ impl Region {
             })
     }
 
-    /// Bounds along direction `u` of the fan (of its first half) and along the one a quarter turn further.
+    /// Bounds along direction `u` of the fan (of its first half) and along the one a quarter turn
+    /// further.
     pub fn bounds(&self, u: usize) -> (DVec2, DVec2) {
         let v = u + DIRECTIONS / 2;
         (DVec2::new(self.lo[u], self.lo[v]), DVec2::new(self.hi[u], self.hi[v]))
@@ -203,18 +210,20 @@ impl Region {
         self.lo.iter().zip(&self.hi).map(|(lo, hi)| hi - lo).fold(0.0, f64::max)
     }
 
-    /// The first axis of the rectangle of least area among those that stand on the fan's directions.
+    /// The first axis of the rectangle of least area among those that stand on the fan's
+    /// directions.
     pub fn least_direction(&self) -> usize {
         (1..QUARTER).fold(0, |best, k| if self.area(k) < self.area(best) { k } else { best })
     }
 
-    /// Area of the rectangle that stands on direction `u` of the fan (of its first half), square metres.
+    /// Area of the rectangle that stands on direction `u` of the fan (of its first half), square
+    /// metres.
     pub fn area(&self, u: usize) -> f64 {
         (self.hi[u] - self.lo[u]) * (self.hi[u + QUARTER] - self.lo[u + QUARTER])
     }
 
-    /// The rectangle of least area among those that stand on the fan's directions, as (u axis, v axis, lo, hi) with
-    /// u × v = depth.
+    /// The rectangle of least area among those that stand on the fan's directions, as (u axis, v
+    /// axis, lo, hi) with u × v = depth.
     pub fn least_rectangle(&self, fan: &Fan) -> (DVec3, DVec3, DVec2, DVec2) {
         let best = self.least_direction();
         let (lo, hi) = self.bounds(best);

@@ -13,13 +13,14 @@ pub struct Sphere {
     pub radius: f64,
 }
 
-/// The smallest sphere around the slice of `frustum` between view depths `a` and `b`. It depends on the camera's lens alone,
-/// never on where the camera stands or looks.
+/// The smallest sphere around the slice of `frustum` between view depths `a` and `b`. It depends on
+/// the camera's lens alone, never on where the camera stands or looks.
 ///
-/// For a symmetric perspective frustum with `k² = tan²(fov_x/2) + tan²(fov_y/2)`: if `k² ≥ (b − a)/(b + a)` the far face's circle
-/// decides (centre depth b, radius b k); else all eight corners lie on it (centre depth (a + b)(1 + k²)/2). Orthographic: the
-/// box's own sphere. Off-axis: the smallest sphere of the eight corners, by trying every sphere that two, three or
-/// four of them span.
+/// For a symmetric perspective frustum with `k² = tan²(fov_x/2) + tan²(fov_y/2)`: if `k² ≥ (b −
+/// a)/(b + a)` the far face's circle decides (centre depth b, radius b k); else all eight corners
+/// lie on it (centre depth (a + b)(1 + k²)/2). Orthographic: the box's own sphere. Off-axis: the
+/// smallest sphere of the eight corners, by trying every sphere that two, three or four of them
+/// span.
 #[must_use]
 pub fn slice_sphere(frustum: &Frustum, a: f64, b: f64) -> Sphere {
     let symmetric = frustum.left == -frustum.right && frustum.bottom == -frustum.top;
@@ -46,7 +47,8 @@ pub fn slice_sphere(frustum: &Frustum, a: f64, b: f64) -> Sphere {
     }
 }
 
-/// The smallest sphere around a few points, by brute force over the spheres that two to four of them span.
+/// The smallest sphere around a few points, by brute force over the spheres that two to four of
+/// them span.
 fn smallest_sphere(points: &[DVec3; 8]) -> Sphere {
     let mut best = Sphere { center: DVec3::ZERO, radius: f64::INFINITY };
     let mut consider = |center: DVec3| {
@@ -55,7 +57,8 @@ fn smallest_sphere(points: &[DVec3; 8]) -> Sphere {
             best = Sphere { center, radius };
         }
     };
-    // A sphere about any centre that reaches the farthest point contains all; only the best centre is kept.
+    // A sphere about any centre that reaches the farthest point contains all; only the best centre
+    // is kept.
     for i in 0..8 {
         for j in i + 1..8 {
             consider(0.5 * (points[i] + points[j]));
@@ -90,8 +93,8 @@ fn circumcenter4(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Option<DVec3> {
     (det != 0.0 && center.is_finite()).then_some(center)
 }
 
-/// Metres per texel so that a map of `size` texels serves an edge of twice `radius` with `margin` texels on each side, wherever
-/// rounding to whole texels puts it.
+/// Metres per texel so that a map of `size` texels serves an edge of twice `radius` with `margin`
+/// texels on each side, wherever rounding to whole texels puts it.
 #[must_use]
 pub fn stable_texel(radius: f64, size: u32, margin: f64) -> f64 {
     2.0 * radius / (f64::from(size) - 2.0 * margin - 1.0)

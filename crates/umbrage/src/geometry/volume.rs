@@ -5,7 +5,8 @@ use glam::DVec3;
 use crate::bounds::Placed;
 use crate::{Aabb, View};
 
-/// A half space: inside is `normal · p <= offset`. The normal is a unit vector that points outwards.
+/// A half space: inside is `normal · p <= offset`. The normal is a unit vector that points
+/// outwards.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Plane {
     pub normal: DVec3,
@@ -35,7 +36,8 @@ impl Plane {
     }
 }
 
-/// Corner indices of the faces near, far, left, right, bottom, top; corners as [`View::slice_corners`] has them.
+/// Corner indices of the faces near, far, left, right, bottom, top; corners as
+/// [`View::slice_corners`] has them.
 const FACES: [[usize; 4]; 6] = [[0, 1, 3, 2], [4, 5, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6]];
 
 /// Edges as (corner, corner, face, face).
@@ -107,8 +109,9 @@ impl Slice {
         lies
     }
 
-    /// Calls `each` with points whose convex hull is the part of `bounds` inside the slice: the box's faces clipped to the
-    /// slice and the slice's faces clipped to the box. Returns whether there was any.
+    /// Calls `each` with points whose convex hull is the part of `bounds` inside the slice: the
+    /// box's faces clipped to the slice and the slice's faces clipped to the box. Returns whether
+    /// there was any.
     pub fn clip_box(&self, bounds: &Aabb, mut each: impl FnMut(DVec3)) -> bool {
         let corners = bounds.corners();
         let box_planes = box_planes(bounds);
@@ -136,7 +139,8 @@ impl Slice {
         }
     }
 
-    /// Calls `each` with points whose convex hull is the part of `bounds` inside both this slice and another one.
+    /// Calls `each` with points whose convex hull is the part of `bounds` inside both this slice
+    /// and another one.
     pub fn clip_box_with(&self, other: &Self, bounds: &Aabb, mut each: impl FnMut(DVec3)) {
         let corners = bounds.corners();
         let box_planes = box_planes(bounds);
@@ -159,16 +163,17 @@ impl Slice {
         self.swept(self.planes.map(|plane| plane.normal.dot(direction) >= 0.0), |_| direction)
     }
 
-    /// Everything between the slice and a light at `position`: their common convex hull. The planes through the light need no
-    /// divide, so nothing happens to a slice that straddles the light's plane, or that has the light inside.
+    /// Everything between the slice and a light at `position`: their common convex hull. The planes
+    /// through the light need no divide, so nothing happens to a slice that straddles the light's
+    /// plane, or that has the light inside.
     pub fn swept_towards_point(&self, position: DVec3) -> SweptVolume {
         self.swept(self.planes.map(|plane| plane.distance(position) <= 0.0), |corner| {
             (corner - position).normalize_or_zero()
         })
     }
 
-    /// The faces that are turned `away` from the light, and the planes through its outline along the light, whose way of travel at
-    /// a corner is `travel`.
+    /// The faces that are turned `away` from the light, and the planes through its outline along
+    /// the light, whose way of travel at a corner is `travel`.
     fn swept(&self, away: [bool; 6], travel: impl Fn(DVec3) -> DVec3) -> SweptVolume {
         let mut swept = SweptVolume::default();
         for (plane, away) in self.planes.iter().zip(away) {
@@ -218,7 +223,8 @@ impl SweptVolume {
         &self.planes[..self.len]
     }
 
-    /// How the boxes in a box lie to what comes within `margin` metres of the volume: [`SweptVolume::meets`] for all of them.
+    /// How the boxes in a box lie to what comes within `margin` metres of the volume:
+    /// [`SweptVolume::meets`] for all of them.
     pub fn met_by_all(&self, Placed { center, half }: &Placed, margin: f64) -> Lies {
         let mut lies = Lies::Inside;
         for plane in self.planes() {
@@ -238,8 +244,8 @@ impl SweptVolume {
         self.planes[..self.len].iter().all(|plane| plane.nearest(center, half) <= margin)
     }
 
-    /// Calls `each` with the corners of those parts of the box's faces that come within `margin` metres of the volume: of all of
-    /// the box there, none lies nearer to the light.
+    /// Calls `each` with the corners of those parts of the box's faces that come within `margin`
+    /// metres of the volume: of all of the box there, none lies nearer to the light.
     pub fn clip_box(&self, bounds: &Aabb, margin: f64, mut each: impl FnMut(DVec3)) {
         let corners = bounds.corners();
         for face in BOX_FACES {
@@ -253,11 +259,13 @@ impl SweptVolume {
     }
 }
 
-/// Share of a scene's extent by which a caster may rise above the lowest receiver and still count as lying below all of
-/// them: rounding in the bounds, not a length that could be seen (1.2 mm in 1.2 km).
+/// Share of a scene's extent by which a caster may rise above the lowest receiver and still count
+/// as lying below all of them: rounding in the bounds, not a length that could be seen (1.2 mm in
+/// 1.2 km).
 const BELOW_ALL: f64 = 1e-6;
 
-/// The same in metres, at most: a ground of a thousand kilometres does throw its shadow on what lies a metre under it.
+/// [`BELOW_ALL`] in metres, at most: a ground of a thousand kilometres does throw its shadow on
+/// what lies a metre under it.
 const MOST_BELOW: f64 = 2e-3;
 
 /// Metres by which rounding may move the bounds of something in a box of this extent.
@@ -265,9 +273,10 @@ pub(crate) fn rounding(extent: DVec3) -> f64 {
     (BELOW_ALL * extent.max_element()).min(MOST_BELOW)
 }
 
-/// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers` as the light sees it: it then
-/// has nothing behind it to throw a shadow on. A flat ground under everything is the case that matters, and touches what
-/// stands on it. Anything that is not flat has to lie `margin` metres beyond: a filter asks beside its receiver, too.
+/// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers`
+/// as the light sees it: it then has nothing behind it to throw a shadow on. A flat ground under
+/// everything is the case that matters, and touches what stands on it. Anything that is not flat
+/// has to lie `margin` metres beyond: a filter asks beside its receiver, too.
 pub(crate) fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3, margin: f64) -> bool {
     let slack = rounding(receivers.max - receivers.min);
     (0..3).any(|axis| {
@@ -294,8 +303,9 @@ impl Polygon {
         Self { points, len: 4 }
     }
 
-    /// Sutherland and Hodgman's clipping, plane after plane, each moved outwards by `margin` metres. A plane can add one corner, so
-    /// four and the 18 planes of a swept volume are the most there can be.
+    /// Sutherland and Hodgman's clipping, plane after plane, each moved outwards by `margin`
+    /// metres. A plane can add one corner, so four and the 18 planes of a swept volume are the most
+    /// there can be.
     fn clipped(mut self, planes: &[Plane], margin: f64) -> Self {
         for plane in planes {
             let points = &self.points[..self.len];
@@ -309,7 +319,8 @@ impl Polygon {
             }
             let mut kept = Self { points: [DVec3::ZERO; MOST_CORNERS], len: 0 };
             let mut push = |point| {
-                // A concave corner cannot arise; rounding may repeat a point, which the bound leaves room for.
+                // A concave corner cannot arise; rounding may repeat a point, which the bound
+                // leaves room for.
                 if kept.len < kept.points.len() {
                     kept.points[kept.len] = point;
                     kept.len += 1;

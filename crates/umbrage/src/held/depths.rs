@@ -3,7 +3,8 @@
 /// By how much a held range may exceed what is needed before it is let go of.
 const MOST_EXCESS: f64 = 4.0;
 
-/// Share of a needed range by which a new one exceeds it at either end, so that a walking eye does not change it at once.
+/// Share of a needed range by which a new one exceeds it at either end, so that a walking eye does
+/// not change it at once.
 const ROOM: f64 = 0.25;
 
 /// Depths along the light, metres.

@@ -7,7 +7,8 @@ use super::size::HeldSize;
 pub(crate) struct Range {
     /// `C_0`.
     pub near: f64,
-    /// The far end that the inner planes `C_1 .. C_{m-1}` are placed for: `far`, or what it was before it was stretched.
+    /// The far end that the inner planes `C_1 .. C_{m-1}` are placed for: `far`, or what it was
+    /// before it was stretched.
     pub inner_far: f64,
     /// `C_m`.
     pub far: f64,
@@ -25,8 +26,8 @@ const STEPS_PER_OCTAVE: f64 = 4.0;
 /// Steps that an end may fall short of what it holds before it follows.
 const HYSTERESIS: f64 = 2.0;
 
-/// An end of the range on a ladder of geometric steps, so that a moving camera changes it rarely: rounded up to the next step, and
-/// held until it is outgrown or undercut by [`HYSTERESIS`] steps.
+/// An end of the range on a ladder of geometric steps, so that a moving camera changes it rarely:
+/// rounded up to the next step, and held until it is outgrown or undercut by [`HYSTERESIS`] steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct HeldStep {
     held: Option<f64>,
@@ -58,18 +59,22 @@ impl HeldRange {
     }
 }
 
-/// By how much the far end of a held range may exceed the depth for which the inner planes were placed, before they follow: √2.
+/// By how much the far end of a held range may exceed the depth for which the inner planes were
+/// placed, before they follow: √2.
 const MOST_STRETCH: f64 = std::f64::consts::SQRT_2;
 
-/// By how much a range first exceeds the scene, so that an eye that walks away from its far end takes no step at once: half a step.
+/// By how much a range first exceeds the scene, so that an eye that walks away from its far end
+/// takes no step at once: half a step.
 const FIRST_ROOM: f64 = 1.044_273_782_427_413_8;
 
 /// The far end of a range that ends with the scene.
 ///
-/// The scene's deepest point changes as the camera turns, its farthest does not: the range ends there, in steps of 9 % as the eye walks
-/// away from it, and a step moves the last plane only. The inner planes are placed for the depth that the first
-/// view asks for, and again, for any that it can ask for by turning, where one asks for √2 times as much. A view that
-/// looks out of the scene does not pay for what lies behind it: the range ends at √2 times what the inner planes are placed for.
+/// The scene's deepest point changes as the camera turns, its farthest does not: the range ends
+/// there, in steps of 9 % as the eye walks away from it, and a step moves the last plane only. The
+/// inner planes are placed for the depth that the first view asks for, and again, for any that it
+/// can ask for by turning, where one asks for √2 times as much. A view that looks out of the scene
+/// does not pay for what lies behind it: the range ends at √2 times what the inner planes are
+/// placed for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HeldFar {
     far: HeldSize,
@@ -78,7 +83,8 @@ pub(crate) struct HeldFar {
 }
 
 impl HeldFar {
-    /// The range from `near` for a scene that ends at view depth `deepest`, and `farthest` metres from the eye.
+    /// The range from `near` for a scene that ends at view depth `deepest`, and `farthest` metres
+    /// from the eye.
     pub fn hold(&mut self, near: f64, deepest: f64, farthest: f64) -> Range {
         let farthest = farthest.max(deepest);
         if self.inner_far == 0.0 {
@@ -102,11 +108,13 @@ pub(crate) struct HeldEnds {
     near: Option<f64>,
 }
 
-/// Share of a range's length that its beginning leaves free before the scene, and four times as much at most.
+/// Share of a range's length that its beginning leaves free before the scene, and four times as
+/// much at most.
 const NEAR_ROOM: f64 = 1.0 / 16.0;
 
 impl HeldEnds {
-    /// A beginning between the camera's near plane and `first`, before a range that ends at `deepest`.
+    /// A beginning between the camera's near plane and `first`, before a range that ends at
+    /// `deepest`.
     pub fn hold_near(&mut self, near: f64, first: f64, deepest: f64) -> f64 {
         let room = NEAR_ROOM * (deepest - first).max(1e-3 * deepest.abs());
         let serves = |held: &f64| (near..=first).contains(held) && first - held <= 4.0 * room;

@@ -1,8 +1,9 @@
 //! What stands still, and why: everything that a planner keeps from one frame to the next.
 //!
-//! A static shadow does not move while its map's texels lie on one grid, which is given by the map's axes, its texel's
-//! size and its offset in whole texels. Axes are the light's. Offsets are rounded by every plan. Sizes follow from the
-//! lens, the range, the planes and what a slice needs, and each of those is held here:
+//! A static shadow does not move while its map's texels lie on one grid, which is given by the
+//! map's axes, its texel's size and its offset in whole texels. Axes are the light's. Offsets are
+//! rounded by every plan. Sizes follow from the lens, the range, the planes and what a slice needs,
+//! and each of those is held here:
 //!
 //! | held | until |
 //! |---|---|
@@ -14,7 +15,8 @@
 //! | depth range ([`depths::HeldDepths`]) | a caster or receiver lies outside |
 //! | local maps' sizes ([`Held::local`]) | as map sizes |
 //!
-//! While the camera stands still all of that recovers to what a fresh planner would choose: [`recovery`].
+//! While the camera stands still all of that recovers to what a fresh planner would choose:
+//! [`recovery`].
 
 pub(crate) mod depths;
 pub(crate) mod ends;
@@ -34,11 +36,11 @@ use size::{HeldHalf, HeldLens, HeldSize};
 /// Faces of a point light's cube.
 const FACES: usize = 6;
 
-/// What a planner holds on to between frames so that shadows stand still: a value, a pure function of the frames that were
-/// planned with it.
+/// What a planner holds on to between frames so that shadows stand still: a value, a pure function
+/// of the frames that were planned with it.
 ///
-/// A default one holds nothing: the plan made with it is a fresh planner's. Without stabilisation nothing is held. A frame
-/// that the planner refuses leaves it as it was.
+/// A default one holds nothing: the plan made with it is a fresh planner's. Without stabilisation
+/// nothing is held. A frame that the planner refuses leaves it as it was.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Held {
     pub(crate) standstill: Standstill,
@@ -79,12 +81,13 @@ impl Held {
         standing
     }
 
-    /// The same, but with nothing held of the range and the lens: what a fresh planner would see.
+    /// What a fresh planner would see: nothing is held of the range and the lens.
     pub(crate) fn released(&self) -> Self {
         Self { standstill: self.standstill, ..Self::default() }
     }
 
-    /// Takes over the range and the lens of `fresh`. Planes and sizes are left to follow step by step.
+    /// Takes over the range and the lens of `fresh`. Planes and sizes are left to follow step by
+    /// step.
     pub(crate) fn adopt(&mut self, fresh: &Self) {
         (self.ends, self.lens, self.whole) = (fresh.ends, fresh.lens, fresh.whole);
     }

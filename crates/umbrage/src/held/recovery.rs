@@ -1,24 +1,28 @@
-//! How held sizes recover: back to what a fresh planner would choose, while the camera stands still.
+//! How held sizes recover: back to what a fresh planner would choose, while the camera stands
+//! still.
 //!
-//! A held size is never smaller than what a frame needs, but it may be larger for as long as the camera moves: following
-//! every change would move every texel. A camera that stands still shows no reason to wait, and one split's step of a
-//! few per cent a frame is not seen as a jump.
+//! A held size is never smaller than what a frame needs, but it may be larger for as long as the
+//! camera moves: following every change would move every texel. A camera that stands still shows no
+//! reason to wait, and one split's step of a few per cent a frame is not seen as a jump.
 
 use glam::DVec2;
 
 use super::size::ENOUGH;
 use crate::{MAX_SPLITS, View};
 
-/// Frames for which the camera stands before anything recovers: a pause between two steps is not a standstill.
+/// Frames for which the camera stands before anything recovers: a pause between two steps is not a
+/// standstill.
 const PATIENCE: u32 = 10;
 
 /// Frames in which a recovery ends. With [`PATIENCE`] and one round of slack less than 60.
 const DURATION: u32 = 42;
 
-/// The step by which one split's size changes, at least: 9 %. Larger only where [`DURATION`] frames would not do.
+/// The step by which one split's size changes, at least: 9 %. Larger only where [`DURATION`] frames
+/// would not do.
 const STEP: f64 = 1.090_507_732_665_257_7;
 
-/// Share of the eye's distance to the first plane, and radians, by which a camera that stands still may tremble.
+/// Share of the eye's distance to the first plane, and radians, by which a camera that stands still
+/// may tremble.
 const TREMOR: f64 = 1e-5;
 
 /// What the camera does.
@@ -75,7 +79,8 @@ impl Standstill {
         (PATIENCE + DURATION).saturating_sub(self.frames)
     }
 
-    /// Those of `count` independent sizes whose turn it is in this frame of a recovery, and the step that each may take.
+    /// Those of `count` independent sizes whose turn it is in this frame of a recovery, and the
+    /// step that each may take.
     pub fn turn(&self, count: usize) -> Option<(std::ops::Range<usize>, f64)> {
         let frame = self.frames.checked_sub(PATIENCE).filter(|frame| *frame < DURATION)? as usize;
         let at_once = count.div_ceil(DURATION as usize);
@@ -124,9 +129,10 @@ pub(crate) struct Recovery {
 }
 
 impl Recovery {
-    /// Moves one plane of `row` towards `target`, and the size of the map that ends there, by a step. `need` is half the
-    /// edges that a map needs, by its split and a row of planes. Returns the split, also where nothing is left to change if
-    /// it `visits_all`; `None` once all sizes are the target's.
+    /// Moves one plane of `row` towards `target`, and the size of the map that ends there, by a
+    /// step. `need` is half the edges that a map needs, by its split and a row of planes. Returns
+    /// the split, also where nothing is left to change if it `visits_all`; `None` once all sizes
+    /// are the target's.
     pub fn step(
         &mut self,
         row: &mut Row,
@@ -168,7 +174,8 @@ impl Recovery {
         if plane == 1 && target.planes[0] < row.planes[1] {
             row.planes[0] = target.planes[0];
         }
-        // The next visits move the planes before, where this map begins: room for that, or two maps would change at once.
+        // The next visits move the planes before, where this map begins: room for that, or two maps
+        // would change at once.
         let with_room: [f64; MAX_SPLITS + 1] = std::array::from_fn(|j| row.planes[j].min(ahead[j]));
         let split = plane - 1;
         let least = need(split, &row.planes[..=m]).max(need(split, &with_room[..=m]));

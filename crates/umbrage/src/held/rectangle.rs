@@ -1,4 +1,5 @@
-//! Tight maps that stand almost still: rectangles whose edges change in steps, on axes that are fixed to the light.
+//! Tight maps that stand almost still: rectangles whose edges change in steps, on axes that are
+//! fixed to the light.
 
 use glam::DVec2;
 
@@ -6,7 +7,8 @@ use super::size::ENOUGH;
 use crate::config::ExtentSteps;
 use crate::geometry::region::{DIRECTIONS, Region};
 
-/// Relative room for rounding, so that an extent that keeps its value while the camera walks keeps its step as well.
+/// Relative room for rounding, so that an extent that keeps its value while the camera walks keeps
+/// its step as well.
 const ROUNDING: f64 = 1e-9;
 
 /// The orientation and the extent of a map that is stabilised approximately.
@@ -35,7 +37,7 @@ impl Rectangle {
         Self { direction, extent: needed(target, direction).map(round_up) }
     }
 
-    /// The same, with those edges longer that are too short.
+    /// This rectangle with those edges longer that are too short.
     fn grown_to(&self, target: &Region, steps: f64) -> Self {
         let needed = needed(target, self.direction);
         let around = Self::around(target, self.direction, steps).extent;
@@ -50,13 +52,14 @@ pub(crate) struct HeldRectangle {
 }
 
 impl HeldRectangle {
-    /// The rectangle for `target`; `whole` is the width of the unsplit light frustum in metres, which the source's steps are
-    /// fractions of.
+    /// The rectangle for `target`; `whole` is the width of the unsplit light frustum in metres,
+    /// which the source's steps are fractions of.
     ///
-    /// Geometric steps: a rectangle grows where it has to and is kept while it is at most one step larger along each edge (or two
-    /// along one) than the one that would be chosen anew, which is the smallest, in whole steps, of those that stand on the
-    /// fan's directions. One that `refits` has recovered, and is kept only while it is hardly larger. The source's steps have
-    /// neither orientation nor memory.
+    /// Geometric steps: a rectangle grows where it has to and is kept while it is at most one step
+    /// larger along each edge (or two along one) than the one that would be chosen anew, which is
+    /// the smallest, in whole steps, of those that stand on the fan's directions. One that `refits`
+    /// has recovered, and is kept only while it is hardly larger. The source's steps have neither
+    /// orientation nor memory.
     pub fn hold(&mut self, target: &Region, steps: ExtentSteps, whole: f64, refits: bool) -> Rectangle {
         let rectangle = match steps {
             ExtentSteps::PerDoubling(count) => {
@@ -79,8 +82,8 @@ impl HeldRectangle {
     }
 }
 
-/// The most that an edge of a held rectangle can measure for a target that is `widest` metres wide: two steps of rounding and two of
-/// hysteresis, should all of them fall to one edge.
+/// The most that an edge of a held rectangle can measure for a target that is `widest` metres wide:
+/// two steps of rounding and two of hysteresis, should all of them fall to one edge.
 pub(crate) fn longest_edge(steps: ExtentSteps, widest: f64, whole: f64) -> f64 {
     match steps {
         ExtentSteps::PerDoubling(count) => widest * 2f64.powf(4.0 / f64::from(count)),
@@ -88,7 +91,8 @@ pub(crate) fn longest_edge(steps: ExtentSteps, widest: f64, whole: f64) -> f64 {
     }
 }
 
-/// The extent of `target` along a direction and across it. A target without width (a wall seen edge-on by the light) still gets some.
+/// The extent of `target` along a direction and across it. A target without width (a wall seen
+/// edge-on by the light) still gets some.
 fn needed(target: &Region, direction: usize) -> DVec2 {
     let (lo, hi) = target.bounds(direction);
     let longest = (hi - lo).max_element();

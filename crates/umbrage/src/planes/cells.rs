@@ -1,4 +1,5 @@
-//! Thin slices of the view, and what each holds: the bounds of receivers and casters, and how much shadow edge the picture shows there.
+//! Thin slices of the view, and what each holds: the bounds of receivers and casters, and how much
+//! shadow edge the picture shows there.
 
 use glam::DVec3;
 
@@ -28,7 +29,8 @@ pub(crate) struct Cell {
     bounds: Aabb,
     /// The casters that can shade them, whole; empty if there are none.
     pub casters: Region,
-    /// Expected length of shadow edges in the light's plane, in [`Cells::unit`]: a sum that does not depend on its order.
+    /// Expected length of shadow edges in the light's plane, in [`Cells::unit`]: a sum that does
+    /// not depend on its order.
     edges: u64,
     /// [`Region::least_direction`] of the receivers, once they are all there.
     least_direction: usize,
@@ -64,7 +66,8 @@ impl Cell {
     }
 }
 
-/// The share of a caster's rectangle that lies in `region`, on the axes of the latter's own least rectangle.
+/// The share of a caster's rectangle that lies in `region`, on the axes of the latter's own least
+/// rectangle.
 fn share(caster: &Region, region: &Region, u: usize) -> f64 {
     [u, u + DIRECTIONS / 2]
         .into_iter()
@@ -186,7 +189,8 @@ impl Cells {
                     && !lies_below(center, half, &cell.bounds, direction, 0.0);
                 if shaded { share(&bounds, &cell.receivers, cell.least_direction) } else { -1.0 }
             }));
-            // A shadow lies in one place: where boxes are high, several cells seem to hold the same piece of it.
+            // A shadow lies in one place: where boxes are high, several cells seem to hold the same
+            // piece of it.
             let held: f64 = self.shares.iter().map(|share| share.max(0.0)).sum();
             let length = outline(half, direction) / held.max(1.0);
             for (cell, &share) in self.cells[reached].iter_mut().zip(&self.shares) {
@@ -198,11 +202,14 @@ impl Cells {
         }
     }
 
-    /// Expected error of each cell's pixels for each metre that a texel measures, as shares of that of all cells.
+    /// Expected error of each cell's pixels for each metre that a texel measures, as shares of that
+    /// of all cells.
     ///
-    /// An edge of a shadow is off by a share of a texel, so that the area decided wrongly is the length of the edges times the texel's
-    /// edge. Shadows mostly lie on ground, of which a view from some height shows 1/z³ pixels to the square metre at depth z. A small part goes
-    /// by the pixels alone, for edges that boxes do not tell of: by the rows of pixels that such ground fills.
+    /// An edge of a shadow is off by a share of a texel, so that the area decided wrongly is the
+    /// length of the edges times the texel's edge. Shadows mostly lie on ground, of which a view
+    /// from some height shows 1/z³ pixels to the square metre at depth z. A small part goes by the
+    /// pixels alone, for edges that boxes do not tell of: by the rows of pixels that such ground
+    /// fills.
     pub fn weigh(&self, projection: Projection, depths: &[f64], weights: &mut Vec<f64>) {
         let pixels = |pair: &[f64]| match projection {
             Projection::Perspective => 1.0 / pair[0] - 1.0 / pair[1],

@@ -4,8 +4,9 @@ use crate::config::SplitMetric;
 use crate::{Error, Projection, Result, View};
 
 impl SplitMetric {
-    /// View depth over what planes measure, at least, of anything that the view shows: for distances the cosine of the angle
-    /// between the line of sight and the farthest corner, which need not be opposite to another in an off-axis view.
+    /// View depth over what planes measure, at least, of anything that the view shows: for
+    /// distances the cosine of the angle between the line of sight and the farthest corner, which
+    /// need not be opposite to another in an off-axis view.
     pub(crate) fn least_depth_share(self, view: &View) -> f64 {
         let f = view.frustum();
         match self {

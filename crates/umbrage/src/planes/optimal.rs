@@ -1,9 +1,12 @@
-//! Planes that find themselves: of many candidates those between which the maps are expected to err least.
+//! Planes that find themselves: of many candidates those between which the maps are expected to err
+//! least.
 //!
-//! The papers place planes by a formula of near, far and m alone, the optimum for a scene that fills the view evenly. Scenes do not: a
-//! plane in the gap between two rows of casters leaves both maps small, one through a row makes both as wide as the row.
-//! Here the row of planes of least expected error is found exactly, by dynamic programming over a few dozen candidates. Ours;
-//! *Sample Distribution Shadow Maps* (Lauritzen et al. 2010) place planes by the depths that a frame shows, which needs the frame.
+//! The papers place planes by a formula of near, far and m alone, the optimum for a scene that
+//! fills the view evenly. Scenes do not: a plane in the gap between two rows of casters leaves both
+//! maps small, one through a row makes both as wide as the row. Here the row of planes of least
+//! expected error is found exactly, by dynamic programming over a few dozen candidates. Ours;
+//! *Sample Distribution Shadow Maps* (Lauritzen et al. 2010) place planes by the depths that a
+//! frame shows, which needs the frame.
 
 use glam::DVec2;
 
@@ -22,8 +25,8 @@ const CANDIDATES: usize = 32;
 /// Depths that show anything are taken for a single one below this ratio of the last to the first.
 const LEAST_RATIO: f64 = 1.01;
 
-/// By how much the best planes have to beat those that are held, where maps have to stand still: less than this share of what the held
-/// ones cost.
+/// By how much the best planes have to beat those that are held, where maps have to stand still:
+/// less than this share of what the held ones cost.
 const WORTH_MOVING: f64 = 2.0 / 3.0;
 
 /// How the edge of a map follows from what it has to show.
@@ -74,8 +77,9 @@ struct Costs {
     len: usize,
     /// Metres across the map of slice (i, j), at `i * len + j`.
     edges: Vec<f64>,
-    /// Where the map of the slice from j begins if the one before begins at i: blending and pixel quads reach back over the border. The
-    /// candidate at or before, and the share of the way to the next.
+    /// Where the map of the slice from j begins if the one before begins at i: blending and pixel
+    /// quads reach back over the border. The candidate at or before, and the share of the way to
+    /// the next.
     begins: Vec<(usize, f64)>,
     /// Sums of the cells' weights before each candidate.
     weights_before: Vec<f64>,
@@ -102,7 +106,8 @@ impl Costs {
         self.begins.resize(len * len, (0, 0.0));
     }
 
-    /// Expected error of map `split` over the slice from candidate `j` to `k`; `before` is where the slice before it begins.
+    /// Expected error of map `split` over the slice from candidate `j` to `k`; `before` is where
+    /// the slice before it begins.
     fn slice(&self, split: usize, before: Option<usize>, j: usize, k: usize) -> f64 {
         let weight = self.weights_before[k] - self.weights_before[j];
         if weight <= 0.0 {
@@ -135,10 +140,11 @@ struct Search {
 }
 
 impl Search {
-    /// Writes the candidates of least cost into `planes`, ends included. Needs as many candidates as planes, at least.
+    /// Writes the candidates of least cost into `planes`, ends included. Needs as many candidates
+    /// as planes, at least.
     ///
-    /// A slice's map reaches back over its border by a share of the slice before, so that what it costs depends on three planes: the states
-    /// are pairs of candidates, the work is m K³ / 6.
+    /// A slice's map reaches back over its border by a share of the slice before, so that what it
+    /// costs depends on three planes: the states are pairs of candidates, the work is m K³ / 6.
     fn cheapest(&mut self, costs: &Costs, planes: &mut Vec<usize>) {
         let (n, m) = (costs.len, costs.texels.len());
         let at = |i: usize, j: usize| i * n + j;
@@ -199,8 +205,9 @@ pub(crate) struct Placement {
 }
 
 impl Placement {
-    /// Writes the `m + 1` planes of a range into `planes`, the last at its inner far end: the inner ones that are held, if
-    /// there are any and none promise an error much smaller, or those that promise the least.
+    /// Writes the `m + 1` planes of a range into `planes`, the last at its inner far end: the inner
+    /// ones that are held, if there are any and none promise an error much smaller, or those that
+    /// promise the least.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] naming `shadow-range` if it is too short to be divided.
@@ -223,7 +230,8 @@ impl Placement {
         self.cells.gather(sight, &self.candidates);
         self.cells.weigh(sight.view.frustum().projection, &self.candidates, &mut self.weights);
         if self.weights.iter().sum::<f64>() <= 0.0 {
-            // Nothing throws a shadow that is seen: planes that are held stay, others stand where they do for an even scene.
+            // Nothing throws a shadow that is seen: planes that are held stay, others stand where
+            // they do for an even scene.
             if let Some(inner) = held.filter(inside) {
                 planes[1..m].copy_from_slice(inner);
             }
@@ -253,8 +261,8 @@ impl Placement {
         self.costs.total(&self.best) >= WORTH_MOVING * self.costs.total(&planes[..=m])
     }
 
-    /// Rising depths from near to far: evenly spaced on the picture over the depths that show anything, with the planes of
-    /// the fixed schemes and those that are held among them.
+    /// Rising depths from near to far: evenly spaced on the picture over the depths that show
+    /// anything, with the planes of the fixed schemes and those that are held among them.
     fn choose_candidates(&mut self, sight: &Sight, (near, far): (f64, f64), m: usize, held: &[f64]) -> Result<()> {
         let scheme = match sight.view.frustum().projection {
             Projection::Perspective => SplitScheme::Logarithmic,
@@ -269,8 +277,8 @@ impl Placement {
         candidates.extend([near, far]);
         let fixed = [SplitScheme::Logarithmic, SplitScheme::practical()].map(|scheme| (scheme, near, far, m));
         for (scheme, from, to, splits) in [(scheme, first, last, CANDIDATES)].into_iter().chain(fixed) {
-            // A range with room for the splits may be too short for all the candidates: those that it has no room for are
-            // left out.
+            // A range with room for the splits may be too short for all the candidates: those that
+            // it has no room for are left out.
             if split_planes(&scheme, from, to, splits, planes).is_ok() {
                 candidates.extend(planes.iter().filter(|&&plane| plane > near && plane < far));
             }
@@ -376,8 +384,9 @@ mod tests {
 
     use super::*;
 
-    /// Candidates at even ratios between 1 and `far`, maps as wide as the far ends of their slices and a picture that is filled evenly: the
-    /// papers' own setting. `power` is that of depth in the density of weights; theirs is −2.
+    /// Candidates at even ratios between 1 and `far`, maps as wide as the far ends of their slices
+    /// and a picture that is filled evenly: the papers' own setting. `power` is that of depth in
+    /// the density of weights; theirs is −2.
     fn even(len: usize, far: f64, texels: &[f64], power: i32) -> (Vec<f64>, Costs) {
         let depths: Vec<f64> = (0..len).map(|i| far.powf(i as f64 / (len - 1) as f64)).collect();
         let integral = |depth: f64| depth.powi(power + 1) / f64::from(power + 1);
@@ -422,7 +431,8 @@ mod tests {
 
     #[test]
     fn a_slice_without_weight_costs_nothing() {
-        // All that throws shadows stands between candidates 7 and 9 and 20 and 22: planes in the gap leave two small maps.
+        // All that throws shadows stands between candidates 7 and 9 and 20 and 22: planes in the
+        // gap leave two small maps.
         let len = 30;
         let occupied = |i: usize| (7..9).contains(&i) || (20..22).contains(&i);
         let (mut edges, mut begins, mut weights_before) = (vec![0.0; len * len], vec![(0, 0.0); len * len], vec![0.0]);

@@ -4,14 +4,16 @@ use crate::bounds::{LEAST_METRES, MOST_METRES};
 use crate::config::{SplitMetric, SplitScheme};
 use crate::{Error, Result, View};
 
-/// Computes the `m + 1` planes `C_0 ..= C_m` between `near` and `far` (view depths in metres) into `planes`.
+/// Computes the `m + 1` planes `C_0 ..= C_m` between `near` and `far` (view depths in metres) into
+/// `planes`.
 ///
-/// `C_i = λ C_i^log + (1 − λ) C_i^uni + δ_i` for the inner planes; `C_0 = near` and `C_m = far` exactly. Source: *Parallel-Split
-/// Shadow Maps* eq. 4 to 7, where δ moves all planes: ours leaves the ends where they are.
+/// `C_i = λ C_i^log + (1 − λ) C_i^uni + δ_i` for the inner planes; `C_0 = near` and `C_m = far`
+/// exactly. Source: *Parallel-Split Shadow Maps* eq. 4 to 7, where δ moves all planes: ours leaves
+/// the ends where they are.
 ///
 /// # Errors
-/// [`Error::InvalidSetting`] naming `shadow-range`, `delta` or `planes` if the planes would not rise strictly, and
-/// `scheme` for [`SplitScheme::Optimal`], whose planes need a scene.
+/// [`Error::InvalidSetting`] naming `shadow-range`, `delta` or `planes` if the planes would not
+/// rise strictly, and `scheme` for [`SplitScheme::Optimal`], whose planes need a scene.
 pub fn split_planes(scheme: &SplitScheme, near: f64, far: f64, splits: usize, planes: &mut Vec<f64>) -> Result<()> {
     check_range(near, far)?;
     let m = splits as f64;
@@ -66,11 +68,13 @@ pub(crate) fn check_range(near: f64, far: f64) -> Result<()> {
     Ok(())
 }
 
-/// View depths `(from, to)` that may sample split `i`'s map: the slice, widened at its near side by the previous split's blend
-/// band and one pixel quad (the pixels of a quad may differ in their split). Split 0 starts at the camera's near plane, as
-/// nearer receivers use it too; the last ends at the range's or the camera's far plane.
+/// View depths `(from, to)` that may sample split `i`'s map: the slice, widened at its near side by
+/// the previous split's blend band and one pixel quad (the pixels of a quad may differ in their
+/// split). Split 0 starts at the camera's near plane, as nearer receivers use it too; the last ends
+/// at the range's or the camera's far plane.
 ///
-/// Between the distances a and b lie view depths from a cos θ to b, where θ is the angle of the view's farthest corner.
+/// Between the distances a and b lie view depths from a cos θ to b, where θ is the angle of the
+/// view's farthest corner.
 pub(crate) fn coverage(
     view: &View,
     planes: &[f64],

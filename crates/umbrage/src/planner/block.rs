@@ -35,7 +35,7 @@ impl Block {
         (half.max_element() > 0.0).then(|| Self { center: 0.5 * (lo + hi), half })
     }
 
-    /// The same, but along each axis no longer than `other`, whose place it takes there.
+    /// This block, along each axis no longer than `other`, whose place it takes there.
     pub fn no_longer_than(self, other: &Self) -> Self {
         let longer = self.half.cmpge(other.half);
         Self {

@@ -93,7 +93,8 @@ impl Listed {
             scene.pick(sun, casters, listed);
         }
         let (mut target, mut first) = scene.target(sun, casters, listed);
-        // Casters leave a map with smaller texels than its receivers alone, and with those its filter reaches less far.
+        // Casters leave a map with smaller texels than its receivers alone, and with those its
+        // filter reaches less far.
         if scene.volume.receivers.is_some() && !listed.is_empty() && split.warp() == Warp::None {
             let before = (scene.volume.margin, listed.len());
             scene.volume.margin = size.margin(split, target.widest());
@@ -134,7 +135,8 @@ impl Scene {
         }
     }
 
-    /// What a map with these casters has to show, in the light's plane and in depth, and the depth of the first caster.
+    /// What a map with these casters has to show, in the light's plane and in depth, and the depth
+    /// of the first caster.
     fn target(&self, sun: &Sun<'_>, casters: &Gathered, listed: &Picked) -> (Region, f64) {
         match &self.volume.receivers {
             Some((region, _)) if !listed.is_empty() => {
@@ -155,8 +157,8 @@ impl Scene {
         }
     }
 
-    /// Depth along the light of the first caster, metres: of its part over what is shown where the whole would make the depth
-    /// range too long to be precise.
+    /// Depth along the light of the first caster, metres: of its part over what is shown where the
+    /// whole would make the depth range too long to be precise.
     fn first(&self, sun: &Sun<'_>, casters: &Gathered, listed: &Picked) -> f64 {
         let first = -listed.most(casters, |c| -first_depth(c, sun.direction));
         let (widest, last) = (self.widest() + self.volume.margin, self.depths().1);
@@ -174,6 +176,6 @@ impl Scene {
     }
 }
 
-/// A tight map's depth range is that of its whole casters up to so many times the map's width: 32-bit depth then resolves a
-/// tenth of a texel.
+/// A tight map's depth range is that of its whole casters up to so many times the map's width:
+/// 32-bit depth then resolves a tenth of a texel.
 const MOST_WIDTHS: f64 = 1000.0;

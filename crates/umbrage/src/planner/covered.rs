@@ -1,4 +1,5 @@
-//! What a map covers, for maps that are chosen by what they contain: its square along the light, less what earlier maps take.
+//! What a map covers, for maps that are chosen by what they contain: its square along the light,
+//! less what earlier maps take.
 
 use glam::{DVec2, DVec3};
 
@@ -11,7 +12,8 @@ use crate::coverage::CoverageVolume;
 use crate::geometry::volume::{Lies, lies_below};
 use crate::{ShadowPlan, Split};
 
-/// Texels beyond the filter's reach by which a caster may be off, for the rounding of a sample's place.
+/// Texels beyond the filter's reach by which a caster may be off, for the rounding of a sample's
+/// place.
 const ROUNDING_TEXELS: f64 = 1.0;
 
 /// The rectangle of a box in a plain map, in texels.
@@ -35,7 +37,7 @@ struct Taken<'a> {
     margin: f64,
     /// Share of a map's half edge over which it asks the next one, too.
     blend: f64,
-    /// The same margin in the map that is planned, metres.
+    /// Metres that the margin measures in the map that is planned.
     reach_m: f64,
 }
 
@@ -45,8 +47,8 @@ impl<'a> Taken<'a> {
         Self { earlier, margin, blend, reach_m: margin * split.texel_m.max_element() }
     }
 
-    /// Whether all points that a box can shade belong to one earlier map, filter and blend band included: what shades them lies at
-    /// the same place of that map.
+    /// Whether all points that a box can shade belong to one earlier map, filter and blend band
+    /// included: what shades them lies at the same place of that map.
     fn holds(&self, center: DVec3, half: DVec3) -> bool {
         self.earlier.iter().filter(|split| !split.casters.is_empty()).any(|split| {
             let (lo, hi) = rectangle(split, center, half);
@@ -60,8 +62,9 @@ impl<'a> Taken<'a> {
     }
 }
 
-/// The split with a list and a depth range for everything that its map covers and no earlier one takes, and the depth of its
-/// first caster. `shown` and its depths are of all that any map may be asked about.
+/// The split with a list and a depth range for everything that its map covers and no earlier one
+/// takes, and the depth of its first caster. `shown` and its depths are of all that any map may be
+/// asked about.
 pub(super) fn serving_all_it_covers(
     sun: &Sun<'_>,
     (mut split, mut first): (Split, f64),

@@ -12,16 +12,18 @@ use crate::bounds::Placed;
 use crate::casters::Most;
 use crate::held::depths::HeldDepths;
 
-/// Depths along the light between which still maps lie whose depth is not clamped, metres; `None` if nothing says so.
+/// Depths along the light between which still maps lie whose depth is not clamped, metres; `None`
+/// if nothing says so.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WorldDepths(Option<(f64, f64)>);
 
-/// A depth range is the whole world's up to so many times the length of what is shadowed. A longer one would cost precision:
-/// 32-bit depth resolves 1/8,000,000 of the range.
+/// A depth range is the whole world's up to so many times the length of what is shadowed. A longer
+/// one would cost precision: 32-bit depth resolves 1/8,000,000 of the range.
 const MOST_LENGTHS: f64 = 16.0;
 
 impl WorldDepths {
-    /// From the first caster to the last receiver: of all, or of those near the eye where the world is much larger.
+    /// From the first caster to the last receiver: of all, or of those near the eye where the world
+    /// is much larger.
     pub fn measure(
         frame: &Frame<'_>,
         sun: &Sun<'_>,
@@ -60,9 +62,10 @@ fn around_view(frame: &Frame<'_>, sun: &Sun<'_>, layout: &Layout) -> Shaft {
     Shaft::new(frame.view.eye(), corner, sun.light)
 }
 
-/// The split with its depth range: before the first caster and behind the last receiver, with room for the bias. Where depth
-/// is clamped near lies at the first receiver. A stabilised split takes the world's bounds (or, clamped, its own block's) in
-/// whole steps, so that what it stores does not depend on where the camera stands.
+/// The split with its depth range: before the first caster and behind the last receiver, with room
+/// for the bias. Where depth is clamped near lies at the first receiver. A stabilised split takes
+/// the world's bounds (or, clamped, its own block's) in whole steps, so that what it stores does
+/// not depend on where the camera stands.
 pub(super) fn ranged(frame: &Frame<'_>, mut split: Split, first: f64, size: &MapSize, world: WorldDepths) -> Split {
     let (texel, radius) = (split.texel_m.max_element(), size.half.max_element());
     let own = (split.depth_near, split.depth_far);

@@ -1,5 +1,5 @@
-//! A sun's plan, stage by stage: scope → range → planes → casters → fit → snap → depth. Each stage is a value that the next ones
-//! read; nothing goes back.
+//! A sun's plan, stage by stage: scope → range → planes → casters → fit → snap → depth. Each stage
+//! is a value that the next ones read; nothing goes back.
 
 use glam::DVec3;
 
@@ -90,8 +90,9 @@ fn describe(frame: &Frame<'_>, sun: &Sun<'_>, layout: &Layout, plan: &mut Shadow
     plan.coverage.fan = Some(sun.fan);
 }
 
-/// A caster is small if its shadow is less than this many texels long along both axes of a map. Below one it covers the centre
-/// of one texel at most. Higher: shadows are lost that a filter would have shown as a faint dot.
+/// A caster is small if its shadow is less than this many texels long along both axes of a map.
+/// Below one it covers the centre of one texel at most. Higher: shadows are lost that a filter
+/// would have shown as a faint dot.
 const SMALL_TEXELS: f64 = 0.5;
 
 /// Whether the whole shadow of a caster is small in a map with these axes, in texels per metre.

@@ -1,4 +1,5 @@
-//! Stage 4 of a sun's plan: how large a split's map has to be, and the margin that its filter needs.
+//! Stage 4 of a sun's plan: how large a split's map has to be, and the margin that its filter
+//! needs.
 
 use glam::DVec2;
 
@@ -32,7 +33,8 @@ impl MapSize {
         Self { reach, half, still_reach, still_texel: DVec2::new(texel(half.x), texel(half.y)) }
     }
 
-    /// Metres around what the split serves that filters ask about, if that is `widest` metres wide: at most.
+    /// Metres around what the split serves that filters ask about, if that is `widest` metres wide:
+    /// at most.
     pub fn margin(&self, split: &SplitFrame<'_>, widest: f64) -> f64 {
         let (margin, size) = (split.frame.margin, f64::from(split.size()));
         match split.frame.config.stability {

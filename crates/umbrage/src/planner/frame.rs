@@ -77,13 +77,13 @@ pub(super) struct Sun<'a> {
     pub fan: Fan,
 }
 
-/// A view that looks along the light more closely than this (the sine of the angle between them) has no direction of its
-/// own across the light.
+/// A view that looks along the light more closely than this (the sine of the angle between them)
+/// has no direction of its own across the light.
 const LEAST_SINE: f64 = 1e-3;
 
 impl<'a> Sun<'a> {
-    /// The first direction is the view's across the light, so that tight maps turn with it; approximately still ones need a
-    /// direction that is fixed to the light.
+    /// The first direction is the view's across the light, so that tight maps turn with it;
+    /// approximately still ones need a direction that is fixed to the light.
     pub fn new(light: &'a DirectionalLight, frame: &Frame<'_>) -> Self {
         let direction = light.direction();
         let forward = frame.view.forward();

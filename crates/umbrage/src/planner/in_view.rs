@@ -33,7 +33,8 @@ impl InView {
 
     /// The receivers' part of a slice: its bounds in the light's plane and in the world.
     ///
-    /// What lies inside of the bounds of others is passed over: bounds do not depend on the order of receivers.
+    /// What lies inside of the bounds of others is passed over: bounds do not depend on the order
+    /// of receivers.
     pub fn receivers_in(&mut self, slice: &Slice, sun: &Sun<'_>) -> Served {
         let Self { receivers, across, .. } = self;
         let fan = &sun.fan;

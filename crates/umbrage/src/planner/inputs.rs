@@ -7,14 +7,16 @@ use crate::bounds::Placed;
 use crate::casters::{BoxTree, Counter, Crowd, Role};
 use crate::{Aabb, CasterSet, Error, Layers, Light, Result, View};
 
-/// The boxes of a plan's casters or receivers: a list of them, which is looked at anew in every frame, or a set that keeps them.
+/// The boxes of a plan's casters or receivers: a list of them, which is looked at anew in every
+/// frame, or a set that keeps them.
 ///
 /// Slices, arrays, vectors and sets turn into it by themselves.
 #[derive(Clone, Copy, Debug)]
 pub enum Boxes<'a> {
     /// World boxes. Plans call casters by their places in this list.
     List(&'a [Aabb]),
-    /// Those of a set that share a layer with [`PlanInputs::layers`]. Plans call casters by their keys.
+    /// Those of a set that share a layer with [`PlanInputs::layers`]. Plans call casters by their
+    /// keys.
     Set(&'a CasterSet),
 }
 
@@ -100,16 +102,18 @@ pub struct PlanInputs<'a> {
     pub view: &'a View,
     /// The light.
     pub light: Light,
-    /// World boxes of what throws shadows, as a list or a set. A plan's caster indices refer to this list, or are the set's keys.
+    /// World boxes of what throws shadows, as a list or a set. A plan's caster indices refer to
+    /// this list, or are the set's keys.
     pub casters: Boxes<'a>,
-    /// World boxes of what shows shadows, as a list or a set; most objects are in both. Casters serve as receivers where there is
-    /// none here, or none in view.
+    /// World boxes of what shows shadows, as a list or a set; most objects are in both. Casters
+    /// serve as receivers where there is none here, or none in view.
     pub receivers: Boxes<'a>,
-    /// Which casters and receivers of sets take part: those that are on one of these layers. All of a list do.
+    /// Which casters and receivers of sets take part: those that are on one of these layers. All of
+    /// a list do.
     pub layers: Layers,
-    /// World boxes that hold all that is drawn of the receivers in view and leave less air than the receivers' own:
-    /// [`crate::ShadowPlan::casts_into`] then rejects parts of casters that have none of them behind. `None`: not known.
-    /// For [`crate::config::Crop::SceneDependent`].
+    /// World boxes that hold all that is drawn of the receivers in view and leave less air than the
+    /// receivers' own: [`crate::ShadowPlan::casts_into`] then rejects parts of casters that have
+    /// none of them behind. `None`: not known. For [`crate::config::Crop::SceneDependent`].
     pub receiver_clusters: Option<&'a [Aabb]>,
     /// Pixels across the picture: a split is widened by one 2×2 pixel quad at its near side.
     pub image_size: [u32; 2],

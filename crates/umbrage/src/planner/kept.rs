@@ -4,7 +4,8 @@ use super::inputs::{Boxes, PlanInputs};
 use crate::held::Held;
 use crate::{Layers, Light, ShadowPlan, View};
 
-/// The inputs of a plan that sets tell apart by a number: lists would have to be compared box by box.
+/// The inputs of a plan that sets tell apart by a number: lists would have to be compared box by
+/// box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Inputs {
     view: View,
@@ -24,7 +25,8 @@ impl Inputs {
     }
 }
 
-/// A plan and all that it was made from: the same inputs with the same held values give the same plan.
+/// A plan and all that it was made from: the same inputs with the same held values give the same
+/// plan.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Kept {
     inputs: Option<Inputs>,

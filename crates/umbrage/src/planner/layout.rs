@@ -1,4 +1,5 @@
-//! Stage 2 of a sun's plan: the lens that maps are made for, the planes between splits and the sizes of still maps.
+//! Stage 2 of a sun's plan: the lens that maps are made for, the planes between splits and the
+//! sizes of still maps.
 //!
 //! All that is held between frames is settled here, but for rectangles and depths.
 
@@ -127,7 +128,8 @@ impl Layout {
         Self { row, refits, ..self }
     }
 
-    /// Holds on to whatever serves. `shown` is the view depth up to which casters are looked for, at least.
+    /// Holds on to whatever serves. `shown` is the view depth up to which casters are looked for,
+    /// at least.
     fn holding(
         (frame, sun): (&Frame<'_>, &Sun<'_>),
         scope: &Scope<'_>,
@@ -164,7 +166,8 @@ impl Layout {
         Self { range: Range::new(0.0, 0.0), row, lens: *frame.view, whole_width: 0.0, around_all: None, refits: None }
     }
 
-    /// Writes `C_0 ..= C_m`: those that are held while they were placed for the same range, or new ones.
+    /// Writes `C_0 ..= C_m`: those that are held while they were placed for the same range, or new
+    /// ones.
     fn place_planes(
         &mut self,
         frame: &Frame<'_>,
@@ -203,7 +206,8 @@ impl Layout {
         Ok(())
     }
 
-    /// What the still map of split `i` has to show: a block around its slice, and no longer than all receivers.
+    /// What the still map of split `i` has to show: a block around its slice, and no longer than
+    /// all receivers.
     pub fn block(&self, frame: &Frame<'_>, sun: &Sun<'_>, planes: &[f64], i: usize) -> Block {
         let slice = SliceEnds::new(frame, planes, i);
         // A wider lens has wider pixels, and its slices reach back farther.

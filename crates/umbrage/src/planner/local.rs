@@ -1,10 +1,11 @@
-//! Lights that stand somewhere: parallel splits in the post-perspective space of a spot light, or of the six faces of a point
-//! light.
+//! Lights that stand somewhere: parallel splits in the post-perspective space of a spot light, or
+//! of the six faces of a point light.
 //!
-//! Behind its perspective divide a light's frustum is a cube in which light is parallel: a place is `(u/w, v/w)` in units of
-//! the tangent, `w` the depth along the frustum's axis, and whatever lies on one ray from the light has one place. There a
-//! slice's map is planned in a sun's stages: range → planes → casters → fit → snap → depth. Everything is clipped to the
-//! light's frustum *before* the divide, slices as well as boxes, as either may straddle the light's plane, where w changes
+//! Behind its perspective divide a light's frustum is a cube in which light is parallel: a place is
+//! `(u/w, v/w)` in units of the tangent, `w` the depth along the frustum's axis, and whatever lies
+//! on one ray from the light has one place. There a slice's map is planned in a sun's stages: range
+//! → planes → casters → fit → snap → depth. Everything is clipped to the light's frustum *before*
+//! the divide, slices as well as boxes, as either may straddle the light's plane, where w changes
 //! its sign. What can throw a shadow is asked by planes through the light, which divide by nothing.
 
 use glam::{DVec2, DVec3};
@@ -22,10 +23,12 @@ use crate::held::size::HeldSize;
 use crate::planes::scheme::{blend_begin, coverage, split_planes};
 use crate::{Error, Light, Result, ShadowPlan, Split};
 
-/// Share of its depths that a map keeps free before its first caster and behind its last receiver, for rounding.
+/// Share of its depths that a map keeps free before its first caster and behind its last receiver,
+/// for rounding.
 const DEPTH_ROOM: f64 = 1e-3;
 
-/// Share by which the shadowed range goes on behind the last receiver: a wall across the view is all at that depth.
+/// Share by which the shadowed range goes on behind the last receiver: a wall across the view is
+/// all at that depth.
 const RANGE_ROOM: f64 = 1e-3;
 
 /// Memory of one call that the next one uses again.
@@ -81,7 +84,8 @@ pub(super) fn plan(
     Ok(())
 }
 
-/// The maps, of `count`, that may be made smaller in this frame though the held size serves, and the step that they may take.
+/// The maps, of `count`, that may be made smaller in this frame though the held size serves, and
+/// the step that they may take.
 fn recovering(
     frame: &Frame<'_>,
     light: &Light,
@@ -105,7 +109,8 @@ impl LocalBuffers {
     /// Keeps the receivers and casters that the light reaches in this frustum.
     fn cull(&mut self, frame: &Frame<'_>, frustum: &LightFrustum) {
         frame.receivers.gather(|placed| frustum.may_meet(placed, 0.0), &mut self.receivers);
-        // The margin around a map is a few of its texels: at most this share of the frustum's width.
+        // The margin around a map is a few of its texels: at most this share of the frustum's
+        // width.
         let margin = frame.margin_share() * 2.0 * frustum.slope * frustum.range;
         frame.casters.gather(|placed| frustum.may_meet(placed, margin), &mut self.casters);
     }
@@ -135,8 +140,8 @@ impl<'a> LocalSplit<'a> {
         (f64::from(self.size()) - 2.0 * self.frame.margin).max(2.0)
     }
 
-    /// Lists the casters of a split: boxes that meet the hull of the light and what the map has to show. Returns what the map has
-    /// to show with them.
+    /// Lists the casters of a split: boxes that meet the hull of the light and what the map has to
+    /// show. Returns what the map has to show with them.
     fn list_casters(&self, LocalBuffers { casters, listed, .. }: &mut LocalBuffers) -> Part {
         let LocalVolume { frustum, part, .. } = &self.volume;
         listed.clear();
@@ -174,7 +179,8 @@ impl<'a> LocalSplit<'a> {
         move |placed| {
             let (bounds, Placed { center, half }) = (placed.bounds(), *placed);
             let beside = bounds.max.cmplt(hull.min - margin).any() || bounds.min.cmpgt(hull.max + margin).any();
-            // A ground under everything is one of its own receivers; it throws its shadow on nothing.
+            // A ground under everything is one of its own receivers; it throws its shadow on
+            // nothing.
             let below = |axis: usize| {
                 let (lo, hi) = (part.bounds.min[axis], part.bounds.max[axis]);
                 let light = frustum.position[axis];
@@ -189,7 +195,8 @@ impl<'a> LocalSplit<'a> {
         }
     }
 
-    /// Tangents per texel, and the map's corner in texels; `held` holds the size of a map that stands still.
+    /// Tangents per texel, and the map's corner in texels; `held` holds the size of a map that
+    /// stands still.
     fn snapped(&self, target: &Part, held: &mut HeldSize, step: Option<f64>) -> (DVec2, DVec2) {
         let (size, texels) = (f64::from(self.size()), self.texels());
         if !self.frame.stands_still() {
@@ -253,17 +260,17 @@ fn part_in(frame: &Frame<'_>, frustum: &LightFrustum, slice: &Slice, receivers: 
     part
 }
 
-/// Depths along the axis at 0 and 1: before the first caster and behind the last receiver; in whole steps where the map is to stand
-/// still.
+/// Depths along the axis at 0 and 1: before the first caster and behind the last receiver; in whole
+/// steps where the map is to stand still.
 fn depths(target: &Part, least: f64, stands_still: bool) -> (f64, f64) {
     let far = target.far * (1.0 + DEPTH_ROOM);
     let near = (target.near.max(least) * (1.0 - DEPTH_ROOM)).min(0.5 * far);
     if stands_still { (2f64.powf(near.log2().floor()), 2f64.powf(far.log2().ceil())) } else { (near, far) }
 }
 
-/// View depths that shadows cover, `C_0` and `C_m`, and whether they fade at the end: the setting; or the camera's near and far, far
-/// capped by the receivers that the light reaches, both narrowed to where it reaches. Shadows fade only where they end though
-/// the light goes on.
+/// View depths that shadows cover, `C_0` and `C_m`, and whether they fade at the end: the setting;
+/// or the camera's near and far, far capped by the receivers that the light reaches, both narrowed
+/// to where it reaches. Shadows fade only where they end though the light goes on.
 fn shadowed_range(frame: &Frame<'_>, light: &Light, position: DVec3) -> (f64, f64, bool) {
     let Frame { config, view, receivers, .. } = *frame;
     let range = light.range();

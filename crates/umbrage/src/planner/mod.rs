@@ -1,7 +1,8 @@
 //! The planner: from a view, a light and bounds to a [`ShadowPlan`].
 //!
-//! [`plan`] is the core: values in, values out, with what is held between frames as a value of its own. A sun's plan is
-//! made in the stages of [`directional`], a local light's in those of [`local`].
+//! [`plan`] is the core: values in, values out, with what is held between frames as a value of its
+//! own. A sun's plan is made in the stages of [`directional`], a local light's in those of
+//! [`local`].
 
 mod block;
 mod casters;
@@ -37,8 +38,8 @@ pub use options::PlannerOptions;
 
 /// Plans shadow maps frame after frame.
 ///
-/// Holds the config, what is held between frames ([`Held`]) and buffers, so that only the first frames allocate. Each
-/// light of each view has a planner of its own.
+/// Holds the config, what is held between frames ([`Held`]) and buffers, so that only the first
+/// frames allocate. Each light of each view has a planner of its own.
 #[derive(Clone, Debug)]
 pub struct Planner {
     config: ShadowConfig,
@@ -74,16 +75,16 @@ impl Planner {
     /// A planner of a config's maps.
     ///
     /// # Errors
-    /// Those of [`ShadowConfig::validate`]; [`crate::Error::InvalidSetting`] naming a field of the options that is wrong, or
-    /// `map-size` for maps that do not hold the options' filter.
+    /// Those of [`ShadowConfig::validate`]; [`crate::Error::InvalidSetting`] naming a field of the
+    /// options that is wrong, or `map-size` for maps that do not hold the options' filter.
     pub fn with_options(config: &ShadowConfig, options: PlannerOptions) -> Result<Self> {
         options.check(config)?;
         let (config, held, buffers) = (config.clone(), Held::default(), Buffers::default());
         Ok(Self { config, options, held, buffers, plan: ShadowPlan::default() })
     }
 
-    /// Plans by another config and other options from the next frame on. What is held stays held if plans do not depend on
-    /// what has changed, and is let go otherwise.
+    /// Plans by another config and other options from the next frame on. What is held stays held if
+    /// plans do not depend on what has changed, and is let go otherwise.
     ///
     /// # Errors
     /// Those of [`Planner::with_options`]. Nothing has changed then.
@@ -119,20 +120,22 @@ impl Planner {
         &self.held
     }
 
-    /// What the last plan looked at of its casters and receivers: a measure of its cost that does not depend on the machine. Nothing
-    /// if view, light and sets were those of the plan before, and what is held as well.
+    /// What the last plan looked at of its casters and receivers: a measure of its cost that does
+    /// not depend on the machine. Nothing if view, light and sets were those of the plan before,
+    /// and what is held as well.
     #[must_use]
     pub fn visited(&self) -> Visited {
         self.buffers.visited
     }
 
-    /// Replaces what is held between frames: to go on from another frame than the last one, or afresh.
+    /// Replaces what is held between frames: to go on from another frame than the last one, or
+    /// afresh.
     pub fn set_held(&mut self, held: Held) {
         self.held = held;
     }
 
-    /// Plans the maps of one frame for one light, for a picture of [`PlannerOptions::image_size`]; see
-    /// [`Planner::plan_frame`].
+    /// Plans the maps of one frame for one light, for a picture of [`PlannerOptions::image_size`];
+    /// see [`Planner::plan_frame`].
     ///
     /// # Errors
     /// As [`Planner::plan_into`].
@@ -159,26 +162,30 @@ impl Planner {
         result.map(|()| &self.plan)
     }
 
-    /// Plans the maps of one frame for one light into a plan of the caller's, whose buffers are used again.
+    /// Plans the maps of one frame for one light into a plan of the caller's, whose buffers are
+    /// used again.
     ///
-    /// A point light's plan has six times as many splits as the config: those of its first face, then those of the next
-    /// ([`Light::FACE_AXES`]). Splits that the light does not reach have no casters.
+    /// A point light's plan has six times as many splits as the config: those of its first face,
+    /// then those of the next ([`Light::FACE_AXES`]). Splits that the light does not reach have no
+    /// casters.
     ///
-    /// A local light's default range is narrowed to where it reaches. Its stabilised maps stand on whole texels, of a size
-    /// that changes in steps: between two steps a shadow's texels stay where they are.
+    /// A local light's default range is narrowed to where it reaches. Its stabilised maps stand on
+    /// whole texels, of a size that changes in steps: between two steps a shadow's texels stay
+    /// where they are.
     ///
     /// # Errors
-    /// [`crate::Error::InvalidBounds`] naming a box that is inverted or not finite; [`crate::Error::InvalidSetting`] if the
-    /// range or the planes do not fit this camera; [`crate::Error::Conflict`] for a choice that a local light's plan cannot
-    /// make, such as a warp; [`crate::Error::CameraConflict`] for splits by distance with an orthographic camera. What is held
-    /// is left as it was; the plan is of no use.
+    /// [`crate::Error::InvalidBounds`] naming a box that is inverted or not finite;
+    /// [`crate::Error::InvalidSetting`] if the range or the planes do not fit this camera;
+    /// [`crate::Error::Conflict`] for a choice that a local light's plan cannot make, such as a
+    /// warp; [`crate::Error::CameraConflict`] for splits by distance with an orthographic camera.
+    /// What is held is left as it was; the plan is of no use.
     pub fn plan_into(&mut self, inputs: &PlanInputs<'_>, plan: &mut ShadowPlan) -> Result<()> {
         plan_with((&self.config, &self.options), inputs, &mut self.held, &mut self.buffers, plan)
     }
 }
 
-/// One frame's plan: a function of the config, the options, the inputs and what is held from the frames before. The picture's
-/// size is the inputs'.
+/// One frame's plan: a function of the config, the options, the inputs and what is held from the
+/// frames before. The picture's size is the inputs'.
 ///
 /// # Errors
 /// As [`Planner::plan_into`], and as [`Planner::with_options`] for config and options.

@@ -16,14 +16,14 @@ use crate::{Error, Result, ShadowConfig};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannerOptions {
-    /// Whether depth is not clipped (`DEPTH_CLIP_CONTROL`): the hardware then flattens casters before
-    /// the near plane onto it, and the near plane may lie at the receivers. Otherwise it stands
-    /// before the first caster.
+    /// Whether depth is not clipped (`DEPTH_CLIP_CONTROL`): the hardware then flattens casters
+    /// before the near plane onto it, and the near plane may lie at the receivers. Otherwise it
+    /// stands before the first caster.
     pub depth_clamp: bool,
     /// How far an engine's own filter reaches. `None`: as far as [`ShadowConfig::filter`].
     pub filter_reach: Option<FilterReach>,
-    /// Pixels across the picture for [`crate::Planner::plan`]. [`crate::PlanInputs::image_size`] is a
-    /// frame's own.
+    /// Pixels across the picture for [`crate::Planner::plan`]. [`crate::PlanInputs::image_size`] is
+    /// a frame's own.
     pub image_size: [u32; 2],
 }
 

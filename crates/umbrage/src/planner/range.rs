@@ -11,11 +11,12 @@ use crate::{Projection, Result};
 /// The least length of a range that is fitted to what is visible, as a share of its far end.
 const LEAST_RANGE: f64 = 0.01;
 
-/// The range of a frame: the setting; the view depths of the visible receivers; or the camera's near and far, far capped by
-/// what matters of the scene. Held where maps have to stand still.
+/// The range of a frame: the setting; the view depths of the visible receivers; or the camera's
+/// near and far, far capped by what matters of the scene. Held where maps have to stand still.
 ///
 /// # Errors
-/// [`crate::Error::InvalidSetting`] naming `shadow-range` if it is empty for this camera, even with nothing held.
+/// [`crate::Error::InvalidSetting`] naming `shadow-range` if it is empty for this camera, even with
+/// nothing held.
 pub(super) fn shadowed(frame: &Frame<'_>, scope: &Scope<'_>, held: &mut HeldEnds) -> Result<Range> {
     let range = held_range(frame, scope, held);
     if check_range(range.near, range.inner_far).is_ok() {
@@ -55,16 +56,18 @@ fn held_range(frame: &Frame<'_>, scope: &Scope<'_>, held: &mut HeldEnds) -> Rang
     let extent = extent.unwrap_or_else(|| scope.extent());
     let near = first_shown(frame, &extent, deepest, held);
     let range = match config.stability {
-        // Almost still maps are held by their own extents, whatever the planes: a range that is held as well would only
-        // make them larger, by 8 % in the second of four splits, and saves no step.
+        // Almost still maps are held by their own extents, whatever the planes: a range that is
+        // held as well would only make them larger, by 8 % in the second of four splits, and saves
+        // no step.
         Stability::Tight { .. } | Stability::Approximate { .. } => Range::new(near, deepest),
         Stability::Exact => held.far.hold(near, deepest, extent.farthest.min(camera_far)),
     };
     Range { near, inner_far: range.inner_far.min(camera_far), far: range.far.min(camera_far) }
 }
 
-/// Where the range begins: with the camera; or, where that is orthographic, with the scene, as far as turning cannot bring it
-/// nearer. How far such a camera stands off changes nothing of its picture.
+/// Where the range begins: with the camera; or, where that is orthographic, with the scene, as far
+/// as turning cannot bring it nearer. How far such a camera stands off changes nothing of its
+/// picture.
 fn first_shown(frame: &Frame<'_>, extent: &Extent, deepest: f64, held: &mut HeldEnds) -> f64 {
     let frustum = frame.view.frustum();
     if frustum.projection == Projection::Perspective {

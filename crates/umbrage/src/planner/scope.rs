@@ -1,8 +1,9 @@
-//! Stage 0 of a sun's plan: how far the shadows reach that a frame can show, whichever way the camera turns.
+//! Stage 0 of a sun's plan: how far the shadows reach that a frame can show, whichever way the
+//! camera turns.
 //!
-//! A range that ends with the scene wastes its splits where the scene is a few boxes on a ground of a thousand kilometres, or
-//! where one hut stands beyond the horizon. What counts is where shadows fall: each caster's box, swept along the light
-//! through the box around all receivers.
+//! A range that ends with the scene wastes its splits where the scene is a few boxes on a ground of
+//! a thousand kilometres, or where one hut stands beyond the horizon. What counts is where shadows
+//! fall: each caster's box, swept along the light through the box around all receivers.
 
 use glam::{DVec2, DVec3};
 
@@ -12,14 +13,15 @@ use crate::casters::Most;
 use crate::geometry::volume::lies_below;
 use crate::{Aabb, Projection, View};
 
-/// Receivers that fill less than this share of the picture together, and lie beyond all others, have no say in the range.
+/// Receivers that fill less than this share of the picture together, and lie beyond all others,
+/// have no say in the range.
 const LEAST_SHARE: f64 = 1e-4;
 
 /// Receivers beyond have no say only where the range would be this many times as long with them.
 const MUCH_FARTHER: f64 = 4.0;
 
-/// The range ends at this many times the depth of the deepest shadow, at most. Lower: sharper, but the range follows the
-/// casters. Higher: blurred.
+/// The range ends at this many times the depth of the deepest shadow, at most. Lower: sharper, but
+/// the range follows the casters. Higher: blurred.
 const SLACK: f64 = 1.5;
 
 /// A view that looks away from all shadows has this share of their greatest distance for its range.
@@ -29,7 +31,8 @@ const LOOKING_AWAY: f64 = 0.5;
 const CLASSES: usize = 96;
 const NEAREST: f64 = 32.0;
 
-/// Casters without thickness whose shadows are looked for receiver by receiver; more are taken for the worst.
+/// Casters without thickness whose shadows are looked for receiver by receiver; more are taken for
+/// the worst.
 const MOST_SHEETS: usize = 8;
 
 /// What of the scene matters to a frame. Measured as far as it is asked for.
@@ -44,9 +47,10 @@ pub(super) struct Scope<'a> {
 /// How far what matters goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extent {
-    /// View depth of the deepest receiver that matters, or of the deepest shadow with [`SLACK`], whichever is less.
+    /// View depth of the deepest receiver that matters, or of the deepest shadow with [`SLACK`],
+    /// whichever is less.
     pub deepest: f64,
-    /// The same by distance from the eye.
+    /// Distance from the eye of the farthest of both, metres.
     pub farthest: f64,
     /// Metres from the eye to the box around all receivers.
     pub nearest: f64,
@@ -149,10 +153,11 @@ struct Shares<'a> {
 }
 
 impl Shares<'_> {
-    /// The distance beyond which everything together is next to nothing; `None` if that leaves nothing out.
+    /// The distance beyond which everything together is next to nothing; `None` if that leaves
+    /// nothing out.
     fn kept(&self) -> Option<f64> {
-        // From the farthest class to the nearest, as long as all that is left out is next to nothing. Shares are summed as whole
-        // numbers, in any order: the sum does not depend on it.
+        // From the farthest class to the nearest, as long as all that is left out is next to
+        // nothing. Shares are summed as whole numbers, in any order: the sum does not depend on it.
         let mut sum = 0;
         let mut class = self.farthest_class(f64::INFINITY)?;
         let farthest = class;
@@ -267,7 +272,8 @@ impl Shadows<'_> {
         sheets
     }
 
-    /// The part of `within` that a caster, or any in a box, can shade; `None` if that is nothing, or too far away to matter.
+    /// The part of `within` that a caster, or any in a box, can shade; `None` if that is nothing,
+    /// or too far away to matter.
     fn shadow(&self, caster: &Placed, within: &Aabb) -> Option<Placed> {
         let (enter, leave) = self.passage(caster, within)?;
         let (begin, end) = (caster.center + enter * self.direction, caster.center + leave * self.direction);
@@ -277,7 +283,8 @@ impl Shadows<'_> {
         (shadow.distance_to(self.frame.view.eye()) <= self.distance).then_some(shadow)
     }
 
-    /// Between how many metres of travel along the light a caster's box meets another; `None` if it never does.
+    /// Between how many metres of travel along the light a caster's box meets another; `None` if it
+    /// never does.
     fn passage(&self, caster: &Placed, within: &Aabb) -> Option<(f64, f64)> {
         let (lo, hi) = (within.min - caster.half - caster.center, within.max + caster.half - caster.center);
         let (mut enter, mut leave) = (0.0f64, f64::INFINITY);

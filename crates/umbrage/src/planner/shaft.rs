@@ -28,7 +28,8 @@ impl Shaft {
         self.direction.dot(self.center) + along
     }
 
-    /// Between which depths along the light a box lies in the shaft (conservatively); `None` if it does not.
+    /// Between which depths along the light a box lies in the shaft (conservatively); `None` if it
+    /// does not.
     pub fn passage(&self, placed: &Placed) -> Option<(f64, f64)> {
         let reach = placed.half + self.aside;
         let (lo, hi) = (placed.center - reach - self.center, placed.center + reach - self.center);

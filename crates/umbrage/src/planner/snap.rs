@@ -13,7 +13,8 @@ use crate::margin::{EDGE_TEXELS, FilterReach};
 use crate::planes::scheme::blend_begin;
 use crate::{DirectionalLight, Split};
 
-/// The map of a split: its axes, its texels and where they lie. Depths are those of what it shows, until the next stage.
+/// The map of a split: its axes, its texels and where they lie. Depths are those of what it shows,
+/// until the next stage.
 pub(super) fn placed(
     split: &SplitFrame<'_>,
     scene: &Scene,
@@ -47,7 +48,8 @@ pub(super) fn placed(
         Stability::Tight { .. } => fitted(split, &listed.target, &sun.fan, size.reach),
         Stability::Exact => snapped(split, sun.light, &block, size.still_texel),
         Stability::Approximate { steps } => {
-            // A split without casters is lit, whatever its rectangle; it changes nothing that is held.
+            // A split without casters is lit, whatever its rectangle; it changes nothing that is
+            // held.
             let mut unheld = HeldRectangle::default();
             let held = if has_casters { held } else { &mut unheld };
             let refits = layout.refits == Some(i);

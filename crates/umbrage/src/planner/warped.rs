@@ -7,15 +7,16 @@ use crate::config::Crop;
 use crate::geometry::volume::{Lies, Slice, SweptVolume};
 use crate::{Split, View, Warp, WarpTarget};
 
-/// Share of the depth range that a warped map keeps free before its first caster and behind its last receiver: for rounding on the
-/// way to `f32`, and for the bias.
+/// Share of the depth range that a warped map keeps free before its first caster and behind its
+/// last receiver: for rounding on the way to `f32`, and for the bias.
 const DEPTH_ROOM: f64 = 1e-3;
 
-/// The least share of a map that its casters' crop leaves, so that a wall seen edge-on by the light still gets texels of some
-/// size.
+/// The least share of a map that its casters' crop leaves, so that a wall seen edge-on by the light
+/// still gets texels of some size.
 const LEAST_CROP: f64 = 1e-3;
 
-/// World points whose convex hulls hold what a warped map has to show. Kept from split to split and frame to frame.
+/// World points whose convex hulls hold what a warped map has to show. Kept from split to split and
+/// frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct WarpPoints {
     receivers: Vec<DVec3>,
@@ -23,7 +24,8 @@ pub(crate) struct WarpPoints {
 }
 
 impl WarpPoints {
-    /// Takes the receivers: the parts of those boxes that lie inside the slice, or the slice's corners.
+    /// Takes the receivers: the parts of those boxes that lie inside the slice, or the slice's
+    /// corners.
     pub fn receivers_of<'a>(&mut self, slice: &Slice, boxes: Option<impl Iterator<Item = &'a Placed>>) {
         let points = &mut self.receivers;
         points.clear();
@@ -42,7 +44,8 @@ impl WarpPoints {
         }
     }
 
-    /// Takes the casters' parts that come within `margin` metres of the slice swept towards the light.
+    /// Takes the casters' parts that come within `margin` metres of the slice swept towards the
+    /// light.
     pub fn casters_of<'a>(&mut self, swept: &SweptVolume, margin: f64, casters: impl Iterator<Item = &'a Placed>) {
         let points = &mut self.casters;
         points.clear();
@@ -51,7 +54,8 @@ impl WarpPoints {
         }
     }
 
-    /// Gives the split its warp, which leaves `margin` texels free all round. The split stays plain if the warp changes nothing.
+    /// Gives the split its warp, which leaves `margin` texels free all round. The split stays plain
+    /// if the warp changes nothing.
     pub fn warp(&self, split: &mut Split, warp: Warp, view: &View, margin: f64, crop: Crop) {
         let depths = self.receivers.iter().map(|&point| view.view_depth(point));
         let slice = depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), d| (lo.min(d), hi.max(d)));
@@ -76,8 +80,8 @@ impl WarpPoints {
         split.texel_m = split.texel_edges(middle);
     }
 
-    /// The map cut down to where there are casters; `inside` is the half edge that points may take. A map that reaches behind its
-    /// projection centre for one of its casters is left as it is.
+    /// The map cut down to where there are casters; `inside` is the half edge that points may take.
+    /// A map that reaches behind its projection centre for one of its casters is left as it is.
     fn cropped(&self, matrix: DMat4, inside: f64) -> DMat4 {
         let (mut lo, mut hi) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for caster in &self.casters {

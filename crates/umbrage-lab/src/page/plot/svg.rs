@@ -120,7 +120,8 @@ pub(super) fn element(title: &str, mut scene: Scene) -> Result<String> {
     let (mut body, mut part) = (String::new(), Vec::new());
     for element in scene.elements {
         match element {
-            // A drawing inside the drawing cuts what lies outside of it, without a name to refer to.
+            // A drawing inside the drawing cuts what lies outside of it, without a name to refer
+            // to.
             Primitive::ClipStart { x, y, width, height, .. } => {
                 body += &markup(title, std::mem::take(&mut part))?;
                 let corners = format!("{x:.2} {y:.2} {width:.2} {height:.2}");

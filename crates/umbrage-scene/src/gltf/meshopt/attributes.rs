@@ -16,7 +16,8 @@ enum Coding {
 
 use Coding::{Bits, Bytes, Zeros};
 
-/// Codings that the two header bits of a group choose from: in version 0, and by the control modes 0 and 1 of version 1.
+/// Codings that the two header bits of a group choose from: in version 0, and by the control modes
+/// 0 and 1 of version 1.
 const VERSION_0: [Coding; 4] = [Zeros, Bits(2), Bits(4), Bytes];
 const CONTROL_0: [Coding; 4] = [Zeros, Bits(1), Bits(2), Bits(4)];
 const CONTROL_1: [Coding; 4] = [Bits(1), Bits(2), Bits(4), Bytes];

@@ -171,7 +171,8 @@ mod tests {
 
     #[test]
     fn a_strip_of_three_triangles() {
-        // Three new corners, then twice an edge and a new one; the first code takes entry 0 of the table, which is 0x00.
+        // Three new corners, then twice an edge and a new one; the first code takes entry 0 of the
+        // table, which is 0x00.
         let packed: Vec<u8> = [0xe1, 0xf0, 0x10, 0x10].into_iter().chain([0; 16]).collect();
         // Edges are pushed (b, a), (c, b), (a, c): back 1 is (c, b).
         assert_eq!(triangles(&packed, 9), Some(vec![0, 1, 2, 2, 1, 3, 3, 1, 4]));

@@ -1,5 +1,6 @@
-//! Compressed buffer views: EXT_meshopt_compression and KHR_meshopt_compression. Source: the specification of the latter,
-//! appendices A and B, which holds that of the former as its version 0.
+//! Compressed buffer views: EXT_meshopt_compression and KHR_meshopt_compression. Source: the
+//! specification of the latter, appendices A and B, which holds that of the former as its
+//! version 0.
 
 mod attributes;
 mod filters;

@@ -18,8 +18,8 @@ struct Frame {
 }
 
 impl Frame {
-    /// A camera that looks straight down on a floor from height 10 at x, 20 x 10 m in 200 x 100 pixels, with a roof of
-    /// 2 x 2 m at height 2 over `roof`.
+    /// A camera that looks straight down on a floor from height 10 at x, 20 x 10 m in 200 x 100
+    /// pixels, with a roof of 2 x 2 m at height 2 over `roof`.
     fn new(x: f64, roof: f64) -> Self {
         let mut stage = Stage::default();
         stage.add(Shape::floor(500.0, 0.0), DAffine3::IDENTITY);
@@ -47,7 +47,8 @@ type Points<'a> = &'a [(DVec3, DVec3)];
 fn shared_points_are_those_that_stay_inside_the_cut_frame() {
     let (a, b) = (Frame::new(0.0, 0.0), Frame::new(3.0, 0.0));
     let kept = shared_points(&a.mask, &a.domain, &b.view, b.domain.range());
-    // Frame b sees x from −7 to 13; the cut leaves −6.4 to 12.4 and z from −4.7 to 4.7. Frame a ends at x = 10.
+    // Frame b sees x from −7 to 13; the cut leaves −6.4 to 12.4 and z from −4.7 to 4.7. Frame a
+    // ends at x = 10.
     let expected: Vec<usize> = (a.domain.pixels().iter().copied())
         .filter(|pixel| {
             let x = (pixel % 200) as f64 * 0.1 + 0.05 - 10.0;

@@ -43,7 +43,8 @@ fn straight_down_a_texel_is_as_large_as_it_looks() {
 
 #[test]
 fn a_slanted_sun_stretches_texels_over_the_floor() {
-    // Light 30 degrees above the horizon: a square texel is twice as long on the floor, m doubles, m_p does not.
+    // Light 30 degrees above the horizon: a square texel is twice as long on the floor, m doubles,
+    // m_p does not.
     let eye = DVec3::new(0.0, 10.0, 0.0);
     let frustum = Frustum::orthographic(16.0, 12.0, 0.1, 1e3).unwrap();
     let sun = DVec3::new(3_f64.sqrt(), -1.0, 0.0);
@@ -55,7 +56,8 @@ fn a_slanted_sun_stretches_texels_over_the_floor() {
 
 #[test]
 fn the_jacobian_is_that_of_the_rays() {
-    // One pixel of a tilted plane at a time, against differences of true hits half a millipixel apart.
+    // One pixel of a tilted plane at a time, against differences of true hits half a millipixel
+    // apart.
     let tilt = DQuat::from_rotation_x(0.3) * DQuat::from_rotation_z(-0.2);
     let normal = tilt * DVec3::Y;
     let sun = DVec3::new(0.4, -1.0, -0.3);

@@ -151,7 +151,8 @@ fn only_pixels_that_face_the_light_in_range_are_scored() {
 
 #[test]
 fn edges_stay_on_one_surface() {
-    // Columns: lit, dark | dark at another depth | lit at that depth | dark, 4 % deeper | gap | lit.
+    // Columns: lit, dark | dark at another depth | lit at that depth | dark, 4 % deeper | gap |
+    // lit.
     let row =
         [Some((10.0, true)), Some((10.0, false)), Some((20.0, true)), Some((20.8, false)), None, Some((20.0, true))];
     let truth = mask([6, 1], |x, _| row[x]);

@@ -5,7 +5,8 @@ use crate::scores::{Answers, Domain, LEAST_SEAM_PIXELS, Seams, seams};
 
 const SIZE: [usize; 2] = [700, 60];
 const BORDER: f64 = 20.0;
-/// Depth grows by 0.2 m a row: the border lies between rows 29 and 30. Shadow and light alternate along it.
+/// Depth grows by 0.2 m a row: the border lies between rows 29 and 30. Shadow and light alternate
+/// along it.
 fn ground() -> Domain {
     domain(&mask(SIZE, |x, y| Some((14.1 + 0.2 * y as f64, x % 4 < 2))))
 }
