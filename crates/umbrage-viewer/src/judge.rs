@@ -7,7 +7,8 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use glam::{DVec2, DVec3};
 use image::{Rgba, RgbaImage};
-use umbrage::{Bias, Frustum, Selection, ShadowPlan, Split, View};
+use umbrage::config::Selection;
+use umbrage::{Bias, Frustum, ShadowPlan, Split, View};
 use umbrage_truth::scores::{Answers, Domain, TexelGradient, acne_and_leak};
 use umbrage_truth::{Hit, Truth, TruthMask};
 
@@ -323,7 +324,7 @@ fn map_look(truth: &Truth, index: usize, split: &Split, hit: &Hit) -> Result<Map
 pub fn answering(plan: &ShadowPlan, point: DVec3) -> Option<&Split> {
     match plan.selection {
         Selection::Map => plan.splits.iter().find(|split| split.contains(point, split.filter_reach)),
-        Selection::Depth => {
+        Selection::Interval(_) => {
             let depth = plan.depth_at(point);
             let faces = plan.faces();
             let per_face = plan.splits.len() / faces.max(1);

@@ -16,8 +16,7 @@ named! {
         Balanced = "balanced",
         /// The tightest maps in every frame; edges crawl while the camera moves
         Sharp = "sharp",
-        /// Exactly still maps, which change only in rare steps of planes or range; coarser than
-        /// balanced
+        /// Exactly still maps, which change in rare steps of the range; coarser than balanced
         Still = "still",
         /// The settings of the papers: λ = 0.5, exactly still, chosen by view depth
         Papers = "papers",
