@@ -96,6 +96,16 @@ fn parser() -> Command {
 }
 
 impl SceneOptions {
+    /// These options, with a scene where none was typed.
+    #[must_use]
+    pub fn or_scene(&self, scene: &str) -> Self {
+        let mut options = self.clone();
+        if options.value(SCENE).is_none() {
+            options.0.push(Typed { key: SCENE.to_owned(), value: Some(scene.to_owned()) });
+        }
+        options
+    }
+
     /// The options over those of the report `file`, if that is one.
     ///
     /// # Errors

@@ -9,14 +9,17 @@ use umbrage_lab::{
 };
 use umbrage_viewer::{Error, Options, ShowAtStart};
 
-use crate::{scene_args::SceneArgs, shadow_args::ShadowArgs};
+use crate::{scene_args::SceneArgs, scene_options::SceneOptions, shadow_args::ShadowArgs};
+
+/// What is shown where no scene is given.
+const FIRST_SCENE: &str = "robot-war";
 
 /// `umbrage view`.
 #[derive(Debug, clap::Args)]
 pub struct ViewArgs {
     /// Scene, camera, light and time.
     #[command(flatten)]
-    pub scene: SceneArgs,
+    pub scene: SceneOptions,
     /// Shadows.
     #[command(flatten)]
     pub shadows: ShadowArgs,
@@ -46,20 +49,25 @@ fn scale(text: &str) -> std::result::Result<f32, String> {
 
 /// Runs the subcommand.
 pub fn run(args: &ViewArgs) -> Result<()> {
-    if args.scene.sun_to.is_some() {
+    let file = args.shadows.file();
+    let scene = match file {
+        Some(_) => args.scene.over(file)?,
+        None => args.scene.or_scene(FIRST_SCENE).over(None)?,
+    };
+    if scene.sun_to.is_some() {
         return Err(Failure::input(
             "--sun-to moves the sun over the frames of `umbrage render`; in the window, drag the sun",
         ));
     }
-    if args.scene.frames.is_some() && args.screenshot.is_none() {
+    if scene.frames.is_some() && args.screenshot.is_none() {
         return Err(Failure::input("--frames counts the pictures before a screenshot; give --screenshot PICTURE"));
     }
-    let frames = args.scene.frames.unwrap_or(1);
+    let frames = scene.frames.unwrap_or(1);
     if frames == 0 {
         return Err(Failure::input("--frames 0 asks for no picture; give 1 or more"));
     }
-    let request = SceneArgs { frames: None, ..args.scene.clone() }.request()?;
-    let shadows = args.shadows.request(request.sun_angle)?;
+    let shadows = args.shadows.request(&scene)?;
+    let request = SceneArgs { frames: None, ..scene }.request()?;
     if let Some(path) = &args.screenshot {
         output::check(&[path.as_path()], &[], &request.inputs())?;
     }
