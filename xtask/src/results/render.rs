@@ -458,9 +458,9 @@ mod tests {
     const UNMEASURED: &str = "\
 # Results
 
-No figures are kept of this version. `cargo xtask results` runs the jobs, up to 30 minutes on two cores
-and Mesa's software driver, and writes this page. Figures of earlier builds stand beside the decisions
-that rest on them: [notes](notes/README.md).
+No figures are kept of this version. `cargo xtask results` runs the jobs, up to 30 minutes on two
+cores and Mesa's software driver, and writes this page. Figures of earlier builds stand beside the
+decisions that rest on them: [notes](notes/README.md).
 ";
 
     /// Kept figures of tiny runs.

@@ -504,8 +504,8 @@ impl World {
 /// A plan with one entry of `sizes` per split.
 ///
 /// Slices go from view depth `planes[i]` to `planes[i + 1]`; every map is a square of `widths[i]`
-/// metres around the world's point `center`, with depth from 100 m before it to 100 m behind it. The
-/// eye looks along +X from x = 0. Splits have a caster (index 0) each.
+/// metres around the world's point `center`, with depth from 100 m before it to 100 m behind it.
+/// The eye looks along +X from x = 0. Splits have a caster (index 0) each.
 pub fn plan(light: DVec3, center: DVec3, sizes: &[u32], planes: &[f64], widths: &[f64]) -> ShadowPlan {
     let light = DirectionalLight::new(light).expect("a direction");
     let (u, v) = light.map_axes();
