@@ -254,7 +254,7 @@ impl Forward {
         // With several samples lavapipe seems to shade hidden pixels all the same: a depth pass did
         // not help (docs/notes/cost.md).
         let is_software = gpu.adapter_info.device_type == wgpu::DeviceType::Cpu;
-        let early = !sliced && !(is_software && samples != Samples::One);
+        let early = !(sliced || is_software && samples != Samples::One);
         let shading_pictures = Recipe { depth: if early { Depth::Found } else { Depth::Drawn }, ..shading.clone() };
         let picture = |fragment_entry| Surface {
             vertex: Vertices::Whole,

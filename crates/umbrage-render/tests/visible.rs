@@ -22,7 +22,7 @@ fn garden() -> Scene {
     ]);
     let alpha = AlphaMode::Mask { cutoff: 0.5 };
     scene.materials.push(Material { alpha, base_color_texture: Some(0), double_sided: true, ..Material::default() });
-    let texel = |x: u32, y: u32| [60, 160, 60, if (x / 4 + y / 4) % 2 == 0 { 255 } else { 0 }];
+    let texel = |x: u32, y: u32| [60, 160, 60, if (x / 4 + y / 4).is_multiple_of(2) { 255 } else { 0 }];
     let rgba = (0..32).flat_map(|y| (0..32).flat_map(move |x| texel(x, y))).collect();
     scene.textures.push(Texture { width: 32, height: 32, rgba, wrap: [Wrap::Clamp; 2], filter: TextureFilter::Linear });
     scene

@@ -83,6 +83,7 @@ fn of(filter: FilterKind) -> usize {
 }
 
 #[test]
+#[allow(clippy::print_stdout, reason = "the table of docs/notes/cost.md, under --nocapture")]
 fn the_default_costs_little_more_than_one_comparison() {
     use FilterKind::{Disc, Esm, Evsm4, Hard, Msm, Pcf2, Pcf3, Pcf5, Pcf7, Pcss, Vsm};
     let one = of(Pcf2) as f64;

@@ -127,6 +127,12 @@ fn all_in_view(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// Counts that do not depend on the machine, beside the times.
+#[allow(clippy::print_stdout, reason = "a bench reports on standard output")]
+fn say_counts(name: &str, [pairs, nodes, boxes]: [u64; 3], bytes: f64) {
+    println!("{name}: {pairs} pairs, {nodes} nodes and {boxes} boxes a frame, {bytes:.1} B a caster");
+}
+
 fn set_against_list(criterion: &mut Criterion) {
     let sun = DirectionalLight::new(DVec3::new(-0.6, -1.0, 0.4)).expect("valid");
     for (name, config) in configs() {
@@ -146,12 +152,7 @@ fn set_against_list(criterion: &mut Criterion) {
                 (nodes, boxes) = (nodes + visited.nodes, boxes + visited.boxes);
             }
             let each = world.set.memory() as f64 / f64::from(count);
-            println!(
-                "{name}, {count}: {} pairs, {} nodes and {} boxes a frame, {each:.1} B a caster",
-                pairs / 20,
-                nodes / 20,
-                boxes / 20
-            );
+            say_counts(&format!("{name}, {count}"), [pairs, nodes, boxes].map(|sum| sum / 20), each);
             group.bench_function(BenchmarkId::new("set", count), |bencher| {
                 bencher.iter_custom(|frames| {
                     timed(frames, || {

@@ -59,9 +59,9 @@ fn cameras_are_those_of_every_world_and_stand_above_the_ground() {
     let names: Vec<&str> = scene.cameras.iter().map(|camera| camera.name.as_str()).collect();
     assert_eq!(names, ["near", "middle", "far", "dueling", "aerial"]);
     let pose = scene.pose(0.0).unwrap_or_else(|error| panic!("{error}"));
-    for index in 0..names.len() {
+    for (index, name) in names.iter().enumerate() {
         let view = camera_view(&scene, &pose, index, 1.5, None, None).unwrap_or_else(|error| panic!("{error}"));
-        assert!(view.eye().y > -5.0, "{} is below the wood", names[index]);
+        assert!(view.eye().y > -5.0, "{name} is below the wood");
     }
 }
 
