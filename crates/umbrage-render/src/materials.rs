@@ -176,8 +176,8 @@ fn gpu_material(
         Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
     });
     let is_plain = texture.width.max(texture.height) == 1;
-    // WebGPU has no anisotropy with a nearest filter. One texel needs none. Leaves have none: it
-    // was most of what they cost.
+    // WebGPU has no anisotropy with a nearest filter. One texel needs none. Leaves have none:
+    // with it and a depth pass they cost several times as much (docs/notes/cost.md).
     let (mag_filter, anisotropy_clamp) = match (texture.filter, material.alpha) {
         (TextureFilter::Nearest, _) => (wgpu::FilterMode::Nearest, 1),
         (TextureFilter::Linear, AlphaMode::Mask { .. }) => (wgpu::FilterMode::Linear, 1),
