@@ -4,6 +4,8 @@
 mod adapter;
 mod book;
 mod check;
+#[cfg(test)]
+mod circles;
 mod demo;
 #[cfg(test)]
 mod documents;
@@ -30,7 +32,7 @@ Usage: cargo xtask COMMAND
   package pack every crate that is published and build each from its package
   bless   draw the reference pictures of the tests anew
   results [--resume | --render | --tiny]
-          run the jobs whose figures docs/results.md shows (up to 30 minutes), keep the figures in docs/results and
+          run the jobs whose figures docs/results.md shows (up to 25 minutes), keep the figures in docs/results and
           render the page; --resume leaves out jobs whose figures are of this build, --render runs none, --tiny runs
           them as small as they can be, into out/results
 ";

@@ -28,7 +28,9 @@ fn documents() -> Vec<PathBuf> {
 
 fn markdown(folder: &Path, found: &mut Vec<PathBuf>) {
     let entries = fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
-    found.extend(entries.flatten().map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|it| it == "md")));
+    found.extend(
+        entries.flatten().map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|it| it == "md")),
+    );
 }
 
 /// Command lines of `umbrage` in blocks of shell, each with its number.

@@ -4,7 +4,7 @@ use glam::DVec3;
 use umbrage::{ShadowConfig, View};
 use umbrage_wgpu::{ContactFrame, ContactOptions, ContactShadows};
 
-use crate::forward::DEPTH_FORMAT;
+use crate::formats::DEPTH_FORMAT;
 use crate::{Gpu, Result};
 
 /// What contact shadows need of the GPU.

@@ -10,18 +10,12 @@ use umbrage_wgpu::{ShadowMaps, Slice};
 
 use crate::contact::Contact;
 use crate::draw_list::{Drawable, Drawn, Run, Show};
+use crate::formats::{MASK_FORMAT, PICTURE_FORMAT};
 use crate::lamps::{Lamp, LampUniform, MOST_LAMPS};
 use crate::materials::{GpuMaterial, Materials};
 use crate::surfaces::{Depth, Recipe, Sky, Surface, SurfacePipelines, Vertices};
 use crate::view_list::ViewList;
 use crate::{Gpu, Result, shaders};
-
-/// What the picture is drawn in before it is resolved; the samples of a pixel share one shading.
-pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-/// Red is visibility, green says that a surface was hit.
-pub(crate) const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Unorm;
-/// What the eye's depth is drawn in: reversed, 0 infinitely far away.
-pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// Samples per pixel of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

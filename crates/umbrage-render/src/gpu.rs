@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::forward::{DEPTH_FORMAT, MASK_FORMAT, PICTURE_FORMAT};
+use crate::formats::{DEPTH_FORMAT, MASK_FORMAT, PICTURE_FORMAT};
 use crate::{Error, Result, probe};
 
 /// What the device is asked for.

@@ -5,25 +5,22 @@
 //! [`Frame`]s of it: pictures, visibility masks, depth maps and answers at given points, with
 //! [`FrameStats`] beside them.
 
-mod answers;
 mod capture;
-mod caster_runs;
 mod casters;
 mod contact;
 mod cull;
 mod draw_list;
 mod error;
 mod fade;
+mod formats;
 mod forward;
 mod geometry;
 mod gpu;
 mod lamps;
-mod live;
 mod maps;
 mod materials;
 mod mipmaps;
 mod probe;
-mod record;
 mod renderer;
 mod shaders;
 mod shadow_mesh;
@@ -32,7 +29,6 @@ mod surfaces;
 mod targets;
 mod timing;
 mod view_list;
-mod views;
 
 pub use error::{Error, Result};
 pub use forward::Samples;

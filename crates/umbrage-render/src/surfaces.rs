@@ -7,7 +7,7 @@ use umbrage_scene::AlphaMode;
 
 use crate::Gpu;
 use crate::draw_list::vertex_layouts;
-use crate::forward::{DEPTH_FORMAT, PICTURE_FORMAT};
+use crate::formats::{DEPTH_FORMAT, PICTURE_FORMAT};
 use crate::materials::GpuMaterial;
 
 /// What is read of a vertex.

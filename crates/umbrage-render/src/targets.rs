@@ -1,7 +1,8 @@
 //! The textures that the eye's passes draw into.
 
 use crate::Gpu;
-use crate::forward::{DEPTH_FORMAT, MASK_FORMAT, PICTURE_FORMAT, Samples};
+use crate::formats::{DEPTH_FORMAT, MASK_FORMAT, PICTURE_FORMAT};
+use crate::forward::Samples;
 
 /// Where a pass stands among the passes that draw one target together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -15,8 +15,7 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 
-use crate::trace::EDGE_ERROR;
-use crate::triangles::{round_down, round_up};
+use crate::triangles::{EDGE_ERROR, round_down, round_up};
 
 /// Bound on the relative error of a slab's distance: rounding of direction, inverse, difference and
 /// product, half an ulp each, doubled for safety.

@@ -10,10 +10,7 @@
 use glam::DVec3;
 
 use crate::bvh::BoxRay;
-
-/// How far from an edge a ray may pass and still meet it, as a share of the coordinates of both: a
-/// corner that was placed, moved and sheared is rounded so often.
-pub(crate) const EDGE_ERROR: f64 = 16.0 * f64::EPSILON;
+use crate::triangles::EDGE_ERROR;
 
 /// A ray with everything that its tests share. `t` is in units of the direction's length.
 pub(crate) struct Ray {

@@ -8,8 +8,11 @@ use rayon::prelude::*;
 use umbrage_scene::{AlphaMode, Pose, Primitive, Scene};
 
 use crate::alpha::{AlphaPicture, AlphaTest};
-use crate::trace::EDGE_ERROR;
 use crate::{Error, Result};
+
+/// How far from an edge a ray may pass and still meet it, as a share of the coordinates of both: a
+/// corner that was placed, moved and sheared is rounded so often.
+pub(crate) const EDGE_ERROR: f64 = 16.0 * f64::EPSILON;
 
 /// Farther than this from the origin, in metres, `f32` boxes and their inverse directions would
 /// overflow.

@@ -5,8 +5,8 @@ use glam::{DMat4, DVec3, DVec4};
 use umbrage::{Light, ShadowPlan};
 use umbrage_shaders::layout;
 
-use crate::maps::lights::Slot;
-use crate::uniforms::Place;
+use crate::maps::place::Place;
+use crate::maps::slot::Slot;
 use crate::{Error, Result};
 
 /// The cosine that says a light has no cone.
@@ -83,8 +83,8 @@ mod tests {
     use umbrage::{Aabb, Frustum, Light, Planner, PointLight, ShadowConfig, SpotLight, View};
     use umbrage_shaders::twin;
 
+    use crate::maps::place::{Place, Viewport};
     use crate::maps::storage::Tile;
-    use crate::uniforms::{Place, Viewport};
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(200))]

@@ -7,60 +7,10 @@ use umbrage::ShadowPlan;
 use umbrage::config::{Filter, LightKind, Selection, ShadowConfig, SplitMetric};
 use umbrage_shaders::layout::{self, SelectionKind};
 
-use crate::maps::lights::Slot;
-use crate::maps::storage::Tile;
+use crate::maps::place::Place;
+use crate::maps::slot::Slot;
 use crate::options::{bias_kind, depth_step, filter_kind, reach_within, transition_kind};
 use crate::{Error, FrameOptions, LightMaps, Result, local};
-
-/// The square of texels that clip space covers when a split is drawn: the map and a guard band
-/// around it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Viewport {
-    /// Edge in texels.
-    pub edge: u32,
-    /// Texels from its left and upper edge to the map's.
-    pub guard: u32,
-}
-
-impl Viewport {
-    /// The widest guard band worth having, as a multiple of the map. Ours: a triangle that reaches
-    /// from the map past one and a half maps more is clipped, and its edges may then move by 1/512
-    /// texel between frames. A power of two, so that the step from texels to clip space stays
-    /// exact.
-    const WIDEST: u32 = 4;
-
-    /// For a map of `size` texels. `largest` is the device's limit for viewports: its
-    /// `max_texture_dimension_2d`, or 0 where they may not be larger than what is drawn to.
-    pub fn around(size: u32, largest: u32) -> Self {
-        let mut edge = size;
-        while edge < Self::WIDEST * size && 2 * u64::from(edge) <= u64::from(largest) {
-            edge *= 2;
-        }
-        Self { edge, guard: (edge - size) / 2 }
-    }
-}
-
-/// Where a split's map lies, and the viewport that it is drawn with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Place {
-    pub tile: Tile,
-    pub viewport: Viewport,
-}
-
-impl Place {
-    /// The members of the uniform that say so.
-    pub fn into_split(self) -> layout::Split {
-        let Tile { layer, corner, layer_texels } = self.tile;
-        layout::Split {
-            viewport_texels: self.viewport.edge as f32,
-            guard_texels: self.viewport.guard as f32,
-            corner: corner.map(|texels| texels as f32),
-            layer_texels: layer_texels.map(|texels| texels as f32),
-            layer,
-            ..layout::Split::default()
-        }
-    }
-}
 
 /// The uniform that receivers read: the frames of each light's slot. Their splits are what casters
 /// read. `places` are those of all maps.
@@ -334,7 +284,8 @@ mod tests {
     use umbrage::{DirectionalLight, Frustum, View, Warp, WarpTarget};
     use umbrage_shaders::twin;
 
-    use super::{Place, Viewport, split};
+    use super::{Place, split};
+    use crate::maps::place::Viewport;
     use crate::maps::storage::Tile;
 
     fn alone(size: u32) -> Place {
@@ -537,18 +488,5 @@ mod tests {
             assert!((corner(tangent) - expected).abs().max_element() < 1e-9, "{} for {expected}", corner(tangent));
         }
         assert_eq!(umbrage::STEEPEST, constant("MAX_SLOPE"));
-    }
-
-    #[test]
-    fn viewports_are_as_wide_as_the_device_allows() {
-        let edges = |size, largest| {
-            let Viewport { edge, guard } = Viewport::around(size, largest);
-            (edge, guard)
-        };
-        assert_eq!(edges(1024, 8192), (4096, 1536));
-        assert_eq!(edges(4096, 8192), (8192, 2048));
-        assert_eq!(edges(8192, 8192), (8192, 0));
-        assert_eq!(edges(5, 8192), (20, 7));
-        assert_eq!(edges(1024, 0), (1024, 0));
     }
 }

@@ -2,13 +2,25 @@
 
 use glam::{DAffine3, DVec3};
 
-use crate::geometry::volume::rounding;
-
 /// The largest coordinate and distance that is accepted, metres: a thousand million kilometres.
 pub(crate) const MOST_METRES: f64 = 1e12;
 
 /// The least distance that is accepted, metres.
 pub(crate) const LEAST_METRES: f64 = 1e-9;
+
+/// Share of a scene's extent by which a caster may rise above the lowest receiver and still count
+/// as lying below all of them: rounding in the bounds, not a length that could be seen (1.2 mm in
+/// 1.2 km).
+const BELOW_ALL: f64 = 1e-6;
+
+/// [`BELOW_ALL`] in metres, at most: a ground of a thousand kilometres does throw its shadow on
+/// what lies a metre under it.
+const MOST_BELOW: f64 = 2e-3;
+
+/// Metres by which rounding may move the bounds of something in a box of this extent.
+pub(crate) fn rounding(extent: DVec3) -> f64 {
+    (BELOW_ALL * extent.max_element()).min(MOST_BELOW)
+}
 
 /// An axis-aligned box in world space, in metres.
 ///

@@ -1,7 +1,6 @@
 //! How many texels a map keeps free around what it serves.
 
-use crate::config::Filter;
-use crate::{Error, Result, ShadowConfig};
+use crate::{Error, Result};
 
 /// Texels that a map keeps free besides the filter's reach: half for the texel that a sample's
 /// rounding may choose, one for the normal offset of the receiver's bias.
@@ -27,15 +26,9 @@ pub struct FilterReach {
     pub half_width_m: Option<f64>,
 }
 
-impl From<&Filter> for FilterReach {
-    fn from(filter: &Filter) -> Self {
-        Self { radius_texels: filter.radius_texels(), half_width_m: filter.half_width_m() }
-    }
-}
-
 impl FilterReach {
-    /// Checks that it means something, and that the config's maps hold it.
-    pub(crate) fn check(self, config: &ShadowConfig) -> Result<()> {
+    /// Checks that it means something, and that maps of these edges in texels hold it.
+    pub(crate) fn check(self, map_sizes: &[u32], is_stabilised: bool) -> Result<()> {
         let Self { radius_texels: radius, half_width_m } = self;
         if !(0.0..=64.0).contains(&radius) {
             return Err(Error::setting("radius_texels", format!("{radius} texels; give 0 to 64")));
@@ -43,10 +36,10 @@ impl FilterReach {
         if let Some(half_width) = half_width_m.filter(|metres| !(0.0..=1e6).contains(metres)) {
             return Err(Error::setting("half_width_m", format!("{half_width} m; give 0 to 1000 km")));
         }
-        let least = self.least_map_size(config.is_stabilised());
-        match config.map_sizes.iter().position(|&size| size < least) {
+        let least = self.least_map_size(is_stabilised);
+        match map_sizes.iter().position(|&size| size < least) {
             Some(map) => {
-                let size = config.map_sizes[map];
+                let size = map_sizes[map];
                 let reason =
                     format!("map {map} is {size} texels wide; give {least} to 65536 with a filter of {radius} texels");
                 Err(Error::setting("map-size", reason))

@@ -112,7 +112,7 @@ const DUELING: Preset = Preset {
     ..FIGURE_8
 };
 
-/// The paper's techniques as the paper had them, then as umbrage makes them by default.
+/// The paper's techniques as the paper had them, then umbrage's default with maps of that size.
 const TABLE: Preset = Preset {
     name: "table",
     about: "What stands in the first table of measurements",
@@ -123,9 +123,26 @@ const TABLE: Preset = Preset {
         "pssm:4:512",
         "pssm:4:512:fit=dependent:lambda=0.9",
         "pssm:4:512:fit=dependent:stabilize=exact",
-        "pssm:4:512:fit=dependent:stabilize=exact:filter=pcf3:blend=0.1:label=PSSM(4; 512²) as shipped",
+        "pssm:4:512:preset=balanced:label=PSSM(4; 512²) balanced",
     ],
     with: PLAIN,
+    cameras: &[],
+    ..FIGURE_8
+};
+
+/// umbrage's presets, as an application gets them.
+const PRESETS: Preset = Preset {
+    name: "presets",
+    about: "The presets of umbrage, the default second",
+    techniques: &[
+        "pssm:3:1024:preset=fast:label=fast",
+        "pssm:4:1024:preset=balanced:label=balanced",
+        "pssm:4:1024:preset=sharp:label=sharp",
+        "pssm:4:1024:preset=still:label=still",
+        "pssm:4:1024:preset=papers:label=papers",
+    ],
+    with: "",
+    scenes: &["robot-war", "chessboard", "knights", "mining-terrain"],
     cameras: &[],
     ..FIGURE_8
 };
@@ -231,11 +248,12 @@ const FILTERS: Preset = Preset {
 };
 
 /// All presets.
-pub const ALL: [&Preset; 11] = [
+pub const ALL: [&Preset; 12] = [
     &LADDER,
     &FIGURE_8,
     &DUELING,
     &TABLE,
+    &PRESETS,
     &STILLNESS,
     &SUNS,
     &PSVSM,

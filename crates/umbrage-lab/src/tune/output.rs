@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::{
     choice::{Choice, choose, is_still},
     page,
-    record::{Outcome, Run, ViewOutcome},
+    record::{Outcome, Run, figures, scenes},
 };
 use crate::{
     failure::{Failure, Result},
@@ -165,27 +165,4 @@ fn config_file(run: &Run, best: &Outcome, most: f64) -> Result<String> {
     ))?;
     say(format_args!("Candidate: {}.", candidate.label))?;
     Ok(text + "\n" + &settings)
-}
-
-/// The figures of an outcome in words.
-pub(super) fn figures(outcome: &Outcome) -> String {
-    let percent = |value: Option<f64>| value.map_or("none".to_owned(), |value| format!("{:.3} %", 100.0 * value));
-    format!(
-        "E {}, F_edge {}, {:.2} MiB of maps.",
-        percent(outcome.e),
-        percent(outcome.flicker),
-        outcome.bytes as f64 / f64::from(1 << 20)
-    )
-}
-
-/// The scenes of a run.
-pub(super) fn scenes(run: &Run) -> Vec<String> {
-    let mut scenes: Vec<String> = run.views.iter().map(|view| view.scene.clone()).collect();
-    scenes.dedup();
-    scenes
-}
-
-/// The views of the outcomes that count; they are the same for all.
-pub(super) fn views_of(outcomes: &[Outcome]) -> &[ViewOutcome] {
-    outcomes.first().map_or(&[], |outcome| &outcome.views)
 }

@@ -2,8 +2,7 @@
 
 use super::{
     choice::{Choice, is_still},
-    output::{figures, scenes, views_of},
-    record::{Outcome, Run},
+    record::{Outcome, Run, figures, scenes, views_of},
 };
 use crate::{
     failure::{Failure, Result},

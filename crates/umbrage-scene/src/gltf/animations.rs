@@ -5,8 +5,8 @@ use gltf::json::animation::{Interpolation as JsonInterpolation, Property};
 use gltf::json::validation::Checked;
 
 use super::Document;
+use super::accessors::{self, Integers};
 use super::budget::Part;
-use super::buffers::{self, Integers};
 use super::nodes::Places;
 use super::text::NO_NODE;
 use crate::error::element;
@@ -73,9 +73,9 @@ fn load_channel(
         Checked::Invalid => return Err(invalid("has an unknown interpolation".into())),
     };
     for accessor in [sampler.input, sampler.output] {
-        document.count(Part::Key, buffers::count(document, accessor.value(), user)?, user)?;
+        document.count(Part::Key, accessors::count(document, accessor.value(), user)?, user)?;
     }
-    let times = buffers::floats::<1>(document, sampler.input.value(), &format!("{user} input"), Integers::AsMarked)?;
+    let times = accessors::floats::<1>(document, sampler.input.value(), &format!("{user} input"), Integers::AsMarked)?;
     let times: Vec<f32> = times.into_iter().map(|[t]| t).collect();
     if let Some(at) = times.windows(2).position(|t| t[1] < t[0]) {
         return Err(invalid(format!("has key {} before key {at}: {} s after {} s", at + 1, times[at + 1], times[at])));
@@ -84,10 +84,10 @@ fn load_channel(
     let expected = times.len() * per_key;
     let (output, purpose) = (sampler.output.value(), format!("{user} output"));
     let values = match property {
-        Property::Translation => Keys::Translation(buffers::floats(document, output, &purpose, Integers::AsMarked)?),
-        Property::Scale => Keys::Scale(buffers::floats(document, output, &purpose, Integers::AsMarked)?),
+        Property::Translation => Keys::Translation(accessors::floats(document, output, &purpose, Integers::AsMarked)?),
+        Property::Scale => Keys::Scale(accessors::floats(document, output, &purpose, Integers::AsMarked)?),
         Property::Rotation => {
-            let mut keys = buffers::floats(document, output, &purpose, Integers::Normalized)?;
+            let mut keys = accessors::floats(document, output, &purpose, Integers::Normalized)?;
             // Tangents of splines may be zero.
             let is_value = |i: usize| per_key == 1 || i % 3 == 1;
             for (_, key) in keys.iter_mut().enumerate().filter(|(i, key)| is_value(*i) && **key == [0.0; 4]) {
@@ -97,7 +97,7 @@ fn load_channel(
             Keys::Rotation(keys)
         }
         Property::MorphTargetWeights => {
-            let weights = buffers::floats::<1>(document, output, &purpose, Integers::Normalized)?;
+            let weights = accessors::floats::<1>(document, output, &purpose, Integers::Normalized)?;
             let values: Vec<f32> = weights.into_iter().map(|[weight]| weight).collect();
             let each = values.len().checked_div(expected).unwrap_or(0).max(1);
             Keys::Weights { per_key: each, values }

@@ -8,8 +8,8 @@ use gltf::json::mesh::{Primitive as JsonPrimitive, Semantic};
 use serde::Deserialize;
 
 use super::Document;
+use super::accessors::{self, Packed, Wanted};
 use super::budget::Part;
-use super::buffers::{self, Packed, Wanted};
 use crate::Result;
 
 const NAME: &str = "KHR_draco_mesh_compression";
@@ -52,7 +52,7 @@ fn decode_stream(document: &Document<'_>, extension: &serde_json::Value, element
     let invalid = |reason: String| document.invalid(element, reason);
     let Extension { buffer_view, attributes } =
         Extension::deserialize(extension).map_err(|error| invalid(error.to_string()))?;
-    let (bytes, _) = buffers::view(document, buffer_view, element)?;
+    let (bytes, _) = accessors::view(document, buffer_view, element)?;
     let faces = document.left(Part::Unpacked) / (CORNERS * size_of::<u32>() as u64);
     let limits = DecodeLimits::default()
         .with_max_faces(faces)

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use image::{ImageFormat, RgbaImage};
 
 use super::budget::Part;
-use super::{Document, basis, buffers, uri};
+use super::{Document, accessors, basis, uri};
 use crate::error::element;
 use crate::picture;
 use crate::{Error, Result};
@@ -92,7 +92,7 @@ fn bytes<'d>(document: &'d Document<'_>, index: usize, element: &str) -> Result<
     let image = document.get(&document.root.images, index, "images", element)?;
     match (&image.uri, image.buffer_view) {
         (Some(uri), _) => uri::read(document, element, uri).map(Cow::Owned),
-        (None, Some(view)) => Ok(Cow::Borrowed(buffers::view(document, view.value(), element)?.0)),
+        (None, Some(view)) => Ok(Cow::Borrowed(accessors::view(document, view.value(), element)?.0)),
         (None, None) => Err(document.invalid(element, "has neither a URI nor a buffer view")),
     }
 }

@@ -3,8 +3,8 @@
 use gltf::json::mesh::{Mode, Primitive as JsonPrimitive, Semantic};
 use gltf::json::validation::Checked;
 
+use super::accessors::{self, Integers, Packed, Wanted};
 use super::budget::Part;
-use super::buffers::{self, Integers, Packed, Wanted};
 use super::materials::TextureCoordinates;
 use super::shape::{flat_normals, repair_normals, triangles, unshared, used_vertices};
 use super::{Document, draco, targets};
@@ -83,13 +83,13 @@ impl Attributes<'_, '_> {
         {
             return Ok(Some(packed));
         }
-        let count = buffers::count(self.document, accessor, &purpose)?;
+        let count = accessors::count(self.document, accessor, &purpose)?;
         if count != self.vertices as u64 {
             let reason = format!("has {} positions, but {count} of {}", self.vertices, semantic.to_string());
             return Err(self.document.invalid(self.user, reason));
         }
-        let ty = [buffers::type_of::<2>(), buffers::type_of::<3>(), buffers::type_of::<4>()][components - 2];
-        buffers::packed(self.document, accessor, &purpose, &[ty], self.wanted).map(Some)
+        let ty = [accessors::type_of::<2>(), accessors::type_of::<3>(), accessors::type_of::<4>()][components - 2];
+        accessors::packed(self.document, accessor, &purpose, &[ty], self.wanted).map(Some)
     }
 
     fn floats<const N: usize>(&self, semantic: Semantic, meaning: Integers) -> Result<Option<Vec<[f32; N]>>> {
@@ -101,8 +101,8 @@ impl Attributes<'_, '_> {
     fn colors(&self) -> Result<Option<Vec<[f32; 4]>>> {
         let semantic = Semantic::Colors(0);
         let Some(accessor) = self.accessor(semantic.clone()) else { return Ok(None) };
-        let three_or_four = [buffers::type_of::<3>(), buffers::type_of::<4>()];
-        let (ty, _) = buffers::types(self.document, accessor, &self.purpose(&semantic), &three_or_four)?;
+        let three_or_four = [accessors::type_of::<3>(), accessors::type_of::<4>()];
+        let (ty, _) = accessors::types(self.document, accessor, &self.purpose(&semantic), &three_or_four)?;
         if ty.multiplicity() == 4 {
             return self.floats::<4>(semantic, Integers::Normalized);
         }
@@ -135,14 +135,14 @@ fn load_primitive(
     let mode = if draco.is_some() { Mode::Triangles } else { mode };
     let count = match &draco {
         Some(decoded) => decoded.vertices(),
-        None => buffers::count(document, positions, user)?,
+        None => accessors::count(document, positions, user)?,
     };
     let vertices = u32::try_from(count)
         .map_err(|_| document.invalid(format!("accessors[{positions}]"), "has more elements than indices can name"))?;
 
     let stored = match (&draco, json.indices) {
         (Some(decoded), _) => Some(decoded.indices()),
-        (None, Some(index)) => Some(buffers::indices(document, index.value(), &format!("{user} indices"))?),
+        (None, Some(index)) => Some(accessors::indices(document, index.value(), &format!("{user} indices"))?),
         (None, None) => None,
     };
     let corners = match stored {

@@ -8,6 +8,7 @@
 //! What a shape does not depend on never stops a file: an unreadable texture, animation, camera or
 //! light is left out, and [`Scene::notes`] says so.
 
+mod accessors;
 mod animations;
 mod basis;
 mod budget;

@@ -3,8 +3,8 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3, Mat4};
 use gltf::json;
 
+use super::accessors::{self, Integers};
 use super::budget::Part;
-use super::buffers::{self, Integers};
 use super::decompose::decompose;
 use super::exact::{ExactNode, or_rounded};
 use super::hierarchy::{self, Hierarchy, node_name};
@@ -162,7 +162,7 @@ fn instances(document: &Document<'_>, extension: &serde_json::Value, user: &str)
     for (name, accessor) in attributes {
         let index = accessor_index(accessor)
             .ok_or_else(|| document.invalid(user.as_str(), format!("{name} has to be the index of an accessor")))?;
-        let this = buffers::count(document, index, &user)?;
+        let this = accessors::count(document, index, &user)?;
         if *count.get_or_insert(this) != this {
             return Err(document.invalid(user, format!("{name} has {this} elements, another attribute has not")));
         }
@@ -171,11 +171,11 @@ fn instances(document: &Document<'_>, extension: &serde_json::Value, user: &str)
     let index = |name: &str| attributes.get(name).and_then(accessor_index);
     let read = |name: &str| {
         let purpose = format!("{user} {name}");
-        index(name).map(|index| buffers::floats::<3>(document, index, &purpose, Integers::AsMarked)).transpose()
+        index(name).map(|index| accessors::floats::<3>(document, index, &purpose, Integers::AsMarked)).transpose()
     };
     let (translations, scales) = (read("TRANSLATION")?, read("SCALE")?);
     let rotations = index("ROTATION")
-        .map(|index| buffers::floats::<4>(document, index, &format!("{user} ROTATION"), Integers::Normalized))
+        .map(|index| accessors::floats::<4>(document, index, &format!("{user} ROTATION"), Integers::Normalized))
         .transpose()?;
     if translations.is_none() && scales.is_none() && rotations.is_none() {
         let reason = "has none of TRANSLATION, ROTATION and SCALE, so its instances coincide";
@@ -209,7 +209,7 @@ fn add_skins(document: &Document<'_>, scene: &mut Scene, places: &Places) -> Res
         let inverse_bind = match json.inverse_bind_matrices {
             Some(accessor) => {
                 let purpose = format!("{user} inverseBindMatrices");
-                let matrices = buffers::floats::<16>(document, accessor.value(), &purpose, Integers::AsMarked)?;
+                let matrices = accessors::floats::<16>(document, accessor.value(), &purpose, Integers::AsMarked)?;
                 matrices.iter().map(Mat4::from_cols_array).collect()
             }
             None => vec![Mat4::IDENTITY; joints.len()],

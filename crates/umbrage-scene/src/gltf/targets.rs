@@ -3,8 +3,8 @@
 use gltf::json::mesh::MorphTarget as JsonTarget;
 
 use super::Document;
+use super::accessors::{self, Integers, Wanted};
 use super::budget::Part;
-use super::buffers::{self, Integers, Wanted};
 use crate::{MorphTarget, Result};
 
 /// Bytes of the differences of one vertex.
@@ -43,14 +43,14 @@ fn load_differences(
     vertices: usize,
     wanted: Wanted<'_>,
 ) -> Result<Vec<[f32; 3]>> {
-    let count = buffers::count(document, accessor, user)?;
+    let count = accessors::count(document, accessor, user)?;
     if count != vertices as u64 {
         return Err(document.invalid(user, format!("has {count} differences for {vertices} vertices")));
     }
-    if buffers::is_all_zero(document, accessor, user)? {
+    if accessors::is_all_zero(document, accessor, user)? {
         return Ok(Vec::new());
     }
-    let packed = buffers::packed(document, accessor, user, &[buffers::type_of::<3>()], wanted)?;
+    let packed = accessors::packed(document, accessor, user, &[accessors::type_of::<3>()], wanted)?;
     let list = packed.floats::<3>(document, user, Integers::AsMarked)?;
     if list.iter().flatten().all(|&x| x == 0.0) {
         return Ok(Vec::new());

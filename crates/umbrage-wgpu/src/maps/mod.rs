@@ -2,9 +2,11 @@
 
 pub(crate) mod choose;
 mod groups;
-pub(crate) mod lights;
+mod lights;
 mod passes;
+pub(crate) mod place;
 mod slices;
+pub(crate) mod slot;
 pub(crate) mod storage;
 mod targets;
 
@@ -20,15 +22,15 @@ use umbrage_shaders::{Bound, Casters, Lights, Maps, Projection, ReceiverText};
 
 use choose::{Abilities, Chosen};
 use groups::{Received, Uniforms};
-use lights::Slot;
 pub use passes::MapPass;
+use place::{Place, Viewport};
 pub use slices::Slice;
+use slot::Slot;
 use storage::{Arrangement, Tile};
 use targets::Targets;
 
 use crate::moments::{MomentStorage, Moments};
 use crate::options::{filter_kind, texture_format, transition_kind};
-use crate::uniforms::{Place, Viewport};
 use crate::{Error, FrameOptions, LightMaps, Result, device};
 
 /// Features that make shadows better where an adapter has them; [`device_descriptor`] requests

@@ -1,6 +1,7 @@
 //! How a map is looked up, and how soft edges become.
 
 use super::names::{Word, named};
+use crate::margin::FilterReach;
 
 /// How a map is looked up.
 ///
@@ -269,5 +270,11 @@ impl std::str::FromStr for Filter {
             .into_iter()
             .find(|filter| filter.word() == text)
             .ok_or_else(|| super::names::unknown("filter", text, Self::WORDS))
+    }
+}
+
+impl From<&Filter> for FilterReach {
+    fn from(filter: &Filter) -> Self {
+        Self { radius_texels: filter.radius_texels(), half_width_m: filter.half_width_m() }
     }
 }

@@ -9,6 +9,7 @@ mod apply;
 mod budget;
 mod filter;
 mod fit;
+mod given;
 mod layout;
 mod look;
 mod names;
@@ -21,11 +22,12 @@ mod setting;
 mod settings;
 mod splits;
 mod text;
+mod words;
 
-pub use apply::Given;
 pub use budget::Budget;
 pub use filter::{Derivatives, Filter, MomentKind, Moments, SUN_DEGREES};
 pub use fit::{Crop, ExtentSteps, Stability};
+pub use given::Given;
 pub use layout::{Coordinates, DepthFormat, Fallbacks, Generation, Layout, Storage};
 pub use look::{Look, ReceiverBias, Translucent};
 pub use names::Word;
@@ -34,11 +36,11 @@ pub use presets::Preset;
 pub use rules::{Choice, Conflict, RULES, Rule};
 pub use setting::{Kind, Rebuilds, Setting, Value};
 pub use settings::SETTINGS;
+pub(crate) use splits::check_range;
 pub use splits::{Range, Selection, SplitMetric, SplitScheme, Transition};
 
 use crate::bounds::MOST_METRES;
 use crate::margin::FilterReach;
-use crate::planes::scheme::check_range;
 use crate::{Error, Light, MAX_SPLITS, Result, Warp};
 
 /// What kind of light throws shadows.

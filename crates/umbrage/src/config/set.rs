@@ -1,11 +1,11 @@
 //! What each key's value does to a config, beside the other keys that were given.
 
-use super::apply::{Given, Wrong, refuse, refuse_other};
+use super::given::{Given, Wrong, refuse, refuse_other};
 use super::names::unknown;
 use super::text::{count, map_sizes, number, numbers, range, switch};
 use super::{
     ExtentSteps, Filter, Generation, Layout, Moments, Range, Selection, ShadowConfig, SplitMetric, SplitScheme,
-    Stability, Storage, Transition, settings,
+    Stability, Storage, Transition, words,
 };
 use crate::{MAX_SPLITS, Warp};
 
@@ -14,7 +14,7 @@ const USUAL_BLEND: f64 = 0.1;
 
 /// Checks a word against the list of its key.
 fn known(key: &str, text: &str) -> Result<(), String> {
-    let words = settings::WORDS.iter().find(|(listed, _)| *listed == key).map_or(&[][..], |(_, words)| words);
+    let words = words::WORDS.iter().find(|(listed, _)| *listed == key).map_or(&[][..], |(_, words)| words);
     if words.iter().any(|word| word.word == text) { Ok(()) } else { Err(unknown(key, text, words)) }
 }
 
@@ -362,8 +362,8 @@ pub(super) fn colour(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Re
 
 /// The layout of `generation` and `storage` together; either may be `auto`.
 pub(super) fn layout(config: &mut ShadowConfig, given: &Given<'_>) -> Result<(), Wrong> {
-    let generation = given.value("generation").map(settings::generation).transpose()?.flatten();
-    let storage = given.value("storage").map(settings::storage).transpose()?.flatten();
+    let generation = given.value("generation").map(words::generation).transpose()?.flatten();
+    let storage = given.value("storage").map(words::storage).transpose()?.flatten();
     let (generation, storage) = match (generation, storage) {
         (None, None) => return Ok(()),
         (None, Some(Storage::Reused)) => (Generation::Multipass, Storage::Reused),

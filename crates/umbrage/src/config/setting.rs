@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::apply::{Given, Wrong};
+use super::given::{Given, Wrong};
 use super::names::Word;
 use super::{ShadowConfig, text};
 

@@ -1,14 +1,13 @@
 //! Every choice of a [`ShadowConfig`] as a setting with a key: what config files, the command line,
 //! reports and a viewer's controls share.
 
-use super::apply::Wrong;
-use super::names::Word;
+use super::given::Wrong;
 use super::setting::{Kind, Rebuilds, Setting, Value};
 use super::{
-    Coordinates, Crop, DepthFormat, Derivatives, ExtentSteps, Fallbacks, Filter, Generation, Range, ReceiverBias,
-    Selection, SplitMetric, SplitScheme, Stability, Storage, Transition, Translucent,
+    Coordinates, Crop, DepthFormat, Derivatives, ExtentSteps, Fallbacks, Filter, Range, ReceiverBias, Selection,
+    SplitMetric, SplitScheme, Stability, Transition, Translucent,
 };
-use super::{set, text};
+use super::{set, text, words};
 use crate::Warp;
 
 /// The setting of this key.
@@ -20,55 +19,12 @@ fn word(word: &'static str) -> Option<Value> {
     Some(Value::Word(word.to_owned()))
 }
 
-/// The words of techniques: splits, or one map with a warp.
-const TECHNIQUES: &[Word] = &[
-    Word { word: "pssm", help: "Parallel-split shadow maps" },
-    Word { word: "ssm", help: "One map over the whole range" },
-    Word { word: "psm", help: "One perspective shadow map" },
-    Word { word: "lispsm", help: "One light space perspective shadow map" },
-    Word { word: "tsm", help: "One trapezoidal shadow map" },
-];
-
-const RANGE_FITS: &[Word] = &[
-    Word { word: "camera", help: "The camera's near and far, far capped by the scene" },
-    Word { word: "visible", help: "The nearest and the farthest thing in view" },
-];
-
-const SELECTIONS: &[Word] = &[
-    Word { word: "depth", help: "Interval-based: by the planes between splits" },
-    Word { word: "map", help: "Map-based: the first map that contains the point" },
-];
-
-const TRANSITIONS: &[Word] = &[
-    Word { word: "blend", help: "Both splits are mixed over a band" },
-    Word { word: "dither", help: "Each pixel of a band takes one of both, by noise" },
-    Word { word: "hard", help: "No band" },
-];
-
-const GENERATIONS: &[Word] = &[
-    Word { word: "auto", help: "What goes with the storage" },
-    Word { word: "multipass", help: "Map and picture slice by slice, one map for all" },
-    Word { word: "per-split", help: "One pass for each split" },
-    Word { word: "layered", help: "As many splits at once as the device has views" },
-    Word { word: "instanced", help: "All splits at once, by instancing into tiles" },
-    Word { word: "mixed", help: "All splits at once: tiles in layers" },
-];
-
-const STORAGES: &[Word] = &[
-    Word { word: "auto", help: "What goes with the generation" },
-    Word { word: "array", help: "Layers of one texture" },
-    Word { word: "atlas", help: "Tiles of one texture" },
-    Word { word: "separate", help: "A texture for each map" },
-    Word { word: "cube", help: "Faces of a cube: six maps of one size at most" },
-    Word { word: "reused", help: "One map, used for one split after the other" },
-];
-
 /// All settings, in the order in which they are applied.
 pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "technique",
         help: "How the shadow maps share the view",
-        kind: Kind::Words(TECHNIQUES),
+        kind: Kind::Words(words::TECHNIQUES),
         rebuilds: Rebuilds::Pipelines,
         set: |config, _, given| set::shape(config, given),
         get: |config| {
@@ -139,7 +95,7 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "range-fit",
         help: "What the shadowed range is fitted to where no shadow-range is given",
-        kind: Kind::Words(RANGE_FITS),
+        kind: Kind::Words(words::RANGE_FITS),
         rebuilds: Rebuilds::Nothing,
         set: set::range_fit,
         get: |config| match config.range {
@@ -170,7 +126,7 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "selection",
         help: "Which map answers for a point",
-        kind: Kind::Words(SELECTIONS),
+        kind: Kind::Words(words::SELECTIONS),
         rebuilds: Rebuilds::Pipelines,
         set: set::selection,
         get: |config| {
@@ -347,7 +303,7 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "transition",
         help: "How one split goes over into the next",
-        kind: Kind::Words(TRANSITIONS),
+        kind: Kind::Words(words::TRANSITIONS),
         rebuilds: Rebuilds::Pipelines,
         set: set::transition,
         get: |config| {
@@ -393,7 +349,7 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "generation",
         help: "How maps are drawn",
-        kind: Kind::Words(GENERATIONS),
+        kind: Kind::Words(words::GENERATIONS),
         rebuilds: Rebuilds::Pipelines,
         set: |config, _, given| set::layout(config, given),
         get: |config| word(config.layout.generation().word()),
@@ -401,7 +357,7 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         key: "storage",
         help: "Where maps are kept",
-        kind: Kind::Words(STORAGES),
+        kind: Kind::Words(words::STORAGES),
         rebuilds: Rebuilds::Pipelines,
         set: |config, _, given| set::layout(config, given),
         get: |config| word(config.layout.storage().word()),
@@ -449,23 +405,3 @@ pub const SETTINGS: &[Setting] = &[
         get: |config| word(if config.look.contact { "on" } else { "off" }),
     },
 ];
-
-/// Generation of a word; `None` for `auto`.
-pub(super) fn generation(text: &str) -> Result<Option<Generation>, String> {
-    match text {
-        "auto" => Ok(None),
-        _ => text.parse().map(Some).map_err(|_: String| super::names::unknown("generation", text, GENERATIONS)),
-    }
-}
-
-/// Storage of a word; `None` for `auto`.
-pub(super) fn storage(text: &str) -> Result<Option<Storage>, String> {
-    match text {
-        "auto" => Ok(None),
-        _ => text.parse().map(Some).map_err(|_: String| super::names::unknown("storage", text, STORAGES)),
-    }
-}
-
-/// Word lists that the appliers check against.
-pub(super) const WORDS: [(&str, &[Word]); 4] =
-    [("technique", TECHNIQUES), ("range-fit", RANGE_FITS), ("selection", SELECTIONS), ("transition", TRANSITIONS)];

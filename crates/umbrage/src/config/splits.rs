@@ -1,6 +1,8 @@
 //! Where the shadowed range lies, where it is divided, and which split answers for a point.
 
 use super::names::named;
+use crate::bounds::{LEAST_METRES, MOST_METRES};
+use crate::{Error, Result};
 
 /// Where the planes between splits stand.
 ///
@@ -176,4 +178,21 @@ impl Transition {
             Self::Blend { share } | Self::Dither { share } => share,
         }
     }
+}
+
+/// Checks two view depths in metres that shadows are to cover.
+pub(crate) fn check_range(near: f64, far: f64) -> Result<()> {
+    if !(LEAST_METRES..=MOST_METRES).contains(&near) {
+        return Err(Error::setting(
+            "shadow-range",
+            format!("near is {near}; give a view depth of 10^-9 to 10^12 m, above 0"),
+        ));
+    }
+    if !(far > near && far <= MOST_METRES) {
+        return Err(Error::setting(
+            "shadow-range",
+            format!("far is {far}; give a view depth greater than near ({near}) and at most 10^12 m"),
+        ));
+    }
+    Ok(())
 }

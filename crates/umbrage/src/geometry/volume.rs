@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::bounds::Placed;
+use crate::bounds::{Placed, rounding};
 use crate::{Aabb, View};
 
 /// A half space: inside is `normal · p <= offset`. The normal is a unit vector that points
@@ -257,20 +257,6 @@ impl SweptVolume {
     pub fn contains(&self, point: DVec3) -> bool {
         self.planes[..self.len].iter().all(|plane| plane.distance(point) <= 0.0)
     }
-}
-
-/// Share of a scene's extent by which a caster may rise above the lowest receiver and still count
-/// as lying below all of them: rounding in the bounds, not a length that could be seen (1.2 mm in
-/// 1.2 km).
-const BELOW_ALL: f64 = 1e-6;
-
-/// [`BELOW_ALL`] in metres, at most: a ground of a thousand kilometres does throw its shadow on
-/// what lies a metre under it.
-const MOST_BELOW: f64 = 2e-3;
-
-/// Metres by which rounding may move the bounds of something in a box of this extent.
-pub(crate) fn rounding(extent: DVec3) -> f64 {
-    (BELOW_ALL * extent.max_element()).min(MOST_BELOW)
 }
 
 /// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers`

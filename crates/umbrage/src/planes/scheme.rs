@@ -1,7 +1,6 @@
 //! Where the planes between splits stand, and which view depths each map has to serve.
 
-use crate::bounds::{LEAST_METRES, MOST_METRES};
-use crate::config::{SplitMetric, SplitScheme};
+use crate::config::{SplitMetric, SplitScheme, check_range};
 use crate::{Error, Result, View};
 
 /// Computes the `m + 1` planes `C_0 ..= C_m` between `near` and `far` (view depths in metres) into
@@ -47,23 +46,6 @@ pub fn split_planes(scheme: &SplitScheme, near: f64, far: f64, splits: usize, pl
             _ => ("shadow-range", "give a longer range or fewer splits"),
         };
         return Err(Error::setting(field, format!("plane {} m is followed by {} m; {remedy}", pair[0], pair[1])));
-    }
-    Ok(())
-}
-
-/// Checks two view depths in metres that shadows are to cover.
-pub(crate) fn check_range(near: f64, far: f64) -> Result<()> {
-    if !(LEAST_METRES..=MOST_METRES).contains(&near) {
-        return Err(Error::setting(
-            "shadow-range",
-            format!("near is {near}; give a view depth of 10^-9 to 10^12 m, above 0"),
-        ));
-    }
-    if !(far > near && far <= MOST_METRES) {
-        return Err(Error::setting(
-            "shadow-range",
-            format!("far is {far}; give a view depth greater than near ({near}) and at most 10^12 m"),
-        ));
     }
     Ok(())
 }

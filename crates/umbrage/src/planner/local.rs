@@ -12,11 +12,12 @@ use glam::{DVec2, DVec3};
 
 use super::frame::Frame;
 use crate::bounds::Placed;
+use crate::bounds::rounding;
 use crate::casters::{Gathered, Most};
 use crate::config::{Crop, LightKind, Range, SplitMetric, SplitScheme};
 use crate::coverage::LocalVolume;
 use crate::geometry::light_frustum::{LightFrustum, Part};
-use crate::geometry::volume::{Lies, Slice, rounding};
+use crate::geometry::volume::{Lies, Slice};
 use crate::held::Held;
 use crate::held::recovery::Standing;
 use crate::held::size::HeldSize;

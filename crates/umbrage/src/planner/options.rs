@@ -39,7 +39,7 @@ impl PlannerOptions {
     pub(super) fn check(&self, config: &ShadowConfig) -> Result<()> {
         config.validate()?;
         check_image_size(self.image_size)?;
-        self.filter_reach.map_or(Ok(()), |reach| reach.check(config))
+        self.filter_reach.map_or(Ok(()), |reach| reach.check(&config.map_sizes, config.is_stabilised()))
     }
 
     /// How far the filter of a config reaches with these options.

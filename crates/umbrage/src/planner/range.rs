@@ -2,9 +2,9 @@
 
 use super::frame::Frame;
 use super::scope::{Extent, Scope};
+use crate::config::check_range;
 use crate::config::{self, SplitMetric, Stability};
 use crate::held::ends::{HeldEnds, Range};
-use crate::planes::scheme::check_range;
 use crate::planes::visible::visible_range;
 use crate::{Projection, Result};
 

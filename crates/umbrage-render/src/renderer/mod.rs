@@ -1,36 +1,39 @@
 //! The demonstration renderer: a scene, a view and lights in; a picture, a mask, maps and numbers
 //! out.
 
+mod answers;
+mod caster_runs;
+mod live;
+mod prepare;
+mod record;
+mod report;
+mod views;
+
 use std::sync::OnceLock;
 
 use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
+use umbrage::View;
 use umbrage::config::{Coordinates, Layout, LightKind, ShadowConfig, Translucent};
-use umbrage::{Aabb, Light, ShadowPlan, View};
-use umbrage_scene::{AlphaMode, Pose, Scene};
-use umbrage_wgpu::{Inputs, LightMaps, MaskFrame, MaskNormals, ShadowMask, Shadows};
-use web_time::Instant;
+use umbrage_scene::{Pose, Scene};
+use umbrage_wgpu::{LightMaps, MaskFrame, MaskNormals, ShadowMask, Shadows};
 
+use self::prepare::Prepared;
+use self::record::{Clock, MapCapture, new_encoder};
 use crate::capture::Capture;
 use crate::casters::Casters;
 use crate::contact::Contact;
-use crate::draw_list::{Drawable, Instances, once};
-use crate::forward::{Forward, FrameUniform, MASK_FORMAT, Samples, Shading};
-use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry, check_object};
+use crate::draw_list::{Drawable, Instances};
+use crate::formats::MASK_FORMAT;
+use crate::forward::{Forward, Samples, Shading};
+use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry};
 use crate::lamps::Lamp;
-use crate::materials::{GpuMaterial, Materials};
+use crate::materials::Materials;
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint};
-use crate::record::{Clock, MapCapture, Prepared, Recorded, SliceRuns, new_encoder};
-use crate::stats::{FrameStats, LightStats, SplitStats};
+use crate::stats::FrameStats;
 use crate::targets::{MaskTarget, PictureTarget};
-use crate::timing::{PassCounts, Timer};
-use crate::view_list::ViewList;
-use crate::{Error, Gpu, Result, cull, maps};
-
-/// The frame's origin moves in steps of this many metres, so that positions near the eye are exact
-/// to a tenth of a millimetre in `f32` and yet stay the same from frame to frame, which is what
-/// keeps stabilised maps still.
-const ORIGIN_STEP: f64 = 1024.0;
+use crate::timing::Timer;
+use crate::{Error, Gpu, Result, maps};
 
 /// What is settled before the first frame.
 #[derive(Clone, Debug)]
@@ -242,16 +245,7 @@ impl Renderer {
 
     fn render_unguarded(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
-        if outputs.picture && self.picture.is_none() {
-            self.picture = Some(PictureTarget::new(&gpu, self.size, self.samples));
-        }
-        if outputs.mask && self.mask.is_none() {
-            self.mask = Some(MaskTarget::new(&gpu, self.size));
-        }
-        if outputs.mask && self.is_deferred() && self.shadow_mask.is_none() {
-            self.shadow_mask =
-                Some(ShadowMask::new(&gpu.device, self.shadows.maps(), MASK_FORMAT, MaskNormals::FromDepth)?);
-        }
+        self.make_targets(outputs)?;
         let prepared = Prepared { every_map: outputs.maps, ..self.prepare(frame, true)? };
         let mut clock = Clock::start(&gpu, &self.timer);
         let samples = self.shadows.maps().config().filter.samples();
@@ -277,187 +271,32 @@ impl Renderer {
         self.timer.record(&mut encoder);
         let wall = clock.after_all(encoder)?;
 
-        let measured = self.timer.read(&gpu)?;
-        let over_maps = |pass: usize| recorded.map_passes.iter().any(|&(_, _, slot)| slot == pass);
-        let counts = |maps: bool| {
-            measured.counts.as_ref().map(|counts| {
-                let mut sum = PassCounts::default();
-                counts.iter().enumerate().filter(|&(i, _)| over_maps(i) == maps).for_each(|(_, &count)| sum += count);
-                sum
-            })
-        };
-        let is_prefiltered = self.shadows.maps().config().filter.is_prefiltered();
-        let (shadow_ms, frame_ms) = match (&measured.spans_ms, wall) {
-            (Some(spans), _) if !spans.is_empty() => {
-                let maps = || spans.iter().enumerate().filter(|&(i, _)| over_maps(i)).map(|(_, span)| span);
-                let last = recorded.map_passes.last().map_or(0, |&(_, _, slot)| slot);
-                let shadow_ms = match prepared.slices.is_empty() {
-                    // What turns depths into moments is no pass of ours; it is over when the next
-                    // one begins.
-                    true if is_prefiltered && maps().next().is_some() && last + 1 < spans.len() => spans[last + 1][0],
-                    true => maps().map(|span| span[1]).fold(0.0, f64::max),
-                    // Between the maps there is the view.
-                    false => maps().map(|span| span[1] - span[0]).sum(),
-                };
-                (shadow_ms, spans.iter().map(|span| span[1]).fold(0.0, f64::max))
-            }
-            (_, Some(wall)) => wall,
-            _ => (0.0, 0.0),
-        };
-        let shown = self.shadows.frame();
-        let stats = FrameStats {
-            plan_ms: prepared.plan_ms,
-            shadow_ms,
-            frame_ms,
-            splits: self.split_stats(0, frame, &recorded, measured.spans_ms.as_deref()),
-            shadow_draws: recorded.map_passes.iter().map(|(_, drawn, _)| drawn.draws).sum(),
-            shadow_triangles: recorded.map_passes.iter().map(|(_, drawn, _)| drawn.triangles).sum(),
-            more_lights: (1..self.shadows.lights().len())
-                .map(|light| LightStats {
-                    splits: self.split_stats(light, frame, &recorded, measured.spans_ms.as_deref()),
-                    plan: shown.shared_plan(light),
-                })
-                .collect(),
-            objects_in_view: prepared.objects_in_view,
-            view_draws: recorded.view.draws,
-            view_triangles: recorded.view.triangles,
-            shadow_counts: counts(true),
-            view_counts: counts(false),
-            bytes: self.shadows.maps().bytes(),
-            generation: self.shadows.maps().layout().generation().word(),
-            storage: self.shadows.maps().layout().storage().word(),
-            notes: self.notes.clone(),
-            plan: shown.shared_plan(0),
-        };
+        let stats = self.stats(frame, &prepared, &recorded, &self.timer.read(&gpu)?, wall);
         let [width, height] = self.size;
         const SIZED: &str = "a capture has as many bytes as its picture";
+        let read = |capture: Option<Capture>| capture.map(|capture| capture.read(&gpu)).transpose();
         Ok(Rendered {
-            picture: picture
-                .map(|capture| Ok::<_, Error>(RgbaImage::from_raw(width, height, capture.read(&gpu)?).expect(SIZED)))
-                .transpose()?,
-            mask: mask
-                .map(|capture| {
-                    // Visibility and hit are grey and alpha already.
-                    Ok::<_, Error>(GrayAlphaImage::from_raw(width, height, capture.read(&gpu)?).expect(SIZED))
-                })
-                .transpose()?,
+            picture: read(picture)?.map(|bytes| RgbaImage::from_raw(width, height, bytes).expect(SIZED)),
+            // Visibility and hit are grey and alpha already.
+            mask: read(mask)?.map(|bytes| GrayAlphaImage::from_raw(width, height, bytes).expect(SIZED)),
             maps: self.map_pictures(recorded.maps)?,
             stats,
         })
     }
 
-    /// Plans, uploads what moves, and sorts what is to be drawn. With `surfaces_alone` nothing but
-    /// what is drawn asks the maps.
-    pub(crate) fn prepare(&mut self, frame: &Frame<'_>, surfaces_alone: bool) -> Result<Prepared> {
-        let pose = frame.pose;
-        for (index, object) in pose.objects.iter().enumerate() {
-            check_object(index, object, self.scene.meshes.len())?;
+    /// Makes what is drawn to, when it is first asked for.
+    fn make_targets(&mut self, outputs: Outputs) -> Result<()> {
+        if outputs.picture && self.picture.is_none() {
+            self.picture = Some(PictureTarget::new(&self.gpu, self.size, self.samples));
         }
-        let view = frame.view;
-        let origin = (view.eye() / ORIGIN_STEP).round() * ORIGIN_STEP;
-
-        let caster_objects = self.casters_of(pose);
-        let casters: Vec<Aabb> = caster_objects.iter().map(|&i| pose.objects[i].bounds).collect();
-        let receivers: Vec<Aabb> = pose.objects.iter().map(|object| object.bounds).collect();
-        let mut near_to_far: Vec<(f64, usize)> = (0..pose.objects.len())
-            .filter(|&i| cull::may_be_seen(view, &pose.objects[i].bounds))
-            .map(|i| (view.view_depth(pose.objects[i].bounds.center()), i))
-            .collect();
-        near_to_far.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let visible: Vec<usize> = near_to_far.into_iter().map(|(_, i)| i).collect();
-        let planned_for = self.planned_for.unwrap_or(*view);
-        let asks_surfaces =
-            surfaces_alone && frame.shadows_on && frame.more_lights.is_empty() && self.planned_for.is_none();
-        let clusters = if asks_surfaces { self.receiver_clusters(pose, &caster_objects, &visible) } else { None };
-
-        let lamps: Vec<Lamp> = [frame.light].into_iter().chain(frame.more_lights.iter().copied()).collect();
-        let made_for = self.shadows.lights().len();
-        if lamps.len() != made_for {
-            return Err(Error::LampSlots { frame: lamps.len(), renderer: made_for });
+        if outputs.mask && self.mask.is_none() {
+            self.mask = Some(MaskTarget::new(&self.gpu, self.size));
         }
-        let lights: Vec<Light> = lamps.iter().map(|lamp| lamp.light).collect();
-        let begun = Instant::now();
-        let inputs = Inputs {
-            casters: &casters,
-            receivers: &receivers,
-            receiver_clusters: clusters.as_deref(),
-            origin,
-            image_size: self.size,
-            view_slot: self.view_slot,
-            enabled: frame.shadows_on,
-            tint: frame.tint,
-            ..Inputs::new(&planned_for, &lights)
-        };
-        self.shadows.prepare(&self.gpu.queue, &inputs)?;
-        let plan_ms = begun.elapsed().as_secs_f64() * 1e3;
-        self.skinned.update(&self.gpu, &self.scene_meshes, pose)?;
-        self.forward.prepare(&self.gpu, 0, &FrameUniform::new(view, &lamps, origin, None)?);
-        if let Some(contact) = &self.contact {
-            contact.prepare(&self.gpu, view, origin)?;
+        if outputs.mask && self.is_deferred() && self.shadow_mask.is_none() {
+            let mask = ShadowMask::new(&self.gpu.device, self.shadows.maps(), MASK_FORMAT, MaskNormals::FromDepth)?;
+            self.shadow_mask = Some(mask);
         }
-        let slices = self.shadows.frame().slices(view);
-        for slice in &slices {
-            let uniform = FrameUniform::new(view, &lamps, origin, Some(slice))?;
-            self.forward.prepare(&self.gpu, 1 + slice.split, &uniform);
-        }
-        self.timer.restart();
-
-        self.instances.clear();
-        let caster_runs = self.caster_runs(frame, origin, &caster_objects);
-        let grouped = self.instances.grouped(pose, origin, false, visible.iter().copied().map(once));
-        let solid = ViewList::new(&self.drawable(), pose, view, &grouped);
-        let far_to_near = self.with_translucent_parts(pose, visible.iter().rev().copied());
-        let translucent = self.instances.ordered(pose, origin, far_to_near.iter().copied());
-        let plan = self.shadows.frame().plan(0);
-        let last = plan.splits.len() - 1;
-        let slices = slices
-            .into_iter()
-            .map(|slice| {
-                let split = &plan.splits[slice.split];
-                // What is nearer than the first split or farther than the last one is drawn with
-                // them.
-                let near = if slice.split == 0 { f64::NEG_INFINITY } else { split.near };
-                let far = if slice.split == last { f64::INFINITY } else { split.far };
-                let lies_in = |object: &usize| {
-                    let depths = pose.objects[*object].bounds.corners().map(|corner| view.view_depth(corner));
-                    depths.iter().any(|&depth| depth >= near) && depths.iter().any(|&depth| depth <= far)
-                };
-                let solid = visible.iter().copied().filter(lies_in).map(once);
-                let grouped = self.instances.grouped(pose, origin, false, solid);
-                SliceRuns {
-                    slice,
-                    solid: ViewList::new(
-                        &Drawable {
-                            scene: &self.scene,
-                            skinned: &self.skinned.geometry,
-                            materials: &self.materials,
-                            instances: &self.instances,
-                        },
-                        pose,
-                        view,
-                        &grouped,
-                    ),
-                    translucent: self.instances.ordered(pose, origin, far_to_near.iter().copied().filter(lies_in)),
-                }
-            })
-            .collect();
-        self.instances.upload(&self.gpu)?;
-        Ok(Prepared {
-            origin,
-            plan_ms,
-            caster_runs,
-            solid,
-            translucent,
-            slices,
-            objects_in_view: visible.len(),
-            every_map: false,
-        })
-    }
-
-    fn with_translucent_parts(&self, pose: &Pose, objects: impl Iterator<Item = usize>) -> Vec<usize> {
-        let drawable = self.drawable();
-        let translucent = |i: &usize| drawable.has(&pose.objects[*i], |material| material.alpha == AlphaMode::Blend);
-        objects.filter(translucent).collect()
+        Ok(())
     }
 
     pub(crate) fn probe_pass(&self) -> &Probe {
@@ -525,52 +364,6 @@ impl Renderer {
     /// Whether an object is drawn into maps.
     pub(crate) fn casts(&self, object: &umbrage_scene::Object) -> bool {
         object.casts || self.dithered_nodes.get(object.node) == Some(&true)
-    }
-
-    fn split_stats(
-        &self,
-        light: usize,
-        frame: &Frame<'_>,
-        recorded: &Recorded,
-        spans_ms: Option<&[[f64; 2]]>,
-    ) -> Vec<SplitStats> {
-        let plan: &ShadowPlan = self.shadows.frame().plan(light);
-        let first = self.shadows.maps().first_map(light);
-        let objects: Vec<&umbrage_scene::Object> =
-            frame.pose.objects.iter().filter(|object| self.casts(object)).collect();
-        let drawable = self.drawable();
-        let dithered = self.shadows.maps().config().look.translucent == Translucent::Dithered;
-        let triangles = |caster: &u32| {
-            let drawn = |material: &GpuMaterial| dithered || material.alpha != AlphaMode::Blend;
-            drawable.triangles(objects[*caster as usize], drawn)
-        };
-        let stats = |(i, split): (usize, &umbrage::Split)| {
-            let draws_it = |pass: usize| self.shadows.maps().passes()[pass].splits().contains(&(first + i));
-            let draws = recorded.map_passes.iter().filter(|&&(pass, ..)| draws_it(pass));
-            let took = |spans: &[[f64; 2]]| {
-                draws.clone().filter_map(|&(_, _, slot)| spans.get(slot)).map(|span| span[1] - span[0]).sum()
-            };
-            // Of a map that has a pass of its own, what was drawn: maybe parts of casters.
-            let alone = draws.clone().find(|&&(pass, ..)| self.shadows.maps().passes()[pass].splits().len() == 1);
-            SplitStats {
-                near: split.near,
-                far: split.far,
-                texel_m: split.texel_m.max_element(),
-                warped: split.warp.is_some() && split.light_position.is_none(),
-                casters: split.casters.len(),
-                gpu_ms: spans_ms.map(took),
-                draws: draws.map(|(_, drawn, _)| drawn.draws).sum(),
-                triangles: match alone {
-                    Some((_, drawn, _)) => drawn.triangles,
-                    None if frame.shadows_on => plan.casters(i).iter().map(triangles).sum(),
-                    None => 0,
-                },
-                bytes: u64::from(split.size)
-                    * u64::from(split.size)
-                    * self.shadows.maps().config().depth_format.texel_bytes(),
-            }
-        };
-        plan.splits.iter().enumerate().map(stats).collect()
     }
 }
 

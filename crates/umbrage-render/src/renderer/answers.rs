@@ -3,9 +3,11 @@
 use glam::DVec3;
 use umbrage::{Aabb, ShadowPlan};
 
+use super::prepare::Prepared;
+use super::record::{Recorded, new_encoder};
+use super::{Frame, Renderer};
 use crate::probe::{self, ProbeAnswer, ProbePoint, Responder};
-use crate::record::{Prepared, Recorded, new_encoder};
-use crate::{Frame, Renderer, Result, cull};
+use crate::{Result, cull};
 
 impl Renderer {
     pub(crate) fn probe_unguarded(&mut self, frame: &Frame<'_>, points: &[ProbePoint]) -> Result<Vec<ProbeAnswer>> {

@@ -7,10 +7,10 @@ use umbrage::config::{Layout, Rebuilds};
 use umbrage::{ShadowConfig, View};
 use umbrage_scene::{Pose, Scene};
 
+use super::{Renderer, dithered_nodes, notes_of};
 use crate::casters::Casters;
 use crate::contact::Contact;
 use crate::forward::Forward;
-use crate::renderer::{Renderer, dithered_nodes, notes_of};
 use crate::timing::Timer;
 use crate::{Error, Result};
 

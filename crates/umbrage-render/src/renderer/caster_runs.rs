@@ -7,9 +7,9 @@ use glam::DVec3;
 use umbrage::{Aabb, ShadowPlan};
 use umbrage_scene::{Object, Pose};
 
+use super::{Frame, Renderer};
 use crate::draw_list::{Parts, Run};
 use crate::geometry::GpuPrimitive;
-use crate::renderer::{Frame, Renderer};
 use crate::shadow_mesh::{Cluster, descend};
 
 /// Triangles that each draw of an object in parts has to spare, or it is drawn whole: with others

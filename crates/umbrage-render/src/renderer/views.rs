@@ -2,7 +2,8 @@
 
 use umbrage::SunFade;
 
-use crate::{Frame, Outputs, Rendered, Renderer, Result};
+use super::{Frame, Outputs, Rendered, Renderer};
+use crate::Result;
 
 impl Renderer {
     /// Draws several views, for a split screen: each as if it were drawn alone, under the suns of

@@ -1,41 +1,17 @@
 //! The passes of a frame, in the order in which they are recorded: all maps and then the view, or,
 //! where one map is used for one split after the other, map and view slice by slice.
 
-use glam::DVec3;
 use umbrage_wgpu::Slice;
 use web_time::Instant;
 
+use super::prepare::Prepared;
+use super::{Outputs, Renderer};
 use crate::capture::Capture;
-use crate::draw_list::{Drawn, Run};
+use crate::draw_list::Drawn;
 use crate::forward::Bindings;
-use crate::renderer::{Outputs, Renderer};
 use crate::targets::{MaskTarget, PictureTarget, Turn};
 use crate::timing::Timer;
-use crate::view_list::ViewList;
 use crate::{Gpu, Result};
-
-/// A frame that is planned and uploaded, ready to be recorded.
-pub(crate) struct Prepared {
-    pub origin: DVec3,
-    pub plan_ms: f64,
-    /// What each pass over the maps draws; none where shadows are off.
-    pub caster_runs: Vec<Vec<Run>>,
-    pub solid: ViewList,
-    pub translucent: Vec<Run>,
-    /// The view's slices, where it is drawn slice by slice.
-    pub slices: Vec<SliceRuns>,
-    pub objects_in_view: usize,
-    /// Whether maps without casters are cleared, too: nobody reads those of several lights or
-    /// faces, but they may be wanted as pictures.
-    pub every_map: bool,
-}
-
-/// What lies in one slice of the view.
-pub(crate) struct SliceRuns {
-    pub slice: Slice,
-    pub solid: ViewList,
-    pub translucent: Vec<Run>,
-}
 
 /// A split's map on its way back.
 pub(crate) struct MapCapture {

@@ -1,0 +1,129 @@
+//! What a frame was made of and what it cost, from what was recorded and measured.
+
+use umbrage::ShadowPlan;
+use umbrage::config::Translucent;
+use umbrage_scene::AlphaMode;
+
+use super::prepare::Prepared;
+use super::record::Recorded;
+use super::{Frame, Renderer};
+use crate::materials::GpuMaterial;
+use crate::stats::{FrameStats, LightStats, SplitStats};
+use crate::timing::{Measured, PassCounts};
+
+impl Renderer {
+    /// The numbers of a frame. `wall` is the milliseconds of maps and frame by the CPU's clock,
+    /// where the GPU has none.
+    pub(super) fn stats(
+        &self,
+        frame: &Frame<'_>,
+        prepared: &Prepared,
+        recorded: &Recorded,
+        measured: &Measured,
+        wall: Option<(f64, f64)>,
+    ) -> FrameStats {
+        let is_of_maps = |pass: usize| recorded.map_passes.iter().any(|&(_, _, slot)| slot == pass);
+        let counts = |maps: bool| {
+            measured.counts.as_ref().map(|counts| {
+                let mut sum = PassCounts::default();
+                counts.iter().enumerate().filter(|&(i, _)| is_of_maps(i) == maps).for_each(|(_, &count)| sum += count);
+                sum
+            })
+        };
+        let (shadow_ms, frame_ms) = match (&measured.spans_ms, wall) {
+            (Some(spans), _) if !spans.is_empty() => self.milliseconds(prepared, recorded, spans),
+            (_, Some(wall)) => wall,
+            _ => (0.0, 0.0),
+        };
+        let spans = measured.spans_ms.as_deref();
+        let shown = self.shadows.frame();
+        let maps = self.shadows.maps();
+        FrameStats {
+            plan_ms: prepared.plan_ms,
+            shadow_ms,
+            frame_ms,
+            splits: self.split_stats(0, frame, recorded, spans),
+            shadow_draws: recorded.map_passes.iter().map(|(_, drawn, _)| drawn.draws).sum(),
+            shadow_triangles: recorded.map_passes.iter().map(|(_, drawn, _)| drawn.triangles).sum(),
+            more_lights: (1..self.shadows.lights().len())
+                .map(|light| LightStats {
+                    splits: self.split_stats(light, frame, recorded, spans),
+                    plan: shown.shared_plan(light),
+                })
+                .collect(),
+            objects_in_view: prepared.objects_in_view,
+            view_draws: recorded.view.draws,
+            view_triangles: recorded.view.triangles,
+            shadow_counts: counts(true),
+            view_counts: counts(false),
+            bytes: maps.bytes(),
+            generation: maps.layout().generation().word(),
+            storage: maps.layout().storage().word(),
+            notes: self.notes.clone(),
+            plan: shown.shared_plan(0),
+        }
+    }
+
+    /// Milliseconds of the maps and of the frame, from the passes' times on the GPU.
+    fn milliseconds(&self, prepared: &Prepared, recorded: &Recorded, spans: &[[f64; 2]]) -> (f64, f64) {
+        let is_of_maps = |pass: usize| recorded.map_passes.iter().any(|&(_, _, slot)| slot == pass);
+        let maps = || spans.iter().enumerate().filter(|&(i, _)| is_of_maps(i)).map(|(_, span)| span);
+        let last = recorded.map_passes.last().map_or(0, |&(_, _, slot)| slot);
+        let is_prefiltered = self.shadows.maps().config().filter.is_prefiltered();
+        let shadow_ms = match prepared.slices.is_empty() {
+            // What turns depths into moments is no pass of ours; it is over when the next one
+            // begins.
+            true if is_prefiltered && maps().next().is_some() && last + 1 < spans.len() => spans[last + 1][0],
+            true => maps().map(|span| span[1]).fold(0.0, f64::max),
+            // Between the maps there is the view.
+            false => maps().map(|span| span[1] - span[0]).sum(),
+        };
+        (shadow_ms, spans.iter().map(|span| span[1]).fold(0.0, f64::max))
+    }
+
+    fn split_stats(
+        &self,
+        light: usize,
+        frame: &Frame<'_>,
+        recorded: &Recorded,
+        spans_ms: Option<&[[f64; 2]]>,
+    ) -> Vec<SplitStats> {
+        let plan: &ShadowPlan = self.shadows.frame().plan(light);
+        let first = self.shadows.maps().first_map(light);
+        let objects: Vec<&umbrage_scene::Object> =
+            frame.pose.objects.iter().filter(|object| self.casts(object)).collect();
+        let drawable = self.drawable();
+        let dithered = self.shadows.maps().config().look.translucent == Translucent::Dithered;
+        let triangles = |caster: &u32| {
+            let drawn = |material: &GpuMaterial| dithered || material.alpha != AlphaMode::Blend;
+            drawable.triangles(objects[*caster as usize], drawn)
+        };
+        let stats = |(i, split): (usize, &umbrage::Split)| {
+            let draws_it = |pass: usize| self.shadows.maps().passes()[pass].splits().contains(&(first + i));
+            let draws = recorded.map_passes.iter().filter(|&&(pass, ..)| draws_it(pass));
+            let took = |spans: &[[f64; 2]]| {
+                draws.clone().filter_map(|&(_, _, slot)| spans.get(slot)).map(|span| span[1] - span[0]).sum()
+            };
+            // Of a map that has a pass of its own, what was drawn: maybe parts of casters.
+            let alone = draws.clone().find(|&&(pass, ..)| self.shadows.maps().passes()[pass].splits().len() == 1);
+            SplitStats {
+                near: split.near,
+                far: split.far,
+                texel_m: split.texel_m.max_element(),
+                warped: split.warp.is_some() && split.light_position.is_none(),
+                casters: split.casters.len(),
+                gpu_ms: spans_ms.map(took),
+                draws: draws.map(|(_, drawn, _)| drawn.draws).sum(),
+                triangles: match alone {
+                    Some((_, drawn, _)) => drawn.triangles,
+                    None if frame.shadows_on => plan.casters(i).iter().map(triangles).sum(),
+                    None => 0,
+                },
+                bytes: u64::from(split.size)
+                    * u64::from(split.size)
+                    * self.shadows.maps().config().depth_format.texel_bytes(),
+            }
+        };
+        plan.splits.iter().enumerate().map(stats).collect()
+    }
+}
