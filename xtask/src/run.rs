@@ -62,10 +62,11 @@ fn shown(command: &Command) -> String {
 /// Builds the command `umbrage` and returns where it lies.
 pub fn build_umbrage(release: bool) -> Result<PathBuf> {
     let mut build = cargo();
-    build.args(["build", "--package", "umbrage-cli"]);
-    if release {
-        build.arg("--release");
-    }
+    match release {
+        true => build.args(["build", "--release", "--package", "umbrage-cli"]),
+        // With the features that the tests are built with: one build serves both.
+        false => build.args(["build", "--workspace", "--bin", "umbrage"]),
+    };
     run(&mut build)?;
     let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |dir| root().join(dir));
     let binary =

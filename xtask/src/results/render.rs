@@ -408,11 +408,12 @@ const PICTURES: &str = "\
 
 fn section(figures: &Figures, title: &str, jobs: &[&str], about: &str, tables: &[Table]) -> Result<String> {
     let mut text = String::new();
-    write!(text, "## {title}\n\n{}\n", wrapped(about))?;
+    // A fence may follow a paragraph without a gap, and lines are few.
+    write!(text, "## {title}\n\n{}```sh\n", wrapped(about))?;
     for name in jobs {
-        writeln!(text, "    {}", figures.command(name))?;
+        writeln!(text, "{}", figures.command(name))?;
     }
-    text.push('\n');
+    text.push_str("```\n\n");
     tables.iter().for_each(|table| text.push_str(&table.markdown()));
     Ok(text)
 }
