@@ -28,6 +28,11 @@
 //! origin, where `instance` is its parameter `UmbrageInstance`. What stands before that is its own
 //! affair:
 //!
+//! **Instanced**, with matrices as attributes of an instance buffer that has one row for each
+//! caster; [`ShadowMap::rows`] says how it is drawn:
+//!
+#![doc = concat!("```wgsl\n", include_str!("../examples/casters/instance_buffer.wgsl"), "```")]
+//!
 //! **Instanced**, with matrices in a storage buffer in group 1:
 //!
 #![doc = concat!("```wgsl\n", include_str!("../examples/casters/instanced.wgsl"), "```")]

@@ -263,8 +263,8 @@ fn a_lamp_beside_a_sun_has_maps_of_its_own() {
         let listed: Vec<u32> = map.casters().map(|(caster, _)| caster).collect();
         assert_eq!(listed, plan.casters(map.splits().start), "light {}", map.light());
         assert!(!listed.is_empty(), "maps that nobody reads are not drawn");
-        let in_runs: Vec<u32> = map.runs().flat_map(|(casters, _)| casters).collect();
-        assert_eq!(in_runs, listed);
+        let rows: Vec<u32> = map.rows().expect("one map a pass").flatten().collect();
+        assert_eq!(rows, listed);
     }
     // Switching the lamp off needs other texts: receivers have fewer frames to choose from.
     assert_eq!(shadows.set_lights(&[LightKind::Directional]), Ok(Rebuilds::Pipelines));
@@ -331,6 +331,19 @@ fn documented_caster_shaders_make_pipelines() {
         bind_group_layouts: &[Some(&storage)],
         ..plain
     };
+    let columns = wgpu::vertex_attr_array![5 => Float32x4, 6 => Float32x4, 7 => Float32x4, 8 => Float32x4];
+    let position = wgpu::vertex_attr_array![0 => Float32x3];
+    // A stride of 0 stays with the row that is bound: what maps of several splits are drawn with.
+    let [rows, one_row] = [64, 0].map(|array_stride| {
+        let row =
+            wgpu::VertexBufferLayout { array_stride, step_mode: wgpu::VertexStepMode::Instance, attributes: &columns };
+        [Some(CasterPipeline::positions(12, &position)), Some(row)]
+    });
+    let [in_rows, in_one_row] = [&rows, &one_row].map(|buffers| CasterPipeline {
+        wgsl: include_str!("../examples/casters/instance_buffer.wgsl"),
+        buffers,
+        ..plain
+    });
     let skinned = CasterPipeline {
         wgsl: include_str!("../examples/casters/skinned.wgsl"),
         buffers: &[Some(CasterPipeline::positions(36, &skin))],
@@ -349,7 +362,7 @@ fn documented_caster_shaders_make_pipelines() {
             Shadows::new(&gpu.device, &config(&[64; 3], PCF3, &format!("blend=0 {settings}"))).expect("valid");
         // Where instances say which splits are meant, the application has none of its own.
         let own_instances = !settings.starts_with("generation");
-        let instanced = own_instances.then_some(instanced);
+        let instanced = if own_instances { vec![instanced, in_rows] } else { vec![in_one_row] };
         for options in [plain, skinned, alpha_tested].into_iter().chain(instanced) {
             gpu.checked(|| shadows.caster_pipeline(&options).unwrap_or_else(|error| panic!("{settings}: {error}")));
         }

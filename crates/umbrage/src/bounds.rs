@@ -1,6 +1,8 @@
 //! Axis-aligned boxes in world space.
 
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
+
+use crate::Matrix;
 
 /// The largest coordinate and distance that is accepted, metres: a thousand million kilometres.
 pub(crate) const MOST_METRES: f64 = 1e12;
@@ -105,10 +107,21 @@ impl Aabb {
         })
     }
 
-    /// The smallest axis-aligned box around the transformed box.
+    /// The smallest axis-aligned box around this one where a matrix places it: the bounds of an
+    /// instance from those of its mesh.
+    ///
+    /// The matrix is affine, as an application has it: of `glam`, or an array of columns.
+    ///
+    /// ```
+    /// # use umbrage::Aabb;
+    /// let mesh = Aabb::from([[-0.5_f32; 3], [0.5; 3]]);
+    /// let world_from_mesh = [[2.0_f32, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [7.0, 0.0, 0.0, 1.0]];
+    /// assert_eq!(mesh.transformed(world_from_mesh), Aabb::from([[6.0_f32, -0.5, -0.5], [8.0, 0.5, 0.5]]));
+    /// ```
     #[must_use]
-    pub fn transformed(self, target_from_source: &DAffine3) -> Self {
-        Self::from_points(self.corners().map(|corner| target_from_source.transform_point3(corner)))
+    pub fn transformed(self, target_from_source: impl Into<Matrix>) -> Self {
+        let matrix = target_from_source.into().0;
+        Self::from_points(self.corners().map(|corner| matrix.transform_point3(corner)))
     }
 }
 

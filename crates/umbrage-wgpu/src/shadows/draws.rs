@@ -59,10 +59,9 @@ impl Draws {
     }
 }
 
-/// Neighbouring casters that are drawn with the same instances, as one.
-pub(super) fn runs(list: &[(u32, Range<u32>)]) -> impl Iterator<Item = (Range<u32>, Range<u32>)> + '_ {
-    let follows = |a: &(u32, Range<u32>), b: &(u32, Range<u32>)| b.0 == a.0 + 1 && a.1 == b.1;
-    list.chunk_by(follows).map(|run| (run[0].0..run[run.len() - 1].0 + 1, run[0].1.clone()))
+/// Casters of a pass that draws one map, as ranges of neighbours.
+pub(super) fn rows(list: &[(u32, Range<u32>)]) -> impl Iterator<Item = Range<u32>> + '_ {
+    list.chunk_by(|a, b| b.0 == a.0 + 1).map(|run| run[0].0..run[run.len() - 1].0 + 1)
 }
 
 #[cfg(test)]
@@ -70,9 +69,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn neighbours_are_one_run() {
-        let list = [(3, 0..1), (4, 0..1), (5, 0..2), (6, 0..2), (8, 0..2)];
-        assert_eq!(runs(&list).collect::<Vec<_>>(), [(3..5, 0..1), (5..7, 0..2), (8..9, 0..2)]);
-        assert_eq!(runs(&[]).count(), 0);
+    fn neighbours_are_one_range() {
+        let list = [3, 4, 5, 8].map(|caster| (caster, 0..1));
+        assert_eq!(rows(&list).collect::<Vec<_>>(), [3..6, 8..9]);
+        assert_eq!(rows(&[]).count(), 0);
     }
 }

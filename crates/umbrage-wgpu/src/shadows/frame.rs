@@ -103,20 +103,32 @@ impl<'a> ShadowMap<'a> {
         self.shadows.draws.of_pass(self.pass).iter().cloned()
     }
 
-    /// The casters as runs of neighbours: indices `a..b` that are all drawn with the same
-    /// instances.
+    /// The casters as ranges of [`crate::Inputs::casters`], for an application whose instance buffer
+    /// has one row for each caster, in their order: one draw of a mesh draws a range of rows.
     ///
-    /// Where casters are instances of one mesh and [`ShadowMap::takes_instances`], a run is one
-    /// draw: `pass.draw_indexed(indices, 0, casters)`.
-    pub fn runs(&self) -> impl Iterator<Item = (Range<u32>, Range<u32>)> + use<'a> {
-        draws::runs(self.shadows.draws.of_pass(self.pass))
-    }
-
-    /// Whether instances of draws are the application's own, which may then draw several casters at
-    /// once. With layered, instanced and mixed layouts they say which splits a caster belongs to.
+    /// `None` with layered, instanced and mixed layouts. Instances of draws then say which splits a
+    /// caster belongs to, and [`ShadowMap::casters`] has them: draw one caster at a time. Matrices
+    /// that are attributes follow those instances there, so the instance buffer has `array_stride`
+    /// 0 in the casters' pipeline, and each draw binds the caster's own row.
+    ///
+    /// ```no_run
+    /// # use umbrage_wgpu::{ShadowMap, wgpu};
+    /// # fn draw(map: &ShadowMap<'_>, pass: &mut wgpu::RenderPass<'_>, rows: &wgpu::Buffer, row_bytes: u64) {
+    /// match map.rows() {
+    ///     Some(ranges) => ranges.for_each(|range| pass.draw_indexed(0..36, 0, range)),
+    ///     None => {
+    ///         for (caster, instances) in map.casters() {
+    ///             pass.set_vertex_buffer(1, rows.slice(u64::from(caster) * row_bytes..));
+    ///             pass.draw_indexed(0..36, 0, instances);
+    ///         }
+    ///     }
+    /// }
+    /// # }
+    /// ```
     #[must_use]
-    pub fn takes_instances(&self) -> bool {
-        self.shadows.maps.passes()[self.pass].is_alone()
+    pub fn rows(&self) -> Option<impl Iterator<Item = Range<u32>> + use<'a>> {
+        let is_alone = self.shadows.maps.passes()[self.pass].is_alone();
+        is_alone.then(|| draws::rows(self.shadows.draws.of_pass(self.pass)))
     }
 
     /// The group that [`Shadows::caster_wgsl`] declares, for this map.

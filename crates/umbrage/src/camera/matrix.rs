@@ -1,6 +1,6 @@
 //! Matrices as applications have them.
 
-use glam::{DMat4, Mat4};
+use glam::{DAffine3, DMat4, Mat4};
 
 /// A 4×4 matrix of columns, as an application has it: of `glam` or plain arrays, in `f32` or `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +15,12 @@ impl From<DMat4> for Matrix {
 impl From<Mat4> for Matrix {
     fn from(matrix: Mat4) -> Self {
         Self(matrix.as_dmat4())
+    }
+}
+
+impl From<&DAffine3> for Matrix {
+    fn from(matrix: &DAffine3) -> Self {
+        Self(DMat4::from(*matrix))
     }
 }
 
