@@ -97,7 +97,7 @@ impl Uniform {
 }
 
 /// A uniform and a bind group layout for `umbrage_contact_visibility` ([`contact_wgsl`]). The app
-/// draws its picture's depth first, with one sample a pixel, into a texture that it may bind as
+/// draws its picture's depth first, with one sample per pixel, into a texture that it may bind as
 /// `texture_depth_2d`. Not on GL and WebGL2, which cannot load from one.
 #[derive(Debug)]
 pub struct ContactShadows {

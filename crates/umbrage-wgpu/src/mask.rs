@@ -72,7 +72,7 @@ impl Uniform {
 /// applications that shade later: red is the first light's visibility (1 where nothing was drawn),
 /// green 1 where something was.
 ///
-/// Positions are rebuilt from depth with one sample a pixel; they agree with the surfaces' own to
+/// Positions are rebuilt from depth with one sample per pixel; they agree with the surfaces' own to
 /// rounding (`docs/notes/coordinates.md`).
 /// Not on GL and WebGL2, which cannot load from a depth texture.
 #[derive(Debug)]

@@ -104,7 +104,7 @@ pub(crate) struct Moments {
     halve: wgpu::RenderPipeline,
     far: wgpu::Color,
     splits: Vec<SplitTargets>,
-    /// What the last plan wants of each split; `None` where nothing throws a shadow.
+    /// What the last plan wants of each split; `None` where nothing casts a shadow.
     wanted: Vec<Option<layout::MomentPass>>,
 }
 

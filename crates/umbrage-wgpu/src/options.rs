@@ -84,7 +84,7 @@ pub(crate) fn bias_kind(bias: ReceiverBias) -> BiasKind {
 
 /// The maps of one light.
 ///
-/// Maps for a spot light serve a directional light, too; those for a point light serve any.
+/// Maps for a spot light serve a directional light too; those for a point light serve any.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct LightMaps {
     /// What kind of light they are for. A point light has six times the maps of the others.

@@ -165,7 +165,7 @@ impl PointLight {
     }
 }
 
-/// Any light that throws shadows.
+/// Any light that casts shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Light {
     /// A sun.

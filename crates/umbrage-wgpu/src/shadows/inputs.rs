@@ -19,7 +19,7 @@ pub struct Inputs<'a> {
     pub view: &'a View,
     /// One light for each that the maps were made for, in that order.
     pub lights: &'a [Light],
-    /// Bounds of what throws shadows. [`crate::ShadowMap::casters`] speaks of them by index.
+    /// Bounds of what casts shadows. [`crate::ShadowMap::casters`] speaks of them by index.
     pub casters: &'a [Aabb],
     /// Bounds of what shows shadows, most casters among them. Where the list is empty, or holds
     /// nothing that is in view, casters serve as receivers.
@@ -31,8 +31,8 @@ pub struct Inputs<'a> {
     /// Which members of the set take part: those that are on one of these layers.
     pub layers: Layers,
     /// Bounds that hold all that is drawn of the receivers in view and leave less air than
-    /// [`Inputs::receivers`]: [`umbrage::ShadowPlan::casts_into`] then rejects more parts of casters. `None`:
-    /// not known.
+    /// [`Inputs::receivers`]: [`umbrage::ShadowPlan::casts_into`] then rejects more parts of
+    /// casters. `None`: not known.
     pub receiver_clusters: Option<&'a [Aabb]>,
     /// World point that positions in the application's shaders are relative to. Keep it within a
     /// kilometre or two of the eye and move it in whole steps: static shadows stand still between

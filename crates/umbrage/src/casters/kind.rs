@@ -62,7 +62,7 @@ impl std::ops::BitOr for Layers {
 /// What a box of a set is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
-    /// To throw shadows.
+    /// To cast shadows.
     Caster,
     /// To show them.
     Receiver,

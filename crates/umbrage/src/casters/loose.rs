@@ -21,7 +21,7 @@ pub(super) struct Entry {
     pub is_due: bool,
 }
 
-/// Changes after which nodes are fitted anew, at least.
+/// Changes after which nodes are fitted again, at least.
 const LEAST_CHANGES: usize = 64;
 
 /// By how much more room leaves may take than when they were last put in order.

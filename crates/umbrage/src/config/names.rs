@@ -60,8 +60,8 @@ pub struct Word {
     pub help: &'static str,
 }
 
-/// The message for a word that no value has.
+/// The message for an unknown word.
 pub(crate) fn unknown(what: &str, text: &str, words: &[Word]) -> String {
     let words: Vec<&str> = words.iter().map(|word| word.word).collect();
-    format!("{text:?} is no {what}; give one of {}", words.join(", "))
+    format!("{text:?} is not a known {what}; give one of {}", words.join(", "))
 }

@@ -7,7 +7,7 @@ use crate::bounds::Placed;
 use crate::casters::{BoxTree, Counter, Crowd, Role};
 use crate::{Aabb, CasterSet, Error, Layers, Light, Result, View};
 
-/// The boxes of a plan's casters or receivers: a list of them, which is looked at anew in every
+/// The boxes of a plan's casters or receivers: a list of them, which is read again in every
 /// frame, or a set that keeps them.
 ///
 /// Slices, arrays, vectors and sets turn into it by themselves.
@@ -102,7 +102,7 @@ pub struct PlanInputs<'a> {
     pub view: &'a View,
     /// The light.
     pub light: Light,
-    /// World boxes of what throws shadows, as a list or a set. A plan's caster indices refer to
+    /// World boxes of what casts shadows, as a list or a set. A plan's caster indices refer to
     /// this list, or are the set's keys.
     pub casters: Boxes<'a>,
     /// World boxes of what shows shadows, as a list or a set; most objects are in both. Casters
