@@ -88,7 +88,7 @@ impl CasterPipeline<'_> {
 impl Shadows {
     /// A pipeline that draws casters into every map of [`crate::ShadowFrame::maps`], with
     /// [`crate::ShadowMap::bind_group`] in group 0. Valid until [`Shadows::set_config`] or
-    /// [`Shadows::set_lights`] answers [`umbrage::config::Rebuilds::Pipelines`].
+    /// [`Shadows::set_lights`] returns [`umbrage::config::Rebuilds::Pipelines`].
     ///
     /// # Errors
     /// [`crate::Error::Device`] if the device refuses shader or states,

@@ -170,7 +170,7 @@ impl ContactShadows {
     }
 }
 
-/// Text to put before a shader that asks for contact shadows, beside
+/// WGSL to put before a shader that computes contact shadows, beside
 /// [`crate::ShadowMaps::receiver_wgsl`] or without it; `group` is the index at which the app binds
 /// [`ContactShadows::bind_group`]. `umbrage_contact_visibility(position, normal, to_light, noise)
 /// -> f32` is to be multiplied with, or taken the smaller of, what the maps say.

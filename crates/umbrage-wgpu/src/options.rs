@@ -131,7 +131,7 @@ pub struct FrameOptions {
     pub origin: DVec3,
     /// Whether there are shadows. Without them every surface that faces the light is lit.
     pub enabled: bool,
-    /// Whether `umbrage_shadow` answers with a debug colour for each split.
+    /// Whether `umbrage_shadow` returns a debug colour for each split.
     pub tint: bool,
 }
 

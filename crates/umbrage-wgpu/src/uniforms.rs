@@ -468,7 +468,7 @@ mod tests {
         assert!((straight - right).abs() > 100.0, "{straight} and {right}");
     }
 
-    /// What engines of other shaders are told is what ours do.
+    /// The bias for engines with other shaders is that of ours.
     #[test]
     fn the_planners_bias_has_the_shaders_constants() {
         let text = umbrage_shaders::receiver(0, umbrage_shaders::Maps::default());

@@ -1,4 +1,4 @@
-//! What the planner answers: everything a renderer needs for one light and one view.
+//! The result of the planner: everything a renderer needs for one light and one view.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
@@ -32,7 +32,7 @@ pub struct ShadowPlan {
     pub light: Option<Light>,
     /// View depth at which the fade to lit begins; `C_m` if there is none.
     pub fade_begin: f64,
-    /// Which map answers for a point.
+    /// Which map a point uses.
     pub selection: Selection,
     /// With [`Selection::Map`]: share of a map's half edge over which it blends into the next that
     /// contains the point.
@@ -188,7 +188,7 @@ impl ShadowPlan {
 ///
 /// A warped map is the picture that [`Split::warp`] takes. The axes, `min_texel` and the depths are
 /// then those of the plain map that it replaces; [`Split::map_from_world`] and its neighbours
-/// answer for either kind.
+/// work for either kind.
 ///
 /// The map of a local light is a perspective picture taken from [`Split::light_position`] along
 /// [`Split::depth_axis`], which [`Split::warp`] takes too: w is the depth along that axis in

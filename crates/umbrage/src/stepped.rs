@@ -2,8 +2,8 @@
 
 use crate::{DirectionalLight, Error, Result};
 
-/// Follows a moving sun in steps, so that shadows stand still between two of them, and says how to
-/// fade from one to the next.
+/// Follows a moving sun in steps, so that shadows stand still between two of them, and returns how
+/// to fade from one to the next.
 ///
 /// If the sun moves a little every frame, every shadow edge falls into other texels every frame,
 /// and all edges crawl. This sun stays where it is until it is `step` behind, and is then
@@ -55,8 +55,8 @@ impl SunFade {
 
 impl SteppedSun {
     /// `step` in radians: how far behind the true sun shadows may fall. `fade` is how long a step
-    /// is faded, in whatever unit [`SteppedSun::follow`] is told (seconds, frames); 0 is a sudden
-    /// step.
+    /// is faded, in the unit of the time given to [`SteppedSun::follow`] (seconds, frames); 0 is a
+    /// sudden step.
     ///
     /// # Errors
     /// [`Error::InvalidLight`] for a step outside (0, π], or a fade that is negative or not finite.

@@ -76,7 +76,7 @@ pub fn device_descriptor<'a>(adapter: &wgpu::Adapter, own: wgpu::DeviceDescripto
 /// The shadow maps of one light for one view, or of several lights
 /// ([`ShadowMaps::prepare_lights`]), on the GPU: the low level below [`crate::Shadows`].
 ///
-/// [`Layout`] says where maps are kept and how they are drawn. Each frame: [`ShadowMaps::prepare`],
+/// [`Layout`] chooses where maps are stored and how they are drawn. Each frame: [`ShadowMaps::prepare`],
 /// every pass of [`ShadowMaps::passes`] from [`ShadowMaps::begin_pass`], [`ShadowMaps::prefilter`],
 /// then any pass of the app with [`ShadowMaps::receiver_bind_group`]. With [`Layout::Reused`] the
 /// app's pass is taken apart into slices, each after its map: see [`ShadowMaps::slice_bind_group`].
@@ -227,7 +227,7 @@ impl ShadowMaps {
 
     /// Begins pass `pass` of [`ShadowMaps::passes`]: its maps are cleared, viewport and scissor are
     /// set and have to stay. Bind [`ShadowMaps::caster_bind_group`] of the same pass and draw what
-    /// [`MapPass::casters`] says in any order. Begin every pass, the first one first: it clears
+    /// [`MapPass::casters`] lists, in any order. Begin every pass, the first one first: it clears
     /// what the others share.
     ///
     /// # Panics
@@ -434,7 +434,7 @@ impl ShadowMaps {
         (self.targets.layer(tile.layer), tile.corner)
     }
 
-    /// The texture that holds the map of split `split`, where [`ShadowMaps::map_place`] says. Can
+    /// The texture that holds the map of split `split`, at [`ShadowMaps::map_place`]. Can
     /// be copied from, but not with several samples per texel.
     ///
     /// # Panics
@@ -512,7 +512,7 @@ impl ShadowMaps {
         &self.receivers.layout
     }
 
-    /// The group to bind where visibility is asked for. With [`Layout::Reused`] it answers for
+    /// The group to bind where visibility is computed. With [`Layout::Reused`] it answers for
     /// whatever map was drawn last: bind [`ShadowMaps::slice_bind_group`] instead.
     #[must_use]
     pub fn receiver_bind_group(&self) -> &wgpu::BindGroup {

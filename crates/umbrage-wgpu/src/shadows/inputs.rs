@@ -19,7 +19,7 @@ pub struct Inputs<'a> {
     pub view: &'a View,
     /// One light for each that the maps were made for, in that order.
     pub lights: &'a [Light],
-    /// Bounds of what casts shadows. [`crate::ShadowMap::casters`] speaks of them by index.
+    /// Bounds of what casts shadows. [`crate::ShadowMap::casters`] refers to them by index.
     pub casters: &'a [Aabb],
     /// Bounds of what shows shadows, most casters among them. Where the list is empty, or holds
     /// nothing that is in view, casters serve as receivers.
@@ -45,7 +45,7 @@ pub struct Inputs<'a> {
     /// Whether there are shadows. Without them there is nothing to draw, every surface that faces a
     /// light is lit, and what stabilised maps hold stays as it was.
     pub enabled: bool,
-    /// Whether `umbrage_shadow` answers with a debug colour for each split.
+    /// Whether `umbrage_shadow` returns a debug colour for each split.
     pub tint: bool,
 }
 
@@ -73,7 +73,7 @@ impl<'a> Inputs<'a> {
     /// Casters and receivers as the planner takes them.
     ///
     /// # Errors
-    /// [`Error::SetAndLists`] for lists beside a set: nobody would look at them.
+    /// [`Error::SetAndLists`] for lists beside a set: they would be ignored.
     pub(super) fn boxes(&self) -> Result<[Boxes<'a>; 2]> {
         let Some(set) = self.set else { return Ok([self.casters.into(), self.receivers.into()]) };
         match self.casters.len() + self.receivers.len() {

@@ -87,7 +87,7 @@ impl Shadows {
     /// [`LightMaps`].
     ///
     /// A choice that a plan makes by itself and that excludes a kind of light, such as a warp for a
-    /// lamp, is replaced for that light alone; [`Shadows::notes`] says so.
+    /// lamp, is replaced for that light alone; [`Shadows::notes`] lists it.
     ///
     /// # Errors
     /// Those of [`ShadowMaps::new`].
@@ -210,7 +210,7 @@ impl Shadows {
         self.maps.receiver_layout()
     }
 
-    /// WGSL to put before a shader that asks for visibility; `group` is the index at which
+    /// WGSL to put before a shader that computes visibility; `group` is the index at which
     /// [`Shadows::bind_group`] is bound.
     #[must_use]
     pub fn receiver_wgsl(&self, group: u32) -> String {
@@ -232,7 +232,7 @@ impl Shadows {
         self.maps.caster_wgsl_with(group, members)
     }
 
-    /// The maps: the low level, which knows textures, passes and pipeline states.
+    /// The maps: the low-level API, with textures, passes and pipeline states.
     #[must_use]
     pub fn maps(&self) -> &ShadowMaps {
         &self.maps
@@ -341,7 +341,7 @@ fn planned_with(maps: &ShadowMaps, config: &ShadowConfig, lights: &[LightMaps]) 
     (planned, notes)
 }
 
-/// What planners are told beside a config. The picture's size is a frame's.
+/// The options of planners beside a config. The picture's size is given per frame.
 fn planner_options(maps: &ShadowMaps) -> PlannerOptions {
     PlannerOptions { depth_clamp: maps.depth_clamp(), ..PlannerOptions::default() }
 }

@@ -285,7 +285,7 @@ impl CasterSet {
         Ok(())
     }
 
-    /// Removes a caster. Its handle names nobody from now on.
+    /// Removes a caster. Its handle is invalid from now on.
     ///
     /// # Errors
     /// [`Error::RemovedCaster`].

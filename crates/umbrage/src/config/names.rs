@@ -1,4 +1,4 @@
-//! Words for the values of plain enums: one list says the Rust name, the word and one line of help.
+//! Words for the values of plain enums: one list has the Rust name, the word and one line of help.
 
 /// Declares an enum without data whose values have a word each, in config files and on the command
 /// line.

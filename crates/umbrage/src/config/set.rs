@@ -68,7 +68,7 @@ fn single_map<'a>(given: &Given<'a>) -> Result<Option<&'a str>, Wrong> {
     Ok(Some(technique).filter(|technique| *technique != "pssm"))
 }
 
-/// The number of splits, and the setting that says so.
+/// The number of splits, and the setting that determines it.
 fn split_count(
     config: &ShadowConfig,
     given: &Given<'_>,

@@ -68,7 +68,7 @@ impl Default for LocalSizes {
 }
 
 impl Held {
-    /// Takes the view and the light of the next frame, and says what the camera does.
+    /// Takes the view and the light of the next frame, and returns what the camera does.
     pub(crate) fn begin(&mut self, view: &View, direction: DVec3) -> Standing {
         if self.light_direction.replace(direction) != Some(direction) {
             self.rectangle = Default::default();
@@ -81,7 +81,7 @@ impl Held {
         standing
     }
 
-    /// What a fresh planner would see: nothing is held of the range and the lens.
+    /// What a new planner would see: nothing is held of the range and the lens.
     pub(crate) fn released(&self) -> Self {
         Self { standstill: self.standstill, ..Self::default() }
     }

@@ -1,4 +1,4 @@
-//! How held sizes recover: back to what a fresh planner would choose, while the camera stands
+//! How held sizes recover: back to what a new planner would choose, while the camera stands
 //! still.
 //!
 //! A held size is never smaller than what a frame needs, but it may be larger for as long as the

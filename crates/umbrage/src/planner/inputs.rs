@@ -67,7 +67,7 @@ impl<'a> Boxes<'a> {
         Ok(())
     }
 
-    /// As the planner asks them.
+    /// As the planner reads them.
     pub(super) fn crowd<'b>(
         &self,
         tree: &'b BoxTree,
@@ -85,7 +85,7 @@ impl<'a> Boxes<'a> {
     }
 }
 
-/// What the planner is told each frame.
+/// The inputs of the planner for one frame.
 ///
 /// ```
 /// # use umbrage::{Aabb, DirectionalLight, Frustum, PlanInputs, View};

@@ -108,7 +108,7 @@ impl Planner {
         &self.config
     }
 
-    /// What the planner was told beside the config.
+    /// The options given beside the config.
     #[must_use]
     pub fn options(&self) -> PlannerOptions {
         self.options
