@@ -50,7 +50,7 @@ pub fn build() -> Result<()> {
     Ok(())
 }
 
-/// Draws the book's pictures anew.
+/// Redraws the pictures of the book.
 pub fn draw() -> Result<()> {
     let umbrage = build_umbrage(true)?;
     adapter::ensure(&umbrage)?;

@@ -12,7 +12,7 @@ use crate::{
 
 /// Tests that need an adapter fail without one, rather than skip, where this is 1.
 const REQUIRE_GPU: &str = "UMBRAGE_REQUIRE_GPU";
-/// Tests write their references anew where this is 1.
+/// Tests write their references again if this is 1.
 const BLESS: &str = "UMBRAGE_BLESS";
 
 /// What a browser runs.
@@ -52,7 +52,7 @@ pub fn quick() -> Result<()> {
     run(cargo().arg("test").args(of(&QUICK_CRATES)))
 }
 
-/// Writes the joined WGSL anew.
+/// Writes the joined WGSL again.
 pub fn shaders() -> Result<()> {
     run(cargo().args(["run", "--quiet", "--package", SHADERS_JOIN]))
 }

@@ -25,12 +25,12 @@ Usage: cargo xtask COMMAND
           formatting, lints, documentation, features, packages, the build for the browser and all tests, as CI runs them;
           --quick: formatting and the tests of what needs no graphics adapter, in under two minutes once it is built
   book [--pictures]
-          build the book into out/book; --pictures draws its pictures anew instead
+          build the book into out/book; --pictures redraws its pictures instead
   fuzz    check 1,000,000 plans of random scenes and load 100,000 mutated files; UMBRAGE_FUZZ_CASES, UMBRAGE_FUZZ_FILES
           and UMBRAGE_FUZZ_SEED choose others
   shaders join the modules of umbrage-shaders/shaders into the texts that are checked in, umbrage-shaders/src/wgsl
   package pack every crate that is published and build each from its package
-  bless   draw the reference pictures of the tests anew
+  bless   redraw the reference pictures of the tests
   results [--resume | --render | --tiny]
           run the jobs whose figures docs/results.md shows (up to 25 minutes), keep the figures in docs/results and
           render the page; --resume leaves out jobs whose figures are of this build, --render runs none, --tiny runs

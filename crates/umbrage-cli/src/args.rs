@@ -1,4 +1,4 @@
-//! What was typed: the subcommands. Each one's own options stand in its file.
+//! What was typed: the subcommands. The options of each are in its file.
 //!
 //! One set of scene, camera, light and time options serves every subcommand; what a subcommand does
 //! not need it accepts and ignores, so one argument list serves `render`, `probe` and `truth`.
@@ -25,21 +25,19 @@ pub struct Args {
 pub enum Command {
     /// Draw the scene: a picture, its visibility mask, its shadow maps, a report
     Render(Box<RenderArgs>),
-    /// Answer the visibility of given points, from the very maps that `render` uses
+    /// Compute the visibility of given points, from the maps that `render` uses
     Probe(Box<ProbeArgs>),
-    /// Work out the visibility mask exactly, by rays
+    /// Trace the exact visibility mask with rays
     Truth(Box<TruthArgs>),
-    /// Say how shadows would be made, without a GPU: planes, matrices and casters of each split, as
-    /// JSON
+    /// Plan shadow maps without a GPU: planes, matrices and casters of each split, as JSON
     Plan(Box<PlanArgs>),
     /// Draw the papers' theory: split schemes and aliasing, areas, fits, frusta
     Theory(TheoryArgs),
-    /// Judge techniques beside each other: contact sheets, scores, one page
+    /// Compare techniques with each other and with the truth: contact sheets, scores, one page
     Compare(Box<CompareArgs>),
-    /// Search the best settings for a budget of memory, against the judge
+    /// Search the best settings for a memory budget, judged by rays
     Tune(Box<TuneArgs>),
-    /// Measure what shadows cost: times and counts of techniques in turn, ratios to the first, one
-    /// page
+    /// Measure the cost of shadows: times and counts of techniques, ratios to the first, one page
     Bench(Box<BenchArgs>),
     /// Draw the worlds and a city from near and far with the defaults, as one page
     Gallery(GalleryArgs),
@@ -47,8 +45,8 @@ pub enum Command {
     /// does
     #[cfg(feature = "view")]
     #[command(
-        mut_arg("scene", |arg| arg.required(false).default_value("chessboard")),
-        mut_arg("size", |arg| arg.default_value("1360x850").help("Pixels of the window")),
+        mut_arg("scene", |arg| arg.required(false).default_value(crate::view::FIRST_SCENE)),
+        mut_arg("size", |arg| arg.default_value("1360x850").help("Size of the window in pixels")),
         mut_arg("frames", |arg| arg.help("With --screenshot: pictures of the scene before it [default: 1]"))
     )]
     View(Box<crate::view::ViewArgs>),
@@ -58,7 +56,7 @@ pub enum Command {
         #[command(subcommand)]
         command: WorldsCommand,
     },
-    /// Say which graphics adapter would be used, or fail if there is none
+    /// Print which graphics adapter would be used, or fail if there is none
     #[command(hide = true)]
     Adapter,
 }

@@ -25,7 +25,7 @@ pub struct BenchArgs {
     /// Scenes as for `umbrage render` [default: the four worlds]
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<String>,
-    /// Techniques, as for `umbrage compare`; the first is what the others are divided by
+    /// Techniques, as for `umbrage compare`; ratios are to the first
     #[arg(
         long,
         value_name = "LIST",
@@ -33,18 +33,18 @@ pub struct BenchArgs {
         default_value = "ssm:1024,pssm:2:512,pssm:3:512,pssm:3:512:scheme=optimal,pssm:4:512"
     )]
     pub techniques: Vec<String>,
-    /// All filters over four maps of 1024² instead of techniques, divided by pcf2; over robot-war
+    /// All filters over four maps of 1024² instead of techniques, with ratios to pcf2; in robot-war
     /// if no scene is named
     #[arg(long, conflicts_with_all = ["techniques", "with"])]
     pub filters: bool,
-    /// Settings for all techniques that do not say otherwise, as for `umbrage compare`; the papers'
-    /// splits meet in hard borders
+    /// Settings for all techniques that do not set them, as for `umbrage compare`; the papers'
+    /// splits have hard borders
     #[arg(long, value_name = "SETTINGS", default_value = "preset=papers:filter=pcf2:stabilize=none:blend=0")]
     pub with: String,
-    /// Rounds that are measured, after one that is not
+    /// Measured rounds, after one for warming up
     #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub rounds: u32,
-    /// Pixels
+    /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = parse::size, allow_hyphen_values = true)]
     pub size: [u32; 2],
     /// Samples per pixel of the picture: 1 or 4
@@ -53,7 +53,7 @@ pub struct BenchArgs {
     /// Camera by name or number [default: middle, or the scene's first]
     #[arg(long, value_name = "NAME|INDEX")]
     pub camera: Option<String>,
-    /// The way light travels [default: the scene's own sun]
+    /// Direction in which light travels [default: the scene's own sun]
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true)]
     pub sun: Option<DVec3>,
     /// Seconds into the scenes' animations
@@ -62,7 +62,7 @@ pub struct BenchArgs {
     /// Numbers of objects for GPU Gems' Figure 10-9, four splits each
     #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "10,30,100,300,1000", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub objects: Vec<u32>,
-    /// Measure every pair of generation and storage on each scene, too, with PSSM(4; 512²)
+    /// Measure every pair of generation and storage on each scene too, with PSSM(4; 512²)
     #[arg(long, value_enum, default_value_t)]
     pub paths: Switch,
     /// Write all figures here (JSON)

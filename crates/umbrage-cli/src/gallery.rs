@@ -14,10 +14,10 @@ use crate::print::print;
 /// `umbrage gallery`.
 #[derive(Debug, clap::Args)]
 pub struct GalleryArgs {
-    /// Scenes to show [default: all]; the city lies in the repository's folder assets
+    /// Scenes to show [default: all]; the city is in the folder assets of the repository
     #[arg(value_name = "SCENE", value_parser = scene_parser())]
     pub scenes: Vec<&'static Scene>,
-    /// Pixels of each picture
+    /// Size of each picture in pixels
     #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = parse::size, allow_hyphen_values = true)]
     pub size: [u32; 2],
     /// Write index.html and the folder shots into this folder, and print where the page is

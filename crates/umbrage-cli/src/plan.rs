@@ -31,7 +31,7 @@ pub struct PlanArgs {
     /// Shadows.
     #[command(flatten)]
     pub shadows: ShadowArgs,
-    /// Depth of the matrices' normalised device coordinates
+    /// Depth range of the normalised device coordinates of the matrices
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub depth_convention: DepthConvention,
     /// Write the plan here (JSON) instead of printing it; with --frames, NAME.json becomes
@@ -65,7 +65,7 @@ struct PlanReport {
     /// `planar`: all depths of this report are view depths; `radial`: all but `coverage_m` are
     /// distances to the eye.
     bands: String,
-    /// Where planes stand: `uniform`, `log`, `practical`, `manual` or `fitted`.
+    /// The split scheme: `uniform`, `log`, `practical`, `manual` or `optimal`.
     scheme: String,
     /// One for all splits, or one for each.
     warp: Vec<String>,
@@ -111,11 +111,11 @@ struct SplitPlan {
     /// To texture coordinates (u right, v down, in 0..1) and stored depth in 0..1, column after
     /// column; divide by w.
     texture_from_world: [[f64; 4]; 4],
-    /// Those that are drawn into the map. Empty: nothing throws a shadow here.
+    /// Those that are drawn into the map. Empty: nothing casts a shadow here.
     casters: Vec<u32>,
 }
 
-/// Something that throws shadows.
+/// Something that casts shadows.
 #[derive(Debug, Serialize)]
 struct Caster {
     node: String,

@@ -108,7 +108,7 @@ fn check_views(args: &RenderArgs, setup: &SceneSetup, shadows: &ShadowRequest) -
     }
     if args.split_views.is_some() && shadows.config.selection.metric() == SplitMetric::Distance {
         return Err(Failure::input(
-            "--split-views and --bands radial exclude each other: each picture lies between two planes; leave one of them away",
+            "--split-views and --bands radial exclude each other: each picture lies between two planes; give only one of the two",
         ));
     }
     if args.split_views.is_some() && has_several {

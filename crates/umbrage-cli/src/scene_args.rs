@@ -9,17 +9,16 @@ use umbrage_lab::{
     parse,
     scene_request::{CameraChoice, DEFAULT_SUN_FADE, LightChoice, SceneRequest, SunTravel},
 };
-use umbrage_scene::{GltfOptions, HeightMapOptions, OpenOptions};
+use umbrage_scene::procedural::World;
+use umbrage_scene::{EXTENSIONS, GltfOptions, HeightMapOptions, OpenOptions};
 
 use crate::switch::Switch;
 
 /// Scene, picture size, camera, light and time.
 #[derive(Clone, Debug, clap::Args)]
 pub struct SceneArgs {
-    /// A .glb, .gltf or .vrm; a height map (.png, .tif or .asc, with a .json beside it or the
-    /// --metres options where it has no scale of its own); or a world: robot-war, chessboard,
-    /// knights, mining-terrain. Left away, it is the scene of the report that --config names
-    #[arg(value_name = "SCENE")]
+    /// A file or a world.
+    #[arg(value_name = "SCENE", help = scene_help())]
     pub scene: Option<String>,
     /// Height map: metres between posts
     #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Scene")]
@@ -30,31 +29,31 @@ pub struct SceneArgs {
     /// Height map: metres added to every height
     #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
     pub height_offset: Option<f64>,
-    /// Height map: how a picture holds heights, where its values do not tell
+    /// Height map: how a picture encodes heights, if its values do not show it
     #[arg(long, value_enum, default_value_t, help_heading = "Scene")]
     pub height_encoding: HeightEncoding,
-    /// glTF: most memory for textures, in MiB; larger ones are scaled down, with a note
+    /// glTF: memory limit for textures in MiB; beyond it they are scaled down, with a note
     #[arg(long, value_name = "MIB", default_value = "512", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Scene")]
     pub texture_memory: u32,
-    /// glTF: let its files lie outside of its folder, as ../textures/bark.png does
+    /// glTF: allow its files to lie outside its folder, such as ../textures/bark.png
     #[arg(long, help_heading = "Scene")]
     pub parent_folders: bool,
-    /// Move the scene with its cameras and lights by this many metres, as if it lay far from the
-    /// world's origin; --eye, --target and --path are places of the world
+    /// Move the scene, its cameras and lights by this many metres, to test shadows far from the
+    /// world's origin; --eye, --target and --path are not moved
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Scene")]
     pub move_scene: Option<DVec3>,
     /// Seconds into the scene's animations
     #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
     pub time: f64,
 
-    /// Pixels
+    /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = parse::size, allow_hyphen_values = true, help_heading = "Camera")]
     pub size: [u32; 2],
-    /// One of the scene's cameras; several between commas are shown side by side by render and
-    /// truth, each as large as --size
+    /// One of the scene's cameras, or several separated by commas, which render and truth show side
+    /// by side, each of --size
     #[arg(long, value_name = "NAME|INDEX,…", help_heading = "Camera")]
     pub camera: Option<String>,
-    /// Where the eye stands, in metres
+    /// Position of the eye in metres
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Camera")]
     pub eye: Option<DVec3>,
     /// The point it looks at; up is +Y, or −Z when looking along Y
@@ -79,26 +78,26 @@ pub struct SceneArgs {
     #[arg(long, value_name = "M", default_value = "2", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Camera")]
     pub eye_height: f64,
 
-    /// Lights of the scene, directional, spot or point: one, several between commas, or all (at
-    /// most 8). Pictures show all of them with their shadows; masks, probes, truth and plans are of
-    /// the first [default: the first directional one]
+    /// Lights of the scene, directional, spot or point: one, several separated by commas, or all
+    /// (at most 8). Pictures show all of them with their shadows; masks, probes, exact masks and
+    /// plans use the first [default: the first directional one]
     #[arg(long, value_name = "NAME|INDEX,…", help_heading = "Light")]
     pub light: Option<String>,
-    /// The way light travels; any length
+    /// Direction in which sunlight travels; any length
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Light")]
     pub sun: Option<DVec3>,
-    /// The way light travels in the last of --frames: the sun moves there at an even pace
+    /// Direction in which sunlight travels in the last of --frames; the sun moves there evenly
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Light")]
     pub sun_to: Option<DVec3>,
     /// With --sun-to: shadows follow in steps of this many degrees and stand still in between
     /// [default: they move every frame]
     #[arg(long, value_name = "DEGREES", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Light")]
     pub sun_step: Option<f64>,
-    /// With --sun-step: frames over which a step is faded; 0 is sudden [default: 8]
+    /// With --sun-step: frames over which a step is faded; 0: no fade [default: 8]
     #[arg(long, value_name = "FRAMES", allow_hyphen_values = true, help_heading = "Light")]
     pub sun_fade: Option<u32>,
-    /// Angle across the sun in degrees: what --filter pcss and the exact soft mask of `umbrage
-    /// truth` go by [default: 0.53 for pcss; the exact mask is hard]
+    /// Angular diameter of the sun in degrees, for --filter pcss and the exact soft mask of
+    /// `umbrage truth` [default: 0.53 for pcss; the exact mask is hard]
     #[arg(long, value_name = "DEGREES", value_parser = parse::sun_angle, allow_hyphen_values = true, help_heading = "Light")]
     pub sun_angle: Option<f64>,
 
@@ -115,6 +114,16 @@ pub struct SceneArgs {
     /// All this as words of a command line.
     #[arg(skip)]
     pub options: Vec<String>,
+}
+
+/// The help of SCENE.
+fn scene_help() -> String {
+    let worlds: Vec<&str> = World::ALL.iter().map(|world| world.name()).collect();
+    format!(
+        "A {EXTENSIONS}, or a world: {}. A height map without a scale of its own needs a .json beside it or the --metres \
+         options. May be omitted if --config names a report, whose scene is then used",
+        worlds.join(", ")
+    )
 }
 
 /// `--height-encoding`.

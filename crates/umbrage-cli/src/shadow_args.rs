@@ -65,16 +65,14 @@ fn option(setting: &'static Setting) -> Arg {
     match setting.kind {
         Kind::Words(words) => {
             let values = words.iter().map(|word| PossibleValue::new(word.word).help(word.help));
-            let arg = arg.value_parser(clap::builder::PossibleValuesParser::new(values));
-            match words {
-                // A switch may stand alone.
-                [on, off] if (on.word, off.word) == ("on", "off") => {
-                    arg.num_args(0..=1).require_equals(true).default_missing_value("on")
-                }
-                _ => arg,
-            }
+            arg.value_parser(clap::builder::PossibleValuesParser::new(values))
         }
-        Kind::Switch => arg.num_args(0..=1).require_equals(true).default_missing_value("true"),
+        // The option alone means `on`.
+        Kind::Switch => arg
+            .value_parser([PossibleValue::new("on").alias("true"), PossibleValue::new("off").alias("false")])
+            .num_args(0..=1)
+            .require_equals(true)
+            .default_missing_value("on"),
         // Checked beside the other settings, where a message can say more.
         _ => arg,
     }
@@ -86,7 +84,7 @@ fn preset() -> Arg {
     Arg::new("preset")
         .long("preset")
         .value_name("NAME")
-        .help("Settings by name; single options go over them [default: balanced]")
+        .help("Settings by name; single options override them [default: balanced]")
         .value_parser(clap::builder::TypedValueParser::map(parser, |word: String| {
             word.parse::<Preset>().unwrap_or_default()
         }))
@@ -97,9 +95,9 @@ fn config() -> Arg {
         .long("config")
         .value_name("FILE")
         .help(
-            "Settings from a file (TOML or JSON), or from a report of render or probe: that picture again, where SCENE may be \
-             left away. Options go over what the file holds; a file that a report names is looked for in the working \
-             directory, then in the report's folder",
+            "Settings from a file (TOML or JSON). If it is a report of render or probe, its picture is drawn again and SCENE \
+             may be omitted. Options override the file. Files that a report names are looked for in the working directory, \
+             then beside the report",
         )
         .value_parser(clap::value_parser!(PathBuf))
 }

@@ -26,24 +26,24 @@ pub struct ShotArgs {
     /// Height maps: metres added to every height
     #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
     pub height_offset: Option<f64>,
-    /// Move scenes with their cameras and lights by this many metres, as if they lay far from the
-    /// world's origin; --eye, --target and --path are places of the world
+    /// Move scenes, their cameras and lights by this many metres, to test shadows far from the
+    /// world's origin; --eye, --target and --path are not moved
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Scene")]
     pub move_scene: Option<DVec3>,
     /// Seconds into the scenes' animations
     #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
     pub time: f64,
-    /// View depths in metres that shadows cover and scores count, for everything that is judged
-    /// [default: the camera's near and far]
+    /// View depths in metres that are shadowed and scored, for all techniques [default: the
+    /// camera's near and far]
     #[arg(long, value_name = "N..F", value_parser = parse::range, allow_hyphen_values = true, help_heading = "Shots")]
     pub shadow_range: Option<(f64, f64)>,
-    /// Pixels [default: 800x600, or a preset's; tune: 320x240]
+    /// Size of the pictures in pixels [default: 800x600, or a preset's; tune: 320x240]
     #[arg(long, value_name = "WxH", value_parser = parse::size, allow_hyphen_values = true, help_heading = "Shots")]
     pub size: Option<[u32; 2]>,
     /// Cameras of the scenes, by name or number [default: all that have names, or an invented one]
     #[arg(long, value_name = "NAME|INDEX,…", value_delimiter = ',', help_heading = "Shots")]
     pub camera: Vec<String>,
-    /// Where one more camera stands, in metres
+    /// Position of a further camera in metres
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Shots")]
     pub eye: Option<DVec3>,
     /// The point it looks at
@@ -67,28 +67,28 @@ pub struct ShotArgs {
     /// With --path: metres from the path up to the eye
     #[arg(long, value_name = "M", default_value = "2", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Shots")]
     pub eye_height: f64,
-    /// Move every other camera forward by this many metres a frame, for --frames
+    /// Move every other camera forward by this many metres per frame, for --frames
     #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Shots")]
     pub step: Option<f64>,
-    /// Turn every other camera to the left by this many degrees a frame, about the world's
+    /// Turn every other camera to the left by this many degrees per frame, about the world's
     /// vertical, for --frames
     #[arg(long, value_name = "DEGREES", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Shots")]
     pub turn: Option<f64>,
-    /// Magnify what every other camera sees by this factor a frame, for --frames
+    /// Zoom every other camera in by this factor per frame, for --frames
     #[arg(long, value_name = "FACTOR", value_parser = parse::positive, allow_hyphen_values = true, help_heading = "Shots")]
     pub zoom: Option<f64>,
     /// One of the scenes' lights: a directional one as their own sun, or a spot or point light in
     /// its place [default: the first directional one]
     #[arg(long, value_name = "NAME|INDEX", help_heading = "Shots")]
     pub light: Option<String>,
-    /// The own sun: the way light travels; any length
+    /// The own sun: direction in which light travels; any length
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true, help_heading = "Shots")]
     pub sun: Option<DVec3>,
-    /// Angle across the sun in degrees: pcss goes by it, and compare scores soft masks beside hard
-    /// ones [default: 0.53 for pcss, no soft scores]
+    /// Angular diameter of the sun in degrees, for pcss; compare then also scores soft masks
+    /// [default: 0.53 for pcss, no soft scores]
     #[arg(long, value_name = "DEGREES", value_parser = parse::sun_angle, allow_hyphen_values = true, help_heading = "Shots")]
     pub sun_angle: Option<f64>,
-    /// Suns that every camera is seen under, see below [default: own]
+    /// Suns under which every camera is drawn, see below [default: own]
     #[arg(long, value_name = "SUN,…", value_delimiter = ',', value_parser = sun_spec, allow_hyphen_values = true, help_heading = "Shots")]
     pub suns: Vec<SunSpec>,
     /// A view counts in means and comparisons if the true shadow has this many edge pixels

@@ -3,9 +3,9 @@
 /// A switch on the command line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Switch {
-    /// With
+    /// Enabled
     #[default]
     On,
-    /// Without
+    /// Disabled
     Off,
 }

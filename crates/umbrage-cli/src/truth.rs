@@ -22,7 +22,7 @@ pub struct TruthArgs {
     /// Scene, camera, light and time.
     #[command(flatten)]
     pub scene: SceneOptions,
-    /// Accepted and ignored, but for the scene of a report: rays need no settings.
+    /// Accepted and ignored, except for the scene of a report: rays need no settings.
     #[command(flatten)]
     pub shadows: ShadowArgs,
     /// Write the exact visibility mask here (PNG, grey and alpha); soft with --sun-angle, by 256

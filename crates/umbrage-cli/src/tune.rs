@@ -23,7 +23,7 @@ const STRIDE: Stride = Stride { metres: 0.15, turn: 0.3, zoom: 1.0, frames: 2 };
 
 const TUNE_HELP: &str = "\
 Candidates are all combinations of the values of --try, over the default or over the preset that --with names. Maps are as large as \
-the budget allows. The presets are candidates, too, at the same budget. Combinations that exclude each other are left out and counted. \
+the budget allows. The presets are candidates too, at the same budget. Combinations that exclude each other are omitted and counted. \
 Without --try: --try splits=2/3/4/6 --try filter=pcf2/pcf3/pcf5 --try share=1/0.25.
 
 The best has the least share of wrong decisions (E, the mean over the views that count) of all candidates whose edges flicker no more \
@@ -40,7 +40,7 @@ pub struct TuneArgs {
     /// Scenes as for `umbrage render`: .glb or .gltf files, height maps, worlds
     #[arg(value_name = "SCENE", required_unless_present = "merge", conflicts_with = "merge")]
     pub scenes: Vec<String>,
-    /// What the maps may take: bytes (8MB, 8MiB) or texels (2Mtexel)
+    /// Budget of all maps: bytes (8MB, 8MiB) or texels (2Mtexel)
     #[arg(
         long,
         value_name = "AMOUNT",
@@ -57,16 +57,16 @@ pub struct TuneArgs {
     /// Settings for all candidates that do not try others: preset=still:blend=0
     #[arg(long, value_name = "SETTINGS", default_value = "", hide_default_value = true, help_heading = "Search")]
     pub with: String,
-    /// The most that the best may flicker: F_edge in per cent
+    /// Most flicker that the best config may have: F_edge in %
     #[arg(long, value_name = "PERCENT", default_value = "1", value_parser = umbrage_lab::parse::number, allow_hyphen_values = true, help_heading = "Search")]
     pub most_flicker: f64,
-    /// The presets at the budget as candidates, too
+    /// Also judge the presets at the budget
     #[arg(long, value_enum, default_value = "on", help_heading = "Search")]
     pub presets: Switch,
     /// Judge every N-th candidate only, from the I-th on; needs --results, and --merge afterwards
     #[arg(long, value_name = "I/N", value_parser = shard, requires = "results", help_heading = "Search")]
     pub shard: Option<Shard>,
-    /// Put the files of a run's shards together; needs no scene
+    /// Combine the files of all shards of a run; needs no scene
     #[arg(long, value_name = "FILE,…", value_delimiter = ',', conflicts_with_all = ["axes", "with", "shard", "results"], help_heading = "Search")]
     pub merge: Vec<PathBuf>,
     /// Views.
@@ -85,8 +85,8 @@ pub struct TuneArgs {
     /// Write all figures here (JSON)
     #[arg(long, value_name = "JSON", help_heading = "Output")]
     pub json: Option<PathBuf>,
-    /// Keep finished candidates in this file; if the run is cut off, the same command goes on from
-    /// there. The file stays
+    /// Save finished candidates in this file; after an interruption, the same command continues
+    /// from there. The file is kept
     #[arg(long, value_name = "JSONL", help_heading = "Output")]
     pub results: Option<PathBuf>,
 }
@@ -105,10 +105,14 @@ pub fn run(args: &TuneArgs) -> Result<()> {
         outputs.check(None, &args.merge.iter().map(AsRef::as_ref).collect::<Vec<&Path>>())?;
         return tune::merge(&args.merge, most_flicker, &outputs);
     }
-    let budget = args.budget.ok_or_else(|| Failure::input("--budget: nothing says what maps may take; give 8MB"))?;
+    let budget = args
+        .budget
+        .ok_or_else(|| Failure::input("--budget is missing; give the memory for all maps, for example --budget 8MB"))?;
     let with = text::parse_with(&args.with)?;
     if let Some((key, _)) = with.iter().find(|(key, _)| NOT_FOR_ALL.contains(&key.as_str())) {
-        return Err(Failure::input(format!("--with {key}: it is one for all; give --{key} beside")));
+        return Err(Failure::input(format!(
+            "--with {key}: {key} must be the same for all candidates; give --{key} as an option of its own"
+        )));
     }
     let mut inputs: Vec<&Path> = args.scenes.iter().map(Path::new).collect();
     inputs.extend(args.shots.path.as_deref());
@@ -144,7 +148,7 @@ fn check_outputs(args: &TuneArgs, outputs: &Outputs) -> Result<()> {
     let some = outputs.files().next();
     match (args.shard, some) {
         (Some(shard), Some(path)) if shard != Shard::WHOLE => Err(Failure::input(format!(
-            "{}: shard {shard} has a part of the candidates and no best; leave it away, and give it to --merge",
+            "{}: shard {shard} judges only a part of the candidates; write this file with --merge instead",
             path.display()
         ))),
         (_, None) if args.results.is_none() => Err(Failure::input(

@@ -11,8 +11,8 @@ use umbrage_viewer::{Error, Options, ShowAtStart};
 
 use crate::{scene_args::SceneArgs, scene_options::SceneOptions, shadow_args::ShadowArgs};
 
-/// What is shown where no scene is given.
-const FIRST_SCENE: &str = "robot-war";
+/// What is shown if no scene is given.
+pub const FIRST_SCENE: &str = "robot-war";
 
 /// `umbrage view`.
 #[derive(Debug, clap::Args)]

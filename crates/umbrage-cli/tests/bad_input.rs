@@ -95,7 +95,7 @@ fn shadow_options_that_say_nonsense() {
         ("--filter disc --map-size 20", &["--map-size", "20", "filter"]),
         ("--filter vsm --filter-width 0", &["--filter-width"]),
         ("--filter vsm --map-size 32", &["--map-size", "32"]),
-        ("--filter vsm --msaa 3", &["--msaa 3", "1 sample or 4"]),
+        ("--filter vsm --msaa 3", &["--msaa 3", "give 1 or 4"]),
         ("--filter vsm --msaa 0", &["--msaa 0"]),
         ("--filter pcf3 --msaa 4", &["--msaa", "pcf3", "vsm"]),
         ("--filter hard --derivatives quad", &["--derivatives", "hard"]),

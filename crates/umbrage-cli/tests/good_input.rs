@@ -40,7 +40,7 @@ fn render_writes_what_was_asked_for() {
         "hard decisions, and the plane fills the view"
     );
     let shadowed = mask.pixels().filter(|pixel| pixel.0[0] == 0).count();
-    assert!((5..200).contains(&shadowed), "the box throws a shadow: {shadowed} pixels");
+    assert!((5..200).contains(&shadowed), "the box casts a shadow: {shadowed} pixels");
 
     let report = folder.json("r.json");
     assert_eq!(report["technique"], "pssm");

@@ -15,9 +15,7 @@ pub fn several(option: &str, kind: &str, wanted: &str, names: &[&str]) -> Result
     for part in wanted.split(',') {
         let index = select(option, kind, part, names)?;
         if indices.contains(&index) {
-            return Err(Failure::input(format!(
-                "{option} {wanted}: {part} is in the list twice; leave one of them away"
-            )));
+            return Err(Failure::input(format!("{option} {wanted}: {part} is in the list twice; give it once")));
         }
         indices.push(index);
     }

@@ -56,7 +56,7 @@ impl Failure {
     pub fn file(doing: &str, path: &Path, error: &io::Error) -> Self {
         use io::ErrorKind as Kind;
         let advice = match error.kind() {
-            Kind::NotFound => "; check the path, its folder has to exist",
+            Kind::NotFound => "; check the path: its folder must exist",
             Kind::PermissionDenied | Kind::ReadOnlyFilesystem => "; choose a place you have the right to use",
             Kind::StorageFull | Kind::QuotaExceeded | Kind::FileTooLarge => "; make room, or choose another place",
             _ => "",
@@ -170,12 +170,12 @@ mod tests {
     fn settings_become_options_where_a_value_follows() {
         for (message, options) in [
             ("selection map and warp tsm exclude each other", "--selection map and --warp tsm exclude each other"),
-            ("use scheme log, or leave splits away", "use --scheme log, or leave splits away"),
+            ("use scheme log, or omit splits", "use --scheme log, or omit splits"),
             (
                 "storage reused (generation multipass) and blend 0.1",
                 "--storage reused (--generation multipass) and --blend 0.1",
             ),
-            ("the filter goes by depth", "the filter goes by depth"),
+            ("the filter compares depth", "the filter compares depth"),
         ] {
             assert_eq!(in_options(message), options);
         }

@@ -33,7 +33,7 @@ impl Kind {
     }
 
     fn no_journal(self, path: &Path) -> Failure {
-        self.refuse(path, format_args!("it is no journal of a {}; give another file", self.run))
+        self.refuse(path, format_args!("it is not a journal of a {}; give another file", self.run))
     }
 }
 

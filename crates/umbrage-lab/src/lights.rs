@@ -69,7 +69,7 @@ pub fn chosen(
             let indices = indices(wanted, scene)?;
             if indices.len() > MOST_LAMPS {
                 return Err(Failure::input(format!(
-                    "--light {wanted}: {} lights; at most {MOST_LAMPS} throw shadows at once, name those",
+                    "--light {wanted}: {} lights, but at most {MOST_LAMPS} can cast shadows at once; name those",
                     indices.len()
                 )));
             }

@@ -30,7 +30,8 @@ pub fn positive_or_infinite(text: &str) -> Result<f64, String> {
 
 /// A number in 0..=1.
 pub fn share(text: &str) -> Result<f64, String> {
-    number(text).and_then(|v| if (0.0..=1.0).contains(&v) { Ok(v) } else { Err(format!("{v} is not in 0..1")) })
+    number(text)
+        .and_then(|v| if (0.0..=1.0).contains(&v) { Ok(v) } else { Err(format!("{v} is out of range; give 0 to 1")) })
 }
 
 /// An angle in degrees between 0 and 180, both excluded.
@@ -68,7 +69,7 @@ pub fn direction(text: &str) -> Result<DVec3, String> {
 pub fn colour(text: &str) -> Result<DVec3, String> {
     let colour = vector(text)?;
     let inside = colour.cmpge(DVec3::ZERO).all() && colour.cmple(DVec3::ONE).all();
-    if inside { Ok(colour) } else { Err(format!("{colour} is no colour; give red, green and blue from 0 to 1")) }
+    if inside { Ok(colour) } else { Err(format!("{colour} is not a colour; give red, green and blue from 0 to 1")) }
 }
 
 /// `a,b,…`, one finite number at least.

@@ -21,13 +21,13 @@ pub struct Report {
     pub filter: String,
     /// Metres that the filter is wide in every split; none where its width is in texels.
     pub filter_width: Option<f64>,
-    /// Degrees across the sun, of a filter that goes by it.
+    /// Angular diameter of the sun in degrees, of a filter that uses it.
     pub sun_angle: Option<f64>,
-    /// `blend`, `dither` or `hard`: how one split goes over into the next.
+    /// `blend`, `dither` or `hard`: how neighbouring splits are joined.
     pub transition: String,
     /// `plane` or `slope`: how surfaces are kept from shading themselves.
     pub bias: String,
-    /// `none` or `dithered`: whether translucent surfaces throw shadows.
+    /// `none` or `dithered`: whether translucent surfaces cast shadows.
     pub translucent: String,
     /// Whether contact shadows were asked for; a note says where there can be none.
     pub contact_shadows: bool,

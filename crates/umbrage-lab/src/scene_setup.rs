@@ -195,7 +195,7 @@ fn under_the_light(
         (Some(travel), Light::Directional(sun)) => (travel, sun),
         (Some(_), Light::Spot(_) | Light::Point(_)) => {
             return Err(Failure::input(format!(
-                "--sun-to moves a sun, but --light {} is a spot or point light; leave one of them away",
+                "--sun-to moves a sun, but --light {} is a spot or point light; give only one of the two",
                 lights[0].name
             )));
         }
@@ -311,7 +311,7 @@ fn scene_camera(request: &SceneRequest, scene: &Scene, pose: &Pose, index: usize
     let view = umbrage_scene::camera_view(scene, pose, index, request.aspect(), request.near, request.far)?;
     let (frustum, Some(fov)) = (view.frustum(), request.fov) else { return Ok(view) };
     if frustum.projection == Projection::Orthographic {
-        return Err(Failure::input("--fov: the chosen camera is orthographic and has no angle; leave --fov away"));
+        return Err(Failure::input("--fov: the chosen camera is orthographic and has no angle; omit --fov"));
     }
     Ok(view.with_frustum(Frustum::perspective(fov.to_radians(), request.aspect(), frustum.near, frustum.far)?)?)
 }

@@ -70,7 +70,7 @@ impl Casters {
         }
     }
 
-    /// Draws into a map that was begun. Translucent primitives throw a shadow only if they are
+    /// Draws into a map that was begun. Translucent primitives cast a shadow only if they are
     /// dithered.
     pub fn draw(
         &self,

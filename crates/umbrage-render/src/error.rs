@@ -34,8 +34,8 @@ pub enum Error {
         /// The device's largest texture.
         limit: u32,
     },
-    /// Maps of several samples a texel have no picture.
-    #[error("maps have {samples} samples a texel and cannot be written; use one sample, or leave the maps away")]
+    /// Maps of several samples per texel have no picture.
+    #[error("maps have {samples} samples per texel and cannot be written; use one sample, or do not write maps")]
     MapsOfSamples {
         /// Samples of depth in a texel.
         samples: u32,

@@ -45,7 +45,7 @@ impl GpuPrimitive {
 enum Matter {
     /// Nothing but where it is.
     Solid,
-    /// Its surface, too: some of it lets light through.
+    /// Its surface too: some of it lets light through.
     Textured,
     /// Its vertices are others every frame.
     Moving,
@@ -153,7 +153,7 @@ impl Geometry {
 /// Geometry that changes every frame: one "mesh" per entry of [`Pose::skinned`].
 pub(crate) struct SkinnedGeometry {
     pub geometry: Geometry,
-    /// Per entry of [`Pose::skinned`] the mesh that it poses; made anew when that changes.
+    /// Per entry of [`Pose::skinned`] the mesh that it poses; rebuilt when that changes.
     posed_meshes: Vec<usize>,
 }
 

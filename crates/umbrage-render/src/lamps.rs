@@ -16,7 +16,7 @@ pub const MOST_LAMPS: usize = 8;
 /// A light as the picture shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lamp {
-    /// The light that throws shadows.
+    /// The light that casts shadows.
     pub light: Light,
     /// Linear RGB, 1 at most.
     pub color: Vec3,

@@ -23,7 +23,7 @@ pub(crate) struct PictureTarget {
     /// The resolved picture.
     pub texture: wgpu::Texture,
     resolved: wgpu::TextureView,
-    /// Several samples a pixel, to be resolved.
+    /// Several samples per pixel, to be resolved.
     samples: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
 }

@@ -36,7 +36,7 @@ fn fresh(gpu: &Gpu, settings: &RenderSettings) -> RgbaImage {
     picture(&mut Stage::new(gpu, &town(), settings))
 }
 
-/// Configs that differ by what a change makes anew.
+/// Configs that differ by what a change rebuilds.
 fn configs() -> Vec<ShadowConfig> {
     vec![
         config(),

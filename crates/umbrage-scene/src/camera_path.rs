@@ -47,8 +47,10 @@ impl CameraPath {
     /// [`CameraPath::with_targets`].
     pub fn load(path: &Path) -> Result<Self> {
         let file = path.display().to_string();
-        let json: PathFile = serde_json::from_slice(&read_file(path)?)
-            .map_err(|error| Error::Malformed { file: file.clone(), reason: format!("is no camera path: {error}") })?;
+        let json: PathFile = serde_json::from_slice(&read_file(path)?).map_err(|error| Error::Malformed {
+            file: file.clone(),
+            reason: format!("is not a camera path: {error}"),
+        })?;
         let sun = json.sun_direction_to_light.map(DVec3::from);
         let path = Self::new(&file, json.points.into_iter().map(DVec3::from).collect(), json.closed, sun)?;
         if json.targets.is_empty() {

@@ -40,7 +40,7 @@ pub enum Error {
         reason: String,
     },
     /// Neither the name of a world nor a file of a known kind.
-    #[error("{spec}: not a scene: give a .glb, a .gltf, a height map (.png, .tif, .asc) or one of the worlds {worlds}")]
+    #[error("{spec} is not a scene; give a {}, or one of the worlds {worlds}", crate::EXTENSIONS)]
     UnknownScene {
         /// What was asked for.
         spec: String,
@@ -189,7 +189,7 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>> {
     }
 }
 
-/// What something is that is no regular file.
+/// What a thing is that is not a regular file.
 fn irregular(kind: &FileType) -> Option<&'static str> {
     #[cfg(unix)]
     {

@@ -80,7 +80,7 @@ pub fn light_direction(scene: &Scene, pose: &Pose, index: usize) -> Result<DVec3
 ///
 /// # Errors
 /// [`Error::NoSuchElement`]; [`Error::Light`] if its node has no direction, or naming what makes it
-/// none that can throw shadows (a cone wider than the planner takes).
+/// none that can cast shadows (a cone wider than the planner takes).
 pub fn scene_light(scene: &Scene, pose: &Pose, index: usize) -> Result<Light> {
     let count = scene.lights.len();
     let missing = || Error::NoSuchElement { kind: "light", index, count };

@@ -46,5 +46,5 @@ pub use frame::{camera_view, invented_sun, invented_view, light_direction, scene
 pub use gltf::{GltfOptions, load_gltf, load_gltf_slice};
 pub use height_map::{HeightEncoding, HeightMapOptions, load_height_map};
 pub use model::*;
-pub use open::{OpenOptions, open};
+pub use open::{EXTENSIONS, Extensions, OpenOptions, open};
 pub use pose::Poser;

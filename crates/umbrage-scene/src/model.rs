@@ -1,4 +1,4 @@
-//! The scene as everybody else sees it: meshes, materials, nodes, cameras, lights; no file format,
+//! The scene as all other crates see it: meshes, materials, nodes, cameras, lights; no file format,
 //! no GPU.
 
 use glam::{DAffine3, DQuat, DVec3, Mat4};
@@ -16,7 +16,7 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Pictures that materials refer to.
     pub textures: Vec<Texture>,
-    /// The hierarchy; a parent stands before its children.
+    /// The hierarchy; a parent comes before its children.
     pub nodes: Vec<Node>,
     /// Cameras, placed by their nodes.
     pub cameras: Vec<SceneCamera>,
@@ -100,7 +100,7 @@ pub enum AlphaMode {
         /// Least alpha that counts.
         cutoff: f32,
     },
-    /// Translucent: drawn over the rest, throws no shadow, hides nothing.
+    /// Translucent: drawn over the rest, casts no shadow, hides nothing.
     Blend,
 }
 
@@ -115,7 +115,7 @@ pub struct Material {
     pub base_color_texture: Option<usize>,
     /// How alpha is used.
     pub alpha: AlphaMode,
-    /// Seen from behind too. Shadows are thrown by both sides always.
+    /// Seen from behind too. Shadows are cast by both sides always.
     pub double_sided: bool,
     /// Linear RGB that the surface emits.
     pub emissive: [f32; 3],
@@ -163,7 +163,7 @@ pub struct Texture {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// Four bytes a pixel.
+    /// Four bytes per pixel.
     pub rgba: Vec<u8>,
     /// Addressing of u and v.
     pub wrap: [Wrap; 2],
@@ -190,7 +190,7 @@ pub struct Node {
     /// How far each morph target of the mesh is applied, instead of [`Mesh::weights`]; empty: as
     /// the mesh says.
     pub weights: Vec<f32>,
-    /// Whether the mesh throws shadows (`extras.castShadow`, true unless it says false).
+    /// Whether the mesh casts shadows (`extras.castShadow`, true unless it says false).
     pub cast_shadow: bool,
 }
 
@@ -384,7 +384,7 @@ pub struct Object {
     pub skinned: Option<usize>,
     /// Exact world bounds of the vertices.
     pub bounds: Aabb,
-    /// Whether it throws shadows: the node says so and some primitive is not [`AlphaMode::Blend`].
+    /// Whether it casts shadows: the node says so and some primitive is not [`AlphaMode::Blend`].
     pub casts: bool,
 }
 

@@ -1,5 +1,6 @@
-//! Whatever a user calls a scene.
+//! Scenes by name: a world, or a file whose loader its extension or content chooses.
 
+use std::fmt;
 use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
@@ -12,12 +13,33 @@ use crate::{Error, GltfOptions, HeightMapOptions, Result, Scene, load_gltf, load
 pub struct OpenOptions {
     /// What a height map means in metres.
     pub height_map: HeightMapOptions,
-    /// Of .glb, .gltf and whatever else is one.
+    /// How glTF files are read.
     pub gltf: GltfOptions,
 }
 
+/// Extensions of the files that [`open`] reads, in small letters and without the dot. Displayed,
+/// they are a list for messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extensions {
+    /// Of glTF files.
+    pub gltf: &'static [&'static str],
+    /// Of height maps.
+    pub height_map: &'static [&'static str],
+}
+
+/// All extensions that [`open`] reads.
+pub const EXTENSIONS: Extensions =
+    Extensions { gltf: &["glb", "gltf", "vrm"], height_map: &["png", "webp", "tif", "tiff", "asc"] };
+
+impl fmt::Display for Extensions {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let list = |extensions: &[&str]| extensions.iter().map(|e| format!(".{e}")).collect::<Vec<_>>().join(", ");
+        write!(f, "{}, a height map ({})", list(self.gltf), list(self.height_map))
+    }
+}
+
 /// Opens a world by its name; a file that is a .glb whatever it is called; or a file by its
-/// extension: .gltf, or .png, .webp, .tif or .asc for a height map.
+/// extension, one of [`EXTENSIONS`].
 ///
 /// # Errors
 /// [`Error::UnknownScene`] if it is none of these; otherwise as [`load_gltf`] and
@@ -28,14 +50,14 @@ pub fn open(spec: &str, options: &OpenOptions) -> Result<Scene> {
     }
     let path = Path::new(spec);
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    match extension.as_str() {
-        "glb" | "gltf" => load_gltf(path, &options.gltf),
-        _ if is_glb(path) => load_gltf(path, &options.gltf),
-        "png" | "webp" | "tif" | "tiff" | "asc" => load_height_map(path, &options.height_map),
-        _ => {
-            let worlds: Vec<&str> = World::ALL.iter().map(|world| world.name()).collect();
-            Err(Error::UnknownScene { spec: spec.to_owned(), worlds: worlds.join(", ") })
-        }
+    let is_of = |extensions: &[&str]| extensions.contains(&extension.as_str());
+    if is_of(EXTENSIONS.gltf) || is_glb(path) {
+        load_gltf(path, &options.gltf)
+    } else if is_of(EXTENSIONS.height_map) {
+        load_height_map(path, &options.height_map)
+    } else {
+        let worlds: Vec<&str> = World::ALL.iter().map(|world| world.name()).collect();
+        Err(Error::UnknownScene { spec: spec.to_owned(), worlds: worlds.join(", ") })
     }
 }
 

@@ -11,7 +11,7 @@ pub(crate) const MOST_PIXELS_AN_EDGE: u32 = 16_384;
 /// The format of a picture, one of `formats`.
 pub(crate) fn format(bytes: &[u8], formats: &[ImageFormat]) -> Result<ImageFormat, String> {
     let format =
-        image::guess_format(bytes).map_err(|_| format!("is no picture of a known kind; {formats:?} is read"))?;
+        image::guess_format(bytes).map_err(|_| format!("is not a picture of a known format; {formats:?} is read"))?;
     if formats.contains(&format) {
         Ok(format)
     } else {

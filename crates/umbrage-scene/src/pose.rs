@@ -12,7 +12,7 @@ pub struct Poser<'s> {
     scene: &'s Scene,
     /// Box of each mesh in its own space; empty for meshes without triangles.
     local_bounds: Vec<Aabb>,
-    /// Whether some primitive of each mesh throws shadows.
+    /// Whether some primitive of each mesh casts shadows.
     mesh_casts: Vec<bool>,
     /// Whether each mesh has morph targets.
     mesh_morphs: Vec<bool>,

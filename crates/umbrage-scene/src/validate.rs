@@ -83,7 +83,7 @@ impl Scene {
         for (i, node) in self.nodes.iter().enumerate() {
             let at = || self.node_element(i);
             self.check(node.parent.is_none_or(|parent| parent < i), at, || {
-                format!("has the parent {:?}, which does not stand before it", node.parent)
+                format!("has the parent {:?}, which does not come before it", node.parent)
             })?;
             self.check(node.mesh.is_none_or(|mesh| mesh < self.meshes.len()), at, || {
                 format!("shows mesh {:?}, but there are {}", node.mesh, self.meshes.len())
@@ -170,7 +170,7 @@ fn fault(primitive: &Primitive, materials: usize) -> Option<String> {
         return Some("has only one of joints and weights".into());
     }
     if !primitive.indices.len().is_multiple_of(3) {
-        return Some(format!("has {} indices, which is no whole number of triangles", primitive.indices.len()));
+        return Some(format!("has {} indices, which is not a whole number of triangles", primitive.indices.len()));
     }
     if let Some(index) = primitive.indices.iter().find(|&&index| index as usize >= vertices) {
         return Some(format!("has the index {index}, but {vertices} vertices"));

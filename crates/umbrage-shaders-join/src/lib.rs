@@ -69,7 +69,7 @@ fn roots() -> Vec<Root> {
 
 /// `depth_loads`: depth textures can be loaded from. `r32f`: maps are colours. `views`, `tiles`:
 /// casters are drawn into several layers or tiles. `moments`: maps hold moments of depth.
-/// `multisampled`: depth has four samples a texel. `own_taps`: the shader takes an anisotropic
+/// `multisampled`: depth has four samples per texel. `own_taps`: the shader takes an anisotropic
 /// sample's taps. `by_hand`: and no sampler filters moments. `normals`: a mask has a buffer of
 /// normals. `coordinates`: receivers take shadow coordinates that vertex shaders made. `maps_2` to
 /// `maps_8` come beside these.

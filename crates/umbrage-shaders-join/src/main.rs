@@ -1,4 +1,5 @@
-//! Writes the texts of `umbrage-shaders` anew and says which ones changed: `cargo xtask shaders`.
+//! Writes the texts of `umbrage-shaders` again and prints which ones changed: `cargo xtask
+//! shaders`.
 
 use std::process::ExitCode;
 

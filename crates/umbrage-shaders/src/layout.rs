@@ -5,8 +5,8 @@ use bytemuck::{Pod, Zeroable};
 /// The most splits a [`Frame`] holds.
 pub const MAX_SPLITS: usize = 8;
 
-/// The most splits whose shadow coordinates vertex shaders hand on: four `vec3f` beside what a
-/// shader hands on anyway, of the 15 that every device has.
+/// The most splits whose shadow coordinates vertex shaders pass on: four `vec3f` beside what a
+/// shader passes on anyway, of the 15 that every device has.
 pub const MAX_COORDINATES: usize = 4;
 
 /// How one map answers, in [`Frame::filter_kind`]. Kernels of fixed taps are numbered from 0, discs
@@ -61,14 +61,14 @@ impl FilterKind {
         Self::Msm,
     ];
 
-    /// Whether maps are turned into moments before they are asked.
+    /// Whether maps are turned into moments before they are sampled.
     #[must_use]
     pub const fn is_of_moments(self) -> bool {
         self as u32 >= Self::Esm as u32
     }
 
-    /// The conditions of `shaders/lib` that what the kind needs stands behind. A condition that no
-    /// kind names is none of a filter.
+    /// The `@if` conditions of `shaders/lib` behind which the code of this kind is. A condition
+    /// that no kind names does not concern filters.
     pub(crate) const fn parts(self) -> &'static [&'static str] {
         match self {
             Self::Hard => &["hard"],
@@ -94,7 +94,7 @@ pub enum MetricKind {
     Distance = 1,
 }
 
-/// Which map answers for a point, in [`Frame::selection`].
+/// Which map a point uses, in [`Frame::selection`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum SelectionKind {
@@ -104,7 +104,7 @@ pub enum SelectionKind {
     Map = 1,
 }
 
-/// How one split goes over into the next, in [`Frame::transition`].
+/// How neighbouring splits are joined, in [`Frame::transition`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum TransitionKind {
@@ -162,7 +162,7 @@ pub struct Split {
     /// The step in metres by which the texture's format rounds depth, 0 if it is no coarser than
     /// `f32`. Scales as `depth_range_m` does.
     pub depth_step_m: f32,
-    /// 1 if nothing throws a shadow here: the map is not read and everything is lit.
+    /// 1 if nothing casts a shadow here: the map is not read and everything is lit.
     pub is_empty: u32,
     /// Edge in texels of the square that clip space covers: at least `size`, by a power of two
     /// where there is room. What lies outside the map is cut by the scissor, exactly, and not by

@@ -1,8 +1,7 @@
 //! umbrage's WGSL as plain strings, and the structs that it shares with Rust.
 //!
-//! This crate knows no GPU interface: any renderer that takes WGSL can use it, given a depth
-//! texture array, a comparison sampler and a uniform buffer. `umbrage-wgpu` is that renderer's half
-//! for wgpu.
+//! This crate uses no GPU API: any renderer that takes WGSL can use it, given a depth texture
+//! array, a comparison sampler and a uniform buffer. `umbrage-wgpu` is the Rust side for wgpu.
 //!
 //! * `shaders/lib` has functions without bindings, `shaders/pass` the roots with bindings,
 //!   `shaders/maps` the maps' own bindings and the two functions that read them. `src/wgsl` has
@@ -61,7 +60,7 @@ pub enum Bound {
 /// `NEGATIVE_EXPONENT`.
 pub const MOMENT_PASSES: &str = text!("moment_passes");
 
-/// WGSL of the passes from depth with four samples a texel to moments.
+/// WGSL of the passes from depth with four samples per texel to moments.
 pub const MOMENT_PASSES_OF_SAMPLES: &str = text!("moment_passes_of_samples");
 
 /// How a receiver reads its maps.

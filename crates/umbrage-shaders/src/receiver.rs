@@ -41,7 +41,7 @@ pub enum Lights {
     Suns,
     /// Suns and spot lights: one frame for each light.
     Single,
-    /// Point lights, too.
+    /// Point lights too.
     #[default]
     Any,
 }

@@ -58,11 +58,11 @@ impl SunDisc {
             return Err(Error::setting("samples", reason));
         }
         if !self.turn.is_finite() {
-            return Err(Error::setting("turn", format!("{} is no angle; give radians", self.turn)));
+            return Err(Error::setting("turn", format!("{} is not an angle; give radians", self.turn)));
         }
         let to_light = to_light
             .try_normalize()
-            .ok_or_else(|| Error::setting("sun", format!("{to_light} is no direction; give one that is not 0")))?;
+            .ok_or_else(|| Error::setting("sun", format!("{to_light} is not a direction; give one that is not 0")))?;
         let (u, v) = to_light.any_orthonormal_pair();
         let rim = (0.5 * self.angular_diameter).tan();
         let golden_angle = PI * (3.0 - 5.0_f64.sqrt());

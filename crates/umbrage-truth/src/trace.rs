@@ -4,7 +4,7 @@
 //! corner that two triangles share meets at least one of them, because both compute the very same
 //! edge function. All of it is in `f64`; the paper's fallback to higher precision where an edge
 //! function is 0 is replaced by counting such a point as inside. Edges of two objects share no
-//! corner bit for bit, so a point counts as inside, too, where an edge function is 0 within its
+//! corner bit for bit, so a point counts as inside too, where an edge function is 0 within its
 //! rounding.
 
 use glam::DVec3;

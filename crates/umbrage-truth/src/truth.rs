@@ -162,7 +162,7 @@ impl Truth {
         let Some(direction) = direction.try_normalize() else {
             return Err(Error::setting(
                 "direction",
-                format!("{direction} is no direction; give finite numbers, not all zero"),
+                format!("{direction} is not a direction; give finite numbers, not all zero"),
             ));
         };
         let ray = Ray::new(origin - self.triangles.origin, direction, 0.0, most.max(0.0));
@@ -335,7 +335,7 @@ impl Truth {
 impl Seen {
     fn shadow_ray(&self, to_light: DVec3, distance: f64) -> Ray {
         // It begins a little behind its start: on a crease whose wall the eye looks along, the
-        // start is in the wall itself, and where light runs along that wall, too, rounding moves
+        // start is in the wall itself, and where light runs along that wall too, rounding moves
         // the crossing far.
         let lift = LIFT * self.reach;
         Ray::new(self.point + lift * self.to_eye, to_light, -BEHIND * lift, distance)
@@ -357,6 +357,9 @@ fn area_normal(triangle: &Triangle) -> DVec3 {
 /// A sun whose light travels along `light_travel`.
 pub(crate) fn sun(light_travel: DVec3) -> Result<Light> {
     DirectionalLight::new(light_travel).map(Light::from).map_err(|_| {
-        Error::setting("sun", format!("{light_travel} is no direction; give the way the light travels, not all zero"))
+        Error::setting(
+            "sun",
+            format!("{light_travel} is not a direction; give the way the light travels, not all zero"),
+        )
     })
 }

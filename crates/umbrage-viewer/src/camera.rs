@@ -13,7 +13,7 @@ const ZOOM_PER_NOTCH: f64 = 0.12;
 const LEAST_DISTANCE_M: f64 = 0.05;
 /// Seconds to cross a scene at a new scene's speed.
 const CROSSING_S: f64 = 25.0;
-/// Speeds that can be chosen, metres a second.
+/// Speeds that can be chosen, metres per second.
 pub const SPEEDS_M_S: std::ops::RangeInclusive<f64> = 0.1..=2000.0;
 
 /// What dragging the picture does.

@@ -23,7 +23,13 @@ impl Row {
             Kind::Metres | Kind::MetresList | Kind::Range => "m",
             Kind::Degrees(_) => "°",
             Kind::Texels => "texels",
-            Kind::Words(_) | Kind::WordList(_) | Kind::Share(_) | Kind::Count(..) | Kind::Colour | Kind::Switch => "",
+            Kind::Words(_)
+            | Kind::WordList(_)
+            | Kind::Share(_)
+            | Kind::Count(..)
+            | Kind::CountOf(_)
+            | Kind::Colour
+            | Kind::Switch => "",
         }
     }
 
@@ -32,8 +38,8 @@ impl Row {
     pub fn cost(&self) -> &'static str {
         match self.setting.rebuilds {
             Rebuilds::Nothing => "takes effect with the next frame",
-            Rebuilds::Maps => "makes the maps anew",
-            Rebuilds::Pipelines => "makes shaders anew: a moment on a graphics card, seconds in software",
+            Rebuilds::Maps => "rebuilds the maps",
+            Rebuilds::Pipelines => "rebuilds the shaders: a moment on a graphics card, seconds in software",
         }
     }
 
@@ -51,9 +57,10 @@ impl Row {
             Kind::Range => "1..400".to_owned(),
             Kind::Degrees(_) => umbrage::config::SUN_DEGREES.to_string(),
             Kind::Count(least, _) => least.to_string(),
+            Kind::CountOf(counts) => counts.first().map_or_else(String::new, u32::to_string),
             Kind::Texels => "1024".to_owned(),
             Kind::Colour => "0,0,0".to_owned(),
-            Kind::Switch => "true".to_owned(),
+            Kind::Switch => "on".to_owned(),
         })
     }
 }

@@ -343,7 +343,7 @@ fn gradient(plan: &ShadowPlan, point: DVec3) -> Option<TexelGradient> {
 /// Colours of texels per pixel, from too few to plenty: doublings below and above 1.
 #[must_use]
 pub fn density_colour(texels_per_pixel: f64) -> [u8; 3] {
-    // Blue is enough, yellow is just enough, red is coarse: told apart by the colour-blind, too.
+    // Blue is enough, yellow is just enough, red is coarse: told apart by the colour-blind too.
     const STOPS: [(f64, [f64; 3]); 5] = [
         (-3.0, [150.0, 0.0, 40.0]),
         (-1.0, [235.0, 90.0, 40.0]),

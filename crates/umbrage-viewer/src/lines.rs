@@ -72,7 +72,7 @@ pub struct SplitLines {
     pub map: Vec<Segment>,
 }
 
-/// The lines of a plan's splits, but for those that nothing throws a shadow into.
+/// The lines of a plan's splits, but for those that nothing casts a shadow into.
 #[must_use]
 pub fn frusta(plan: &ShadowPlan, planned: &View) -> Vec<SplitLines> {
     let per_face = (plan.splits.len() / plan.faces().max(1)).max(1);

@@ -83,7 +83,7 @@ fn toml_of(value: &Value) -> Toml {
         Value::Count(count) => Toml::Integer(i64::from(*count)),
         Value::Numbers(numbers) => Toml::Array(numbers.iter().map(|number| Toml::Float(*number)).collect()),
         Value::Counts(counts) => Toml::Array(counts.iter().map(|count| Toml::Integer(i64::from(*count))).collect()),
-        Value::Switch(on) => Toml::Boolean(*on),
+        Value::Switch(_) => Toml::String(value.to_string()),
     }
 }
 
@@ -114,7 +114,9 @@ pub fn read(text: &str) -> Result<Pasted, String> {
     if text.split_whitespace().any(|word| word.starts_with("--")) {
         return from_command_line(text);
     }
-    plain(toml::from_str(text).map_err(|error| format!("is no config as Rust, TOML, JSON or a command line: {error}")))
+    plain(
+        toml::from_str(text).map_err(|error| format!("is not a config as Rust, TOML, JSON or a command line: {error}")),
+    )
 }
 
 fn plain(config: Result<ShadowConfig, String>) -> Result<Pasted, String> {
@@ -209,9 +211,10 @@ mod tests {
             Kind::MetresList => format!("{},{}", 5.0 + number, 50.0 + 400.0 * number),
             Kind::Range => format!("{}..{}", 0.5 + number, 2.0 + 800.0 * number),
             Kind::Count(least, most) => (least as usize + pick % (most - least + 1) as usize).to_string(),
+            Kind::CountOf(counts) => counts[pick % counts.len()].to_string(),
             Kind::Texels => (64 << (pick % 6)).to_string(),
             Kind::Colour => format!("{number},0.5,{}", 1.0 - number),
-            Kind::Switch => pick.is_multiple_of(2).to_string(),
+            Kind::Switch => ["on", "off"][pick % 2].to_owned(),
         }
     }
 

@@ -35,7 +35,7 @@ pub struct Shot {
     pub size: [u32; 2],
     /// Whether splits are coloured.
     pub tint: bool,
-    /// Whether anything throws shadows.
+    /// Whether anything casts shadows.
     pub shadows_on: bool,
 }
 

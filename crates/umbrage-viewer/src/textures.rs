@@ -12,7 +12,7 @@ use crate::studio::Drawn;
 /// Edge of a map's picture in the panel, pixels.
 const MAP_EDGE: u32 = 384;
 
-/// What was handed to the controls, so that it is handed over once.
+/// What was passed to the controls, so that it is passed once.
 #[derive(Default)]
 pub(crate) struct Textures {
     drawn: Option<Arc<Drawn>>,

@@ -156,7 +156,7 @@ impl Viewer {
             return self.fail(events, Error::Lost(why));
         }
         self.app.session.say(false, "the window's graphics device was lost and opened again");
-        // What was handed to the former device has to be handed over again.
+        // What was passed to the former device has to be passed again.
         self.ctx = context(self.options.scale);
         self.app.textures = crate::textures::Textures::default();
         match Shown::open(events, window, &self.options, &self.ctx) {
@@ -407,7 +407,7 @@ impl Shown {
             wgpu::CurrentSurfaceTexture::Success(frame) | wgpu::CurrentSurfaceTexture::Suboptimal(frame) => frame,
             wgpu::CurrentSurfaceTexture::Occluded => return Painted::Hidden,
             _ => {
-                // Outdated or lost: made anew, and tried again with the next frame.
+                // Outdated or lost: created again, and tried again with the next frame.
                 self.surface.configure(&self.device, &self.config);
                 self.window.request_redraw();
                 return Painted::Hidden;

@@ -13,7 +13,7 @@ use crate::{Result, ShadowMaps, Shadows};
 /// # fn example(shadows: &Shadows) -> umbrage_wgpu::Result<wgpu::RenderPipeline> {
 /// shadows.caster_pipeline(&CasterPipeline {
 ///     buffers: &[Some(CasterPipeline::positions(24, &wgpu::vertex_attr_array![0 => Float32x3]))],
-///     cull_mode: Some(wgpu::Face::Front),
+///     front_face: wgpu::FrontFace::Cw,
 ///     ..CasterPipeline::default()
 /// })
 /// # }
@@ -24,10 +24,10 @@ pub struct CasterPipeline<'a> {
     pub label: Option<&'a str>,
     /// Vertex buffers, as in the application's own pipelines.
     pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    /// WGSL with an entry point `vertex`, and `fragment` if [`CasterPipeline::discards`]: it stands
-    /// behind [`Shadows::caster_wgsl`] of group 0.
+    /// WGSL with an entry point `vertex`, and `fragment` if [`CasterPipeline::discards`]. It is
+    /// appended to [`Shadows::caster_wgsl`] of group 0.
     pub wgsl: &'a str,
-    /// What `vertex` hands to `fragment`: members of the struct `UmbrageCast`.
+    /// What `vertex` passes to `fragment`: members of the struct `UmbrageCast`.
     pub members: &'a str,
     /// Whether `wgsl` has an entry point `fragment`, which discards. It returns
     /// `umbrage_caster_depth(at)` of its `@builtin(position)` at location 0, for maps that are
@@ -37,11 +37,11 @@ pub struct CasterPipeline<'a> {
     pub bind_group_layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
     /// Lists or strips.
     pub topology: wgpu::PrimitiveTopology,
-    /// Format of indices, for strips alone.
+    /// Format of indices, for strips only.
     pub strip_index_format: Option<wgpu::IndexFormat>,
     /// Which side is the front.
     pub front_face: wgpu::FrontFace,
-    /// Faces that are left away. Walls of one side throw shadows if it is `None`.
+    /// Faces to cull. With `None`, single-sided walls cast shadows from both sides.
     pub cull_mode: Option<wgpu::Face>,
 }
 
@@ -88,7 +88,7 @@ impl CasterPipeline<'_> {
 impl Shadows {
     /// A pipeline that draws casters into every map of [`crate::ShadowFrame::maps`], with
     /// [`crate::ShadowMap::bind_group`] in group 0. Valid until [`Shadows::set_config`] or
-    /// [`Shadows::set_lights`] answers [`umbrage::config::Rebuilds::Pipelines`].
+    /// [`Shadows::set_lights`] returns [`umbrage::config::Rebuilds::Pipelines`].
     ///
     /// # Errors
     /// [`crate::Error::Device`] if the device refuses shader or states,

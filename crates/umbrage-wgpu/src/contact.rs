@@ -97,7 +97,7 @@ impl Uniform {
 }
 
 /// A uniform and a bind group layout for `umbrage_contact_visibility` ([`contact_wgsl`]). The app
-/// draws its picture's depth first, with one sample a pixel, into a texture that it may bind as
+/// draws its picture's depth first, with one sample per pixel, into a texture that it may bind as
 /// `texture_depth_2d`. Not on GL and WebGL2, which cannot load from one.
 #[derive(Debug)]
 pub struct ContactShadows {
@@ -170,7 +170,7 @@ impl ContactShadows {
     }
 }
 
-/// Text to put before a shader that asks for contact shadows, beside
+/// WGSL to put before a shader that computes contact shadows, beside
 /// [`crate::ShadowMaps::receiver_wgsl`] or without it; `group` is the index at which the app binds
 /// [`ContactShadows::bind_group`]. `umbrage_contact_visibility(position, normal, to_light, noise)
 /// -> f32` is to be multiplied with, or taken the smaller of, what the maps say.

@@ -5,7 +5,7 @@ use std::task::{Context, Poll, Waker};
 
 use crate::{Error, Result};
 
-/// Runs `work` and turns the device's complaints about it into an error. A browser answers later
+/// Runs `work` and turns the device's errors about it into one of ours. A browser answers later
 /// than that: its complaints go where the application has them go.
 pub(crate) fn guarded<T>(device: &wgpu::Device, during: &'static str, work: impl FnOnce() -> Result<T>) -> Result<T> {
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);

@@ -3,17 +3,16 @@
 /// [`std::result::Result`] with this crate's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Every message names the field, what was wrong and what to do.
+/// Why shadow maps could not be created, prepared or drawn. Every message names the field, what was
+/// wrong and what to do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// The config is wrong, or the planner refused its input.
     #[error(transparent)]
     Config(#[from] umbrage::Error),
-    /// The config asks for maps that these are not.
-    #[error(
-        "setting {setting} asks for other maps than these; make ShadowMaps anew, or change the config of umbrage_wgpu::Shadows"
-    )]
+    /// The config needs other maps.
+    #[error("setting {setting} cannot change on existing maps; create new ShadowMaps, or use Shadows::set_config")]
     NeedsNewMaps {
         /// Key of the setting, see [`umbrage::config::SETTINGS`].
         setting: &'static str,
@@ -27,7 +26,7 @@ pub enum Error {
     /// The device is lost: its driver was reset or updated, its adapter was unplugged, or the
     /// application destroyed it. Nothing that belongs to it works any more.
     #[error(
-        "the graphics device is lost; request a new device, and make Shadows (or ShadowMaps) and all pipelines anew on it"
+        "the graphics device is lost; request a new device, and create Shadows (or ShadowMaps) and all pipelines again on it"
     )]
     DeviceLost,
     /// The device refused a command.
@@ -40,10 +39,10 @@ pub enum Error {
     },
     /// A pass that loads from depth textures, on a device that cannot.
     #[error(
-        "depth textures cannot be loaded from on GL and WebGL2; ask for visibility where surfaces are drawn instead of in a mask"
+        "depth textures cannot be loaded on GL and WebGL2; compute visibility where surfaces are drawn instead of in a mask"
     )]
     MaskNeedsDepthLoads,
-    /// A mask was given normals that it did not ask for, or none where it did.
+    /// A mask was given normals that it was not made for, or none where it needs them.
     #[error("a mask with normals {normals:?} was {}; give a texture of normals with MaskNormals::Texture and with nothing else", if *.given { "given a texture of them" } else { "given none" })]
     MaskNormals {
         /// As the mask was made.
@@ -166,17 +165,16 @@ pub enum Error {
         /// What it may be.
         expected: &'static str,
     },
-    /// A frame's casters or receivers come as lists beside a set, where nobody would look at them.
-    #[error(
-        "the inputs have {listed} boxes in lists beside a set of casters; insert them into the set, or leave it away"
-    )]
+    /// Casters or receivers of a frame were given as lists beside a set, where they would be
+    /// ignored.
+    #[error("the inputs have a caster set and {listed} boxes in lists; put the boxes into the set, or omit it")]
     SetAndLists {
         /// Casters and receivers in lists.
         listed: usize,
     },
     /// A filter so wide that its radius exceeds even the widest map.
     #[error(
-        "the filter is {width_m} m wide, half of which is more than the {map_m:.3} m of the widest map; give less, or leave it to the filter"
+        "the filter is {width_m} m wide, half of which is more than the {map_m:.3} m of the widest map; give less, or no width"
     )]
     FilterTooWide {
         /// The filter's full width in metres.
@@ -185,7 +183,7 @@ pub enum Error {
         map_m: f64,
     },
     /// More or fewer plans than lights.
-    #[error("{plans} plans or lights, but these maps were made for {lights}; give one for each light of theirs")]
+    #[error("got {plans} lights, but these maps were made for {lights}; give one plan or light for each")]
     LightCount {
         /// How many plans there were.
         plans: usize,

@@ -1,7 +1,8 @@
 //! Parallel-split (cascaded) shadow maps for any wgpu application.
 //!
-//! [`Shadows`] plans, owns maps and uniforms, and answers one WGSL call. It opens no device, owns
-//! no window and knows no mesh: the application draws its casters with its own vertex formats.
+//! [`Shadows`] plans the maps, owns their textures and uniforms, and supplies the WGSL function
+//! `umbrage_visibility`. It creates no device and no window and needs no meshes: the application
+//! draws its casters with its own vertex formats.
 //!
 //! # Adopting it
 //!
@@ -14,19 +15,18 @@
 //!    casters of every map of [`ShadowFrame::maps`]; [`Shadows::prefilter`]; then your own pass
 //!    with [`Shadows::bind_group`].
 //!
-//! `examples/hello_shadows` is a whole program. [`ShadowConfig`] has everything that can be chosen;
-//! [`Shadows`] says what a change costs. [`ShadowMaps`] and [`umbrage::Planner`] are the low level,
-//! for engines that plan or draw otherwise.
+//! `examples/hello_shadows` is a whole program. [`ShadowConfig`] holds all settings; [`Shadows`]
+//! lists what a change costs. [`ShadowMaps`] and [`umbrage::Planner`] are the low-level API, for
+//! engines that plan or draw in another way.
 //!
-//! Positions in both shaders are metres relative to [`Inputs::origin`]. The normal is the surface's
-//! own, not an interpolated or mapped one, turned towards the eye: the bias comes from it. A
-//! fragment shader without one takes `normalize(cross(dpdy(position), dpdx(position)))`.
+//! Positions in both shaders are in metres relative to [`Inputs::origin`]. The normal is the
+//! geometric one, not an interpolated or mapped one, turned towards the eye: the bias comes from
+//! it. A fragment shader without one uses `normalize(cross(dpdy(position), dpdx(position)))`.
 //!
 //! # Casters with shaders of their own
 //!
-//! A vertex shader returns `umbrage_cast(position, instance)` of the position relative to the
-//! origin, where `instance` is its parameter `UmbrageInstance`. What stands before that is its own
-//! affair:
+//! Return `umbrage_cast(position, instance)` from the vertex shader, with the position relative to
+//! the origin and the parameter `instance: UmbrageInstance`. How you compute it is up to you:
 //!
 //! **Instanced**, with matrices as attributes of an instance buffer that has one row for each
 //! caster; [`ShadowMap::rows`] says how it is drawn:
@@ -48,7 +48,7 @@
 //!
 //! # What the WGSL offers
 //!
-//! | function | answer |
+//! | function | result |
 //! |---|---|
 //! | `umbrage_cast(position: vec3f, instance: UmbrageInstance) -> UmbrageCast` | what a caster's vertex shader returns |
 //! | `umbrage_cast_at(position: vec3f, code: u32) -> UmbrageCast` | the same for a shader that takes `@builtin(instance_index)` itself; drawn into several layers at once it also takes `view: u32` |
@@ -67,13 +67,12 @@
 //! query.split = 2;    // one split alone, for points off screen
 //! ```
 //!
-//! `umbrage_fragment_query` belongs in uniform control flow. It knows the fragment's pixel, which
-//! dithered borders and turned discs need, and what the pixel covers, which filters of moments want
-//! ([`Filter::is_prefiltered`], with [`ShadowMaps::prefilter`] between steps 4 and 5); without it
-//! they look at their finest level, which shimmers far away. Everything else works in any control
-//! flow and in every stage.
+//! Call `umbrage_fragment_query` in uniform control flow only. It passes on the pixel, which
+//! dithered transitions and rotated kernels need, and the pixel's footprint, from which moment
+//! filters ([`Filter::is_prefiltered`]) choose a mip level. Without it they read the finest level,
+//! which shimmers in the distance. All other functions work in any control flow and any stage.
 //!
-//! Casters' and receivers' texts belong into two shader modules: both declare what they share.
+//! Put caster WGSL and receiver WGSL into separate shader modules: both declare the shared types.
 
 mod caster_pipeline;
 mod contact;

@@ -9,7 +9,7 @@ use crate::maps::place::Place;
 use crate::maps::slot::Slot;
 use crate::{Error, Result};
 
-/// The cosine that says a light has no cone.
+/// The cosine that means that a light has no cone.
 const NO_CONE: f32 = -2.0;
 
 /// One split of a local light. Its matrix is taken apart: w is metres along the axis, and depth `A
@@ -54,7 +54,7 @@ pub(crate) fn split(
     })
 }
 
-/// What a frame says of where its light stands.
+/// What a frame contains of the position of its light.
 pub(crate) fn place_light(frame: &mut layout::Frame, plan: &ShadowPlan, origin: DVec3) {
     frame.cone_cosine = NO_CONE;
     let Some((light, position)) = plan.light.and_then(|light| Some((light, light.position()?))) else { return };

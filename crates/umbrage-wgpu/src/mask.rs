@@ -68,11 +68,11 @@ impl Uniform {
     }
 }
 
-/// A pass that asks [`ShadowMaps`] for every pixel of a picture whose depth is drawn already, for
-/// applications that shade later: red is the first light's visibility (1 where nothing was drawn),
-/// green 1 where something was.
+/// A pass that samples [`ShadowMaps`] for every pixel of a picture whose depth is drawn already,
+/// for applications that shade later: red is the first light's visibility (1 where nothing was
+/// drawn), green 1 where something was.
 ///
-/// Positions are rebuilt from depth with one sample a pixel; they agree with the surfaces' own to
+/// Positions are rebuilt from depth with one sample per pixel; they agree with the surfaces' own to
 /// rounding (`docs/notes/coordinates.md`).
 /// Not on GL and WebGL2, which cannot load from a depth texture.
 #[derive(Debug)]

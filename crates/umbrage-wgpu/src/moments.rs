@@ -104,7 +104,7 @@ pub(crate) struct Moments {
     halve: wgpu::RenderPipeline,
     far: wgpu::Color,
     splits: Vec<SplitTargets>,
-    /// What the last plan wants of each split; `None` where nothing throws a shadow.
+    /// What the last plan wants of each split; `None` where nothing casts a shadow.
     wanted: Vec<Option<layout::MomentPass>>,
 }
 
@@ -321,7 +321,7 @@ impl Moments {
         self.write(queue, wanted, filter)
     }
 
-    /// What a plan asks for, checked.
+    /// What a plan needs, checked.
     fn wanted(&self, plan: &ShadowPlan, filter: &MomentFilter) -> Result<Vec<Option<layout::MomentPass>>> {
         let finest = plan.splits.iter().map(|split| split.texel_m.max_element()).fold(f64::INFINITY, f64::min);
         let width = filter.width_m.unwrap_or(DEFAULT_TEXELS * finest);

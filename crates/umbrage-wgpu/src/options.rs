@@ -84,7 +84,7 @@ pub(crate) fn bias_kind(bias: ReceiverBias) -> BiasKind {
 
 /// The maps of one light.
 ///
-/// Maps for a spot light serve a directional light, too; those for a point light serve any.
+/// Maps for a spot light serve a directional light too; those for a point light serve any.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct LightMaps {
     /// What kind of light they are for. A point light has six times the maps of the others.
@@ -131,7 +131,7 @@ pub struct FrameOptions {
     pub origin: DVec3,
     /// Whether there are shadows. Without them every surface that faces the light is lit.
     pub enabled: bool,
-    /// Whether `umbrage_shadow` answers with a debug colour for each split.
+    /// Whether `umbrage_shadow` returns a debug colour for each split.
     pub tint: bool,
 }
 

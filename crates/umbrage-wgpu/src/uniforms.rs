@@ -268,7 +268,7 @@ fn check(index: usize, split: &umbrage::Split) -> Result<()> {
     Ok(())
 }
 
-/// False for NaN, too.
+/// False for NaN too.
 fn is_unit(axis: DVec3) -> bool {
     (axis.length() - 1.0).abs() < 1e-6
 }
@@ -417,7 +417,7 @@ mod tests {
         }
     }
 
-    /// Source 003, Listings 4.1.4 and 4.1.5: map coordinates that a vertex shader hands on, and
+    /// Source 003, Listings 4.1.4 and 4.1.5: map coordinates that a vertex shader passes on, and
     /// those that a fragment makes of an interpolated position. The source calls the second wrong;
     /// perspective-correct interpolation is exact for both, as both are affine in the position, and
     /// in `f32` they differ by rounding alone.
@@ -468,7 +468,7 @@ mod tests {
         assert!((straight - right).abs() > 100.0, "{straight} and {right}");
     }
 
-    /// What engines of other shaders are told is what ours do.
+    /// The bias for engines with other shaders is that of ours.
     #[test]
     fn the_planners_bias_has_the_shaders_constants() {
         let text = umbrage_shaders::receiver(0, umbrage_shaders::Maps::default());

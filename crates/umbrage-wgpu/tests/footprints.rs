@@ -10,7 +10,7 @@ use umbrage_wgpu::FrameOptions;
 
 const SIZE: u32 = 64;
 
-/// A ground of 64 m by 64 m, a metre a pixel; splits meet askew. Colour: visibility, split, what
+/// A ground of 64 m by 64 m, a metre per pixel; splits meet askew. Colour: visibility, split, what
 /// `expression` says.
 fn drawn(world: &World, expression: &str) -> Vec<[f32; 4]> {
     let source = world.maps.receiver_wgsl(2)

@@ -10,7 +10,7 @@ use umbrage::config::{DepthFormat, Filter};
 use umbrage_wgpu::{FrameOptions, ShadowConfig};
 
 const DOWN: DVec3 = DVec3::new(0.0, -1.0, 0.0);
-/// 45° down towards +X: a wall of height h throws a shadow h long.
+/// 45° down towards +X: a wall of height h casts a shadow h long.
 const SLANTED: DVec3 = DVec3::new(1.0, -1.0, 0.0);
 
 fn stored(map_sizes: &[u32], filter: Filter, depth_format: DepthFormat) -> ShadowConfig {

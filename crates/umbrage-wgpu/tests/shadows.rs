@@ -1,4 +1,4 @@
-//! The front door: what it costs to change something, what a refused frame leaves behind, several
+//! The main API: what it costs to change something, what a refused frame leaves behind, several
 //! lights and views.
 
 mod common;
@@ -56,9 +56,10 @@ fn values(setting: &Setting) -> Vec<String> {
         Kind::Range => texts(&["0.5..60"]),
         Kind::Degrees(most) => vec![(0.1 * most).to_string()],
         Kind::Count(least, most) => vec![least.to_string(), most.to_string()],
+        Kind::CountOf(counts) => counts.iter().map(u32::to_string).collect(),
         Kind::Texels => texts(&["128", "80"]),
         Kind::Colour => texts(&["0.1,0.2,0.3"]),
-        Kind::Switch => texts(&["true", "false"]),
+        Kind::Switch => texts(&["on", "off"]),
     }
 }
 
@@ -156,7 +157,7 @@ fn the_table_says_what_keeps_pipelines_valid() {
     assert!(walked > 150 && kept > 80, "{walked} changes, {kept} kept");
 }
 
-/// What cannot change a shadow's place leaves it there, and other lights' maps, too.
+/// What cannot change a shadow's place leaves it there, and other lights' maps too.
 #[test]
 fn shadows_stand_still_through_changes_that_do_not_concern_them() {
     let Some(gpu) = Gpu::new() else { return };

@@ -83,6 +83,6 @@ fn answers_change_near_what_is_left_out_alone() {
         }
         assert!(changed > 0, "{filter:?}: nothing changed, so nothing was shown");
         let dark = without.iter().filter(|answer| answer.visibility < 0.5).count();
-        assert!(dark > 500, "{filter:?}: large casters throw their shadows: {dark}");
+        assert!(dark > 500, "{filter:?}: large casters cast their shadows: {dark}");
     }
 }

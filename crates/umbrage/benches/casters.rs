@@ -115,7 +115,7 @@ fn all_in_view(criterion: &mut Criterion) {
         group.bench_function(format!("set, {name}"), |bencher| {
             bencher.iter_custom(|frames| {
                 timed(frames, || {
-                    // A set that has changed is planned anew.
+                    // A set that has changed is planned again.
                     set.set_bounds(handle, world.list[7]).expect("there");
                     let begin = Instant::now();
                     planner.plan(&view, &sun, &set, &set).expect("valid");

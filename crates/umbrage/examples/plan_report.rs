@@ -24,7 +24,7 @@ fn street() -> (Vec<Aabb>, Vec<Aabb>) {
         houses.push(Aabb::new(corner, corner + DVec3::new(6.0, height, 6.0)));
     }
     let plain = Aabb::new(DVec3::new(-200.0, -0.1, -300.0), DVec3::new(200.0, 0.0, 100.0));
-    // Houses throw shadows; the plain shows them, and so do the houses.
+    // Houses cast shadows; the plain shows them, and so do the houses.
     let receivers = houses.iter().copied().chain([plain]).collect();
     (houses, receivers)
 }

@@ -15,7 +15,7 @@ pub(crate) const LEAST_METRES: f64 = 1e-9;
 /// 1.2 km).
 const BELOW_ALL: f64 = 1e-6;
 
-/// [`BELOW_ALL`] in metres, at most: a ground of a thousand kilometres does throw its shadow on
+/// [`BELOW_ALL`] in metres, at most: a ground of a thousand kilometres does cast its shadow on
 /// what lies a metre under it.
 const MOST_BELOW: f64 = 2e-3;
 

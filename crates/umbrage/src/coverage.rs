@@ -28,7 +28,7 @@ pub(crate) struct CoverageVolume {
 }
 
 impl CoverageVolume {
-    /// Whether a box can throw a shadow into the volume or its margin (conservatively).
+    /// Whether a box can cast a shadow into the volume or its margin (conservatively).
     pub fn is_shaded_by(&self, fan: &Fan, center: DVec3, half: DVec3) -> bool {
         can_shade(&Placed { center, half }, &self.swept, self.receivers.as_ref(), fan, self.margin)
     }

@@ -47,7 +47,7 @@ pub enum Error {
     #[error("{0}")]
     Conflict(Box<crate::config::Conflict>),
     /// No setting has this key.
-    #[error("{key:?} is no shadow setting; `umbrage::config::SETTINGS` lists them")]
+    #[error("{key:?} is not a shadow setting; see docs/settings.md (umbrage::config::SETTINGS)")]
     UnknownSetting {
         /// The key as given.
         key: String,
@@ -61,7 +61,7 @@ pub enum Error {
         reason: String,
     },
     /// A budget that does not pay for one map.
-    #[error("a budget of {budget} is too small for one split; the least that is possible is {least}")]
+    #[error("a budget of {budget} is too small for one split; give at least {least}")]
     BudgetTooSmall {
         /// The budget as given.
         budget: crate::config::Budget,
@@ -97,8 +97,8 @@ pub enum Error {
         /// Its maximum corner as given.
         max: glam::DVec3,
     },
-    /// A handle names no caster of this [`crate::CasterSet`].
-    #[error("handle {handle} names no caster of this set: it has been removed, or never was in it")]
+    /// No caster of this [`crate::CasterSet`] has the handle.
+    #[error("no caster of this set has handle {handle}: it was removed, or belongs to another set")]
     RemovedCaster {
         /// The handle.
         handle: crate::CasterHandle,

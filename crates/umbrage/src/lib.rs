@@ -17,8 +17,8 @@
 //!
 //! # Speed in a development build
 //!
-//! Planning is some fifty times slower without optimisation. Let Cargo optimise the planner in an
-//! application's `dev` profile, too:
+//! Planning is about fifty times slower without optimisation. Let Cargo optimise the planner in the
+//! application's `dev` profile too:
 //!
 //! ```toml
 //! [profile.dev.package.umbrage]

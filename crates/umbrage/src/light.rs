@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::bounds::MOST_METRES;
 use crate::{Error, Result};
 
-/// Share of a local light's range within which nothing casts, unless a light is told otherwise: a
+/// Share of a local light's range within which nothing casts, unless another is given: a
 /// lamp's own glass.
 const NEAR_SHARE: f64 = 1.0 / 256.0;
 
@@ -165,7 +165,7 @@ impl PointLight {
     }
 }
 
-/// Any light that throws shadows.
+/// Any light that casts shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Light {
     /// A sun.

@@ -2,8 +2,8 @@
 
 use crate::{Error, Result};
 
-/// Texels that a map keeps free besides the filter's reach: half for the texel that a sample's
-/// rounding may choose, one for the normal offset of the receiver's bias.
+/// Texels that a map keeps free besides the filter's reach: half a texel for the rounding of a
+/// sample, and one to spare.
 pub(crate) const EDGE_TEXELS: f64 = 1.5;
 
 /// Texels beyond a kernel's half width that its outermost taps read.

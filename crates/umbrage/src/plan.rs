@@ -1,4 +1,4 @@
-//! What the planner answers: everything a renderer needs for one light and one view.
+//! The result of the planner: everything a renderer needs for one light and one view.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
@@ -32,7 +32,7 @@ pub struct ShadowPlan {
     pub light: Option<Light>,
     /// View depth at which the fade to lit begins; `C_m` if there is none.
     pub fade_begin: f64,
-    /// Which map answers for a point.
+    /// Which map a point uses.
     pub selection: Selection,
     /// With [`Selection::Map`]: share of a map's half edge over which it blends into the next that
     /// contains the point.
@@ -123,7 +123,7 @@ impl ShadowPlan {
         self.light.map_or(1, |light| light.faces())
     }
 
-    /// Whether a part of a caster of `split` can throw a shadow on anything that the split serves:
+    /// Whether a part of a caster of `split` can cast a shadow on anything that the split serves:
     /// the test that casters were listed by, for the part's own world box. An application that
     /// keeps large meshes in clusters skips those that it rejects.
     ///
@@ -188,10 +188,10 @@ impl ShadowPlan {
 ///
 /// A warped map is the picture that [`Split::warp`] takes. The axes, `min_texel` and the depths are
 /// then those of the plain map that it replaces; [`Split::map_from_world`] and its neighbours
-/// answer for either kind.
+/// work for either kind.
 ///
 /// The map of a local light is a perspective picture taken from [`Split::light_position`] along
-/// [`Split::depth_axis`], which [`Split::warp`] takes, too: w is the depth along that axis in
+/// [`Split::depth_axis`], which [`Split::warp`] takes too: w is the depth along that axis in
 /// metres, and the stored depth is `A − B/w`, 0 at `depth_near` and 1 at `depth_far`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Split {
@@ -236,7 +236,7 @@ pub struct Split {
     pub warp: Option<DMat4>,
     /// Where the light stands, metres; `None` for parallel light.
     pub light_position: Option<DVec3>,
-    /// This split's part of [`ShadowPlan::caster_indices`]. Empty: nothing throws a shadow here and
+    /// This split's part of [`ShadowPlan::caster_indices`]. Empty: nothing casts a shadow here and
     /// the split is lit.
     pub casters: std::ops::Range<usize>,
 }

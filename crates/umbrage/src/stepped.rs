@@ -2,13 +2,13 @@
 
 use crate::{DirectionalLight, Error, Result};
 
-/// Follows a moving sun in steps, so that shadows stand still between two of them, and says how to
-/// fade from one to the next.
+/// Follows a moving sun in steps, so that shadows stand still between two of them, and returns how
+/// to fade from one to the next.
 ///
-/// A map drawn for a sun that moves a little every frame shows every edge in other texels every
-/// frame, whatever stands still of it. A sun that stays where it is until it has fallen `step`
-/// behind, and is then cross-faded to its true place, changes nothing in between, and costs a
-/// second set of maps while it fades. Ours: \[PCSM\] has a static light.
+/// If the sun moves a little every frame, every shadow edge falls into other texels every frame,
+/// and all edges crawl. This sun stays where it is until it is `step` behind, and is then
+/// cross-faded to its true direction. Nothing changes in between; a fade costs a second set of
+/// maps. Ours: \[PCSM\] has a static light.
 ///
 /// ```
 /// # use umbrage::{DirectionalLight, SteppedSun};
@@ -17,7 +17,7 @@ use crate::{DirectionalLight, Error, Result};
 /// // Every frame, with the seconds since the last one:
 /// let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2))?;
 /// let fade = stepped.follow(&sun, 1.0 / 60.0)?;
-/// // Plan and draw maps for `fade.to`, and for `fade.from` too if it fades; then mix what they answer.
+/// // Plan and draw maps for `fade.to`, and for `fade.from` too if it fades; then mix their visibilities.
 /// assert!(!fade.is_fading());
 /// # Ok::<(), umbrage::Error>(())
 /// ```
@@ -55,8 +55,8 @@ impl SunFade {
 
 impl SteppedSun {
     /// `step` in radians: how far behind the true sun shadows may fall. `fade` is how long a step
-    /// is faded, in whatever unit [`SteppedSun::follow`] is told (seconds, frames); 0 is a sudden
-    /// step.
+    /// is faded, in the unit of the time given to [`SteppedSun::follow`] (seconds, frames); 0 is a
+    /// sudden step.
     ///
     /// # Errors
     /// [`Error::InvalidLight`] for a step outside (0, π], or a fade that is negative or not finite.

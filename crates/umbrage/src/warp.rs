@@ -73,7 +73,7 @@ impl std::str::FromStr for Warp {
     }
 }
 
-/// Share of the depth range that a trapezoidal map focuses on where nothing says another.
+/// Default share of the depth range that a trapezoidal map focuses on.
 const USUAL_FOCUS: f64 = 0.3;
 
 /// Where the focus line of a trapezoid lands: the near 80 % of the map, as NDC from +1 (near) to −1

@@ -70,7 +70,7 @@ fn what_nobody_asked_for_gives_way_with_a_note() {
     let mut config = Preset::Sharp.config();
     let notes = config.apply(&given("warp=tsm")).unwrap();
     assert_eq!(notes.len(), 1, "{notes:?}");
-    assert!(notes[0].starts_with("selection map is left away"), "{notes:?}");
+    assert!(notes[0].starts_with("selection map is ignored"), "{notes:?}");
     let mut config = Preset::Papers.config();
     assert_eq!(config.apply(&given("storage=reused")).unwrap().len(), 1);
     assert_eq!(config.transition, Transition::Hard);
@@ -245,11 +245,12 @@ fn value(setting: &'static Setting) -> BoxedStrategy<String> {
             .boxed(),
         Kind::Range => (1e-3..10.0, 11.0..1e5).prop_map(|(near, far)| format!("{near}..{far}")).boxed(),
         Kind::Count(least, most) => (least..=most).prop_map(|count| count.to_string()).boxed(),
+        Kind::CountOf(counts) => (0..counts.len()).prop_map(move |i| counts[i].to_string()).boxed(),
         Kind::Texels => (64u32..4096).prop_map(|texels| texels.to_string()).boxed(),
         Kind::Colour => [0.0..=1.0, 0.0..=1.0, 0.0..=1.0]
             .prop_map(|parts: [f64; 3]| parts.map(|part| part.to_string()).join(","))
             .boxed(),
-        Kind::Switch => any::<bool>().prop_map(|on| on.to_string()).boxed(),
+        Kind::Switch => (0..4usize).prop_map(|i| ["on", "off", "true", "false"][i].to_owned()).boxed(),
     }
 }
 
@@ -293,6 +294,7 @@ fn a_value_is_checked_alone_before_it_is_applied() {
         ("shadow-colour", "0,0,1.01"),
         ("warp", "tsm,"),
         ("rotate-kernel", "maybe"),
+        ("msaa", "2"),
         ("sun-angle", "90.5"),
     ];
     for (key, value) in bad {

@@ -363,7 +363,7 @@ proptest! {
             let holders: Vec<usize> = (0..plan.splits.len())
                 .filter(|&i| !plan.splits[i].casters.is_empty() && plan.splits[i].contains(point, plan.splits[i].filter_reach))
                 .collect();
-            // Along a map's edge the next one is asked, too.
+            // Along a map's edge the next one is asked too.
             let in_band = holders.first().is_some_and(|&first| {
                 let band = 0.5 * plan.blend * f64::from(plan.splits[first].size);
                 !plan.splits[first].contains(point, plan.splits[first].filter_reach + band)

@@ -134,7 +134,7 @@ proptest! {
         prop_assert!(left <= 1.1, "{} times a fresh planner's texels, planes {:?} for {:?}", left, before.planes, fresh.planes);
     }
 
-    /// The maps of a lamp recover, too.
+    /// The maps of a lamp recover too.
     #[test]
     fn lamps_recover(splits in 1usize..=8, walk in 1.0..40.0f64, yaw in -3.0..3.0f64) {
         let world = town();

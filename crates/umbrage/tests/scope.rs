@@ -1,4 +1,4 @@
-//! What has no say: very far objects, ground beyond all shadows, how far an orthographic camera
+//! What is ignored: very far objects, ground beyond all shadows, how far an orthographic camera
 //! stands off.
 
 use glam::DVec3;
@@ -141,7 +141,7 @@ fn every_direction_of_sight_along_the_sun_has_axes_and_casters() {
                         assert!(frame.abs_diff_eq(sun.direction(), 1e-10), "{d} {off} {stability:?}: {split:?}");
                         assert!(split.u_axis.dot(split.v_axis).abs() < 1e-10, "{d} {off} {stability:?}: {split:?}");
                     }
-                    // The cube before the eye throws a shadow on what lies behind it, and has a
+                    // The cube before the eye casts a shadow on what lies behind it, and has a
                     // list that says so.
                     assert!(plan.splits.iter().any(|split| !split.casters.is_empty()), "{d} {off} {stability:?}");
                 }

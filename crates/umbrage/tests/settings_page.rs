@@ -1,40 +1,44 @@
 //! `docs/settings.md` is made from the tables of settings, presets and rules.
 //!
-//! `UMBRAGE_BLESS=1 cargo test -p umbrage --test settings_page` writes it anew.
+//! `UMBRAGE_BLESS=1 cargo test -p umbrage --test settings_page` writes it again.
 
 use std::fmt::Write as _;
 
-use umbrage::config::{Kind, Preset, RULES, Rebuilds, SETTINGS, Setting};
+use umbrage::config::{Choice, Kind, Preset, RULES, Rebuilds, SETTINGS, Setting, Word};
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/settings.md");
 
 const HEAD: &str = "# Settings
 
-`umbrage::ShadowConfig` holds everything that can be chosen about shadows. Each choice has a key. A
-config file (TOML or JSON) has the keys as they stand here, the command has them as options behind
-two dashes, and `umbrage compare` has them behind colons. `cargo test -p umbrage --test
-settings_page` makes this page from the tables in `crates/umbrage/src/config`.
+`umbrage::ShadowConfig` holds all settings. Each has a key, written `filter = \"pcf5\"` in a config
+file (TOML or JSON), `--filter pcf5` on the command line, and `:filter=pcf5` in a technique of
+`umbrage compare`. A dash means that the default preset does not use the setting. `cargo test -p
+umbrage --test settings_page` makes this page from the tables in `crates/umbrage/src/config`.
 
-*Costs* says what a change makes anew while an application runs: nothing, its maps (textures and
-bind groups), or its pipelines (shader texts).
+*Costs* says what an application rebuilds when the setting changes at run time: nothing, the maps
+(textures and bind groups), or the pipelines.
 ";
+
+/// Words as a list; former words are read, but not offered.
+fn listed(words: &[Word]) -> String {
+    let offered = words.iter().filter(|word| !word.help.starts_with("Old name"));
+    offered.map(|word| format!("`{}`", word.word)).collect::<Vec<_>>().join(", ")
+}
 
 fn values(kind: Kind) -> String {
     match kind {
-        Kind::Words(words) => words.iter().map(|word| format!("`{}`", word.word)).collect::<Vec<_>>().join(", "),
-        Kind::WordList(words) => {
-            let words = words.iter().map(|word| format!("`{}`", word.word)).collect::<Vec<_>>().join(", ");
-            format!("{words}; one, or one per split")
-        }
+        Kind::Words(words) => listed(words),
+        Kind::WordList(words) => format!("{}; one, or one per split", listed(words)),
         Kind::Share(most) => format!("0 to {most}"),
         Kind::Metres => "metres above 0".to_owned(),
         Kind::MetresList => "metres, with commas".to_owned(),
         Kind::Range => "`N..F` in metres".to_owned(),
         Kind::Degrees(most) => format!("0° to {most}°"),
         Kind::Count(least, most) => format!("{least} to {most}"),
+        Kind::CountOf(counts) => counts.iter().map(|count| format!("`{count}`")).collect::<Vec<_>>().join(", "),
         Kind::Texels => "texels; one, or one per split".to_owned(),
         Kind::Colour => "`R,G,B`, 0 to 1 each".to_owned(),
-        Kind::Switch => "`true`, `false`".to_owned(),
+        Kind::Switch => "`on`, `off`".to_owned(),
     }
 }
 
@@ -71,8 +75,12 @@ fn page() -> String {
         let _ = writeln!(page, "| `{key}` | {help} | {values} | {default} | {cost} |");
     }
     let _ = writeln!(page, "\n## What excludes what\n");
-    let _ = writeln!(page, "A setting that nobody asked for gives way to one that somebody did, with a note. Two that");
-    let _ = writeln!(page, "were asked for are an error.\n\n| choice | excludes | because | do |\n|---|---|---|---|");
+    let _ = writeln!(
+        page,
+        "If a setting that you gave excludes one that you did not give, the latter is reset and a note says"
+    );
+    let _ = writeln!(page, "so. If you gave both, it is an error.\n\n| setting | excludes | because | instead |");
+    let _ = writeln!(page, "|---|---|---|---|");
     for rule in RULES {
         let (first, second) = (name(rule.first), name(rule.second));
         let _ = writeln!(page, "| {first} | {second} | {} | {} |", rule.reason, rule.remedy);
@@ -80,16 +88,32 @@ fn page() -> String {
     page
 }
 
-/// `MapSelection` as `map selection`.
-fn name(choice: umbrage::config::Choice) -> String {
-    let mut name = String::new();
-    for letter in format!("{choice:?}").chars() {
-        if letter.is_uppercase() && !name.is_empty() {
-            name.push(' ');
-        }
-        name.extend(letter.to_lowercase());
+/// A choice as keys and values.
+const fn name(choice: Choice) -> &'static str {
+    match choice {
+        Choice::Warp => "`warp` other than `none`",
+        Choice::MapSelection => "`selection map`",
+        Choice::DistanceMetric => "`bands radial`",
+        Choice::VisibleRange => "`range-fit visible`",
+        Choice::OptimalScheme => "`scheme optimal`",
+        Choice::Band => "`transition blend` or `dither`",
+        Choice::MomentFilter => "moment filters (`esm`, `vsm`, `evsm2`, `evsm4`, `msm`)",
+        Choice::SunFilter => "`filter pcss`, moment filters",
+        Choice::SeveralSamples => "`msaa 4`",
+        Choice::ColourMaps => "`depth-format r32f`",
+        Choice::TiledLayers => "`generation mixed`",
+        Choice::OneMap => "`storage reused`",
+        Choice::NotLayers => "`storage` other than `array`",
+        Choice::NotPerSplit => "`generation` other than `per-split`",
+        Choice::CubeFaces => "`storage cube`",
+        Choice::MoreThanSixSplits => "more than 6 `splits`",
+        Choice::UnequalSizes => "different sizes in `map-size`",
+        Choice::DeferredCoordinates => "`coordinates deferred`",
+        Choice::VertexCoordinates => "`coordinates split`",
+        Choice::MoreThanFourSplits => "more than 4 `splits`",
+        Choice::LocalLight => "spot and point lights",
+        Choice::SeveralFaces => "several lights, point lights",
     }
-    name
 }
 
 #[test]

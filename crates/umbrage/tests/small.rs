@@ -37,7 +37,7 @@ fn sun() -> impl Strategy<Value = DirectionalLight> {
         .prop_map(|direction| DirectionalLight::new(DVec3::from(direction)).expect("a sun"))
 }
 
-/// Two frames, so that what is held counts, too.
+/// Two frames, so that what is held counts too.
 fn plans(config: &ShadowConfig, sun: &DirectionalLight, boxes: &[Aabb]) -> Vec<ShadowPlan> {
     let mut planner = Planner::new(config).expect("a config");
     let lens = Frustum::perspective(1.0, 1.5, 0.1, 200.0).expect("a lens");

@@ -51,7 +51,7 @@ proptest! {
         }
     }
 
-    /// The approximate kind, too, has no other places than whole texels of a grid that is the
+    /// The approximate kind likewise has no other places than whole texels of a grid that is the
     /// light's and the step's alone.
     #[test]
     fn approximate_maps_move_in_whole_texels_and_seldom_take_a_step(

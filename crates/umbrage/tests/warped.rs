@@ -55,7 +55,7 @@ fn warps_are_in_force_wherever_light_and_view_do_not_meet() {
                     let angle = view.forward().angle_between(-plan.light_direction).to_degrees();
                     if (40.0..140.0).contains(&angle) {
                         all += 1;
-                        // Spread counts, too: a warp that is there and does nothing is none.
+                        // Spread counts too: a warp that is there and does nothing is none.
                         plain += usize::from(plan.splits[0].warp.is_none() || spread(&view, &plan) < 2.0);
                     }
                 }

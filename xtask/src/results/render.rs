@@ -18,8 +18,8 @@ const MOST_LINES: usize = 200;
 
 /// What the tables' words mean.
 const TERMS: &str = "\
-E is the share of wrong decisions over all scored points against exact visibility by rays, in per cent (`umbrage-truth`, \
-module `scores`); D is the mean distance between true and answered edges; E_log weighs all depths alike. A view counts \
+E is the share of wrong decisions over all scored points against exact visibility from rays, in per cent (`umbrage-truth`, \
+module `scores`); D is the mean distance between the true shadow edges and those of the technique; E_log weighs all depths alike. A view counts \
 if its true shadow has enough edges. Decisions and what was tried: [notes](notes/README.md). Papers by key: \
 [papers.md](papers.md).";
 
@@ -142,7 +142,7 @@ fn presets(figures: &Figures) -> Result<String> {
         "Presets",
         &["presets", "presets-walking", "presets-turning"],
         "What an application gets: `balanced` is the default. E over all cameras, each world's own sun. The last two columns \
-         are F_edge in per cent, flips from frame to frame by edge pixels, at 0.15 m and at 0.3° a frame.",
+         are F_edge in per cent, flips from frame to frame per pixel of shadow edge, at 0.15 m and at 0.3° per frame.",
         &[table],
     )
 }
@@ -271,8 +271,8 @@ fn acne_and_leaks(figures: &Figures) -> Result<String> {
         "Acne and leaks",
         &jobs,
         "The default: four maps of 1024². *Acne* is falsely dark, *leak* falsely lit, both farther than 2 + 1.5 m \
-         pixels from true edges (m: pixels that a texel covers), as shares of the pixels that lie so far. Asked: at most \
-         0.1 % of either in every view. Cells: mean E / worst view's acne / worst view's leak, %.",
+         pixels from true edges (m: pixels that a texel covers), as shares of the pixels that lie so far. Required: at \
+         most 0.1 % of either in every view. Cells: mean E / worst view's acne / worst view's leak, %.",
         &[table],
     )
 }
@@ -350,7 +350,7 @@ fn filters(figures: &Figures) -> Result<String> {
         "Filters",
         &["filters-soft", "bench-filters"],
         "Four maps of 1024². Errors under a sun 3° across, over everything and over penumbrae, cameras `near`; costs of a picture of \
-         Robot War. Texels and bytes hold anywhere, times for this driver alone.",
+         Robot War. Texels and bytes hold on any device, times for this driver only.",
         &[table],
     )
 }

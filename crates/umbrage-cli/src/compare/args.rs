@@ -24,12 +24,12 @@ A file of techniques (TOML) says the same:
 Suns: own (the scene's), an elevation in degrees at the own sun's bearing (43), an elevation at a bearing from north by east (43@120), \
 into (the sun ahead of the camera, 11 degrees up; into@30: 30 degrees up), metrics (43 and 11 for all cameras, into for the first).
 
-Presets, each reproduced by one command such as `umbrage compare --preset ladder -o ladder`; options given beside take precedence:
+Presets, each reproduced by one command such as `umbrage compare --preset ladder -o ladder`; options given with one override it:
   ladder   SSM and PSSM at 1 and 4 Mtexel, tight and still, over the worlds under the suns `metrics`, with flicker
   figure8  the rows and worlds of the paper's Figure 8, columns (a) to (d)
   psvsm    the five pictures of Parallel-Split Variance Shadow Maps
   filters  every filter on the same maps; give --sun-angle 3 for soft scores
-  dueling  its column (e): looking into the light, larger maps
+  dueling  Figure 8, column (e): looking into the light, larger maps
   stillness  unstabilised, exact, approximate and the source's 64 levels along a walk with turns, with flicker
   table    PSSM(2, 3, 4; 512) beside SSM(1024) over all cameras of all worlds
   selection     splits chosen by view depth and by map, coloured (Practical Cascaded Shadow Maps, Figure 4.1.9)
@@ -54,7 +54,7 @@ pub struct CompareArgs {
     /// A known set of techniques, scenes, cameras and suns
     #[arg(long, value_parser = preset_parser(), help_heading = "Techniques")]
     pub preset: Option<&'static Preset>,
-    /// Settings for all techniques that do not say otherwise: filter=hard:blend=0
+    /// Settings for all techniques that do not set them: filter=hard:blend=0
     #[arg(long, value_name = "SETTINGS", help_heading = "Techniques")]
     pub with: Option<String>,
     /// Views.
@@ -77,17 +77,17 @@ pub struct CompareArgs {
     /// Write one page with sheets, tables and plots here (HTML)
     #[arg(long, value_name = "HTML", help_heading = "Output")]
     pub html: Option<PathBuf>,
-    /// Keep what is finished in this file while the run goes on; if it is cut off, the same command
-    /// goes on from there. The file goes away in the end
+    /// Save finished results in this file during the run; after an interruption, the same command
+    /// continues from there. The file is deleted at the end
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub resume: Option<PathBuf>,
-    /// Columns of the sheets; of more shots, evenly chosen ones are shown
+    /// Most shots on the sheets; of more, evenly spaced ones are shown
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=64), help_heading = "Output")]
     pub columns: u32,
     /// Colour the pictures by split; scores do not change
     #[arg(long, help_heading = "Output")]
     pub tint: bool,
-    /// FLIP and SSIM beside the scores, over the shots on the sheets
+    /// Also compute FLIP and SSIM, over the shots on the sheets
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub image_metrics: Switch,
 }

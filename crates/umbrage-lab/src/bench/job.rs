@@ -24,7 +24,7 @@ pub struct Job {
     pub samples: Samples,
     /// Numbers of objects for GPU Gems' Figure 10-9.
     pub objects: Vec<u32>,
-    /// Whether every pair of generation and storage is measured, too.
+    /// Whether every pair of generation and storage is measured too.
     pub paths: bool,
     /// Settings of those pairs.
     pub paths_with: String,

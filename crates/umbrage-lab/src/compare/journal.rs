@@ -1,5 +1,5 @@
 //! The finished series of a comparison, as lines of a [`crate::journal`]: views' scores, flicker
-//! and columns of the sheets.
+//! and shots of the sheets.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use umbrage_truth::scores::{MisShadowed, Seams};
 
 use super::{
     report::{ViewReport, WalkReport},
-    sheet::{Cell, Column},
+    sheet::{Cell, SheetShot},
 };
 use crate::{
     failure::Result,
@@ -28,8 +28,8 @@ pub struct Finished {
     pub views: Vec<ViewReport>,
     /// Its flicker, of two frames or more.
     pub walk: Option<WalkReport>,
-    /// Its columns on the sheet of pictures and on that of errors.
-    pub columns: [Vec<Column>; 2],
+    /// Its shots on the sheet of pictures and on that of errors.
+    pub sheets: [Vec<SheetShot>; 2],
 }
 
 /// Opens the journal at `path` or begins one. `of` says what is compared; a journal of anything
@@ -68,7 +68,7 @@ impl Journal<Finished> {
     }
 }
 
-/// A finished series as it stands in the file.
+/// A finished series as it is in the file.
 #[derive(Serialize, Deserialize)]
 struct Line {
     series: [usize; 2],
@@ -77,11 +77,11 @@ struct Line {
     /// the seam and its two sides. The report has their rates alone.
     seams: Vec<Vec<[[usize; 4]; 3]>>,
     walk: Option<WalkReport>,
-    columns: [Vec<ColumnLine>; 2],
+    sheets: [Vec<ShotLine>; 2],
 }
 
 #[derive(Serialize, Deserialize)]
-struct ColumnLine {
+struct ShotLine {
     title: String,
     lines: Vec<String>,
     warning: Option<String>,
@@ -96,21 +96,21 @@ impl Line {
         };
         let of_view = |view: &ViewReport| view.scores.iter().map(|scores| counts(&scores.seams.counts)).collect();
         let cell = |cell: &Cell| Ok((STANDARD.encode(png(&cell.picture)?), cell.caption.clone(), cell.is_best));
-        let column = |column: &Column| {
-            Ok(ColumnLine {
-                title: column.title.clone(),
-                lines: column.lines.clone(),
-                warning: column.warning.clone(),
-                cells: column.cells.iter().map(cell).collect::<Result<_>>()?,
+        let shot = |shot: &SheetShot| {
+            Ok(ShotLine {
+                title: shot.title.clone(),
+                lines: shot.lines.clone(),
+                warning: shot.warning.clone(),
+                cells: shot.cells.iter().map(cell).collect::<Result<_>>()?,
             })
         };
-        let sheet = |columns: &Vec<Column>| columns.iter().map(column).collect::<Result<Vec<_>>>();
+        let sheet = |shots: &Vec<SheetShot>| shots.iter().map(shot).collect::<Result<Vec<_>>>();
         Ok(Self {
             series: finished.series,
             views: finished.views.clone(),
             seams: finished.views.iter().map(of_view).collect(),
             walk: finished.walk.clone(),
-            columns: [sheet(&finished.columns[0])?, sheet(&finished.columns[1])?],
+            sheets: [sheet(&finished.sheets[0])?, sheet(&finished.sheets[1])?],
         })
     }
 }
@@ -134,20 +134,20 @@ fn read(line: &str) -> std::result::Result<Finished, String> {
         let bytes = STANDARD.decode(text).map_err(|error| error.to_string())?;
         Ok(image::load_from_memory(&bytes).map_err(|error| error.to_string())?.into_rgb8())
     };
-    let column = |column: &ColumnLine| -> std::result::Result<_, String> {
-        let cells = column.cells.iter().map(|(text, caption, is_best)| {
+    let shot = |shot: &ShotLine| -> std::result::Result<_, String> {
+        let cells = shot.cells.iter().map(|(text, caption, is_best)| {
             Ok(Cell { picture: picture(text)?, caption: caption.clone(), is_best: *is_best })
         });
-        Ok(Column {
-            title: column.title.clone(),
-            lines: column.lines.clone(),
-            warning: column.warning.clone(),
+        Ok(SheetShot {
+            title: shot.title.clone(),
+            lines: shot.lines.clone(),
+            warning: shot.warning.clone(),
             cells: cells.collect::<std::result::Result<_, String>>()?,
         })
     };
-    let sheet = |columns: &[ColumnLine]| columns.iter().map(column).collect::<std::result::Result<Vec<_>, String>>();
-    let columns = [sheet(&line.columns[0])?, sheet(&line.columns[1])?];
-    Ok(Finished { series: line.series, views, walk: line.walk, columns })
+    let sheet = |shots: &[ShotLine]| shots.iter().map(shot).collect::<std::result::Result<Vec<_>, String>>();
+    let sheets = [sheet(&line.sheets[0])?, sheet(&line.sheets[1])?];
+    Ok(Finished { series: line.series, views, walk: line.walk, sheets })
 }
 
 #[cfg(test)]
@@ -190,8 +190,8 @@ mod tests {
             caption: "c".into(),
             is_best: true,
         };
-        let column = Column { title: "t".into(), lines: vec!["l".into()], warning: None, cells: vec![cell] };
-        Finished { series, views: vec![view], walk: None, columns: [vec![column.clone()], vec![column]] }
+        let shot = SheetShot { title: "t".into(), lines: vec!["l".into()], warning: None, cells: vec![cell] };
+        Finished { series, views: vec![view], walk: None, sheets: [vec![shot.clone()], vec![shot]] }
     }
 
     fn of(what: &str) -> Value {
@@ -212,7 +212,7 @@ mod tests {
         let (old, new) = (&finished([0, 1]).views[0], &back.views[0]);
         assert_eq!(old.scores, new.scores);
         assert_eq!(serde_json::to_string(old).ok(), serde_json::to_string(new).ok());
-        assert_eq!(back.columns[1][0].cells[0].picture, finished([0, 1]).columns[1][0].cells[0].picture);
+        assert_eq!(back.sheets[1][0].cells[0].picture, finished([0, 1]).sheets[1][0].cells[0].picture);
         assert!(journal.take([0, 1]).is_none() && journal.take([0, 0]).is_some() && journal.take([1, 0]).is_none());
         journal.remove().expect("removed");
         assert!(!path.exists());

@@ -2,10 +2,9 @@
 //!
 //! [`job`] says what is compared, [`shots`] which views; [`run()`] draws every mask by the same
 //! path as `umbrage render --visibility`, scores it ([`judge`], and along walks [`stillness`]) and
-//! keeps the numbers ([`report`]) and the pictures (`columns`, [`sheet`]); `page` makes one HTML
-//! page of both.
+//! keeps the numbers ([`report`]) and the pictures (`sheet_shots`, [`sheet`]); `page` makes one
+//! HTML page of both. All results are files; standard error gets progress and notes.
 
-mod columns;
 mod inset;
 pub mod job;
 pub mod journal;
@@ -16,6 +15,7 @@ pub mod preset;
 pub mod report;
 mod run;
 pub mod sheet;
+mod sheet_shots;
 pub mod shots;
 pub mod stillness;
 

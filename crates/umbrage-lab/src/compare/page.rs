@@ -2,7 +2,7 @@
 
 use super::{
     report::{Comparison, DepthMeans, LIMIT, TechniqueReport, ViewReport},
-    sheet::{Column as Shot, Label},
+    sheet::{Label, SheetShot},
 };
 use crate::{
     failure::{Failure, Result},
@@ -14,12 +14,12 @@ use crate::{
 /// Series with colours of their own; further ones are dashed.
 const COLOURS: usize = 8;
 
-/// The page's text. `labels` and `columns` are those of the contact sheet and of the sheet of
+/// The page's text. `labels` and `sheets` are those of the contact sheet and of the sheet of
 /// errors.
 ///
 /// # Errors
 /// [`Failure::Other`] if a chart or picture cannot be made, which would be a mistake of ours.
-pub fn page(comparison: &Comparison, labels: &[Label], columns: &[Vec<Shot>; 2]) -> Result<String> {
+pub fn page(comparison: &Comparison, labels: &[Label], sheets: &[Vec<SheetShot>; 2]) -> Result<String> {
     let [width, height] = comparison.size;
     let counting = comparison.views.iter().filter(|view| view.counts).count();
     let lead = vec![
@@ -35,7 +35,7 @@ pub fn page(comparison: &Comparison, labels: &[Label], columns: &[Vec<Shot>; 2])
          pixels that a texel spans on the screen. F_edge: decisions that flip from frame to frame, per pixel of true edge."
             .to_owned(),
     ];
-    let mut sections = vec![pictures(labels, columns)?, table(comparison)];
+    let mut sections = vec![pictures(labels, sheets)?, table(comparison)];
     sections.extend(plots(comparison)?);
     sections.push(pairs(comparison));
     sections.push(views(comparison));
@@ -53,8 +53,8 @@ pub fn page(comparison: &Comparison, labels: &[Label], columns: &[Vec<Shot>; 2])
     Ok(Page { title, lead, sections, footer }.html())
 }
 
-fn pictures(labels: &[Label], columns: &[Vec<Shot>; 2]) -> Result<Section> {
-    let [pictures, errors] = columns;
+fn pictures(labels: &[Label], sheets: &[Vec<SheetShot>; 2]) -> Result<Section> {
+    let [pictures, errors] = sheets;
     let section = Section::new("Shots")
         .text(
             "Rows are techniques, columns shots; the truth is the last row. The inset enlarges the part in which techniques differ most. \
@@ -69,13 +69,13 @@ fn pictures(labels: &[Label], columns: &[Vec<Shot>; 2]) -> Result<Section> {
     Ok(section.sheet(&grid(labels, errors)?))
 }
 
-fn grid(labels: &[Label], columns: &[Shot]) -> Result<Sheet> {
-    let heading = |shot: &Shot| {
+fn grid(labels: &[Label], shots: &[SheetShot]) -> Result<Sheet> {
+    let heading = |shot: &SheetShot| {
         let parts = [std::slice::from_ref(&shot.title), &shot.lines].concat();
         parts.into_iter().chain(shot.warning.clone()).collect::<Vec<_>>().join(", ")
     };
     let rows = labels.iter().enumerate().map(|(row, label)| {
-        let figures = columns.iter().map(|shot| {
+        let figures = shots.iter().map(|shot| {
             let cell = &shot.cells[row];
             let least = if cell.is_best { ", the least" } else { "" };
             let alt = format!("{}, {}", shot.title, label.title);
@@ -83,7 +83,7 @@ fn grid(labels: &[Label], columns: &[Shot]) -> Result<Sheet> {
         });
         Ok((label.title.clone(), figures.collect::<Result<_>>()?))
     });
-    Ok(Sheet { columns: columns.iter().map(heading).collect(), rows: rows.collect::<Result<_>>()? })
+    Ok(Sheet { columns: shots.iter().map(heading).collect(), rows: rows.collect::<Result<_>>()? })
 }
 
 fn percent(value: Option<f64>, decimals: usize) -> Cell {
@@ -94,72 +94,66 @@ fn number(value: Option<f64>, decimals: usize) -> Cell {
     value.map_or(Cell::Missing, |value| Cell::Number(value, decimals))
 }
 
+/// A column of the table of scores: its head, and what it shows of a technique.
+type Figures = (Column, fn(&TechniqueReport) -> Cell);
+
+/// The columns of the table of scores, whatever was measured.
+fn figures() -> Vec<Figures> {
+    let least = |title: &str, of: fn(&TechniqueReport) -> Cell| (Column::best(title, Best::Lowest), of);
+    let plain = |column: Column, of: fn(&TechniqueReport) -> Cell| (column, of);
+    vec![
+        plain(Column::text("technique"), |t| t.label.as_str().into()),
+        least("Mtexel", |t| Cell::Number(t.texels as f64 / 1048576.0, 2)),
+        least("MiB", |t| Cell::Number(t.bytes as f64 / 1048576.0, 2)),
+        least("E %", |t| percent(t.mean.e, 2)),
+        least("E_fs %", |t| percent(t.mean.e_false_shadow, 2)),
+        least("E_fl %", |t| percent(t.mean.e_false_light, 2)),
+        least("acne %", |t| percent(t.mean.acne, 3)),
+        least("leak %", |t| percent(t.mean.leak, 3)),
+        least("E_log %", |t| percent(t.mean.e_log, 2)),
+        least("D px", |t| number(t.mean.edge_distance_px, 2)),
+        least("D p95 px", |t| number(t.mean.edge_distance_p95_px, 1)),
+        plain(Column::number("seam"), |t| number(t.mean.seam_ratio, 2)),
+        least("m_p p50", |t| number(t.mean.texel_px.map(|texel| texel.perspective_p50), 1)),
+        least("m_p p99", |t| number(t.mean.texel_px.map(|texel| texel.perspective_p99), 1)),
+        least("F_edge %", |t| percent(t.mean.flicker_per_edge, 2)),
+        least("F %", |t| percent(t.mean.flicker, 3)),
+        least("casters × splits", |t| number(t.mean.caster_split_pairs, 0)),
+        least("draws", |t| number(t.mean.draws, 0)),
+    ]
+}
+
+/// The columns of image metrics.
+fn metric_figures() -> [Figures; 2] {
+    [(Column::number("FLIP"), |t| number(t.mean.flip, 4)), (Column::number("SSIM"), |t| number(t.mean.ssim, 4))]
+}
+
+/// The columns of soft shadows, with `--sun-angle`.
+fn soft_figures() -> [Figures; 2] {
+    [
+        (Column::best("E_soft %", Best::Lowest), |t| percent(t.mean.e_soft, 2)),
+        (Column::best("E_pen %", Best::Lowest), |t| percent(t.mean.e_pen, 2)),
+    ]
+}
+
 fn table(comparison: &Comparison) -> Section {
-    let least = |title: &str| Column::best(title, Best::Lowest);
-    let mut columns = vec![
-        Column::text("technique"),
-        least("Mtexel"),
-        least("MiB"),
-        least("E %"),
-        least("E_fs %"),
-        least("E_fl %"),
-        least("acne %"),
-        least("leak %"),
-        least("E_log %"),
-        least("D px"),
-        least("D p95 px"),
-        Column::number("seam"),
-        least("m_p p50"),
-        least("m_p p99"),
-        least("F_edge %"),
-        least("F %"),
-        least("casters × splits"),
-        least("draws"),
-    ];
+    let mut figures = figures();
     let metrics = comparison.techniques.iter().any(|technique| technique.mean.ssim.is_some());
     if metrics {
-        columns.extend([Column::number("FLIP"), Column::number("SSIM")]);
+        figures.extend(metric_figures());
     }
-    let soft = comparison.techniques.iter().any(|technique| technique.mean.e_soft.is_some());
-    if soft {
-        columns.extend([least("E_soft %"), least("E_pen %")]);
+    if comparison.techniques.iter().any(|technique| technique.mean.e_soft.is_some()) {
+        figures.extend(soft_figures());
     }
     let caption = "Means over the views that count; the best of a column in bold. Acne and leak: wrong farther than 2 + 1.5 m pixels from \
          true edges. Seam: E within 2 px of a split's border over the larger E of its sides, pooled over all views; 1 is none, 1.1 the most.";
-    let mut table = Table::new(caption, columns);
-    for TechniqueReport { label, texels, bytes, mean, .. } in &comparison.techniques {
-        let texel = mean.texel_px;
-        let mut row = vec![
-            label.as_str().into(),
-            Cell::Number(*texels as f64 / 1048576.0, 2),
-            Cell::Number(*bytes as f64 / 1048576.0, 2),
-            percent(mean.e, 2),
-            percent(mean.e_false_shadow, 2),
-            percent(mean.e_false_light, 2),
-            percent(mean.acne, 3),
-            percent(mean.leak, 3),
-            percent(mean.e_log, 2),
-            number(mean.edge_distance_px, 2),
-            number(mean.edge_distance_p95_px, 1),
-            number(mean.seam_ratio, 2),
-            number(texel.map(|texel| texel.perspective_p50), 1),
-            number(texel.map(|texel| texel.perspective_p99), 1),
-            percent(mean.flicker_per_edge, 2),
-            percent(mean.flicker, 3),
-            number(mean.caster_split_pairs, 0),
-            number(mean.draws, 0),
-        ];
-        if metrics {
-            row.extend([number(mean.flip, 4), number(mean.ssim, 4)]);
-        }
-        if soft {
-            row.extend([percent(mean.e_soft, 2), percent(mean.e_pen, 2)]);
-        }
-        table = table.row(row);
-    }
+    let (columns, cells): (Vec<_>, Vec<_>) = figures.into_iter().unzip();
+    let table = comparison.techniques.iter().fold(Table::new(caption, columns), |table, technique| {
+        table.row(cells.iter().map(|of| of(technique)).collect())
+    });
     let mut section = Section::new("Scores").table(&table);
     if metrics {
-        section = section.note("FLIP and SSIM compare masks with the truth's on the shots that are shown. They stand beside and gate nothing.");
+        section = section.note("FLIP and SSIM compare masks with the truth's on the shots that are shown. They are for information and gate nothing.");
     }
     for family in &comparison.memory_at_half_percent {
         section = section.text(&format!(

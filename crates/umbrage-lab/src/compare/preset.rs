@@ -42,7 +42,7 @@ const VISIBLE: &str = "preset=papers:filter=hard:blend=0:far-fade=0:fit=independ
 
 const LADDER: Preset = Preset {
     name: "ladder",
-    about: "A ladder of techniques to stand beside: error, memory and flicker",
+    about: "A ladder of techniques to compare with: error, memory and flicker",
     techniques: &[
         "ssm:1024",
         "ssm:2048",
@@ -115,7 +115,7 @@ const DUELING: Preset = Preset {
 /// The paper's techniques as the paper had them, then umbrage's default with maps of that size.
 const TABLE: Preset = Preset {
     name: "table",
-    about: "What stands in the first table of measurements",
+    about: "The first table of docs/results.md",
     techniques: &[
         "ssm:1024",
         "pssm:2:512",

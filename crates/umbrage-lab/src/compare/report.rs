@@ -58,23 +58,34 @@ pub struct TechniqueReport {
 
 /// Means over the views that count.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-#[expect(missing_docs, reason = "as in Scores and Cost")]
 pub struct Means {
     /// How many they are.
     pub views: usize,
+    /// E, the share of wrong decisions.
     pub e: Option<f64>,
+    /// E_fs: dark where light should be.
     pub e_false_shadow: Option<f64>,
+    /// E_fl: lit where shadow should be.
     pub e_false_light: Option<f64>,
+    /// Falsely dark farther than 2 + 1.5 m pixels from true edges, of all scored pixels.
     pub acne: Option<f64>,
+    /// Falsely lit farther than that, of all scored pixels.
     pub leak: Option<f64>,
+    /// Share of the scored pixels that lies as far from true edges.
     pub beyond_edges: Option<f64>,
+    /// E_log, the mean of E over bins of depth.
     pub e_log: Option<f64>,
+    /// E_soft, with `--sun-angle`: mean difference from the share of the sun that is visible.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub e_soft: Option<f64>,
+    /// E_pen: the same over penumbrae.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub e_pen: Option<f64>,
+    /// D, mean distance between true edges and those of the technique, pixels.
     pub edge_distance_px: Option<f64>,
+    /// Its 95th percentile, pixels.
     pub edge_distance_p95_px: Option<f64>,
+    /// Pixels that a texel covers on the screen.
     pub texel_px: Option<TexelPixels>,
     /// The seam score: E on the borders of splits over the larger E of their sides, pooled over all
     /// views; none on fewer than 2,000 pixels.
@@ -87,22 +98,30 @@ pub struct Means {
     pub kept_flicker_per_edge: Option<f64>,
     /// F_edge over points that keep their split while its map takes no step.
     pub standing_flicker_per_edge: Option<f64>,
+    /// FLIP against the mask of the truth.
     pub flip: Option<f64>,
+    /// SSIM against the mask of the truth.
     pub ssim: Option<f64>,
+    /// Casters, summed over splits.
     pub caster_split_pairs: Option<f64>,
+    /// Draw calls into maps.
     pub draws: Option<f64>,
+    /// Triangles drawn into maps.
     pub triangles: Option<f64>,
+    /// By bins of depth.
     pub by_depth: Vec<DepthMeans>,
 }
 
 /// A bin of depth, over the views that count.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[expect(missing_docs, reason = "as in DepthScores")]
 pub struct DepthMeans {
     /// Geometric mean of the bin's middles, metres.
     pub depth_m: f64,
+    /// E in the bin.
     pub e: Option<f64>,
+    /// Texels per pixel as the plan predicts them.
     pub predicted_texels_per_px: Option<f64>,
+    /// Texels per pixel as measured on the surfaces in view.
     pub measured_texels_per_px: Option<f64>,
 }
 

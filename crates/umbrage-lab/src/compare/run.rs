@@ -7,13 +7,13 @@ use umbrage_render::{Frame, Gpu, GpuOptions, Lamp, Outputs, ProbePoint, Renderer
 use umbrage_truth::{Truth, scores::shared_points};
 
 use super::{
-    columns::{self, Answer, Place, Plain, columns},
     job::{Job, Settings},
     journal::{self, Finished},
     judge::{ViewTruth, score},
     page,
     report::{self, Comparison, TechniqueReport, ViewReport, WalkReport},
-    sheet::{self, Column, Label},
+    sheet::{self, Label, SheetShot},
+    sheet_shots::{self, Answer, Place, Plain, sheet_shots},
     shots::{SceneShots, Series},
     stillness::{Answered, Stillness},
 };
@@ -41,7 +41,7 @@ pub fn run(job: Job) -> Result<()> {
     let gpu = Gpu::new(&GpuOptions::default())?;
     let of = description(&techniques, &scenes, &settings, &adapter_description(&gpu));
     let journal = resume.as_deref().map(|path| journal::open(path, &of)).transpose()?;
-    let shown = columns::chosen(&scenes, settings.columns);
+    let shown = sheet_shots::chosen(&scenes, settings.columns);
     let views: usize = scenes.iter().flat_map(|scene| &scene.series).map(|series| series.views.len()).sum();
     let mut run = Run {
         settings: &settings,
@@ -53,7 +53,7 @@ pub fn run(job: Job) -> Result<()> {
         bar: progress::steps((views * (techniques.len() + 1)) as u64, "views × techniques"),
         views: Vec::new(),
         walks: Vec::new(),
-        columns: [Vec::new(), Vec::new()],
+        sheets: [Vec::new(), Vec::new()],
         journal,
     };
     let mut all_notes = notes;
@@ -69,12 +69,12 @@ pub fn run(job: Job) -> Result<()> {
     }
     run.bar.finish_and_clear();
     let journal = run.journal.take();
-    let (comparison, columns) = run.finish(all_notes)?;
+    let (comparison, sheets) = run.finish(all_notes)?;
 
     let labels = labels(&comparison, &techniques);
-    let cell = sheet::cell_size(columns[0].len(), settings.size);
+    let cell = sheet::cell_size(sheets[0].len(), settings.size);
     let title = |what: &str| format!("{what}, {} × {} pixels", settings.size[0], settings.size[1]);
-    let [pictures, errors] = &columns;
+    let [pictures, errors] = &sheets;
     let contents = [
         png(&sheet::assemble(&title("Shadows; insets: where techniques differ most"), &labels, pictures, cell))?,
         png(&sheet::assemble(
@@ -84,7 +84,7 @@ pub fn run(job: Job) -> Result<()> {
             cell,
         ))?,
         to_json(&comparison)?,
-        page::page(&comparison, &labels, &columns)?.into_bytes(),
+        page::page(&comparison, &labels, &sheets)?.into_bytes(),
     ];
     let mut staged = Staged::default();
     outputs.stage(contents, &mut staged)?;
@@ -103,7 +103,7 @@ struct Run<'a> {
     bar: ProgressBar,
     views: Vec<ViewReport>,
     walks: Vec<WalkReport>,
-    columns: [Vec<Column>; 2],
+    sheets: [Vec<SheetShot>; 2],
     journal: Option<Journal<Finished>>,
 }
 
@@ -138,7 +138,7 @@ impl Run<'_> {
             match finished {
                 Some(finished) => self.restore(finished),
                 None => {
-                    let begin = [self.views.len(), self.walks.len(), self.columns[0].len()];
+                    let begin = [self.views.len(), self.walks.len(), self.sheets[0].len()];
                     self.series(set, series, [number, of], &truth, &mut renderers)?;
                     self.keep([number, of], begin)?;
                 }
@@ -152,19 +152,19 @@ impl Run<'_> {
         self.bar.inc((finished.views.len() * (self.techniques.len() + 1)) as u64);
         self.views.extend(finished.views);
         self.walks.extend(finished.walk);
-        for (sheet, columns) in self.columns.iter_mut().zip(finished.columns) {
-            sheet.extend(columns);
+        for (sheet, shots) in self.sheets.iter_mut().zip(finished.sheets) {
+            sheet.extend(shots);
         }
     }
 
-    /// Keeps the series that begins at these numbers of views, walks and columns.
-    fn keep(&mut self, series: [usize; 2], [views, walks, columns]: [usize; 3]) -> Result<()> {
+    /// Keeps the series that begins at these numbers of views, walks and shots on the sheets.
+    fn keep(&mut self, series: [usize; 2], [views, walks, shots]: [usize; 3]) -> Result<()> {
         let Some(journal) = &mut self.journal else { return Ok(()) };
         journal.keep(&Finished {
             series,
             views: self.views[views..].to_vec(),
             walk: self.walks.get(walks).cloned(),
-            columns: [self.columns[0][columns..].to_vec(), self.columns[1][columns..].to_vec()],
+            sheets: [self.sheets[0][shots..].to_vec(), self.sheets[1][shots..].to_vec()],
         })
     }
 
@@ -262,7 +262,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Adds a column to both sheets.
+    /// Adds a shot to both sheets.
     fn show(
         &mut self,
         judged: &ViewTruth,
@@ -288,14 +288,14 @@ impl Run<'_> {
         if let Some(number) = view.and_then(|view| view.frame) {
             lines.push(format!("frame {number} of {}", series.views.len()));
         }
-        let warning = columns::warning(&judged.domain, self.settings.least_edges);
-        for (sheet, column) in self.columns.iter_mut().zip(columns(judged, answers, &plain, self.cell)?) {
-            sheet.push(Column { title: title.clone(), lines: lines.clone(), warning: warning.clone(), ..column });
+        let warning = sheet_shots::warning(&judged.domain, self.settings.least_edges);
+        for (sheet, shot) in self.sheets.iter_mut().zip(sheet_shots(judged, answers, &plain, self.cell)?) {
+            sheet.push(SheetShot { title: title.clone(), lines: lines.clone(), warning: warning.clone(), ..shot });
         }
         Ok(())
     }
 
-    fn finish(self, mut notes: Vec<String>) -> Result<(Comparison, [Vec<Column>; 2])> {
+    fn finish(self, mut notes: Vec<String>) -> Result<(Comparison, [Vec<SheetShot>; 2])> {
         let reports = self.techniques.iter().enumerate().map(|(number, technique)| TechniqueReport {
             label: technique.label.clone(),
             spec: technique.spec.clone(),
@@ -334,7 +334,7 @@ impl Run<'_> {
             walks: self.walks,
             notes,
         };
-        Ok((comparison, self.columns))
+        Ok((comparison, self.sheets))
     }
 }
 

@@ -33,9 +33,9 @@ pub struct Label {
     pub lines: Vec<String>,
 }
 
-/// A shot.
+/// A shot: a column of the sheet.
 #[derive(Clone, Debug)]
-pub struct Column {
+pub struct SheetShot {
     /// What is seen.
     pub title: String,
     /// Smaller lines below.
@@ -57,11 +57,11 @@ pub struct Cell {
     pub is_best: bool,
 }
 
-/// Width and height of the cells of a sheet of so many columns, for pictures of this size.
+/// Width and height of the cells of a sheet of so many shots, for pictures of this size.
 #[must_use]
-pub fn cell_size(columns: usize, picture: [u32; 2]) -> [u32; 2] {
-    let columns = u32::try_from(columns.max(1)).unwrap_or(u32::MAX);
-    let width = ((WIDTH - LABEL_WIDTH) / columns).clamp(*CELL_WIDTHS.start(), *CELL_WIDTHS.end());
+pub fn cell_size(shots: usize, picture: [u32; 2]) -> [u32; 2] {
+    let shots = u32::try_from(shots.max(1)).unwrap_or(u32::MAX);
+    let width = ((WIDTH - LABEL_WIDTH) / shots).clamp(*CELL_WIDTHS.start(), *CELL_WIDTHS.end());
     let height = f64::from(width) * f64::from(picture[1]) / f64::from(picture[0]);
     // Very wide and very high pictures are squeezed into what still can be seen.
     [width, height.round().clamp(f64::from(width) / 4.0, f64::from(width) * 3.0) as u32]
@@ -104,9 +104,9 @@ fn outline(picture: &mut RgbImage, rect: Rect, colour: Rgb<u8>) {
     }
 }
 
-/// The whole sheet. Every column has a cell for every label.
+/// The whole sheet. Every shot has a cell for every label.
 #[must_use]
-pub fn assemble(title: &str, labels: &[Label], columns: &[Column], cell: [u32; 2]) -> RgbImage {
+pub fn assemble(title: &str, labels: &[Label], shots: &[SheetShot], cell: [u32; 2]) -> RgbImage {
     let (pen, small) = (Pen::new(TEXT), Pen::new(SMALL));
     let widest = labels
         .iter()
@@ -115,10 +115,10 @@ pub fn assemble(title: &str, labels: &[Label], columns: &[Column], cell: [u32; 2
         .unwrap_or(0)
         .min(LABEL_WIDTH);
     let left = GAP + widest + GAP;
-    let header_lines = columns.iter().map(|column| column.lines.len() + usize::from(column.warning.is_some())).max();
+    let header_lines = shots.iter().map(|shot| shot.lines.len() + usize::from(shot.warning.is_some())).max();
     let top = GAP + 2 * pen.line_height() + header_lines.unwrap_or(0) as u32 * small.line_height() + GAP;
     let row_height = cell[1] + small.line_height() + GAP;
-    let width = (left + columns.len() as u32 * (cell[0] + GAP)).max(left + pen.width(title).min(600) + GAP);
+    let width = (left + shots.len() as u32 * (cell[0] + GAP)).max(left + pen.width(title).min(600) + GAP);
     let mut sheet = RgbImage::from_pixel(width, top + labels.len() as u32 * row_height, PAPER);
 
     pen.draw(&mut sheet, [GAP, GAP], INK, &pen.fitted(title, width - 2 * GAP));
@@ -131,17 +131,17 @@ pub fn assemble(title: &str, labels: &[Label], columns: &[Column], cell: [u32; 2
             y += small.line_height();
         }
     }
-    for (number, column) in columns.iter().enumerate() {
+    for (number, shot) in shots.iter().enumerate() {
         let x = left + number as u32 * (cell[0] + GAP);
         let mut y = GAP + pen.line_height();
-        pen.draw(&mut sheet, [x, y], INK, &pen.fitted(&column.title, cell[0]));
+        pen.draw(&mut sheet, [x, y], INK, &pen.fitted(&shot.title, cell[0]));
         y += pen.line_height();
-        let lines = column.lines.iter().map(|line| (line, FAINT));
-        for (line, colour) in lines.chain(column.warning.iter().map(|line| (line, WARNING))) {
+        let lines = shot.lines.iter().map(|line| (line, FAINT));
+        for (line, colour) in lines.chain(shot.warning.iter().map(|line| (line, WARNING))) {
             small.draw(&mut sheet, [x, y], colour, &small.fitted(line, cell[0]));
             y += small.line_height();
         }
-        for (row, of_row) in column.cells.iter().enumerate() {
+        for (row, of_row) in shot.cells.iter().enumerate() {
             let y = top + row as u32 * row_height;
             sheet.copy_from(&of_row.picture, x, y).expect("the sheet is as large as its cells");
             let colour = if of_row.is_best { BEST } else { INK };
@@ -181,13 +181,13 @@ mod tests {
         assert_eq!(cell_size(8, [16384, 1])[1], cell_size(8, [16384, 1])[0] / 4);
         let label = Label { title: "SSM(64²)".into(), lines: vec!["one line".into(), "another".into()] };
         let cell = Cell { picture: RgbImage::new(180, 135), caption: "E 1 %".into(), is_best: true };
-        let column = Column {
+        let shot = SheetShot {
             title: "tiny".into(),
             lines: vec!["own sun".into()],
             warning: Some("too few edges".into()),
             cells: vec![cell.clone(), cell],
         };
-        let sheet = assemble("title", &[label.clone(), label], &[column.clone(), column], [180, 135]);
+        let sheet = assemble("title", &[label.clone(), label], &[shot.clone(), shot], [180, 135]);
         assert!(sheet.width() > 2 * 180 && sheet.height() > 2 * 135);
         assert_eq!(*sheet.get_pixel(sheet.width() - 1, sheet.height() - 1), PAPER);
         assert!(sheet.pixels().any(|&pixel| pixel == Rgb([0; 3])), "the cells are there");

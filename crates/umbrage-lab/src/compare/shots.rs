@@ -43,8 +43,8 @@ pub fn sun_spec(text: &str) -> Result<SunSpec, String> {
     let text = text.trim();
     let number = |text: &str, what: &str, range: std::ops::RangeInclusive<f64>| match text.trim().parse::<f64>() {
         Ok(value) if range.contains(&value) => Ok(value),
-        Ok(value) => Err(format!("{what} {value} is not in {} to {} degrees", range.start(), range.end())),
-        Err(_) => Err(format!("{text:?} is no {what} in degrees; give own, 43, 43@120, into, into@30 or metrics")),
+        Ok(value) => Err(format!("{what} {value} is out of range; give {} to {} degrees", range.start(), range.end())),
+        Err(_) => Err(format!("{text:?} is not a {what} in degrees; give own, 43, 43@120, into, into@30 or metrics")),
     };
     let elevation = |text: &str| number(text, "elevation", 0.1..=90.0);
     match (text, text.split_once('@')) {
@@ -211,7 +211,7 @@ impl ShotRequest {
         };
         if own.lamp.light.position().is_some() && self.suns.is_some() {
             return Err(Failure::input(format!(
-                "--suns turns a sun, but --light {} is a spot or point light; leave one of them away",
+                "--suns turns a sun, but --light {} is a spot or point light; give only one of the two",
                 own.name
             )));
         }

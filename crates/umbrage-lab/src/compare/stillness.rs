@@ -64,7 +64,7 @@ impl Stillness {
             flipped.extend(old.iter().zip(new).enumerate().filter(differ).map(|(index, _)| index));
             self.all.add(FramePair { domain, now: old, next: new })?;
             let splits = now.plan.splits.iter().zip(&before.plan.splits);
-            // A split that nothing throws a shadow in stands still, whatever its map.
+            // A split that nothing casts a shadow in stands still, whatever its map.
             let stands: Vec<bool> = splits
                 .map(|(new, old)| {
                     (new.casters.is_empty() && old.casters.is_empty()) || new.texels_moved_since(old).is_some()

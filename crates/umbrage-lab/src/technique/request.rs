@@ -23,7 +23,7 @@ pub struct ShadowOptions {
     pub given: Vec<(String, String)>,
     /// Whether the picture is coloured by split.
     pub tint: bool,
-    /// Whether anything throws shadows.
+    /// Whether anything casts shadows.
     pub shadows_off: bool,
 }
 
@@ -64,7 +64,7 @@ impl ShadowRequest {
         Ok(Self { config, options, notes })
     }
 
-    /// These shadows under a sun of this angle in degrees: what pcss goes by.
+    /// These shadows under a sun of this angular diameter in degrees, which pcss uses.
     #[must_use]
     pub fn under_sun(mut self, sun_angle: Option<f64>) -> Self {
         if let (Filter::Pcss { sun_degrees, .. }, Some(angle)) = (&mut self.config.filter, sun_angle) {
@@ -95,7 +95,7 @@ impl ShadowRequest {
                     rule.remedy
                 )));
             }
-            request.notes.push(in_options(&format!("{said} is left away: {}", rule.reason)));
+            request.notes.push(in_options(&format!("{said} is ignored: {}", rule.reason)));
         }
         request.config.validate_for(&kinds).map_err(|error| Failure::of_settings(&error, &self.options.given))?;
         Ok(request)

@@ -30,12 +30,18 @@ const PLANNED: [&str; 1] = ["sdsm"];
 /// Options that say what is looked at rather than how shadows are made: they hold for the whole
 /// comparison, or not at all.
 const NOT_SETTINGS: [(&str, &str); 3] = [
-    ("shadow-range", "it decides which pixels are scored and is one for all; give --shadow-range beside --techniques"),
-    ("shadows", "a technique without shadows has no score; leave it away"),
-    ("sun-angle", "it decides what is scored and is one for all; give --sun-angle beside --techniques"),
+    (
+        "shadow-range",
+        "it decides which pixels are scored, so it must be the same for all techniques; give --shadow-range as an option of its own",
+    ),
+    ("shadows", "a technique without shadows has no score; omit it"),
+    (
+        "sun-angle",
+        "it decides what is scored, so it must be the same for all techniques; give --sun-angle as an option of its own",
+    ),
 ];
 
-/// The key that names the settings that a technique's own go over.
+/// The key that names the preset which the settings of a technique override.
 const PRESET: &str = "preset";
 
 /// The key that colours a technique's pictures by split.
@@ -47,7 +53,7 @@ const SHAPE: [&str; 3] = ["technique", "splits", "map-size"];
 /// A technique with all its settings, checked.
 #[derive(Debug, PartialEq)]
 pub struct Technique {
-    /// As it stands in tables and on sheets.
+    /// Its name in tables and on sheets.
     pub label: String,
     /// The short form, settings for all included.
     pub spec: String,
@@ -122,7 +128,7 @@ pub fn parse(text: &str) -> Result<TechniqueSource> {
     let (shape, settings) = split_settings(source);
     let (kind, numbers) = shape.split_first().map_or(("", &[][..]), |(kind, numbers)| (kind.trim(), numbers));
     if kind.is_empty() {
-        return Err(wrong("nothing says which; write for example pssm:4:1024 or ssm:2048".into()));
+        return Err(wrong("no technique named; write for example pssm:4:1024 or ssm:2048".into()));
     }
     let mut options = vec![("technique".to_owned(), kind.to_owned())];
     match (kind, numbers) {
@@ -144,7 +150,7 @@ pub fn parse(text: &str) -> Result<TechniqueSource> {
     }
     let (label, settings) = read_settings(&settings).map_err(wrong)?;
     if let Some((key, _)) = settings.iter().find(|(key, _)| SHAPE.contains(&key.as_str())) {
-        return Err(wrong(format!("{key} is said before the settings, as in pssm:4:1024; leave {key}= away")));
+        return Err(wrong(format!("{key} is already given at the start, as in pssm:4:1024; omit {key}=")));
     }
     options.extend(settings);
     Ok(TechniqueSource { source: source.to_owned(), label, settings: options })
@@ -162,10 +168,10 @@ pub fn parse_with(text: &str) -> Result<Settings> {
     let parts: Vec<&str> = text.split(':').collect();
     let (label, settings) = read_settings(&parts).map_err(wrong)?;
     if label.is_some() {
-        return Err(wrong("a label belongs to one technique".into()));
+        return Err(wrong("a label applies to one technique only".into()));
     }
     if let Some((key, _)) = settings.iter().find(|(key, _)| SHAPE.contains(&key.as_str())) {
-        return Err(wrong(format!("{key} belongs to one technique, as in pssm:4:1024")));
+        return Err(wrong(format!("{key} applies to one technique only, as in pssm:4:1024")));
     }
     Ok(settings)
 }
@@ -181,29 +187,30 @@ pub fn load(path: &Path) -> Result<(Settings, Vec<TechniqueSource>)> {
 
 fn parse_file(file: &str, text: &str) -> Result<(Settings, Vec<TechniqueSource>)> {
     let wrong = |what: String| Failure::input(format!("{file}: {what}"));
-    let mut root: Table = text.parse().map_err(|error: toml::de::Error| wrong(format!("is no TOML: {error}")))?;
+    let mut root: Table =
+        text.parse().map_err(|error: toml::de::Error| wrong(format!("is not valid TOML: {error}")))?;
     let with = match root.remove("with") {
         None => Vec::new(),
         Some(Value::Table(table)) => options_of(table).map_err(|what| wrong(format!("[with]: {what}")))?,
-        Some(_) => return Err(wrong("with is no table; write [with] and settings below it".into())),
+        Some(_) => return Err(wrong("with is not a table; write [with] and settings below it".into())),
     };
     if let Some((key, _)) = with.iter().find(|(key, _)| key == "label" || SHAPE.contains(&key.as_str())) {
-        return Err(wrong(format!("[with]: {key} belongs to one [[technique]]")));
+        return Err(wrong(format!("[with]: {key} applies to one [[technique]] only")));
     }
     let Some(Value::Array(tables)) = root.remove("technique") else {
         return Err(wrong("has no [[technique]]; write one for each technique".into()));
     };
     if let Some(key) = root.keys().next() {
-        return Err(wrong(format!("{key} is none of the things a file of techniques has: [with], [[technique]]")));
+        return Err(wrong(format!("{key} is not known; a file of techniques has [with] and [[technique]]")));
     }
     let mut sources = Vec::new();
     for (number, table) in (1..).zip(tables) {
         let source = format!("{file}, technique {number}");
-        let Value::Table(table) = table else { return Err(wrong(format!("technique {number} is no table"))) };
+        let Value::Table(table) = table else { return Err(wrong(format!("technique {number} is not a table"))) };
         let mut settings = options_of(table).map_err(|what| Failure::input(format!("{source}: {what}")))?;
         let label = settings.iter().position(|(key, _)| key == "label").map(|at| settings.remove(at).1);
         if !settings.iter().any(|(key, _)| key == "technique") {
-            return Err(Failure::input(format!("{source}: nothing says which; write technique = \"pssm\"")));
+            return Err(Failure::input(format!("{source}: no technique named; write technique = \"pssm\"")));
         }
         sources.push(TechniqueSource { source, label, settings });
     }
@@ -276,7 +283,7 @@ impl TechniqueSource {
         let mut asked = ShadowOptions { given: settings.clone(), ..ShadowOptions::default() };
         asked.given.retain(|(key, _)| ![PRESET, TINT].contains(&key.as_str()));
         if let Some((_, tint)) = settings.iter().find(|(key, _)| key == TINT) {
-            let not = |_| wrong(format!("--{TINT} {tint}: it is no switch; give true or false"));
+            let not = |_| wrong(format!("--{TINT} {tint} is neither true nor false"));
             asked.tint = tint.parse().map_err(not)?;
         }
         if let Some((_, preset)) = settings.iter().find(|(key, _)| key == PRESET) {
@@ -366,7 +373,7 @@ fn read_settings(parts: &[&str]) -> Result<(Option<String>, Settings), String> {
     let (mut label, mut settings) = (None, Settings::new());
     for part in parts {
         let Some((key, value)) = part.split_once('=') else {
-            return Err(format!("{part:?} is no setting; write KEY=VALUE, with sizes before all settings"));
+            return Err(format!("{part:?} is not a setting; write KEY=VALUE, with sizes before all settings"));
         };
         let (key, value) = (key.trim(), value.trim());
         if value.is_empty() {

@@ -82,7 +82,7 @@ fn settings_go_over_the_default_or_a_preset() {
 #[test]
 fn mistakes_name_the_culprit() {
     for (text, culprits) in [
-        ("", &["nothing says which"][..]),
+        ("", &["no technique named"][..]),
         ("pssm", &["pssm", "SPLITS"]),
         ("pssm:4", &["pssm:4", "SPLITS"]),
         ("pssm:4:512:256", &["pssm:SPLITS:SIZE"]),
@@ -92,7 +92,7 @@ fn mistakes_name_the_culprit() {
         ("pssm:x:512", &["pssm:x:512", "--splits"]),
         ("pssm:4:0", &["pssm:4:0", "0 texels"]),
         ("pssm:4:512/256", &["--map-size"]),
-        ("pssm:4:512:lambda=2", &["--lambda", "2 is not in 0..1"]),
+        ("pssm:4:512:lambda=2", &["--lambda", "2 is out of range"]),
         ("pssm:4:512:lambda", &["SPLITS:SIZE", "KEY=VALUE"]),
         ("pssm:4:512:lambda=", &["lambda has no value"]),
         ("pssm:4:512:lambda=0.5:lambda=0.6", &["lambda is said twice"]),
@@ -173,7 +173,7 @@ fn files_say_the_same() {
     assert_eq!(techniques[1].shadows.config.filter, Filter::Pcf2);
 
     for (text, culprit) in [
-        ("[[technique", "is no TOML"),
+        ("[[technique", "is not valid TOML"),
         ("", "[[technique]]"),
         ("technique = 3", "[[technique]]"),
         ("with = 3\n[[technique]]\ntechnique='ssm'", "with"),

@@ -1,5 +1,5 @@
 //! The scene of the diagrams: a street of boxes under a slanting sun, with everything that makes
-//! casters and receivers differ. A tower behind the eye and a balloon out of sight throw their
+//! casters and receivers differ. A tower behind the eye and a balloon out of sight cast their
 //! shadows into the view.
 
 use glam::DVec3;

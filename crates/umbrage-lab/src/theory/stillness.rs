@@ -85,7 +85,7 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
                 0 => "Two frames, 0.15 m and 0.003 rad apart: scale, place and direction of the texels change, and the point of interest \
                       with the texel that it lies in ([PCSM] Figure 4.1.3, bottom row).",
                 1 => "The second frame's texels are the first one's.",
-                _ => "Here, too, until a step is taken.",
+                _ => "Here too, until a step is taken.",
             },
         ));
     }

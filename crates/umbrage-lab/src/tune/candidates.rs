@@ -15,20 +15,20 @@ use crate::{
 
 /// The key of a share of the budget.
 const SHARE: &str = "share";
-/// The key of a preset that other settings go over.
+/// The key of a preset, which other settings override.
 const PRESET: &str = "preset";
 
 /// What cannot be an axis, and why.
 const NOT_TRIED: [(&str, &str); 3] = [
     ("map-size", "it follows from the budget; give share=1/0.5/0.25 for smaller maps"),
     ("shadow-range", "it decides which pixels are scored and is one for all; give --shadow-range beside"),
-    ("sun-angle", "it belongs to the light and is one for all; give --sun-angle beside"),
+    ("sun-angle", "it must be the same for all candidates; give --sun-angle as an option of its own"),
 ];
 
 /// A setting and the values of it that are tried.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Axis {
-    /// Its key; `share` is a share of the budget, `preset` what all else goes over.
+    /// Its key; `share` is a share of the budget, `preset` what all others override.
     pub key: String,
     /// Its values.
     pub values: Vec<String>,
@@ -51,7 +51,7 @@ pub fn axis(text: &str) -> std::result::Result<Axis, Error> {
     let check = |value: &str| match (key, setting) {
         (SHARE, _) => match value.parse::<f64>() {
             Ok(share) if share > 0.0 && share <= 1.0 => Ok(()),
-            _ => Err(format!("{value:?} is no share of the budget; give a number above 0, up to 1")),
+            _ => Err(format!("{value:?} is not a share of the budget; give a number above 0, up to 1")),
         },
         (PRESET, _) => value.parse::<Preset>().map(|_| ()),
         (_, Some(setting)) => setting.kind.check(value),
@@ -65,7 +65,7 @@ pub fn axis(text: &str) -> std::result::Result<Axis, Error> {
     for (number, value) in values.iter().enumerate() {
         check(value).map_err(&wrong)?;
         if values[..number].contains(value) {
-            return Err(wrong(format!("{value} stands there twice")));
+            return Err(wrong(format!("{value} is given twice")));
         }
     }
     Ok(Axis { key: key.to_owned(), values })
@@ -109,7 +109,7 @@ pub struct Grid<'a> {
     pub axes: &'a [Axis],
     /// Settings of all candidates that do not try others.
     pub with: &'a Settings,
-    /// Whether the presets are candidates, too.
+    /// Whether the presets are candidates too.
     pub presets: bool,
     /// What maps may take.
     pub budget: Budget,

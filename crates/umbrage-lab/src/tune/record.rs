@@ -1,4 +1,4 @@
-//! What a run is of and what it found, as it stands in a file of results.
+//! What a run is of and what it found, as it is in a file of results.
 
 use std::collections::BTreeMap;
 
@@ -39,7 +39,7 @@ pub fn shard(text: &str) -> Result<Shard, String> {
     match numbers {
         Some((number, of)) if number >= 1 && number <= of => Ok(Shard { number, of }),
         Some((number, of)) => Err(format!("shard {number} of {of}; give 1/{of} to {of}/{of}")),
-        None => Err(format!("{text:?} is no shard; write I/N, as in 2/4 for the second of four")),
+        None => Err(format!("{text:?} is not a shard; write I/N, as in 2/4 for the second of four")),
     }
 }
 

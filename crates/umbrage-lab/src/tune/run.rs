@@ -26,7 +26,7 @@ pub struct Job {
     pub axes: Vec<Axis>,
     /// Settings of all candidates that do not try others.
     pub with: Given,
-    /// Whether the presets are candidates, too.
+    /// Whether the presets are candidates too.
     pub presets: bool,
     /// Scenes, opened, with their views.
     pub scenes: Vec<SceneShots>,

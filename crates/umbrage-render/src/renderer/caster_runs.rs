@@ -13,7 +13,7 @@ use crate::geometry::GpuPrimitive;
 use crate::shadow_mesh::{Cluster, descend};
 
 /// Triangles that each draw of an object in parts has to spare, or it is drawn whole: with others
-/// of its mesh in one draw. Gaps between its parts that spare less are drawn, too.
+/// of its mesh in one draw. Gaps between its parts that spare less are drawn too.
 const LEAST_SPARED: u32 = 40;
 
 /// Triangles that are asked for together, at most, but for the ends of what is drawn.

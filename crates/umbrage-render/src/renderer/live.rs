@@ -30,7 +30,7 @@ impl Renderer {
 
     /// Changes the config; `scene` is the one that the renderer was made with. The scene stays on
     /// the device, and what stabilised maps hold on to stays where the change does not concern it.
-    /// Says what was made anew at most.
+    /// Returns what was rebuilt at most.
     ///
     /// # Errors
     /// As [`Renderer::new`], and [`Error::SlicesOfAnotherView`]. The config is then the one of

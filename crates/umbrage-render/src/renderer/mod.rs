@@ -71,7 +71,7 @@ pub struct Frame<'a> {
     pub light: Lamp,
     /// More lights, for the picture.
     pub more_lights: &'a [Lamp],
-    /// Whether anything throws shadows; if not, whatever faces the light is lit, and what
+    /// Whether anything casts shadows; if not, whatever faces the light is lit, and what
     /// stabilised maps hold on to stays as it was.
     pub shadows_on: bool,
     /// Whether the picture shows each split in its own colour.
@@ -122,7 +122,7 @@ pub struct Renderer {
     pub(crate) casters: Casters,
     pub(crate) forward: Forward,
     pub(crate) contact: Option<Contact>,
-    /// Per node of the scene, whether its translucent surfaces throw shadows; empty where none do.
+    /// Per node of the scene, whether its translucent surfaces cast shadows; empty where none do.
     pub(crate) dithered_nodes: Vec<bool>,
     /// Made when something is asked.
     pub(crate) probe: OnceLock<Probe>,
@@ -379,7 +379,7 @@ pub(crate) fn notes_of(shadows: &Shadows, contact: Option<&Contact>, timer: &Tim
     notes
 }
 
-/// Per node of a scene, whether its translucent surfaces throw shadows; empty where none do.
+/// Per node of a scene, whether its translucent surfaces cast shadows; empty where none do.
 pub(crate) fn dithered_nodes(scene: &Scene, config: &ShadowConfig) -> Vec<bool> {
     match config.look.translucent {
         Translucent::None => Vec::new(),

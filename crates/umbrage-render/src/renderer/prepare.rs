@@ -30,7 +30,7 @@ pub(crate) struct Prepared {
     /// The view's slices, where it is drawn slice by slice.
     pub slices: Vec<SliceRuns>,
     pub objects_in_view: usize,
-    /// Whether maps without casters are cleared, too: nobody reads those of several lights or
+    /// Whether maps without casters are cleared too: nobody reads those of several lights or
     /// faces, but they may be wanted as pictures.
     pub every_map: bool,
 }

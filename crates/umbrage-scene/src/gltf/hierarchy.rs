@@ -16,7 +16,7 @@ pub(super) struct Hierarchy {
     /// Whether each node of the file belongs to the scene that is shown.
     pub(super) shown: Vec<bool>,
     /// Whether each node of the file is visible (KHR_node_visibility), which its ancestors have to
-    /// be, too.
+    /// be too.
     pub(super) visible: Vec<bool>,
 }
 

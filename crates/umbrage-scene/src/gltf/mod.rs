@@ -50,7 +50,7 @@ const TEXTURE_BYTES: u64 = 512 << 20;
 /// How glTF files are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GltfOptions {
-    /// Most bytes of all textures of a scene together, at four bytes a pixel and without mip
+    /// Most bytes of all textures of a scene together, at four bytes per pixel and without mip
     /// levels, default 512 MiB. Pictures that need more are scaled down, with a note.
     pub texture_bytes: u64,
     /// Whether relative URIs may lead out of the file's folder, as `../textures/bark.png` does;

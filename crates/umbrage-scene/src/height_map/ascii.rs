@@ -24,7 +24,7 @@ struct Header {
 
 /// Reads the grid of a file; the units of its posts stand in a .prj beside it, if anywhere.
 pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Raster, String> {
-    let text = std::str::from_utf8(bytes).map_err(|error| format!("is no text: {error}"))?;
+    let text = std::str::from_utf8(bytes).map_err(|error| format!("is not text: {error}"))?;
     let mut words =
         text.lines().enumerate().flat_map(|(line, text)| text.split_ascii_whitespace().map(move |w| (line + 1, w)));
     let mut header = Header::default();

@@ -62,7 +62,7 @@ struct SideFile {
 /// With W × H posts, post (i, j) stands at x = (i − (W−1)/2)·cell, z = (j − (H−1)/2)·cell and y =
 /// value · metres per unit + offset. Row 0 is north, which is −Z. Each quad is cut along the
 /// diagonal from (i, j) to (i+1, j+1); quads with a corner without data are left out. Normals are
-/// smooth. The terrain throws shadows; it is cut into tiles of 64 × 64 quads, each a node of its
+/// smooth. The terrain casts shadows; it is cut into tiles of 64 × 64 quads, each a node of its
 /// own.
 ///
 /// # Errors

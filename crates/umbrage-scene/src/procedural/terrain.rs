@@ -14,7 +14,7 @@ pub(super) struct Terrain {
     heights: Vec<f64>,
 }
 
-/// What the ground looks like and whether it throws shadows.
+/// What the ground looks like and whether it casts shadows.
 pub(super) struct Surface<'a> {
     pub(super) material: usize,
     /// Linear colour at a place with a normal, multiplied into the material's.

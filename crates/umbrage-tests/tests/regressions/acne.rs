@@ -15,7 +15,7 @@ const CAMERAS: [&str; 2] = ["near", "dueling"];
 /// Degrees above the horizon, at the bearing of the world's own sun.
 const ELEVATIONS: [f64; 3] = [80.0, 20.0, 5.0];
 /// The most of either, of those pixels of a world's views that lie so far from edges (and so of all
-/// scored ones, too). Single views of this size have too few of them to tell a share of a
+/// scored ones too). Single views of this size have too few of them to tell a share of a
 /// thousandth.
 const MOST: f64 = 0.001;
 

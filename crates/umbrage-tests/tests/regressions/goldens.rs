@@ -83,7 +83,7 @@ fn shots() -> Vec<Shot> {
         shot(Knights, "near", Mask, ssm().warped(Warp::Lispsm)),
         shot(Knights, "near", Mask, ssm().warped(Warp::Tsm { focus: 0.3 })),
         shot(Knights, "dueling", Mask, pssm(3).warped(Warp::Lispsm)),
-        // Ground that throws shadows.
+        // Ground that casts shadows.
         shot(MiningTerrain, "near", Mask, pssm(4)),
         shot(MiningTerrain, "middle", Mask, ssm().independent()),
         shot(MiningTerrain, "far", Mask, pssm(4).exact().d16().filter(Filter::Pcf3 { width_m: None })),

@@ -39,7 +39,7 @@ pub fn paired(first: &[f64], second: &[f64]) -> Result<Paired> {
         return Err(Error::NothingToScore("no view counts"));
     }
     if let Some(bad) = first.iter().chain(second).find(|score| !score.is_finite()) {
-        return Err(Error::setting("scores", format!("{bad} is no score; leave out the views that have none")));
+        return Err(Error::setting("scores", format!("{bad} is not a score; leave out the views that have none")));
     }
     let differences: Vec<f64> = first.iter().zip(second).map(|(a, b)| a - b).collect();
     let n = differences.len();

@@ -3,7 +3,7 @@
 use super::{Answers, Domain, MisShadowed};
 use crate::Result;
 
-/// A bin with fewer pixels of Ω_f has no say.
+/// A bin with fewer pixels of Ω_f is ignored.
 pub const LEAST_PIXELS_IN_BIN: usize = 200;
 
 const BINS: usize = 8;

@@ -27,7 +27,7 @@
 //!
 //! A view counts only if `│B*│ ≥ 2000` ([`Domain::counts_as_view`]); techniques are compared per
 //! view ([`paired`]), and one number for a technique is the memory at which E falls to 0.5 %
-//! ([`memory_at`]). Image metrics ([`similarity`]) stand beside and never gate.
+//! ([`memory_at`]). Image metrics ([`similarity`]) are for information and never gate.
 //!
 //! The measures and their limits are this project's own. m follows Lloyd et al., "Warping and
 //! Partitioning for Low Error Shadow Maps" (2006).

@@ -230,7 +230,7 @@ impl App {
                 }
                 pasted.notes.into_iter().for_each(|note| self.session.say(false, note));
                 self.session.set_config(pasted.config);
-                self.session.say(false, "took over the pasted settings");
+                self.session.say(false, "applied the pasted settings");
             }
             Err(why) => self.session.say(true, format!("nothing was pasted: {why}")),
         }

@@ -47,8 +47,8 @@ fn about(tab: Tab) -> &'static str {
         Tab::Maps => {
             "Each shadow map as the light sees it, with the outlines of its casters and of its slice of the view"
         }
-        Tab::Planes => "Where the planes between splits stand, and how many pixels a texel covers at each depth",
+        Tab::Planes => "Where the planes between splits are, and how many pixels a texel covers at each depth",
         Tab::Times => "How long the last pictures took, and what each split costs",
-        Tab::Casters => "What throws shadows in each split",
+        Tab::Casters => "What casts shadows in each split",
     }
 }

@@ -10,23 +10,22 @@ const KEYS: &[(&str, &str)] = &[
     ("right drag, Shift + drag, two fingers", "move sideways"),
     ("wheel, pinch", "move forwards and back"),
     ("Ctrl + drag", "move the sun: sideways its bearing, up and down its height"),
-    ("click", "say why this pixel is lit or dark"),
+    ("click", "show why this pixel is lit or dark"),
     ("W A S D, Q E", "fly; down and up. Shift is faster, + and − change the speed"),
     ("arrows", "look around"),
     ("R", "back to the first view"),
-    ("Space", "let time go on or stand still"),
-    ("X", "with shadows or without"),
+    ("Space", "run or stop the time"),
+    ("X", "shadows on or off"),
     ("T", "each split in a colour"),
     ("L", "frusta of splits and of their maps, as lines"),
-    ("F", "hold the maps for this view and fly on: see what they cover"),
-    ("O", "nothing, texels per pixel, errors over the picture"),
+    ("F", "hold the maps of this view and fly on: see what they cover"),
+    ("O", "overlay: none, texels per pixel, errors"),
     ("1 2 3 4", "maps, planes, times, casters below the picture"),
     ("H", "hide the panels"),
     ("Ctrl + C, Ctrl + V", "copy the command that shows this; paste settings (Rust, TOML, a command)"),
     ("Ctrl + and Ctrl −", "larger and smaller text"),
     ("Tab, Space, Esc", "go from control to control, press one, leave it"),
     ("F12", "a picture of this window, into the working folder"),
-    ("drop a file", "open a .glb, .gltf, .vrm or a height map (.png, .tif, .asc)"),
 ];
 
 /// The window of the help.
@@ -35,13 +34,14 @@ pub fn help(app: &mut App, ui: &mut Ui) {
     let room = ui.ctx().content_rect().size();
     Window::new("What can be done here").open(&mut open).collapsible(false).vscroll(true).default_width((0.7 * room.x).min(640.0)).max_height(0.8 * room.y).show(ui.ctx(), |ui| {
         ui.label(
-            "umbrage draws sunlight's shadows over large worlds with a few shadow maps, each for one split (slice) of the \
+            "umbrage draws sunlight shadows over large worlds with a few shadow maps, each for one split (slice) of the \
              view. Everything about them can be changed on the right while you look; what the picture is made of can be seen \
              on the left and below.",
         );
         ui.add_space(6.0);
         Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
-            for (keys, what) in KEYS {
+            let drop = format!("open a {}", umbrage_scene::EXTENSIONS);
+            for (keys, what) in KEYS.iter().chain(&[("drop a file", drop.as_str())]) {
                 ui.label(RichText::new(*keys).strong());
                 ui.label(*what);
                 ui.end_row();

@@ -13,12 +13,12 @@ pub(super) fn look(app: &mut App, ui: &mut Ui) {
     let session = &mut app.session;
     ui.checkbox(&mut session.show.shadows, "shadows").on_hover_text("With or without, to see what they do (X)");
     ui.checkbox(&mut session.show.tint, "each split in a colour")
-        .on_hover_text("Which of the shadow maps answers where: red is the nearest (T)");
+        .on_hover_text("Which shadow map is used where: red is the nearest (T)");
     ui.checkbox(&mut session.show.frusta, "frusta of splits and maps")
-        .on_hover_text("The slices of the view and the boxes that their maps hold, as lines (L)");
+        .on_hover_text("The slices of the view and the boxes that their maps cover, as lines (L)");
     let mut held = session.frozen.is_some();
     let hold = ui.checkbox(&mut held, "hold the maps, fly on");
-    if hold.on_hover_text("The maps stay those of this view while you look at them from elsewhere (F)").changed() {
+    if hold.on_hover_text("The maps of this view are kept while you look at them from elsewhere (F)").changed() {
         session.freeze(held);
     }
     ui.add_space(4.0);

@@ -41,37 +41,37 @@ fn card(picked: &Picked, surface: &Surface, answer: Option<ProbeAnswer>, ui: &mu
     let name = |object| object_name(&picked.drawn.stage, &picked.drawn.pose, object);
     let p = surface.position;
     ui.label(RichText::new(name(surface.object)).strong());
-    ui.weak(format!("{:.2}, {:.2}, {:.2}; {} before the eye", p.x, p.y, p.z, metres(surface.depth)));
+    ui.weak(format!("{:.2}, {:.2}, {:.2}; {} from the eye", p.x, p.y, p.z, metres(surface.depth)));
     ui.separator();
     let Some(answer) = answer else {
         ui.horizontal(|ui| {
             ui.spinner();
-            ui.label("asking the maps");
+            ui.label("reading the maps");
         });
         return;
     };
     ui.label(sentence(surface, answer.visibility));
     match (&surface.blocker, surface.lit) {
         (Some((object, away)), _) => {
-            ui.label(format!("Truly before the light: {}, {} away.", name(*object), metres(*away)));
+            ui.label(format!("In truth in front of the light: {}, {} away.", name(*object), metres(*away)));
         }
         (None, false) => {
             ui.label("The surface is turned away from the light.");
         }
         (None, true) => {
-            ui.label("Truly nothing stands before the light.");
+            ui.label("In truth nothing is in front of the light.");
         }
     }
     ui.separator();
     let Ok(split) = usize::try_from(answer.split) else {
-        ui.label("No map answers here: it is beyond the shadowed range, so it counts as lit.");
+        ui.label("No map covers this point: it is beyond the shadowed range, so it counts as lit.");
         return;
     };
-    ui.label(RichText::new(format!("Split {split} answered.")).color(split_colour(split)).strong());
+    ui.label(RichText::new(format!("Split {split} decided.")).color(split_colour(split)).strong());
     match surface.maps.iter().find(|look| look.split == split) {
         Some(look) => map(look, &name, ui),
         None => {
-            ui.label("Nothing throws a shadow into this split, so its map was not asked.");
+            ui.label("Nothing casts a shadow into this split, so its map was not read.");
         }
     }
 }
@@ -109,7 +109,7 @@ fn map(look: &MapLook, name: &impl Fn(usize) -> String, ui: &mut Ui) {
     ));
     match look.stored {
         None => {
-            ui.label("The texel is empty: nothing before the light.");
+            ui.label("The texel is empty: nothing in front of the light.");
         }
         Some((object, before)) if before > look.bias.constant_m => {
             ui.label(format!(

@@ -271,7 +271,7 @@ pub(super) fn casters(app: &mut App, drawn: &Drawn, ui: &mut Ui) {
                 let title = format!("split {index}: {} casters, {} triangles", split.casters, split.triangles);
                 ui.label(RichText::new(title).color(split_colour(index)));
                 if split.casters == 0 {
-                    ui.weak("nothing throws a shadow here: lit without a look");
+                    ui.weak("nothing casts a shadow here: lit without a lookup");
                 }
                 let mut objects: Vec<usize> = plan
                     .casters(index)

@@ -122,7 +122,7 @@ fn paths(session: &mut Session, ui: &mut Ui) {
         match &session.recording {
             None => {
                 let record = ui.button("record a path");
-                if record.on_hover_text("Takes down where you fly, for `umbrage render --path`").clicked() {
+                if record.on_hover_text("Records where you fly, for `umbrage render --path`").clicked() {
                     session.recording = Some(Recording::default());
                 }
             }

@@ -66,7 +66,7 @@ fn carry(app: &mut App, ui: &mut Ui) {
         ui.menu_button("paste", |ui| {
             ui.label("Rust, TOML, JSON or a command line (Ctrl + V over the picture does it at once):");
             ui.add(TextEdit::multiline(&mut app.fields.pasted).code_editor().desired_rows(4));
-            if ui.button("take over").clicked() {
+            if ui.button("apply").clicked() {
                 let text = std::mem::take(&mut app.fields.pasted);
                 app.paste(&text);
                 ui.close();
@@ -74,7 +74,7 @@ fn carry(app: &mut App, ui: &mut Ui) {
         });
         let usual = ShadowConfig::default();
         let reset = ui.add_enabled(app.session.config != usual, egui::Button::new("reset"));
-        if reset.on_hover_text("Everything as by default: the preset balanced").clicked() {
+        if reset.on_hover_text("All settings to their defaults: the preset balanced").clicked() {
             take(app, usual, Vec::new());
         }
     });
@@ -204,9 +204,18 @@ fn control(app: &mut App, row: &Row, value: &Value, state: (&ShadowConfig, &[Lig
             let mut count = *count;
             ui.add(Slider::new(&mut count, least..=most)).changed().then(|| count.to_string())
         }
+        (Kind::CountOf(counts), Value::Count(count)) => {
+            let mut chosen = *count;
+            ui.horizontal(|ui| {
+                for &count in counts {
+                    ui.selectable_value(&mut chosen, count, count.to_string());
+                }
+            });
+            (chosen != *count).then(|| chosen.to_string())
+        }
         (Kind::Switch, Value::Switch(on)) => {
             let mut on = *on;
-            ui.checkbox(&mut on, "").changed().then(|| on.to_string())
+            ui.checkbox(&mut on, "").changed().then(|| Value::Switch(on).to_string())
         }
         (Kind::Colour, Value::Numbers(numbers)) => colour(numbers, ui),
         (Kind::Texels, Value::Counts(sizes)) => texels(app, row, sizes, ui),

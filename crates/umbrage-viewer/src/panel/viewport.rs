@@ -229,7 +229,7 @@ fn messages(app: &mut App, ui: &mut Ui, rect: Rect) {
             let frame = Frame::popup(ui.style());
             frame.show(ui, |ui| {
                 ui.horizontal(|ui| {
-                    if ui.small_button("×").on_hover_text("Take this line away").clicked() {
+                    if ui.small_button("×").on_hover_text("Remove this line").clicked() {
                         gone = Some(index);
                     }
                     let colour = if message.is_error { ui.visuals().error_fg_color } else { ui.visuals().text_color() };

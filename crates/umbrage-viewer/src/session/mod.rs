@@ -294,7 +294,7 @@ impl Session {
     /// Another config.
     pub fn set_config(&mut self, config: ShadowConfig) {
         if config.layout == Layout::Reused && self.frozen.take().is_some() {
-            self.say(false, "the held maps are let go: storage reused has one map at a time");
+            self.say(false, "maps are no longer held: storage reused has one map at a time");
         }
         self.config = config;
     }

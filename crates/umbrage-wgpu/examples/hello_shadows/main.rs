@@ -2,7 +2,7 @@
 //!
 //! `cargo run -p umbrage-wgpu --example hello_shadows` opens a window; `cargo run -p umbrage-wgpu
 //! --example hello_shadows -- --picture out.png` writes one picture. What shadows add to the
-//! program stands in `Scene::new`, `Scene::draw` and the two shaders, at the marks ◐.
+//! program is in `Scene::new`, `Scene::draw` and the two shaders, at the marks ◐.
 
 mod support;
 
@@ -91,7 +91,7 @@ impl Scene {
         let clip_from_world = view.clip_from_relative(DVec3::ZERO).as_mat4();
         queue.write_buffer(&self.camera, 0, bytemuck::bytes_of(&clip_from_world));
 
-        // ◐ The frame's light and boxes. Every box but the plain throws a shadow, and all show
+        // ◐ The frame's light and boxes. Every box but the plain casts a shadow, and all show
         // them.
         let sun = [Light::from(DirectionalLight::new(-TO_SUN)?)];
         let inputs = Inputs {

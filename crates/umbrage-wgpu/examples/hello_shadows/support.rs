@@ -228,7 +228,7 @@ impl<S> Shown<S> {
         Self::open_in(Arc::new(event_loop.create_window(attributes)?), event_loop, new)
     }
 
-    /// Everything but the window is made anew: at first, and after the device was lost.
+    /// Everything except the window is created here: at first, and after the device was lost.
     fn open_in(window: Arc<Window>, event_loop: &ActiveEventLoop, new: New<S>) -> Result<Self> {
         let display = Box::new(event_loop.owned_display_handle());
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_with_display_handle_from_env(display));

@@ -1,4 +1,4 @@
-//! Bind groups: what casters are told of their splits, what receivers are told of the frame, and
+//! Bind groups: what casters get of their splits, what receivers get of the frame, and
 //! the maps they read.
 
 use umbrage::config::{Filter, Storage};
@@ -31,7 +31,7 @@ impl Uniforms {
         Self::new(device, "ShadowMaps::caster", layout, bytes, passes.len(), Vec::new())
     }
 
-    /// What receivers are told: the frames, once for all splits, and where one map is reused, once
+    /// What receivers get: the frames, once for all splits, and where one map is reused, once
     /// more for each; and the maps.
     pub fn of_receivers(device: &wgpu::Device, it: &Received, targets: &Targets, moments: Option<&Moments>) -> Self {
         let count = if it.storage == Storage::Reused { 1 + it.maps } else { 1 };
@@ -108,7 +108,7 @@ impl Uniforms {
     }
 }
 
-/// What receivers are told of and how they read it.
+/// What receivers get, and how they read it.
 pub(super) struct Received {
     pub filter: Filter,
     pub storage: Storage,

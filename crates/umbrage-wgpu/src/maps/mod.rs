@@ -76,7 +76,7 @@ pub fn device_descriptor<'a>(adapter: &wgpu::Adapter, own: wgpu::DeviceDescripto
 /// The shadow maps of one light for one view, or of several lights
 /// ([`ShadowMaps::prepare_lights`]), on the GPU: the low level below [`crate::Shadows`].
 ///
-/// [`Layout`] says where maps are kept and how they are drawn. Each frame: [`ShadowMaps::prepare`],
+/// [`Layout`] chooses where maps are stored and how they are drawn. Each frame: [`ShadowMaps::prepare`],
 /// every pass of [`ShadowMaps::passes`] from [`ShadowMaps::begin_pass`], [`ShadowMaps::prefilter`],
 /// then any pass of the app with [`ShadowMaps::receiver_bind_group`]. With [`Layout::Reused`] the
 /// app's pass is taken apart into slices, each after its map: see [`ShadowMaps::slice_bind_group`].
@@ -153,7 +153,9 @@ impl ShadowMaps {
         };
         let is_colour = config.depth_format.is_colour();
         if config.depth_format == DepthFormat::D16Unorm && !depth_clip_control {
-            notes.push("no depth clip control: near planes of 16-bit maps stand before their first caster".to_owned());
+            notes.push(
+                "no depth clip control: near planes of 16-bit maps lie in front of their first caster".to_owned(),
+            );
         }
         if matches!(config.filter, Filter::Pcss { .. }) && !depth_loads && !is_colour {
             notes.push("no loads from depth textures on GL: pcss is a disc of fixed width".to_owned());
@@ -225,7 +227,7 @@ impl ShadowMaps {
 
     /// Begins pass `pass` of [`ShadowMaps::passes`]: its maps are cleared, viewport and scissor are
     /// set and have to stay. Bind [`ShadowMaps::caster_bind_group`] of the same pass and draw what
-    /// [`MapPass::casters`] says in any order. Begin every pass, the first one first: it clears
+    /// [`MapPass::casters`] lists, in any order. Begin every pass, the first one first: it clears
     /// what the others share.
     ///
     /// # Panics
@@ -257,7 +259,7 @@ impl ShadowMaps {
         render
     }
 
-    /// Turns the depths that were drawn into what receivers read: for filters of moments
+    /// Turns the depths that were drawn into what receivers read: for moment filters
     /// conversion, blur and mip levels ([`Filter::is_prefiltered`]), for all others nothing. Call
     /// it after the casters and before any receiver.
     pub fn prefilter(&self, encoder: &mut wgpu::CommandEncoder) {
@@ -279,7 +281,7 @@ impl ShadowMaps {
     }
 
     /// What a vertex shader needs to draw casters; `group` is the index at which the app binds
-    /// [`ShadowMaps::caster_bind_group`]. It stands before everything else in its module. The
+    /// [`ShadowMaps::caster_bind_group`]. It comes before everything else in its module. The
     /// vertex shader is the same for every path:
     ///
     /// ```wgsl
@@ -377,7 +379,7 @@ impl ShadowMaps {
         self.layout
     }
 
-    /// Whether pipelines for casters and receivers that were made for `other` fit these maps, too.
+    /// Whether pipelines for casters and receivers that were made for `other` fit these maps too.
     pub(crate) fn shares_pipelines_with(&self, other: &Self) -> bool {
         // Bind group layouts follow from the texts: they hold what the texts declare.
         self.receiver_wgsl(0) == other.receiver_wgsl(0)
@@ -405,18 +407,17 @@ impl ShadowMaps {
         &self.notes
     }
 
-    /// Bytes of all maps, of depth buffers beside maps that are colours, and for filters of moments
-    /// of these with their levels and of the texture between two blurs.
+    /// Bytes of all maps, of depth buffers beside maps that are colours, and for moment filters of
+    /// the moments with their mip levels and of the texture between two blurs.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.targets.bytes() + self.moments.as_ref().map_or(0, Moments::bytes)
     }
 
-    /// Whether casters before a map's near plane are flattened onto it, so that the plane may lie
-    /// at the receivers: what [`umbrage::PlannerOptions::depth_clamp`] wants. So it is for 16-bit
-    /// maps on a device with `DEPTH_CLIP_CONTROL` (see [`optional_features`]). Floats hold the
-    /// depth of a whole world; 16 bits want the shorter range, and pay for it with maps that step
-    /// along the light.
+    /// Whether casters in front of a map's near plane are clamped to it, so that the plane may lie
+    /// at the receivers: the value for [`umbrage::PlannerOptions::depth_clamp`]. True for 16-bit
+    /// maps on a device with `DEPTH_CLIP_CONTROL` (see [`optional_features`]), which need the
+    /// shorter depth range. 32-bit maps keep a fixed range, which does not move with the camera.
     #[must_use]
     pub fn depth_clamp(&self) -> bool {
         self.depth_clip_control && self.config.depth_format == DepthFormat::D16Unorm
@@ -433,8 +434,8 @@ impl ShadowMaps {
         (self.targets.layer(tile.layer), tile.corner)
     }
 
-    /// The texture that holds the map of split `split`, where [`ShadowMaps::map_place`] says. Can
-    /// be copied from, but not with several samples a texel.
+    /// The texture that holds the map of split `split`, at [`ShadowMaps::map_place`]. Can
+    /// be copied from, but not with several samples per texel.
     ///
     /// # Panics
     /// If `split` is not less than [`ShadowMaps::splits`].
@@ -480,7 +481,7 @@ impl ShadowMaps {
     }
 
     /// Primitive state for a pipeline that draws casters: triangle lists, both faces (single-sided
-    /// walls cast, too).
+    /// walls cast too).
     #[must_use]
     pub fn caster_primitive(&self) -> wgpu::PrimitiveState {
         wgpu::PrimitiveState { cull_mode: None, unclipped_depth: self.depth_clip_control, ..Default::default() }
@@ -511,7 +512,7 @@ impl ShadowMaps {
         &self.receivers.layout
     }
 
-    /// The group to bind where visibility is asked for. With [`Layout::Reused`] it answers for
+    /// The group to bind where visibility is computed. With [`Layout::Reused`] it answers for
     /// whatever map was drawn last: bind [`ShadowMaps::slice_bind_group`] instead.
     #[must_use]
     pub fn receiver_bind_group(&self) -> &wgpu::BindGroup {

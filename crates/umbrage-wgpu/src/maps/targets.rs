@@ -9,7 +9,7 @@ use crate::options::texture_format;
 /// The textures of all maps.
 #[derive(Debug)]
 pub(super) struct Targets {
-    /// One; where maps are separate, or have several samples a texel, one for each split.
+    /// One; where maps are separate, or have several samples per texel, one for each split.
     pub maps: Vec<wgpu::Texture>,
     separate: bool,
     /// Depth buffers beside maps that are colours.

@@ -20,7 +20,7 @@ impl<'a> ShadowFrame<'a> {
     }
 
     /// The maps to draw, in this order; none without shadows. Maps of several lights that no caster
-    /// reaches are left away: nobody reads them.
+    /// reaches are omitted: nothing reads them.
     pub fn maps(&self) -> impl Iterator<Item = ShadowMap<'a>> + use<'a> {
         let shadows = self.shadows;
         shadows.draws.passes.iter().map(move |&pass| ShadowMap { shadows, pass })

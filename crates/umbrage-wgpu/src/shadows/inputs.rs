@@ -19,7 +19,7 @@ pub struct Inputs<'a> {
     pub view: &'a View,
     /// One light for each that the maps were made for, in that order.
     pub lights: &'a [Light],
-    /// Bounds of what throws shadows. [`crate::ShadowMap::casters`] speaks of them by index.
+    /// Bounds of what casts shadows. [`crate::ShadowMap::casters`] refers to them by index.
     pub casters: &'a [Aabb],
     /// Bounds of what shows shadows, most casters among them. Where the list is empty, or holds
     /// nothing that is in view, casters serve as receivers.
@@ -31,8 +31,8 @@ pub struct Inputs<'a> {
     /// Which members of the set take part: those that are on one of these layers.
     pub layers: Layers,
     /// Bounds that hold all that is drawn of the receivers in view and leave less air than
-    /// [`Inputs::receivers`]: [`umbrage::ShadowPlan::casts_into`] then rejects more parts of casters. `None`:
-    /// not known.
+    /// [`Inputs::receivers`]: [`umbrage::ShadowPlan::casts_into`] then rejects more parts of
+    /// casters. `None`: not known.
     pub receiver_clusters: Option<&'a [Aabb]>,
     /// World point that positions in the application's shaders are relative to. Keep it within a
     /// kilometre or two of the eye and move it in whole steps: static shadows stand still between
@@ -45,7 +45,7 @@ pub struct Inputs<'a> {
     /// Whether there are shadows. Without them there is nothing to draw, every surface that faces a
     /// light is lit, and what stabilised maps hold stays as it was.
     pub enabled: bool,
-    /// Whether `umbrage_shadow` answers with a debug colour for each split.
+    /// Whether `umbrage_shadow` returns a debug colour for each split.
     pub tint: bool,
 }
 
@@ -73,7 +73,7 @@ impl<'a> Inputs<'a> {
     /// Casters and receivers as the planner takes them.
     ///
     /// # Errors
-    /// [`Error::SetAndLists`] for lists beside a set: nobody would look at them.
+    /// [`Error::SetAndLists`] for lists beside a set: they would be ignored.
     pub(super) fn boxes(&self) -> Result<[Boxes<'a>; 2]> {
         let Some(set) = self.set else { return Ok([self.casters.into(), self.receivers.into()]) };
         match self.casters.len() + self.receivers.len() {

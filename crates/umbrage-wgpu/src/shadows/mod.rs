@@ -1,4 +1,4 @@
-//! The front door: from a view, lights and boxes to maps that are drawn and asked.
+//! The main API: from a view, lights and boxes to maps that are drawn and sampled.
 
 mod draws;
 mod frame;
@@ -27,11 +27,11 @@ use crate::{Error, FrameOptions, LightMaps, Result, ShadowMaps};
 ///
 /// | change | by | what it costs |
 /// |---|---|---|
-/// | view, lights' directions and places, casters, receivers, picture size | [`Inputs`] | nothing |
+/// | view, directions and positions of lights, casters, receivers, picture size | [`Inputs`] | nothing |
 /// | a setting of [`Rebuilds::Nothing`] | [`Shadows::set_config`] | nothing |
 /// | a setting of [`Rebuilds::Maps`] | [`Shadows::set_config`] | textures and bind groups; pipelines stay valid |
-/// | a setting of [`Rebuilds::Pipelines`] | [`Shadows::set_config`] | possibly pipelines: the answer says so |
-/// | number or kinds of lights | [`Shadows::set_lights`] | possibly pipelines: the answer says so |
+/// | a setting of [`Rebuilds::Pipelines`] | [`Shadows::set_config`] | possibly pipelines: see the returned value |
+/// | number or kinds of lights | [`Shadows::set_lights`] | possibly pipelines: see the returned value |
 ///
 /// [`umbrage::config::SETTINGS`] lists the settings with what they rebuild at most. Shadows stand
 /// still through every change that has nothing to do with where maps lie.
@@ -44,16 +44,17 @@ use crate::{Error, FrameOptions, LightMaps, Result, ShadowMaps};
 ///
 /// # A lost device
 ///
-/// A driver that is reset or updated, or an adapter that is unplugged, takes the device and all
-/// that was made with it. [`Shadows::prepare`] says [`Error::DeviceLost`] from then on; so does
-/// [`Shadows::new`] with that device. An application requests a new adapter and a new device, makes
-/// its own resources and `Shadows` anew and draws the frame again, as the example `hello_shadows`
-/// does. What stabilised maps hold is lost with `Shadows`: their texels may move once.
+/// If a driver is reset or updated, or an adapter is unplugged, the device and all its resources
+/// are lost. [`Shadows::prepare`] returns [`Error::DeviceLost`] from then on; so does
+/// [`Shadows::new`] with that device. The application requests a new adapter and a new device,
+/// creates its own resources and `Shadows` again and redraws the frame, as the example
+/// `hello_shadows` does. What stabilised maps hold is lost with `Shadows`: their texels may move
+/// once.
 ///
-/// A device that is lost between `prepare` and the end of the frame is told of at the next
-/// `prepare`. What the frame still records is without effect: wgpu reports some of it to
-/// [`wgpu::Device::on_uncaptured_error`], which should not panic then. A browser tells nobody but
-/// [`wgpu::Device::set_device_lost_callback`], which belongs to the application.
+/// If the device is lost between `prepare` and the end of the frame, the next `prepare` reports it.
+/// Commands that the frame still records have no effect. wgpu reports some of them to
+/// [`wgpu::Device::on_uncaptured_error`], which should not panic then. In a browser only
+/// [`wgpu::Device::set_device_lost_callback`] is called, which belongs to the application.
 #[derive(Debug)]
 pub struct Shadows {
     config: ShadowConfig,
@@ -86,7 +87,7 @@ impl Shadows {
     /// [`LightMaps`].
     ///
     /// A choice that a plan makes by itself and that excludes a kind of light, such as a warp for a
-    /// lamp, is replaced for that light alone; [`Shadows::notes`] says so.
+    /// lamp, is replaced for that light alone; [`Shadows::notes`] lists it.
     ///
     /// # Errors
     /// Those of [`ShadowMaps::new`].
@@ -189,7 +190,7 @@ impl Shadows {
         ShadowFrame::new(self)
     }
 
-    /// Turns drawn depths into what receivers read, for filters of moments; for others it does
+    /// Turns drawn depths into what receivers read, for moment filters; for others it does
     /// nothing. Call it after the casters and before any receiver.
     pub fn prefilter(&self, encoder: &mut wgpu::CommandEncoder) {
         if self.enabled {
@@ -209,14 +210,14 @@ impl Shadows {
         self.maps.receiver_layout()
     }
 
-    /// WGSL that stands before a shader that asks for visibility; `group` is the index at which
+    /// WGSL to put before a shader that computes visibility; `group` is the index at which
     /// [`Shadows::bind_group`] is bound.
     #[must_use]
     pub fn receiver_wgsl(&self, group: u32) -> String {
         self.maps.receiver_wgsl(group)
     }
 
-    /// WGSL that stands before a vertex shader that draws casters; `group` is the index at which
+    /// WGSL to put before a vertex shader that draws casters; `group` is the index at which
     /// [`ShadowMap::bind_group`] is bound. [`Shadows::caster_pipeline`] does the rest for the
     /// common case.
     #[must_use]
@@ -231,7 +232,7 @@ impl Shadows {
         self.maps.caster_wgsl_with(group, members)
     }
 
-    /// The maps: the low level, which knows textures, passes and pipeline states.
+    /// The maps: the low-level API, with textures, passes and pipeline states.
     #[must_use]
     pub fn maps(&self) -> &ShadowMaps {
         &self.maps
@@ -255,7 +256,7 @@ impl Shadows {
         &self.notes
     }
 
-    /// Changes the config. Says what was made anew: after [`Rebuilds::Pipelines`] shader texts or
+    /// Changes the config. Returns what was rebuilt: after [`Rebuilds::Pipelines`] shader texts or
     /// pipeline states have changed, and pipelines with them; after [`Rebuilds::Maps`] bind groups.
     /// The answer is at most what [`ShadowConfig::rebuilds`] promises.
     ///
@@ -265,7 +266,7 @@ impl Shadows {
         self.change(config.clone(), self.lights.clone())
     }
 
-    /// Changes the lights that maps are made for. Says what was made anew, as
+    /// Changes the lights that maps are made for. Returns what was rebuilt, as
     /// [`Shadows::set_config`] does.
     ///
     /// # Errors
@@ -340,7 +341,7 @@ fn planned_with(maps: &ShadowMaps, config: &ShadowConfig, lights: &[LightMaps]) 
     (planned, notes)
 }
 
-/// What planners are told beside a config. The picture's size is a frame's.
+/// The options of planners beside a config. The picture's size is given per frame.
 fn planner_options(maps: &ShadowMaps) -> PlannerOptions {
     PlannerOptions { depth_clamp: maps.depth_clamp(), ..PlannerOptions::default() }
 }

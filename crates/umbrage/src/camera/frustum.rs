@@ -67,7 +67,7 @@ impl Frustum {
     /// [`Error::InvalidCamera`] naming the parameter that is out of range.
     pub fn perspective(fov_y: f64, aspect: f64, near: f64, far: f64) -> Result<Self> {
         if !(fov_y > 0.0 && fov_y < std::f64::consts::PI) {
-            return Err(Error::camera("fov", fov_y, "an angle between 0 and 180 degrees, both excluded"));
+            return Err(Error::camera("fov", fov_y, "an angle in radians, more than 0 and less than π"));
         }
         if !(aspect > 0.0 && aspect.is_finite()) {
             return Err(Error::camera("aspect", aspect, "a positive width / height"));

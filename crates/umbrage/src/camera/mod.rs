@@ -1,4 +1,4 @@
-//! The view: where the eye stands, which way it looks and what it sees.
+//! The view: where the eye is, which way it looks and what it sees.
 
 mod decompose;
 mod frustum;

@@ -1,8 +1,8 @@
-//! What casters have in common: who asks for them, and for what.
+//! What casters have in common: the queries that they are part of.
 
 use crate::{Error, Result};
 
-/// Layers that a caster is on, or that a light or a view asks for: a set of up to
+/// Layers that a caster is on, or that a light or a view shows: a set of up to
 /// [`Layers::COUNT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Layers(u32);
@@ -14,7 +14,7 @@ impl Layers {
     /// Every layer.
     pub const ALL: Self = Self(u32::MAX);
 
-    /// No layer: nobody asks.
+    /// No layer.
     pub const NONE: Self = Self(0);
 
     /// One layer, counted from 0.
@@ -62,7 +62,7 @@ impl std::ops::BitOr for Layers {
 /// What a box of a set is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
-    /// To throw shadows.
+    /// To cast shadows.
     Caster,
     /// To show them.
     Receiver,
@@ -76,7 +76,7 @@ pub(super) struct Kind {
     pub receives: bool,
 }
 
-/// Who asks a set, and for what.
+/// A query of a set: which layers, and for what purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Ask {
     pub layers: Layers,

@@ -21,7 +21,7 @@ pub(super) struct Entry {
     pub is_due: bool,
 }
 
-/// Changes after which nodes are fitted anew, at least.
+/// Changes after which nodes are fitted again, at least.
 const LEAST_CHANGES: usize = 64;
 
 /// By how much more room leaves may take than when they were last put in order.
@@ -59,7 +59,7 @@ impl Loose {
         self.changes += 1;
     }
 
-    /// Removes a caster, and says whose place has become `at` instead.
+    /// Removes a caster, and returns the one that has moved to place `at` instead.
     pub fn remove(&mut self, at: u32) -> Option<u32> {
         let entry = self.entries.swap_remove(at as usize);
         self.due -= usize::from(entry.is_due);
@@ -109,7 +109,7 @@ impl Loose {
         self.changes = 0;
     }
 
-    /// The tree as somebody asks it who stands `farthest` metres from the origin.
+    /// The tree for queries up to `farthest` metres from the origin.
     pub fn asked<'a>(&'a self, ask: Ask, kinds: &'a Kinds, farthest: f64) -> Asked<'a, impl Fn(usize) -> bool + 'a> {
         Asked { tree: &self.tree, farthest, is_for: move |at: usize| ask.is_for(kinds.get(self.entries[at].kind)) }
     }

@@ -20,7 +20,7 @@ pub enum Motion {
     Moving,
 }
 
-/// Something that throws or shows shadows, as a [`CasterSet`] takes it.
+/// Something that casts or shows shadows, as a [`CasterSet`] takes it.
 ///
 /// ```
 /// # use umbrage::{Aabb, Caster, Layers, Motion};
@@ -41,14 +41,14 @@ pub struct Caster {
     pub motion: Motion,
     /// Who sees it: see [`crate::PlanInputs::layers`].
     pub layers: Layers,
-    /// Whether it throws shadows.
+    /// Whether it casts shadows.
     pub casts: bool,
     /// Whether it shows shadows: it counts where the set is given as receivers.
     pub receives: bool,
 }
 
 impl Caster {
-    /// A static caster on the first layer that throws shadows and shows them.
+    /// A static caster on the first layer that casts shadows and shows them.
     #[must_use]
     pub fn new(bounds: impl Into<Aabb>, key: u32) -> Self {
         let (motion, layers) = (Motion::Static, Layers::default());
@@ -91,17 +91,17 @@ impl Caster {
 ///
 /// # Plans
 ///
-/// A plan of a set is the plan of the list of the boxes that it keeps, [`CasterSet::bounds`], in
-/// the order of their keys, bit for bit. It does not depend on the order in which they came. It
-/// names casters by their keys.
+/// A plan from a set equals the plan from the list of its boxes, [`CasterSet::bounds`], in the
+/// order of their keys, bit for bit. It does not depend on the order of insertion. Its lists
+/// contain keys.
 ///
 /// # What is kept
 ///
 /// A static box is kept in 18 bytes: rounded outwards to 2^-14 m (0.06 mm), on a lattice that is as
-/// fine 100 km from the world's origin as there. With handle, key and tree that is 32 bytes a
-/// caster where at least some ten of them stand to the square kilometre. Boxes that move, that are
-/// longer than 256 m, that are flat or that lie farther away than 17 million kilometres are kept as
-/// they are given, in some 250 bytes.
+/// fine 100 km from the world's origin as there. With handle, key and tree that is 32 bytes per
+/// caster, at ten or more casters per square kilometre. Boxes that move, that are longer than
+/// 256 m, that are flat or that lie farther away than 17 million kilometres are kept as they are
+/// given, in some 250 bytes.
 ///
 /// # Speed
 ///
@@ -111,8 +111,8 @@ impl Caster {
 ///   [`CasterSet::pack`] puts everything in the best order again.
 /// * Moving a caster costs some tens of nanoseconds, and a part of fitting the tree of all that
 ///   move.
-/// * A static caster that moves is moved where it stands if it does not go far, and is packed anew
-///   later if it does.
+/// * A static caster that is moved a little is changed in place; one that is moved far is packed
+///   again later.
 ///
 /// With the feature `rayon`, packing uses all cores.
 #[derive(Debug)]
@@ -285,7 +285,7 @@ impl CasterSet {
         Ok(())
     }
 
-    /// Removes a caster. Its handle names nobody from now on.
+    /// Removes a caster. Its handle is invalid from now on.
     ///
     /// # Errors
     /// [`Error::RemovedCaster`].
@@ -334,7 +334,8 @@ impl CasterSet {
         self.slots.iter().map(|slot| (self.slots.handle(slot), self.caster(slot)))
     }
 
-    /// Packs all static casters anew, in the best order. A million take about a second of one core.
+    /// Packs all static casters again, in the best order. A million take about a second of one
+    /// core.
     pub fn pack(&mut self) {
         let mut packing = self.loose.take_due();
         self.tell_loose();
@@ -420,7 +421,7 @@ impl CasterSet {
         }
     }
 
-    /// Packs anew what is left of a run.
+    /// Packs what is left of a run again.
     fn pack_rest(&mut self, number: u32) {
         let Some(run) = self.runs[number as usize].take() else { return };
         let rest = |lane: u32| {

@@ -45,7 +45,7 @@ pub(crate) trait Tree {
     /// Levels of groups; 0 if there is no box.
     fn levels(&self) -> usize;
 
-    /// A node of a group, with a little room for rounding; `None` where nobody is asked for.
+    /// A node of a group, with a little room for rounding; `None` if nothing is queried.
     fn node(&self, level: usize, group: usize, lane: usize) -> Option<Placed>;
 
     /// Calls `each` with the boxes of a leaf that are asked for, by their places in the tree.

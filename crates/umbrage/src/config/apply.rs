@@ -1,12 +1,13 @@
-//! From settings as text to a config: what was not given gives way to what was.
+//! From settings as text to a config: a setting that was not given is reset if it excludes one that
+//! was.
 
 use super::given::{Given, Wrong};
 use super::{RULES, SETTINGS, ShadowConfig, settings};
 use crate::{Error, Result as UmbrageResult};
 
 impl ShadowConfig {
-    /// Puts settings over this config. What was not given and excludes what was given gives way;
-    /// the notes say what did.
+    /// Applies settings to this config. A setting that was not given and excludes one that was is
+    /// reset; the notes name it.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] naming a key that does not exist or whose value is wrong,
@@ -24,7 +25,7 @@ impl ShadowConfig {
                     .map_err(|Wrong { key, reason }| Error::setting(key.unwrap_or(setting.key), reason))?;
             }
         }
-        let notes = config.give_way(&given);
+        let notes = config.reset_excluded(&given);
         config.validate()?;
         *self = config;
         Ok(notes)
@@ -38,8 +39,8 @@ impl ShadowConfig {
         listed.filter(|(key, _)| *key != "technique").collect()
     }
 
-    /// Takes back what nobody asked for where it excludes what somebody did.
-    fn give_way(&mut self, given: &Given<'_>) -> Vec<String> {
+    /// Resets settings that were not given where they exclude ones that were.
+    fn reset_excluded(&mut self, given: &Given<'_>) -> Vec<String> {
         let mut notes = Vec::new();
         for rule in RULES {
             if !rule.is_broken_by(self, &[]) {
@@ -53,7 +54,7 @@ impl ShadowConfig {
             };
             let said = weak.say(self);
             if weak.relax(self) {
-                notes.push(format!("{said} is left away: {}", rule.reason));
+                notes.push(format!("{said} is ignored: {}", rule.reason));
             }
         }
         notes

@@ -111,7 +111,8 @@ impl FromStr for Budget {
             (None, Some(factor)) => (factor, Self::Texels),
             (None, None) => {
                 let names = BYTES.iter().chain(&TEXELS).map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
-                let reason = if unit.is_empty() { "it has no unit".to_owned() } else { format!("{unit:?} is no unit") };
+                let reason =
+                    if unit.is_empty() { "it has no unit".to_owned() } else { format!("{unit:?} is not a known unit") };
                 return Err(refuse(format!("{reason}; give one of {names}, as in 8MiB")));
             }
         };
@@ -122,7 +123,7 @@ impl FromStr for Budget {
         let amount = (number * factor as f64).floor();
         // Beyond 2^53 a float no longer counts.
         if !(1.0..=9_007_199_254_740_992.0).contains(&amount) {
-            return Err(refuse("give one byte or texel to 8 PiB".to_owned()));
+            return Err(refuse("out of range; give at least 1 B or 1 texel, at most 8 PiB".to_owned()));
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked above")]
         Ok(budget(amount as u64))

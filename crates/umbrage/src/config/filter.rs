@@ -1,15 +1,15 @@
-//! How a map is looked up, and how soft edges become.
+//! How a map is filtered, and how soft edges become.
 
 use super::names::{Word, named};
 use crate::margin::FilterReach;
 
-/// How a map is looked up.
+/// How a map is filtered.
 ///
 /// Widths are full widths across the light in metres, equal in every split; `None` leaves the width
 /// to the filter, in texels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Filter {
-    /// One nearest texel, one comparison: answers are 0 or 1.
+    /// One nearest texel, one comparison: visibility is 0 or 1.
     Hard,
     /// One bilinear comparison of 2×2 texels.
     Pcf2,
@@ -35,18 +35,18 @@ pub enum Filter {
     Disc {
         /// Full width in metres.
         width_m: Option<f64>,
-        /// Rotates the kernel from pixel to pixel: noise instead of bands.
+        /// Rotates the kernel per pixel: noise instead of banding.
         rotated: bool,
     },
     /// Percentage-closer soft shadows: a disc as wide as the sun's penumbra, which a search of 32
     /// texels for blockers finds.
     Pcss {
-        /// Angle across the sun in degrees, 0 to 90.
+        /// Angular diameter of the sun in degrees, 0 to 90.
         sun_degrees: f64,
-        /// Rotates the kernel from pixel to pixel: noise instead of bands.
+        /// Rotates the kernel per pixel: noise instead of banding.
         rotated: bool,
     },
-    /// Moments of depth, blurred before they are asked.
+    /// Moments of depth, blurred before the comparison.
     Moments(Moments),
 }
 
@@ -57,12 +57,12 @@ pub struct Moments {
     pub kind: MomentKind,
     /// Full width of the blur across the light in metres; `None` for 8 texels of the finest map.
     pub width_m: Option<f64>,
-    /// Samples of depth in a texel, 1 or 4.
+    /// Depth samples per texel, 1 or 4.
     pub samples: u32,
     /// Share of light that counts as a leak and becomes shadow, 0 to 0.9. More hides leaks and
     /// widens shadows.
     pub bleeding: f64,
-    /// How the filter knows what a pixel covers where splits meet.
+    /// How the mip level is found at split borders.
     pub derivatives: Derivatives,
 }
 
@@ -92,9 +92,8 @@ named! {
 }
 
 named! {
-    /// How a filter of moments knows what a pixel covers where neighbouring pixels use different
-    /// splits.
-    pub enum Derivatives as "way of derivatives" {
+    /// How a moment filter finds the mip level where neighbouring pixels use different splits.
+    pub enum Derivatives as "source of derivatives" {
         /// By the change of position from pixel to pixel, which no border interrupts
         #[default]
         Analytic = "analytic",
@@ -103,13 +102,13 @@ named! {
     }
 }
 
-/// Angle across the sun as seen from the earth, degrees.
+/// Angular diameter of the sun as seen from the earth, degrees.
 pub const SUN_DEGREES: f64 = 0.53;
 
 /// Texels that a disc of no given width reaches: its radius of 3 and a tap's own.
 const DISC_REACH: f64 = 4.0;
 
-/// Metres from a surface within which casters give it a penumbra as wide as the sun asks for; equal
+/// Metres from a surface within which casters give it the full penumbra of the sun; equal
 /// to `MOST_BLOCKER_M` of `filter.wesl`.
 const MOST_BLOCKER_M: f64 = 200.0;
 

@@ -1,4 +1,4 @@
-//! What each map's rectangle is fitted to, and whether it stands still.
+//! What each map's rectangle is fitted to, and how it is stabilised.
 
 use super::names::named;
 use crate::Warp;
@@ -8,7 +8,7 @@ named! {
     ///
     /// A scene-independent map is cropped to the corners of its slice. Its near plane stays at the
     /// scene's, so that no caster in between is lost. A scene-dependent one is cropped to the
-    /// receivers in its slice, and there to where casters can throw a shadow on them. Exactly
+    /// receivers in its slice, and there to where casters can cast a shadow on them. Exactly
     /// stabilised maps have the same rectangle either way: their depth and their list of casters
     /// depend on the scene.
     pub enum Crop as "crop" {
@@ -20,7 +20,7 @@ named! {
     }
 }
 
-/// Whether shadows stand still while the camera moves.
+/// How still shadows are while the camera moves.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stability {
     /// The tightest map in every frame; edges crawl when the camera moves.
@@ -72,17 +72,17 @@ impl Stability {
 /// The steps in which an approximately stabilised map changes its extent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExtentSteps {
-    /// Geometric steps of the extent in metres, this many to a doubling: 4 to 64. Ours.
+    /// Geometric steps of the extent in metres, this many per doubling: 4 to 64. Ours.
     ///
     /// 24 are steps of 2^(1/24), which is 2.9 %. A map is kept for one step of hysteresis, and may
-    /// stand on any of 16 directions that are fixed to the light. Finer steps are sharper and taken
-    /// more often.
+    /// lie along any of 16 directions that are fixed to the light. Finer steps are sharper and
+    /// taken more often.
     PerDoubling(u32),
     /// This many equal steps of the unsplit light frustum: 8 to 4096. `s_q = 64 / ceil(64 / s)` for
     /// 64 of them, as in \[PCSM\], Listing 4.1.2, to compare with.
     ///
-    /// A near split of a long range falls to the first levels. The unsplit frustum has to stand
-    /// still itself; the source does not say how, ours is the sphere around the whole range.
+    /// A near split of a long range uses only the first few levels. The unsplit frustum has to
+    /// stand still itself; the source does not say how, ours is the sphere around the whole range.
     Levels(u32),
 }
 

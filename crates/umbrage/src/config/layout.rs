@@ -1,4 +1,4 @@
-//! Where maps are kept, how they are drawn, and what a texel stores.
+//! Where maps are stored, how they are drawn, and what a texel stores.
 
 use super::names::named;
 
@@ -33,7 +33,7 @@ impl DepthFormat {
 }
 
 named! {
-    /// Where maps are kept.
+    /// Where maps are stored.
     pub enum Storage as "storage" {
         /// Layers of one texture
         #[default]
@@ -66,7 +66,7 @@ named! {
     }
 }
 
-/// Where maps are kept and how they are drawn: the nine pairs that go together.
+/// Where maps are stored and how they are drawn: the nine pairs that go together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Layout {
     /// Layers of one texture, one pass for each split.
@@ -105,7 +105,7 @@ impl Layout {
         Self::MixedArray,
     ];
 
-    /// Where maps are kept.
+    /// Where maps are stored.
     #[must_use]
     pub const fn storage(self) -> Storage {
         match self {
@@ -137,7 +137,7 @@ impl Layout {
 }
 
 named! {
-    /// Whether what a device cannot do is replaced by what it can.
+    /// Whether unsupported features are replaced by supported ones.
     pub enum Fallbacks as "rule for fallbacks" {
         /// It is replaced, and a note says so
         #[default]
@@ -148,7 +148,7 @@ named! {
 }
 
 named! {
-    /// Where receivers take a map's coordinates from.
+    /// Where receivers take the coordinates in a map from.
     pub enum Coordinates as "source of coordinates" {
         /// Each pixel makes them from its world position
         #[default]

@@ -9,11 +9,11 @@ pub struct Look {
     pub strength: f64,
     /// Factor of the light in full shadow: linear red, green and blue, 0 to 1.
     pub colour: [f64; 3],
-    /// How receivers are kept from shading themselves.
+    /// How receivers are prevented from shading themselves.
     pub bias: ReceiverBias,
-    /// Whether translucent surfaces throw shadows.
+    /// Whether translucent surfaces cast shadows.
     pub translucent: Translucent,
-    /// Whether the picture's own depth is searched for casters too close for the maps.
+    /// Screen-space contact shadows: detail too small for the maps, from the picture's own depth.
     pub contact: bool,
 }
 
@@ -30,8 +30,8 @@ impl Default for Look {
 }
 
 named! {
-    /// How a receiver is kept from shading itself. Both ways follow from texel, slope and filter
-    /// width in metres and have no number to choose.
+    /// How a receiver is prevented from shading itself. Both ways follow from texel, slope and
+    /// filter width in metres and have no number to choose.
     pub enum ReceiverBias as "bias" {
         /// Each texel is compared with the surface's own plane
         #[default]
@@ -42,16 +42,12 @@ named! {
 }
 
 named! {
-    /// Whether translucent surfaces (glTF's alpha mode `BLEND`) throw shadows.
+    /// Whether translucent surfaces (glTF's alpha mode `BLEND`) cast shadows.
     pub enum Translucent as "rule for translucent surfaces" {
-        /// They throw none
+        /// They cast none
         #[default]
         None = "none",
-        /// They cover as many texels of a map as their alpha says
+        /// They cover a share of a map's texels equal to their alpha
         Dithered = "dithered",
     }
 }
-
-/// The words of a switch.
-pub(crate) const SWITCH: &[super::Word] =
-    &[super::Word { word: "on", help: "With" }, super::Word { word: "off", help: "Without" }];

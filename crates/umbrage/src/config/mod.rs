@@ -43,7 +43,7 @@ use crate::bounds::MOST_METRES;
 use crate::margin::FilterReach;
 use crate::{Error, Light, MAX_SPLITS, Result, Warp};
 
-/// What kind of light throws shadows.
+/// What kind of light casts shadows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LightKind {
     /// A sun: parallel light.
@@ -65,7 +65,7 @@ impl LightKind {
         }
     }
 
-    /// Whether the light stands somewhere, as spot and point lights do.
+    /// Whether the light has a position, as spot and point lights do.
     #[must_use]
     pub const fn is_local(self) -> bool {
         !matches!(self, Self::Directional)
@@ -84,7 +84,8 @@ impl From<Light> for LightKind {
 
 /// Everything that can be chosen about shadows.
 ///
-/// The default is [`Preset::Balanced`]. Lengths are metres, angles degrees.
+/// The default is [`Preset::Balanced`]. Lengths are in metres and angles in degrees (elsewhere in
+/// this crate in radians).
 ///
 /// ```
 /// use umbrage::config::{Filter, ShadowConfig};
@@ -96,36 +97,36 @@ impl From<Light> for LightKind {
 pub struct ShadowConfig {
     /// Edge of each split's map in texels, nearest split first: 1 to [`MAX_SPLITS`] entries.
     pub map_sizes: Vec<u32>,
-    /// Where the planes between splits stand.
+    /// Where the planes between splits are.
     pub scheme: SplitScheme,
     /// The view depths that shadows cover.
     pub range: Range,
-    /// Which split answers for a point.
+    /// Which split a point uses.
     pub selection: Selection,
-    /// How one split goes over into the next.
+    /// How neighbouring splits are joined.
     pub transition: Transition,
-    /// Share of the shadowed range over which shadows fade to lit at its far end, 0 to 1. Nothing
-    /// fades where nothing is seen beyond the range: shadows stay dark to the end of one that the
-    /// camera and the receivers decide.
+    /// Share of the shadowed range, 0 to 1, over which shadows fade to lit at its far end. There is
+    /// no fade if nothing is visible beyond the range, as where the planner ends it with the
+    /// receivers ([`Range::Camera`], [`Range::Visible`]).
     pub far_fade: f64,
     /// What each map is cropped to.
     pub crop: Crop,
     /// Whether shadows stand still while the camera moves.
     pub stability: Stability,
-    /// Whether a sun's maps leave out casters whose whole shadow is under half a texel along both
-    /// of a map's axes, split by split. Such a caster covers one texel of the map or none; which
-    /// one changes with every step of the map. Maps that are warped, and those of spot and point
-    /// lights, show all casters.
+    /// Whether the maps of a sun omit casters whose whole shadow is smaller than half a texel along
+    /// both axes of the map, split by split. Such a caster covers one texel of the map or none;
+    /// which one changes with every step of the map. Warped maps, and those of spot and point
+    /// lights, contain all casters.
     pub drop_small_casters: bool,
-    /// How a map is looked up.
+    /// How a map is filtered.
     pub filter: Filter,
     /// What a texel of a map stores.
     pub depth_format: DepthFormat,
-    /// Where maps are kept and how they are drawn.
+    /// Where maps are stored and how they are drawn.
     pub layout: Layout,
-    /// Whether what the device cannot do is replaced by what it can.
+    /// Whether unsupported features are replaced by supported ones.
     pub fallbacks: Fallbacks,
-    /// Where receivers take a map's coordinates from.
+    /// Where receivers take the coordinates in a map from.
     pub coordinates: Coordinates,
     /// What a shadow looks like.
     pub look: Look,
@@ -245,8 +246,8 @@ impl ShadowConfig {
             && (stability, *drop_small_casters) == (&other.stability, other.drop_small_casters)
     }
 
-    /// The config that a light of this kind gets: what excludes the kind of light is replaced by
-    /// the usual choice. The second value names what was replaced.
+    /// The config for lights of these kinds: settings that exclude such a light are reset. The
+    /// second value names them.
     #[must_use]
     pub fn for_lights(&self, lights: &[LightKind]) -> (Self, Vec<String>) {
         let (mut config, mut notes) = (self.clone(), Vec::new());
@@ -254,7 +255,7 @@ impl ShadowConfig {
             if rule.is_broken_by(&config, lights) {
                 let said = rule.first.say(&config);
                 if rule.first.relax(&mut config) {
-                    notes.push(format!("{said} is left away: {}", rule.reason));
+                    notes.push(format!("{said} is ignored: {}", rule.reason));
                 }
             }
         }
@@ -271,7 +272,7 @@ impl ShadowConfig {
             if rule.is_broken_by(&config, &[kind]) {
                 let said = rule.first.say(&config);
                 if rule.first.relax(&mut config) {
-                    notes.push(format!("{said} is left away for a spot or point light: {}", rule.reason));
+                    notes.push(format!("{said} is ignored for a spot or point light: {}", rule.reason));
                 }
             }
         }
@@ -284,22 +285,22 @@ impl ShadowConfig {
     pub fn with_map_sizes(&self, map_sizes: &[u32]) -> (Self, Vec<String>) {
         let (mut config, mut notes) = (Self { map_sizes: map_sizes.to_vec(), ..self.clone() }, Vec::new());
         let (splits, inner) = (map_sizes.len(), map_sizes.len().saturating_sub(1));
-        let mut leave_away = |what| notes.push(format!("{what} left away: given for another number of splits"));
+        let mut ignored = |what| notes.push(format!("{what} ignored: given for another number of splits"));
         match &mut config.scheme {
             SplitScheme::Manual { planes } if planes.len() != inner => {
                 config.scheme = SplitScheme::practical();
-                leave_away("planes are");
+                ignored("planes are");
             }
             SplitScheme::Practical { delta, .. } if delta.len() > 1 && delta.len() != inner => {
                 delta.clear();
-                leave_away("delta is");
+                ignored("delta is");
             }
             _ => {}
         }
         match &mut config.stability {
             Stability::Tight { warps } if warps.len() > 1 && warps.len() != splits => {
                 warps.clear();
-                leave_away("warps are");
+                ignored("warps are");
             }
             _ => {}
         }
@@ -316,7 +317,7 @@ impl ShadowConfig {
         local.map_or_else(|| self.clone(), |kind| self.for_light(kind).0).validate_for(lights)
     }
 
-    /// What a change from this config to another makes anew at most, and the setting that asks for
+    /// What a change from this config to another rebuilds at most, and the setting that requires
     /// it; `None` between equal configs.
     #[must_use]
     pub fn rebuilds(&self, other: &Self) -> Option<(Rebuilds, &'static str)> {
@@ -328,7 +329,7 @@ impl ShadowConfig {
     fn check_sizes(&self) -> Result<()> {
         let splits = self.splits();
         if !(1..=MAX_SPLITS).contains(&splits) {
-            return Err(Error::setting("splits", format!("{splits} maps; there may be 1 to {MAX_SPLITS}")));
+            return Err(Error::setting("splits", format!("{splits} splits are not possible; give 1 to {MAX_SPLITS}")));
         }
         let margins = FilterReach::from(&self.filter).least_map_size(self.is_stabilised());
         let least = self.filter.least_map_size().max(margins);
@@ -374,7 +375,10 @@ impl ShadowConfig {
                 if rise {
                     return Ok(());
                 }
-                Err(Error::setting("planes", format!("{planes:?} do not rise strictly")))
+                Err(Error::setting(
+                    "planes",
+                    format!("{planes:?} are not in ascending order; list the planes from near to far"),
+                ))
             }
         }
     }
@@ -383,7 +387,7 @@ impl ShadowConfig {
         match &self.stability {
             Stability::Exact => Ok(()),
             Stability::Approximate { steps: ExtentSteps::PerDoubling(count) } => {
-                whole("extent-steps", *count, 4, 64, "steps to a doubling")
+                whole("extent-steps", *count, 4, 64, "steps per doubling")
             }
             Stability::Approximate { steps: ExtentSteps::Levels(count) } => {
                 whole("extent-levels", *count, 8, 4096, "levels")
@@ -399,7 +403,10 @@ impl ShadowConfig {
                     _ => None,
                 });
                 match focus {
-                    Some(focus) => Err(Error::setting("tsm-focus", format!("{focus} is not between 0 and 1"))),
+                    Some(focus) => Err(Error::setting(
+                        "tsm-focus",
+                        format!("{focus} is out of range; give more than 0 and less than 1"),
+                    )),
                     None => Ok(()),
                 }
             }
@@ -424,7 +431,10 @@ impl ShadowConfig {
                 if matches!(samples, 1 | 4) {
                     return Ok(());
                 }
-                Err(Error::setting("msaa", format!("{samples} samples; a texel has 1 sample or 4, as on every device")))
+                Err(Error::setting(
+                    "msaa",
+                    format!("{samples} samples are not supported; give 1 or 4, which every device has"),
+                ))
             }
             _ => Ok(()),
         }
@@ -441,7 +451,7 @@ fn share(key: &'static str, value: f64, most: f64) -> Result<()> {
     if (0.0..=most).contains(&value) {
         Ok(())
     } else {
-        Err(Error::setting(key, format!("{value} is not in 0..={most}")))
+        Err(Error::setting(key, format!("{value} is out of range; give 0 to {most}")))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Words for the values of plain enums: one list says the Rust name, the word and one line of help.
+//! Words for the values of plain enums: one list has the Rust name, the word and one line of help.
 
 /// Declares an enum without data whose values have a word each, in config files and on the command
 /// line.
@@ -60,8 +60,8 @@ pub struct Word {
     pub help: &'static str,
 }
 
-/// The message for a word that no value has.
+/// The message for an unknown word.
 pub(crate) fn unknown(what: &str, text: &str, words: &[Word]) -> String {
     let words: Vec<&str> = words.iter().map(|word| word.word).collect();
-    format!("{text:?} is no {what}; give one of {}", words.join(", "))
+    format!("{text:?} is not a known {what}; give one of {}", words.join(", "))
 }

@@ -9,7 +9,7 @@ use super::{
 named! {
     /// A config by name, and what it trades.
     pub enum Preset as "preset" {
-        /// Fewest texels and samples: 3 maps of 1024² and 2×2 texels a look-up
+        /// Fewest texels and samples: 3 maps of 1024² and 2×2 texels per lookup
         Fast = "fast",
         /// The default: sharp near the eye and almost still
         #[default]

@@ -14,7 +14,7 @@ use crate::Warp;
 pub enum Choice {
     /// A map that spreads its texels unevenly.
     Warp,
-    /// The first map that contains a point answers.
+    /// A point uses the first map that contains it.
     MapSelection,
     /// Split planes measure the distance from the eye.
     DistanceMetric,
@@ -22,11 +22,11 @@ pub enum Choice {
     VisibleRange,
     /// The planes of least predicted error.
     OptimalScheme,
-    /// Two splits or more go over into each other in a band.
+    /// Neighbouring splits are joined in a band.
     Band,
     /// A filter that blurs moments of depth.
     MomentFilter,
-    /// A filter that goes by depths of parallel light.
+    /// A filter that needs depth in metres along parallel light.
     SunFilter,
     /// Maps have several samples of depth in a texel.
     SeveralSamples,
@@ -50,7 +50,7 @@ pub enum Choice {
     DeferredCoordinates,
     /// Vertices make the coordinates of maps.
     VertexCoordinates,
-    /// More splits than vertices hand on coordinates of.
+    /// More splits than vertex shaders pass coordinates for.
     MoreThanFourSplits,
     /// A spot or point light.
     LocalLight,
@@ -61,7 +61,7 @@ pub enum Choice {
 /// Two choices that exclude each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rule {
-    /// The choice that gives way where nobody asked for either.
+    /// The choice that is reset if neither was given.
     pub first: Choice,
     /// The other choice.
     pub second: Choice,
@@ -82,7 +82,7 @@ pub const RULES: &[Rule] = &[
     rule(
         Choice::VisibleRange,
         Choice::DistanceMetric,
-        "radial bands stand still while the camera turns and a visible range does not",
+        "radial bands do not change while the camera turns, but a visible range does",
         "use range-fit camera, or bands planar",
     ),
     rule(
@@ -106,7 +106,7 @@ pub const RULES: &[Rule] = &[
     rule(
         Choice::DeferredCoordinates,
         Choice::OneMap,
-        "there is one map at a time, and the picture's depth is complete after the last",
+        "there is one map at a time, and the picture's depth is complete only after the last",
         "use coordinates world, or another storage",
     ),
     rule(
@@ -118,7 +118,7 @@ pub const RULES: &[Rule] = &[
     rule(
         Choice::Warp,
         Choice::MomentFilter,
-        "moments need depth that is linear along the light, which a warped map has not",
+        "moments need depth that is linear along the light, which a warped map does not store",
         "use no warp, or a filter that compares depth, such as pcf5",
     ),
     rule(
@@ -148,19 +148,19 @@ pub const RULES: &[Rule] = &[
     rule(
         Choice::CubeFaces,
         Choice::UnequalSizes,
-        "the faces of a cube are alike",
+        "the faces of a cube have one size",
         "give one size for all maps, or use storage atlas",
     ),
     rule(
         Choice::VertexCoordinates,
         Choice::Warp,
-        "coordinates in a warped map are quotients, which cannot be interpolated",
+        "coordinates in a warped map need a division per pixel and cannot be interpolated",
         "use coordinates world, or no warp",
     ),
     rule(
         Choice::VertexCoordinates,
         Choice::MoreThanFourSplits,
-        "vertices hand on the coordinates of at most 4 splits",
+        "vertex shaders pass on the coordinates of at most 4 splits",
         "use fewer splits, or coordinates world",
     ),
     rule(
@@ -190,19 +190,19 @@ pub const RULES: &[Rule] = &[
     rule(
         Choice::SunFilter,
         Choice::LocalLight,
-        "the filter goes by depths of parallel light",
+        "the filter needs depth that is linear in metres, which only a directional light has",
         "use another filter, such as pcf5, or a directional light",
     ),
     rule(
         Choice::VertexCoordinates,
         Choice::LocalLight,
-        "coordinates in the map of a local light are quotients, which cannot be interpolated",
+        "coordinates in the map of a local light need a division per pixel and cannot be interpolated",
         "use coordinates world, or a directional light",
     ),
     rule(
         Choice::VertexCoordinates,
         Choice::SeveralFaces,
-        "vertices hand on the coordinates of one sun's maps",
+        "vertex shaders pass on the coordinates of one sun only",
         "use coordinates world, or one sun",
     ),
     rule(

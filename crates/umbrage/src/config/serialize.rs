@@ -13,7 +13,7 @@ impl Serialize for Value {
             Self::Count(count) => count.serialize(serializer),
             Self::Numbers(numbers) => numbers.serialize(serializer),
             Self::Counts(counts) => counts.serialize(serializer),
-            Self::Switch(on) => on.serialize(serializer),
+            Self::Switch(_) => serializer.collect_str(self),
         }
     }
 }

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{MAX_SPLITS, Warp};
 
-/// Share of a split that blends where nothing says another.
+/// Share of a split that blends if no other is given.
 const USUAL_BLEND: f64 = 0.1;
 
 /// Checks a word against the list of its key.
@@ -27,7 +27,7 @@ pub(super) fn shape(config: &mut ShadowConfig, given: &Given<'_>) -> Result<(), 
     };
     let (key, splits) = split_count(config, given, single, typed.as_deref())?;
     if !(1..=MAX_SPLITS).contains(&splits) {
-        return refuse_other(key, format!("{splits} splits; there may be 1 to {MAX_SPLITS}"));
+        return refuse_other(key, format!("{splits} splits are not possible; give 1 to {MAX_SPLITS}"));
     }
     let sizes = typed.unwrap_or_else(|| config.map_sizes.clone());
     config.map_sizes = match sizes[..] {
@@ -47,7 +47,7 @@ pub(super) fn shape(config: &mut ShadowConfig, given: &Given<'_>) -> Result<(), 
     let warp = single.parse::<Warp>().unwrap_or(Warp::None);
     if let Some(other) = given.value("warp").filter(|other| *other != warp.word()) {
         return refuse(format!(
-            "technique {single} says how its one map is warped, and warp {other} says otherwise; leave warp away, \
+            "technique {single} already sets the warp, so warp {other} conflicts with it; omit warp, \
              or use technique pssm with splits 1"
         ));
     }
@@ -68,7 +68,7 @@ fn single_map<'a>(given: &Given<'a>) -> Result<Option<&'a str>, Wrong> {
     Ok(Some(technique).filter(|technique| *technique != "pssm"))
 }
 
-/// The number of splits, and the setting that says so.
+/// The number of splits, and the setting that determines it.
 fn split_count(
     config: &ShadowConfig,
     given: &Given<'_>,
@@ -83,7 +83,7 @@ fn split_count(
         (Some(splits), Some(single)) if splits != 1 => {
             return refuse_other(
                 "splits",
-                format!("technique {single} is one map over the whole range; leave splits away, or use technique pssm"),
+                format!("technique {single} is one map over the whole range; omit splits, or use technique pssm"),
             );
         }
         (Some(splits), _) => ("splits", splits as usize),
@@ -108,14 +108,14 @@ pub(super) fn scheme(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -
         "manual" if given.has("planes") || config.splits() == 1 => SplitScheme::Manual { planes: Vec::new() },
         "manual" => {
             let (inner, splits) = (config.splits() - 1, config.splits());
-            return refuse(format!("it needs planes A,B,… with the {inner} inner planes of {splits} splits"));
+            return refuse(format!("scheme manual needs planes A,B,…: the {inner} planes between {splits} splits"));
         }
         _ => return refuse(unknown("scheme", text, SplitScheme::WORDS)),
     };
     Ok(())
 }
 
-/// The practical scheme, which `key` belongs to.
+/// The practical scheme, to which `key` applies.
 fn practical<'a>(
     config: &'a mut ShadowConfig,
     given: &Given<'_>,
@@ -129,7 +129,7 @@ fn practical<'a>(
     };
     if let Some(scheme) = other {
         return refuse(format!(
-            "{key} belongs to scheme practical, but the scheme is {scheme}; leave one of them away"
+            "{key} applies to scheme practical only, but scheme is {scheme}; give only one of the two"
         ));
     }
     if !is_practical {
@@ -137,7 +137,7 @@ fn practical<'a>(
     }
     match &mut config.scheme {
         SplitScheme::Practical { lambda, delta } => Ok((lambda, delta)),
-        _ => refuse(format!("{key} belongs to scheme practical")),
+        _ => refuse(format!("{key} applies to scheme practical only")),
     }
 }
 
@@ -159,7 +159,7 @@ pub(super) fn planes(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -
     match given.value("scheme") {
         Some(scheme) if scheme.trim() != "manual" => {
             return refuse(format!(
-                "planes belongs to scheme manual, but the scheme is {scheme}; leave one of them away"
+                "planes applies to scheme manual only, but scheme is {scheme}; give only one of the two"
             ));
         }
         _ => config.scheme = SplitScheme::Manual { planes },
@@ -199,7 +199,7 @@ pub(super) fn bands(config: &mut ShadowConfig, text: &str, given: &Given<'_>) ->
     if metric == SplitMetric::Distance && given.value("selection") == Some("map") {
         return refuse(
             "bands radial and selection map exclude each other: maps that are chosen by what they contain \
-                    have no bands; leave one of them away",
+                    have no bands; give only one of the two",
         );
     }
     if metric == SplitMetric::Distance || config.selection != Selection::Map {
@@ -227,7 +227,7 @@ pub(super) fn extent(config: &mut ShadowConfig, given: &Given<'_>, steps: Extent
     }
     match given.value("stabilize") {
         Some(stability) if stability.trim() != "approximate" => {
-            refuse(format!("belongs to stabilize approximate, but it is {stability}; leave one of them away"))
+            refuse(format!("needs stabilize approximate, but stabilize is {stability}; give only one of the two"))
         }
         _ => {
             config.stability = Stability::Approximate { steps };
@@ -252,7 +252,7 @@ fn set_warps(config: &mut ShadowConfig, given: &Given<'_>, warps: Vec<Warp>, typ
     match given.value("stabilize") {
         Some(stability) if stability.trim() != "none" => refuse(format!(
             "{typed} and stabilize {stability} exclude each other: a warped map follows the camera; \
-             leave one of them away"
+             give only one of the two"
         )),
         _ => {
             config.stability = Stability::Tight { warps };
@@ -271,7 +271,7 @@ pub(super) fn tsm_focus(config: &mut ShadowConfig, text: &str, _: &Given<'_>) ->
             }
         }
     }
-    if is_used { Ok(()) } else { refuse("belongs to warp tsm, and no map has it; leave it away") }
+    if is_used { Ok(()) } else { refuse("applies to warp tsm only, which no map has; omit it, or use warp tsm") }
 }
 
 pub(super) fn filter_width(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
@@ -285,7 +285,7 @@ pub(super) fn filter_width(config: &mut ShadowConfig, text: &str, _: &Given<'_>)
         None => {
             let with_width: Vec<_> = Filter::ALL.iter().filter(|filter| filter.has_width()).map(Filter::word).collect();
             let names = with_width.join(", ");
-            refuse(format!("filter {filter} has no width to choose; leave it away, or use one of {names}"))
+            refuse(format!("filter {filter} has no width to choose; omit it, or use one of {names}"))
         }
     }
 }
@@ -297,7 +297,9 @@ pub(super) fn sun_angle(config: &mut ShadowConfig, text: &str, _: &Given<'_>) ->
             *sun_degrees = value;
             Ok(())
         }
-        other => refuse(format!("belongs to filter pcss, but the filter is {}; leave one of them away", other.word())),
+        other => {
+            refuse(format!("applies to filter pcss only, but filter is {}; omit it, or use filter pcss", other.word()))
+        }
     }
 }
 
@@ -308,9 +310,10 @@ pub(super) fn rotate_kernel(config: &mut ShadowConfig, text: &str, _: &Given<'_>
             *rotated = on;
             Ok(())
         }
-        other => {
-            refuse(format!("belongs to filters disc and pcss, but the filter is {}; leave one away", other.word()))
-        }
+        other => refuse(format!(
+            "applies to filters disc and pcss only, but filter is {}; omit it, or use one of these",
+            other.word()
+        )),
     }
 }
 
@@ -320,7 +323,7 @@ pub(super) fn moments<'a>(config: &'a mut ShadowConfig, key: &str) -> Result<&'a
         other => {
             let filter = other.word();
             refuse(format!(
-                "{key} belongs to filters esm, vsm, evsm2, evsm4 and msm, but the filter is {filter}; leave one of them away"
+                "{key} applies to filters esm, vsm, evsm2, evsm4 and msm only, but filter is {filter}; omit it, or use one of these"
             ))
         }
     }
@@ -341,7 +344,7 @@ pub(super) fn transition(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -
 pub(super) fn blend(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -> Result<(), Wrong> {
     let share = number(text)?;
     if !(0.0..=1.0).contains(&share) {
-        return refuse(format!("{share} is not in 0..=1"));
+        return refuse(format!("{share} is out of range; give 0 to 1"));
     }
     config.transition = match config.transition {
         // Borders that were asked to be hard have no band, however wide.
@@ -379,7 +382,7 @@ pub(super) fn layout(config: &mut ShadowConfig, given: &Given<'_>) -> Result<(),
         None => refuse(format!(
             "generation {generation} and storage {storage} exclude each other: multipass goes with reused; per-split \
              with array, atlas, separate or cube; layered with array or cube; instanced with atlas; mixed with array; \
-             leave one of them to auto"
+             set only one of the two"
         )),
     }
 }

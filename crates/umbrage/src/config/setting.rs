@@ -15,7 +15,7 @@ pub struct Setting {
     pub help: &'static str,
     /// What values it takes.
     pub kind: Kind,
-    /// What an application's maps have to be made anew for when the setting changes.
+    /// What an application rebuilds when the setting changes.
     pub rebuilds: Rebuilds,
     pub(super) set: fn(&mut ShadowConfig, &str, &Given<'_>) -> Result<(), Wrong>,
     pub(super) get: fn(&ShadowConfig) -> Option<Value>,
@@ -49,11 +49,13 @@ pub enum Kind {
     Degrees(f64),
     /// A whole number between two bounds.
     Count(u32, u32),
+    /// One of a few whole numbers.
+    CountOf(&'static [u32]),
     /// Texels with commas between, one for all splits or one for each.
     Texels,
     /// Linear red, green and blue, 0 to 1 each.
     Colour,
-    /// `true` or `false`.
+    /// `on` or `off`; `true` and `false` are read too.
     Switch,
 }
 
@@ -64,7 +66,11 @@ impl Kind {
     /// What is wrong with the value and what to give instead.
     pub fn check(&self, text: &str) -> Result<(), String> {
         let within = |value: f64, most: f64| {
-            if (0.0..=most).contains(&value) { Ok(()) } else { Err(format!("{value} is not in 0..{most}")) }
+            if (0.0..=most).contains(&value) {
+                Ok(())
+            } else {
+                Err(format!("{value} is out of range; give 0 to {most}"))
+            }
         };
         let positive = |text: &str| {
             text::number(text).and_then(|v| if v > 0.0 { Ok(v) } else { Err(format!("{v} is not greater than 0")) })
@@ -80,6 +86,10 @@ impl Kind {
                 count if (least..=most).contains(&count) => Ok(()),
                 count => Err(format!("{count}; give {least} to {most}")),
             },
+            Self::CountOf(counts) => match text::count(text)? {
+                count if counts.contains(&count) => Ok(()),
+                count => Err(format!("{count}; give one of {}", text::listed(counts))),
+            },
             Self::Texels => text::map_sizes(text).map(|_| ()),
             Self::Colour => match text.split(',').count() {
                 3 => text.split(',').try_for_each(|part| match text::number(part)? {
@@ -92,7 +102,7 @@ impl Kind {
         }
     }
 
-    /// What stands for a value in a line of help, such as `TEXELS,…`.
+    /// The placeholder of a value in a line of help, such as `TEXELS,…`.
     #[must_use]
     pub const fn placeholder(&self) -> &'static str {
         match self {
@@ -103,22 +113,22 @@ impl Kind {
             Self::MetresList => "M,…",
             Self::Range => "N..F",
             Self::Degrees(_) => "DEGREES",
-            Self::Count(..) => "N",
+            Self::Count(..) | Self::CountOf(_) => "N",
             Self::Texels => "TEXELS,…",
             Self::Colour => "R,G,B",
-            Self::Switch => "SWITCH",
+            Self::Switch => "on|off",
         }
     }
 }
 
-/// What a change of a setting makes anew.
+/// What a change of a setting rebuilds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Rebuilds {
     /// Nothing: the next frame has it.
     Nothing,
     /// Textures and bind groups. Pipelines stay valid.
     Maps,
-    /// Shader texts, and with them the pipelines that use them.
+    /// WGSL sources, and the pipelines that use them.
     Pipelines,
 }
 
@@ -135,7 +145,7 @@ pub enum Value {
     Numbers(Vec<f64>),
     /// Whole numbers.
     Counts(Vec<u32>),
-    /// Yes or no.
+    /// `on` or `off`.
     Switch(bool),
 }
 
@@ -150,7 +160,7 @@ impl fmt::Display for Value {
             Self::Count(count) => write!(f, "{count}"),
             Self::Numbers(numbers) => list(f, numbers),
             Self::Counts(counts) => list(f, counts),
-            Self::Switch(on) => write!(f, "{on}"),
+            Self::Switch(on) => f.write_str(if *on { "on" } else { "off" }),
         }
     }
 }

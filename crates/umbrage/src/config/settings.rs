@@ -53,7 +53,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "scheme",
-        help: "Where the planes between splits stand",
+        help: "Where the planes between splits are",
         kind: Kind::Words(SplitScheme::WORDS),
         rebuilds: Rebuilds::Nothing,
         set: set::scheme,
@@ -83,7 +83,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "planes",
-        help: "The inner planes of the manual scheme: view depths in metres, rising",
+        help: "The inner planes of the manual scheme: view depths in metres, from near to far",
         kind: Kind::MetresList,
         rebuilds: Rebuilds::Nothing,
         set: set::planes,
@@ -94,7 +94,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "range-fit",
-        help: "What the shadowed range is fitted to where no shadow-range is given",
+        help: "What the shadowed range is fitted to if no shadow-range is given",
         kind: Kind::Words(words::RANGE_FITS),
         rebuilds: Rebuilds::Nothing,
         set: set::range_fit,
@@ -125,7 +125,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "selection",
-        help: "Which map answers for a point",
+        help: "Which split a point uses: by its depth, or the first map that contains it",
         kind: Kind::Words(words::SELECTIONS),
         rebuilds: Rebuilds::Pipelines,
         set: set::selection,
@@ -138,7 +138,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "bands",
-        help: "What the planes between splits measure",
+        help: "Whether splits end at a view depth (planar) or a distance from the eye (radial)",
         kind: Kind::Words(SplitMetric::WORDS),
         rebuilds: Rebuilds::Pipelines,
         set: set::bands,
@@ -149,7 +149,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "stabilize",
-        help: "Whether shadows stand still while the camera moves",
+        help: "How still shadows are while the camera moves",
         kind: Kind::Words(Stability::WORDS),
         rebuilds: Rebuilds::Nothing,
         set: set::stabilize,
@@ -157,7 +157,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "extent-steps",
-        help: "Approximately stable maps: steps to a doubling of a map's extent",
+        help: "With stabilize approximate: size steps per doubling; 24 if no preset sets it",
         kind: Kind::Count(4, 64),
         rebuilds: Rebuilds::Nothing,
         set: |config, text, given| set::extent(config, given, ExtentSteps::PerDoubling(text::count(text)?)),
@@ -168,7 +168,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "extent-levels",
-        help: "Approximately stable maps: equal steps of so many to the whole range instead",
+        help: "With stabilize approximate: equal size levels, as in the paper, for extent-steps",
         kind: Kind::Count(8, 4096),
         rebuilds: Rebuilds::Nothing,
         set: |config, text, given| set::extent(config, given, ExtentSteps::Levels(text::count(text)?)),
@@ -179,15 +179,15 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "drop-small-casters",
-        help: "Whether casters are left out of a map in which their whole shadow is under half a texel",
-        kind: Kind::Words(super::look::SWITCH),
+        help: "Omit casters from maps in which their shadow is smaller than half a texel",
+        kind: Kind::Switch,
         rebuilds: Rebuilds::Nothing,
         set: |config, text, _| text::switch(text).map(|on| config.drop_small_casters = on).map_err(Wrong::from),
-        get: |config| word(if config.drop_small_casters { "on" } else { "off" }),
+        get: |config| Some(Value::Switch(config.drop_small_casters)),
     },
     Setting {
         key: "warp",
-        help: "How each split's map spreads its texels: one, or one per split",
+        help: "The warp of each split's map",
         kind: Kind::WordList(Warp::WORDS),
         rebuilds: Rebuilds::Pipelines,
         set: set::warp,
@@ -200,7 +200,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "tsm-focus",
-        help: "Share of the depth range that trapezoidal maps give four fifths of their texels",
+        help: "Near share of the slice's depth that gets 80 % of a trapezoidal map",
         kind: Kind::Share(1.0),
         rebuilds: Rebuilds::Nothing,
         set: set::tsm_focus,
@@ -214,7 +214,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "filter",
-        help: "How a map is looked up",
+        help: "How a map is filtered",
         kind: Kind::Words(Filter::WORDS),
         rebuilds: Rebuilds::Pipelines,
         set: |config, text, _| text.parse().map(|filter| config.filter = filter).map_err(Wrong::from),
@@ -230,7 +230,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "sun-angle",
-        help: "Angle across the sun in degrees, for pcss",
+        help: "Angular diameter of the sun in degrees, for pcss",
         kind: Kind::Degrees(90.0),
         rebuilds: Rebuilds::Nothing,
         set: set::sun_angle,
@@ -241,7 +241,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "rotate-kernel",
-        help: "Rotates the kernel of disc and pcss from pixel to pixel: noise instead of bands",
+        help: "Rotate the disc or pcss kernel per pixel: noise instead of banding",
         kind: Kind::Switch,
         rebuilds: Rebuilds::Nothing,
         set: set::rotate_kernel,
@@ -252,8 +252,8 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "msaa",
-        help: "Samples of depth in a texel, for esm to msm: 1 or 4",
-        kind: Kind::Count(1, 4),
+        help: "Depth samples per texel, for moment filters",
+        kind: Kind::CountOf(&[1, 4]),
         rebuilds: Rebuilds::Pipelines,
         set: |config, text, _| {
             set::moments(config, "msaa")?.samples = text::count(text)?;
@@ -266,7 +266,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "bleeding",
-        help: "Share of light that esm to msm take for a leak",
+        help: "Moment filters: light below this share becomes shadow; more hides leaks",
         kind: Kind::Share(0.9),
         rebuilds: Rebuilds::Nothing,
         set: |config, text, _| {
@@ -280,7 +280,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "derivatives",
-        help: "How esm to msm know what a pixel covers where splits meet",
+        help: "Moment filters: how the mip level is found at split borders",
         kind: Kind::Words(Derivatives::WORDS),
         rebuilds: Rebuilds::Nothing,
         set: |config, text, _| {
@@ -294,7 +294,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "fallbacks",
-        help: "Whether what the device lacks is replaced",
+        help: "Whether unsupported features are replaced by supported ones, with a note",
         kind: Kind::Words(Fallbacks::WORDS),
         rebuilds: Rebuilds::Pipelines,
         set: |config, text, _| text.parse().map(|fallbacks| config.fallbacks = fallbacks).map_err(Wrong::from),
@@ -302,7 +302,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "transition",
-        help: "How one split goes over into the next",
+        help: "How neighbouring splits are joined",
         kind: Kind::Words(words::TRANSITIONS),
         rebuilds: Rebuilds::Pipelines,
         set: set::transition,
@@ -332,7 +332,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "coordinates",
-        help: "Where receivers take a map's coordinates from",
+        help: "Where receivers take the coordinates in a map from",
         kind: Kind::Words(Coordinates::WORDS),
         rebuilds: Rebuilds::Pipelines,
         set: |config, text, _| text.parse().map(|coordinates| config.coordinates = coordinates).map_err(Wrong::from),
@@ -356,7 +356,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "storage",
-        help: "Where maps are kept",
+        help: "Where maps are stored",
         kind: Kind::Words(words::STORAGES),
         rebuilds: Rebuilds::Pipelines,
         set: |config, _, given| set::layout(config, given),
@@ -364,7 +364,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "bias",
-        help: "How surfaces are kept from shading themselves",
+        help: "How surfaces are prevented from shading themselves",
         kind: Kind::Words(ReceiverBias::WORDS),
         rebuilds: Rebuilds::Nothing,
         set: |config, text, _| text.parse().map(|bias| config.look.bias = bias).map_err(Wrong::from),
@@ -380,7 +380,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "shadow-colour",
-        help: "Factor of the sun's light in full shadow: linear red, green, blue",
+        help: "Factor of the sunlight in full shadow: linear red, green, blue",
         kind: Kind::Colour,
         rebuilds: Rebuilds::Nothing,
         set: set::colour,
@@ -388,7 +388,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "translucent",
-        help: "Whether translucent surfaces throw shadows",
+        help: "Whether translucent surfaces cast shadows",
         kind: Kind::Words(Translucent::WORDS),
         rebuilds: Rebuilds::Pipelines,
         set: |config, text, _| {
@@ -398,10 +398,10 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "contact-shadows",
-        help: "Whether the picture's own depth is searched for casters too close for the maps",
-        kind: Kind::Words(super::look::SWITCH),
+        help: "Screen-space contact shadows: detail too small for the maps, from the depth buffer",
+        kind: Kind::Switch,
         rebuilds: Rebuilds::Pipelines,
         set: |config, text, _| text::switch(text).map(|on| config.look.contact = on).map_err(Wrong::from),
-        get: |config| word(if config.look.contact { "on" } else { "off" }),
+        get: |config| Some(Value::Switch(config.look.contact)),
     },
 ];

@@ -1,10 +1,10 @@
-//! Where the shadowed range lies, where it is divided, and which split answers for a point.
+//! Where the shadowed range lies, where it is divided, and which split a point uses.
 
 use super::names::named;
 use crate::bounds::{LEAST_METRES, MOST_METRES};
 use crate::{Error, Result};
 
-/// Where the planes between splits stand.
+/// Where the planes between splits are.
 ///
 /// `n` and `f` are the ends of the shadowed range, `m` is the number of splits. Source: \[PSSM06\]
 /// section 3.
@@ -30,9 +30,9 @@ pub enum SplitScheme {
     },
     /// The planes of least predicted error, among some forty depths of the view.
     ///
-    /// The prediction goes by the boxes of casters and receivers, the map sizes and the crop; maps
-    /// with a warp are taken for plain ones. Stabilised maps keep their planes until others promise
-    /// an error smaller by a third, and all of them move in the frame that takes those. Needs a
+    /// The prediction uses the boxes of casters and receivers, the map sizes and the crop; it
+    /// treats warped maps as plain ones. Stabilised maps keep their planes until a set of planes
+    /// with an error a third smaller is found; then all planes move in one frame. Needs a
     /// directional light and a scene: [`crate::split_planes`] alone cannot place them. Ours.
     Optimal,
 }
@@ -45,7 +45,7 @@ impl SplitScheme {
         super::Word { word: "practical", help: "A mix of both, by lambda" },
         super::Word { word: "manual", help: "The planes that are given" },
         super::Word { word: "optimal", help: "The planes of least predicted error" },
-        super::Word { word: "fitted", help: "The former word for optimal" },
+        super::Word { word: "fitted", help: "Old name of optimal" },
     ];
 
     /// The scheme's word in config files and on the command line.
@@ -70,26 +70,27 @@ impl SplitScheme {
 /// The view depths that shadows cover.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Range {
-    /// The camera's near and far; far is capped by the receivers and by 1.5 times the depth of the
-    /// deepest shadow.
+    /// The camera's near and far planes; far is capped by the receivers and by 1.5 times the depth
+    /// of the deepest shadow. The default of this enum, not of [`super::ShadowConfig`], which has
+    /// [`Range::Visible`].
     ///
-    /// An orthographic camera's near moves up to the scene. Receivers far beyond all others have no
-    /// say if they fill less than 0.01 % of the picture together: they are lit.
+    /// The near plane of an orthographic camera moves up to the scene. Receivers far beyond all
+    /// others are ignored if together they fill less than 0.01 % of the picture: they are lit.
     ///
-    /// Exactly stabilised maps cap far by distances instead of depths, as turning does not change
-    /// them. Far is rounded up to steps of 9 % that move the last plane alone. The inner planes are
-    /// placed for the view depth that the first frame asks for, and follow where a view asks for √2
-    /// times as much. The range ends at √2 times that depth at most. All of it recovers while the
-    /// camera stands still.
+    /// With [`super::Stability::Exact`] far is capped by distance instead of depth, so that turning
+    /// does not change it, and rounded up in steps of 9 % that move the last plane only. The inner
+    /// planes follow once a view needs √2 times the depth that they were placed for; the range ends
+    /// at √2 times that depth at most. While the camera stands still, both return to what a new
+    /// planner would choose.
     #[default]
     Camera,
     /// The view depths between which the view shows receivers, by their boxes clipped to the
     /// frustum.
     ///
-    /// An empty foreground, or a lens with a tiny near plane, would spend splits on air. Exactly
-    /// and approximately stabilised maps move both ends in geometric steps of 19 %, with
-    /// hysteresis, and stand still in between. The logarithmic and the optimal scheme go best with
-    /// it (`docs/notes/fitted-planes.md`).
+    /// With [`Range::Camera`], an empty foreground or a tiny near distance would waste splits.
+    /// Exactly and approximately stabilised maps move both ends in geometric steps of 19 %, with
+    /// hysteresis, and keep them in between. Best with the logarithmic and the optimal scheme
+    /// (`docs/notes/fitted-planes.md`).
     Visible,
     /// View depths in metres. Receivers nearer than the first use split 0; beyond the second they
     /// are lit.
@@ -101,24 +102,24 @@ pub enum Range {
     },
 }
 
-/// Which split answers for a point.
+/// Which split a point uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Selection {
     /// Interval-based: the split between whose planes the point lies, as in the papers.
     Interval(SplitMetric),
     /// Map-based: the first (finest) split whose map contains the point.
     ///
-    /// Shadows are sharper where maps reach beyond their slices, and most so where view and light
-    /// are nearly parallel. A map's list holds all casters that can shade what the map covers and
-    /// no earlier one takes. Source: \[PCSM\], "Non-optimized split selection". Deviations: the
-    /// filter's margin and the depth are part of the question, and the blend band lies along the
-    /// map's edge.
+    /// Shadows are sharper where maps extend beyond their slices, most of all where view and light
+    /// are nearly parallel. The list of a map has all casters that can shade a point which the map
+    /// covers and no earlier map does. Source: \[PCSM\], "Non-optimized split selection".
+    /// Deviations: the test includes the filter's margin and the depth range, and the blend band
+    /// lies along the edge of the map.
     Map,
 }
 
 impl Selection {
-    /// What the planes between splits measure; view depth where maps are chosen by what they
-    /// contain.
+    /// What the planes between splits are measured in; view depth where maps are chosen by what
+    /// they contain.
     #[must_use]
     pub const fn metric(self) -> SplitMetric {
         match self {
@@ -135,12 +136,12 @@ impl Default for Selection {
 }
 
 named! {
-    /// What the planes between splits measure.
+    /// What the planes between splits are measured in.
     ///
     /// By distance, a camera that only turns changes no point's split. All depths of the config and
     /// the plan that are view depths otherwise are then distances, except for
-    /// [`crate::Split::coverage`]. Maps are as much larger as the corners of the view are nearer in
-    /// view depth than in distance. Distance needs a perspective camera.
+    /// [`crate::Split::coverage`]. Maps grow by the ratio of distance to
+    /// view depth in the corners of the view. Distance needs a perspective camera.
     pub enum SplitMetric as "split metric" {
         /// View depth: planes across the line of sight
         #[default]
@@ -150,19 +151,19 @@ named! {
     }
 }
 
-/// How one split goes over into the next.
+/// How neighbouring splits are joined.
 ///
 /// The share is of the split's depth, or with [`Selection::Map`] of the map's half edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Transition {
-    /// No band: each point asks one split.
+    /// No band: each point uses one split.
     Hard,
-    /// Both splits are asked in a band and mixed.
+    /// Both splits are sampled in a band and mixed.
     Blend {
         /// Width of the band as a share, above 0 and at most 1.
         share: f64,
     },
-    /// Each pixel of a band asks one of both splits, chosen by noise, for half the samples.
+    /// Each pixel of a band samples one of both splits, chosen by noise, for half the samples.
     Dither {
         /// Width of the band as a share, above 0 and at most 1.
         share: f64,

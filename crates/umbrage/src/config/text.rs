@@ -18,18 +18,23 @@ pub(super) fn count(text: &str) -> Result<u32, String> {
     text.trim().parse().map_err(|_| format!("{text:?} is not a whole number"))
 }
 
+/// Whole numbers with commas between, for a message.
+pub(super) fn listed(counts: &[u32]) -> String {
+    counts.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")
+}
+
 /// `on`, `off`, `true` or `false`.
 pub(super) fn switch(text: &str) -> Result<bool, String> {
     match text {
         "on" | "true" => Ok(true),
         "off" | "false" => Ok(false),
-        _ => Err(format!("{text:?} is no switch; give on or off")),
+        _ => Err(format!("{text:?} is neither on nor off")),
     }
 }
 
 /// One of a list of words.
 pub(super) fn one_of(text: &str, words: &[super::Word]) -> Result<(), String> {
-    if words.iter().any(|word| word.word == text) { Ok(()) } else { Err(unknown("word of this setting", text, words)) }
+    if words.iter().any(|word| word.word == text) { Ok(()) } else { Err(unknown("value", text, words)) }
 }
 
 /// Two view depths in metres, `N..F`, rising from above 0.

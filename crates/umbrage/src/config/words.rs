@@ -1,4 +1,4 @@
-//! Words of settings that are no words of one enum.
+//! Words of settings whose values are not one enum.
 
 use super::names::{Word, unknown};
 use super::{Generation, Storage};
@@ -27,13 +27,13 @@ pub(super) const SELECTIONS: &[Word] = &[
 /// The words of the border between splits.
 pub(super) const TRANSITIONS: &[Word] = &[
     Word { word: "blend", help: "Both splits are mixed over a band" },
-    Word { word: "dither", help: "Each pixel of a band takes one of both, by noise" },
+    Word { word: "dither", help: "Each pixel of a band uses one of both splits, by noise" },
     Word { word: "hard", help: "No band" },
 ];
 
 /// The words of how maps are drawn.
 pub(super) const GENERATIONS: &[Word] = &[
-    Word { word: "auto", help: "What goes with the storage" },
+    Word { word: "auto", help: "Whatever suits the storage" },
     Word { word: "multipass", help: "Map and picture slice by slice, one map for all" },
     Word { word: "per-split", help: "One pass for each split" },
     Word { word: "layered", help: "As many splits at once as the device has views" },
@@ -41,9 +41,9 @@ pub(super) const GENERATIONS: &[Word] = &[
     Word { word: "mixed", help: "All splits at once: tiles in layers" },
 ];
 
-/// The words of how maps are kept.
+/// The words of how maps are stored.
 pub(super) const STORAGES: &[Word] = &[
-    Word { word: "auto", help: "What goes with the generation" },
+    Word { word: "auto", help: "Whatever suits the generation" },
     Word { word: "array", help: "Layers of one texture" },
     Word { word: "atlas", help: "Tiles of one texture" },
     Word { word: "separate", help: "A texture for each map" },

@@ -1,4 +1,4 @@
-//! Where the receivers of a split lie along the light: what has none of them behind it throws no
+//! Where the receivers of a split lie along the light: what has none of them behind it casts no
 //! shadow that anybody sees.
 //!
 //! Source: Bittner, Mattausch, Silvennoinen and Wimmer, *Shadow Caster Culling for Efficient Shadow

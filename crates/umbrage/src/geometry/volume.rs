@@ -260,9 +260,9 @@ impl SweptVolume {
 }
 
 /// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers`
-/// as the light sees it: it then has nothing behind it to throw a shadow on. A flat ground under
+/// as the light sees it: it then has nothing behind it to cast a shadow on. A flat ground under
 /// everything is the case that matters, and touches what stands on it. Anything that is not flat
-/// has to lie `margin` metres beyond: a filter asks beside its receiver, too.
+/// has to lie `margin` metres beyond: a filter also reads beside its receiver.
 pub(crate) fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3, margin: f64) -> bool {
     let slack = rounding(receivers.max - receivers.min);
     (0..3).any(|axis| {

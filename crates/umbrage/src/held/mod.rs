@@ -1,21 +1,21 @@
 //! What stands still, and why: everything that a planner keeps from one frame to the next.
 //!
 //! A static shadow does not move while its map's texels lie on one grid, which is given by the
-//! map's axes, its texel's size and its offset in whole texels. Axes are the light's. Offsets are
-//! rounded by every plan. Sizes follow from the lens, the range, the planes and what a slice needs,
-//! and each of those is held here:
+//! map's axes, its texel's size and its offset in whole texels. Axes are the light's. Every plan
+//! rounds offsets to whole texels (`planner/snap.rs`). Sizes follow from the lens, the range, the
+//! planes and what a slice needs, and each of those is held here:
 //!
 //! | held | until |
 //! |---|---|
 //! | lens ([`size::HeldLens`]) | the camera's is wider, or narrower by √2 |
 //! | range ([`ends::HeldEnds`]) | the scene ends elsewhere by a step |
-//! | planes ([`Held::row`]) | the range changes; optimal ones: others promise an error smaller by a third |
-//! | map sizes ([`size::HeldHalf`]) | a slice needs more, or less by two steps of 9 % |
+//! | split planes of the last frame ([`Held::row`]) | the range changes; optimal ones: until a set of planes with an error a third smaller is found |
+//! | map sizes, as half extents ([`size::HeldHalf`]) | a slice needs more, or less by two steps of 9 % |
 //! | rectangles ([`rectangle::HeldRectangle`]) | as map sizes, in steps of the setting |
 //! | depth range ([`depths::HeldDepths`]) | a caster or receiver lies outside |
 //! | local maps' sizes ([`Held::local`]) | as map sizes |
 //!
-//! While the camera stands still all of that recovers to what a fresh planner would choose:
+//! While the camera stands still all of that recovers to what a new planner would choose:
 //! [`recovery`].
 
 pub(crate) mod depths;
@@ -39,8 +39,8 @@ const FACES: usize = 6;
 /// What a planner holds on to between frames so that shadows stand still: a value, a pure function
 /// of the frames that were planned with it.
 ///
-/// A default one holds nothing: the plan made with it is a fresh planner's. Without stabilisation
-/// nothing is held. A frame that the planner refuses leaves it as it was.
+/// A default one holds nothing: the plan made with it is that of a new planner. Without
+/// stabilisation nothing is held. A frame that the planner refuses leaves it as it was.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Held {
     pub(crate) standstill: Standstill,
@@ -68,7 +68,7 @@ impl Default for LocalSizes {
 }
 
 impl Held {
-    /// Takes the view and the light of the next frame, and says what the camera does.
+    /// Takes the view and the light of the next frame, and returns what the camera does.
     pub(crate) fn begin(&mut self, view: &View, direction: DVec3) -> Standing {
         if self.light_direction.replace(direction) != Some(direction) {
             self.rectangle = Default::default();
@@ -81,7 +81,7 @@ impl Held {
         standing
     }
 
-    /// What a fresh planner would see: nothing is held of the range and the lens.
+    /// What a new planner would see: nothing is held of the range and the lens.
     pub(crate) fn released(&self) -> Self {
         Self { standstill: self.standstill, ..Self::default() }
     }

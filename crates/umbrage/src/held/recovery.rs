@@ -1,4 +1,4 @@
-//! How held sizes recover: back to what a fresh planner would choose, while the camera stands
+//! How held sizes recover: back to what a new planner would choose, while the camera stands
 //! still.
 //!
 //! A held size is never smaller than what a frame needs, but it may be larger for as long as the
@@ -130,7 +130,7 @@ pub(crate) struct Recovery {
 
 impl Recovery {
     /// Moves one plane of `row` towards `target`, and the size of the map that ends there, by a
-    /// step. `need` is half the edges that a map needs, by its split and a row of planes. Returns
+    /// step. `need` is half the edges that a map needs, by its split and a set of planes. Returns
     /// the split, also where nothing is left to change if it `visits_all`; `None` once all sizes
     /// are the target's.
     pub fn step(

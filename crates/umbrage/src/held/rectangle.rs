@@ -56,7 +56,7 @@ impl HeldRectangle {
     /// which the source's steps are fractions of.
     ///
     /// Geometric steps: a rectangle grows where it has to and is kept while it is at most one step
-    /// larger along each edge (or two along one) than the one that would be chosen anew, which is
+    /// larger along each edge (or two along one) than the one that would be chosen now, which is
     /// the smallest, in whole steps, of those that stand on the fan's directions. One that `refits`
     /// has recovered, and is kept only while it is hardly larger. The source's steps have neither
     /// orientation nor memory.

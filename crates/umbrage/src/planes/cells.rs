@@ -207,7 +207,7 @@ impl Cells {
     ///
     /// An edge of a shadow is off by a share of a texel, so that the area decided wrongly is the
     /// length of the edges times the texel's edge. Shadows mostly lie on ground, of which a view
-    /// from some height shows 1/z³ pixels to the square metre at depth z. A small part goes by the
+    /// from some height shows 1/z³ pixels to the square metre at depth z. A small part uses the
     /// pixels alone, for edges that boxes do not tell of: by the rows of pixels that such ground
     /// fills.
     pub fn weigh(&self, projection: Projection, depths: &[f64], weights: &mut Vec<f64>) {

@@ -3,7 +3,7 @@
 //!
 //! The papers place planes by a formula of near, far and m alone, the optimum for a scene that
 //! fills the view evenly. Scenes do not: a plane in the gap between two rows of casters leaves both
-//! maps small, one through a row makes both as wide as the row. Here the row of planes of least
+//! maps small, one through a row makes both as wide as the row. Here the set of planes of least
 //! expected error is found exactly, by dynamic programming over a few dozen candidates. Ours;
 //! *Sample Distribution Shadow Maps* (Lauritzen et al. 2010) place planes by the depths that a
 //! frame shows, which needs the frame.
@@ -230,7 +230,7 @@ impl Placement {
         self.cells.gather(sight, &self.candidates);
         self.cells.weigh(sight.view.frustum().projection, &self.candidates, &mut self.weights);
         if self.weights.iter().sum::<f64>() <= 0.0 {
-            // Nothing throws a shadow that is seen: planes that are held stay, others stand where
+            // Nothing casts a shadow that is seen: planes that are held stay, others stand where
             // they do for an even scene.
             if let Some(inner) = held.filter(inside) {
                 planes[1..m].copy_from_slice(inner);
@@ -366,7 +366,7 @@ fn face(view: &View, fan: &Fan, depth: f64) -> Region {
 
 /// Where the map of a slice from candidate `j` begins, if the slice before begins at `i`.
 fn begin(view: &View, maps: &Maps, candidates: &[f64], i: usize, j: usize) -> (usize, f64) {
-    // The far plane has no say in where a slice begins.
+    // The far plane has no effect on where a slice begins.
     let planes = [candidates[i], candidates[j], f64::INFINITY];
     let (blend, metric) = (maps.config.blend(), maps.config.selection.metric());
     let (from, _) = coverage(view, &planes, 1, blend, maps.image_size, metric);
@@ -431,7 +431,7 @@ mod tests {
 
     #[test]
     fn a_slice_without_weight_costs_nothing() {
-        // All that throws shadows stands between candidates 7 and 9 and 20 and 22: planes in the
+        // All that casts shadows stands between candidates 7 and 9 and 20 and 22: planes in the
         // gap leave two small maps.
         let len = 30;
         let occupied = |i: usize| (7..9).contains(&i) || (20..22).contains(&i);
@@ -478,7 +478,7 @@ mod tests {
         })
     }
 
-    /// All rows of planes.
+    /// All sets of planes.
     fn all_rows(len: usize, m: usize) -> Vec<Vec<usize>> {
         let mut rows = vec![vec![0]];
         for split in 1..=m {

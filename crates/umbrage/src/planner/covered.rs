@@ -35,7 +35,7 @@ struct Taken<'a> {
     earlier: &'a [Split],
     /// Texels that a filter reaches around a sample of the map that is planned, rounding included.
     margin: f64,
-    /// Share of a map's half edge over which it asks the next one, too.
+    /// Share of a map's half edge over which the next map is used too.
     blend: f64,
     /// Metres that the margin measures in the map that is planned.
     reach_m: f64,

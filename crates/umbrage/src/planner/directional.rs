@@ -73,7 +73,7 @@ pub(super) fn plan(
     Ok(())
 }
 
-/// What a plan says of all its splits.
+/// What all splits of a plan share.
 fn describe(frame: &Frame<'_>, sun: &Sun<'_>, layout: &Layout, plan: &mut ShadowPlan) {
     let (config, view) = (frame.config, frame.view);
     let metric = config.selection.metric();

@@ -7,7 +7,7 @@ use crate::bounds::Placed;
 use crate::casters::{BoxTree, Counter, Crowd, Role};
 use crate::{Aabb, CasterSet, Error, Layers, Light, Result, View};
 
-/// The boxes of a plan's casters or receivers: a list of them, which is looked at anew in every
+/// The boxes of a plan's casters or receivers: a list of them, which is read again in every
 /// frame, or a set that keeps them.
 ///
 /// Slices, arrays, vectors and sets turn into it by themselves.
@@ -67,7 +67,7 @@ impl<'a> Boxes<'a> {
         Ok(())
     }
 
-    /// As the planner asks them.
+    /// As the planner reads them.
     pub(super) fn crowd<'b>(
         &self,
         tree: &'b BoxTree,
@@ -85,7 +85,7 @@ impl<'a> Boxes<'a> {
     }
 }
 
-/// What the planner is told each frame.
+/// The inputs of the planner for one frame.
 ///
 /// ```
 /// # use umbrage::{Aabb, DirectionalLight, Frustum, PlanInputs, View};
@@ -102,7 +102,7 @@ pub struct PlanInputs<'a> {
     pub view: &'a View,
     /// The light.
     pub light: Light,
-    /// World boxes of what throws shadows, as a list or a set. A plan's caster indices refer to
+    /// World boxes of what casts shadows, as a list or a set. A plan's caster indices refer to
     /// this list, or are the set's keys.
     pub casters: Boxes<'a>,
     /// World boxes of what shows shadows, as a list or a set; most objects are in both. Casters

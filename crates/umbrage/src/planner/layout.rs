@@ -32,7 +32,8 @@ pub(super) struct Layout {
     pub whole_width: f64,
     /// Exactly stabilised: around all receivers, which no map has to exceed along any axis.
     pub around_all: Option<Block>,
-    /// The split whose rectangle may be chosen anew in this frame though the held one serves.
+    /// The split whose rectangle may be chosen again in this frame, though the held one would
+    /// serve.
     pub refits: Option<usize>,
 }
 

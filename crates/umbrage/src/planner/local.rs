@@ -6,7 +6,7 @@
 //! on one ray from the light has one place. There a slice's map is planned in a sun's stages: range
 //! → planes → casters → fit → snap → depth. Everything is clipped to the light's frustum *before*
 //! the divide, slices as well as boxes, as either may straddle the light's plane, where w changes
-//! its sign. What can throw a shadow is asked by planes through the light, which divide by nothing.
+//! its sign. What can cast a shadow is asked by planes through the light, which divide by nothing.
 
 use glam::{DVec2, DVec3};
 
@@ -180,7 +180,7 @@ impl<'a> LocalSplit<'a> {
         move |placed| {
             let (bounds, Placed { center, half }) = (placed.bounds(), *placed);
             let beside = bounds.max.cmplt(hull.min - margin).any() || bounds.min.cmpgt(hull.max + margin).any();
-            // A ground under everything is one of its own receivers; it throws its shadow on
+            // A ground under everything is one of its own receivers; it casts its shadow on
             // nothing.
             let below = |axis: usize| {
                 let (lo, hi) = (part.bounds.min[axis], part.bounds.max[axis]);

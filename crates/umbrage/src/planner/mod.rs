@@ -38,8 +38,8 @@ pub use options::PlannerOptions;
 
 /// Plans shadow maps frame after frame.
 ///
-/// Holds the config, what is held between frames ([`Held`]) and buffers, so that only the first
-/// frames allocate. Each light of each view has a planner of its own.
+/// Contains the config, what is held between frames ([`Held`]) and buffers, so that only the first
+/// frame allocates. Use one planner for each light of each view.
 #[derive(Clone, Debug)]
 pub struct Planner {
     config: ShadowConfig,
@@ -108,7 +108,7 @@ impl Planner {
         &self.config
     }
 
-    /// What the planner was told beside the config.
+    /// The options given beside the config.
     #[must_use]
     pub fn options(&self) -> PlannerOptions {
         self.options
@@ -120,16 +120,16 @@ impl Planner {
         &self.held
     }
 
-    /// What the last plan looked at of its casters and receivers: a measure of its cost that does
-    /// not depend on the machine. Nothing if view, light and sets were those of the plan before,
-    /// and what is held as well.
+    /// How many casters and receivers the last plan visited: a measure of its cost that does not
+    /// depend on the machine. All zero if view, light, sets and held state equal those of the last
+    /// plan, which is then returned again.
     #[must_use]
     pub fn visited(&self) -> Visited {
         self.buffers.visited
     }
 
-    /// Replaces what is held between frames: to go on from another frame than the last one, or
-    /// afresh.
+    /// Replaces what is held between frames: to continue from another frame than the last one, or
+    /// from nothing.
     pub fn set_held(&mut self, held: Held) {
         self.held = held;
     }

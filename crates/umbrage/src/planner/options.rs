@@ -1,9 +1,10 @@
-//! What a planner is told beside a config: what the device, the engine and the picture say.
+//! What a planner is given beside a config: what the device and the engine dictate.
 
 use crate::margin::FilterReach;
 use crate::{Error, Result, ShadowConfig};
 
-/// What a planner is told once beside a [`ShadowConfig`], as it is no technique.
+/// What the device and the engine dictate, set once per planner; a [`ShadowConfig`] holds what is a
+/// matter of choice.
 ///
 /// ```
 /// use umbrage::{FilterReach, Planner, PlannerOptions, ShadowConfig};
@@ -16,9 +17,9 @@ use crate::{Error, Result, ShadowConfig};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannerOptions {
-    /// Whether depth is not clipped (`DEPTH_CLIP_CONTROL`): the hardware then flattens casters
-    /// before the near plane onto it, and the near plane may lie at the receivers. Otherwise it
-    /// stands before the first caster.
+    /// Whether depth is not clipped (`DEPTH_CLIP_CONTROL`): the hardware then clamps casters in
+    /// front of the near plane to it, and the near plane may lie at the receivers. Otherwise it
+    /// lies in front of the first caster.
     pub depth_clamp: bool,
     /// How far an engine's own filter reaches. `None`: as far as [`ShadowConfig::filter`].
     pub filter_reach: Option<FilterReach>,

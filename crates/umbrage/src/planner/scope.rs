@@ -14,10 +14,10 @@ use crate::geometry::volume::lies_below;
 use crate::{Aabb, Projection, View};
 
 /// Receivers that fill less than this share of the picture together, and lie beyond all others,
-/// have no say in the range.
+/// are ignored in the range.
 const LEAST_SHARE: f64 = 1e-4;
 
-/// Receivers beyond have no say only where the range would be this many times as long with them.
+/// Receivers beyond are ignored only where the range would be this many times as long with them.
 const MUCH_FARTHER: f64 = 4.0;
 
 /// The range ends at this many times the depth of the deepest shadow, at most. Lower: sharper, but

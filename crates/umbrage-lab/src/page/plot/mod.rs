@@ -29,7 +29,7 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 #[non_exhaustive]
 pub enum Error {
     /// No finite point in any series.
-    #[error("chart {title:?} has no finite value to draw; leave the chart away, or give it data")]
+    #[error("chart {title:?} has no finite value to draw; omit the chart, or give it data")]
     Empty {
         /// The chart's title.
         title: String,

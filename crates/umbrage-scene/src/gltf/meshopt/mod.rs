@@ -94,9 +94,9 @@ fn check(said: &Compression) -> Result<(), &'static str> {
     let stride = said.byte_stride;
     match said.mode {
         Mode::Attributes if !(stride.is_multiple_of(4) && (4..=256).contains(&stride)) => {
-            return Err("has a byteStride that is no multiple of 4 from 4 to 256");
+            return Err("has a byteStride that is not a multiple of 4 from 4 to 256");
         }
-        Mode::Triangles if !said.count.is_multiple_of(3) => return Err("has a count that is no multiple of 3"),
+        Mode::Triangles if !said.count.is_multiple_of(3) => return Err("has a count that is not a multiple of 3"),
         Mode::Triangles | Mode::Indices if stride != 2 && stride != 4 => {
             return Err("has a byteStride other than 2 and 4");
         }

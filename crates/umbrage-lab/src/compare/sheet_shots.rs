@@ -6,7 +6,7 @@ use umbrage_truth::scores::{Answers, Domain, LEAST_FACING, false_colour};
 use super::{
     inset,
     judge::{Scores, ViewTruth, wrong_pixels},
-    sheet::{self, Cell, Column},
+    sheet::{self, Cell, SheetShot},
     shots::SceneShots,
 };
 use crate::failure::Result;
@@ -58,8 +58,8 @@ pub struct Plain {
     pub dark: RgbaImage,
 }
 
-/// The column of a view on the sheet of pictures and on that of errors, without headings.
-pub fn columns(judged: &ViewTruth, answers: &[Answer], plain: &Plain, cell: [u32; 2]) -> Result<[Column; 2]> {
+/// The shot of a view on the sheet of pictures and on that of errors, without headings.
+pub fn sheet_shots(judged: &ViewTruth, answers: &[Answer], plain: &Plain, cell: [u32; 2]) -> Result<[SheetShot; 2]> {
     let decided: Vec<Answers> = answers.iter().map(|answer| Answers::from_mask(&answer.mask)).collect();
     let wrong: Vec<Vec<bool>> = decided.iter().map(|answers| wrong_pixels(judged, answers)).collect();
     let inset = inset::find(judged, &wrong);
@@ -87,7 +87,7 @@ pub fn columns(judged: &ViewTruth, answers: &[Answer], plain: &Plain, cell: [u32
     };
     pictures.push(truth(&true_picture(judged, answers, plain)));
     errors.push(truth(&false_colour(&judged.truth, &judged.domain, &true_answers)?));
-    Ok([pictures, errors].map(|cells| Column { title: String::new(), lines: Vec::new(), warning: None, cells }))
+    Ok([pictures, errors].map(|cells| SheetShot { title: String::new(), lines: Vec::new(), warning: None, cells }))
 }
 
 /// The picture with true shadows: without shadows where the sun shines; elsewhere as a technique
@@ -139,7 +139,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn evenly_chosen_columns_hold_the_ends() {
+    fn evenly_chosen_shots_hold_the_ends() {
         let chosen = |count, most| evenly(count, most).collect::<Vec<_>>();
         assert_eq!(chosen(3, 8), [0, 1, 2]);
         assert_eq!(chosen(9, 3), [0, 4, 8]);
