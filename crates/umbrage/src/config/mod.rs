@@ -28,7 +28,7 @@ pub use budget::Budget;
 pub use filter::{Derivatives, Filter, MomentKind, Moments, SUN_DEGREES};
 pub use fit::{Crop, ExtentSteps, Stability};
 pub use given::Given;
-pub use layout::{Coordinates, DepthFormat, Fallbacks, Generation, Layout, Storage};
+pub use layout::{Cache, Coordinates, DepthFormat, Fallbacks, Generation, Layout, Storage};
 pub use look::{Look, ReceiverBias, Translucent};
 pub use names::Word;
 pub(crate) use names::unknown;
@@ -123,6 +123,10 @@ pub struct ShadowConfig {
     pub depth_format: DepthFormat,
     /// Where maps are kept and how they are drawn.
     pub layout: Layout,
+    /// Whether what static casters draw into the maps is kept. Kept maps take about twice the
+    /// memory, and it takes a [`crate::CasterSet`], which says what is static; casters of a list
+    /// are drawn anew in every frame.
+    pub cache: Cache,
     /// Whether what the device cannot do is replaced by what it can.
     pub fallbacks: Fallbacks,
     /// Where receivers take a map's coordinates from.
@@ -234,6 +238,7 @@ impl ShadowConfig {
             filter: _,
             depth_format: _,
             layout: _,
+            cache,
             fallbacks: _,
             coordinates: _,
             look: _,
@@ -243,6 +248,7 @@ impl ShadowConfig {
             && (*range, *selection, *crop) == (other.range, other.selection, other.crop)
             && (self.blend(), *far_fade) == (other.blend(), other.far_fade)
             && (stability, *drop_small_casters) == (&other.stability, other.drop_small_casters)
+            && *cache == other.cache
     }
 
     /// The config that a light of this kind gets: what excludes the kind of light is replaced by
