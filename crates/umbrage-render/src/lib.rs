@@ -35,7 +35,7 @@ pub use forward::Samples;
 pub use gpu::{Gpu, GpuOptions};
 pub use lamps::{Lamp, MOST_LAMPS};
 pub use probe::{ProbeAnswer, ProbePoint};
-pub use renderer::{Frame, Outputs, RenderSettings, Rendered, Renderer};
+pub use renderer::{Frame, KeptMaps, Outputs, RenderSettings, Rendered, Renderer};
 pub use stats::{FrameStats, LightStats, SplitStats};
 pub use timing::PassCounts;
 pub use umbrage_wgpu::LightMaps;

@@ -315,3 +315,17 @@ pub struct Moments {
     /// The splits, nearest first.
     pub splits: [MomentSplit; MAX_SPLITS],
 }
+
+/// Where a map lies in the texture that is kept of its split.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct KeptWindow {
+    /// The place of the map's upper left texel in the kept texture.
+    pub begin: [i32; 2],
+    /// Upper left corner of the map in its layer, in texels.
+    pub corner: [i32; 2],
+    /// Edge of the kept texture in texels: what lies past it is at its other end.
+    pub edge: i32,
+    /// Up to the alignment of 8 bytes.
+    pub _padding: i32,
+}

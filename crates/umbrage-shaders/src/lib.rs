@@ -63,6 +63,11 @@ pub const MOMENT_PASSES: &str = text!("moment_passes");
 /// WGSL of the passes from depth with four samples per texel to moments.
 pub const MOMENT_PASSES_OF_SAMPLES: &str = text!("moment_passes_of_samples");
 
+/// The pass that copies what is kept of a split into its map, `shaders/pass/kept.wesl`: entry
+/// points `vs_all` and `fs_copy`; binding 0 is a uniform [`layout::KeptWindow`], 1 the kept
+/// `texture_depth_2d`.
+pub const KEPT_PASS: &str = text!("kept");
+
 /// How a receiver reads its maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Maps {

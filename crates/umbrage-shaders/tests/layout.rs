@@ -3,7 +3,7 @@
 use std::mem::offset_of;
 
 use naga::proc::Layouter;
-use umbrage_shaders::layout::{CasterPass, Frame, MomentPass, MomentSplit, Moments, Split};
+use umbrage_shaders::layout::{CasterPass, Frame, KeptWindow, MomentPass, MomentSplit, Moments, Split};
 use umbrage_shaders::{Casters, Maps, MomentMaps};
 
 /// A member as one side sees it: name, offset and size in bytes.
@@ -77,6 +77,8 @@ fn members_of_moments_agree() {
     let maps = Maps { moments: Some(MomentMaps::Sampled), ..Maps::default() };
     let (receiver, passes) = (umbrage_shaders::receiver(0, maps), umbrage_shaders::MOMENT_PASSES);
     assert_eq!(in_rust!(MomentSplit: depth, radius, quads), in_wgsl(passes, "UmbrageMomentSplit"));
+    let kept = in_wgsl(umbrage_shaders::KEPT_PASS, "UmbrageKeptWindow");
+    assert_eq!(in_rust!(KeptWindow: begin, corner, edge), kept);
     assert_eq!(in_rust!(MomentPass: split, size), in_wgsl(passes, "UmbrageMomentPass"));
     assert_eq!(in_rust!(Moments: exponents, bleeding, splits), in_wgsl(&receiver, "UmbrageMoments"));
 }

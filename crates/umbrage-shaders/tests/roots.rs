@@ -205,6 +205,13 @@ fn moment_passes_are_valid_wgsl() {
 }
 
 #[test]
+fn the_pass_of_kept_maps_is_valid_wgsl() {
+    let (module, _) = validated(umbrage_shaders::KEPT_PASS);
+    let names: Vec<&str> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
+    assert_eq!(names, ["vs_all", "fs_copy"]);
+}
+
+#[test]
 fn every_name_is_in_our_namespace() {
     let casters = [(false, false), (true, false), (false, true), (true, true)]
         .map(|(views, tiles)| umbrage_shaders::caster(0, Casters { views, tiles }, ""));

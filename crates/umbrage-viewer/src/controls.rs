@@ -155,7 +155,10 @@ pub const SECTIONS: &[(&str, &[&str])] = &[
     ("Borders between splits", &["selection", "bands", "transition", "blend"]),
     ("Stillness and fit", &["stabilize", "extent-steps", "extent-levels", "fit", "warp", "tsm-focus"]),
     ("Look", &["shadow-strength", "shadow-colour", "translucent", "contact-shadows"]),
-    ("Memory and passes", &["storage", "generation", "depth-format", "coordinates", "drop-small-casters", "fallbacks"]),
+    (
+        "Memory and passes",
+        &["storage", "generation", "depth-format", "cache", "coordinates", "drop-small-casters", "fallbacks"],
+    ),
 ];
 
 /// Heading of settings that no section names.

@@ -63,6 +63,21 @@ pub enum Error {
         /// The device's limit, in texels.
         limit: u32,
     },
+    /// The device has no texture as large as what is kept of a map.
+    #[error(
+        "cache kept needs a texture of {kept} texels for map_sizes[{split}], which is {size}, but this device's textures are at \
+         most {limit} texels wide (max_texture_dimension_2d); use a smaller map, or cache off"
+    )]
+    KeptMapTooLarge {
+        /// Index into `map_sizes`.
+        split: usize,
+        /// The map's edge in texels.
+        size: u32,
+        /// The edge of what is kept of it, in texels.
+        kept: u32,
+        /// The device's limit, in texels.
+        limit: u32,
+    },
     /// The device has no texture array as long as the list of maps.
     #[error(
         "lights and map_sizes ask for {count} layers, but this device's texture arrays have at most {limit} layers \

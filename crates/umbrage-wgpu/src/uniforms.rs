@@ -159,7 +159,13 @@ fn check_plan(plan: &ShadowPlan, slot: &Slot) -> Result<()> {
 }
 
 /// One split. `depth_step` is the format's step as a share of the depth range.
-fn split(index: usize, split: &umbrage::Split, depth_step: f64, place: Place, origin: DVec3) -> Result<layout::Split> {
+pub(crate) fn split(
+    index: usize,
+    split: &umbrage::Split,
+    depth_step: f64,
+    place: Place,
+    origin: DVec3,
+) -> Result<layout::Split> {
     check(index, split)?;
     if let Some(at) = split.warp.zip(split.light_position) {
         return local::split(index, split, at, depth_step, place, origin);

@@ -91,6 +91,8 @@ pub struct PlanCoverage {
     pub(crate) has_masks: bool,
     /// Of a local light's plan.
     pub(crate) local: Vec<LocalVolume>,
+    /// Bit `i`: the next split answers for split `i`, too.
+    pub(crate) handed_on: u8,
 }
 
 impl PlanCoverage {
@@ -101,6 +103,26 @@ impl PlanCoverage {
         self.shown = None;
         self.has_masks = false;
         self.local.clear();
+        self.handed_on = 0;
+    }
+
+    /// Lets the next split answer for `split`, too.
+    pub(crate) fn hand_on(&mut self, split: usize) {
+        self.handed_on |= 1 << split;
+    }
+
+    /// Whether the next split answers for `split`, too.
+    pub(crate) fn is_handed_on(&self, split: usize) -> bool {
+        split < u8::BITS as usize && self.handed_on >> split & 1 == 1
+    }
+
+    /// The splits that `split` answers for: none, itself, or some before it and itself.
+    fn served_by(&self, split: usize) -> std::ops::Range<usize> {
+        if self.is_handed_on(split) {
+            return 0..0;
+        }
+        let first = (0..split).rev().take_while(|&before| self.is_handed_on(before)).last();
+        first.unwrap_or(split)..split + 1
     }
 
     /// Takes over what has no masks. Buffers are kept.
@@ -125,6 +147,10 @@ impl PlanCoverage {
 
     /// As [`crate::ShadowPlan::casts_into`].
     pub(crate) fn casts_into(&self, split: usize, part: &Aabb) -> bool {
+        self.served_by(split).any(|split| self.casts_into_slice(split, part))
+    }
+
+    fn casts_into_slice(&self, split: usize, part: &Aabb) -> bool {
         let (center, half) = (part.center(), part.half_extent());
         match (&self.fan, &self.shown, self.volumes.get(split)) {
             (Some(fan), None, Some(volume)) => {
@@ -137,8 +163,10 @@ impl PlanCoverage {
 
     /// Whether a sun's split has all casters of a point.
     pub(crate) fn contains(&self, split: usize, point: DVec3) -> bool {
-        let volume = self.shown.as_ref().or(self.volumes.get(split));
-        self.fan.as_ref().zip(volume).is_some_and(|(fan, volume)| volume.contains(fan, point))
+        self.served_by(split).any(|split| {
+            let volume = self.shown.as_ref().or(self.volumes.get(split));
+            self.fan.as_ref().zip(volume).is_some_and(|(fan, volume)| volume.contains(fan, point))
+        })
     }
 
     /// Whether a local light's split has all casters of a point.

@@ -4,8 +4,9 @@
 use std::ops::Range;
 
 use glam::DVec3;
-use umbrage::{Aabb, ShadowPlan};
+use umbrage::Aabb;
 use umbrage_scene::{Object, Pose};
+use umbrage_wgpu::{MapPass, ShadowMap};
 
 use super::{Frame, Renderer};
 use crate::draw_list::{Parts, Run};
@@ -33,20 +34,19 @@ impl Renderer {
         let is_one_light = self.shadows.maps().map_count() == self.shadows.maps().splits();
         let shown = self.shadows.frame();
         let passes = self.shadows.maps().passes();
-        let mut all = vec![Vec::new(); passes.len()];
+        let mut all = vec![Vec::new(); shown.pass_count()];
         for map in shown.maps() {
             let copies = map.casters().map(|(caster, codes)| (objects[caster as usize], codes));
-            let leads = passes[map.index()].leads();
+            let leads = passes.get(map.index()).is_some_and(MapPass::leads);
             if !is_one_light || map.splits().len() > 1 || leads {
                 all[map.index()] = self.instances.grouped(pose, origin, leads, copies);
                 continue;
             }
-            let split = map.splits().start;
             let (mut whole, mut in_part) = (Vec::new(), Vec::new());
             for (index, codes) in copies {
                 let object = &pose.objects[index];
                 let meshes = &self.scene.meshes;
-                let parts = || parts_in(shown.plan(0), split, object, &meshes[object.mesh]);
+                let parts = || parts_in(&map, object, &meshes[object.mesh]);
                 match has_parts(object, meshes).then(parts).flatten() {
                     Some(parts) => in_part.push((index, codes, parts)),
                     None => whole.push((index, codes)),
@@ -93,10 +93,10 @@ fn has_parts(object: &Object, meshes: &[Vec<GpuPrimitive>]) -> bool {
     object.skinned.is_none() && meshes[object.mesh].iter().any(|primitive| primitive.clusters.len() > 1)
 }
 
-/// For each primitive the ranges of indices that reach a split; `None` if the object is better
+/// For each primitive the ranges of indices that reach a map; `None` if the object is better
 /// drawn whole.
-fn parts_in(plan: &ShadowPlan, split: usize, object: &Object, primitives: &[GpuPrimitive]) -> Option<Parts> {
-    let reaches = |node: &Cluster| plan.casts_into(split, &node.bounds().transformed(&object.world_from_local));
+fn parts_in(map: &ShadowMap<'_>, object: &Object, primitives: &[GpuPrimitive]) -> Option<Parts> {
+    let reaches = |node: &Cluster| map.is_reached_by(&node.bounds().transformed(&object.world_from_local));
     let mut spared = 0;
     let parts: Parts = primitives
         .iter()

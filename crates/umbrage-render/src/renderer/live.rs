@@ -21,11 +21,11 @@ impl Renderer {
         self.shadows.config()
     }
 
-    /// The objects of a pose that are drawn into maps, by index: what the casters of a plan are
-    /// indices into.
+    /// What the casters of a plan are indices into: the objects of a pose that are drawn into maps,
+    /// by index; where something is kept of maps all objects.
     #[must_use]
     pub fn casters_of(&self, pose: &Pose) -> Vec<usize> {
-        (0..pose.objects.len()).filter(|&index| self.casts(&pose.objects[index])).collect()
+        (0..pose.objects.len()).filter(|&index| self.is_listed(&pose.objects[index])).collect()
     }
 
     /// Changes the config; `scene` is the one that the renderer was made with. The scene stays on

@@ -8,6 +8,7 @@ mod prepare;
 mod record;
 mod report;
 mod views;
+mod world;
 
 use std::sync::OnceLock;
 
@@ -20,6 +21,8 @@ use umbrage_wgpu::{LightMaps, MaskFrame, MaskNormals, ShadowMask, Shadows};
 
 use self::prepare::Prepared;
 use self::record::{Clock, MapCapture, new_encoder};
+pub use self::world::KeptMaps;
+use self::world::WorldSet;
 use crate::capture::Capture;
 use crate::casters::Casters;
 use crate::contact::Contact;
@@ -132,6 +135,9 @@ pub struct Renderer {
     pub(crate) mask: Option<MaskTarget>,
     pub(crate) shadow_mask: Option<ShadowMask>,
     pub(crate) notes: Vec<String>,
+    /// The objects that maps are planned for, where something is kept of these.
+    world: WorldSet,
+    kept: KeptMaps,
 }
 
 impl Renderer {
@@ -192,6 +198,8 @@ impl Renderer {
                 mask: None,
                 shadow_mask: None,
                 notes,
+                world: WorldSet::default(),
+                kept: KeptMaps::default(),
                 materials,
                 shadows,
                 gpu: gpu.clone(),
@@ -227,7 +235,8 @@ impl Renderer {
     pub fn render(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
         let frame = Frame { shadows_on: frame.shadows_on && self.shading == Shading::WithShadows, ..*frame };
-        gpu.guarded("drawing a frame", || self.render_unguarded(&frame, outputs))
+        let drawn = gpu.guarded("drawing a frame", || self.render_unguarded(&frame, outputs));
+        self.or_forget(drawn)
     }
 
     /// Visibility of the first light at given points. A point that the view shows within the
@@ -240,7 +249,8 @@ impl Renderer {
     pub fn probe(&mut self, frame: &Frame<'_>, points: &[ProbePoint]) -> Result<Vec<ProbeAnswer>> {
         probe::check(points)?;
         let gpu = self.gpu.clone();
-        gpu.guarded("answering probes", || self.probe_unguarded(frame, points))
+        let answers = gpu.guarded("answering probes", || self.probe_unguarded(frame, points));
+        self.or_forget(answers)
     }
 
     fn render_unguarded(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {

@@ -98,15 +98,16 @@ impl Renderer {
         if lamps.len() != made_for {
             return Err(Error::LampSlots { frame: lamps.len(), renderer: made_for });
         }
-        let objects = &frame.pose.objects;
-        let casters: Vec<Aabb> = caster_objects.iter().map(|&i| objects[i].bounds).collect();
-        let receivers: Vec<Aabb> = objects.iter().map(|object| object.bounds).collect();
+        let [casters, receivers] = self.listed_boxes(frame.pose, caster_objects)?;
         let lights: Vec<Light> = lamps.iter().map(|lamp| lamp.light).collect();
         let planned_for = self.planned_for.unwrap_or(*frame.view);
         let begun = Instant::now();
         let inputs = Inputs {
             casters: &casters,
             receivers: &receivers,
+            set: self.keeps_maps().then_some(&self.world.set),
+            kept_texels: self.kept.texels,
+            redraws_kept: self.kept.redraws,
             receiver_clusters,
             origin,
             image_size: self.size,

@@ -101,6 +101,11 @@ impl Renderer {
         prepared: &Prepared,
         recorded: &mut Recorded,
     ) {
+        if self.shadows.frame().is_kept() {
+            let due: Vec<usize> = self.shadows.frame().maps().map(|map| map.index()).collect();
+            due.into_iter().for_each(|pass| self.record_map(encoder, pass, prepared, recorded));
+            return self.shadows.prefilter(encoder);
+        }
         let all = prepared.every_map || self.shadows.maps().map_count() == self.shadows.maps().splits();
         for pass in passes.filter(|&pass| all || !prepared.caster_runs[pass].is_empty()) {
             self.record_map(encoder, pass, prepared, recorded);
@@ -118,10 +123,17 @@ impl Renderer {
         prepared: &Prepared,
         recorded: &mut Recorded,
     ) {
-        let slot = self.timer.next(self.shadows.maps().passes()[index].views());
         let map = self.shadows.frame().map(index);
-        let mut pass = map.begin_timed(encoder, self.timer.timestamp_writes(slot));
         let runs = &prepared.caster_runs[index];
+        // As many regions as there may be are not timed: there are queries for maps alone.
+        if map.is_region() {
+            let mut pass = map.begin(encoder);
+            let drawn = self.casters.draw(&mut pass, map.bind_group(), &self.drawable(), runs);
+            recorded.map_passes.push((index, drawn, usize::MAX));
+            return;
+        }
+        let slot = self.timer.next(self.shadows.maps().passes()[index].views());
+        let mut pass = map.begin_timed(encoder, self.timer.timestamp_writes(slot));
         let drawn = self
             .timer
             .counted(&mut pass, slot, |pass| self.casters.draw(pass, map.bind_group(), &self.drawable(), runs));

@@ -68,7 +68,8 @@ impl Renderer {
     fn milliseconds(&self, prepared: &Prepared, recorded: &Recorded, spans: &[[f64; 2]]) -> (f64, f64) {
         let is_of_maps = |pass: usize| recorded.map_passes.iter().any(|&(_, _, slot)| slot == pass);
         let maps = || spans.iter().enumerate().filter(|&(i, _)| is_of_maps(i)).map(|(_, span)| span);
-        let last = recorded.map_passes.last().map_or(0, |&(_, _, slot)| slot);
+        let mut slots = recorded.map_passes.iter().map(|&(_, _, slot)| slot);
+        let last = slots.rfind(|&slot| slot < spans.len()).unwrap_or(0);
         let is_prefiltered = self.shadows.maps().config().filter.is_prefiltered();
         let shadow_ms = match prepared.slices.is_empty() {
             // What turns depths into moments is no pass of ours; it is over when the next one
@@ -89,9 +90,8 @@ impl Renderer {
         spans_ms: Option<&[[f64; 2]]>,
     ) -> Vec<SplitStats> {
         let plan: &ShadowPlan = self.shadows.frame().plan(light);
-        let first = self.shadows.maps().first_map(light);
         let objects: Vec<&umbrage_scene::Object> =
-            frame.pose.objects.iter().filter(|object| self.casts(object)).collect();
+            frame.pose.objects.iter().filter(|object| self.is_listed(object)).collect();
         let drawable = self.drawable();
         let dithered = self.shadows.maps().config().look.translucent == Translucent::Dithered;
         let triangles = |caster: &u32| {
@@ -99,13 +99,18 @@ impl Renderer {
             drawable.triangles(objects[*caster as usize], drawn)
         };
         let stats = |(i, split): (usize, &umbrage::Split)| {
-            let draws_it = |pass: usize| self.shadows.maps().passes()[pass].splits().contains(&(first + i));
+            let shown = self.shadows.frame();
+            let draws_it = |pass: usize| {
+                let map = shown.map(pass);
+                map.light() == light && map.splits().contains(&i)
+            };
             let draws = recorded.map_passes.iter().filter(|&&(pass, ..)| draws_it(pass));
             let took = |spans: &[[f64; 2]]| {
                 draws.clone().filter_map(|&(_, _, slot)| spans.get(slot)).map(|span| span[1] - span[0]).sum()
             };
             // Of a map that has a pass of its own, what was drawn: maybe parts of casters.
-            let alone = draws.clone().find(|&&(pass, ..)| self.shadows.maps().passes()[pass].splits().len() == 1);
+            let is_alone = |pass: usize| shown.map(pass).splits().len() == 1;
+            let alone = self.keeps_maps() || draws.clone().any(|&(pass, ..)| is_alone(pass));
             SplitStats {
                 near: split.near,
                 far: split.far,
@@ -113,11 +118,11 @@ impl Renderer {
                 warped: split.warp.is_some() && split.light_position.is_none(),
                 casters: split.casters.len(),
                 gpu_ms: spans_ms.map(took),
-                draws: draws.map(|(_, drawn, _)| drawn.draws).sum(),
+                draws: draws.clone().map(|(_, drawn, _)| drawn.draws).sum(),
                 triangles: match alone {
-                    Some((_, drawn, _)) => drawn.triangles,
-                    None if frame.shadows_on => plan.casters(i).iter().map(triangles).sum(),
-                    None => 0,
+                    true => draws.map(|(_, drawn, _)| drawn.triangles).sum(),
+                    false if frame.shadows_on => plan.casters(i).iter().map(triangles).sum(),
+                    false => 0,
                 },
                 bytes: u64::from(split.size)
                     * u64::from(split.size)

@@ -31,6 +31,12 @@ impl Uniforms {
         Self::new(device, "ShadowMaps::caster", layout, bytes, passes.len(), Vec::new())
     }
 
+    /// What the casters of each region of kept maps get, in the layout of a pass of one split.
+    pub fn of_regions(device: &wgpu::Device, layout: wgpu::BindGroupLayout, count: usize) -> Self {
+        let bytes = size_of::<layout::Split>() as u64;
+        Self::new(device, "KeptMaps::caster", layout, bytes, count, Vec::new())
+    }
+
     /// What receivers get: the frames, once for all splits, and where one map is reused, once
     /// more for each; and the maps.
     pub fn of_receivers(device: &wgpu::Device, it: &Received, targets: &Targets, moments: Option<&Moments>) -> Self {

@@ -2,6 +2,7 @@
 
 pub(crate) mod choose;
 mod groups;
+mod kept;
 mod lights;
 mod passes;
 pub(crate) mod place;
@@ -14,14 +15,15 @@ use std::num::NonZeroU32;
 
 use umbrage::ShadowPlan;
 use umbrage::config::{
-    Coordinates, DepthFormat, Filter, Generation, Layout, LightKind, Rebuilds, Selection, ShadowConfig, SplitMetric,
-    Storage,
+    Cache, Coordinates, DepthFormat, Filter, Generation, Layout, LightKind, Rebuilds, Selection, ShadowConfig,
+    SplitMetric, Storage,
 };
 use umbrage_shaders::layout::{MetricKind, SelectionKind};
 use umbrage_shaders::{Bound, Casters, Lights, Maps, Projection, ReceiverText};
 
 use choose::{Abilities, Chosen};
 use groups::{Received, Uniforms};
+use kept::KeptMaps;
 pub use passes::MapPass;
 use place::{Place, Viewport};
 pub use slices::Slice;
@@ -99,6 +101,7 @@ pub struct ShadowMaps {
     colour_target: Option<wgpu::ColorTargetState>,
     targets: Targets,
     moments: Option<Moments>,
+    kept: Option<KeptMaps>,
     casters: Uniforms,
     receivers: Uniforms,
 }
@@ -160,6 +163,17 @@ impl ShadowMaps {
         if matches!(config.filter, Filter::Pcss { .. }) && !depth_loads && !is_colour {
             notes.push("no loads from depth textures on GL: pcss is a disc of fixed width".to_owned());
         }
+        let keeps = config.cache == Cache::Kept;
+        if keeps && !depth_loads {
+            notes.push("no loads from depth textures on GL: nothing is kept of maps".to_owned());
+        }
+        let casters = Uniforms::of_casters(device, &passes);
+        let kept = (keeps && depth_loads)
+            .then(|| {
+                let maps = (&sizes[..], &arrangement.tiles[..]);
+                KeptMaps::new(device, &casters.layout, maps, largest_viewport(device))
+            })
+            .transpose()?;
         let received = Received {
             filter: config.filter,
             storage,
@@ -179,10 +193,11 @@ impl ShadowMaps {
             depth_loads,
             depth_clip_control,
             colour_target: is_colour.then(|| texture_format(config.depth_format).into()),
-            casters: Uniforms::of_casters(device, &passes),
+            casters,
             receivers: Uniforms::of_receivers(device, &received, &targets, moments.as_ref()),
             targets,
             moments,
+            kept,
             passes,
             slots,
         })
@@ -238,7 +253,16 @@ impl ShadowMaps {
         pass: usize,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'e> {
-        let mut render = self.targets.begin(encoder, pass, self.multiview_mask, timestamp_writes);
+        self.begin(encoder, (pass, true), timestamp_writes)
+    }
+
+    fn begin<'e>(
+        &self,
+        encoder: &'e mut wgpu::CommandEncoder,
+        (pass, is_cleared): (usize, bool),
+        timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) -> wgpu::RenderPass<'e> {
+        let mut render = self.targets.begin(encoder, (pass, is_cleared), self.multiview_mask, timestamp_writes);
         let split = self.passes[pass].splits().start;
         let Place { tile, viewport } = self.places[split];
         match self.layout.generation() {
@@ -408,10 +432,11 @@ impl ShadowMaps {
     }
 
     /// Bytes of all maps, of depth buffers beside maps that are colours, and for moment filters of
-    /// the moments with their mip levels and of the texture between two blurs.
+    /// the moments with their mip levels, of the texture between two blurs, and of what is kept.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        self.targets.bytes() + self.moments.as_ref().map_or(0, Moments::bytes)
+        let moments = self.moments.as_ref().map_or(0, Moments::bytes);
+        self.targets.bytes() + moments + self.kept.as_ref().map_or(0, KeptMaps::bytes)
     }
 
     /// Whether casters in front of a map's near plane are clamped to it, so that the plane may lie

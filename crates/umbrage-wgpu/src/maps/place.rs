@@ -30,6 +30,16 @@ impl Viewport {
         }
         Self { edge, guard: (edge - size) / 2 }
     }
+
+    /// [`Viewport::around`] for a square of any size, whose edge is a power of two all the same.
+    pub fn of_power(size: u32, largest: u32) -> Self {
+        let power = size.next_power_of_two();
+        if power > largest {
+            return Self::around(size, largest);
+        }
+        let Self { edge, .. } = Self::around(power, largest.min(Self::WIDEST * size));
+        Self { edge, guard: (edge - size) / 2 }
+    }
 }
 
 /// Where a split's map lies, and the viewport that it is drawn with.

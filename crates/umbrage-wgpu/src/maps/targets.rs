@@ -107,24 +107,26 @@ impl Targets {
         self.maps.iter().chain(&self.depths).map(bytes).sum()
     }
 
-    /// Begins pass `index`, cleared to the farthest depth.
+    /// Begins pass `index`, cleared to the farthest depth or, where all of its map is about to be
+    /// written, as it is.
     pub fn begin<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
-        index: usize,
+        (index, is_cleared): (usize, bool),
         multiview_mask: Option<std::num::NonZeroU32>,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'e> {
         let Attachments { colour, depth, keeps } = &self.attachments[index];
         let store = wgpu::StoreOp::Store;
-        let colour_load = if *keeps { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::WHITE) };
+        let keeps = *keeps || !is_cleared;
+        let colour_load = if keeps { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::WHITE) };
         let colour = colour.as_ref().map(|view| wgpu::RenderPassColorAttachment {
             view,
             depth_slice: None,
             resolve_target: None,
             ops: wgpu::Operations { load: colour_load, store },
         });
-        let load = if *keeps { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(1.0) };
+        let load = if keeps { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(1.0) };
         let colours = colour.map(Some);
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("ShadowMaps::pass"),
@@ -146,7 +148,7 @@ fn aspect(texture: &wgpu::Texture) -> wgpu::TextureAspect {
     if texture.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All }
 }
 
-fn texture(
+pub(super) fn texture(
     device: &wgpu::Device,
     label: &str,
     format: wgpu::TextureFormat,

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use umbrage::ShadowPlan;
+use umbrage::{Keeper, ShadowPlan};
 
 use crate::ShadowMaps;
 
@@ -40,6 +40,20 @@ impl Draws {
             if alone || self.list.len() > begin {
                 self.passes.push(index);
             }
+            self.ends.push(self.list.len());
+        }
+    }
+
+    /// Lists what of one sun's maps is not kept: regions, which follow the passes, and the maps that
+    /// are due with what moves in them.
+    pub fn list_kept(&mut self, keeper: &Keeper) {
+        self.clear();
+        let maps = keeper.maps();
+        self.passes.extend(maps.len()..maps.len() + keeper.regions().len());
+        self.passes.extend((0..maps.len()).filter(|&map| maps[map].is_due));
+        let movers = maps.iter().map(|map| keeper.movers(map));
+        for casters in movers.chain(keeper.regions().iter().map(|region| keeper.casters(region))) {
+            self.list.extend(casters.iter().map(|&caster| (caster, 0..1)));
             self.ends.push(self.list.len());
         }
     }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use umbrage::{ShadowPlan, View};
+use umbrage::{Aabb, KeptRegion, ShadowPlan, View};
 
 use super::{Shadows, draws};
 use crate::Slice;
@@ -20,20 +20,36 @@ impl<'a> ShadowFrame<'a> {
     }
 
     /// The maps to draw, in this order; none without shadows. Maps of several lights that no caster
-    /// reaches are omitted: nothing reads them.
+    /// reaches are omitted: nothing reads them. With [`umbrage::config::Cache::Kept`] the regions of
+    /// kept maps come first, and maps that have not changed are omitted, so there may be nothing to
+    /// draw for many frames.
     pub fn maps(&self) -> impl Iterator<Item = ShadowMap<'a>> + use<'a> {
         let shadows = self.shadows;
         shadows.draws.passes.iter().map(move |&pass| ShadowMap { shadows, pass })
     }
 
-    /// The map pass of index `pass`, whether it has casters or not.
+    /// The map pass of index `pass`, whether it has casters or not; behind the passes of
+    /// [`crate::ShadowMaps::passes`] those of this frame's kept regions.
     ///
     /// # Panics
     /// If there is no such pass.
     #[must_use]
     pub fn map(&self, pass: usize) -> ShadowMap<'a> {
-        assert!(pass < self.shadows.maps.passes().len(), "there are {} passes", self.shadows.maps.passes().len());
+        assert!(pass < self.pass_count(), "there are {} passes", self.pass_count());
         ShadowMap { shadows: self.shadows, pass }
+    }
+
+    /// How many passes [`ShadowFrame::map`] knows.
+    #[must_use]
+    pub fn pass_count(&self) -> usize {
+        self.shadows.maps.passes().len() + self.shadows.regions().len()
+    }
+
+    /// Whether the maps of this frame come from what is kept of them
+    /// ([`umbrage::config::Cache::Kept`]).
+    #[must_use]
+    pub fn is_kept(&self) -> bool {
+        self.shadows.is_kept
     }
 
     /// The plan of a light.
@@ -74,7 +90,7 @@ pub struct ShadowMap<'a> {
 }
 
 impl<'a> ShadowMap<'a> {
-    /// Its index among all map passes.
+    /// Its index among all map passes; see [`ShadowFrame::map`].
     #[must_use]
     pub fn index(&self) -> usize {
         self.pass
@@ -89,11 +105,39 @@ impl<'a> ShadowMap<'a> {
     /// The splits of the light's plan that it draws: one with layouts that draw one map a pass.
     #[must_use]
     pub fn splits(&self) -> Range<usize> {
+        if let Some(region) = self.region() {
+            return region.split..region.split + 1;
+        }
         let (_, first) = self.place();
         first..first + self.shadows.maps.passes()[self.pass].splits().len()
     }
 
+    /// Whether it is a part of what is kept of a map, and not a map itself.
+    #[must_use]
+    pub fn is_region(&self) -> bool {
+        self.region().is_some()
+    }
+
+    /// Whether a part of one of the casters, by the part's world box, has to be drawn: in a region
+    /// whether it reaches it, in a map of one split what [`ShadowPlan::casts_into`] says. Skipping
+    /// what it rejects never changes a visible pixel, nor what is kept.
+    #[must_use]
+    pub fn is_reached_by(&self, part: &Aabb) -> bool {
+        match self.region() {
+            Some(region) => region.is_reached_by(part),
+            None => self.splits().any(|split| self.shadows.plans[self.light()].casts_into(split, part)),
+        }
+    }
+
+    fn region(&self) -> Option<&'a KeptRegion> {
+        let first = self.shadows.maps.passes().len();
+        self.shadows.regions().get(self.pass.checked_sub(first)?)
+    }
+
     fn place(&self) -> (usize, usize) {
+        if self.is_region() {
+            return (0, self.splits().start);
+        }
         self.shadows.maps.light_of_map(self.shadows.maps.passes()[self.pass].splits().start)
     }
 
@@ -127,17 +171,19 @@ impl<'a> ShadowMap<'a> {
     /// ```
     #[must_use]
     pub fn rows(&self) -> Option<impl Iterator<Item = Range<u32>> + use<'a>> {
-        let is_alone = self.shadows.maps.passes()[self.pass].is_alone();
+        let is_alone = self.is_region() || self.shadows.maps.passes()[self.pass].is_alone();
         is_alone.then(|| draws::rows(self.shadows.draws.of_pass(self.pass)))
     }
 
     /// The group that [`Shadows::caster_wgsl`] declares, for this map.
     #[must_use]
     pub fn bind_group(&self) -> &'a wgpu::BindGroup {
-        self.shadows.maps.caster_bind_group(self.pass)
+        let of_region = self.region().and_then(|region| self.shadows.maps.region_bind_group(region));
+        of_region.unwrap_or_else(|| self.shadows.maps.caster_bind_group(self.pass))
     }
 
-    /// Begins the pass: the map is cleared, viewport and scissor are set and have to stay.
+    /// Begins the pass: the map is cleared, or shows what is kept of it; viewport and scissor are
+    /// set and have to stay. Pipeline and bind group 0 are to be set.
     pub fn begin<'e>(&self, encoder: &'e mut wgpu::CommandEncoder) -> wgpu::RenderPass<'e> {
         self.begin_timed(encoder, None)
     }
@@ -148,6 +194,11 @@ impl<'a> ShadowMap<'a> {
         encoder: &'e mut wgpu::CommandEncoder,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'e> {
-        self.shadows.maps.begin_pass(encoder, self.pass, timestamp_writes)
+        let maps = &self.shadows.maps;
+        match self.region() {
+            Some(region) => maps.begin_region(encoder, region, timestamp_writes).expect("a region is of what is kept"),
+            None if self.shadows.is_kept => maps.begin_kept(encoder, self.pass, timestamp_writes),
+            None => maps.begin_pass(encoder, self.pass, timestamp_writes),
+        }
     }
 }

@@ -42,6 +42,11 @@ pub struct Inputs<'a> {
     pub image_size: [u32; 2],
     /// Which of several views this is; 0 where there is one.
     pub view_slot: u32,
+    /// Texels of kept maps that may be drawn in this frame; `None`: as many as are missing. A split
+    /// that waits for its texels is answered for by the next one, which is coarser.
+    pub kept_texels: Option<u64>,
+    /// Whether kept maps are drawn anew though they are there: to compare with.
+    pub redraws_kept: bool,
     /// Whether there are shadows. Without them there is nothing to draw, every surface that faces a
     /// light is lit, and what stabilised maps hold stays as it was.
     pub enabled: bool,
@@ -65,6 +70,8 @@ impl<'a> Inputs<'a> {
             origin: DVec3::ZERO,
             image_size: [1920, 1080],
             view_slot: 0,
+            kept_texels: None,
+            redraws_kept: false,
             enabled: true,
             tint: false,
         }

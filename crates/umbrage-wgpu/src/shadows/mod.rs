@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use umbrage::config::{LightKind, Rebuilds, ShadowConfig};
-use umbrage::{Held, PlanInputs, Planner, PlannerOptions, ShadowPlan};
+use umbrage::{Held, Keeper, KeptFrame, KeptRegion, PlanInputs, Planner, PlannerOptions, ShadowPlan};
 
 use draws::Draws;
 pub use frame::{ShadowFrame, ShadowMap};
@@ -35,6 +35,14 @@ use crate::{Error, FrameOptions, LightMaps, Result, ShadowMaps};
 ///
 /// [`umbrage::config::SETTINGS`] lists the settings with what they rebuild at most. Shadows stand
 /// still through every change that has nothing to do with where maps lie.
+///
+/// # What is kept
+///
+/// With [`umbrage::config::Cache::Kept`] and [`Inputs::set`], what static casters have drawn is
+/// kept from frame to frame, and [`ShadowFrame::maps`] has what is to be drawn beside it: maybe
+/// nothing. Maps are those that are drawn anew, bit for bit. All maps of a frame that was prepared
+/// have to be drawn, or [`Shadows::forget_kept`] has to be told. Views that take turns draw over
+/// what is kept of each other: give each a `Shadows` of its own.
 ///
 /// # Several views
 ///
@@ -72,6 +80,10 @@ pub struct Shadows {
     plans: Vec<Arc<ShadowPlan>>,
     enabled: bool,
     draws: Draws,
+    /// Books of what is kept of the maps, where anything is.
+    keeper: Option<Keeper>,
+    /// Whether this frame's maps come from what is kept.
+    is_kept: bool,
 }
 
 impl Shadows {
@@ -104,6 +116,8 @@ impl Shadows {
         Ok(Self {
             config: config.clone(),
             lights,
+            keeper: maps.keeper(),
+            is_kept: false,
             maps,
             planned,
             notes,
@@ -166,11 +180,44 @@ impl Shadows {
                 planner.plan_into(&of_light, plan)?;
             }
         }
+        self.is_kept = inputs.enabled && self.keep(inputs);
         let plans: Vec<&ShadowPlan> = self.plans.iter().map(|plan| &**plan).collect();
         let options = FrameOptions { origin: inputs.origin, enabled: inputs.enabled, tint: inputs.tint };
         self.maps.prepare_lights(queue, &plans, &options)?;
-        self.draws.list(&self.maps, &plans, inputs.enabled);
+        match &mut self.keeper {
+            Some(keeper) if self.is_kept => {
+                self.maps.prepare_kept(queue, plans[0], keeper, &options)?;
+                self.draws.list_kept(keeper);
+                keeper.accept();
+            }
+            _ => self.draws.list(&self.maps, &plans, inputs.enabled),
+        }
         Ok(())
+    }
+
+    /// Works out what has to be drawn into what is kept. False if nothing is: casters of a list say
+    /// neither what is static nor which is which.
+    fn keep(&mut self, inputs: &Inputs<'_>) -> bool {
+        let (Some(keeper), [plan]) = (&mut self.keeper, &mut self.plans[..]) else { return false };
+        let (Some(set), Some(plan)) = (inputs.set, Arc::get_mut(plan)) else {
+            keeper.forget_maps();
+            return false;
+        };
+        let frame = KeptFrame {
+            set,
+            layers: inputs.layers,
+            origin: inputs.origin,
+            budget: inputs.kept_texels,
+            drops_small: self.config.drop_small_casters,
+            redraws: inputs.redraws_kept,
+        };
+        keeper.prepare(&frame, plan);
+        true
+    }
+
+    /// The regions of this frame.
+    fn regions(&self) -> &[KeptRegion] {
+        self.keeper.as_ref().filter(|_| self.is_kept).map_or(&[], Keeper::regions)
     }
 
     /// Whatever can be wrong before anything is planned.
@@ -284,10 +331,14 @@ impl Shadows {
         let rebuilt = match new {
             None => {
                 self.maps.set_config(&config)?;
+                if let Some(keeper) = &mut self.keeper {
+                    keeper.clear();
+                }
                 Rebuilds::Nothing
             }
             Some(new) => {
                 let keeps_pipelines = new.shares_pipelines_with(&self.maps);
+                self.keeper = new.keeper();
                 self.maps = new;
                 if keeps_pipelines { Rebuilds::Maps } else { Rebuilds::Pipelines }
             }
@@ -301,6 +352,7 @@ impl Shadows {
                 }
             }
         }
+        self.is_kept = false;
         (self.config, self.lights, self.planned, self.notes) = (config, lights, planned, notes);
         self.plans.clear();
         self.draws.clear();
@@ -312,7 +364,17 @@ impl Shadows {
     pub fn restart(&mut self) {
         self.planners.clear();
         self.plans.clear();
+        self.forget_kept();
+    }
+
+    /// Forgets what is kept of maps, for an application that has prepared a frame and not drawn all
+    /// of its maps. What stabilised maps hold on to stays.
+    pub fn forget_kept(&mut self) {
+        if let Some(keeper) = &mut self.keeper {
+            keeper.clear();
+        }
         self.draws.clear();
+        self.is_kept = false;
     }
 
     /// Lets view `to` go on from what view `from` holds, and forgets `from`.

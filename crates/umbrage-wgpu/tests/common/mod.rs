@@ -2,6 +2,8 @@
 //! that asks points.
 #![allow(dead_code, reason = "each test file uses its own part of this module")]
 
+pub mod painter;
+
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, DVec4, Vec3};
 use umbrage::config::{Filter, LightKind, MomentKind, Moments, Preset, Selection, ShadowConfig};

@@ -1,6 +1,7 @@
 //! A kept set of casters: what a planner is given instead of lists where there are many.
 
 mod curve;
+mod journal;
 mod kind;
 mod loose;
 mod packed;
@@ -9,6 +10,7 @@ mod slots;
 pub(crate) mod tree;
 mod view;
 
+pub(crate) use journal::Change;
 pub use kind::Layers;
 pub(crate) use kind::Role;
 pub use set::{Caster, CasterSet, Motion};

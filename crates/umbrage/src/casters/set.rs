@@ -1,8 +1,11 @@
 //! The set: what an application does with it.
 
+mod changes;
+
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::curve::Curve;
+use super::journal::Journal;
 use super::kind::{Kind, Kinds, Layers};
 use super::loose::{Entry, Loose};
 use super::packed::{Packing, RUN, Run, on_lattice};
@@ -126,6 +129,10 @@ pub struct CasterSet {
     /// Who this is, and how often it has changed: two sets that agree in both hold the same.
     identity: u64,
     revision: u64,
+    /// Changes of static casters.
+    journal: Journal,
+    /// How often casters have come, gone or changed their motion.
+    membership: u64,
 }
 
 impl Default for CasterSet {
@@ -138,6 +145,8 @@ impl Default for CasterSet {
             len: 0,
             identity: new_identity(),
             revision: 0,
+            journal: Journal::default(),
+            membership: 0,
         }
     }
 }
@@ -150,6 +159,7 @@ impl Clone for CasterSet {
             runs: self.runs.clone(),
             loose: self.loose.clone(),
             identity: new_identity(),
+            journal: self.journal.clone(),
             ..*self
         }
     }
@@ -192,6 +202,7 @@ impl CasterSet {
         let slot = self.slots.index(handle)?;
         self.loose.push(entry(&caster, kind, slot));
         self.len += 1;
+        self.note(slot, None);
         self.changed();
         Ok(handle)
     }
@@ -223,6 +234,7 @@ impl CasterSet {
         }
         self.len += casters.len();
         self.pack_entries(&packing);
+        self.note_all(&handles);
         self.changed();
         Ok(handles)
     }
@@ -237,6 +249,7 @@ impl CasterSet {
         let slot = self.slots.index(handle)?;
         let (key, kind) = self.about(slot);
         check(bounds, Some(handle), key)?;
+        let before = self.static_bounds(slot);
         match self.slots.get(slot) {
             Place::Loose(at) => {
                 let moves = self.loose.entries[at as usize].moves;
@@ -253,6 +266,9 @@ impl CasterSet {
                 }
             }
         }
+        if before.is_some() && before != self.static_bounds(slot) {
+            self.note_static(slot, before);
+        }
         self.changed();
         Ok(())
     }
@@ -265,9 +281,11 @@ impl CasterSet {
         let slot = self.slots.index(handle)?;
         check(caster.bounds, Some(handle), caster.key)?;
         let kind = self.kinds.number(caster.kind())?;
+        self.note_end(slot);
         self.unplace(slot);
         let at = self.loose.push(entry(&caster, kind, slot));
         self.slots.set(slot, Place::Loose(at));
+        self.note(slot, None);
         self.changed();
         Ok(())
     }
@@ -279,7 +297,9 @@ impl CasterSet {
     pub fn set_motion(&mut self, handle: CasterHandle, motion: Motion) -> Result<()> {
         let slot = self.slots.index(handle)?;
         if self.caster(slot).motion != motion {
+            let before = self.static_bounds(slot);
             self.loosen(slot, &|caster| caster.motion = motion);
+            self.note(slot, before);
             self.changed();
         }
         Ok(())
@@ -291,6 +311,7 @@ impl CasterSet {
     /// [`Error::RemovedCaster`].
     pub fn remove(&mut self, handle: CasterHandle) -> Result<()> {
         let slot = self.slots.index(handle)?;
+        self.note_end(slot);
         self.unplace(slot);
         self.slots.remove(slot);
         self.len -= 1;
@@ -303,6 +324,8 @@ impl CasterSet {
         let taken: Vec<u32> = self.slots.iter().collect();
         taken.into_iter().for_each(|slot| self.slots.remove(slot));
         (self.runs, self.loose, self.len) = (Vec::new(), Loose::default(), 0);
+        self.journal.note_too_many();
+        self.membership += 1;
         self.revision += 1;
     }
 
@@ -355,7 +378,13 @@ impl CasterSet {
     pub fn memory(&self) -> usize {
         let runs = self.runs.iter().flatten().map(Run::bytes).sum::<usize>();
         let table = self.runs.capacity() * size_of::<Option<Run>>();
-        size_of::<Self>() + self.slots.bytes() + self.kinds.bytes() + runs + table + self.loose.bytes()
+        size_of::<Self>()
+            + self.slots.bytes()
+            + self.kinds.bytes()
+            + runs
+            + table
+            + self.loose.bytes()
+            + self.journal.bytes()
     }
 
     /// Two sets that agree in this hold the same.

@@ -56,6 +56,23 @@ impl<'a> Crowd<'a> {
         }
     }
 
+    /// [`Crowd::each`] of a set's static casters alone; of a list none.
+    pub fn each_static(&self, mut test: impl FnMut(&Placed) -> bool, mut visit: impl FnMut(u32, &Placed)) {
+        let Boxes::Set { set, ask, .. } = self.boxes else { return };
+        let (runs, loose, kinds) = set.parts();
+        for run in runs.iter().flatten() {
+            let name = |lane: usize| run.about(lane as u32).0;
+            let asked = self.run(run, kinds);
+            tree::each(&asked, self.counter, &mut test, &mut |lane, placed| visit(name(lane), placed));
+        }
+        let asked = loose.asked(ask, kinds, self.farthest);
+        tree::each(&asked, self.counter, &mut test, &mut |at, placed| {
+            if !loose.entries[at].moves {
+                visit(loose.entries[at].key, placed);
+            }
+        });
+    }
+
     /// Whether any box passes a monotone test.
     pub fn any(&self, test: impl Fn(&Placed) -> bool) -> bool {
         let found = std::cell::Cell::new(false);

@@ -66,6 +66,17 @@ named! {
     }
 }
 
+named! {
+    /// Whether what static casters draw into a sun's maps is kept from frame to frame.
+    pub enum Cache as "cache" {
+        /// Every map is drawn again in every frame
+        #[default]
+        Off = "off",
+        /// Static casters are drawn where a map has not shown them yet, moving ones in every frame
+        Kept = "kept",
+    }
+}
+
 /// Where maps are stored and how they are drawn: the nine pairs that go together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Layout {

@@ -28,7 +28,7 @@ pub use budget::Budget;
 pub use filter::{Derivatives, Filter, MomentKind, Moments, SUN_DEGREES};
 pub use fit::{Crop, ExtentSteps, Stability};
 pub use given::Given;
-pub use layout::{Coordinates, DepthFormat, Fallbacks, Generation, Layout, Storage};
+pub use layout::{Cache, Coordinates, DepthFormat, Fallbacks, Generation, Layout, Storage};
 pub use look::{Look, ReceiverBias, Translucent};
 pub use names::Word;
 pub(crate) use names::unknown;
@@ -124,6 +124,10 @@ pub struct ShadowConfig {
     pub depth_format: DepthFormat,
     /// Where maps are stored and how they are drawn.
     pub layout: Layout,
+    /// Whether what static casters draw into the maps is kept. Kept maps take about twice the memory
+    /// and need a [`crate::CasterSet`], which knows what is static; casters of a list are drawn again
+    /// in every frame.
+    pub cache: Cache,
     /// Whether unsupported features are replaced by supported ones.
     pub fallbacks: Fallbacks,
     /// Where receivers take the coordinates in a map from.
@@ -235,6 +239,7 @@ impl ShadowConfig {
             filter: _,
             depth_format: _,
             layout: _,
+            cache,
             fallbacks: _,
             coordinates: _,
             look: _,
@@ -244,6 +249,7 @@ impl ShadowConfig {
             && (*range, *selection, *crop) == (other.range, other.selection, other.crop)
             && (self.blend(), *far_fade) == (other.blend(), other.far_fade)
             && (stability, *drop_small_casters) == (&other.stability, other.drop_small_casters)
+            && *cache == other.cache
     }
 
     /// The config for lights of these kinds: settings that exclude such a light are reset. The

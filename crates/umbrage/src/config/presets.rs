@@ -2,8 +2,8 @@
 
 use super::names::named;
 use super::{
-    Coordinates, Crop, DepthFormat, ExtentSteps, Fallbacks, Filter, Layout, Look, Range, Selection, ShadowConfig,
-    SplitScheme, Stability, Transition,
+    Cache, Coordinates, Crop, DepthFormat, ExtentSteps, Fallbacks, Filter, Layout, Look, Range, Selection,
+    ShadowConfig, SplitScheme, Stability, Transition,
 };
 
 named! {
@@ -40,6 +40,7 @@ impl Preset {
             filter: Filter::Pcf3 { width_m: None },
             depth_format: DepthFormat::D32Float,
             layout: Layout::Array,
+            cache: Cache::Off,
             fallbacks: Fallbacks::Allow,
             coordinates: Coordinates::World,
             look: Look::default(),

@@ -4,8 +4,8 @@
 use std::fmt;
 
 use super::{
-    Coordinates, DepthFormat, Filter, Layout, LightKind, Range, Selection, ShadowConfig, SplitMetric, SplitScheme,
-    Stability, Transition,
+    Cache, Coordinates, DepthFormat, Filter, Layout, LightKind, Range, Selection, ShadowConfig, SplitMetric,
+    SplitScheme, Stability, Transition,
 };
 use crate::Warp;
 
@@ -46,6 +46,12 @@ pub enum Choice {
     MoreThanSixSplits,
     /// Maps of different sizes.
     UnequalSizes,
+    /// Maps that do not stand exactly still.
+    NotStill,
+    /// Maps of another format than 32-bit depth.
+    OtherDepth,
+    /// What static casters draw is kept.
+    KeptMaps,
     /// Pixels make the coordinates of maps from the picture's depth.
     DeferredCoordinates,
     /// Vertices make the coordinates of maps.
@@ -164,6 +170,49 @@ pub const RULES: &[Rule] = &[
         "use fewer splits, or coordinates world",
     ),
     rule(
+        Choice::NotStill,
+        Choice::KeptMaps,
+        "what is kept stands on the grid of maps that stand exactly still",
+        "use stabilize exact, or cache off",
+    ),
+    rule(
+        Choice::MapSelection,
+        Choice::KeptMaps,
+        "a map that is not filled yet hands its slice of view depths to the next one",
+        "use selection depth, or cache off",
+    ),
+    rule(
+        Choice::VisibleRange,
+        Choice::KeptMaps,
+        "a range that follows the receivers in view changes all maps as the camera turns",
+        "use range-fit camera, or cache off",
+    ),
+    rule(
+        Choice::OtherDepth,
+        Choice::KeptMaps,
+        "16-bit depth wants a range that moves with the view, and colours cannot be copied as depth",
+        "use depth-format d32f, or cache off",
+    ),
+    rule(
+        Choice::SeveralSamples,
+        Choice::KeptMaps,
+        "texels of several samples cannot be copied into a map",
+        "use msaa 1, or cache off",
+    ),
+    rule(
+        Choice::NotPerSplit,
+        Choice::KeptMaps,
+        "each map has regions of its own to be drawn",
+        "use generation per-split, or cache off",
+    ),
+    rule(
+        Choice::KeptMaps,
+        Choice::LocalLight,
+        "maps of a spot or point light have no grid that outlasts the light's frame",
+        "use cache off, or a directional light",
+    ),
+    rule(Choice::KeptMaps, Choice::SeveralFaces, "maps are kept for one sun", "use cache off, or one sun"),
+    rule(
         Choice::Warp,
         Choice::LocalLight,
         "a warp needs light that is parallel in the world",
@@ -274,7 +323,7 @@ impl fmt::Display for Conflict {
 
 impl Choice {
     /// All choices that a rule may name.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 25] = [
         Self::Warp,
         Self::MapSelection,
         Self::DistanceMetric,
@@ -292,6 +341,9 @@ impl Choice {
         Self::CubeFaces,
         Self::MoreThanSixSplits,
         Self::UnequalSizes,
+        Self::NotStill,
+        Self::OtherDepth,
+        Self::KeptMaps,
         Self::DeferredCoordinates,
         Self::VertexCoordinates,
         Self::MoreThanFourSplits,
@@ -320,6 +372,9 @@ impl Choice {
             Self::CubeFaces => config.layout.storage() == super::Storage::Cube,
             Self::MoreThanSixSplits => config.splits() > 6,
             Self::UnequalSizes => config.map_sizes.windows(2).any(|pair| pair[0] != pair[1]),
+            Self::NotStill => config.stability != Stability::Exact,
+            Self::OtherDepth => config.depth_format != DepthFormat::D32Float,
+            Self::KeptMaps => config.cache == Cache::Kept,
             Self::DeferredCoordinates => config.coordinates == Coordinates::Deferred,
             Self::VertexCoordinates => config.coordinates == Coordinates::Vertex,
             Self::MoreThanFourSplits => config.splits() > 4,
@@ -340,11 +395,13 @@ impl Choice {
             Self::Band => &["blend", "transition"],
             Self::MomentFilter | Self::SunFilter => &["filter", "msaa", "bleeding", "derivatives"],
             Self::SeveralSamples => &["msaa"],
-            Self::ColourMaps => &["depth-format"],
+            Self::ColourMaps | Self::OtherDepth => &["depth-format"],
             Self::OneMap | Self::NotLayers | Self::CubeFaces => &["storage", "generation"],
             Self::NotPerSplit | Self::TiledLayers => &["generation", "storage"],
             Self::MoreThanSixSplits | Self::MoreThanFourSplits => &["splits", "map-size", "planes"],
             Self::UnequalSizes => &["map-size"],
+            Self::NotStill => &["stabilize", "extent-steps", "extent-levels", "warp", "tsm-focus"],
+            Self::KeptMaps => &["cache"],
             Self::DeferredCoordinates | Self::VertexCoordinates => &["coordinates"],
             Self::LocalLight | Self::SeveralFaces => &["light"],
         }
@@ -388,7 +445,9 @@ impl Choice {
                     moments.samples = 1;
                 }
             }
-            Self::ColourMaps => config.depth_format = DepthFormat::default(),
+            Self::ColourMaps | Self::OtherDepth => config.depth_format = DepthFormat::default(),
+            Self::NotStill => config.stability = Stability::Exact,
+            Self::KeptMaps => config.cache = Cache::Off,
             Self::OneMap | Self::NotLayers | Self::NotPerSplit | Self::CubeFaces | Self::TiledLayers => {
                 config.layout = Layout::Array;
             }

@@ -4,7 +4,7 @@
 use super::given::Wrong;
 use super::setting::{Kind, Rebuilds, Setting, Value};
 use super::{
-    Coordinates, Crop, DepthFormat, Derivatives, ExtentSteps, Fallbacks, Filter, Range, ReceiverBias, Selection,
+    Cache, Coordinates, Crop, DepthFormat, Derivatives, ExtentSteps, Fallbacks, Filter, Range, ReceiverBias, Selection,
     SplitMetric, SplitScheme, Stability, Transition, Translucent,
 };
 use super::{set, text, words};
@@ -361,6 +361,14 @@ pub const SETTINGS: &[Setting] = &[
         rebuilds: Rebuilds::Pipelines,
         set: |config, _, given| set::layout(config, given),
         get: |config| word(config.layout.storage().word()),
+    },
+    Setting {
+        key: "cache",
+        help: "Whether what static casters draw into a sun's maps is kept from frame to frame",
+        kind: Kind::Words(Cache::WORDS),
+        rebuilds: Rebuilds::Maps,
+        set: |config, text, _| text.parse().map(|cache| config.cache = cache).map_err(Wrong::from),
+        get: |config| word(config.cache.word()),
     },
     Setting {
         key: "bias",

@@ -10,6 +10,7 @@ use super::shaft::{Shaft, first_depth};
 use crate::Split;
 use crate::bounds::Placed;
 use crate::casters::Most;
+use crate::config::Cache;
 use crate::held::depths::HeldDepths;
 
 /// Depths along the light between which still maps lie whose depth is not clamped, metres; `None`
@@ -42,7 +43,9 @@ impl WorldDepths {
         }
         let shaft = around_view(frame, sun, layout);
         if far - near <= MOST_LENGTHS * shaft.half {
-            return Self(Some((near, far)));
+            // What is kept would be lost with every caster that leaves the range.
+            let is_kept = frame.config.cache == Cache::Kept;
+            return Self(Some(if is_kept { held.hold(near, far) } else { (near, far) }));
         }
         // Of a receiver nothing is asked that lies farther from the eye than the range goes.
         let end = |r: &Placed| shaft.passage(r).filter(|_| scope.matters(r)).map(|it| it.1);

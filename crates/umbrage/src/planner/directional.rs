@@ -96,7 +96,7 @@ fn describe(frame: &Frame<'_>, sun: &Sun<'_>, layout: &Layout, plan: &mut Shadow
 const SMALL_TEXELS: f64 = 0.5;
 
 /// Whether the whole shadow of a caster is small in a map with these axes, in texels per metre.
-fn is_small(caster: &Placed, texels_per_m: [DVec3; 2]) -> bool {
+pub(crate) fn is_small(caster: &Placed, texels_per_m: [DVec3; 2]) -> bool {
     texels_per_m.iter().all(|axis| 2.0 * axis.abs().dot(caster.half) < SMALL_TEXELS)
 }
 

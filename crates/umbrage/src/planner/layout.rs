@@ -11,7 +11,7 @@ use super::in_view::InView;
 use super::range;
 use super::scope::Scope;
 use super::slice_ends::{SliceEnds, covered};
-use crate::config::{SplitScheme, Stability};
+use crate::config::{Cache, SplitScheme, Stability};
 use crate::geometry::sphere::slice_sphere;
 use crate::held::Held;
 use crate::held::ends::Range;
@@ -211,8 +211,11 @@ impl Layout {
     /// all receivers.
     pub fn block(&self, frame: &Frame<'_>, sun: &Sun<'_>, planes: &[f64], i: usize) -> Block {
         let slice = SliceEnds::new(frame, planes, i);
-        // A wider lens has wider pixels, and its slices reach back farther.
-        let begin = if slice.is_visible && i > 0 {
+        // A kept map stands in for those before it, too. A wider lens has wider pixels, and its
+        // slices reach back farther.
+        let begin = if frame.config.cache == Cache::Kept {
+            slice.from.min(frame.view.frustum().near)
+        } else if slice.is_visible && i > 0 {
             covered(frame, &self.lens, planes, i).0.min(slice.from)
         } else {
             slice.from

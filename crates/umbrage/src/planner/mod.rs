@@ -30,6 +30,7 @@ use crate::geometry::light_frustum::LightFrustum;
 use crate::held::Held;
 use crate::{Light, Result, ShadowConfig, ShadowPlan, View};
 use directional::SunBuffers;
+pub(crate) use directional::is_small;
 use frame::Frame;
 pub use inputs::{Boxes, PlanInputs};
 use kept::Kept;

@@ -1,0 +1,213 @@
+//! Kept maps are the maps that are drawn anew, bit for bit, in every frame of a life with walks,
+//! turns, leaps, movers and casters that come and go; and they cost what has changed.
+
+mod common;
+
+use std::collections::BTreeMap;
+
+use common::painter::{Painted, Painter};
+use common::{Gpu, PCF3, config};
+use glam::DVec3;
+use umbrage::{Aabb, Caster, CasterHandle, CasterSet, DirectionalLight, Frustum, Light, Motion, View};
+use umbrage_wgpu::{Inputs, ShadowConfig};
+
+const SETTINGS: &str = "shadow-range=0.5..90 cache=kept";
+
+/// Casters by key: their handles, and the boxes that are drawn of them.
+struct World {
+    set: CasterSet,
+    casters: BTreeMap<u32, (CasterHandle, Aabb)>,
+    eye: DVec3,
+    heading: f64,
+    sun: DVec3,
+    origin: DVec3,
+}
+
+impl World {
+    /// A town of boxes on a plain that throws no shadow.
+    fn new() -> Self {
+        let mut set = CasterSet::new();
+        let ground = Aabb::new(DVec3::new(-120.0, -0.5, -120.0), DVec3::new(120.0, 0.0, 120.0));
+        set.insert(Caster { casts: false, ..Caster::new(ground, u32::MAX) }).expect("a box");
+        let share = |i: u32, step: u32| f64::from(i.wrapping_mul(step) % 9973) / 9972.0;
+        let casters: Vec<Caster> = (0..600u32)
+            .map(|i| {
+                let at = DVec3::new(200.0 * share(i + 1, 5171) - 100.0, 0.0, 200.0 * share(i + 1, 7919) - 100.0);
+                let size = DVec3::new(0.3 + 2.0 * share(i, 313), 0.5 + 5.0 * share(i, 771), 0.3 + 2.0 * share(i, 997));
+                Caster::new(Aabb::new(at, at + if i % 40 == 0 { 4.0 * size } else { size }), i)
+            })
+            .collect();
+        let handles = set.insert_all(casters.iter().copied()).expect("boxes");
+        let casters = handles.into_iter().zip(casters).map(|(handle, it)| (it.key, (handle, it.bounds))).collect();
+        let eye = DVec3::new(3.0, 1.7, -5.0);
+        Self { set, casters, eye, heading: 0.3, sun: DVec3::new(0.5, -1.0, 0.35), origin: DVec3::ZERO }
+    }
+
+    fn insert(&mut self, key: u32, at: DVec3, motion: Motion) {
+        let bounds = Aabb::new(at, at + DVec3::new(1.0, 2.0, 1.0));
+        let handle = self.set.insert(Caster { motion, ..Caster::new(bounds, key) }).expect("a box");
+        self.casters.insert(key, (handle, bounds));
+    }
+
+    fn move_by(&mut self, key: u32, step: DVec3) {
+        let (handle, bounds) = self.casters.get_mut(&key).expect("a caster");
+        *bounds = Aabb::new(bounds.min + step, bounds.max + step);
+        self.set.set_bounds(*handle, *bounds).expect("a box");
+    }
+
+    fn remove(&mut self, key: u32) {
+        let (handle, _) = self.casters.remove(&key).expect("a caster");
+        self.set.remove(handle).expect("it is there");
+    }
+
+    fn walk(&mut self, metres: f64) {
+        self.eye += metres * DVec3::new(self.heading.sin(), 0.0, self.heading.cos());
+    }
+
+    /// The next frame of a life in which everything happens that can happen.
+    fn live(&mut self, frame: u32) {
+        match frame % 40 {
+            0..=11 => self.walk(0.7),
+            12..=19 => self.heading += 0.12,
+            20 => self.eye = DVec3::new(-40.0 + f64::from(frame), 1.7, 35.0),
+            21..=26 => {}
+            27 => self.origin = (self.eye / 8.0).round() * 8.0,
+            28 => self.sun.x -= 0.08,
+            _ => self.walk(0.05),
+        }
+        let ahead = self.eye + 6.0 * DVec3::new(self.heading.sin(), 0.0, self.heading.cos());
+        let ground = DVec3::new(ahead.x, 0.0, ahead.z);
+        match frame % 9 {
+            0 => self.insert(1000 + frame, ground, Motion::Static),
+            4 => self.insert(1000 + frame, ground + DVec3::X, Motion::Moving),
+            7 if frame > 20 => self.remove(frame % 600),
+            _ => {}
+        }
+        let moving: Vec<u32> = self.casters.keys().copied().filter(|key| *key >= 1000 && key % 9 == 5).collect();
+        moving.into_iter().for_each(|key| self.move_by(key, DVec3::new(0.13, 0.0, 0.07)));
+        // A static caster that moves for a while, and then rests.
+        if self.casters.contains_key(&1000) && (5..12).contains(&(frame % 80)) {
+            self.move_by(1000, DVec3::new(0.05, 0.0, 0.0));
+        }
+    }
+
+    fn view(&self) -> View {
+        let lens = Frustum::perspective(1.0, 4.0 / 3.0, 0.1, 150.0).expect("a lens");
+        let target = self.eye + DVec3::new(self.heading.sin(), -0.15, self.heading.cos());
+        View::look_at_upright(self.eye, target, lens).expect("a view")
+    }
+
+    fn paint(&self, gpu: &Gpu, painter: &mut Painter, redraws: bool, budget: Option<u64>) -> Painted {
+        let (view, lights) = (self.view(), [Light::from(DirectionalLight::new(self.sun).expect("a direction"))]);
+        let inputs = Inputs {
+            set: Some(&self.set),
+            origin: self.origin,
+            kept_texels: budget,
+            redraws_kept: redraws,
+            ..Inputs::new(&view, &lights)
+        };
+        let boxes: BTreeMap<u32, Aabb> = self.casters.iter().map(|(key, (_, bounds))| (*key, *bounds)).collect();
+        painter.paint(gpu, &inputs, &boxes)
+    }
+}
+
+fn kept(sizes: &[u32]) -> ShadowConfig {
+    config(sizes, PCF3, SETTINGS)
+}
+
+/// How often the two differ: texels of maps, and points of the mask.
+fn differences(a: &Painted, b: &Painted) -> (usize, usize) {
+    assert_eq!(a.handed_on, b.handed_on, "the same splits answer");
+    let mut texels = 0;
+    for (one, other) in a.maps.iter().zip(&b.maps) {
+        assert_eq!(one.len(), other.len());
+        texels += one.iter().zip(other).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+    }
+    let points = a.mask.iter().zip(&b.mask).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+    (texels, points)
+}
+
+/// A life of frames, kept and drawn anew: how many texels and points differ, and how many splits
+/// were handed on.
+fn live(gpu: &Gpu, sizes: &[u32], frames: u32, budget: Option<u64>, lies: bool) -> (usize, usize, usize) {
+    let mut world = World::new();
+    let [mut keeps, mut redraws] = [0, 1].map(|_| Painter::new(gpu, &kept(sizes)));
+    let (mut texels, mut points, mut handed_on, mut dark) = (0, 0, 0, 0);
+    for frame in 0..frames {
+        world.live(frame);
+        if lies && frame == 30 {
+            // Every caster near the eye is drawn elsewhere, and nobody says so.
+            let near = |bounds: &Aabb| bounds.center().distance(world.eye) < 25.0;
+            let moved = world.casters.values_mut().filter(|(_, bounds)| near(bounds));
+            moved.for_each(|(_, bounds)| bounds.max.y += 0.5);
+        }
+        let one = world.paint(gpu, &mut keeps, false, budget);
+        let other = world.paint(gpu, &mut redraws, true, budget);
+        let (more_texels, more_points) = differences(&one, &other);
+        (texels, points) = (texels + more_texels, points + more_points);
+        handed_on += one.handed_on.iter().filter(|&&it| it).count();
+        dark += one.mask.iter().filter(|&&visibility| visibility < 0.5).count();
+        assert!(one.maps.iter().flatten().any(|&depth| depth < 1.0), "frame {frame}: maps are empty");
+        assert!(one.triangles <= other.triangles, "frame {frame}: {} of {}", one.triangles, other.triangles);
+    }
+    assert!(dark > 100 * frames as usize / 10, "only {dark} points lie in shadow");
+    (texels, points, handed_on)
+}
+
+#[test]
+fn kept_maps_are_the_maps_drawn_anew() {
+    let Some(gpu) = Gpu::new() else { return };
+    assert_eq!(live(&gpu, &[256, 256, 256], 120, None, false), (0, 0, 0));
+}
+
+#[test]
+fn kept_maps_of_unequal_and_odd_sizes_are_the_maps_drawn_anew() {
+    let Some(gpu) = Gpu::new() else { return };
+    assert_eq!(live(&gpu, &[200, 96, 313], 60, None, false), (0, 0, 0));
+}
+
+/// With a budget that never suffices for a leap, coarser splits answer for a while.
+#[test]
+fn a_small_budget_blurs_and_stays_right() {
+    let Some(gpu) = Gpu::new() else { return };
+    let (texels, points, handed_on) = live(&gpu, &[256, 256, 256], 100, Some(9_000), false);
+    assert_eq!((texels, points), (0, 0));
+    assert!(handed_on > 20, "{handed_on} splits had to wait");
+}
+
+/// The comparison has to be able to say no.
+#[test]
+fn a_missed_change_is_seen() {
+    let Some(gpu) = Gpu::new() else { return };
+    let (texels, points, _) = live(&gpu, &[256, 256, 256], 40, None, true);
+    assert!(texels > 100 && points > 0, "{texels} texels, {points} points");
+}
+
+/// Casters' triangles in maps, in all frames of a walk after the first, kept and not.
+fn triangles(gpu: &Gpu, frames: u32, mut step: impl FnMut(&mut World)) -> (u64, u64) {
+    let mut world = World::new();
+    let mut keeps = Painter::new(gpu, &kept(&[512; 3]));
+    let mut off = Painter::new(gpu, &config(&[512; 3], PCF3, "shadow-range=0.5..90"));
+    let (mut kept, mut uncached) = (0, 0);
+    for frame in 0..frames {
+        step(&mut world);
+        let triangles = [&mut keeps, &mut off].map(|painter| world.paint(gpu, painter, false, None).triangles);
+        if frame > 0 {
+            (kept, uncached) = (kept + triangles[0], uncached + triangles[1]);
+        }
+    }
+    (kept, uncached)
+}
+
+#[test]
+fn standing_costs_nothing_walking_and_turning_little() {
+    let Some(gpu) = Gpu::new() else { return };
+    let (standing, _) = triangles(&gpu, 100, |_| {});
+    assert_eq!(standing, 0, "triangles while standing");
+    let (walking, all) = triangles(&gpu, 600, |world| world.walk(1.4 / 60.0));
+    eprintln!("walking: {walking} of {all} triangles, {:.2} %", 100.0 * walking as f64 / all as f64);
+    assert!(20 * walking <= all, "{walking} of {all} triangles walking");
+    let (turning, all) = triangles(&gpu, 240, |world| world.heading += 90f64.to_radians() / 60.0);
+    eprintln!("turning: {turning} of {all} triangles, {:.2} %", 100.0 * turning as f64 / all as f64);
+    assert!(100 * turning <= 15 * all, "{turning} of {all} triangles turning");
+}

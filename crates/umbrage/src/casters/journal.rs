@@ -1,0 +1,88 @@
+//! What has changed of a set's static casters, for those who keep what these have drawn.
+
+use std::collections::VecDeque;
+
+use super::slots::CasterHandle;
+use crate::Aabb;
+
+/// One change of one static caster that throws shadows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Change {
+    pub handle: CasterHandle,
+    pub key: u32,
+    /// Its box before; `None` if it threw no shadow as a static caster.
+    pub old: Option<Aabb>,
+    /// Its box since; `None` if it throws none any more.
+    pub new: Option<Aabb>,
+}
+
+/// Changes that are remembered, at most. Who has missed more has to take all for changed. 4,096 are
+/// some 600 kB.
+const MOST: usize = 4096;
+
+/// The latest changes, by number.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Journal {
+    changes: VecDeque<Change>,
+    /// The number of the next change.
+    next: u64,
+}
+
+impl Journal {
+    pub fn note(&mut self, change: Change) {
+        if self.changes.len() == MOST {
+            self.changes.pop_front();
+        }
+        self.changes.push_back(change);
+        self.next += 1;
+    }
+
+    /// Notes more changes than are remembered.
+    pub fn note_too_many(&mut self) {
+        self.changes.clear();
+        self.next += 1;
+    }
+
+    /// The number of the next change.
+    pub fn next(&self) -> u64 {
+        self.next
+    }
+
+    /// The changes from a number on; `None` if not all of them are remembered.
+    pub fn since(&self, number: u64) -> Option<impl Iterator<Item = &Change>> {
+        let missed = usize::try_from(self.next.checked_sub(number)?).ok()?;
+        let first = self.changes.len().checked_sub(missed)?;
+        Some(self.changes.range(first..))
+    }
+
+    pub fn bytes(&self) -> usize {
+        self.changes.capacity() * size_of::<Change>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Caster, CasterSet};
+    use glam::DVec3;
+
+    #[test]
+    fn changes_are_told_from_a_number_on_or_not_at_all() {
+        let mut set = CasterSet::new();
+        let unit = Aabb::new(DVec3::ZERO, DVec3::ONE);
+        let handle = set.insert(Caster::new(unit, 7)).expect("a box");
+        let mut journal = Journal::default();
+        for key in 0..2 * MOST as u32 {
+            journal.note(Change { handle, key, old: None, new: Some(unit) });
+        }
+        let end = journal.next();
+        let keys = |from| journal.since(from).map(|changes| changes.map(|change| change.key).collect::<Vec<_>>());
+        assert_eq!(keys(end), Some(vec![]));
+        assert_eq!(keys(end - 2), Some(vec![end as u32 - 2, end as u32 - 1]));
+        assert_eq!(keys(end - MOST as u64).map(|keys| keys.len()), Some(MOST));
+        assert_eq!(keys(end - MOST as u64 - 1), None, "forgotten");
+        assert_eq!(keys(end + 1), None, "another set's number");
+        journal.note_too_many();
+        assert!(journal.since(end).is_none() && journal.since(journal.next()).is_some());
+    }
+}
