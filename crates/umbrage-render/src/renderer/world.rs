@@ -49,7 +49,8 @@ impl Renderer {
         drawn
     }
 
-    /// The boxes of casters and receivers, where they are lists; otherwise the set follows the pose.
+    /// The boxes of casters and receivers, where they are lists; otherwise the set follows the
+    /// pose.
     pub(super) fn listed_boxes(&mut self, pose: &Pose, casters: &[usize]) -> Result<[Vec<Aabb>; 2]> {
         if !self.keeps_maps() {
             let bounds = |&object: &usize| pose.objects[object].bounds;

@@ -44,8 +44,8 @@ impl Draws {
         }
     }
 
-    /// Lists what of one sun's maps is not kept: regions, which follow the passes, and the maps that
-    /// are due with what moves in them.
+    /// Lists what of one sun's maps is not kept: regions, which follow the passes, and the maps
+    /// that are due with what moves in them.
     pub fn list_kept(&mut self, keeper: &Keeper) {
         self.clear();
         let maps = keeper.maps();

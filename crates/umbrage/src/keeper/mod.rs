@@ -101,7 +101,8 @@ pub struct KeptFrame<'a> {
     pub redraws: bool,
 }
 
-/// A part of a split's kept texture that is to be drawn: cleared, then its casters, cut at its edge.
+/// A part of a split's kept texture that is to be drawn: cleared, then its casters, cut at its
+/// edge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeptRegion {
     /// The split.

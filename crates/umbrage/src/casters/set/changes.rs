@@ -11,10 +11,10 @@ const MOST_NOTED: usize = 1024;
 impl CasterSet {
     /// Says that a caster has another shape within the box that it has: what is kept of its
     /// shadow ([`crate::config::Cache::Kept`]) is drawn anew. A caster whose shape changes in many
-    /// frames is a [`Motion::Moving`] one.
+    /// frames is a [`crate::Motion::Moving`] one.
     ///
     /// # Errors
-    /// [`Error::RemovedCaster`].
+    /// [`crate::Error::RemovedCaster`].
     pub fn reshape(&mut self, handle: CasterHandle) -> Result<()> {
         let slot = self.slots.index(handle)?;
         let bounds = self.static_bounds(slot);
