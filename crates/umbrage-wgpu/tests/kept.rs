@@ -21,6 +21,7 @@ struct World {
     heading: f64,
     sun: DVec3,
     origin: DVec3,
+    view_slot: u32,
 }
 
 impl World {
@@ -40,7 +41,8 @@ impl World {
         let handles = set.insert_all(casters.iter().copied()).expect("boxes");
         let casters = handles.into_iter().zip(casters).map(|(handle, it)| (it.key, (handle, it.bounds))).collect();
         let eye = DVec3::new(3.0, 1.7, -5.0);
-        Self { set, casters, eye, heading: 0.3, sun: DVec3::new(0.5, -1.0, 0.35), origin: DVec3::ZERO }
+        let sun = DVec3::new(0.5, -1.0, 0.35);
+        Self { set, casters, eye, heading: 0.3, sun, origin: DVec3::ZERO, view_slot: 0 }
     }
 
     fn insert(&mut self, key: u32, at: DVec3, motion: Motion) {
@@ -102,6 +104,7 @@ impl World {
         let inputs = Inputs {
             set: Some(&self.set),
             origin: self.origin,
+            view_slot: self.view_slot,
             kept_texels: budget,
             redraws_kept: redraws,
             ..Inputs::new(&view, &lights)
@@ -173,6 +176,28 @@ fn a_small_budget_blurs_and_stays_right() {
     let (texels, points, handed_on) = live(&gpu, &[256, 256, 256], 100, Some(9_000), false);
     assert_eq!((texels, points), (0, 0));
     assert!(handed_on > 20, "{handed_on} splits had to wait");
+}
+
+/// Views that take turns draw over what is kept of each other. A frame that is refused changes
+/// nothing.
+#[test]
+fn views_that_take_turns_and_refused_frames_stay_right() {
+    let Some(gpu) = Gpu::new() else { return };
+    let mut world = World::new();
+    let [mut keeps, mut redraws] = [0, 1].map(|_| Painter::new(&gpu, &kept(&[256; 3])));
+    for frame in 0..16 {
+        world.view_slot = frame % 2;
+        world.eye = DVec3::new(3.0 + 40.0 * f64::from(frame % 2), 1.7, -5.0 + 0.4 * f64::from(frame));
+        world.remove(frame);
+        let one = world.paint(&gpu, &mut keeps, false, None);
+        let other = world.paint(&gpu, &mut redraws, true, None);
+        assert_eq!(differences(&one, &other), (0, 0), "frame {frame}");
+    }
+    let (view, lights) = (world.view(), [Light::from(DirectionalLight::new(world.sun).expect("a direction"))]);
+    let nowhere = DVec3::new(f64::NAN, 0.0, 0.0);
+    let refused = Inputs { set: Some(&world.set), origin: nowhere, ..Inputs::new(&view, &lights) };
+    keeps.shadows.prepare(&gpu.queue, &refused).expect_err("an origin that is none");
+    assert_eq!(world.paint(&gpu, &mut keeps, false, None).triangles, 0, "all is there still");
 }
 
 /// The comparison has to be able to say no.

@@ -16,9 +16,9 @@ impl ShadowMaps {
     /// is `l`.
     ///
     /// # Errors
-    /// Those of [`ShadowMaps::prepare`]; [`Error::LightCount`] if there is not one plan for each
-    /// light, [`Error::LightKind`] if a light's maps do not serve its plan. Nothing has been
-    /// written then.
+    /// Those of [`ShadowMaps::prepare`]; [`crate::Error::LightCount`] if there is not one plan for
+    /// each light, [`crate::Error::LightKind`] if a light's maps do not serve its plan. Nothing has
+    /// been written then.
     pub fn prepare_lights(&mut self, queue: &wgpu::Queue, plans: &[&ShadowPlan], options: &FrameOptions) -> Result<()> {
         let frames = uniforms::frames(plans, &self.config, &self.slots, &self.places, options)?;
         let device = self.device.clone();

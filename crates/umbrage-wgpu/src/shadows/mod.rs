@@ -180,9 +180,11 @@ impl Shadows {
                 planner.plan_into(&of_light, plan)?;
             }
         }
+        let options = FrameOptions { origin: inputs.origin, enabled: inputs.enabled, tint: inputs.tint };
+        // An origin that is none would be another grid, and all that is kept of no use.
+        options.validate()?;
         self.is_kept = inputs.enabled && self.keep(inputs);
         let plans: Vec<&ShadowPlan> = self.plans.iter().map(|plan| &**plan).collect();
-        let options = FrameOptions { origin: inputs.origin, enabled: inputs.enabled, tint: inputs.tint };
         self.maps.prepare_lights(queue, &plans, &options)?;
         match &mut self.keeper {
             Some(keeper) if self.is_kept => {

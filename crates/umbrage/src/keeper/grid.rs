@@ -46,7 +46,7 @@ impl Grid {
         }
     }
 
-    /// Whether the whole shadow of a box is left away as small.
+    /// Whether a box is dropped because its whole shadow is small.
     pub fn drops(&self, placed: &Placed) -> bool {
         let across = |axis: usize| self.axes[axis] / self.texel_m[axis];
         self.drops_small && crate::planner::is_small(placed, [across(0), across(1)])
