@@ -214,9 +214,9 @@ mod tests {
         let other = message(&of("b"));
         assert!(other.contains("another comparison (techniques)") && other.contains("journal"), "{other}");
         for (bytes, word) in [
-            (&b"no journal"[..], "no journal"),
-            (b"no journal\n", "no journal"),
-            (b"\xff\xfe\n", "no journal"),
+            (&b"no journal"[..], "not a journal"),
+            (b"no journal\n", "not a journal"),
+            (b"\xff\xfe\n", "not a journal"),
             (b"{\"techniques\":\"a\",\"size\":[8,6]}\n{}\n", "line 2"),
         ] {
             fs::write(&path, bytes).expect("writable");

@@ -228,7 +228,7 @@ mod tests {
         let Verdict::Impossible(why) = verdict(&ShadowConfig::default(), &lamps, setting("filter"), "evsm2") else {
             panic!("moments are of a sun");
         };
-        assert!(why.contains("parallel light") && why.contains("use another filter"), "{why}");
+        assert!(why.contains("directional light") && why.contains("use another filter"), "{why}");
         for (key, value) in [("splits", "0"), ("blend", "2"), ("map-size", "many"), ("shadow-colour", "1,2,3")] {
             assert!(choose(&ShadowConfig::default(), SUN, setting(key), value).is_err(), "{key} {value}");
         }

@@ -17,8 +17,8 @@ fn configs_that_no_device_can_meet() {
     };
     gpu.checked(|| {
         for (sizes, filter, culprit) in [
-            (&[][..], PCF3, "0 maps"),
-            (&[64; 9], PCF3, "9 maps"),
+            (&[][..], PCF3, "0 splits"),
+            (&[64; 9], PCF3, "9 splits"),
             (&[64, 0], Filter::Hard, "map 1 is 0 texels"),
             (&[5], PCF5, "map 0 is 5 texels"),
             (&[u32::MAX], PCF3, "4294967295"),

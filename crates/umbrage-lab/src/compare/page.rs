@@ -58,7 +58,7 @@ fn pictures(labels: &[Label], sheets: &[Vec<SheetShot>; 2]) -> Result<Section> {
     let section = Section::new("Shots")
         .text(
             "Rows are techniques, columns shots; the truth is the last row. The inset enlarges the part in which techniques differ most. \
-             E and D of each picture stand below it.",
+             E and D of each picture are below it.",
         )
         .sheet(&grid(labels, pictures)?)
         .heading("Errors")

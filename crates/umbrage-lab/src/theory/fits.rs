@@ -143,7 +143,7 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
             bars.to_svg()?,
             format!(
                 "Each world's own camera `{CAMERA}` and sun at time 0, {} to {} m, practical scheme, not stabilised, default filter and \
-                 blend. Shorter is better; a dash stands for a split in which nothing can cast a shadow.",
+                 blend. Shorter is better; a dash marks a split in which nothing can cast a shadow.",
                 setting.near, setting.far
             ),
         ))

@@ -141,7 +141,7 @@ fn keys_do_what_the_help_says() {
     desk.frame(Vec::new());
     desk.press(Key::F1);
     desk.frame(Vec::new());
-    assert!(has(&desk.frame(Vec::new()), "hold the maps for this view"));
+    assert!(has(&desk.frame(Vec::new()), "hold the maps of this view"));
     desk.press(Key::Escape);
     assert!(!desk.app.help);
     desk.press(Key::T);

@@ -88,7 +88,7 @@ impl Kind {
             },
             Self::CountOf(counts) => match text::count(text)? {
                 count if counts.contains(&count) => Ok(()),
-                count => Err(format!("{count}; give one of {}", text::listed(counts))),
+                count => Err(format!("{count}; give {}", text::choice(counts))),
             },
             Self::Texels => text::map_sizes(text).map(|_| ()),
             Self::Colour => match text.split(',').count() {

@@ -200,7 +200,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "tsm-focus",
-        help: "Near share of the slice's depth that gets 80 % of a trapezoidal map",
+        help: "Near share of the slice's depth that gets 80 % of a trapezoidal map; not 0 or 1",
         kind: Kind::Share(1.0),
         rebuilds: Rebuilds::Nothing,
         set: set::tsm_focus,

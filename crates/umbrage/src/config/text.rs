@@ -18,9 +18,9 @@ pub(super) fn count(text: &str) -> Result<u32, String> {
     text.trim().parse().map_err(|_| format!("{text:?} is not a whole number"))
 }
 
-/// Whole numbers with commas between, for a message.
-pub(super) fn listed(counts: &[u32]) -> String {
-    counts.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")
+/// A choice of whole numbers, `1 or 4`, for a message.
+pub(super) fn choice(counts: &[u32]) -> String {
+    counts.iter().map(u32::to_string).collect::<Vec<_>>().join(" or ")
 }
 
 /// `on`, `off`, `true` or `false`.
