@@ -8,6 +8,7 @@ use std::{
 use glam::DVec3;
 use umbrage_lab::{
     failure::{Failure, Result},
+    notes,
     output::{self, Staged, numbered_file},
     progress,
     report::{ProbeReport, to_json},
@@ -69,6 +70,7 @@ pub fn run(args: &ProbeArgs) -> Result<()> {
             Some(_) => session.renderer.render_views(&[frame], shot.shown.as_ref(), Outputs::default())?,
             None => Vec::new(),
         };
+        notes::say(shadows.notes.iter().chain(rendered.iter().flat_map(|rendered| &rendered.stats.notes)));
         bar.inc(1);
         if !setup.is_wanted(shot) {
             continue;

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::mem::Discriminant;
 
 use umbrage_scene::{AlphaMode, Material, Scene, Texture, TextureFilter, Wrap};
 use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
@@ -22,6 +23,7 @@ pub(crate) struct MaterialUniform {
 }
 
 /// A material on the GPU.
+#[derive(Clone)]
 pub(crate) struct GpuMaterial {
     pub bind_group: wgpu::BindGroup,
     pub alpha: AlphaMode,
@@ -87,6 +89,7 @@ impl Materials {
         let white =
             Texture { width: 1, height: 1, rgba: vec![255; 4], wrap: [Wrap::Repeat; 2], filter: TextureFilter::Linear };
         let (white_view, _) = upload_texture(gpu, &white, Alpha::Ignored);
+        let mut shared = Shared::default();
         let list = scene
             .materials
             .iter()
@@ -96,7 +99,7 @@ impl Materials {
                     Some((view, &scene.textures[of]))
                 });
                 let (view, texture) = found.unwrap_or((&white_view, &white));
-                gpu_material(gpu, &layout, material, view, texture)
+                shared.material(gpu, &layout, material, (view, texture))
             })
             .collect();
         Ok(Self { layout, list, bytes })
@@ -153,60 +156,117 @@ fn upload_texture(gpu: &Gpu, texture: &Texture, alpha: Alpha) -> (wgpu::TextureV
     (on_gpu.create_view(&wgpu::TextureViewDescriptor::default()), data.len() as u64)
 }
 
-fn gpu_material(
-    gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    material: &Material,
-    view: &wgpu::TextureView,
-    texture: &Texture,
-) -> GpuMaterial {
-    let uniform = MaterialUniform {
-        base_color: material.base_color,
-        emissive: material.emissive,
-        alpha_cutoff: if let AlphaMode::Mask { cutoff } = material.alpha { cutoff } else { 0.0 },
-    };
-    let buffer = gpu.device.create_buffer_init(&BufferInitDescriptor {
-        label: Some("Materials::uniform"),
-        contents: bytemuck::bytes_of(&uniform),
-        usage: wgpu::BufferUsages::UNIFORM,
-    });
-    let address = texture.wrap.map(|wrap| match wrap {
-        Wrap::Repeat => wgpu::AddressMode::Repeat,
-        Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
-        Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
-    });
+/// What tells two materials apart: the bits of their uniform, how alpha is used, the texture, sides.
+type Look = ([u32; 8], Discriminant<AlphaMode>, Option<usize>, bool);
+
+/// What tells the samplers of two textures apart.
+type Sampling = ([Wrap; 2], TextureFilter, u16);
+
+/// What equal materials share: files have as many as their authors' tools liked to write.
+#[derive(Default)]
+struct Shared {
+    materials: HashMap<Look, GpuMaterial>,
+    samplers: HashMap<Sampling, Samplers>,
+}
+
+impl Shared {
+    fn material(
+        &mut self,
+        gpu: &Gpu,
+        layout: &wgpu::BindGroupLayout,
+        material: &Material,
+        (view, texture): (&wgpu::TextureView, &Texture),
+    ) -> GpuMaterial {
+        let uniform = MaterialUniform {
+            base_color: material.base_color,
+            emissive: material.emissive,
+            alpha_cutoff: if let AlphaMode::Mask { cutoff } = material.alpha { cutoff } else { 0.0 },
+        };
+        let mode = std::mem::discriminant(&material.alpha);
+        let look = (bytemuck::cast(uniform), mode, material.base_color_texture, material.double_sided);
+        if let Some(known) = self.materials.get(&look) {
+            return known.clone();
+        }
+        let sampling = (texture.wrap, texture.filter, anisotropy(material, texture));
+        let samplers = self.samplers.entry(sampling).or_insert_with(|| Samplers::new(gpu, sampling));
+        let made = gpu_material(gpu, layout, (material, &uniform), view, samplers);
+        self.materials.insert(look, made.clone());
+        made
+    }
+}
+
+/// Taps of a sample along a texture that is seen aslant.
+fn anisotropy(material: &Material, texture: &Texture) -> u16 {
     let is_plain = texture.width.max(texture.height) == 1;
     // WebGPU has no anisotropy with a nearest filter. One texel needs none. Leaves have none:
     // with it and a depth pass they cost several times as much (docs/notes/cost.md).
-    let (mag_filter, anisotropy_clamp) = match (texture.filter, material.alpha) {
-        (TextureFilter::Nearest, _) => (wgpu::FilterMode::Nearest, 1),
-        (TextureFilter::Linear, AlphaMode::Mask { .. }) => (wgpu::FilterMode::Linear, 1),
-        (TextureFilter::Linear, _) if is_plain => (wgpu::FilterMode::Linear, 1),
-        (TextureFilter::Linear, _) => (wgpu::FilterMode::Linear, 8),
-    };
-    let both = wgpu::SamplerDescriptor {
-        address_mode_u: address[0],
-        address_mode_v: address[1],
-        mag_filter,
-        min_filter: wgpu::FilterMode::Linear,
-        ..Default::default()
-    };
-    let smooth = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("Materials::smooth_sampler"),
-        mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        anisotropy_clamp,
-        ..both.clone()
-    });
-    let coverage = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("Materials::coverage_sampler"),
-        mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        ..both.clone()
-    });
-    // The decision of a mask is the same at every distance, so one filter serves both.
-    let exact = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("Materials::exact_sampler"),
-        min_filter: mag_filter,
-        ..both
+    match (texture.filter, material.alpha) {
+        (TextureFilter::Nearest, _) | (_, AlphaMode::Mask { .. }) => 1,
+        _ if is_plain => 1,
+        (TextureFilter::Linear, _) => 8,
+    }
+}
+
+/// How a texture is sampled: for colour, for the decision of a mask, for how much of a pixel is
+/// covered.
+struct Samplers {
+    smooth: wgpu::Sampler,
+    exact: wgpu::Sampler,
+    coverage: wgpu::Sampler,
+}
+
+impl Samplers {
+    fn new(gpu: &Gpu, (wrap, filter, anisotropy_clamp): Sampling) -> Self {
+        let address = wrap.map(|wrap| match wrap {
+            Wrap::Repeat => wgpu::AddressMode::Repeat,
+            Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
+            Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
+        });
+        let mag_filter = match filter {
+            TextureFilter::Nearest => wgpu::FilterMode::Nearest,
+            TextureFilter::Linear => wgpu::FilterMode::Linear,
+        };
+        let both = wgpu::SamplerDescriptor {
+            address_mode_u: address[0],
+            address_mode_v: address[1],
+            mag_filter,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        };
+        let sampler = |descriptor| gpu.device.create_sampler(&descriptor);
+        Self {
+            smooth: sampler(wgpu::SamplerDescriptor {
+                label: Some("Materials::smooth_sampler"),
+                mipmap_filter: wgpu::MipmapFilterMode::Linear,
+                anisotropy_clamp,
+                ..both.clone()
+            }),
+            coverage: sampler(wgpu::SamplerDescriptor {
+                label: Some("Materials::coverage_sampler"),
+                mipmap_filter: wgpu::MipmapFilterMode::Linear,
+                ..both.clone()
+            }),
+            // The decision of a mask is the same at every distance, so one filter serves both.
+            exact: sampler(wgpu::SamplerDescriptor {
+                label: Some("Materials::exact_sampler"),
+                min_filter: mag_filter,
+                ..both
+            }),
+        }
+    }
+}
+
+fn gpu_material(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    (material, uniform): (&Material, &MaterialUniform),
+    view: &wgpu::TextureView,
+    samplers: &Samplers,
+) -> GpuMaterial {
+    let buffer = gpu.device.create_buffer_init(&BufferInitDescriptor {
+        label: Some("Materials::uniform"),
+        contents: bytemuck::bytes_of(uniform),
+        usage: wgpu::BufferUsages::UNIFORM,
     });
     let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("Materials::bind_group"),
@@ -214,10 +274,45 @@ fn gpu_material(
         entries: &[
             wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() },
             wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(view) },
-            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&smooth) },
-            wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::Sampler(&exact) },
-            wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::Sampler(&coverage) },
+            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&samplers.smooth) },
+            wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::Sampler(&samplers.exact) },
+            wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::Sampler(&samplers.coverage) },
         ],
     });
     GpuMaterial { bind_group, alpha: material.alpha, double_sided: material.double_sided }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+    use std::io::Write;
+
+    use super::*;
+    use crate::GpuOptions;
+
+    #[test]
+    fn equal_materials_are_one() {
+        let gpu = match Gpu::new(&GpuOptions::default()) {
+            Ok(gpu) => gpu,
+            Err(error) if std::env::var("UMBRAGE_REQUIRE_GPU").is_ok_and(|value| value == "1") => {
+                panic!("UMBRAGE_REQUIRE_GPU is 1, but {error}")
+            }
+            Err(error) => {
+                writeln!(std::io::stderr(), "SKIPPED: no adapter: {error}").expect("it can be written to");
+                return;
+            }
+        };
+        let kinds = [
+            Material::default(),
+            Material { base_color: [0.5, 1.0, 1.0, 1.0], ..Material::default() },
+            Material { double_sided: true, ..Material::default() },
+            Material { alpha: AlphaMode::Blend, ..Material::default() },
+        ];
+        let named = |i: usize| Material { name: format!("material {i}"), ..kinds[i % kinds.len()].clone() };
+        let scene = Scene { materials: (0..100_000).map(named).collect(), ..Scene::default() };
+        let made = Materials::new(&gpu, &scene).expect("materials");
+        let groups: HashSet<&wgpu::BindGroup> = made.list.iter().map(|material| &material.bind_group).collect();
+        assert_eq!((made.list.len(), groups.len()), (100_000, kinds.len()));
+        assert!(made.list.iter().zip(&scene.materials).all(|(made, asked)| made.alpha == asked.alpha));
+    }
 }

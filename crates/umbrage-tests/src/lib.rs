@@ -3,10 +3,12 @@
 //!
 //! [`compare`] says whether two images are the same, within named tolerances; [`golden`] keeps the
 //! reference images and shows what differs; [`stage`] has the worlds, a device and the techniques;
-//! [`judge`] measures techniques against the exact truth; [`room`] is a scene with lamps.
+//! [`judge`] measures techniques against the exact truth; [`room`] is a scene with lamps,
+//! [`closed`] are rooms without any.
 //! `tests/comparators.rs` proves that every comparison can say no; `tests/regressions` holds the
 //! references and the ceilings.
 
+pub mod closed;
 pub mod compare;
 pub mod golden;
 pub mod judge;

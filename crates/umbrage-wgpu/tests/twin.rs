@@ -193,8 +193,10 @@ struct BiasAsk {
     /// Offset in texels, what the texel stores, and texels of reach without a plane; negative for
     /// with one.
     tap: [f32; 4],
-    /// What the next texels store, and two numbers that stand for nothing.
+    /// What the next texels store, and the offset of a texel that may lie across the crease.
     beyond: [f32; 4],
+    /// What those behind them store more, and two numbers that stand for nothing.
+    farther: [f32; 4],
 }
 
 /// What the shader below makes of it.
@@ -210,16 +212,19 @@ struct BiasAnswer {
     range_m: f32,
     tolerance: [f32; 4],
     reference: f32,
-    /// Bits: behind, the same surface, meets the receiver.
+    /// Bits: behind, the same surface, meets the receiver, makes a crease, lies across it.
     decided: u32,
     padding: [u32; 2],
+    /// Height and rise of the crease, and what is unsure.
+    crease: [f32; 4],
 }
 
 const ASK_BIAS: &str = "
-struct BiasAsk { split: UmbrageSplit, position: vec4f, normal: vec4f, to_light: vec4f, tap: vec4f, beyond: vec4f }
+struct BiasAsk { split: UmbrageSplit, position: vec4f, normal: vec4f, to_light: vec4f, tap: vec4f, beyond: vec4f,
+    farther: vec4f }
 struct BiasAnswer {
     texel: vec2f, slope: vec2f, tilt: vec2f, texel_m: vec2f, linear: vec2f, depth: f32, range_m: f32,
-    tolerance: vec4f, reference: f32, decided: u32,
+    tolerance: vec4f, reference: f32, decided: u32, crease: vec4f,
 }
 @group(0) @binding(0) var<storage, read> asks: array<BiasAsk>;
 @group(0) @binding(1) var<storage, read_write> answers: array<BiasAnswer>;
@@ -233,10 +238,16 @@ struct BiasAnswer {
     let behind = umbrage_bias_lies_behind(at, it.tap.xy, it.tap.z);
     let same = umbrage_bias_same_surface(at, it.tap.xy, it.tap.z);
     let meets = umbrage_bias_meets_receiver(at, it.tap.xy, it.tap.z, it.beyond.xy);
+    let farther = it.beyond.xy + it.farther.xy;
+    let crease = umbrage_bias_crease_at(at, it.tap.xy, it.tap.z, it.beyond.xy, farther);
+    let before = umbrage_bias_before_plane(at, it.beyond.zw, it.tap.z);
+    let across = umbrage_crease_is_across(crease, it.beyond.zw, before);
     let bits = vec3u(vec3<bool>(behind, same, meets)) << vec3u(0u, 1u, 2u);
+    let of_crease = vec2u(vec2<bool>(umbrage_crease_is_there(crease), across)) << vec2u(3u, 4u);
     let tolerance = vec4f(at.tolerance.bend, at.tolerance.past, at.tolerance.steep, at.tolerance.arrival);
     answers[id.x] = BiasAnswer(at.texel, at.slope, at.tilt, at.texel_m, at.linear, at.depth, at.range_m, tolerance,
-        umbrage_bias_reference(at, it.tap.xy, vec2f(0.5)), bits.x | bits.y | bits.z);
+        umbrage_bias_reference(at, it.tap.xy, vec2f(0.5)), bits.x | bits.y | bits.z | of_crease.x | of_crease.y,
+        vec4f(crease.height, crease.rise, crease.unsure));
 }";
 
 /// A plain map, a warped one, or a local light's of either kind of depth, around a point before it.
@@ -292,16 +303,26 @@ fn bias_ask(next: &mut impl FnMut() -> f32, kind: usize) -> BiasAsk {
     let at = twin::bias::receiver(&split, position.to_array(), normal.to_array(), to_light.to_array());
     // Around every border of the decision.
     let width = at.tolerance.past + at.tolerance.bend + (at.slope[0] * offset[0] + at.slope[1] * offset[1]).abs();
-    let stored = (at.reference(offset, [0.0; 2]) + (3.0 * next() - 1.5) * width).clamp(0.0, 1.0);
-    let beyond = [stored + (2.0 * next() - 1.0) * width, stored + (2.0 * next() - 1.0) * width];
+    let mut stored = (at.reference(offset, [0.0; 2]) + (3.0 * next() - 1.5) * width).clamp(0.0, 1.0);
+    let mut beyond = [stored + (2.0 * next() - 1.0) * width, stored + (2.0 * next() - 1.0) * width];
+    if next() < 0.4 {
+        // A surface that passes close over or under the receiver.
+        let away = texel_m.map(|texel| 6.0 * next() * at.tolerance.crease * texel);
+        let before = away[0] * offset[0].abs() + away[1] * offset[1].abs() + (3.5 * next() - 1.0) * away[0];
+        stored = at.before_plane(offset, 0.0) - before;
+        beyond = [0, 1].map(|i| stored + (at.tilt[i] + at.slope[i]) * offset[i].signum() - away[i]);
+    }
     let reach = if next() < 0.2 { 2.0 * next() } else { -1.0 };
+    let other = [4.0 * next() - 2.0, 4.0 * next() - 2.0];
+    let farther = [0, 1].map(|i| (beyond[i] - stored) * (0.8 + 0.3 * next()));
     BiasAsk {
         split,
         position: position.extend(0.0).to_array(),
         normal: normal.extend(0.0).to_array(),
         to_light: to_light.extend(0.0).to_array(),
         tap: [offset[0], offset[1], stored, reach],
-        beyond: [beyond[0], beyond[1], 0.0, 0.0],
+        beyond: [beyond[0], beyond[1], other[0], other[1]],
+        farther: [farther[0], farther[1], 0.0, 0.0],
     }
 }
 
@@ -315,9 +336,13 @@ fn bias_receiver(ask: &BiasAsk) -> twin::bias::Receiver {
 /// What the twin decides: the same bits.
 fn bias_decided(at: &twin::bias::Receiver, ask: &BiasAsk, stored: f32) -> u32 {
     let (offset, beyond) = ([ask.tap[0], ask.tap[1]], [ask.beyond[0], ask.beyond[1]]);
+    let crease = at.crease_at(offset, stored, beyond, [beyond[0] + ask.farther[0], beyond[1] + ask.farther[1]]);
+    let other = [ask.beyond[2], ask.beyond[3]];
     u32::from(at.lies_behind(offset, stored))
         | u32::from(at.same_surface(offset, stored)) << 1
         | u32::from(at.meets_receiver(offset, stored, beyond)) << 2
+        | u32::from(crease.is_there()) << 3
+        | u32::from(crease.is_across(other, at.before_plane(other, stored))) << 4
 }
 
 /// Decisions of the twin that hold a little nearer and a little farther, and how many of them the
@@ -356,7 +381,7 @@ fn bias_agrees_in_every_kind_of_map() {
     let mut next = random();
     let asks: Vec<BiasAsk> = (0..20_000).map(|i| bias_ask(&mut next, i % 4)).collect();
     let answers: Vec<BiasAnswer> = gpu.compute(&source, &asks, None);
-    let mut seen = [[0; 2]; 3];
+    let mut seen = [[0; 2]; 5];
     for (ask, answer) in asks.iter().zip(&answers) {
         let at = bias_receiver(ask);
         let close = |found: f32, twin: f32, scale: f32| {
@@ -376,7 +401,7 @@ fn bias_agrees_in_every_kind_of_map() {
         // The tangent of a grazed surface is a quotient of small numbers.
         (0..4)
             .for_each(|i| close(answer.tolerance[i], tolerance[i], 5.0 * tolerance[i].abs() + 1.0 / at.range_m * 0.1));
-        (0..3).for_each(|bit| seen[bit][(answer.decided >> bit & 1) as usize] += 1);
+        (0..5).for_each(|bit| seen[bit][(answer.decided >> bit & 1) as usize] += 1);
     }
     let [sure, wrong] = bias_disagreements(&asks, &answers, bias_receiver);
     assert_eq!(wrong, 0, "of {sure}");

@@ -2,7 +2,6 @@
 
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use umbrage::config::{ExtentSteps, Preset, SplitScheme, Stability};
 use umbrage::{Aabb, DirectionalLight, Frustum, Light, Planner, PointLight, ShadowConfig, ShadowPlan, Split, View};
 
@@ -98,9 +97,7 @@ fn settings() -> impl Strategy<Value = ShadowConfig> {
 }
 
 proptest! {
-    // One plan in some thousand takes two maps in one frame: where a plane moves towards the eye,
-    // the map that begins there may need more. Cases are those of one seed until that is mended.
-    #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(7), ..ProptestConfig::with_cases(64) })]
+    #![proptest_config(ProptestConfig::with_cases(64))]
 
     /// Any walk, turn and zoom, then 60 frames of one view.
     #[test]
@@ -124,8 +121,9 @@ proptest! {
             let (count, ratio) = changes(&before, &now);
             if settings.stability == Stability::Exact {
                 prop_assert!(count <= 1, "frame {}: {} maps change", frame, count);
-                // Steps are 9 %, and larger where 60 frames would not do.
-                prop_assert!(settings.splits() > 4 || ratio < 1.6, "frame {}: {}", frame, ratio);
+                // Steps are 9 %, and larger where 60 frames would not do: four maps have ten steps
+                // each.
+                prop_assert!(settings.splits() > 4 || ratio < 2.0, "frame {}: {}", frame, ratio);
             }
             before = now;
         }

@@ -10,6 +10,7 @@ use umbrage_scene::{CameraPath, Pose, Scene};
 use crate::{
     failure::{Failure, Result},
     lights::{self, NamedLight},
+    notes,
     scene_request::{CameraChoice, SceneRequest},
     scene_setup,
 };
@@ -197,6 +198,7 @@ impl ShotRequest {
                 });
             }
         }
+        notes::say(&notes);
         Ok(SceneShots { name: name.to_owned(), scene, pose, series, notes })
     }
 

@@ -1,5 +1,6 @@
 //! `lib/bias.wesl` on the CPU: whether the surface that a map's texel holds shades a receiver.
 
+use super::crease::Crease;
 use crate::layout::Split;
 
 /// `bias::MAX_SLOPE`: tangent of the steepest angle between light and normal that a plane is
@@ -20,6 +21,10 @@ pub const PAST: f32 = 2.0;
 /// `bias::PAST_TEXELS`: how far before the receiver a surface from past the plane has to arrive to
 /// shade, in texels.
 pub const PAST_TEXELS: f32 = 8.0;
+/// `bias::CREASE_SLOPE`: least slope of a surface that makes a crease.
+pub const CREASE_SLOPE: f32 = 1.0;
+/// `bias::CREASE_SHARE`: share of the receiver's own slope that it is at least.
+pub const CREASE_SHARE: f32 = 0.5;
 /// `bias::ROUNDING`: share of the numbers involved that `f32` may have lost.
 pub const ROUNDING: f32 = 1.907_348_6e-6;
 /// `bias::SNAP_TEXELS`: texels by which casters are snapped.
@@ -37,6 +42,12 @@ pub struct Tolerance {
     pub steep: f32,
     /// How far before the receiver a surface from past the plane has to arrive to shade.
     pub arrival: f32,
+    /// Least slope of a surface that makes a crease, per metre aside.
+    pub crease: f32,
+    /// Constant bias, which [`Receiver::depth`] has taken off.
+    pub constant: f32,
+    /// What of it is for arithmetic and the texture's format.
+    pub rounding: f32,
 }
 
 /// `bias::Receiver`: what a filter needs to know of a receiver.
@@ -59,6 +70,8 @@ pub struct Receiver {
     pub linear: [f32; 2],
     /// What the lookup forgives.
     pub tolerance: Tolerance,
+    /// The crease that it lies behind.
+    pub crease: Crease,
 }
 
 /// `bias::MapPoint`: where a point lies in a map, and what the map is like there.
@@ -96,7 +109,12 @@ pub fn receiver(split: &Split, position: [f32; 3], normal: [f32; 3], to_light: [
         texel_m: at.texel_m,
         range_m: at.range_m,
         linear: at.linear,
-        tolerance: tolerance(tangent, at.texel_m, at.range_m),
+        tolerance: Tolerance {
+            constant: bias_m / at.range_m,
+            rounding: at.rounding_m / at.range_m,
+            ..tolerance(tangent, at.texel_m, at.range_m)
+        },
+        crease: Crease::default(),
     }
 }
 
@@ -110,6 +128,8 @@ pub fn tolerance(tangent: f32, texel_m: [f32; 2], range_m: f32) -> Tolerance {
         past: PAST * (1.0 + corner) * longer / range_m,
         steep: (MOST_STEEP - tangent).max(0.0) / range_m,
         arrival: PAST_TEXELS * longer / range_m,
+        crease: CREASE_SLOPE.max(CREASE_SHARE * tangent) / range_m,
+        ..Tolerance::default()
     }
 }
 
@@ -171,16 +191,41 @@ impl Receiver {
         self.slope = [0.0; 2];
         self.tolerance.bend = 0.0;
         self.tolerance.steep = 0.0;
+        self.tolerance.crease = 1e30;
         self
+    }
+
+    /// `bias::crease_at`: the crease that the receiver lies behind, if the texel at `offset` is of
+    /// the surface that makes one. `beyond` is what the next texels on u and on v store, away from
+    /// the receiver, `farther` what those behind them do.
+    #[must_use]
+    pub fn crease_at(&self, offset: [f32; 2], stored: f32, beyond: [f32; 2], farther: [f32; 2]) -> Crease {
+        let changes = beyond.map(|next| next - stored);
+        let side = |i: usize| if offset[i] >= 0.0 { 1.0 } else { -1.0 };
+        let own = |i: usize| (self.tilt[i] + self.slope[i]) * side(i);
+        let rises = [[0, 1].map(|i| own(i) - changes[i]), [0, 1].map(|i| own(i) - (farther[i] - beyond[i]))];
+        let unsure = self.tolerance.rounding + 0.5 * SNAP_TEXELS * (changes[0].abs() + changes[1].abs());
+        let least = if self.linear[1] > 0.0 { 1e30 } else { self.tolerance.crease };
+        let before = self.before_plane(offset, stored);
+        Crease::of(before, offset, rises, self.texel_m.map(|texel| least * texel), unsure)
+    }
+
+    /// `bias::before_plane`: how far before the receiver's plane a texel's surface lies, without
+    /// any bias.
+    #[must_use]
+    pub fn before_plane(&self, offset: [f32; 2], stored: f32) -> f32 {
+        let along = dot2([0, 1].map(|i| self.tilt[i] + self.slope[i]), offset);
+        self.depth + self.tolerance.constant + along - stored
     }
 
     /// Whether what a texel stores, `offset` texels from the receiver, shades it: all of the
     /// decision. `beyond` is what the next texels on u and on v store, away from the receiver.
     #[must_use]
     pub fn is_shaded(&self, offset: [f32; 2], stored: f32, beyond: [f32; 2]) -> bool {
-        !self.lies_behind(offset, stored)
-            && !self.same_surface(offset, stored)
-            && !self.meets_receiver(offset, stored, beyond)
+        self.crease.is_across(offset, self.before_plane(offset, stored))
+            || !self.lies_behind(offset, stored)
+                && !self.same_surface(offset, stored)
+                && !self.meets_receiver(offset, stored, beyond)
     }
 
     /// `bias::lies_behind`: the texel lies behind the receiver.

@@ -154,11 +154,18 @@ const UMBRAGE_BIAS_ROUNDING: f32 = 1.9073486328125e-6;
 
 const UMBRAGE_BIAS_SNAP_TEXELS: f32 = 0.00390625;
 
+const UMBRAGE_BIAS_CREASE_SLOPE: f32 = 1.0;
+
+const UMBRAGE_BIAS_CREASE_SHARE: f32 = 0.5;
+
 struct UmbrageTolerance {
     bend: f32,
     past: f32,
     steep: f32,
-    arrival: f32
+    arrival: f32,
+    crease: f32,
+    constant: f32,
+    rounding: f32
 }
 
 struct UmbrageReceiver {
@@ -169,7 +176,8 @@ struct UmbrageReceiver {
     texel_m: vec2f,
     range_m: f32,
     linear: vec2f,
-    tolerance: UmbrageTolerance
+    tolerance: UmbrageTolerance,
+    crease: UmbrageCrease
 }
 
 struct UmbrageMapPoint {
@@ -214,6 +222,8 @@ fn umbrage_bias_receiver_at(at: UmbrageMapPoint, normal: vec3f, to_light: vec3f)
     result.range_m = at.range_m;
     result.linear = at.linear;
     result.tolerance = umbrage_bias_tolerance(tangent, at.texel_m, at.range_m);
+    result.tolerance.constant = bias_m / at.range_m;
+    result.tolerance.rounding = at.rounding_m / at.range_m;
     return result;
 }
 
@@ -225,6 +235,7 @@ fn umbrage_bias_tolerance(tangent: f32, texel_m: vec2f, range_m: f32) -> Umbrage
     result.past = UMBRAGE_BIAS_PAST * (1.0 + corner) * longer / range_m;
     result.steep = max(UMBRAGE_BIAS_MOST_STEEP - tangent, 0.0) / range_m;
     result.arrival = UMBRAGE_BIAS_PAST_TEXELS * longer / range_m;
+    result.crease = max(UMBRAGE_BIAS_CREASE_SLOPE, UMBRAGE_BIAS_CREASE_SHARE * tangent) / range_m;
     return result;
 }
 
@@ -282,7 +293,34 @@ fn umbrage_bias_without_plane(at: UmbrageReceiver, reach: vec2f) -> UmbrageRecei
     result.slope = vec2f(0.0);
     result.tolerance.bend = 0.0;
     result.tolerance.steep = 0.0;
+    result.tolerance.crease = 1e30;
     return result;
+}
+
+@if(texels)
+fn umbrage_bias_crease_at(at: UmbrageReceiver, offset: vec2f, stored: f32, beyond: vec2f, farther: vec2f) -> UmbrageCrease {
+    let changes = beyond - stored;
+    let side = select(vec2f(-1.0), vec2f(1.0), offset >= vec2f(0.0));
+    @if(warped)
+    let own = (at.tilt + at.slope) * side;
+    @if(!warped)
+    let own = at.slope * side;
+    let unsure = at.tolerance.rounding + 0.5 * UMBRAGE_BIAS_SNAP_TEXELS * (abs(changes.x) + abs(changes.y));
+    @if(linear)
+    let least = select(at.tolerance.crease, 1e30, at.linear.y > 0.0) * at.texel_m;
+    @if(!linear)
+    let least = at.tolerance.crease * at.texel_m;
+    let before = umbrage_bias_before_plane(at, offset, stored);
+    return umbrage_crease_crease_of(before, offset, own - changes, own - (farther - beyond), least, unsure);
+}
+
+@if(texels)
+fn umbrage_bias_before_plane(at: UmbrageReceiver, offset: vec2f, stored: f32) -> f32 {
+    @if(warped)
+    let along = dot(at.tilt + at.slope, offset);
+    @if(!warped)
+    let along = dot(at.slope, offset);
+    return at.depth + at.tolerance.constant + along - stored;
 }
 
 @if(texels)
@@ -348,6 +386,38 @@ fn umbrage_bias_linear_depth(linear: vec2f, w: f32) -> f32 {
     return clamp((w - near) * (linear.x * (linear.x - 1.0) / linear.y), 0.0, 1.0);
 }
 
+struct UmbrageCrease {
+    height: f32,
+    rise: vec2f,
+    unsure: f32
+}
+
+const UMBRAGE_CREASE_REACH: f32 = 2.0;
+
+const UMBRAGE_CREASE_WIDTH: f32 = 0.1;
+
+fn umbrage_crease_crease_of(before: f32, offset: vec2f, away: vec2f, farther: vec2f, least: vec2f, unsure: f32) -> UmbrageCrease {
+    let aside = abs(offset);
+    let curve = dot(min(farther - away, vec2f(0.0)), 0.5 * aside * (aside + 1.0));
+    let height = before - dot(away, aside) + curve;
+    let is_steep = dot(away / least, away / least) >= 1.0;
+    let rises = before >= -unsure && all(away >= vec2f(-unsure));
+    let is_over = height >= -unsure && height <= UMBRAGE_CREASE_REACH * length(away);
+    let side = select(vec2f(-1.0), vec2f(1.0), offset >= vec2f(0.0));
+    let rise = select(vec2f(0.0), away * side, is_steep && rises && is_over);
+    return UmbrageCrease(height, rise, unsure);
+}
+
+fn umbrage_crease_is_there(crease: UmbrageCrease) -> bool {
+    return any(crease.rise != vec2f(0.0));
+}
+
+fn umbrage_crease_is_across(crease: UmbrageCrease, offset: vec2f, before: f32) -> bool {
+    let height = crease.height + dot(crease.rise, offset);
+    let width = UMBRAGE_CREASE_WIDTH * (abs(crease.rise.x) + abs(crease.rise.y)) + crease.unsure;
+    return umbrage_crease_is_there(crease) && (height <= width || before + width >= height);
+}
+
 const UMBRAGE_FILTER_HARD: u32 = 0u;
 
 const UMBRAGE_FILTER_PCF2: u32 = 1u;
@@ -371,6 +441,8 @@ const UMBRAGE_FILTER_MOST_BLOCKER_M: f32 = 200.0;
 const UMBRAGE_FILTER_TAP_SPREAD: f32 = 0.6666667;
 
 const UMBRAGE_FILTER_GOLDEN_ANGLE: f32 = 2.3999632;
+
+const UMBRAGE_FILTER_LEAST_LIGHT: f32 = 0.5;
 
 fn umbrage_filter_radius(kind: u32) -> f32 {
     return array<f32, 10>(0.5, 1.0, 1.5, 2.5, 3.5, 2.5, 0.0, 0.0, 16.0, 16.0)[min(kind, UMBRAGE_FILTER_PCSS)];
@@ -473,15 +545,79 @@ fn umbrage_filter_four(layer: UmbrageLayer, at: UmbrageReceiver, first: vec2f, s
 @if(texels)
 fn umbrage_filter_texel_lit(layer: UmbrageLayer, texel: vec2i, at: UmbrageReceiver, offset: vec2f) -> f32 {
     let stored = umbrage_map_load(layer.index, texel);
+    if umbrage_crease_is_across(at.crease, offset, umbrage_bias_before_plane(at, offset, stored)) {
+        return 0.0;
+    }
     if umbrage_bias_lies_behind(at, offset, stored) || umbrage_bias_same_surface(at, offset, stored) {
         return 1.0;
     }
-    let next = clamp(texel + select(vec2i(-1), vec2i(1), offset >= vec2f(0.0)), layer.first, layer.last);
-    let beyond = vec2f(umbrage_map_load(layer.index, vec2i(next.x, texel.y)), umbrage_map_load(layer.index, vec2i(texel.x, next.y)));
-    return select(0.0, 1.0, umbrage_bias_meets_receiver(at, offset, stored, beyond));
+    return select(0.0, 1.0, umbrage_bias_meets_receiver(at, offset, stored, umbrage_filter_beyond(layer, texel, offset, 1)));
+}
+
+@if(texels)
+fn umbrage_filter_beyond(layer: UmbrageLayer, texel: vec2i, offset: vec2f, steps: i32) -> vec2f {
+    let next = clamp(texel + select(vec2i(-steps), vec2i(steps), offset >= vec2f(0.0)), layer.first, layer.last);
+    return vec2f(umbrage_map_load(layer.index, vec2i(next.x, texel.y)), umbrage_map_load(layer.index, vec2i(texel.x, next.y)));
+}
+
+@if(texels)
+fn umbrage_filter_with_crease(layer: UmbrageLayer, at: UmbrageReceiver) -> UmbrageReceiver {
+    var result = at;
+    let first = floor(at.texel - 0.5) + 0.5;
+    var stored = vec4f(0.0);
+    var is_flat = true;
+    for (var i = 0; i < 4; i++) {
+        let centre = umbrage_filter_corner_of_four(first, i);
+        stored[i] = umbrage_map_load(layer.index, umbrage_filter_texel_at(layer, centre));
+        is_flat = is_flat && umbrage_bias_before_plane(at, centre - at.texel, stored[i]) <= at.tolerance.rounding;
+    }
+    if is_flat {
+        return result;
+    }
+    for (var i = 0; i < 4; i++) {
+        let centre = umbrage_filter_corner_of_four(first, i);
+        let offset = centre - at.texel;
+        let texel = umbrage_filter_texel_at(layer, centre);
+        let next = umbrage_filter_beyond(layer, texel, offset, 1);
+        result.crease = umbrage_bias_crease_at(at, offset, stored[i], next, umbrage_filter_beyond(layer, texel, offset, 2));
+        if umbrage_crease_is_there(result.crease) {
+            break;
+        }
+    }
+    return result;
+}
+
+@if(texels)
+fn umbrage_filter_corner_of_four(first: vec2f, i: i32) -> vec2f {
+    return first + vec2f(vec2i(i & 1, i >> 1));
+}
+
+@if(texels)
+fn umbrage_filter_texel_at(layer: UmbrageLayer, centre: vec2f) -> vec2i {
+    return clamp(vec2i(floor(centre + layer.offset)), layer.first, layer.last);
 }
 
 fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
+    var asked = at;
+    var lit = 0.0;
+    for (var i = 0; i < 2; i++) {
+        let found = umbrage_filter_share_of_kernel(layer, kind, softness, asked, centre);
+        lit = select(found, select(lit, 0.0, found < UMBRAGE_FILTER_LEAST_LIGHT), i == 1);
+        if i == 1 || lit == 0.0 {
+            break;
+        }
+        @if(texels)
+        {
+            asked = umbrage_filter_with_crease(layer, at);
+        }
+        if !umbrage_crease_is_there(asked.crease) {
+            break;
+        }
+    }
+    return lit;
+}
+
+fn umbrage_filter_share_of_kernel(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
     @if(hard)
     {
         if kind == UMBRAGE_FILTER_HARD {

@@ -168,11 +168,18 @@ const UMBRAGE_BIAS_ROUNDING: f32 = 1.9073486328125e-6;
 
 const UMBRAGE_BIAS_SNAP_TEXELS: f32 = 0.00390625;
 
+const UMBRAGE_BIAS_CREASE_SLOPE: f32 = 1.0;
+
+const UMBRAGE_BIAS_CREASE_SHARE: f32 = 0.5;
+
 struct UmbrageTolerance {
     bend: f32,
     past: f32,
     steep: f32,
-    arrival: f32
+    arrival: f32,
+    crease: f32,
+    constant: f32,
+    rounding: f32
 }
 
 struct UmbrageReceiver {
@@ -183,7 +190,8 @@ struct UmbrageReceiver {
     texel_m: vec2f,
     range_m: f32,
     linear: vec2f,
-    tolerance: UmbrageTolerance
+    tolerance: UmbrageTolerance,
+    crease: UmbrageCrease
 }
 
 struct UmbrageMapPoint {
@@ -228,6 +236,8 @@ fn umbrage_bias_receiver_at(at: UmbrageMapPoint, normal: vec3f, to_light: vec3f)
     result.range_m = at.range_m;
     result.linear = at.linear;
     result.tolerance = umbrage_bias_tolerance(tangent, at.texel_m, at.range_m);
+    result.tolerance.constant = bias_m / at.range_m;
+    result.tolerance.rounding = at.rounding_m / at.range_m;
     return result;
 }
 
@@ -239,6 +249,7 @@ fn umbrage_bias_tolerance(tangent: f32, texel_m: vec2f, range_m: f32) -> Umbrage
     result.past = UMBRAGE_BIAS_PAST * (1.0 + corner) * longer / range_m;
     result.steep = max(UMBRAGE_BIAS_MOST_STEEP - tangent, 0.0) / range_m;
     result.arrival = UMBRAGE_BIAS_PAST_TEXELS * longer / range_m;
+    result.crease = max(UMBRAGE_BIAS_CREASE_SLOPE, UMBRAGE_BIAS_CREASE_SHARE * tangent) / range_m;
     return result;
 }
 
@@ -296,7 +307,14 @@ fn umbrage_bias_without_plane(at: UmbrageReceiver, reach: vec2f) -> UmbrageRecei
     result.slope = vec2f(0.0);
     result.tolerance.bend = 0.0;
     result.tolerance.steep = 0.0;
+    result.tolerance.crease = 1e30;
     return result;
+}
+
+struct UmbrageCrease {
+    height: f32,
+    rise: vec2f,
+    unsure: f32
 }
 
 fn umbrage_filter_gradient_noise(pixel: vec2f) -> f32 {

@@ -154,11 +154,18 @@ const UMBRAGE_BIAS_ROUNDING: f32 = 1.9073486328125e-6;
 
 const UMBRAGE_BIAS_SNAP_TEXELS: f32 = 0.00390625;
 
+const UMBRAGE_BIAS_CREASE_SLOPE: f32 = 1.0;
+
+const UMBRAGE_BIAS_CREASE_SHARE: f32 = 0.5;
+
 struct UmbrageTolerance {
     bend: f32,
     past: f32,
     steep: f32,
-    arrival: f32
+    arrival: f32,
+    crease: f32,
+    constant: f32,
+    rounding: f32
 }
 
 struct UmbrageReceiver {
@@ -169,7 +176,8 @@ struct UmbrageReceiver {
     texel_m: vec2f,
     range_m: f32,
     linear: vec2f,
-    tolerance: UmbrageTolerance
+    tolerance: UmbrageTolerance,
+    crease: UmbrageCrease
 }
 
 struct UmbrageMapPoint {
@@ -214,6 +222,8 @@ fn umbrage_bias_receiver_at(at: UmbrageMapPoint, normal: vec3f, to_light: vec3f)
     result.range_m = at.range_m;
     result.linear = at.linear;
     result.tolerance = umbrage_bias_tolerance(tangent, at.texel_m, at.range_m);
+    result.tolerance.constant = bias_m / at.range_m;
+    result.tolerance.rounding = at.rounding_m / at.range_m;
     return result;
 }
 
@@ -225,6 +235,7 @@ fn umbrage_bias_tolerance(tangent: f32, texel_m: vec2f, range_m: f32) -> Umbrage
     result.past = UMBRAGE_BIAS_PAST * (1.0 + corner) * longer / range_m;
     result.steep = max(UMBRAGE_BIAS_MOST_STEEP - tangent, 0.0) / range_m;
     result.arrival = UMBRAGE_BIAS_PAST_TEXELS * longer / range_m;
+    result.crease = max(UMBRAGE_BIAS_CREASE_SLOPE, UMBRAGE_BIAS_CREASE_SHARE * tangent) / range_m;
     return result;
 }
 
@@ -282,6 +293,7 @@ fn umbrage_bias_without_plane(at: UmbrageReceiver, reach: vec2f) -> UmbrageRecei
     result.slope = vec2f(0.0);
     result.tolerance.bend = 0.0;
     result.tolerance.steep = 0.0;
+    result.tolerance.crease = 1e30;
     return result;
 }
 
@@ -320,6 +332,16 @@ fn umbrage_bias_linear_depth(linear: vec2f, w: f32) -> f32 {
     return clamp((w - near) * (linear.x * (linear.x - 1.0) / linear.y), 0.0, 1.0);
 }
 
+struct UmbrageCrease {
+    height: f32,
+    rise: vec2f,
+    unsure: f32
+}
+
+fn umbrage_crease_is_there(crease: UmbrageCrease) -> bool {
+    return any(crease.rise != vec2f(0.0));
+}
+
 const UMBRAGE_FILTER_HARD: u32 = 0u;
 
 const UMBRAGE_FILTER_PCF2: u32 = 1u;
@@ -341,6 +363,8 @@ const UMBRAGE_FILTER_MOST_BLOCKER_M: f32 = 200.0;
 const UMBRAGE_FILTER_TAP_SPREAD: f32 = 0.6666667;
 
 const UMBRAGE_FILTER_GOLDEN_ANGLE: f32 = 2.3999632;
+
+const UMBRAGE_FILTER_LEAST_LIGHT: f32 = 0.5;
 
 fn umbrage_filter_radius(kind: u32) -> f32 {
     return array<f32, 10>(0.5, 1.0, 1.5, 2.5, 3.5, 2.5, 0.0, 0.0, 16.0, 16.0)[min(kind, UMBRAGE_FILTER_PCSS)];
@@ -435,6 +459,22 @@ fn umbrage_filter_four(layer: UmbrageLayer, at: UmbrageReceiver, first: vec2f, s
 }
 
 fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
+    var asked = at;
+    var lit = 0.0;
+    for (var i = 0; i < 2; i++) {
+        let found = umbrage_filter_share_of_kernel(layer, kind, softness, asked, centre);
+        lit = select(found, select(lit, 0.0, found < UMBRAGE_FILTER_LEAST_LIGHT), i == 1);
+        if i == 1 || lit == 0.0 {
+            break;
+        }
+        if !umbrage_crease_is_there(asked.crease) {
+            break;
+        }
+    }
+    return lit;
+}
+
+fn umbrage_filter_share_of_kernel(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
     @if(hard)
     {
         if kind == UMBRAGE_FILTER_HARD {

@@ -7,4 +7,5 @@ mod field;
 mod goldens;
 mod paths;
 mod robot_war;
+mod rooms;
 mod stillness;

@@ -25,6 +25,12 @@ const STEP: f64 = 1.090_507_732_665_257_7;
 /// may tremble.
 const TREMOR: f64 = 1e-5;
 
+/// Relative room for rounding in what a map needs.
+const ROUNDING: f64 = 1e-12;
+
+/// Share of a slice that is left where a plane is in another one's way.
+const LEAST_GAP: f64 = 0.05;
+
 /// What the camera does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Standing {
@@ -116,13 +122,41 @@ impl Row {
         let halves = (0..self.splits).map(|i| (self.half[i] / target.half[i]).max_element());
         planes.chain(halves).fold(1.0, f64::max)
     }
+
+    /// Whether a plane of `target` lies beyond a neighbour of that plane here.
+    fn is_in_the_way_of(&self, target: &Self) -> bool {
+        let passes_before = |j: usize| target.planes[j] <= self.planes[j - 1];
+        let passes_behind = |j: usize| j < self.splits && target.planes[j] >= self.planes[j + 1];
+        (1..=self.splits).any(|j| passes_before(j) || passes_behind(j))
+    }
+
+    /// How far a plane may move towards the eye and away from it without passing its neighbours.
+    fn lowest(&self, plane: usize) -> f64 {
+        let [before, at] = [self.planes[plane - 1], self.planes[plane]];
+        before + LEAST_GAP * (at - before)
+    }
+
+    fn highest(&self, plane: usize) -> f64 {
+        if plane == self.splits {
+            return f64::INFINITY;
+        }
+        let [at, behind] = [self.planes[plane], self.planes[plane + 1]];
+        behind - LEAST_GAP * (behind - at)
+    }
 }
 
-/// A recovery under way: planes move from the last to the first, each with the map before it.
+/// A recovery under way: planes move one after the other from the last to the first, each with the
+/// map before it. A map is given room for what the planes before it will do next: no plane moves
+/// without, or two maps would change at once.
+///
+/// Where many planes have to go where others are, rounds go back again, from the first plane to the
+/// last: those that move towards the eye then find none in their way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Recovery {
     /// Planes that are left in this round.
     left: usize,
+    goes_back: bool,
+    is_way_back: bool,
     step: f64,
     /// Visits since anything changed.
     idle: usize,
@@ -140,13 +174,20 @@ impl Recovery {
         (frames_left, visits_all): (u32, bool),
         need: impl Fn(usize, &[f64]) -> DVec2,
     ) -> Option<usize> {
-        while self.idle < row.splits {
+        while self.idle < 2 * row.splits {
             if self.left == 0 {
                 self.left = row.splits;
-                let rounds = (frames_left / row.splits as u32).max(1);
-                self.step = row.ratio(target).powf(1.0 / f64::from(rounds)).max(STEP);
+                self.is_way_back = self.goes_back && !self.is_way_back;
+                if !self.is_way_back {
+                    // A plane gets past those in its way by one slice a round. Few planes have
+                    // rounds enough for that.
+                    let has_few_rounds = (DURATION as usize) < 2 * row.splits * row.splits;
+                    self.goes_back = has_few_rounds && row.is_in_the_way_of(target);
+                    let rounds = frames_left / row.splits as u32 / if self.goes_back { 2 } else { 1 };
+                    self.step = row.ratio(target).powf(1.0 / f64::from(rounds.max(1))).max(STEP);
+                }
             }
-            let plane = self.left;
+            let plane = if self.is_way_back { row.splits + 1 - self.left } else { self.left };
             self.left -= 1;
             if self.visit(plane, row, target, &need) {
                 self.idle = 0;
@@ -164,19 +205,27 @@ impl Recovery {
     fn visit(&self, plane: usize, row: &mut Row, target: &Row, need: impl Fn(usize, &[f64]) -> DVec2) -> bool {
         let before = *row;
         let m = row.splits;
-        let towards = |j: usize| target.planes[j].clamp(row.planes[j] / self.step, row.planes[j] * self.step);
-        let moved = towards(plane);
-        let ahead: [f64; MAX_SPLITS + 1] = std::array::from_fn(|j| if j < plane { towards(j) } else { row.planes[j] });
-        let below = plane == m || moved < row.planes[plane + 1];
-        if moved > row.planes[plane - 1] && below {
-            row.planes[plane] = moved;
-        }
+        let towards = |j: usize, step: f64| target.planes[j].clamp(before.planes[j] / step, before.planes[j] * step);
+        row.planes[plane] = towards(plane, self.step).clamp(before.lowest(plane), before.highest(plane));
         if plane == 1 && target.planes[0] < row.planes[1] {
             row.planes[0] = target.planes[0];
         }
-        // The next visits move the planes before, where this map begins: room for that, or two maps
-        // would change at once.
-        let with_room: [f64; MAX_SPLITS + 1] = std::array::from_fn(|j| row.planes[j].min(ahead[j]));
+        // Maps behind it begin there, by their bands of blending the second one, too. Where planes
+        // were meant to go elsewhere when it was their turn, it waits.
+        let has_room = |row: &Row, i: usize| {
+            let most = row.half[i] * (1.0 + ROUNDING);
+            need(i, &row.planes[..=m]).cmple(most).all()
+        };
+        if !(plane..m.min(plane + 2)).all(|i| has_room(row, i)) {
+            row.planes = before.planes;
+        }
+        // Room for this round, and for the way back.
+        let ahead = if self.goes_back { self.step * self.step } else { self.step };
+        let with_room: [f64; MAX_SPLITS + 1] = std::array::from_fn(|j| match j {
+            0 => row.planes[0].min(target.planes[0]),
+            j if j < plane && !self.is_way_back => row.planes[j].min(towards(j, ahead)),
+            j => row.planes[j],
+        });
         let split = plane - 1;
         let least = need(split, &row.planes[..=m]).max(need(split, &with_room[..=m]));
         row.half[split] = least.max(row.half[split] / self.step);
