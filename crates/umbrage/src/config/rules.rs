@@ -172,13 +172,13 @@ pub const RULES: &[Rule] = &[
     rule(
         Choice::NotStill,
         Choice::KeptMaps,
-        "what is kept stands on the grid of maps that stand exactly still",
+        "what is kept needs the fixed grid of exactly stabilised maps",
         "use stabilize exact, or cache off",
     ),
     rule(
         Choice::MapSelection,
         Choice::KeptMaps,
-        "a map that is not filled yet hands its slice of view depths to the next one",
+        "a map that is not filled yet passes its slice of view depths on to the next one",
         "use selection depth, or cache off",
     ),
     rule(
@@ -190,7 +190,7 @@ pub const RULES: &[Rule] = &[
     rule(
         Choice::OtherDepth,
         Choice::KeptMaps,
-        "16-bit depth wants a range that moves with the view, and colours cannot be copied as depth",
+        "16-bit depth needs a range that moves with the view, and colours cannot be copied as depth",
         "use depth-format d32f, or cache off",
     ),
     rule(
@@ -202,7 +202,7 @@ pub const RULES: &[Rule] = &[
     rule(
         Choice::NotPerSplit,
         Choice::KeptMaps,
-        "each map has regions of its own to be drawn",
+        "each map has regions of its own to draw",
         "use generation per-split, or cache off",
     ),
     rule(
