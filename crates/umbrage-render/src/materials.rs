@@ -156,7 +156,8 @@ fn upload_texture(gpu: &Gpu, texture: &Texture, alpha: Alpha) -> (wgpu::TextureV
     (on_gpu.create_view(&wgpu::TextureViewDescriptor::default()), data.len() as u64)
 }
 
-/// What tells two materials apart: the bits of their uniform, how alpha is used, the texture, sides.
+/// What tells two materials apart: the bits of their uniform, how alpha is used, the texture, and
+/// the sides.
 type Look = ([u32; 8], Discriminant<AlphaMode>, Option<usize>, bool);
 
 /// What tells the samplers of two textures apart.
@@ -311,6 +312,7 @@ mod tests {
         let named = |i: usize| Material { name: format!("material {i}"), ..kinds[i % kinds.len()].clone() };
         let scene = Scene { materials: (0..100_000).map(named).collect(), ..Scene::default() };
         let made = Materials::new(&gpu, &scene).expect("materials");
+        #[expect(clippy::mutable_key_type, reason = "a bind group is hashed by its identity")]
         let groups: HashSet<&wgpu::BindGroup> = made.list.iter().map(|material| &material.bind_group).collect();
         assert_eq!((made.list.len(), groups.len()), (100_000, kinds.len()));
         assert!(made.list.iter().zip(&scene.materials).all(|(made, asked)| made.alpha == asked.alpha));

@@ -20,9 +20,9 @@ impl<'a> ShadowFrame<'a> {
     }
 
     /// The maps to draw, in this order; none without shadows. Maps of several lights that no caster
-    /// reaches are omitted: nothing reads them. With [`umbrage::config::Cache::Kept`] the regions of
-    /// kept maps come first, and maps that have not changed are omitted, so there may be nothing to
-    /// draw for many frames.
+    /// reaches are omitted: nothing reads them. With [`umbrage::config::Cache::Kept`] the regions
+    /// of kept maps come first, and maps that have not changed are omitted, so there may be nothing
+    /// to draw for many frames.
     pub fn maps(&self) -> impl Iterator<Item = ShadowMap<'a>> + use<'a> {
         let shadows = self.shadows;
         shadows.draws.passes.iter().map(move |&pass| ShadowMap { shadows, pass })
@@ -147,8 +147,9 @@ impl<'a> ShadowMap<'a> {
         self.shadows.draws.of_pass(self.pass).iter().cloned()
     }
 
-    /// The casters as ranges of [`crate::Inputs::casters`], for an application whose instance buffer
-    /// has one row for each caster, in their order: one draw of a mesh draws a range of rows.
+    /// The casters as ranges of [`crate::Inputs::casters`], for an application whose instance
+    /// buffer has one row for each caster, in their order: one draw of a mesh draws a range of
+    /// rows.
     ///
     /// `None` with layered, instanced and mixed layouts. Instances of draws then say which splits a
     /// caster belongs to, and [`ShadowMap::casters`] has them: draw one caster at a time. Matrices

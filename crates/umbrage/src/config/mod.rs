@@ -124,9 +124,9 @@ pub struct ShadowConfig {
     pub depth_format: DepthFormat,
     /// Where maps are stored and how they are drawn.
     pub layout: Layout,
-    /// Whether what static casters draw into the maps is kept. Kept maps take about twice the memory
-    /// and need a [`crate::CasterSet`], which knows what is static; casters of a list are drawn again
-    /// in every frame.
+    /// Whether what static casters draw into the maps is kept. Kept maps take about twice the
+    /// memory and need a [`crate::CasterSet`], which knows what is static; casters of a list are
+    /// drawn again in every frame.
     pub cache: Cache,
     /// Whether unsupported features are replaced by supported ones.
     pub fallbacks: Fallbacks,
