@@ -16,7 +16,7 @@ file (TOML or JSON), `--filter pcf5` on the command line, and `:filter=pcf5` in 
 umbrage --test settings_page` makes this page from the tables in `crates/umbrage/src/config`.
 
 In Rust a setting is a field of `ShadowConfig`, or part of one: settings that exclude each other are
-variants of one enum. `ShadowConfig::apply` takes keys and values as they stand here.
+variants of one enum. `ShadowConfig::apply` takes keys and values as listed here.
 
 *Costs* says what an application rebuilds when the setting changes at run time: nothing, the maps
 (textures and bind groups), or the pipelines.
