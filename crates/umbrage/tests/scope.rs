@@ -45,8 +45,10 @@ fn texel_at(plan: &ShadowPlan, point: DVec3) -> (f64, f64) {
 
 #[test]
 fn a_ground_of_any_size_leaves_texels_to_what_stands_on_it() {
-    for stability in &STABILITIES {
-        let settings = ShadowConfig { stability: stability.clone(), ..Preset::Papers.config() };
+    // Tight maps that are chosen by what they contain begin with the ground, wherever that does.
+    let all = STABILITIES.into_iter().flat_map(|it| [(it.clone(), Preset::Papers), (it, Preset::Balanced)]);
+    for (stability, preset) in all.filter(|(it, preset)| *preset == Preset::Papers || *it != Stability::tight()) {
+        let settings = ShadowConfig { stability: stability.clone(), ..preset.config() };
         for (near, far) in [(0.01, f64::INFINITY), (1.0, f64::INFINITY), (0.1, 300.0), (1.0, 1e6)] {
             for half in [10.0, 100.0, 2e3, 2e4, 5e5] {
                 let plan = plan(&settings, &view(near, far), &things(half));

@@ -11,6 +11,11 @@ use crate::{Projection, Result};
 /// The least length of a range that is fitted to what is visible, as a share of its far end.
 const LEAST_RANGE: f64 = 0.01;
 
+/// A range that is fitted to what is visible and this many times as long as it begins far away ends
+/// with the shadows, too. Lower: the range of ordinary views follows their casters. Higher: grounds
+/// of kilometres take texels and depth from what stands on them.
+const MOST_OF_FIRST: f64 = 300.0;
+
 /// The range of a frame: the setting; the view depths of the visible receivers; or the camera's
 /// near and far, far capped by what matters of the scene. Held where maps have to stand still.
 ///
@@ -47,6 +52,14 @@ fn held_range(frame: &Frame<'_>, scope: &Scope<'_>, held: &mut HeldEnds) -> Rang
     let deepest = if deepest > near { deepest } else { 2.0 * near.abs() + 1.0 };
     let deepest = deepest.min(camera_far);
     if fits_view && let Some((first, last)) = visible_range(view, near, deepest, &receivers) {
+        let last = if last > MOST_OF_FIRST * first.abs().max(near.abs()) {
+            // A ground up to the horizon: no farther than there are shadows on it.
+            let extent = scope.extent();
+            let ends = if metric == SplitMetric::Distance { extent.farthest } else { extent.deepest };
+            last.min(ends).max(first)
+        } else {
+            last
+        };
         let holds = config.is_stabilised() && first > 0.0;
         let (first, last) = if holds { held.visible.hold(first, last) } else { (first, last) };
         // A single wall that faces the camera still gets slices of some depth.
