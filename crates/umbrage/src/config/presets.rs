@@ -14,7 +14,7 @@ named! {
         /// The default: sharp near the eye and almost still
         #[default]
         Balanced = "balanced",
-        /// Edges decided by triangles: the memory of balanced, half the texels, a share of the error
+        /// Edges decided by triangles: the memory of balanced, half the texels, half the error
         Exact = "exact",
         /// The tightest maps in every frame; edges crawl while the camera moves
         Sharp = "sharp",
