@@ -33,7 +33,7 @@ pub(crate) struct GpuPrimitive {
     pub material: usize,
     /// Indices of the mesh's triangles for passes that ask for positions alone.
     pub shadow_indices: Range<u32>,
-    /// The same triangles for shadow passes: with exact edges first corners tell their run.
+    /// Indices of these triangles for shadow passes: with exact edges first corners tell their run.
     pub caster_indices: Range<u32>,
     /// Those as a tree of parts; one node if they are few, none if their vertices move.
     pub clusters: Vec<Cluster>,

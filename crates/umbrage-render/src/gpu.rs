@@ -139,9 +139,9 @@ impl Gpu {
         if bytes > limit { Err(Error::BufferSize { what, needed: bytes, limit }) } else { Ok(()) }
     }
 
-    /// The same of one that shaders read.
+    /// [`Error::BufferSize`] unless `bytes` fit into one buffer that shaders of this device read.
     pub(crate) fn check_storage(&self, what: &'static str, bytes: u64) -> Result<()> {
-        let limit = u64::from(self.device.limits().max_storage_buffer_binding_size);
+        let limit = self.device.limits().max_storage_buffer_binding_size;
         if bytes > limit {
             Err(Error::BufferSize { what, needed: bytes, limit })
         } else {

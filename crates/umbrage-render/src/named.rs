@@ -199,7 +199,7 @@ fn slot_buffer(gpu: &Gpu, count: u64) -> wgpu::Buffer {
     let limits = gpu.device.limits();
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("Names::slots"),
-        size: (count * SLOT_BYTES).min(limits.max_buffer_size).min(u64::from(limits.max_storage_buffer_binding_size)),
+        size: (count * SLOT_BYTES).min(limits.max_buffer_size).min(limits.max_storage_buffer_binding_size),
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     })

@@ -120,7 +120,7 @@ fn a_quads_edge_is_exact_at_every_sub_texel_offset() {
     assert_eq!(asked, 4 * 64 * 6 * 4);
 }
 
-/// The same edges with ids that are one too high: what is found is wrong, and is seen to be.
+/// Edges of plates under ids that are one too high: what is found is wrong, and is seen to be.
 #[test]
 fn shifted_ids_are_seen() {
     let up = [0.0, 1.0, 0.0];
