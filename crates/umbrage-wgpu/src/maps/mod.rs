@@ -450,8 +450,9 @@ impl ShadowMaps {
         &self.notes
     }
 
-    /// Bytes of all maps, of depth buffers beside maps that are colours, of ids beside depth, and for
-    /// moment filters of the moments with their mip levels, of the texture between two blurs, and of what is kept.
+    /// Bytes of all maps, of depth buffers beside maps that are colours, of ids beside depth, and
+    /// for moment filters of the moments with their mip levels, of the texture between two blurs,
+    /// and of what is kept.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let moments = self.moments.as_ref().map_or(0, Moments::bytes);
