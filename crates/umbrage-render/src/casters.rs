@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use umbrage::config::Translucent;
+use umbrage::config::{Edges, Translucent};
 use umbrage_scene::AlphaMode;
 use umbrage_wgpu::ShadowMaps;
 
@@ -25,7 +25,11 @@ impl Casters {
                 source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
             })
         };
-        let opaque = module(shaders::casters(&maps.caster_wgsl(0)));
+        let is_named = maps.edges() == Edges::Exact;
+        let opaque = module(match is_named {
+            true => shaders::named_casters(&maps.caster_wgsl(0)),
+            false => shaders::casters(&maps.caster_wgsl(0)),
+        });
         let masked = module(shaders::masked_casters(&maps.caster_wgsl_with(0, shaders::MASKED_MEMBERS)));
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("Casters::layout"),
@@ -33,6 +37,8 @@ impl Casters {
             immediate_size: 0,
         });
         let vertex_layouts = vertex_layouts();
+        let [positions, instances, .., runs] = vertex_layouts.clone();
+        let with_runs = [positions, instances, None, None, runs];
         let pipeline = |label, module: &wgpu::ShaderModule, entry_points: [&str; 2], buffers, fragment: bool| {
             gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(label),
@@ -56,7 +62,7 @@ impl Casters {
                 cache: None,
             })
         };
-        // Maps that are colours are written by a fragment shader.
+        // Maps that are colours, and ids, are written by a fragment shader.
         let colour = !maps.caster_targets().is_empty();
         let buffers = &vertex_layouts;
         let dithered = (translucent == Translucent::Dithered).then(|| {
@@ -64,7 +70,10 @@ impl Casters {
             pipeline("Casters::dithered", &module, ["vs_dithered", "fs_dithered"], &buffers[..3], true)
         });
         Self {
-            opaque: pipeline("Casters::opaque", &opaque, ["vs_opaque", "fs_opaque"], &buffers[..2], colour),
+            opaque: match is_named {
+                true => pipeline("Casters::named", &opaque, ["vs_named", "fs_named"], &with_runs[..], true),
+                false => pipeline("Casters::opaque", &opaque, ["vs_opaque", "fs_opaque"], &buffers[..2], colour),
+            },
             masked: pipeline("Casters::masked", &masked, ["vs_masked", "fs_masked"], &buffers[..3], true),
             dithered,
         }

@@ -17,6 +17,8 @@ pub(crate) struct Instance {
     rows: [[f32; 4]; 3],
     /// Which copy of a caster, for passes that draw several splits.
     code: u32,
+    /// The first id of a caster whose triangles maps name; 0 without.
+    first_id: u32,
 }
 
 /// An object and the codes of its copies, one instance each.
@@ -29,11 +31,11 @@ pub(crate) fn once(object: usize) -> Copies {
 
 impl Instance {
     /// The subtraction happens in `f64`; what is left is small near the eye and fits `f32`.
-    fn new(world_from_local: &DAffine3, origin: DVec3, code: u32) -> Self {
+    fn new(world_from_local: &DAffine3, origin: DVec3, code: u32, first_id: u32) -> Self {
         let m = world_from_local.matrix3;
         let t = world_from_local.translation - origin;
         let row = |i: usize| [m.x_axis[i] as f32, m.y_axis[i] as f32, m.z_axis[i] as f32, t[i] as f32];
-        Self { rows: [row(0), row(1), row(2)], code }
+        Self { rows: [row(0), row(1), row(2)], code, first_id }
     }
 }
 
@@ -87,6 +89,8 @@ pub(crate) struct Instances {
     data: Vec<Instance>,
     /// Per instance the object that it shows.
     objects: Vec<usize>,
+    /// Per object its first id, with exact edges.
+    first_ids: Vec<u32>,
     buffer: wgpu::Buffer,
 }
 
@@ -94,13 +98,15 @@ impl Instances {
     pub const STRIDE: u64 = size_of::<Instance>() as u64;
 
     pub fn new(gpu: &Gpu) -> Self {
-        Self { data: Vec::new(), objects: Vec::new(), buffer: instance_buffer(gpu, 64) }
+        Self { data: Vec::new(), objects: Vec::new(), first_ids: Vec::new(), buffer: instance_buffer(gpu, 64) }
     }
 
-    /// Forgets the last frame.
-    pub fn clear(&mut self) {
+    /// Forgets the last frame; `first_ids` are those of this frame's objects, none without exact
+    /// edges.
+    pub fn clear(&mut self, first_ids: Vec<u32>) {
         self.data.clear();
         self.objects.clear();
+        self.first_ids = first_ids;
     }
 
     /// The object that an instance shows.
@@ -158,7 +164,8 @@ impl Instances {
             let count = codes.len() as u32;
             let world_from_local = &pose.objects[index].world_from_local;
             self.objects.extend(codes.clone().map(|_| index));
-            self.data.extend(codes.map(|code| Instance::new(world_from_local, origin, code)));
+            let first_id = self.first_ids.get(index).copied().unwrap_or(0);
+            self.data.extend(codes.map(|code| Instance::new(world_from_local, origin, code, first_id)));
             match runs.last_mut() {
                 Some(run) if joins => run.instances.end += count,
                 _ => runs.push(Run { source, mirrored, instances: at..at + count, parts: None }),
@@ -193,12 +200,13 @@ fn run_key(object: &Object) -> (Source, bool) {
     (source, object.world_from_local.matrix3.determinant() < 0.0)
 }
 
-/// How vertex buffers are laid out: slot 0 positions, 1 instances, 2 surfaces, 3 normals. A
-/// pipeline uses the first few.
-pub(crate) fn vertex_layouts() -> [Option<wgpu::VertexBufferLayout<'static>>; 4] {
+/// How vertex buffers are laid out: slot 0 positions, 1 instances, 2 surfaces, 3 normals, 4 runs. A
+/// pipeline uses the first few; one that names casters 0, 1 and 4.
+pub(crate) fn vertex_layouts() -> [Option<wgpu::VertexBufferLayout<'static>>; 5] {
     const POSITION: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x3];
-    const INSTANCE: [wgpu::VertexAttribute; 4] =
-        wgpu::vertex_attr_array![4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Uint32];
+    const INSTANCE: [wgpu::VertexAttribute; 5] =
+        wgpu::vertex_attr_array![4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Uint32, 8 => Uint32];
+    const RUN: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![9 => Uint32];
     const SURFACE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![1 => Float32x2, 2 => Unorm16x4];
     const NORMAL: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![3 => Float32x3];
     let layout =
@@ -209,6 +217,7 @@ pub(crate) fn vertex_layouts() -> [Option<wgpu::VertexBufferLayout<'static>>; 4]
         layout(Instances::STRIDE, wgpu::VertexStepMode::Instance, &INSTANCE),
         layout(16, vertex, &SURFACE),
         layout(12, vertex, &NORMAL),
+        layout(4, vertex, &RUN),
     ]
 }
 
@@ -277,9 +286,9 @@ impl Drawable<'_> {
                 let Some(pipeline) = pipeline_for(material, run.mirrored) else { continue };
                 let whole = match what {
                     Show::Surfaces | Show::Visible => &primitive.indices,
-                    Show::Shadows => &primitive.shadow_indices,
+                    Show::Shadows => &primitive.caster_indices,
                 };
-                // Triangles stand in both lists in one order.
+                // Triangles stand in all lists in one order.
                 let moved = |part: &Range<u32>| {
                     let first = whole.start + (part.start - primitive.shadow_indices.start);
                     first..first + (part.end - part.start)
@@ -336,6 +345,9 @@ impl Drawable<'_> {
                 pass.set_vertex_buffer(0, geometry.positions.slice(..));
                 pass.set_vertex_buffer(2, geometry.surfaces.slice(..));
                 pass.set_vertex_buffer(3, geometry.normals.slice(..));
+                if let Some(named) = &geometry.named {
+                    pass.set_vertex_buffer(4, named.of_vertices.slice(..));
+                }
                 pass.set_index_buffer(geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
                 bound.skinned = Some(skinned);
             }
@@ -379,7 +391,7 @@ mod tests {
     fn an_instance_keeps_millimetres_a_hundred_kilometres_away() {
         let origin = DVec3::splat(102_400.0);
         let offset = DVec3::new(1.001, -2.002, 3.003);
-        let instance = Instance::new(&DAffine3::from_translation(origin + offset), origin, 0);
+        let instance = Instance::new(&DAffine3::from_translation(origin + offset), origin, 0, 0);
         for axis in 0..3 {
             assert!((f64::from(instance.rows[axis][3]) - offset[axis]).abs() < 1e-6);
             assert_eq!(instance.rows[axis][axis], 1.0);

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use glam::{DVec3, Vec3};
-use umbrage::config::{Coordinates, Layout};
+use umbrage::config::{Coordinates, Edges, Layout};
 use umbrage::{Light, Projection, View};
 use umbrage_scene::AlphaMode;
 use umbrage_wgpu::{ShadowMaps, Slice};
@@ -13,6 +13,7 @@ use crate::draw_list::{Drawable, Drawn, Run, Show};
 use crate::formats::{MASK_FORMAT, PICTURE_FORMAT};
 use crate::lamps::{Lamp, LampUniform, MOST_LAMPS};
 use crate::materials::{GpuMaterial, Materials};
+use crate::named::Names;
 use crate::surfaces::{Depth, Recipe, Sky, Surface, SurfacePipelines, Vertices};
 use crate::view_list::ViewList;
 use crate::{Gpu, Result, shaders};
@@ -142,6 +143,7 @@ pub(crate) enum Shading {
 pub(crate) struct Forward {
     uniform: wgpu::Buffer,
     stride: u64,
+    frame_layout: wgpu::BindGroupLayout,
     /// The whole frame, then its slices where the picture is drawn slice by slice.
     bind_groups: Vec<wgpu::BindGroup>,
     picture: SurfacePipelines,
@@ -155,36 +157,31 @@ pub(crate) struct Forward {
 }
 
 impl Forward {
+    /// `named` are the buffers of [`Names::entries`]; none without exact edges.
     pub fn new(
         gpu: &Gpu,
         maps: &ShadowMaps,
         materials: &Materials,
         samples: Samples,
-        contact: Option<&Contact>,
+        (contact, named): (Option<&Contact>, &[wgpu::BindGroupEntry<'_>]),
         shadows: Shading,
     ) -> Self {
         let device = &gpu.device;
         let (library, coordinates): (String, Coordinates) = match shadows {
-            Shading::WithShadows => (maps.receiver_wgsl(2), maps.config().coordinates),
+            Shading::WithShadows => {
+                let runs = match maps.edges() {
+                    Edges::Exact => umbrage_wgpu::stored_runs_wgsl(0, Names::BINDING),
+                    Edges::Sampled => String::new(),
+                };
+                (maps.receiver_wgsl(2) + &runs, maps.config().coordinates)
+            }
             Shading::WithoutShadows => (shaders::WITHOUT_SHADOWS.to_owned(), Coordinates::World),
         };
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("Forward::shader"),
             source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::forward(&library, coordinates, contact.is_some()))),
         });
-        let frame_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("Forward::frame_layout"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: wgpu::BufferSize::new(size_of::<FrameUniform>() as u64),
-                },
-                count: None,
-            }],
-        });
+        let frame_layout = frame_layout(device, maps.edges());
         let sliced = maps.layout() == Layout::Reused;
         let count = if sliced { 1 + maps.splits() } else { 1 };
         let stride = (size_of::<FrameUniform>() as u64)
@@ -195,19 +192,7 @@ impl Forward {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let bind_group = |index| {
-            let resource = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &uniform,
-                offset: index as u64 * stride,
-                size: wgpu::BufferSize::new(size_of::<FrameUniform>() as u64),
-            });
-            device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("Forward::bind_group"),
-                layout: &frame_layout,
-                entries: &[wgpu::BindGroupEntry { binding: 0, resource }],
-            })
-        };
-        let bind_groups = (0..count).map(bind_group).collect();
+        let bind_groups = bind_groups(device, &frame_layout, (&uniform, stride), named);
         let surface_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("Forward::surface_layout"),
             bind_group_layouts: &[
@@ -277,6 +262,7 @@ impl Forward {
         Self {
             uniform,
             stride,
+            frame_layout,
             bind_groups,
             picture_depth: early.then(|| drawn_first.pipelines("Forward::picture_depth", [solid, covering, solid])),
             picture: shading_pictures.pipelines(
@@ -295,6 +281,12 @@ impl Forward {
             depth: drawn_first.pipelines("Forward::depth", before("fs_exact", None, 1)),
             sky: Sky::new(Recipe { layout: sky_layout, depth: Depth::Drawn, ..shading }, samples_per_pixel),
         }
+    }
+
+    /// Binds other buffers of casters beside the frames.
+    pub fn bind(&mut self, gpu: &Gpu, named: &[wgpu::BindGroupEntry<'_>]) {
+        let uniform = (&self.uniform, self.stride);
+        self.bind_groups = bind_groups(&gpu.device, &self.frame_layout, uniform, named);
     }
 
     /// Writes the uniform of the whole frame, `index` 0, or of a slice, 1 and so on.
@@ -355,6 +347,51 @@ impl Forward {
     ) -> Drawn {
         draw_visible(pass, bindings, drawable, solid, (self.mask_depth.as_ref(), &self.mask))
     }
+}
+
+/// Layout of group 0: the frame, and with exact edges the casters' buffers.
+fn frame_layout(device: &wgpu::Device, edges: Edges) -> wgpu::BindGroupLayout {
+    let mut entries = vec![wgpu::BindGroupLayoutEntry {
+        binding: 0,
+        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: wgpu::BufferSize::new(size_of::<FrameUniform>() as u64),
+        },
+        count: None,
+    }];
+    if edges == Edges::Exact {
+        entries.extend(Names::layout(Names::BINDING));
+    }
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("Forward::frame_layout"),
+        entries: &entries,
+    })
+}
+
+/// A group for each frame of a uniform buffer, and how far they stand apart in it.
+fn bind_groups(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    (uniform, stride): (&wgpu::Buffer, u64),
+    named: &[wgpu::BindGroupEntry<'_>],
+) -> Vec<wgpu::BindGroup> {
+    let group = |index| {
+        let resource = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: uniform,
+            offset: index * stride,
+            size: wgpu::BufferSize::new(size_of::<FrameUniform>() as u64),
+        });
+        let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource }];
+        entries.extend_from_slice(named);
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("Forward::bind_group"),
+            layout,
+            entries: &entries,
+        })
+    };
+    (0..uniform.size() / stride).map(group).collect()
 }
 
 /// Draws depth, where there are pipelines for it, and then what is seen.

@@ -3,14 +3,17 @@
 //!
 //! Vertices lie in three streams, so that a shadow pass reads positions only: positions, normals,
 //! and the *surface* (texture coordinates and colour). What is opaque has indices of its own for
-//! shadow passes where that spares vertices. Indices count from the start of the whole buffer,
+//! shadow passes where that spares vertices, and more of them where maps name triangles. Indices
+//! count from the start of the whole buffer,
 //! which spares base vertices.
 
 use std::ops::Range;
 
+use umbrage::config::Edges;
 use umbrage_scene::{AlphaMode, Object, Pose, Primitive, Scene, SkinnedMesh};
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use umbrage_wgpu::{StoredRun, stored_runs};
 
+use crate::named::{Named, NamedRuns};
 use crate::shadow_mesh::{Cluster, Merged, clusters};
 use crate::{Error, Gpu, Result};
 
@@ -28,8 +31,10 @@ pub(crate) struct Surface {
 pub(crate) struct GpuPrimitive {
     pub indices: Range<u32>,
     pub material: usize,
-    /// Indices of the mesh's triangles in the order of shadow passes.
+    /// Indices of the mesh's triangles for passes that ask for positions alone.
     pub shadow_indices: Range<u32>,
+    /// Indices of these triangles for shadow passes: with exact edges first corners tell their run.
+    pub caster_indices: Range<u32>,
     /// Those as a tree of parts; one node if they are few, none if their vertices move.
     pub clusters: Vec<Cluster>,
 }
@@ -58,12 +63,14 @@ pub(crate) struct Geometry {
     pub surfaces: wgpu::Buffer,
     pub indices: wgpu::Buffer,
     pub meshes: Vec<Vec<GpuPrimitive>>,
+    /// With exact edges, what texels of maps name.
+    pub named: Option<NamedRuns>,
     pub bytes: u64,
 }
 
 impl Geometry {
     /// Uploads all meshes of a scene.
-    pub fn of_scene(gpu: &Gpu, scene: &Scene) -> Result<Self> {
+    pub fn of_scene(gpu: &Gpu, scene: &Scene, edges: Edges) -> Result<Self> {
         for (index, mesh) in scene.meshes.iter().enumerate() {
             for primitive in &mesh.primitives {
                 check(primitive, scene.materials.len()).map_err(|reason| Error::Scene {
@@ -74,13 +81,18 @@ impl Geometry {
             }
         }
         let meshes: Vec<&[Primitive]> = scene.meshes.iter().map(|mesh| mesh.primitives.as_slice()).collect();
-        Self::of_primitives(gpu, &meshes, |primitive| match scene.materials[primitive.material].alpha {
+        Self::of_primitives(gpu, &meshes, edges, |primitive| match scene.materials[primitive.material].alpha {
             AlphaMode::Opaque => Matter::Solid,
             AlphaMode::Mask { .. } | AlphaMode::Blend => Matter::Textured,
         })
     }
 
-    fn of_primitives(gpu: &Gpu, meshes: &[&[Primitive]], matter: impl Fn(&Primitive) -> Matter) -> Result<Self> {
+    fn of_primitives(
+        gpu: &Gpu,
+        meshes: &[&[Primitive]],
+        edges: Edges,
+        matter: impl Fn(&Primitive) -> Matter,
+    ) -> Result<Self> {
         let all = || meshes.iter().copied().flatten();
         let vertices: u64 = all().map(|primitive| primitive.positions.len() as u64).sum();
         let index_count: u64 = all().map(|primitive| primitive.indices.len() as u64).sum();
@@ -111,6 +123,7 @@ impl Geometry {
                 let material = primitive.material;
                 primitives.push(GpuPrimitive {
                     shadow_indices: own.clone(),
+                    caster_indices: own.clone(),
                     indices: own,
                     material,
                     clusters: Vec::new(),
@@ -128,26 +141,59 @@ impl Geometry {
                 positions.extend(&merged.positions);
                 indices.extend(merged.indices.iter().map(|index| first_vertex + index));
                 uploaded.shadow_indices = first_index..indices.len() as u32;
+                uploaded.caster_indices = uploaded.shadow_indices.clone();
             }
             uploaded.clusters = clusters(&primitive.positions, &primitive.indices, uploaded.shadow_indices.start);
         }
+        let named = match edges {
+            Edges::Sampled => None,
+            Edges::Exact => {
+                let mut runs = vec![0; positions.len()];
+                let named = |primitive: &Primitive| matter(primitive) == Matter::Solid;
+                let of_meshes = name(meshes, &mut ranges, (&mut positions, &mut runs, &mut indices), named);
+                gpu.check_storage("the vertices", size_of_val(positions.as_slice()) as u64)?;
+                gpu.check_storage("the indices", size_of_val(indices.as_slice()) as u64)?;
+                Some(NamedRuns::new(gpu, &runs, &of_meshes)?)
+            }
+        };
         gpu.check_buffer("the vertices", size_of_val(positions.as_slice()) as u64)?;
         gpu.check_buffer("the indices", size_of_val(indices.as_slice()) as u64)?;
-        let buffer = |label, bytes: &[u8], usage| {
-            gpu.device.create_buffer_init(&BufferInitDescriptor {
-                label: Some(label),
-                contents: if bytes.is_empty() { &[0; 16] } else { bytes },
-                usage: usage | wgpu::BufferUsages::COPY_DST,
-            })
-        };
+        let read = if named.is_some() { wgpu::BufferUsages::STORAGE } else { wgpu::BufferUsages::empty() };
+        let buffer = |label, bytes: &[u8], usage| gpu.filled_buffer(label, bytes, usage);
         let vertex = wgpu::BufferUsages::VERTEX;
-        let positions = buffer("Geometry::positions", bytemuck::cast_slice(&positions), vertex);
+        let positions = buffer("Geometry::positions", bytemuck::cast_slice(&positions), vertex | read);
         let normals = buffer("Geometry::normals", bytemuck::cast_slice(&normals), vertex);
         let surfaces = buffer("Geometry::surfaces", bytemuck::cast_slice(&surfaces), vertex);
-        let indices = buffer("Geometry::indices", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
-        let bytes = [&positions, &normals, &surfaces, &indices].map(wgpu::Buffer::size).iter().sum();
-        Ok(Self { positions, normals, surfaces, indices, meshes: ranges, bytes })
+        let indices = buffer("Geometry::indices", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX | read);
+        let bytes: u64 = [&positions, &normals, &surfaces, &indices].map(wgpu::Buffer::size).iter().sum();
+        let bytes = bytes + named.as_ref().map_or(0, NamedRuns::bytes);
+        Ok(Self { positions, normals, surfaces, indices, meshes: ranges, named, bytes })
     }
+}
+
+/// Appends positions and indices of what `is_named`, with the runs that first corners belong to.
+/// Answers each mesh's runs; all primitives of a mesh count on.
+fn name(
+    meshes: &[&[Primitive]],
+    uploaded: &mut [Vec<GpuPrimitive>],
+    (positions, runs, indices): (&mut Vec<[f32; 3]>, &mut Vec<u32>, &mut Vec<u32>),
+    is_named: impl Fn(&Primitive) -> bool,
+) -> Vec<Vec<StoredRun>> {
+    let mut of_meshes = Vec::with_capacity(meshes.len());
+    for (mesh, uploaded) in meshes.iter().zip(uploaded) {
+        let mut of_mesh: Vec<StoredRun> = Vec::new();
+        for (primitive, uploaded) in mesh.iter().zip(uploaded).filter(|(primitive, _)| is_named(primitive)) {
+            let named = Named::of(&primitive.positions, &primitive.indices, of_mesh.len() as u32);
+            let (first_vertex, first_index) = (positions.len() as u32, indices.len() as u32);
+            of_mesh.extend(stored_runs(&named.positions, &named.indices, first_index));
+            positions.extend(&named.positions);
+            runs.extend(&named.runs);
+            indices.extend(named.indices.iter().map(|index| first_vertex + index));
+            uploaded.caster_indices = first_index..indices.len() as u32;
+        }
+        of_meshes.push(of_mesh);
+    }
+    of_meshes
 }
 
 /// Geometry that changes every frame: one "mesh" per entry of [`Pose::skinned`].
@@ -155,12 +201,14 @@ pub(crate) struct SkinnedGeometry {
     pub geometry: Geometry,
     /// Per entry of [`Pose::skinned`] the mesh that it poses; rebuilt when that changes.
     posed_meshes: Vec<usize>,
+    edges: Edges,
 }
 
 impl SkinnedGeometry {
-    /// Nothing skinned yet.
-    pub fn empty(gpu: &Gpu) -> Result<Self> {
-        Ok(Self { geometry: Geometry::of_primitives(gpu, &[], |_| Matter::Moving)?, posed_meshes: Vec::new() })
+    /// Nothing skinned yet; with exact edges it has no names, as its vertices move.
+    pub fn of(gpu: &Gpu, edges: Edges) -> Result<Self> {
+        let geometry = Geometry::of_primitives(gpu, &[], edges, |_| Matter::Moving)?;
+        Ok(Self { geometry, posed_meshes: Vec::new(), edges })
     }
 
     /// Writes this pose's vertices.
@@ -168,7 +216,7 @@ impl SkinnedGeometry {
         let posed_meshes = posed_meshes(scene, pose)?;
         if posed_meshes != self.posed_meshes {
             let meshes: Vec<&[Primitive]> = posed_meshes.iter().map(|&mesh| scene.0[mesh].as_slice()).collect();
-            self.geometry = Geometry::of_primitives(gpu, &meshes, |_| Matter::Moving)?;
+            self.geometry = Geometry::of_primitives(gpu, &meshes, self.edges, |_| Matter::Moving)?;
             self.posed_meshes = posed_meshes;
         }
         let mut offset = 0;

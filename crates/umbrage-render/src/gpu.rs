@@ -2,6 +2,8 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+
 use crate::formats::{DEPTH_FORMAT, MASK_FORMAT, PICTURE_FORMAT};
 use crate::{Error, Result, probe};
 
@@ -135,6 +137,25 @@ impl Gpu {
     pub(crate) fn check_buffer(&self, what: &'static str, bytes: u64) -> Result<()> {
         let limit = self.device.limits().max_buffer_size;
         if bytes > limit { Err(Error::BufferSize { what, needed: bytes, limit }) } else { Ok(()) }
+    }
+
+    /// [`Error::BufferSize`] unless `bytes` fit into one buffer that shaders of this device read.
+    pub(crate) fn check_storage(&self, what: &'static str, bytes: u64) -> Result<()> {
+        let limit = self.device.limits().max_storage_buffer_binding_size;
+        if bytes > limit {
+            Err(Error::BufferSize { what, needed: bytes, limit })
+        } else {
+            self.check_buffer(what, bytes)
+        }
+    }
+
+    /// A buffer with these bytes, or a few zeroes where there are none.
+    pub(crate) fn filled_buffer(&self, label: &str, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        self.device.create_buffer_init(&BufferInitDescriptor {
+            label: Some(label),
+            contents: if bytes.is_empty() { &[0; 64] } else { bytes },
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+        })
     }
 
     /// Waits until everything submitted has run.

@@ -20,6 +20,7 @@ mod lamps;
 mod maps;
 mod materials;
 mod mipmaps;
+mod named;
 mod probe;
 mod renderer;
 mod shaders;

@@ -3,10 +3,12 @@
 use std::borrow::Cow;
 
 use glam::DVec3;
+use umbrage::config::Edges;
 use umbrage_wgpu::ShadowMaps;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 
 use crate::capture::Capture;
+use crate::named::Names;
 use crate::{Error, Gpu, Result, shaders};
 
 /// Points with what answers for them.
@@ -65,11 +67,16 @@ pub(crate) struct PendingAnswers {
 }
 
 impl Probe {
+    /// The binding from which buffers of casters follow, with exact edges.
+    pub const NAMES: u32 = 2;
+
     pub fn new(gpu: &Gpu, maps: &ShadowMaps) -> Self {
         let device = &gpu.device;
+        let is_exact = maps.edges() == Edges::Exact;
+        let runs = if is_exact { umbrage_wgpu::stored_runs_wgsl(0, Self::NAMES) } else { String::new() };
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("Probe::shader"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::probe(&maps.receiver_wgsl(1)))),
+            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::probe(&(maps.receiver_wgsl(1) + &runs)))),
         });
         let entry = |binding| wgpu::BindGroupLayoutEntry {
             binding,
@@ -81,9 +88,13 @@ impl Probe {
             },
             count: None,
         };
+        let mut entries = vec![entry(0), entry(1)];
+        if is_exact {
+            entries.extend(Names::layout(Self::NAMES));
+        }
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("Probe::layout"),
-            entries: &[entry(0), entry(1)],
+            entries: &entries,
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("Probe::pipeline_layout"),
@@ -115,12 +126,12 @@ impl Probe {
     }
 
     /// Records the question for at most [`BATCH`] points; those that nobody answers for are asked
-    /// of split 0 and corrected by the caller.
+    /// of split 0 and corrected by the caller. `named` are the buffers of [`Names::entries`].
     pub fn record(
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
-        maps: &wgpu::BindGroup,
+        (maps, named): (&wgpu::BindGroup, &[wgpu::BindGroupEntry<'_>]),
         origin: DVec3,
         points: &[(ProbePoint, Responder)],
     ) -> Result<PendingAnswers> {
@@ -162,13 +173,15 @@ impl Probe {
             ANSWERS_FORMAT,
             wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
         ));
+        let mut entries = vec![
+            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&positions) },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&normals) },
+        ];
+        entries.extend_from_slice(named);
         let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("Probe::bind_group"),
             layout: &self.layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&positions) },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&normals) },
-            ],
+            entries: &entries,
         });
         {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

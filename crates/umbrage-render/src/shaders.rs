@@ -7,6 +7,11 @@ pub(crate) fn casters(library: &str) -> String {
     [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster.wgsl")].join("\n")
 }
 
+/// WGSL of casters whose triangles maps name.
+pub(crate) fn named_casters(library: &str) -> String {
+    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster_named.wgsl")].join("\n")
+}
+
 /// WGSL of casters with holes; the library's text has [`MASKED_MEMBERS`].
 pub(crate) fn masked_casters(library: &str) -> String {
     [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster_masked.wgsl")].join("\n")
@@ -95,9 +100,15 @@ mod tests {
     #[test]
     fn every_pass_is_valid_wgsl() {
         for (views, tiles) in [(false, false), (true, false), (false, true), (true, true)] {
-            let library = |members| umbrage_shaders::caster(0, Casters { views, tiles }, members);
+            for ids in [false, true] {
+                let library = |members| umbrage_shaders::caster(0, Casters { views, tiles, ids }, members);
+                assert_eq!(parsed(&masked_casters(&library(MASKED_MEMBERS))).entry_points.len(), 2);
+                assert_eq!(parsed(&dithered_casters(&library(DITHERED_MEMBERS))).entry_points.len(), 2);
+            }
+            let named = umbrage_shaders::caster(0, Casters { views, tiles, ids: true }, "");
+            assert_eq!(parsed(&named_casters(&named)).entry_points.len(), 2);
+            let library = |members| umbrage_shaders::caster(0, Casters { views, tiles, ids: false }, members);
             assert_eq!(parsed(&casters(&library(""))).entry_points.len(), 2);
-            assert_eq!(parsed(&masked_casters(&library(MASKED_MEMBERS))).entry_points.len(), 2);
         }
         for maps in [Maps::default(), Maps { without_loads: true, ..Maps::default() }] {
             let with_coordinates = receiver(2, Maps { coordinates: true, ..maps });

@@ -49,6 +49,8 @@ fn roots() -> Vec<Root> {
         text("receiver::api", &["depth_loads", "coordinates"], "receiver_with_coordinates".into()),
         text("receiver::api", &["coordinates"], "receiver_with_coordinates_without_loads".into()),
         text("receiver::api", &["moments", "coordinates"], "receiver_with_coordinates_of_moments".into()),
+        text("maps::ids", &[], "ids".into()),
+        text("maps::stored_runs", &[], "stored_runs".into()),
         text("pass::moments", &[], "moment_passes".into()),
         text("pass::moments", &["multisampled"], "moment_passes_of_samples".into()),
         text("maps::moments", &[], "moments".into()),

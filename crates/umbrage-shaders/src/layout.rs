@@ -329,3 +329,43 @@ pub struct KeptWindow {
     /// Up to the alignment of 8 bytes.
     pub _padding: i32,
 }
+
+/// Bits of an id that count runs within a slot: `id = 1 + (slot << RUN_BITS | run)`. 4,096 runs of
+/// 8 triangles; a larger caster takes several slots. Fewer: large casters take many. More: fewer
+/// casters, of which there are 2^20 − 1.
+pub const RUN_BITS: u32 = 12;
+
+/// Triangles of a run that texels name. Fewer: casters whose triangles are smaller than a texel are
+/// missed. More: points are tested against more triangles (`docs/notes/exact-edges.md`).
+pub const RUN_TRIANGLES: u32 = 8;
+
+/// A slot of ids in a buffer of [`crate::stored_runs`]: where a caster stands, and its runs.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct StoredSlot {
+    /// Row of the affine transform from metres relative to the frame's origin to the space of the
+    /// stored positions: its first coordinate.
+    pub row_x: [f32; 4],
+    /// The second coordinate.
+    pub row_y: [f32; 4],
+    /// The third coordinate.
+    pub row_z: [f32; 4],
+    /// The slot's first run among the stored ones.
+    pub first_run: u32,
+    /// Up to the alignment of 16 bytes.
+    pub _padding: [u32; 3],
+}
+
+/// A run of consecutive triangles in a buffer of [`crate::stored_runs`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct StoredRun {
+    /// Least corner of a box around the triangles, in the space of the stored positions.
+    pub min: [f32; 3],
+    /// How many triangles there are.
+    pub triangles: u32,
+    /// Greatest corner of that box.
+    pub max: [f32; 3],
+    /// The first of their indices.
+    pub first_index: u32,
+}

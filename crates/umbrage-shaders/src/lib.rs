@@ -23,6 +23,9 @@
 //! | 2 | `sampler_comparison` with `LessEqual`, clamped to the edge; nearest for [`layout::FilterKind::Hard`], else linear |
 //! | 3 … | [`Bound::Separate`]: a `texture_depth_2d` for each split. [`Bound::Cube`]: its faces as layers, where loads are possible |
 //!
+//! With [`ReceiverText::exact`] binding 3 is a `texture_2d_array<u32>`, cleared to 0: the id of the
+//! run of triangles that each texel of binding 1 shows.
+//!
 //! With [`Maps::r32f`] the textures are `f32` that need no filtering; there is no comparison
 //! sampler then, but a cube has a plain one at 2.
 //!
@@ -41,7 +44,7 @@ mod receiver;
 pub mod twin;
 mod variant;
 
-pub use receiver::{Lights, Projection, ReceiverText, receiver};
+pub use receiver::{Lights, Projection, ReceiverText, receiver, stored_runs};
 
 /// How a receiver's maps are bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -119,6 +122,8 @@ pub struct Casters {
     pub views: bool,
     /// By instancing, into tiles that clip distances keep apart.
     pub tiles: bool,
+    /// Beside depth, texels take the id of the run of triangles that they show, at colour target 0.
+    pub ids: bool,
 }
 
 /// Text to put before a vertex shader that draws casters, and before everything else in its module.
@@ -130,12 +135,23 @@ pub struct Casters {
 /// code: u32)`, which asks for no built-in; with [`Casters::views`] it is
 /// `umbrage_cast_at(position, code, view: u32)`, and `view` is the shader's own
 /// `@builtin(view_index)`.
+///
+/// With [`Casters::ids`] the struct has `@location(15) @interpolate(flat, first) id: u32`, which is
+/// 0 until `umbrage_named(drawn: UmbrageCast, id: u32) -> UmbrageCast` sets it;
+/// `umbrage_caster_id(first: u32, run: u32)` makes an id of a caster's first one. Both are there
+/// without ids, too, and do nothing then. A fragment shader returns `UmbrageTexel`, which
+/// `umbrage_caster_texel(position: vec4f, id: u32)` makes of its `@builtin(position)` and the id, 0
+/// for a caster that cannot be asked.
 #[must_use]
 pub fn caster(group: u32, casters: Casters, members: &str) -> String {
-    let Casters { views, tiles } = casters;
+    let Casters { views, tiles, ids } = casters;
     let enable = if tiles { "enable clip_distances;\n" } else { "" };
     let view = if views { "    @builtin(view_index) view: u32,\n" } else { "" };
     let distances = if tiles { "    @builtin(clip_distances) clip_distances: array<f32, 4>,\n" } else { "" };
+    let (id, named, texel, of_texel) = match ids {
+        true => ("    @location(15) @interpolate(flat, first) id: u32,\n", "result.id = id; ", "u32", "id"),
+        false => ("", "", "f32", "umbrage_caster_depth(position)"),
+    };
     let root = match (views, tiles) {
         (false, false) => text!("caster"),
         (true, false) => text!("casters_views"),
@@ -145,7 +161,11 @@ pub fn caster(group: u32, casters: Casters, members: &str) -> String {
     format!(
         "{enable}const UMBRAGE_CASTER_GROUP = {group}u;\n\
          struct UmbrageInstance {{\n    @builtin(instance_index) code: u32,\n{view}}}\n\
-         struct UmbrageCast {{\n    @builtin(position) position: vec4f,\n{distances}    {members}\n}}\n{root}\n"
+         struct UmbrageCast {{\n    @builtin(position) position: vec4f,\n{distances}{id}    {members}\n}}\n\
+         alias UmbrageTexel = {texel};\n\
+         fn umbrage_named(drawn: UmbrageCast, id: u32) -> UmbrageCast {{ var result = drawn; {named}return result; }}\n\
+         fn umbrage_caster_id(first: u32, run: u32) -> u32 {{ return select(0u, first + run, first != 0u); }}\n\
+         fn umbrage_caster_texel(position: vec4f, id: u32) -> UmbrageTexel {{ return {of_texel}; }}\n{root}\n"
     )
 }
 

@@ -81,6 +81,10 @@ pub struct ReceiverText {
     pub lights: Lights,
     /// One map may be used for one split after the other: [`layout::Frame::slice`] is looked at.
     pub sliced: bool,
+    /// Texels name the triangles that they show, and those decide where a shadow of a sun ends: see
+    /// [`stored_runs`]. For [`Bound::Array`] of depth that can be loaded from, and no other filter
+    /// than [`FilterKind::Pcf3`].
+    pub exact: bool,
 }
 
 impl Default for ReceiverText {
@@ -102,6 +106,7 @@ impl From<Maps> for ReceiverText {
             projection: Projection::Any,
             lights: Lights::Any,
             sliced: true,
+            exact: false,
         }
     }
 }
@@ -134,6 +139,7 @@ impl ReceiverText {
             "local" => !suns_alone,
             "faces" => self.lights == Lights::Any,
             "sliced" => self.sliced,
+            "exact" => self.exact,
             "linear" => !suns_alone && self.maps.r32f,
             _ => unreachable!("the condition {name} stands for no choice"),
         }
@@ -157,7 +163,7 @@ impl ReceiverText {
 #[must_use]
 pub fn receiver(group: u32, text: impl Into<ReceiverText>) -> String {
     let text: ReceiverText = text.into();
-    let ReceiverText { maps, filter, .. } = text;
+    let ReceiverText { maps, filter, exact, .. } = text;
     let frames = maps.frames.max(1);
     let loads = maps.r32f || !maps.without_loads;
     let root = match (maps.moments, loads, maps.coordinates) {
@@ -184,7 +190,39 @@ pub fn receiver(group: u32, text: impl Into<ReceiverText>) -> String {
     };
     let filter = filter.map_or_else(String::new, |kind| format!("const UMBRAGE_FILTER = {}u;\n", kind as u32));
     let root = variant::resolved(root, |name| text.has(name));
-    format!("const UMBRAGE_RECEIVER_GROUP = {group}u;\nconst UMBRAGE_FRAMES = {frames}u;\n{filter}{maps}\n{root}\n")
+    let ids = if exact { text!("ids") } else { "" };
+    format!(
+        "const UMBRAGE_RECEIVER_GROUP = {group}u;\nconst UMBRAGE_FRAMES = {frames}u;\n{filter}{maps}\n{ids}{root}\n"
+    )
+}
+
+/// Text to put beside a [`receiver`] of exact edges ([`ReceiverText::exact`]): the two functions
+/// that it asks, for casters whose positions and indices lie in storage buffers.
+///
+/// | binding, from `binding` on | what |
+/// |---|---|
+/// | 0 | [`layout::StoredSlot`] of each slot |
+/// | 1 | [`layout::StoredRun`]s |
+/// | 2 | indices, `u32` |
+/// | 3 | positions, three `f32` each, of the runs' own space |
+///
+/// An application that keeps its meshes otherwise declares the functions itself:
+///
+/// | WGSL | what it answers |
+/// |---|---|
+/// | `umbrage_run(id: u32) -> UmbrageRun` | the rows of the transform from metres relative to the frame's origin to the run's own space, a box around its triangles, their number |
+/// | `umbrage_corner(run: UmbrageRun, corner: u32) -> vec3f` | corner `3 i + k` of triangle `i`, in that space |
+///
+/// `UmbrageRun` has the members `row_x`, `row_y`, `row_z` (`vec4f`), `min` (`vec3f`), `triangles`
+/// (`u32`), `max` (`vec3f`) and `first` (`u32`), the last of which is the application's own.
+#[must_use]
+pub fn stored_runs(group: u32, binding: u32) -> String {
+    let bits = layout::RUN_BITS;
+    format!(
+        "const UMBRAGE_RUNS_GROUP = {group}u;\nconst UMBRAGE_RUNS_BINDING = {binding}u;\n\
+         const UMBRAGE_RUN_BITS = {bits}u;\n{}\n",
+        text!("stored_runs")
+    )
 }
 
 #[cfg(test)]

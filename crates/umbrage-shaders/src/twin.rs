@@ -5,6 +5,7 @@ use crate::layout::{Frame, Split};
 
 pub mod bias;
 pub mod crease;
+pub mod edges;
 pub mod moments;
 
 /// `filter::MOST_BLOCKER_M`: metres from a surface within which casters give it a penumbra as wide

@@ -3,8 +3,11 @@
 use std::mem::offset_of;
 
 use naga::proc::Layouter;
-use umbrage_shaders::layout::{CasterPass, Frame, KeptWindow, MomentPass, MomentSplit, Moments, Split};
-use umbrage_shaders::{Casters, Maps, MomentMaps};
+use umbrage_shaders::layout::FilterKind;
+use umbrage_shaders::layout::{
+    CasterPass, Frame, KeptWindow, MomentPass, MomentSplit, Moments, Split, StoredRun, StoredSlot,
+};
+use umbrage_shaders::{Casters, Maps, MomentMaps, ReceiverText};
 
 /// A member as one side sees it: name, offset and size in bytes.
 type Member = (String, usize, usize);
@@ -68,8 +71,17 @@ fn members_agree() {
     assert_eq!(split_in_rust(), in_wgsl(&caster, "UmbrageSplit"));
     assert_eq!(split_in_rust(), in_wgsl(&receiver, "UmbrageSplit"));
     assert_eq!(frame_in_rust(), in_wgsl(&receiver, "UmbrageFrame"));
-    let casters = umbrage_shaders::caster(0, Casters { views: true, tiles: true }, "");
+    let casters = umbrage_shaders::caster(0, Casters { views: true, tiles: true, ids: false }, "");
     assert_eq!(pass_in_rust(), in_wgsl(&casters, "UmbrageCasterPass"));
+}
+
+#[test]
+fn members_of_stored_runs_agree() {
+    let exact = ReceiverText { exact: true, filter: Some(FilterKind::Pcf3), ..ReceiverText::default() };
+    let text = umbrage_shaders::receiver(0, exact) + &umbrage_shaders::stored_runs(1, 2);
+    let (size, members) = in_rust!(StoredSlot: row_x, row_y, row_z, first_run);
+    assert_eq!((size, members), in_wgsl(&text, "UmbrageStoredSlot"));
+    assert_eq!(in_rust!(StoredRun: min, triangles, max, first_index), in_wgsl(&text, "UmbrageStoredRun"));
 }
 
 #[test]

@@ -70,11 +70,11 @@ fn copying_shader(casters: Casters) -> String {
         + "@vertex fn vertex(@location(0) position: vec3f, instance: UmbrageInstance) -> UmbrageCast {
                var result = umbrage_cast(position, instance);
                result.uv = position.xy;
-               return result;
+               return umbrage_named(result, umbrage_caster_id(1u, 2u));
            }
-           @fragment fn fragment(@builtin(position) at: vec4f, @location(0) uv: vec2f) -> @location(0) f32 {
+           @fragment fn fragment(@builtin(position) at: vec4f, @location(0) uv: vec2f) -> @location(0) UmbrageTexel {
                if uv.x > 0.5 { discard; }
-               return umbrage_caster_depth(at);
+               return umbrage_caster_texel(at, 0u);
            }"
 }
 
@@ -152,8 +152,35 @@ fn every_way_to_read_and_to_draw_maps_is_valid_wgsl() {
         validated(&(umbrage_shaders::receiver(2, maps) + FRAGMENT));
     }
     for (views, tiles) in [(false, false), (true, false), (false, true), (true, true)] {
-        validated(&copying_shader(Casters { views, tiles }));
+        for ids in [false, true] {
+            validated(&copying_shader(Casters { views, tiles, ids }));
+        }
     }
+}
+
+/// Every receiver that may have exact edges, with the stored runs beside it.
+#[test]
+fn exact_edges_are_valid_wgsl() {
+    let suns = [Lights::Suns, Lights::Any];
+    let projections = [Projection::Plain, Projection::Warped, Projection::Any];
+    for (coordinates, lights, projection) in
+        [false, true].into_iter().flat_map(|c| suns.into_iter().flat_map(move |l| projections.map(|p| (c, l, p))))
+    {
+        let maps = Maps { coordinates, ..Maps::default() };
+        let filter = Some(FilterKind::Pcf3);
+        let text = ReceiverText { exact: true, filter, lights, projection, ..maps.into() };
+        let (module, _) =
+            validated(&(umbrage_shaders::receiver(1, text) + &umbrage_shaders::stored_runs(0, 3) + FRAGMENT));
+        let bound = |name: &str| {
+            let found = module.global_variables.iter().find(|(_, v)| v.name.as_deref() == Some(name));
+            found.and_then(|(_, v)| v.binding.map(|it| (it.group, it.binding)))
+        };
+        assert_eq!([bound("umbrage_ids"), bound("umbrage_slots")], [Some((1, 3)), Some((0, 3))]);
+        assert_eq!(bound("umbrage_run_positions"), Some((0, 6)));
+    }
+    // Without the choice nobody has them, and nobody has to declare what they ask.
+    let sampled = umbrage_shaders::receiver(0, ReceiverText::default());
+    assert!(!sampled.contains("umbrage_run") && !sampled.contains("UmbrageRun") && !sampled.contains("umbrage_map_id"));
 }
 
 /// A vertex shader that takes its built-ins itself, as skinned and indirect draws do.
@@ -171,7 +198,7 @@ fn casters_may_take_their_built_ins_themselves() {
                 return umbrage_cast_at(position + vec3f(f32(own)), code{view});
             }}"
         );
-        validated(&(umbrage_shaders::caster(0, Casters { views, tiles }, "") + &shader));
+        validated(&(umbrage_shaders::caster(0, Casters { views, tiles, ids: views }, "") + &shader));
     }
 }
 
@@ -214,7 +241,7 @@ fn the_pass_of_kept_maps_is_valid_wgsl() {
 #[test]
 fn every_name_is_in_our_namespace() {
     let casters = [(false, false), (true, false), (false, true), (true, true)]
-        .map(|(views, tiles)| umbrage_shaders::caster(0, Casters { views, tiles }, ""));
+        .map(|(views, tiles)| umbrage_shaders::caster(0, Casters { views, tiles, ids: tiles }, ""));
     let contact = umbrage_shaders::contact(0);
     for source in casters
         .into_iter()

@@ -1,7 +1,9 @@
 //! A pipeline that draws casters, for the common case.
 
+use umbrage::config::Edges;
+
 use crate::device::made;
-use crate::{Result, ShadowMaps, Shadows};
+use crate::{Error, Result, ShadowMaps, Shadows};
 
 /// How casters are drawn.
 ///
@@ -29,9 +31,9 @@ pub struct CasterPipeline<'a> {
     pub wgsl: &'a str,
     /// What `vertex` passes to `fragment`: members of the struct `UmbrageCast`.
     pub members: &'a str,
-    /// Whether `wgsl` has an entry point `fragment`, which discards. It returns
-    /// `umbrage_caster_depth(at)` of its `@builtin(position)` at location 0, for maps that are
-    /// colours.
+    /// Whether `wgsl` has an entry point `fragment`, which discards. It returns a `UmbrageTexel` at
+    /// location 0, `umbrage_caster_texel(at, 0u)` of its `@builtin(position)`: for maps that are
+    /// colours, and with exact edges to say that the caster cannot be asked.
     pub discards: bool,
     /// The application's own bind groups, from group 1 on.
     pub bind_group_layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
@@ -54,6 +56,12 @@ const POSITIONS: &str = "@vertex fn vertex(@location(0) position: vec3f, instanc
 const DEPTH: &str = "
 @fragment fn fragment(@builtin(position) at: vec4f) -> @location(0) f32 {
     return umbrage_caster_depth(at);
+}";
+
+/// What writes ids where nothing is discarded: 0 unless the vertex shader has named them.
+const ID: &str = "
+@fragment fn fragment(@location(15) @interpolate(flat, first) id: u32) -> @location(0) u32 {
+    return id;
 }";
 
 /// Tightly packed positions.
@@ -92,17 +100,26 @@ impl Shadows {
     ///
     /// # Errors
     /// [`crate::Error::Device`] if the device refuses shader or states,
-    /// [`crate::Error::DeviceLost`].
+    /// [`crate::Error::CasterWithoutId`] for a fragment shader that does not write the id that
+    /// exact edges want, [`crate::Error::DeviceLost`].
     pub fn caster_pipeline(&self, options: &CasterPipeline<'_>) -> Result<wgpu::RenderPipeline> {
         let maps = self.maps();
+        // wgpu takes a fragment shader that leaves a target as it was.
+        if options.discards && maps.edges() == Edges::Exact && !options.wgsl.contains("UmbrageTexel") {
+            return Err(Error::CasterWithoutId { label: options.label.unwrap_or("casters").to_owned() });
+        }
         made(maps.device(), "making a pipeline for casters", || Ok(pipeline(maps, options)))
     }
 }
 
 fn pipeline(maps: &ShadowMaps, options: &CasterPipeline<'_>) -> wgpu::RenderPipeline {
     let device = maps.device();
-    let writes_depth = !options.discards && !maps.caster_targets().is_empty();
-    let text = maps.caster_wgsl_with(0, options.members) + options.wgsl + if writes_depth { DEPTH } else { "" };
+    let own_fragment = match () {
+        () if options.discards || maps.caster_targets().is_empty() => "",
+        () if maps.edges() == Edges::Exact => ID,
+        () => DEPTH,
+    };
+    let text = maps.caster_wgsl_with(0, options.members) + options.wgsl + own_fragment;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: options.label,
         source: wgpu::ShaderSource::Wgsl(text.into()),
@@ -132,7 +149,7 @@ fn pipeline(maps: &ShadowMaps, options: &CasterPipeline<'_>) -> wgpu::RenderPipe
         },
         depth_stencil: Some(maps.caster_depth_stencil()),
         multisample: maps.caster_multisample(),
-        fragment: (options.discards || writes_depth).then(|| wgpu::FragmentState {
+        fragment: (options.discards || !own_fragment.is_empty()).then(|| wgpu::FragmentState {
             module: &module,
             entry_point: Some("fragment"),
             compilation_options: Default::default(),

@@ -104,6 +104,46 @@ pub enum Error {
         /// The filter.
         filter: &'static str,
     },
+    /// Exact edges load from depth maps.
+    #[error(
+        "edges exact loads from depth maps, which GL cannot, and fallbacks are forbidden; allow fallbacks, or use edges sampled"
+    )]
+    NoExactEdges,
+    /// A pipeline for casters would leave the ids of what is behind it in the maps.
+    #[error(
+        "the fragment shader of {label} does not return the UmbrageTexel that exact edges want, and would leave the id of \
+         what is behind it; return umbrage_caster_texel(at, 0u) at location 0"
+    )]
+    CasterWithoutId {
+        /// Label of the pipeline.
+        label: String,
+    },
+    /// More runs of triangles than ids can name.
+    #[error(
+        "a caster of {runs} runs needs {needed} slots of ids, but {free} of {all} are free; remove casters from \
+         Shadows::occluders, or draw some with the id 0"
+    )]
+    TooManyOccluders {
+        /// Runs of the caster.
+        runs: u32,
+        /// Slots that they take, one after the other.
+        needed: u32,
+        /// Slots that are free.
+        free: u32,
+        /// All slots.
+        all: u32,
+    },
+    /// A slot of ids that nobody has.
+    #[error(
+        "the slots {first} to {last} of ids are not those of a caster that is there; remove a caster once, from the \
+         occluders that it was inserted into"
+    )]
+    UnknownOccluder {
+        /// The first slot.
+        first: u32,
+        /// The last slot.
+        last: u32,
+    },
     /// The device has no texture that holds all maps side by side.
     #[error(
         "storage atlas needs one texture that holds maps of {sizes:?} texels side by side, but this device's textures are at most \

@@ -46,6 +46,26 @@
 //!
 #![doc = concat!("```wgsl\n", include_str!("../examples/casters/alpha_tested.wgsl"), "```")]
 //!
+//! # Exact edges
+//!
+//! With [`umbrage::config::Edges::Exact`] a texel names the run of eight triangles that it shows,
+//! and points near an edge are tested against those triangles. The library still sees no mesh:
+//!
+//! 1. [`Shadows::occluders`] hands out ids, one for each run of a caster.
+//! 2. **Cast.** The vertex shader returns `umbrage_named(umbrage_cast(position, instance), id)`,
+//!    where `id` is `umbrage_caster_id(first, run)` of the caster's first id and the run that the
+//!    triangle's first vertex belongs to. A caster that does not is drawn with the id 0; it cannot
+//!    be asked, and its edges are the contour of the filter.
+//! 3. **Receive.** [`stored_runs_wgsl`] beside [`Shadows::receiver_wgsl`], with four storage
+//!    buffers of the application's ([`stored_runs_layout`], [`stored_runs`]), or two functions of
+//!    its own.
+//!
+//! A run is told by a flat vertex attribute, so that no feature of the device is needed: each
+//! triangle's first vertex has to belong to one run alone, which turning the order of corners and,
+//! now and then, a second copy of a vertex achieves. Where a device has `PRIMITIVE_INDEX`, a
+//! fragment shader may compute the run from `@builtin(primitive_index)` instead, which counts from
+//! 0 in each draw.
+//!
 //! # What the WGSL offers
 //!
 //! | function | result |
@@ -53,6 +73,8 @@
 //! | `umbrage_cast(position: vec3f, instance: UmbrageInstance) -> UmbrageCast` | what a caster's vertex shader returns |
 //! | `umbrage_cast_at(position: vec3f, code: u32) -> UmbrageCast` | the same for a shader that takes `@builtin(instance_index)` itself; drawn into several layers at once it also takes `view: u32` |
 //! | `umbrage_caster_depth(position: vec4f) -> f32` | what a caster's fragment shader returns where maps are colours |
+//! | `umbrage_caster_texel(position: vec4f, id: u32) -> UmbrageTexel` | what a caster's fragment shader returns in any config: the id with exact edges, else the depth |
+//! | `umbrage_named(drawn: UmbrageCast, id: u32) -> UmbrageCast` | with exact edges gives what a caster's vertex shader returns an id; else does nothing |
 //! | `umbrage_in_slice(position) -> bool` | whether a fragment belongs to the slice that is drawn, where one map is reused |
 //! | `umbrage_visibility(position: vec3f, normal: vec3f) -> f32` | of the first light: 1 lit, 0 in shadow or turned away |
 //! | `umbrage_shadow(query: UmbrageQuery) -> UmbrageShadow` | of any light: `visibility: f32`, `split: i32` (−1: none), `tint: vec3f` and `light: vec3f`, what to multiply the light by ([`umbrage::config::Look::colour`]) |
@@ -82,6 +104,7 @@ mod local;
 mod maps;
 mod mask;
 mod moments;
+mod occluders;
 mod options;
 mod shadows;
 mod uniforms;
@@ -92,9 +115,10 @@ pub use error::{Error, Result};
 pub use maps::{MapPass, ShadowMaps, Slice, device_descriptor, optional_features};
 pub use mask::{MaskFrame, MaskNormals, ShadowMask};
 pub use moments::MomentStorage;
+pub use occluders::{Occluder, Occluders, stored_runs, stored_runs_layout, stored_runs_wgsl};
 pub use options::{FrameOptions, LightMaps, texture_format};
 pub use shadows::{Inputs, ShadowFrame, ShadowMap, Shadows};
 pub use umbrage;
 pub use umbrage::config::{Filter, LightKind, ShadowConfig};
-pub use umbrage_shaders::layout::MAX_COORDINATES;
+pub use umbrage_shaders::layout::{MAX_COORDINATES, StoredRun, StoredSlot};
 pub use wgpu;

@@ -89,7 +89,7 @@ impl ShadowMask {
     /// # Errors
     /// [`Error::MaskNeedsDepthLoads`] where depth textures cannot be loaded from, [`Error::Config`]
     /// with [`umbrage::config::Layout::Reused`], whose maps are gone when the picture's depth is
-    /// complete.
+    /// complete, and with [`umbrage::config::Edges::Exact`], as the mask's pass knows no triangles.
     pub fn new(
         device: &wgpu::Device,
         maps: &ShadowMaps,

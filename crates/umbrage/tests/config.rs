@@ -100,11 +100,14 @@ fn choose(choice: Choice) -> (&'static str, &'static [LightKind]) {
         Choice::Band => ("blend=0.1", sun),
         Choice::MomentFilter => ("filter=msm", sun),
         Choice::SunFilter => ("filter=pcss", sun),
+        Choice::OtherThanPcf3 => ("filter=pcf5", sun),
+        Choice::ExactEdges => ("edges=exact", sun),
         Choice::SeveralSamples => ("filter=msm msaa=4", sun),
         Choice::ColourMaps => ("depth-format=r32f", sun),
         Choice::TiledLayers => ("generation=mixed", sun),
         Choice::OneMap => ("storage=reused", sun),
         Choice::NotLayers => ("storage=atlas", sun),
+        Choice::NotOneTexture => ("storage=separate", sun),
         Choice::NotPerSplit => ("generation=layered", sun),
         Choice::CubeFaces => ("storage=cube", sun),
         Choice::MoreThanSixSplits => ("splits=7", sun),
@@ -149,12 +152,12 @@ fn every_pair_of_choices_is_refused_exactly_where_a_rule_says_so() {
                 (Choice::MapSelection, Choice::DistanceMetric)
                     | (Choice::DistanceMetric, Choice::MapSelection)
                     | (
-                        Choice::OneMap | Choice::NotLayers | Choice::CubeFaces,
+                        Choice::OneMap | Choice::NotLayers | Choice::NotOneTexture | Choice::CubeFaces,
                         Choice::NotPerSplit | Choice::TiledLayers
                     )
                     | (
                         Choice::NotPerSplit | Choice::TiledLayers,
-                        Choice::OneMap | Choice::NotLayers | Choice::CubeFaces
+                        Choice::OneMap | Choice::NotLayers | Choice::NotOneTexture | Choice::CubeFaces
                     )
                     | (Choice::MoreThanSixSplits | Choice::MoreThanFourSplits, Choice::UnequalSizes)
                     | (Choice::UnequalSizes, Choice::MoreThanSixSplits | Choice::MoreThanFourSplits)

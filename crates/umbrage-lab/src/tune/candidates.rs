@@ -258,11 +258,11 @@ fn maps(config: &ShadowConfig, lights: &[LightKind]) -> usize {
     layers * faces
 }
 
-/// Bytes of one texel of every map, at most: depth, a depth buffer beside colours, moments with
+/// Bytes of one texel of every map, at most: depth, an id or a depth buffer beside it, moments with
 /// their levels and the texture between two blurs.
 fn texel_bytes(config: &ShadowConfig, maps: usize) -> u64 {
     let maps = maps as u64;
-    let depth = config.depth_format.texel_bytes() * u64::from(config.filter.samples());
+    let depth = config.texel_bytes() * u64::from(config.filter.samples());
     let beside = if config.depth_format.is_colour() { 4 } else { 0 };
     let moments = match &config.filter {
         Filter::Moments(moments) => {

@@ -6,7 +6,7 @@ use umbrage::{Aabb, ShadowPlan};
 use super::prepare::Prepared;
 use super::record::{Recorded, new_encoder};
 use super::{Frame, Renderer};
-use crate::probe::{self, ProbeAnswer, ProbePoint, Responder};
+use crate::probe::{self, Probe, ProbeAnswer, ProbePoint, Responder};
 use crate::{Result, cull};
 
 impl Renderer {
@@ -53,7 +53,8 @@ impl Renderer {
             .map(|&point| (point, self.responder(frame, self.shadows.frame().plan(0), point.position)))
             .collect();
         let mut encoder = new_encoder(gpu);
-        let pending = self.probe_pass().record(gpu, &mut encoder, maps, prepared.origin, &asked)?;
+        let named = self.names.entries(&self.scene, Probe::NAMES);
+        let pending = self.probe_pass().record(gpu, &mut encoder, (maps, &named), prepared.origin, &asked)?;
         gpu.queue.submit([encoder.finish()]);
         let mut replies = pending.read(gpu)?;
         for (reply, (point, responder)) in replies.iter_mut().zip(&asked) {

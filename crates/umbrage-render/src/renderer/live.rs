@@ -11,6 +11,8 @@ use super::{Renderer, dithered_nodes, notes_of};
 use crate::casters::Casters;
 use crate::contact::Contact;
 use crate::forward::Forward;
+use crate::geometry::{Geometry, SkinnedGeometry};
+use crate::named::Names;
 use crate::timing::Timer;
 use crate::{Error, Result};
 
@@ -42,9 +44,14 @@ impl Renderer {
         if self.planned_for.is_some() && config.layout == Layout::Reused {
             return Err(Error::SlicesOfAnotherView);
         }
+        let before_edges = self.shadows.maps().edges();
         gpu.guarded("changing the config", || {
             self.shadows.set_config(config)?;
             let (maps, size) = (self.shadows.maps(), self.size);
+            if maps.edges() != before_edges {
+                self.scene = Geometry::of_scene(&gpu, scene, maps.edges())?;
+                self.skinned = SkinnedGeometry::of(&gpu, maps.edges())?;
+            }
             if rebuilds > Rebuilds::Nothing {
                 self.timer = Timer::new(&gpu, maps.map_count());
             }
@@ -54,7 +61,9 @@ impl Renderer {
             if rebuilds == Rebuilds::Pipelines {
                 let (materials, samples) = (&self.materials, self.samples);
                 self.casters = Casters::new(&gpu, maps, materials, config.look.translucent);
-                self.forward = Forward::new(&gpu, maps, materials, samples, self.contact.as_ref(), self.shading);
+                let named = self.names.entries(&self.scene, Names::BINDING);
+                let with = (self.contact.as_ref(), &named[..]);
+                self.forward = Forward::new(&gpu, maps, materials, samples, with, self.shading);
                 self.probe = OnceLock::new();
                 self.shadow_mask = None;
                 self.dithered_nodes = dithered_nodes(scene, config);

@@ -32,6 +32,7 @@ use crate::forward::{Forward, Samples, Shading};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry};
 use crate::lamps::Lamp;
 use crate::materials::Materials;
+use crate::named::Names;
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint};
 use crate::stats::FrameStats;
 use crate::targets::{MaskTarget, PictureTarget};
@@ -119,9 +120,11 @@ pub struct Renderer {
     pub(crate) planned_for: Option<View>,
     pub(crate) scene: Geometry,
     scene_meshes: SceneMeshes,
-    skinned: SkinnedGeometry,
+    pub(crate) skinned: SkinnedGeometry,
     pub(crate) materials: Materials,
     pub(crate) instances: Instances,
+    /// Who has which ids, with exact edges.
+    pub(crate) names: Names,
     pub(crate) casters: Casters,
     pub(crate) forward: Forward,
     pub(crate) contact: Option<Contact>,
@@ -178,16 +181,20 @@ impl Renderer {
             let timer = Timer::new(gpu, maps.map_count());
             let contact = Contact::wanted(gpu, config, settings.size);
             let notes = notes_of(&shadows, contact.as_ref(), &timer);
+            let (geometry, names) = (Geometry::of_scene(gpu, scene, maps.edges())?, Names::new(gpu));
+            let named = names.entries(&geometry, Names::BINDING);
+            let forward = Forward::new(gpu, maps, &materials, settings.samples, (contact.as_ref(), &named), shading);
             Ok(Self {
                 size: settings.size,
                 view_slot: 0,
                 planned_for: None,
-                scene: Geometry::of_scene(gpu, scene)?,
                 scene_meshes: SceneMeshes::of_scene(scene),
-                skinned: SkinnedGeometry::empty(gpu)?,
+                skinned: SkinnedGeometry::of(gpu, maps.edges())?,
                 instances: Instances::new(gpu),
                 casters: Casters::new(gpu, maps, &materials, config.look.translucent),
-                forward: Forward::new(gpu, maps, &materials, settings.samples, contact.as_ref(), shading),
+                forward,
+                scene: geometry,
+                names,
                 contact,
                 dithered_nodes: dithered_nodes(scene, config),
                 samples: settings.samples,

@@ -11,6 +11,7 @@ use crate::draw_list::{Run, once};
 use crate::forward::FrameUniform;
 use crate::geometry::check_object;
 use crate::lamps::Lamp;
+use crate::named::Names;
 use crate::view_list::ViewList;
 use crate::{Error, Result, cull};
 
@@ -64,7 +65,12 @@ impl Renderer {
         let slices = self.write_cameras(view, &lamps, origin)?;
         self.timer.restart();
 
-        self.instances.clear();
+        let occluders = self.shadows.occluders();
+        let (first_ids, is_moved) = self.names.update(&self.gpu, occluders, &self.scene, pose, origin)?;
+        if is_moved {
+            self.forward.bind(&self.gpu, &self.names.entries(&self.scene, Names::BINDING));
+        }
+        self.instances.clear(first_ids);
         let caster_runs = self.caster_runs(frame, origin, &caster_objects);
         let grouped = self.instances.grouped(pose, origin, false, visible.iter().copied().map(once));
         let solid = ViewList::new(&self.drawable(), pose, view, &grouped);

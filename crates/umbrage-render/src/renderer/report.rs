@@ -124,9 +124,7 @@ impl Renderer {
                     false if frame.shadows_on => plan.casters(i).iter().map(triangles).sum(),
                     false => 0,
                 },
-                bytes: u64::from(split.size)
-                    * u64::from(split.size)
-                    * self.shadows.maps().config().depth_format.texel_bytes(),
+                bytes: u64::from(split.size) * u64::from(split.size) * self.shadows.maps().config().texel_bytes(),
             }
         };
         plan.splits.iter().enumerate().map(stats).collect()

@@ -16,18 +16,19 @@ fn vs_dithered(
     return result;
 }
 
-// Where maps are depth nobody takes what is returned.
+// Where maps are depth alone nobody takes what is returned. Where they name triangles these have
+// no name.
 @fragment
 fn fs_dithered(
     @builtin(position) at: vec4f,
     @location(0) uv: vec2f,
     @location(1) alpha: f32,
     @location(2) @interpolate(flat) offset: vec2f,
-) -> @location(0) f32 {
+) -> @location(0) UmbrageTexel {
     if !umbrage_caster_covers(at, offset, tested_alpha(uv, alpha)) {
         discard;
     }
-    return umbrage_caster_depth(at);
+    return umbrage_caster_texel(at, 0u);
 }
 
 // The built-ins of what is drawn, with the code that lies among the instances' own data.

@@ -272,11 +272,11 @@ impl Receiver {
         self.as_stored(level + (lowest - nearer).min(0.0))
     }
 
-    fn level(&self, offset: [f32; 2]) -> f32 {
+    pub(super) fn level(&self, offset: [f32; 2]) -> f32 {
         self.depth + dot2(self.tilt, offset)
     }
 
-    fn as_stored(&self, depth: f32) -> f32 {
+    pub(super) fn as_stored(&self, depth: f32) -> f32 {
         let held = depth.clamp(-self.linear[0], 1.0 - self.linear[0]);
         if self.linear[1] > 0.0 { linear_depth(self.linear, self.linear[1] / (-held).max(1e-30)) } else { held }
     }

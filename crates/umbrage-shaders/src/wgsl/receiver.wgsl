@@ -418,6 +418,175 @@ fn umbrage_crease_is_across(crease: UmbrageCrease, offset: vec2f, before: f32) -
     return umbrage_crease_is_there(crease) && (height <= width || before + width >= height);
 }
 
+@if(exact)
+struct UmbrageRun {
+    row_x: vec4f,
+    row_y: vec4f,
+    row_z: vec4f,
+    min: vec3f,
+    triangles: u32,
+    max: vec3f,
+    first: u32
+}
+
+@if(exact)
+struct UmbrageRay {
+    origin: vec3f,
+    to_light: vec3f
+}
+
+@if(exact)
+const UMBRAGE_EDGES_UNDECIDED: f32 = -1.0;
+
+@if(exact)
+const UMBRAGE_EDGES_LEAST_M: f32 = 0.002;
+
+@if(exact)
+const UMBRAGE_EDGES_SLACK_TEXELS: f32 = 0.25;
+
+@if(exact)
+const UMBRAGE_EDGES_STEEPEST: f32 = 20.0;
+
+@if(exact)
+const UMBRAGE_EDGES_LOST: f32 = 9.5367431640625e-7;
+
+@if(exact)
+const UMBRAGE_EDGES_STEPS_RIGHT: u32 = 139617u;
+
+@if(exact)
+const UMBRAGE_EDGES_STEPS_DOWN: u32 = 164373u;
+
+@if(exact)
+fn umbrage_edges_step_of(i: u32) -> vec2i {
+    return vec2i(vec2u(UMBRAGE_EDGES_STEPS_RIGHT >> (2u * i), UMBRAGE_EDGES_STEPS_DOWN >> (2u * i)) & vec2u(3u)) - 1;
+}
+
+@if(exact)
+fn umbrage_edges_four_of(beyond: vec2<bool>) -> u32 {
+    let right = select(0u, 1u, beyond.x);
+    let below = select(0u, 1u, beyond.y);
+    return 1u | (1u << (1u + right)) | (1u << (3u + below)) | (1u << (5u + right + 2u * below));
+}
+
+@if(exact)
+fn umbrage_edges_decided(layer: UmbrageLayer, at: UmbrageReceiver, centre: vec2f, ray: UmbrageRay) -> f32 {
+    let middle = floor(centre + layer.offset);
+    let dark = umbrage_edges_dark_round(layer, at, middle);
+    if dark == 0u {
+        return 1.0;
+    }
+    let four = umbrage_edges_four_of(fract(centre + layer.offset) >= vec2f(0.5));
+    if (dark & four) == four {
+        return 0.0;
+    }
+    var asked = array<u32, 9>();
+    var without_name = false;
+    for (var i = 0u; i < 9u; i++) {
+        let id = umbrage_map_id(layer.index, umbrage_edges_texel_round(layer, middle, i));
+        if id == 0u {
+            without_name = without_name || (dark & four & (1u << i)) != 0u;
+            continue;
+        }
+        var is_new = true;
+        for (var j = 0u; j < i; j++) {
+            is_new = is_new && asked[j] != id;
+        }
+        asked[i] = id;
+        if is_new && umbrage_edges_shades(id, ray) {
+            return 0.0;
+        }
+    }
+    return select(1.0, UMBRAGE_EDGES_UNDECIDED, without_name);
+}
+
+@if(exact)
+fn umbrage_edges_texel_round(layer: UmbrageLayer, middle: vec2f, i: u32) -> vec2i {
+    return clamp(vec2i(middle) + umbrage_edges_step_of(i), layer.first, layer.last);
+}
+
+@if(exact)
+fn umbrage_edges_dark_round(layer: UmbrageLayer, at: UmbrageReceiver, middle: vec2f) -> u32 {
+    let most = UMBRAGE_EDGES_STEEPEST * at.texel_m / at.range_m;
+    let slope = clamp(at.slope, -most, most);
+    let slack = (UMBRAGE_EDGES_SLACK_TEXELS * max(at.texel_m.x, at.texel_m.y) + UMBRAGE_EDGES_LEAST_M) / at.range_m;
+    var dark = 0u;
+    for (var i = 0u; i < 9u; i++) {
+        let texel = umbrage_edges_texel_round(layer, middle, i);
+        let offset = vec2f(texel) + 0.5 - layer.offset - at.texel;
+        let plane = umbrage_bias_as_stored(at, umbrage_bias_level(at, offset) + dot(slope, offset) - slack);
+        dark |= select(0u, 1u << i, umbrage_map_load(layer.index, texel) < plane);
+    }
+    return dark;
+}
+
+@if(exact)
+fn umbrage_edges_shades(id: u32, ray: UmbrageRay) -> bool {
+    let run = umbrage_run(id);
+    let point = vec4f(ray.origin, 1.0);
+    let origin = vec3f(dot(run.row_x, point), dot(run.row_y, point), dot(run.row_z, point));
+    let to_light = vec3f(dot(run.row_x.xyz, ray.to_light), dot(run.row_y.xyz, ray.to_light), dot(run.row_z.xyz, ray.to_light));
+    let largest = max(max(abs(ray.origin.x), abs(ray.origin.y)), abs(ray.origin.z));
+    let own_largest = max(max(abs(origin.x), abs(origin.y)), abs(origin.z));
+    let lost = UMBRAGE_EDGES_LOST * (largest * length(to_light) + own_largest);
+    if !umbrage_edges_meets_box(run, origin, to_light, lost) {
+        return false;
+    }
+    let axis = umbrage_edges_dominant(to_light);
+    let along = umbrage_edges_turned(to_light, axis);
+    let shear = along.xy / along.z;
+    for (var i = 0u; i < run.triangles; i++) {
+        let a = umbrage_edges_turned(umbrage_corner(run, 3u * i) - origin, axis);
+        let b = umbrage_edges_turned(umbrage_corner(run, 3u * i + 1u) - origin, axis);
+        let c = umbrage_edges_turned(umbrage_corner(run, 3u * i + 2u) - origin, axis);
+        if umbrage_edges_is_before(a, b, c, shear, along.z, lost) {
+            return true;
+        }
+    }
+    return false;
+}
+
+@if(exact)
+fn umbrage_edges_meets_box(run: UmbrageRun, origin: vec3f, direction: vec3f, lost: f32) -> bool {
+    let inverse = 1.0 / select(direction, vec3f(1e-20), abs(direction) < vec3f(1e-20));
+    let one = (run.min - lost - origin) * inverse;
+    let other = (run.max + lost - origin) * inverse;
+    let enters = min(one, other);
+    let leaves = max(one, other);
+    return max(max(enters.x, enters.y), max(enters.z, 0.0)) <= min(leaves.x, min(leaves.y, leaves.z));
+}
+
+@if(exact)
+fn umbrage_edges_dominant(v: vec3f) -> u32 {
+    let size = abs(v);
+    let by_x = size.x >= size.y && size.x >= size.z;
+    return select(select(2u, 1u, size.y >= size.z), 0u, by_x);
+}
+
+@if(exact)
+fn umbrage_edges_turned(v: vec3f, axis: u32) -> vec3f {
+    return select(select(v, v.zxy, axis == 1u), v.yzx, axis == 0u);
+}
+
+@if(exact)
+fn umbrage_edges_is_before(a: vec3f, b: vec3f, c: vec3f, shear: vec2f, along: f32, lost: f32) -> bool {
+    let p = a.xy - shear * a.z;
+    let q = b.xy - shear * b.z;
+    let r = c.xy - shear * c.z;
+    let weights = vec3f(r.x * q.y - r.y * q.x, p.x * r.y - p.y * r.x, q.x * p.y - q.y * p.x);
+    let twice_area = weights.x + weights.y + weights.z;
+    let is_under = all(weights >= vec3f(0.0)) || all(weights <= vec3f(0.0));
+    if !is_under || twice_area == 0.0 {
+        return false;
+    }
+    let metres = dot(weights, vec3f(a.z, b.z, c.z)) / (twice_area * along);
+    if metres <= UMBRAGE_EDGES_LEAST_M {
+        return false;
+    }
+    let normal = cross(b - a, c - a);
+    let reach = max(max(length(a), length(b)), length(c));
+    return abs(dot(normal, a)) > (lost + UMBRAGE_EDGES_LOST * reach) * length(normal);
+}
+
 const UMBRAGE_FILTER_HARD: u32 = 0u;
 
 const UMBRAGE_FILTER_PCF2: u32 = 1u;
@@ -1015,10 +1184,10 @@ fn umbrage_shade_visibility(frame: u32, index: u32, point: UmbragePoint) -> f32 
         return 1.0;
     }
     let at = umbrage_bias_receiver(split, position, point.normal, towards_light);
-    return umbrage_shade_lit_share(frame, split, index, at, point);
+    return umbrage_shade_lit_share(frame, split, index, at, point, towards_light);
 }
 
-fn umbrage_shade_lit_share(frame: u32, split: UmbrageSplit, index: u32, plane: UmbrageReceiver, point: UmbragePoint) -> f32 {
+fn umbrage_shade_lit_share(frame: u32, split: UmbrageSplit, index: u32, plane: UmbrageReceiver, point: UmbragePoint, towards_light: vec3f) -> f32 {
     @if(any_filter)
     let kind = umbrage_frames[frame].filter_kind + umbrage_zero(plane.texel.x);
     @if(!any_filter)
@@ -1029,6 +1198,14 @@ fn umbrage_shade_lit_share(frame: u32, split: UmbrageSplit, index: u32, plane: U
     let map_first = vec2i(split.corner);
     let map_last = map_first + vec2i(i32(split.size) - 1);
     let layer = UmbrageLayer(split.layer, split.layer_texels, split.texel_offset + split.corner, map_first, map_last);
+    @if(exact)
+    {
+        let ray = UmbrageRay(point.position, towards_light);
+        let found = umbrage_edges_decided(layer, plane, clamp(plane.texel, first, last), ray);
+        if found != UMBRAGE_EDGES_UNDECIDED {
+            return found;
+        }
+    }
     let turn = umbrage_frames[frame].turn_per_pixel * (point.noise - 0.5);
     let frame_width_m = umbrage_frames[frame].filter_width_m;
     let most = umbrage_filter_widest(kind, margin);
@@ -1044,5 +1221,9 @@ fn umbrage_shade_lit_share(frame: u32, split: UmbrageSplit, index: u32, plane: U
     {
         at = umbrage_bias_without_plane(at, umbrage_filter_reach(kind, softness, at));
     }
-    return umbrage_filter_lit_share(layer, kind, softness, at, clamp(at.texel, first, last));
+    let lit = umbrage_filter_lit_share(layer, kind, softness, at, clamp(at.texel, first, last));
+    @if(exact)
+    return select(0.0, 1.0, lit >= 0.5);
+    @if(!exact)
+    return lit;
 }

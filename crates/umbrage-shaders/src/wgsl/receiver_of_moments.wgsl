@@ -717,10 +717,10 @@ fn umbrage_shade_visibility(frame: u32, index: u32, point: UmbragePoint) -> f32 
         return 1.0;
     }
     let at = umbrage_bias_receiver(split, position, point.normal, towards_light);
-    return umbrage_shade_lit_share(frame, split, index, at, point);
+    return umbrage_shade_lit_share(frame, split, index, at, point, towards_light);
 }
 
-fn umbrage_shade_lit_share(frame: u32, split: UmbrageSplit, index: u32, plane: UmbrageReceiver, point: UmbragePoint) -> f32 {
+fn umbrage_shade_lit_share(frame: u32, split: UmbrageSplit, index: u32, plane: UmbrageReceiver, point: UmbragePoint, towards_light: vec3f) -> f32 {
     let own = umbrage_moments.splits[index];
     var at = plane;
     @if(plane_bias && slope_bias)

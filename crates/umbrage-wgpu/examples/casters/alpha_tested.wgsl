@@ -7,9 +7,9 @@
     return result;
 }
 
-@fragment fn fragment(@builtin(position) at: vec4f, @location(0) uv: vec2f) -> @location(0) f32 {
+@fragment fn fragment(@builtin(position) at: vec4f, @location(0) uv: vec2f) -> @location(0) UmbrageTexel {
     if textureSample(leaf, leaf_sampler, uv).a < 0.5 {
         discard;
     }
-    return umbrage_caster_depth(at);
+    return umbrage_caster_texel(at, 0u);
 }

@@ -1,6 +1,6 @@
 //! Which layout is taken: what was asked for, or what the device can do instead.
 
-use umbrage::config::{Fallbacks, Generation, Layout, ShadowConfig};
+use umbrage::config::{Edges, Fallbacks, Generation, Layout, ShadowConfig};
 
 use crate::{Error, Result};
 
@@ -13,6 +13,8 @@ pub(crate) struct Abilities {
     pub clip_distances: bool,
     /// Whether multiview forgets which layer it draws into, see [`super::MapPass::leads`].
     pub leads: bool,
+    /// Whether depth textures can be loaded from.
+    pub depth_loads: bool,
 }
 
 impl Abilities {
@@ -22,6 +24,7 @@ impl Abilities {
             views: if has(wgpu::Features::MULTIVIEW) { device.limits().max_multiview_view_count } else { 0 },
             clip_distances: has(wgpu::Features::CLIP_DISTANCES),
             leads: device.adapter_info().driver == "llvmpipe",
+            depth_loads: device.adapter_info().backend != wgpu::Backend::Gl,
         }
     }
 
@@ -42,6 +45,7 @@ impl Abilities {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Chosen {
     pub layout: Layout,
+    pub edges: Edges,
     /// What was asked for and could not be had.
     pub notes: Vec<String>,
 }
@@ -49,15 +53,24 @@ pub(crate) struct Chosen {
 /// Finds the layout, or names the feature that it lacks.
 pub(crate) fn choose(config: &ShadowConfig, abilities: Abilities) -> Result<Chosen> {
     let (layout, generation) = (config.layout, config.layout.generation());
+    let mut notes = Vec::new();
+    let mut edges = config.edges;
+    if edges == Edges::Exact && !abilities.depth_loads {
+        if config.fallbacks == Fallbacks::Forbid {
+            return Err(Error::NoExactEdges);
+        }
+        notes.push("no loads from depth textures on GL: edges are sampled".to_owned());
+        edges = Edges::Sampled;
+    }
     let Some(feature) = abilities.lacking(generation) else {
-        return Ok(Chosen { layout, notes: Vec::new() });
+        return Ok(Chosen { layout, edges, notes });
     };
     if config.fallbacks == Fallbacks::Forbid {
         return Err(Error::MissingFeature { generation: generation.word(), feature });
     }
-    let note = format!("generation {generation} needs {feature}, which this device does not give: per-split");
+    notes.push(format!("generation {generation} needs {feature}, which this device does not give: per-split"));
     let layout = Layout::of(Generation::PerSplit, layout.storage()).unwrap_or_default();
-    Ok(Chosen { layout, notes: vec![note] })
+    Ok(Chosen { layout, edges, notes })
 }
 
 #[cfg(test)]
@@ -65,13 +78,25 @@ mod tests {
     use super::*;
 
     #[test]
+    fn exact_edges_need_loads_from_depth() {
+        let asked = ShadowConfig { edges: Edges::Exact, ..ShadowConfig::default() };
+        let with_loads = Abilities { depth_loads: true, ..Abilities::default() };
+        let chosen = choose(&asked, with_loads).expect("there is always a way");
+        assert_eq!((chosen.edges, chosen.notes.len()), (Edges::Exact, 0));
+        let chosen = choose(&asked, Abilities::default()).expect("there is always a way");
+        assert!(chosen.edges == Edges::Sampled && chosen.notes[0].contains("edges are sampled"), "{chosen:?}");
+        let strict = ShadowConfig { fallbacks: Fallbacks::Forbid, ..asked };
+        assert_eq!(choose(&strict, Abilities::default()), Err(Error::NoExactEdges));
+    }
+
+    #[test]
     fn what_a_device_lacks_is_replaced_or_refused() {
         for layout in Layout::ALL {
             for abilities in [
                 Abilities::default(),
-                Abilities { views: 6, clip_distances: false, leads: false },
-                Abilities { views: 1, clip_distances: true, leads: false },
-                Abilities { views: 8, clip_distances: true, leads: false },
+                Abilities { views: 6, clip_distances: false, leads: false, depth_loads: true },
+                Abilities { views: 1, clip_distances: true, leads: false, depth_loads: true },
+                Abilities { views: 8, clip_distances: true, leads: false, depth_loads: true },
             ] {
                 let asked = ShadowConfig { layout, ..ShadowConfig::default() };
                 let chosen = choose(&asked, abilities).expect("there is always a way");

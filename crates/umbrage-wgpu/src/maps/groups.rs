@@ -155,7 +155,17 @@ impl MapBindings {
             let ty = wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false };
             (binding, ty, Bound::View(view))
         };
-        let mut list = match it.storage {
+        let ids = targets.ids.as_ref().map(|ids| {
+            let view = ids.create_view(&wgpu::TextureViewDescriptor {
+                label: Some("ShadowMaps::ids"),
+                dimension: Some(D2Array),
+                ..Default::default()
+            });
+            let sample_type = wgpu::TextureSampleType::Uint;
+            let ty = wgpu::BindingType::Texture { sample_type, view_dimension: D2Array, multisampled: false };
+            (3, ty, Bound::View(view))
+        });
+        let mut list: Vec<_> = match it.storage {
             Storage::Separate => (0..targets.maps.len()).map(|index| map(3 + index as u32, index, D2)).collect(),
             Storage::Cube if loads && !colour => vec![map(1, 0, Cube), map(3, 0, D2Array)],
             Storage::Cube => vec![map(1, 0, Cube)],
@@ -169,6 +179,7 @@ impl MapBindings {
         if let Some(kind) = sampler {
             list.push((2, wgpu::BindingType::Sampler(kind), Bound::Sampler(self::sampler(device, &it.filter, kind))));
         }
+        list.extend(ids);
         Self { list }
     }
 }

@@ -15,7 +15,7 @@ use std::num::NonZeroU32;
 
 use umbrage::ShadowPlan;
 use umbrage::config::{
-    Cache, Coordinates, DepthFormat, Filter, Generation, Layout, LightKind, Rebuilds, Selection, ShadowConfig,
+    Cache, Coordinates, DepthFormat, Edges, Filter, Generation, Layout, LightKind, Rebuilds, Selection, ShadowConfig,
     SplitMetric, Storage,
 };
 use umbrage_shaders::layout::{MetricKind, SelectionKind};
@@ -89,6 +89,8 @@ pub struct ShadowMaps {
     config: ShadowConfig,
     /// As it is carried out.
     layout: Layout,
+    /// As they are carried out.
+    edges: Edges,
     slots: Vec<Slot>,
     notes: Vec<String>,
     places: Vec<Place>,
@@ -115,9 +117,9 @@ impl ShadowMaps {
     /// [`Error::Config`] for a config that is wrong or does not go with the lights;
     /// [`Error::MapTooLarge`], [`Error::TooManyLayers`], [`Error::AtlasTooLarge`],
     /// [`Error::TooManyTextures`], [`Error::TooManyLights`], [`Error::MissingFeature`],
-    /// [`Error::NoFilterableFloats`] and [`Error::NoDepthLoads`] for what the device cannot do;
-    /// [`Error::Device`] and [`Error::OutOfMemory`] for what the device complains about,
-    /// [`Error::DeviceLost`].
+    /// [`Error::NoFilterableFloats`], [`Error::NoDepthLoads`] and [`Error::NoExactEdges`] for what
+    /// the device cannot do; [`Error::Device`] and [`Error::OutOfMemory`] for what the device
+    /// complains about, [`Error::DeviceLost`].
     pub fn new<L: Clone + Into<LightMaps>>(device: &wgpu::Device, config: &ShadowConfig, lights: &[L]) -> Result<Self> {
         let lights: Vec<LightMaps> = lights.iter().cloned().map(Into::into).collect();
         device::made(device, "making shadow maps", || Self::new_unguarded(device, config, &lights))
@@ -129,14 +131,14 @@ impl ShadowMaps {
         let sizes: &Vec<u32> = &slots.iter().flat_map(Slot::map_sizes).collect();
         check_sizes(&slots, &limits)?;
         let abilities = Abilities::of(device);
-        let Chosen { layout, mut notes } = choose::choose(config, abilities)?;
+        let Chosen { layout, edges, mut notes } = choose::choose(config, abilities)?;
         let (storage, generation) = (layout.storage(), layout.generation());
         let passes = MapPass::all(generation, sizes.len(), abilities);
         let arrangement = Arrangement::new(storage, generation, &passes, sizes, limits.max_texture_dimension_2d)?;
         check_limits(device, storage, &arrangement)?;
 
-        let targets = Targets::new(device, config, storage, sizes, &arrangement, &passes);
-        let depth_loads = device.adapter_info().backend != wgpu::Backend::Gl;
+        let targets = Targets::new(device, config, (storage, edges), sizes, &arrangement, &passes);
+        let depth_loads = abilities.depth_loads;
         let depth_clip_control = device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL);
         let viewport = Viewport::around(sizes.iter().copied().max().unwrap_or(0), largest_viewport(device));
         let mut places = places(device, sizes, &arrangement.tiles);
@@ -186,13 +188,14 @@ impl ShadowMaps {
             device: device.clone(),
             config: config.clone(),
             layout,
+            edges,
             notes,
             places,
             viewport,
             multiview_mask: targets::multiview_mask(generation, &passes),
             depth_loads,
             depth_clip_control,
-            colour_target: is_colour.then(|| texture_format(config.depth_format).into()),
+            colour_target: colour_format(config, edges).map(Into::into),
             casters,
             receivers: Uniforms::of_receivers(device, &received, &targets, moments.as_ref()),
             targets,
@@ -322,13 +325,13 @@ impl ShadowMaps {
     /// `UmbrageCast`, for example `"@location(0) uv: vec2f,"`.
     #[must_use]
     pub fn caster_wgsl_with(&self, group: u32, members: &str) -> String {
-        let casters = match self.layout.generation() {
-            Generation::PerSplit | Generation::Multipass => Casters::default(),
-            Generation::Layered => Casters { views: true, tiles: false },
-            Generation::Instanced => Casters { views: false, tiles: true },
-            Generation::Mixed => Casters { views: true, tiles: true },
+        let (views, tiles) = match self.layout.generation() {
+            Generation::PerSplit | Generation::Multipass => (false, false),
+            Generation::Layered => (true, false),
+            Generation::Instanced => (false, true),
+            Generation::Mixed => (true, true),
         };
-        umbrage_shaders::caster(group, casters, members)
+        umbrage_shaders::caster(group, Casters { views, tiles, ids: self.edges == Edges::Exact }, members)
     }
 
     /// What any shader needs to ask for visibility; `group` is the index at which the app binds
@@ -369,6 +372,7 @@ impl ShadowMaps {
             projection: if config.first_warp().is_some() { Projection::Any } else { Projection::Plain },
             lights,
             sliced: self.layout.storage() == Storage::Reused,
+            exact: self.edges == Edges::Exact,
             ..self.receiver_maps().into()
         }
     }
@@ -403,6 +407,21 @@ impl ShadowMaps {
         self.layout
     }
 
+    /// What decides where a shadow ends: the config's edges, or what the device can do instead.
+    /// With [`Edges::Exact`] a shader that asks for visibility declares `umbrage_run` and
+    /// `umbrage_corner`, or takes both from [`crate::stored_runs_wgsl`].
+    #[must_use]
+    pub fn edges(&self) -> Edges {
+        self.edges
+    }
+
+    /// The texture of what each texel of the maps names, with [`Edges::Exact`]: `R32Uint`, with the
+    /// layers and the places of [`ShadowMaps::map_texture`]. Can be copied from.
+    #[must_use]
+    pub fn id_texture(&self) -> Option<&wgpu::Texture> {
+        self.targets.ids.as_ref()
+    }
+
     /// Whether pipelines for casters and receivers that were made for `other` fit these maps too.
     pub(crate) fn shares_pipelines_with(&self, other: &Self) -> bool {
         // Bind group layouts follow from the texts: they hold what the texts declare.
@@ -431,8 +450,9 @@ impl ShadowMaps {
         &self.notes
     }
 
-    /// Bytes of all maps, of depth buffers beside maps that are colours, and for moment filters of
-    /// the moments with their mip levels, of the texture between two blurs, and of what is kept.
+    /// Bytes of all maps, of depth buffers beside maps that are colours, of ids beside depth, and
+    /// for moment filters of the moments with their mip levels, of the texture between two blurs,
+    /// and of what is kept.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let moments = self.moments.as_ref().map_or(0, Moments::bytes);
@@ -513,9 +533,10 @@ impl ShadowMaps {
     }
 
     /// Colour targets of a pipeline that draws casters: none, but one with
-    /// [`DepthFormat::R32Float`]. Casters then need a fragment shader that returns
-    /// `umbrage_caster_depth(at)` of its `@builtin(position)` at location 0; one that is there
-    /// anyway, to discard, may return it in any format.
+    /// [`DepthFormat::R32Float`] or [`Edges::Exact`]. Casters then need a fragment shader that
+    /// returns `umbrage_caster_texel(at, id)` at location 0, a `UmbrageTexel`, of its
+    /// `@builtin(position)` and the id that its vertices have; one that is there anyway, to
+    /// discard, may return it in any config. A caster that cannot be asked has the id 0.
     #[must_use]
     pub fn caster_targets(&self) -> &[Option<wgpu::ColorTargetState>] {
         match &self.colour_target {
@@ -556,6 +577,14 @@ impl ShadowMaps {
     pub fn slice_bind_group(&self, split: usize) -> &wgpu::BindGroup {
         assert!(split < self.splits(), "split {split} of {}", self.splits());
         self.receivers.groups.get(1 + split).unwrap_or(&self.receivers.groups[0])
+    }
+}
+
+/// What casters' fragments write beside depth.
+fn colour_format(config: &ShadowConfig, edges: Edges) -> Option<wgpu::TextureFormat> {
+    match edges {
+        Edges::Exact => Some(targets::ID_FORMAT),
+        Edges::Sampled => config.depth_format.is_colour().then(|| texture_format(config.depth_format)),
     }
 }
 

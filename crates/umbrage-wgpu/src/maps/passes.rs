@@ -142,7 +142,11 @@ mod tests {
         for generation in [Generation::PerSplit, Generation::Layered, Generation::Instanced, Generation::Mixed] {
             for splits in 1..=8 {
                 for (views, leads) in (2..=8).flat_map(|views| [(views, false), (views, true)]) {
-                    let passes = MapPass::all(generation, splits, Abilities { views, clip_distances: true, leads });
+                    let passes = MapPass::all(
+                        generation,
+                        splits,
+                        Abilities { views, clip_distances: true, leads, depth_loads: true },
+                    );
                     assert!(passes.iter().all(|pass| pass.views <= views as usize && pass.views == passes[0].views));
                     for mask in 0..1u32 << splits {
                         let mut drawn = Vec::new();
@@ -167,7 +171,8 @@ mod tests {
     #[test]
     fn submissions_are_as_few_as_views_allow() {
         let count = |generation, splits, views| {
-            MapPass::all(generation, splits, Abilities { views, clip_distances: true, leads: false }).len()
+            MapPass::all(generation, splits, Abilities { views, clip_distances: true, leads: false, depth_loads: true })
+                .len()
         };
         assert_eq!(count(Generation::PerSplit, 4, 6), 4);
         assert_eq!(

@@ -146,7 +146,11 @@ mod tests {
     use crate::maps::choose::Abilities;
 
     fn arranged(storage: Storage, generation: Generation, sizes: &[u32]) -> Arrangement {
-        let passes = MapPass::all(generation, sizes.len(), Abilities { views: 6, clip_distances: true, leads: false });
+        let passes = MapPass::all(
+            generation,
+            sizes.len(),
+            Abilities { views: 6, clip_distances: true, leads: false, depth_loads: true },
+        );
         Arrangement::new(storage, generation, &passes, sizes, 16384).expect("it fits")
     }
 

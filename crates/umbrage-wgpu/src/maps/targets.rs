@@ -1,10 +1,13 @@
 //! The textures that maps are kept in, and what each pass draws into.
 
-use umbrage::config::{DepthFormat, Generation, ShadowConfig, Storage};
+use umbrage::config::{DepthFormat, Edges, Generation, ShadowConfig, Storage};
 
 use super::passes::MapPass;
 use super::storage::Arrangement;
 use crate::options::texture_format;
+
+/// What texels of maps are named in: runs of triangles, see [`umbrage_shaders::layout::RUN_BITS`].
+pub(super) const ID_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
 /// The textures of all maps.
 #[derive(Debug)]
@@ -14,25 +17,30 @@ pub(super) struct Targets {
     separate: bool,
     /// Depth buffers beside maps that are colours.
     depths: Vec<wgpu::Texture>,
+    /// What each texel of the one texture of maps shows, with exact edges.
+    pub ids: Option<wgpu::Texture>,
     attachments: Vec<Attachments>,
 }
 
 /// What one pass draws into.
 #[derive(Debug)]
 struct Attachments {
+    /// Maps that are colours, or the ids beside depth.
     colour: Option<wgpu::TextureView>,
+    /// What texels without a caster have.
+    clear: wgpu::Color,
     depth: wgpu::TextureView,
     /// Whether an earlier pass has drawn other tiles.
     keeps: bool,
 }
 
 impl Targets {
-    /// `sizes` are the edges of all maps; the layout's `storage`, `it` and `passes` have been
-    /// chosen.
+    /// `sizes` are the edges of all maps; the layout's `storage`, the `edges`, `it` and `passes`
+    /// have been chosen.
     pub fn new(
         device: &wgpu::Device,
         config: &ShadowConfig,
-        storage: Storage,
+        (storage, edges): (Storage, Edges),
         sizes: &[u32],
         it: &Arrangement,
         passes: &[MapPass],
@@ -53,6 +61,10 @@ impl Targets {
             Storage::Cube => vec![map(it.layer_texels, it.layers)],
             _ => vec![map(it.layer_texels, array_layers(it.layers, it.layer_texels, backend))],
         };
+        let ids = (edges == Edges::Exact).then(|| {
+            let layers = maps[0].depth_or_array_layers();
+            texture(device, "ShadowMaps::ids", ID_FORMAT, it.layer_texels, [layers, 1], read)
+        });
         // Passes follow each other, so that those of one size share a depth buffer.
         let mut depths: Vec<wgpu::Texture> = Vec::new();
         let attachments = passes
@@ -64,7 +76,8 @@ impl Targets {
                 let views = pass.views() as u32;
                 let keeps = storage == Storage::Atlas && pass.is_alone() && pass.splits().start > 0;
                 if !format.is_colour() {
-                    return Attachments { colour: None, depth: view(map, first, views), keeps };
+                    let colour = ids.as_ref().map(|ids| view(ids, first, views));
+                    return Attachments { colour, clear: NO_ID, depth: view(map, first, views), keeps };
                 }
                 let same_size = |depth: &wgpu::Texture| depth.width() == map.width() && depth.height() == map.height();
                 let index = depths.iter().position(same_size).unwrap_or_else(|| {
@@ -73,10 +86,11 @@ impl Targets {
                     depths.push(texture(device, "ShadowMaps::depth", format, texels, [views, 1], usage));
                     depths.len() - 1
                 });
-                Attachments { colour: Some(view(map, first, views)), depth: view(&depths[index], 0, views), keeps }
+                let (colour, depth) = (Some(view(map, first, views)), view(&depths[index], 0, views));
+                Attachments { colour, clear: wgpu::Color::WHITE, depth, keeps }
             })
             .collect();
-        Self { maps, separate, depths, attachments }
+        Self { maps, separate, depths, ids, attachments }
     }
 
     /// The texture that holds what a tile calls its layer.
@@ -104,7 +118,7 @@ impl Targets {
                 * u64::from(size.depth_or_array_layers)
                 * u64::from(texel * texture.sample_count())
         };
-        self.maps.iter().chain(&self.depths).map(bytes).sum()
+        self.maps.iter().chain(&self.depths).chain(&self.ids).map(bytes).sum()
     }
 
     /// Begins pass `index`, cleared to the farthest depth or, where all of its map is about to be
@@ -116,10 +130,10 @@ impl Targets {
         multiview_mask: Option<std::num::NonZeroU32>,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'e> {
-        let Attachments { colour, depth, keeps } = &self.attachments[index];
+        let Attachments { colour, clear, depth, keeps } = &self.attachments[index];
         let store = wgpu::StoreOp::Store;
         let keeps = *keeps || !is_cleared;
-        let colour_load = if keeps { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::WHITE) };
+        let colour_load = if keeps { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(*clear) };
         let colour = colour.as_ref().map(|view| wgpu::RenderPassColorAttachment {
             view,
             depth_slice: None,
@@ -142,6 +156,9 @@ impl Targets {
         })
     }
 }
+
+/// What texels have that no caster is in, or one that cannot be asked.
+const NO_ID: wgpu::Color = wgpu::Color::TRANSPARENT;
 
 /// What of a texture is copied.
 fn aspect(texture: &wgpu::Texture) -> wgpu::TextureAspect {

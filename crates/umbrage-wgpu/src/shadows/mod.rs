@@ -14,7 +14,7 @@ use draws::Draws;
 pub use frame::{ShadowFrame, ShadowMap};
 pub use inputs::Inputs;
 
-use crate::{Error, FrameOptions, LightMaps, Result, ShadowMaps};
+use crate::{Error, FrameOptions, LightMaps, Occluders, Result, ShadowMaps};
 
 /// Shadows of one sun or several lights, for one view or several.
 ///
@@ -84,6 +84,7 @@ pub struct Shadows {
     keeper: Option<Keeper>,
     /// Whether this frame's maps come from what is kept.
     is_kept: bool,
+    occluders: Occluders,
 }
 
 impl Shadows {
@@ -126,6 +127,7 @@ impl Shadows {
             plans: Vec::new(),
             enabled: true,
             draws: Draws::default(),
+            occluders: Occluders::default(),
         })
     }
 
@@ -157,6 +159,7 @@ impl Shadows {
             planners.iter_mut().zip(self.held.drain(..)).for_each(|(planner, held)| planner.set_held(held));
         }
         result?;
+        self.occluders.recycle();
         self.enabled = inputs.enabled;
         Ok(self.frame())
     }
@@ -279,6 +282,12 @@ impl Shadows {
     #[must_use]
     pub fn caster_wgsl_with(&self, group: u32, members: &str) -> String {
         self.maps.caster_wgsl_with(group, members)
+    }
+
+    /// Ids for casters, for exact edges ([`umbrage::config::Edges::Exact`]). They stay through
+    /// every change of config.
+    pub fn occluders(&mut self) -> &mut Occluders {
+        &mut self.occluders
     }
 
     /// The maps: the low-level API, with textures, passes and pipeline states.

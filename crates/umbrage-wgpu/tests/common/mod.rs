@@ -6,7 +6,7 @@ pub mod painter;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, DVec4, Vec3};
-use umbrage::config::{Filter, LightKind, MomentKind, Moments, Preset, Selection, ShadowConfig};
+use umbrage::config::{Edges, Filter, LightKind, MomentKind, Moments, Preset, Selection, ShadowConfig};
 use umbrage::{DirectionalLight, ShadowPlan, Split};
 use umbrage_wgpu::{FrameOptions, LightMaps, ShadowMaps, optional_features};
 
@@ -303,6 +303,12 @@ impl Ask {
     pub fn position(&self) -> Vec3 {
         Vec3::from_slice(&self.position)
     }
+
+    /// With numbers of the test's own beside position and normal.
+    pub fn with(mut self, beside_position: f32, beside_normal: f32) -> Self {
+        (self.position[3], self.normal[3]) = (beside_position, beside_normal);
+        self
+    }
 }
 
 pub fn ask(position: Vec3, normal: Vec3) -> Ask {
@@ -347,6 +353,33 @@ struct Answer { visibility: f32, split: i32, in_split: vec2f, tint: vec3f, short
     answers[id.x] = Answer(shadow.visibility, shadow.split, in_split, shadow.tint, umbrage_visibility(p, n));
 }";
 
+const CASTER: &str = "
+@vertex fn vertex(@location(0) position: vec3f, instance: UmbrageInstance) -> UmbrageCast {
+    return umbrage_cast(position, instance);
+}
+@fragment fn fragment(@builtin(position) at: vec4f) -> @location(0) f32 {
+    return umbrage_caster_depth(at);
+}";
+
+/// Triangles that maps name in runs of eight that [`NAMED`] has; those that follow have no name.
+pub const NAMED: usize = 80;
+
+const NAMED_CASTER: &str = "
+@vertex fn vertex(
+    @location(0) position: vec3f,
+    @builtin(vertex_index) corner: u32,
+    instance: UmbrageInstance,
+) -> UmbrageCast {
+    let first = select(1u, 0u, corner >= 240u);
+    return umbrage_named(umbrage_cast(position, instance), umbrage_caster_id(first, corner / 24u));
+}
+@fragment fn fragment(
+    @builtin(position) at: vec4f,
+    @location(15) @interpolate(flat, first) id: u32,
+) -> @location(0) UmbrageTexel {
+    return umbrage_caster_texel(at, id);
+}";
+
 /// Maps, and a pipeline that draws triangles into them.
 pub struct World {
     pub gpu: Gpu,
@@ -362,13 +395,7 @@ impl World {
     pub fn of_lights<L: Clone + Into<LightMaps>>(gpu: Gpu, config: &ShadowConfig, lights: &[L]) -> Self {
         let (maps, pipeline) = gpu.checked(|| {
             let maps = ShadowMaps::new(&gpu.device, config, lights).expect("a valid config");
-            let source = maps.caster_wgsl(0)
-                + "@vertex fn vertex(@location(0) position: vec3f, instance: UmbrageInstance) -> UmbrageCast {
-                       return umbrage_cast(position, instance);
-                   }
-                   @fragment fn fragment(@builtin(position) at: vec4f) -> @location(0) f32 {
-                       return umbrage_caster_depth(at);
-                   }";
+            let source = maps.caster_wgsl(0) + if maps.edges() == Edges::Exact { NAMED_CASTER } else { CASTER };
             let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("Test::caster"),
                 source: wgpu::ShaderSource::Wgsl(source.into()),

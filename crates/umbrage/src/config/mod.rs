@@ -7,6 +7,7 @@
 
 mod apply;
 mod budget;
+mod edges;
 mod filter;
 mod fit;
 mod given;
@@ -25,6 +26,7 @@ mod text;
 mod words;
 
 pub use budget::Budget;
+pub use edges::Edges;
 pub use filter::{Derivatives, Filter, MomentKind, Moments, SUN_DEGREES};
 pub use fit::{Crop, ExtentSteps, Stability};
 pub use given::Given;
@@ -120,6 +122,9 @@ pub struct ShadowConfig {
     pub drop_small_casters: bool,
     /// How a map is filtered.
     pub filter: Filter,
+    /// What decides where a shadow ends. With [`Edges::Exact`] a texel names the triangles that it
+    /// shows, beside their depth, and the filter is asked only where casters have no name.
+    pub edges: Edges,
     /// What a texel of a map stores.
     pub depth_format: DepthFormat,
     /// Where maps are stored and how they are drawn.
@@ -153,6 +158,17 @@ impl ShadowConfig {
     #[must_use]
     pub fn texels(&self) -> u64 {
         self.map_sizes.iter().map(|&edge| u64::from(edge) * u64::from(edge)).sum()
+    }
+
+    /// Bytes of one texel, without the depth buffer beside a colour texture: its depth, and with
+    /// [`Edges::Exact`] its id, 4 bytes.
+    #[must_use]
+    pub const fn texel_bytes(&self) -> u64 {
+        let id = match self.edges {
+            Edges::Exact => 4,
+            Edges::Sampled => 0,
+        };
+        self.depth_format.texel_bytes() + id
     }
 
     /// The warp of split `index`; [`Warp::None`] for stabilised maps.
@@ -237,6 +253,7 @@ impl ShadowConfig {
             stability,
             drop_small_casters,
             filter: _,
+            edges: _,
             depth_format: _,
             layout: _,
             cache,

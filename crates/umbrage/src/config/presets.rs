@@ -2,7 +2,7 @@
 
 use super::names::named;
 use super::{
-    Cache, Coordinates, Crop, DepthFormat, ExtentSteps, Fallbacks, Filter, Layout, Look, Range, Selection,
+    Cache, Coordinates, Crop, DepthFormat, Edges, ExtentSteps, Fallbacks, Filter, Layout, Look, Range, Selection,
     ShadowConfig, SplitScheme, Stability, Transition,
 };
 
@@ -14,6 +14,8 @@ named! {
         /// The default: sharp near the eye and almost still
         #[default]
         Balanced = "balanced",
+        /// Edges decided by triangles: the memory of balanced, half the texels, half the error
+        Exact = "exact",
         /// The tightest maps in every frame; edges crawl while the camera moves
         Sharp = "sharp",
         /// Exactly still maps, which change in rare steps of the range; coarser than balanced
@@ -38,6 +40,7 @@ impl Preset {
             stability: Stability::Exact,
             drop_small_casters: false,
             filter: Filter::Pcf3 { width_m: None },
+            edges: Edges::Sampled,
             depth_format: DepthFormat::D32Float,
             layout: Layout::Array,
             cache: Cache::Off,
@@ -59,6 +62,8 @@ impl Preset {
             Self::Papers => papers,
             Self::Balanced => balanced,
             Self::Fast => ShadowConfig { map_sizes: vec![1024; 3], filter: Filter::Pcf2, ..balanced },
+            // Depth and id of 720² texels are the bytes of 1,018² depths.
+            Self::Exact => ShadowConfig { map_sizes: vec![720; 4], edges: Edges::Exact, ..balanced },
             Self::Sharp => ShadowConfig { stability: Stability::tight(), ..balanced },
             // A range that follows the view would move its maps with it.
             Self::Still => ShadowConfig { stability: Stability::Exact, range: Range::Camera, ..balanced },

@@ -4,7 +4,7 @@
 use std::fmt;
 
 use super::{
-    Cache, Coordinates, DepthFormat, Filter, Layout, LightKind, Range, Selection, ShadowConfig, SplitMetric,
+    Cache, Coordinates, DepthFormat, Edges, Filter, Layout, LightKind, Range, Selection, ShadowConfig, SplitMetric,
     SplitScheme, Stability, Transition,
 };
 use crate::Warp;
@@ -28,6 +28,10 @@ pub enum Choice {
     MomentFilter,
     /// A filter that needs depth in metres along parallel light.
     SunFilter,
+    /// A filter that is not a tent of three texels.
+    OtherThanPcf3,
+    /// Triangles that texels name decide where a shadow ends.
+    ExactEdges,
     /// Maps have several samples of depth in a texel.
     SeveralSamples,
     /// Maps are colours and not depth.
@@ -38,6 +42,8 @@ pub enum Choice {
     OneMap,
     /// Maps are not plain layers of one texture.
     NotLayers,
+    /// Maps are neither layers nor tiles of one texture.
+    NotOneTexture,
     /// Maps are not drawn one by one.
     NotPerSplit,
     /// Maps are faces of a cube.
@@ -140,6 +146,30 @@ pub const RULES: &[Rule] = &[
         "use generation per-split or layered, or a filter that compares depth, such as pcf5",
     ),
     rule(
+        Choice::OtherThanPcf3,
+        Choice::ExactEdges,
+        "exact edges look at three texels by three, and ask a filter of that size where casters have no name",
+        "use filter pcf3, or edges sampled",
+    ),
+    rule(
+        Choice::ColourMaps,
+        Choice::ExactEdges,
+        "the names of triangles take the place of a map's colour",
+        "use depth-format d32f or d16, or edges sampled",
+    ),
+    rule(
+        Choice::NotOneTexture,
+        Choice::ExactEdges,
+        "the names of triangles are read as layers of one texture",
+        "use storage array, atlas or reused, or edges sampled",
+    ),
+    rule(
+        Choice::DeferredCoordinates,
+        Choice::ExactEdges,
+        "a mask is made from the picture's depth by a pass that knows no triangles",
+        "use coordinates world, or edges sampled",
+    ),
+    rule(
         Choice::SeveralSamples,
         Choice::NotPerSplit,
         "layers of several samples cannot be drawn at once",
@@ -211,6 +241,12 @@ pub const RULES: &[Rule] = &[
         "maps of a spot or point light have no grid that outlasts the light's frame",
         "use cache off, or a directional light",
     ),
+    rule(
+        Choice::KeptMaps,
+        Choice::ExactEdges,
+        "names of triangles are not kept with the maps",
+        "use cache off, or edges sampled",
+    ),
     rule(Choice::KeptMaps, Choice::SeveralFaces, "maps are kept for one sun", "use cache off, or one sun"),
     rule(
         Choice::Warp,
@@ -241,6 +277,12 @@ pub const RULES: &[Rule] = &[
         Choice::LocalLight,
         "the filter needs depth that is linear in metres, which only a directional light has",
         "use another filter, such as pcf5, or a directional light",
+    ),
+    rule(
+        Choice::ExactEdges,
+        Choice::LocalLight,
+        "triangles are tested along parallel light",
+        "use edges sampled, or a directional light",
     ),
     rule(
         Choice::VertexCoordinates,
@@ -323,7 +365,7 @@ impl fmt::Display for Conflict {
 
 impl Choice {
     /// All choices that a rule may name.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 28] = [
         Self::Warp,
         Self::MapSelection,
         Self::DistanceMetric,
@@ -332,11 +374,14 @@ impl Choice {
         Self::Band,
         Self::MomentFilter,
         Self::SunFilter,
+        Self::OtherThanPcf3,
+        Self::ExactEdges,
         Self::SeveralSamples,
         Self::ColourMaps,
         Self::TiledLayers,
         Self::OneMap,
         Self::NotLayers,
+        Self::NotOneTexture,
         Self::NotPerSplit,
         Self::CubeFaces,
         Self::MoreThanSixSplits,
@@ -363,11 +408,14 @@ impl Choice {
             Self::Band => config.blend() > 0.0,
             Self::MomentFilter => config.filter.is_prefiltered(),
             Self::SunFilter => config.filter.is_prefiltered() || matches!(config.filter, Filter::Pcss { .. }),
+            Self::OtherThanPcf3 => !matches!(config.filter, Filter::Pcf3 { .. }),
+            Self::ExactEdges => config.edges == Edges::Exact,
             Self::SeveralSamples => config.filter.samples() > 1,
             Self::ColourMaps => config.depth_format.is_colour(),
             Self::TiledLayers => config.layout == Layout::MixedArray,
             Self::OneMap => config.layout == Layout::Reused,
             Self::NotLayers => config.layout.storage() != super::Storage::Array,
+            Self::NotOneTexture => matches!(config.layout.storage(), super::Storage::Separate | super::Storage::Cube),
             Self::NotPerSplit => config.layout.generation() != super::Generation::PerSplit,
             Self::CubeFaces => config.layout.storage() == super::Storage::Cube,
             Self::MoreThanSixSplits => config.splits() > 6,
@@ -394,9 +442,11 @@ impl Choice {
             Self::OptimalScheme => &["scheme"],
             Self::Band => &["blend", "transition"],
             Self::MomentFilter | Self::SunFilter => &["filter", "msaa", "bleeding", "derivatives"],
+            Self::OtherThanPcf3 => &["filter", "sun-angle", "rotate-kernel", "msaa", "bleeding", "derivatives"],
+            Self::ExactEdges => &["edges"],
             Self::SeveralSamples => &["msaa"],
             Self::ColourMaps | Self::OtherDepth => &["depth-format"],
-            Self::OneMap | Self::NotLayers | Self::CubeFaces => &["storage", "generation"],
+            Self::OneMap | Self::NotLayers | Self::NotOneTexture | Self::CubeFaces => &["storage", "generation"],
             Self::NotPerSplit | Self::TiledLayers => &["generation", "storage"],
             Self::MoreThanSixSplits | Self::MoreThanFourSplits => &["splits", "map-size", "planes"],
             Self::UnequalSizes => &["map-size"],
@@ -439,7 +489,10 @@ impl Choice {
             Self::VisibleRange => config.range = Range::Camera,
             Self::OptimalScheme => config.scheme = SplitScheme::practical(),
             Self::Band => config.transition = Transition::Hard,
-            Self::MomentFilter | Self::SunFilter => config.filter = Filter::Pcf3 { width_m: None },
+            Self::MomentFilter | Self::SunFilter | Self::OtherThanPcf3 => {
+                config.filter = Filter::Pcf3 { width_m: None };
+            }
+            Self::ExactEdges => config.edges = Edges::Sampled,
             Self::SeveralSamples => {
                 if let Filter::Moments(moments) = &mut config.filter {
                     moments.samples = 1;
@@ -448,7 +501,12 @@ impl Choice {
             Self::ColourMaps | Self::OtherDepth => config.depth_format = DepthFormat::default(),
             Self::NotStill => config.stability = Stability::Exact,
             Self::KeptMaps => config.cache = Cache::Off,
-            Self::OneMap | Self::NotLayers | Self::NotPerSplit | Self::CubeFaces | Self::TiledLayers => {
+            Self::OneMap
+            | Self::NotLayers
+            | Self::NotOneTexture
+            | Self::NotPerSplit
+            | Self::CubeFaces
+            | Self::TiledLayers => {
                 config.layout = Layout::Array;
             }
             Self::DeferredCoordinates | Self::VertexCoordinates => config.coordinates = Coordinates::World,

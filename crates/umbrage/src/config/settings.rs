@@ -4,8 +4,8 @@
 use super::given::Wrong;
 use super::setting::{Kind, Rebuilds, Setting, Value};
 use super::{
-    Cache, Coordinates, Crop, DepthFormat, Derivatives, ExtentSteps, Fallbacks, Filter, Range, ReceiverBias, Selection,
-    SplitMetric, SplitScheme, Stability, Transition, Translucent,
+    Cache, Coordinates, Crop, DepthFormat, Derivatives, Edges, ExtentSteps, Fallbacks, Filter, Range, ReceiverBias,
+    Selection, SplitMetric, SplitScheme, Stability, Transition, Translucent,
 };
 use super::{set, text, words};
 use crate::Warp;
@@ -291,6 +291,14 @@ pub const SETTINGS: &[Setting] = &[
             Filter::Moments(moments) => word(moments.derivatives.word()),
             _ => None,
         },
+    },
+    Setting {
+        key: "edges",
+        help: "What decides where a shadow ends",
+        kind: Kind::Words(Edges::WORDS),
+        rebuilds: Rebuilds::Pipelines,
+        set: |config, text, _| text.parse().map(|edges| config.edges = edges).map_err(Wrong::from),
+        get: |config| word(config.edges.word()),
     },
     Setting {
         key: "fallbacks",

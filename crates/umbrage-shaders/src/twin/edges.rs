@@ -1,0 +1,209 @@
+//! `lib/edges.wesl` on the CPU: whether the triangles that texels name shade a point.
+
+use super::bias::Receiver;
+
+/// `edges::LEAST_M`: metres along the light within which nothing shades.
+pub const LEAST_M: f32 = 0.002;
+/// `edges::SLACK_TEXELS`: texels that a stored depth may lie before the receiver's plane before the
+/// point is tested, beside the receiver's own bias.
+pub const SLACK_TEXELS: f32 = 0.25;
+/// `edges::STEEPEST`: tangent of the steepest angle at which the receiver's plane is followed.
+pub const STEEPEST: f32 = 20.0;
+/// `edges::LOST`: share of the numbers involved that `f32` may have lost.
+pub const LOST: f32 = 9.536_743e-7;
+/// `edges::ROUND`: the nine texels, the middle first.
+pub const ROUND: [[f32; 2]; 9] =
+    [[0.0, 0.0], [-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
+
+/// `UmbrageRun` with its corners: triangles in a space of their own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Rows of the affine transform from metres relative to the frame's origin to that space.
+    pub rows: [[f32; 4]; 3],
+    /// Least corner of a box around the triangles.
+    pub min: [f32; 3],
+    /// Greatest corner of it.
+    pub max: [f32; 3],
+    /// The triangles.
+    pub triangles: Vec<[[f32; 3]; 3]>,
+}
+
+impl Run {
+    /// Triangles whose space is that of the frame.
+    #[must_use]
+    pub fn in_frame(triangles: &[[[f32; 3]; 3]]) -> Self {
+        let corners = || triangles.iter().flatten();
+        let ends = |f: fn(f32, f32) -> f32, from: f32| -> [f32; 3] {
+            std::array::from_fn(|axis| corners().map(|corner| corner[axis]).fold(from, f))
+        };
+        Self {
+            rows: [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]],
+            min: ends(f32::min, f32::INFINITY),
+            max: ends(f32::max, f32::NEG_INFINITY),
+            triangles: triangles.to_vec(),
+        }
+    }
+}
+
+/// `edges::Ray`: a point's way to the light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Metres from the frame's origin.
+    pub origin: [f32; 3],
+    /// Unit vector towards the light.
+    pub to_light: [f32; 3],
+}
+
+/// What the nine texels round a point hold, in the order of [`ROUND`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Around {
+    /// The corner of the middle texel nearest to the map's first, in texels of the light's plane:
+    /// whole numbers.
+    pub middle: [f32; 2],
+    /// Stored depths.
+    pub depths: [f32; 9],
+    /// Ids; 0 names nothing.
+    pub ids: [u32; 9],
+}
+
+/// What is decided of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Decision {
+    /// Nothing stands in its way.
+    Lit,
+    /// All four texels round it hold something before it.
+    Covered,
+    /// A triangle that a texel names stands in its way.
+    Shaded,
+    /// A caster without a name may stand in its way: the filter answers.
+    Undecided,
+}
+
+/// `edges::decided`: `runs` gives the run of an id that is not 0.
+pub fn decided<'a>(at: &Receiver, around: &Around, ray: Ray, runs: impl Fn(u32) -> &'a Run) -> Decision {
+    let dark = dark_round(at, around);
+    if dark == 0 {
+        return Decision::Lit;
+    }
+    let beyond = [0, 1].map(|axis| at.texel[axis] - around.middle[axis] >= 0.5);
+    let four = four_of(beyond);
+    if dark & four == four {
+        return Decision::Covered;
+    }
+    let mut without_name = false;
+    for (i, &id) in around.ids.iter().enumerate() {
+        if id == 0 {
+            without_name |= dark & four & (1 << i) != 0;
+        } else if !around.ids[..i].contains(&id) && shades(runs(id), ray) {
+            return Decision::Shaded;
+        }
+    }
+    if without_name { Decision::Undecided } else { Decision::Lit }
+}
+
+/// `edges::four_of`: which of [`ROUND`] are the four texels round a point, as bits.
+#[must_use]
+pub fn four_of(beyond: [bool; 2]) -> u32 {
+    let [right, below] = beyond.map(u32::from);
+    1 | 1 << (1 + right) | 1 << (3 + below) | 1 << (5 + right + 2 * below)
+}
+
+/// `edges::dark_round`: which of the nine hold something before the receiver's plane, as bits.
+#[must_use]
+pub fn dark_round(at: &Receiver, around: &Around) -> u32 {
+    let slope: [f32; 2] = std::array::from_fn(|axis| {
+        let most = STEEPEST * at.texel_m[axis] / at.range_m;
+        at.slope[axis].clamp(-most, most)
+    });
+    let slack = (SLACK_TEXELS * at.texel_m[0].max(at.texel_m[1]) + LEAST_M) / at.range_m;
+    let mut dark = 0;
+    for (i, step) in ROUND.iter().enumerate() {
+        let offset: [f32; 2] = std::array::from_fn(|axis| around.middle[axis] + step[axis] + 0.5 - at.texel[axis]);
+        let plane = at.level(offset) + slope[0] * offset[0] + slope[1] * offset[1] - slack;
+        dark |= u32::from(around.depths[i] < at.as_stored(plane)) << i;
+    }
+    dark
+}
+
+/// `edges::shades`: whether a run of triangles shades a point.
+#[must_use]
+pub fn shades(run: &Run, ray: Ray) -> bool {
+    let origin = run.rows.map(|[x, y, z, w]| dot([x, y, z], ray.origin) + w);
+    let to_light = run.rows.map(|[x, y, z, _]| dot([x, y, z], ray.to_light));
+    let lost = LOST * (largest(ray.origin) * length(to_light) + largest(origin));
+    if !meets_box(run, origin, to_light, lost) {
+        return false;
+    }
+    let axis = dominant(to_light);
+    let along = turned(to_light, axis);
+    let shear = [along[0] / along[2], along[1] / along[2]];
+    run.triangles.iter().any(|corners| {
+        let [a, b, c] = corners.map(|corner| turned(minus(corner, origin), axis));
+        is_before([a, b, c], shear, along[2], lost)
+    })
+}
+
+fn meets_box(run: &Run, origin: [f32; 3], direction: [f32; 3], lost: f32) -> bool {
+    let (mut enters, mut leaves) = (0.0f32, f32::INFINITY);
+    for axis in 0..3 {
+        let inverse = 1.0 / if direction[axis].abs() < 1e-20 { 1e-20 } else { direction[axis] };
+        let one = (run.min[axis] - lost - origin[axis]) * inverse;
+        let other = (run.max[axis] + lost - origin[axis]) * inverse;
+        (enters, leaves) = (enters.max(one.min(other)), leaves.min(one.max(other)));
+    }
+    enters <= leaves
+}
+
+fn is_before([a, b, c]: [[f32; 3]; 3], shear: [f32; 2], along: f32, lost: f32) -> bool {
+    let [p, q, r] = [a, b, c].map(|corner| [corner[0] - shear[0] * corner[2], corner[1] - shear[1] * corner[2]]);
+    let weights = [r[0] * q[1] - r[1] * q[0], p[0] * r[1] - p[1] * r[0], q[0] * p[1] - q[1] * p[0]];
+    let twice_area: f32 = weights.iter().sum();
+    let is_under = weights.iter().all(|weight| *weight >= 0.0) || weights.iter().all(|weight| *weight <= 0.0);
+    if !is_under || twice_area == 0.0 {
+        return false;
+    }
+    let metres = dot(weights, [a[2], b[2], c[2]]) / (twice_area * along);
+    if metres <= LEAST_M {
+        return false;
+    }
+    let normal = cross(minus(b, a), minus(c, a));
+    let reach = length(a).max(length(b)).max(length(c));
+    dot(normal, a).abs() > (lost + LOST * reach) * length(normal)
+}
+
+fn dominant(v: [f32; 3]) -> usize {
+    let [x, y, z] = v.map(f32::abs);
+    match () {
+        () if x >= y && x >= z => 0,
+        () if y >= z => 1,
+        () => 2,
+    }
+}
+
+fn turned([x, y, z]: [f32; 3], axis: usize) -> [f32; 3] {
+    match axis {
+        0 => [y, z, x],
+        1 => [z, x, y],
+        _ => [x, y, z],
+    }
+}
+
+fn largest(v: [f32; 3]) -> f32 {
+    v.into_iter().fold(0.0, |most, x| x.abs().max(most))
+}
+
+fn minus(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    std::array::from_fn(|axis| a[axis] - b[axis])
+}
+
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn length(a: [f32; 3]) -> f32 {
+    dot(a, a).sqrt()
+}
