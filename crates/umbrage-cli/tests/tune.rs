@@ -103,7 +103,7 @@ fn bad_merges(lines: &str, shards: &Folder) {
     refuse_merge(&[("1.jsonl", &first), ("2.jsonl", &damaged)], "", &["--results 2.jsonl", "line 2 is damaged", "77"]);
     refuse_merge(&[("1.jsonl", &first), ("2.jsonl", "")], "", &["2.jsonl is empty"]);
     refuse_merge(&[("1.jsonl", &first), ("2.jsonl", "{\"a\":1}\n")], "", &["2.jsonl", "line 1 is damaged"]);
-    refuse_merge(&[("1.jsonl", &first), ("2.jsonl", "no JSON\n")], "", &["2.jsonl", "no journal of a tune run"]);
+    refuse_merge(&[("1.jsonl", &first), ("2.jsonl", "no JSON\n")], "", &["2.jsonl", "not a journal of a tune run"]);
     let changed = |line: &str, change: &dyn Fn(&mut Value)| -> String {
         let mut value: Value = serde_json::from_str(line).expect("a line");
         change(&mut value);

@@ -13,7 +13,7 @@ use crate::draw_list::{Drawable, Drawn, Run, Show};
 use crate::formats::{MASK_FORMAT, PICTURE_FORMAT};
 use crate::lamps::{Lamp, LampUniform, MOST_LAMPS};
 use crate::materials::{GpuMaterial, Materials};
-use crate::named::Names;
+use crate::names::Names;
 use crate::surfaces::{Depth, Recipe, Sky, Surface, SurfacePipelines, Vertices};
 use crate::view_list::ViewList;
 use crate::{Gpu, Result, shaders};

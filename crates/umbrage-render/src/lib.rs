@@ -21,6 +21,7 @@ mod maps;
 mod materials;
 mod mipmaps;
 mod named;
+mod names;
 mod probe;
 mod renderer;
 mod shaders;

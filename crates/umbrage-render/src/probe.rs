@@ -8,7 +8,7 @@ use umbrage_wgpu::ShadowMaps;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 
 use crate::capture::Capture;
-use crate::named::Names;
+use crate::names::Names;
 use crate::{Error, Gpu, Result, shaders};
 
 /// Points with what answers for them.

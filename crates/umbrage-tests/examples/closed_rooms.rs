@@ -1,6 +1,7 @@
 //! Counts the light that leaks into closed rooms, under suns from every side.
 //! `cargo run -p umbrage-tests --example closed_rooms -- EDGE STEP FOLDER`: the maps' edge, degrees
 //! from sun to sun, and where masks with light are written.
+#![expect(clippy::print_stdout, reason = "an example that prints what it counted")]
 
 use umbrage::ShadowConfig;
 use umbrage_tests::closed::{Light, Rooms, VIEWS, Walls, closed_room, sun};

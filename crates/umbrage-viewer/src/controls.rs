@@ -151,7 +151,10 @@ pub const SECTIONS: &[(&str, &[&str])] = &[
             "far-fade",
         ],
     ),
-    ("Edges", &["filter", "filter-width", "sun-angle", "rotate-kernel", "msaa", "bleeding", "derivatives", "bias"]),
+    (
+        "Edges",
+        &["edges", "filter", "filter-width", "sun-angle", "rotate-kernel", "msaa", "bleeding", "derivatives", "bias"],
+    ),
     ("Borders between splits", &["selection", "bands", "transition", "blend"]),
     ("Stillness and fit", &["stabilize", "extent-steps", "extent-levels", "fit", "warp", "tsm-focus"]),
     ("Look", &["shadow-strength", "shadow-colour", "translucent", "contact-shadows"]),

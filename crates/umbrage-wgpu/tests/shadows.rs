@@ -214,8 +214,8 @@ fn a_refused_frame_does_not_change_the_next() {
             ("receivers[0]", Inputs { receivers: &[inverted], ..good }),
             ("origin", Inputs { origin: DVec3::new(f64::INFINITY, 0.0, 0.0), ..good }),
             ("image_size", Inputs { image_size: [0, 5], ..good }),
-            ("0 plans", Inputs { lights: &[], ..good }),
-            ("2 plans", Inputs { lights: &[sun(), sun()], ..good }),
+            ("0 lights", Inputs { lights: &[], ..good }),
+            ("2 lights", Inputs { lights: &[sun(), sun()], ..good }),
             ("Point", Inputs { lights: &[lamp()], ..good }),
         ];
         for (culprit, inputs) in bad {

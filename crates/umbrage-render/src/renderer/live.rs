@@ -12,7 +12,7 @@ use crate::casters::Casters;
 use crate::contact::Contact;
 use crate::forward::Forward;
 use crate::geometry::{Geometry, SkinnedGeometry};
-use crate::named::Names;
+use crate::names::Names;
 use crate::timing::Timer;
 use crate::{Error, Result};
 

@@ -32,7 +32,7 @@ use crate::forward::{Forward, Samples, Shading};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry};
 use crate::lamps::Lamp;
 use crate::materials::Materials;
-use crate::named::Names;
+use crate::names::Names;
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint};
 use crate::stats::FrameStats;
 use crate::targets::{MaskTarget, PictureTarget};

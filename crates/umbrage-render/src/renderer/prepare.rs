@@ -11,7 +11,7 @@ use crate::draw_list::{Run, once};
 use crate::forward::FrameUniform;
 use crate::geometry::check_object;
 use crate::lamps::Lamp;
-use crate::named::Names;
+use crate::names::Names;
 use crate::view_list::ViewList;
 use crate::{Error, Result, cull};
 

@@ -58,8 +58,7 @@ mod tests {
     use super::Crease;
 
     /// A floor seen from 45°, a wall without thickness that stands on it along v, and what is
-    /// stored
-    /// `x` texels from it: a height of 2 for each texel behind it, and 0 before it.
+    /// stored `x` texels from it: a height of 2 for each texel behind it, and 0 before it.
     fn height(x: f32) -> f32 {
         (2.0 * x).max(0.0)
     }
