@@ -140,6 +140,7 @@ const PRESETS: Preset = Preset {
         "pssm:4:1024:preset=sharp:label=sharp",
         "pssm:4:1024:preset=still:label=still",
         "pssm:4:1024:preset=papers:label=papers",
+        "pssm:4:720:preset=exact:label=exact",
     ],
     with: "",
     scenes: &["robot-war", "chessboard", "knights", "mining-terrain"],
