@@ -22,9 +22,9 @@ pub const PAST: f32 = 2.0;
 /// shade, in texels.
 pub const PAST_TEXELS: f32 = 8.0;
 /// `bias::CREASE_SLOPE`: least slope of a surface that makes a crease.
-pub const CREASE_SLOPE: f32 = 1.0;
+pub const CREASE_SLOPE: f32 = 1.9;
 /// `bias::CREASE_SHARE`: share of the receiver's own slope that it is at least.
-pub const CREASE_SHARE: f32 = 0.5;
+pub const CREASE_SHARE: f32 = 0.9;
 /// `bias::ROUNDING`: share of the numbers involved that `f32` may have lost.
 pub const ROUNDING: f32 = 1.907_348_6e-6;
 /// `bias::SNAP_TEXELS`: texels by which casters are snapped.

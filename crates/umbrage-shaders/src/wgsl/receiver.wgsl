@@ -154,9 +154,9 @@ const UMBRAGE_BIAS_ROUNDING: f32 = 1.9073486328125e-6;
 
 const UMBRAGE_BIAS_SNAP_TEXELS: f32 = 0.00390625;
 
-const UMBRAGE_BIAS_CREASE_SLOPE: f32 = 1.0;
+const UMBRAGE_BIAS_CREASE_SLOPE: f32 = 1.9;
 
-const UMBRAGE_BIAS_CREASE_SHARE: f32 = 0.5;
+const UMBRAGE_BIAS_CREASE_SHARE: f32 = 0.9;
 
 struct UmbrageTolerance {
     bend: f32,
@@ -611,7 +611,7 @@ const UMBRAGE_FILTER_TAP_SPREAD: f32 = 0.6666667;
 
 const UMBRAGE_FILTER_GOLDEN_ANGLE: f32 = 2.3999632;
 
-const UMBRAGE_FILTER_LEAST_LIGHT: f32 = 0.5;
+const UMBRAGE_FILTER_LEAST_LIGHT: f32 = 0.05;
 
 fn umbrage_filter_radius(kind: u32) -> f32 {
     return array<f32, 10>(0.5, 1.0, 1.5, 2.5, 3.5, 2.5, 0.0, 0.0, 16.0, 16.0)[min(kind, UMBRAGE_FILTER_PCSS)];
