@@ -95,11 +95,12 @@ impl Ray {
         (t >= self.t_min && t <= t_max).then_some(Crossing { t, weights })
     }
 
-    /// Where the ray passes an edge of a triangle within `tolerance`; corners are sheared, the ray
-    /// being their third axis.
+    /// Where the ray first passes an edge of a triangle within `tolerance`; corners are sheared,
+    /// the ray being their third axis. Which edge that is does not depend on `t_max`: a tree asks
+    /// with what it has found already.
     #[cold]
     fn meets_edge(&self, corners: [(f64, f64, f64); 3], tolerance: f64, t_max: f64) -> Option<Crossing> {
-        (0..3).find_map(|first| {
+        let passed = |first: usize| {
             let second = (first + 1) % 3;
             let (p, q) = (corners[first], corners[second]);
             let (dx, dy) = (q.0 - p.0, q.1 - p.1);
@@ -109,8 +110,10 @@ impl Ray {
             let mut weights = [0.0; 3];
             (weights[first], weights[second]) = (1.0 - share, share);
             let is_near = (p.0 + share * dx).hypot(p.1 + share * dy) <= tolerance;
-            (is_near && t >= self.t_min && t <= t_max).then_some(Crossing { t, weights })
-        })
+            (is_near && t >= self.t_min).then_some(Crossing { t, weights })
+        };
+        let nearest = (0..3).filter_map(passed).min_by(|a, b| a.t.total_cmp(&b.t));
+        nearest.filter(|crossing| crossing.t <= t_max)
     }
 }
 
