@@ -3,8 +3,12 @@
 use std::num::NonZeroU32;
 
 use umbrage::config::DepthFormat;
+#[cfg(doc)]
+use umbrage::config::{Edges, Filter, Layout};
 
 use super::ShadowMaps;
+#[cfg(doc)]
+use crate::Slice;
 use crate::options::texture_format;
 
 impl ShadowMaps {
@@ -38,7 +42,7 @@ impl ShadowMaps {
         }
     }
 
-    /// Multisample state for a pipeline that draws casters: as many samples as [`Filter::samples`].
+    /// Multisample state for a pipeline that draws casters: [`Filter::samples`] samples a texel.
     #[must_use]
     pub fn caster_multisample(&self) -> wgpu::MultisampleState {
         wgpu::MultisampleState { count: self.config.filter.samples(), ..Default::default() }
