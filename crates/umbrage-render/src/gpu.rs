@@ -250,6 +250,23 @@ async fn choose_adapter(instance: &wgpu::Instance) -> Result<wgpu::Adapter> {
     Err(Error::NoAdapter { reason: format!("{} ({}) {reason}", info.name, info.backend) })
 }
 
+/// The device of unit tests, or `None` (said loudly) where there is no adapter.
+/// `UMBRAGE_REQUIRE_GPU=1` turns that into a failure.
+#[cfg(test)]
+pub(crate) fn of_tests() -> Option<Gpu> {
+    use std::io::Write;
+    match Gpu::new(&GpuOptions::default()) {
+        Ok(gpu) => Some(gpu),
+        Err(error) if std::env::var("UMBRAGE_REQUIRE_GPU").is_ok_and(|value| value == "1") => {
+            panic!("UMBRAGE_REQUIRE_GPU is 1, but {error}")
+        }
+        Err(error) => {
+            writeln!(std::io::stderr(), "SKIPPED: no adapter: {error}").expect("it can be written to");
+            None
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -286,23 +286,12 @@ fn gpu_material(
 #[cfg(test)]
 mod tests {
     use std::collections::HashSet;
-    use std::io::Write;
 
     use super::*;
-    use crate::GpuOptions;
 
     #[test]
     fn equal_materials_are_one() {
-        let gpu = match Gpu::new(&GpuOptions::default()) {
-            Ok(gpu) => gpu,
-            Err(error) if std::env::var("UMBRAGE_REQUIRE_GPU").is_ok_and(|value| value == "1") => {
-                panic!("UMBRAGE_REQUIRE_GPU is 1, but {error}")
-            }
-            Err(error) => {
-                writeln!(std::io::stderr(), "SKIPPED: no adapter: {error}").expect("it can be written to");
-                return;
-            }
-        };
+        let Some(gpu) = crate::gpu::of_tests() else { return };
         let kinds = [
             Material::default(),
             Material { base_color: [0.5, 1.0, 1.0, 1.0], ..Material::default() },

@@ -8,7 +8,7 @@ use umbrage::Aabb;
 use umbrage_scene::{Object, Pose};
 use umbrage_wgpu::{MapPass, ShadowMap};
 
-use super::{Frame, Renderer};
+use super::{Frame, Gathered, Renderer};
 use crate::draw_list::{Parts, Run};
 use crate::geometry::GpuPrimitive;
 use crate::shadow_mesh::{Cluster, descend};
@@ -62,13 +62,14 @@ impl Renderer {
         all
     }
 
-    /// What visible objects are made of, for the planner; `None` if no caster may be drawn in part.
-    pub(crate) fn receiver_clusters(&self, pose: &Pose, casters: &[usize], visible: &[usize]) -> Option<Vec<Aabb>> {
+    /// Adds what visible objects are made of, for the planner; false if no caster may be drawn in
+    /// part.
+    pub(super) fn receiver_clusters(&self, pose: &Pose, gathered: &Gathered, parts: &mut Vec<Aabb>) -> bool {
+        let Gathered { casters, visible, .. } = gathered;
         let (meshes, maps) = (&self.scene.meshes, self.shadows.maps());
         if maps.map_count() > maps.splits() || !casters.iter().any(|&i| has_parts(&pose.objects[i], meshes)) {
-            return None;
+            return false;
         }
-        let mut parts: Vec<Aabb> = Vec::new();
         for object in visible.iter().map(|&index| &pose.objects[index]) {
             if object.skinned.is_some() {
                 parts.push(object.bounds);
@@ -84,7 +85,7 @@ impl Renderer {
                 });
             }
         }
-        Some(parts)
+        true
     }
 }
 

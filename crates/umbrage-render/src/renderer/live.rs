@@ -27,7 +27,12 @@ impl Renderer {
     /// by index; where something is kept of maps all objects.
     #[must_use]
     pub fn casters_of(&self, pose: &Pose) -> Vec<usize> {
-        (0..pose.objects.len()).filter(|&index| self.is_listed(&pose.objects[index])).collect()
+        self.caster_indices(pose).collect()
+    }
+
+    /// [`Renderer::casters_of`], one by one.
+    pub(super) fn caster_indices(&self, pose: &Pose) -> impl Iterator<Item = usize> {
+        (0..pose.objects.len()).filter(|&index| self.is_listed(&pose.objects[index]))
     }
 
     /// Changes the config; `scene` is the one that the renderer was made with. The scene stays on

@@ -3,6 +3,7 @@
 
 mod answers;
 mod caster_runs;
+mod gathered;
 mod live;
 mod prepare;
 mod record;
@@ -19,6 +20,7 @@ use umbrage::config::{Coordinates, Layout, LightKind, ShadowConfig, Translucent}
 use umbrage_scene::{Pose, Scene};
 use umbrage_wgpu::{LightMaps, MaskFrame, MaskNormals, ShadowMask, Shadows};
 
+use self::gathered::Gathered;
 use self::prepare::Prepared;
 use self::record::{Clock, MapCapture, new_encoder};
 pub use self::world::KeptMaps;
@@ -141,6 +143,7 @@ pub struct Renderer {
     /// The objects that maps are planned for, where something is kept of these.
     world: WorldSet,
     kept: KeptMaps,
+    gathered: Gathered,
 }
 
 impl Renderer {
@@ -207,6 +210,7 @@ impl Renderer {
                 notes,
                 world: WorldSet::default(),
                 kept: KeptMaps::default(),
+                gathered: Gathered::default(),
                 materials,
                 shadows,
                 gpu: gpu.clone(),

@@ -1,19 +1,19 @@
 //! From a scene at one moment to what is recorded: the plan, and who is drawn where.
 
 use glam::DVec3;
-use umbrage::{Aabb, Light, View};
+use umbrage::View;
 use umbrage_scene::{AlphaMode, Pose};
 use umbrage_wgpu::{Inputs, Slice};
 use web_time::Instant;
 
-use super::{Frame, Renderer};
+use super::{Frame, Gathered, Renderer};
+use crate::Result;
 use crate::draw_list::{Run, once};
 use crate::forward::FrameUniform;
 use crate::geometry::check_object;
 use crate::lamps::Lamp;
 use crate::names::Names;
 use crate::view_list::ViewList;
-use crate::{Error, Result, cull};
 
 /// The frame's origin moves in steps of this many metres, so that positions near the eye are exact
 /// to a tenth of a millimetre in `f32` and yet stay the same from frame to frame, which is what
@@ -47,22 +47,23 @@ impl Renderer {
     /// Plans, uploads what moves, and sorts what is to be drawn. With `surfaces_alone` nothing but
     /// what is drawn asks the maps.
     pub(crate) fn prepare(&mut self, frame: &Frame<'_>, surfaces_alone: bool) -> Result<Prepared> {
+        let mut gathered = std::mem::take(&mut self.gathered);
+        let prepared = self.prepare_from(&mut gathered, frame, surfaces_alone);
+        self.gathered = gathered;
+        prepared
+    }
+
+    fn prepare_from(&mut self, gathered: &mut Gathered, frame: &Frame<'_>, surfaces_alone: bool) -> Result<Prepared> {
         let pose = frame.pose;
         for (index, object) in pose.objects.iter().enumerate() {
             check_object(index, object, self.scene.meshes.len())?;
         }
         let view = frame.view;
         let origin = (view.eye() / ORIGIN_STEP).round() * ORIGIN_STEP;
-        let caster_objects = self.casters_of(pose);
-        let visible = near_to_far(pose, view);
-        let asks_surfaces =
-            surfaces_alone && frame.shadows_on && frame.more_lights.is_empty() && self.planned_for.is_none();
-        let clusters = if asks_surfaces { self.receiver_clusters(pose, &caster_objects, &visible) } else { None };
-        let lamps: Vec<Lamp> = [frame.light].into_iter().chain(frame.more_lights.iter().copied()).collect();
-
-        let plan_ms = self.plan(frame, origin, (&caster_objects, clusters.as_deref()), &lamps)?;
+        let plan_ms = self.plan(frame, origin, gathered, surfaces_alone)?;
+        let Gathered { casters, visible, lamps, .. } = &*gathered;
         self.skinned.update(&self.gpu, &self.scene_meshes, pose)?;
-        let slices = self.write_cameras(view, &lamps, origin)?;
+        let slices = self.write_cameras(view, lamps, origin)?;
         self.timer.restart();
 
         let occluders = self.shadows.occluders();
@@ -71,12 +72,12 @@ impl Renderer {
             self.forward.bind(&self.gpu, &self.names.entries(&self.scene, Names::BINDING));
         }
         self.instances.clear(first_ids);
-        let caster_runs = self.caster_runs(frame, origin, &caster_objects);
+        let caster_runs = self.caster_runs(frame, origin, casters);
         let grouped = self.instances.grouped(pose, origin, false, visible.iter().copied().map(once));
         let solid = ViewList::new(&self.drawable(), pose, view, &grouped);
         let far_to_near = self.with_translucent_parts(pose, visible.iter().rev().copied());
         let translucent = self.instances.ordered(pose, origin, far_to_near.iter().copied());
-        let slices = self.slice_runs(slices, frame, origin, (&visible, &far_to_near));
+        let slices = self.slice_runs(slices, frame, origin, (visible, &far_to_near));
         self.instances.upload(&self.gpu)?;
         Ok(Prepared {
             origin,
@@ -90,37 +91,26 @@ impl Renderer {
         })
     }
 
-    /// Plans the maps of a frame. `casting` is the objects that are drawn into maps, and the boxes
-    /// of what may ask them, where that is known. Milliseconds that it took.
-    fn plan(
-        &mut self,
-        frame: &Frame<'_>,
-        origin: DVec3,
-        casting: (&[usize], Option<&[Aabb]>),
-        lamps: &[Lamp],
-    ) -> Result<f64> {
-        let (caster_objects, receiver_clusters) = casting;
-        let made_for = self.shadows.lights().len();
-        if lamps.len() != made_for {
-            return Err(Error::LampSlots { frame: lamps.len(), renderer: made_for });
-        }
-        let [casters, receivers] = self.listed_boxes(frame.pose, caster_objects)?;
-        let lights: Vec<Light> = lamps.iter().map(|lamp| lamp.light).collect();
+    /// Gathers a frame and plans its maps. Milliseconds that planning took.
+    fn plan(&mut self, frame: &Frame<'_>, origin: DVec3, gathered: &mut Gathered, surfaces_alone: bool) -> Result<f64> {
+        let asks_surfaces =
+            surfaces_alone && frame.shadows_on && frame.more_lights.is_empty() && self.planned_for.is_none();
+        gathered.gather(self, frame, asks_surfaces)?;
         let planned_for = self.planned_for.unwrap_or(*frame.view);
         let begun = Instant::now();
         let inputs = Inputs {
-            casters: &casters,
-            receivers: &receivers,
+            casters: &gathered.caster_boxes,
+            receivers: &gathered.receiver_boxes,
             set: self.keeps_maps().then_some(&self.world.set),
             kept_texels: self.kept.texels,
             redraws_kept: self.kept.redraws,
-            receiver_clusters,
+            receiver_clusters: gathered.clusters(),
             origin,
             image_size: self.size,
             view_slot: self.view_slot,
             enabled: frame.shadows_on,
             tint: frame.tint,
-            ..Inputs::new(&planned_for, &lights)
+            ..Inputs::new(&planned_for, &gathered.lights)
         };
         self.shadows.prepare(&self.gpu.queue, &inputs)?;
         Ok(begun.elapsed().as_secs_f64() * 1e3)
@@ -182,14 +172,4 @@ impl Renderer {
         let translucent = |i: &usize| drawable.has(&pose.objects[*i], |material| material.alpha == AlphaMode::Blend);
         objects.filter(translucent).collect()
     }
-}
-
-/// Objects that the view may show, by the depth of their centres, near ones first.
-fn near_to_far(pose: &Pose, view: &View) -> Vec<usize> {
-    let mut objects: Vec<(f64, usize)> = (0..pose.objects.len())
-        .filter(|&i| cull::may_be_seen(view, &pose.objects[i].bounds))
-        .map(|i| (view.view_depth(pose.objects[i].bounds.center()), i))
-        .collect();
-    objects.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    objects.into_iter().map(|(_, i)| i).collect()
 }

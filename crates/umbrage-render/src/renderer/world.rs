@@ -2,7 +2,7 @@
 
 use glam::DAffine3;
 use umbrage::config::Cache;
-use umbrage::{Aabb, Caster, CasterHandle, CasterSet, Motion};
+use umbrage::{Caster, CasterHandle, CasterSet, Motion};
 use umbrage_scene::{Object, Pose};
 
 use super::Renderer;
@@ -49,18 +49,15 @@ impl Renderer {
         drawn
     }
 
-    /// The boxes of casters and receivers, where they are lists; otherwise the set follows the
-    /// pose.
-    pub(super) fn listed_boxes(&mut self, pose: &Pose, casters: &[usize]) -> Result<[Vec<Aabb>; 2]> {
-        if !self.keeps_maps() {
-            let bounds = |&object: &usize| pose.objects[object].bounds;
-            let receivers = pose.objects.iter().map(|object| object.bounds).collect();
-            return Ok([casters.iter().map(bounds).collect(), receivers]);
-        }
+    /// Makes the set follow the pose.
+    ///
+    /// # Errors
+    /// [`crate::Error::Plan`] for boxes that are none.
+    pub(super) fn follow(&mut self, pose: &Pose) -> Result<()> {
         let mut world = std::mem::take(&mut self.world);
         let followed = world.follow(pose, |object| self.casts(object));
         self.world = world;
-        followed.map(|()| Default::default())
+        followed
     }
 }
 
