@@ -4,7 +4,7 @@
 //! LIST      = TECHNIQUE { "," TECHNIQUE }
 //! TECHNIQUE = "pssm" ":" SPLITS ":" SIZES { ":" SETTING }  |  KIND ":" SIZE { ":" SETTING }
 //! SIZES     = SIZE { "/" SIZE }                 one, or one for each split
-//! SETTING   = KEY "=" VALUE { "/" VALUE }       a shadow option of `umbrage render` without its dashes
+//! SETTING   = KEY "=" VALUE { "/" VALUE }       an option of `umbrage render` without its dashes
 //!           | "label" "=" TEXT
 //!           | "filter" "=" "each"               every filter in turn
 //! ```

@@ -163,3 +163,29 @@ pub fn base64(bytes: &[u8]) -> String {
     }
     text
 }
+
+/// Loads, expects an error, and expects all of `parts` in its message.
+#[track_caller]
+pub fn refused(glb: &Glb, parts: &[&str]) -> Error {
+    let error = glb.load().expect_err("this file lies");
+    let message = error.to_string();
+    for part in parts.iter().chain(&["test.glb"]) {
+        assert!(message.contains(part), "\"{part}\" is missing in: {message}");
+    }
+    error
+}
+
+/// Loads and expects a note with all of `parts`.
+#[track_caller]
+pub fn noted(glb: &Glb, parts: &[&str]) -> Scene {
+    let scene = glb.scene();
+    let says = |note: &String| parts.iter().all(|part| note.contains(part));
+    assert!(scene.notes.iter().any(says), "no note has all of {parts:?}: {:?}", scene.notes);
+    scene
+}
+
+pub fn bent(bend: impl FnOnce(&mut Glb)) -> Glb {
+    let mut glb = Glb::triangle();
+    bend(&mut glb);
+    glb
+}

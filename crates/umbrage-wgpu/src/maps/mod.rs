@@ -5,6 +5,7 @@ pub(crate) mod choose;
 mod groups;
 mod kept;
 mod lights;
+mod limits;
 mod passes;
 pub(crate) mod place;
 mod slices;
@@ -25,11 +26,12 @@ use umbrage_shaders::{Bound, Casters, Lights, Maps, Projection, ReceiverText};
 use choose::{Abilities, Chosen};
 use groups::{Received, Uniforms};
 use kept::KeptMaps;
+use limits::{check_limits, check_sizes, largest_viewport, places};
 pub use passes::MapPass;
 use place::{Place, Viewport};
 pub use slices::Slice;
 use slot::Slot;
-use storage::{Arrangement, Tile};
+use storage::Arrangement;
 use targets::Targets;
 
 use crate::moments::{MomentStorage, Moments};
@@ -497,42 +499,4 @@ fn colour_format(config: &ShadowConfig, edges: Edges) -> Option<wgpu::TextureFor
         Edges::Exact => Some(targets::ID_FORMAT),
         Edges::Sampled => config.depth_format.is_colour().then(|| texture_format(config.depth_format)),
     }
-}
-
-/// What the device holds of layers and of textures.
-fn check_limits(device: &wgpu::Device, storage: Storage, arrangement: &Arrangement) -> Result<()> {
-    let limits = device.limits();
-    let (layers, limit) = (targets::layers_needed(device, storage, arrangement), limits.max_texture_array_layers);
-    if layers > limit {
-        return Err(Error::TooManyLayers { count: layers, limit });
-    }
-    let (count, limit) = (arrangement.tiles.len(), limits.max_sampled_textures_per_shader_stage);
-    if storage == Storage::Separate && count > limit as usize {
-        return Err(Error::TooManyTextures { count, limit });
-    }
-    Ok(())
-}
-
-/// Every size has to fit the device.
-fn check_sizes(slots: &[Slot], limits: &wgpu::Limits) -> Result<()> {
-    let limit = limits.max_texture_dimension_2d;
-    for slot in slots {
-        if let Some((split, &size)) = slot.sizes.iter().enumerate().find(|&(_, &size)| size > limit) {
-            return Err(Error::MapTooLarge { split, size, limit });
-        }
-    }
-    Ok(())
-}
-
-/// A guard band around every map, except in browsers: those that are older than the rule reject a
-/// viewport that leaves its target.
-fn largest_viewport(device: &wgpu::Device) -> u32 {
-    let in_browser = device.adapter_info().backend == wgpu::Backend::BrowserWebGpu;
-    if in_browser { 0 } else { device.limits().max_texture_dimension_2d }
-}
-
-fn places(device: &wgpu::Device, sizes: &[u32], tiles: &[Tile]) -> Vec<Place> {
-    let largest = largest_viewport(device);
-    let place = |(&size, &tile)| Place { tile, viewport: Viewport::around(size, largest) };
-    sizes.iter().zip(tiles).map(place).collect()
 }

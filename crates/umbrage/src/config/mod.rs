@@ -7,6 +7,7 @@
 
 mod apply;
 mod budget;
+mod choice;
 mod edges;
 mod filter;
 mod fit;
@@ -26,6 +27,7 @@ mod text;
 mod words;
 
 pub use budget::Budget;
+pub use choice::Choice;
 pub use edges::Edges;
 pub use filter::{Derivatives, Filter, MomentKind, Moments, SUN_DEGREES};
 pub use fit::{Crop, ExtentSteps, Stability};
@@ -35,7 +37,7 @@ pub use look::{Look, ReceiverBias, Translucent};
 pub use names::Word;
 pub(crate) use names::unknown;
 pub use presets::Preset;
-pub use rules::{Choice, Conflict, RULES, Rule};
+pub use rules::{Conflict, RULES, Rule};
 pub use setting::{Kind, Rebuilds, Setting, Value};
 pub use settings::SETTINGS;
 pub(crate) use splits::check_range;

@@ -10,7 +10,7 @@
 //! | lens ([`size::HeldLens`]) | the camera's is wider, or narrower by √2 |
 //! | range ([`ends::HeldEnds`]) | the scene ends elsewhere by a step |
 //! | split planes of the last frame ([`Held::row`]) | the range changes; optimal ones: until a set of planes with an error a third smaller is found |
-//! | map sizes, as half extents ([`size::HeldHalf`]) | a slice needs more, or less by two steps of 9 % |
+//! | map sizes, as half extents ([`size::HeldExtents`]) | a slice needs more, or less by two steps of 9 % |
 //! | rectangles ([`rectangle::HeldRectangle`]) | as map sizes, in steps of the setting |
 //! | depth range ([`depths::HeldDepths`]) | a caster or receiver lies outside |
 //! | local maps' sizes ([`Held::local`]) | as map sizes |
@@ -31,7 +31,7 @@ use depths::HeldDepths;
 use ends::{HeldEnds, Range};
 use recovery::{Recovery, Row, Standing, Standstill};
 use rectangle::HeldRectangle;
-use size::{HeldHalf, HeldLens, HeldSize};
+use size::{HeldExtents, HeldLens, HeldSize};
 
 /// Faces of a point light's cube.
 const FACES: usize = 6;
@@ -51,7 +51,7 @@ pub struct Held {
     pub(crate) whole: HeldSize,
     /// The planes of the last frame and the range that they were placed for.
     pub(crate) row: Option<(Range, [f64; MAX_SPLITS + 1])>,
-    pub(crate) half: [HeldHalf; MAX_SPLITS],
+    pub(crate) extents: [HeldExtents; MAX_SPLITS],
     pub(crate) rectangle: [HeldRectangle; MAX_SPLITS],
     pub(crate) depths: HeldDepths,
     pub(crate) local: LocalSizes,
@@ -96,7 +96,7 @@ impl Held {
     pub(crate) fn current_row(&self, splits: usize) -> Option<Row> {
         let (_, planes) = self.row?;
         let mut half = [DVec2::ONE; MAX_SPLITS];
-        for (half, held) in half.iter_mut().zip(&self.half).take(splits) {
+        for (half, held) in half.iter_mut().zip(&self.extents).take(splits) {
             *half = held.get()?;
         }
         Some(Row { planes, half, splits })
@@ -105,7 +105,7 @@ impl Held {
     /// Holds these planes, placed for `range`, and sizes from now on.
     pub(crate) fn keep(&mut self, range: Range, row: &Row) {
         self.row = Some((range, row.planes));
-        for (held, &half) in self.half.iter_mut().zip(&row.half).take(row.splits) {
+        for (held, &half) in self.extents.iter_mut().zip(&row.half).take(row.splits) {
             held.set(half);
         }
     }

@@ -87,12 +87,12 @@ impl HeldLens {
 
 /// Half the edges of a still map, each held as a [`HeldSize`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct HeldHalf {
+pub(crate) struct HeldExtents {
     u: HeldSize,
     v: HeldSize,
 }
 
-impl HeldHalf {
+impl HeldExtents {
     pub fn hold(&mut self, half: DVec2) -> DVec2 {
         DVec2::new(self.u.hold(half.x), self.v.hold(half.y))
     }

@@ -154,7 +154,7 @@ impl Layout {
         if stands_still {
             for i in 0..layout.row.splits {
                 let need = layout.block(frame, sun, layout.planes(), i).half.truncate();
-                layout.row.half[i] = held.half[i].hold(need);
+                layout.row.half[i] = held.extents[i].hold(need);
             }
             held.row = Some((range, layout.row.planes));
         }
@@ -191,7 +191,7 @@ impl Layout {
             placement.place(&sight, &maps, range, inner, planes)?;
             if inner != Some(&planes[1..m]) {
                 // Other slices have other sizes: none is worth holding on to.
-                held.half = Default::default();
+                held.extents = Default::default();
             }
         } else {
             split_planes(&config.scheme, range.near, range.inner_far, m, planes)?;
@@ -231,7 +231,7 @@ fn hold_lens(frame: &Frame<'_>, held: &mut Held) -> Result<View> {
     let lens = held.lens.hold(frame.view.frustum());
     if held.lens != before {
         // All maps change with the lens: none's size is worth holding on to.
-        held.half = Default::default();
+        held.extents = Default::default();
     }
     frame.view.with_frustum(lens)
 }

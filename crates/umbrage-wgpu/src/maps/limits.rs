@@ -1,0 +1,48 @@
+//! What the device allows.
+
+use umbrage::config::Storage;
+
+use super::place::{Place, Viewport};
+use super::slot::Slot;
+use super::storage::{Arrangement, Tile};
+use super::targets;
+use crate::{Error, Result};
+
+/// What the device holds of layers and of textures.
+pub(super) fn check_limits(device: &wgpu::Device, storage: Storage, arrangement: &Arrangement) -> Result<()> {
+    let limits = device.limits();
+    let (layers, limit) = (targets::layers_needed(device, storage, arrangement), limits.max_texture_array_layers);
+    if layers > limit {
+        return Err(Error::TooManyLayers { count: layers, limit });
+    }
+    let (count, limit) = (arrangement.tiles.len(), limits.max_sampled_textures_per_shader_stage);
+    if storage == Storage::Separate && count > limit as usize {
+        return Err(Error::TooManyTextures { count, limit });
+    }
+    Ok(())
+}
+
+/// Every size has to fit the device.
+pub(super) fn check_sizes(slots: &[Slot], limits: &wgpu::Limits) -> Result<()> {
+    let limit = limits.max_texture_dimension_2d;
+    for slot in slots {
+        if let Some((split, &size)) = slot.sizes.iter().enumerate().find(|&(_, &size)| size > limit) {
+            return Err(Error::MapTooLarge { split, size, limit });
+        }
+    }
+    Ok(())
+}
+
+/// A guard band around every map, except in browsers: those that are older than the rule reject a
+/// viewport that leaves its target.
+pub(super) fn largest_viewport(device: &wgpu::Device) -> u32 {
+    let in_browser = device.adapter_info().backend == wgpu::Backend::BrowserWebGpu;
+    if in_browser { 0 } else { device.limits().max_texture_dimension_2d }
+}
+
+/// Where the maps lie, each with as wide a guard band as the device allows.
+pub(super) fn places(device: &wgpu::Device, sizes: &[u32], tiles: &[Tile]) -> Vec<Place> {
+    let largest = largest_viewport(device);
+    let place = |(&size, &tile)| Place { tile, viewport: Viewport::around(size, largest) };
+    sizes.iter().zip(tiles).map(place).collect()
+}

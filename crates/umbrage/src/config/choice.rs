@@ -1,0 +1,226 @@
+//! The choices that exclude others: whether a config makes them, in which words, and how to take
+//! them back.
+
+use super::{
+    Cache, Coordinates, DepthFormat, Edges, Filter, Generation, Layout, LightKind, Range, Selection, ShadowConfig,
+    SplitMetric, SplitScheme, Stability, Storage, Transition,
+};
+use crate::Warp;
+
+/// A choice that excludes others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Choice {
+    /// A map that spreads its texels unevenly.
+    Warp,
+    /// A point uses the first map that contains it.
+    MapSelection,
+    /// Split planes measure the distance from the eye.
+    DistanceMetric,
+    /// The range follows the receivers in view.
+    VisibleRange,
+    /// The planes of least predicted error.
+    OptimalScheme,
+    /// Neighbouring splits are joined in a band.
+    Band,
+    /// A filter that blurs moments of depth.
+    MomentFilter,
+    /// A filter that needs depth in metres along parallel light.
+    SunFilter,
+    /// A filter that is not a tent of three texels.
+    OtherThanPcf3,
+    /// Triangles that texels name decide where a shadow ends.
+    ExactEdges,
+    /// Maps have several samples of depth in a texel.
+    SeveralSamples,
+    /// Maps are colours and not depth.
+    ColourMaps,
+    /// Layers that hold several maps.
+    TiledLayers,
+    /// One map is used for one split after the other.
+    OneMap,
+    /// Maps are not plain layers of one texture.
+    NotLayers,
+    /// Maps are neither layers nor tiles of one texture.
+    NotOneTexture,
+    /// Maps are not drawn one by one.
+    NotPerSplit,
+    /// Maps are faces of a cube.
+    CubeFaces,
+    /// More splits than a cube has faces.
+    MoreThanSixSplits,
+    /// Maps of different sizes.
+    UnequalSizes,
+    /// Maps that do not stand exactly still.
+    NotStill,
+    /// Maps of another format than 32-bit depth.
+    OtherDepth,
+    /// What static casters draw is kept.
+    KeptMaps,
+    /// Pixels make the coordinates of maps from the picture's depth.
+    DeferredCoordinates,
+    /// Vertices make the coordinates of maps.
+    VertexCoordinates,
+    /// More splits than vertex shaders pass coordinates for.
+    MoreThanFourSplits,
+    /// A spot or point light.
+    LocalLight,
+    /// Several lights, or a light of several faces.
+    SeveralFaces,
+}
+
+impl Choice {
+    /// All choices that a rule may name.
+    pub const ALL: [Self; 28] = [
+        Self::Warp,
+        Self::MapSelection,
+        Self::DistanceMetric,
+        Self::VisibleRange,
+        Self::OptimalScheme,
+        Self::Band,
+        Self::MomentFilter,
+        Self::SunFilter,
+        Self::OtherThanPcf3,
+        Self::ExactEdges,
+        Self::SeveralSamples,
+        Self::ColourMaps,
+        Self::TiledLayers,
+        Self::OneMap,
+        Self::NotLayers,
+        Self::NotOneTexture,
+        Self::NotPerSplit,
+        Self::CubeFaces,
+        Self::MoreThanSixSplits,
+        Self::UnequalSizes,
+        Self::NotStill,
+        Self::OtherDepth,
+        Self::KeptMaps,
+        Self::DeferredCoordinates,
+        Self::VertexCoordinates,
+        Self::MoreThanFourSplits,
+        Self::LocalLight,
+        Self::SeveralFaces,
+    ];
+
+    /// Whether a config for these lights makes this choice.
+    #[must_use]
+    pub fn holds(self, config: &ShadowConfig, lights: &[LightKind]) -> bool {
+        match self {
+            Self::Warp => config.first_warp().is_some(),
+            Self::MapSelection => config.selection == Selection::Map,
+            Self::DistanceMetric => config.selection == Selection::Interval(SplitMetric::Distance),
+            Self::VisibleRange => config.range == Range::Visible,
+            Self::OptimalScheme => config.scheme == SplitScheme::Optimal,
+            Self::Band => config.blend() > 0.0,
+            Self::MomentFilter => config.filter.is_prefiltered(),
+            Self::SunFilter => config.filter.is_prefiltered() || matches!(config.filter, Filter::Pcss { .. }),
+            Self::OtherThanPcf3 => !matches!(config.filter, Filter::Pcf3 { .. }),
+            Self::ExactEdges => config.edges == Edges::Exact,
+            Self::SeveralSamples => config.filter.samples() > 1,
+            Self::ColourMaps => config.depth_format.is_colour(),
+            Self::TiledLayers => config.layout == Layout::MixedArray,
+            Self::OneMap => config.layout == Layout::Reused,
+            Self::NotLayers => config.layout.storage() != Storage::Array,
+            Self::NotOneTexture => matches!(config.layout.storage(), Storage::Separate | Storage::Cube),
+            Self::NotPerSplit => config.layout.generation() != Generation::PerSplit,
+            Self::CubeFaces => config.layout.storage() == Storage::Cube,
+            Self::MoreThanSixSplits => config.splits() > 6,
+            Self::UnequalSizes => config.map_sizes.windows(2).any(|pair| pair[0] != pair[1]),
+            Self::NotStill => config.stability != Stability::Exact,
+            Self::OtherDepth => config.depth_format != DepthFormat::D32Float,
+            Self::KeptMaps => config.cache == Cache::Kept,
+            Self::DeferredCoordinates => config.coordinates == Coordinates::Deferred,
+            Self::VertexCoordinates => config.coordinates == Coordinates::Vertex,
+            Self::MoreThanFourSplits => config.splits() > 4,
+            Self::LocalLight => lights.iter().any(|light| *light != LightKind::Directional),
+            Self::SeveralFaces => lights.iter().map(|light| light.faces()).sum::<usize>() > 1,
+        }
+    }
+
+    /// The settings that make this choice, the most telling one first.
+    #[must_use]
+    pub const fn keys(self) -> &'static [&'static str] {
+        match self {
+            Self::Warp => &["warp", "technique", "tsm-focus"],
+            Self::MapSelection => &["selection"],
+            Self::DistanceMetric => &["bands"],
+            Self::VisibleRange => &["range-fit"],
+            Self::OptimalScheme => &["scheme"],
+            Self::Band => &["blend", "transition"],
+            Self::MomentFilter | Self::SunFilter => &["filter", "msaa", "bleeding", "derivatives"],
+            Self::OtherThanPcf3 => &["filter", "sun-angle", "rotate-kernel", "msaa", "bleeding", "derivatives"],
+            Self::ExactEdges => &["edges"],
+            Self::SeveralSamples => &["msaa"],
+            Self::ColourMaps | Self::OtherDepth => &["depth-format"],
+            Self::OneMap | Self::NotLayers | Self::NotOneTexture | Self::CubeFaces => &["storage", "generation"],
+            Self::NotPerSplit | Self::TiledLayers => &["generation", "storage"],
+            Self::MoreThanSixSplits | Self::MoreThanFourSplits => &["splits", "map-size", "planes"],
+            Self::UnequalSizes => &["map-size"],
+            Self::NotStill => &["stabilize", "extent-steps", "extent-levels", "warp", "tsm-focus"],
+            Self::KeptMaps => &["cache"],
+            Self::DeferredCoordinates | Self::VertexCoordinates => &["coordinates"],
+            Self::LocalLight | Self::SeveralFaces => &["light"],
+        }
+    }
+
+    /// The choice as `key value`, in the words of a config that makes it.
+    #[must_use]
+    pub fn say(self, config: &ShadowConfig) -> String {
+        match self {
+            Self::LocalLight => "light spot or point".to_owned(),
+            Self::SeveralFaces => "several lights or faces".to_owned(),
+            Self::OneMap => "storage reused (generation multipass)".to_owned(),
+            Self::Warp => format!("warp {}", config.first_warp().map_or("none", Warp::word)),
+            _ => {
+                let key = self.keys()[0];
+                match super::settings::find(key).and_then(|setting| setting.get(config)) {
+                    Some(value) => format!("{key} {value}"),
+                    None => key.to_owned(),
+                }
+            }
+        }
+    }
+
+    /// Whether each light's plan makes the choice by itself, and not all maps together.
+    #[must_use]
+    pub const fn is_per_light(self) -> bool {
+        matches!(self, Self::Warp | Self::MapSelection | Self::DistanceMetric | Self::OptimalScheme)
+    }
+
+    /// Takes the choice back to what excludes nothing. False where there is no such choice.
+    pub fn relax(self, config: &mut ShadowConfig) -> bool {
+        match self {
+            Self::Warp => config.stability = Stability::tight(),
+            Self::MapSelection | Self::DistanceMetric => config.selection = Selection::default(),
+            Self::VisibleRange => config.range = Range::Camera,
+            Self::OptimalScheme => config.scheme = SplitScheme::practical(),
+            Self::Band => config.transition = Transition::Hard,
+            Self::MomentFilter | Self::SunFilter | Self::OtherThanPcf3 => {
+                config.filter = Filter::Pcf3 { width_m: None };
+            }
+            Self::ExactEdges => config.edges = Edges::Sampled,
+            Self::SeveralSamples => {
+                if let Filter::Moments(moments) = &mut config.filter {
+                    moments.samples = 1;
+                }
+            }
+            Self::ColourMaps | Self::OtherDepth => config.depth_format = DepthFormat::default(),
+            Self::NotStill => config.stability = Stability::Exact,
+            Self::KeptMaps => config.cache = Cache::Off,
+            Self::OneMap
+            | Self::NotLayers
+            | Self::NotOneTexture
+            | Self::NotPerSplit
+            | Self::CubeFaces
+            | Self::TiledLayers => {
+                config.layout = Layout::Array;
+            }
+            Self::DeferredCoordinates | Self::VertexCoordinates => config.coordinates = Coordinates::World,
+            Self::MoreThanSixSplits
+            | Self::UnequalSizes
+            | Self::MoreThanFourSplits
+            | Self::LocalLight
+            | Self::SeveralFaces => return false,
+        }
+        true
+    }
+}
