@@ -15,6 +15,8 @@ use crate::{
 
 /// Where pictures are kept.
 const PICTURES_FOLDER: &str = "book/src/images";
+const EXAMPLES_FOLDER: &str = "crates/umbrage-wgpu/examples";
+const EXAMPLES_PICTURES_FOLDER: &str = "docs/images/examples";
 
 /// A picture of the book and the command that draws it: words after `umbrage`, without the file.
 struct Picture {
@@ -50,7 +52,7 @@ pub fn build() -> Result<()> {
     Ok(())
 }
 
-/// Redraws the pictures of the book.
+/// Redraws the pictures of the book and those of the examples.
 pub fn draw() -> Result<()> {
     let umbrage = build_umbrage(true)?;
     adapter::ensure(&umbrage)?;
@@ -64,7 +66,29 @@ pub fn draw() -> Result<()> {
     for name in ["bias.svg", "split-views.png", "stillness.png"] {
         copy(&root().join("docs/images").join(name), &folder.join(name))?;
     }
+    let folder = root().join(EXAMPLES_PICTURES_FOLDER);
+    fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    for name in examples()? {
+        let file = folder.join(&name).with_extension("png");
+        let example = ["run", "-p", "umbrage-wgpu", "--example", &name, "--", "--picture"];
+        run(cargo().args(example).arg(file))?;
+    }
     Ok(())
+}
+
+/// The names of the examples.
+fn examples() -> Result<Vec<String>> {
+    let folder = root().join(EXAMPLES_FOLDER);
+    let entries = fs::read_dir(&folder).with_context(|| format!("cannot read {}", folder.display()))?;
+    let mut names = Vec::new();
+    for entry in entries {
+        let path = entry?.path();
+        if path.extension().is_some_and(|ending| ending == "rs") {
+            names.extend(path.file_stem().map(|name| name.to_string_lossy().into_owned()));
+        }
+    }
+    names.sort();
+    Ok(names)
 }
 
 fn copy(from: &Path, to: &Path) -> Result<()> {
@@ -119,6 +143,19 @@ mod tests {
             assert!(names.insert(name), "{name} twice");
             assert!(text.contains(&format!("(images/{name}.png)")), "{name} is not shown");
             assert!(words.starts_with("render "), "{words}");
+        }
+    }
+
+    #[test]
+    fn every_example_has_a_line_and_a_picture() {
+        let table = fs::read_to_string(root().join(EXAMPLES_FOLDER).join("README.md")).expect("the table");
+        let names = examples().expect("the examples");
+        assert!(names.len() > 8, "{names:?}");
+        for name in names {
+            assert!(table.contains(&format!("[`{name}`]({name}.rs)")), "{name} has no line");
+            let picture = root().join(EXAMPLES_PICTURES_FOLDER).join(&name).with_extension("png");
+            assert!(table.contains(&format!("{EXAMPLES_PICTURES_FOLDER}/{name}.png)")), "{name} is not shown");
+            assert!(picture.is_file(), "{} is missing; run `cargo xtask book --pictures`", picture.display());
         }
     }
 }

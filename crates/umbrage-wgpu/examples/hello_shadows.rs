@@ -50,7 +50,7 @@ struct Scene {
 }
 
 impl Scene {
-    fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Result<Self, Box<dyn Error>> {
+    fn new(device: &wgpu::Device, _: &wgpu::Queue, format: wgpu::TextureFormat) -> Result<Self, Box<dyn Error>> {
         let (vertices, bounds) = world();
         let vertex_layout = CasterPipeline::positions(24, &support::ATTRIBUTES);
 
@@ -66,7 +66,7 @@ impl Scene {
         let (camera, camera_layout, camera_group) = support::camera(device);
         let text = shadows.receiver_wgsl(1) + SHADER;
         let groups = [Some(&camera_layout), Some(shadows.bind_group_layout())];
-        let boxes = pipeline(device, &text, &groups, vertex_layout, format);
+        let boxes = pipeline(device, &text, &groups, &[Some(vertex_layout)], format);
         Ok(Self {
             vertex_count: vertices.len() as u32,
             vertices: vertex_buffer(device, &vertices),
@@ -157,13 +157,9 @@ fn camera_at(seconds: f64, [width, height]: [u32; 2]) -> Result<View, Box<dyn Er
 
 /// Runs with these arguments.
 pub fn run(arguments: &[String]) -> Result<(), Box<dyn Error>> {
-    match arguments {
-        [] => support::in_window(Scene::new, Scene::draw),
-        [option, path] if option == "--picture" => support::in_picture(path, Scene::new, Scene::draw),
-        _ => Err("usage: hello_shadows [--picture FILE.png]".into()),
-    }
+    support::run("hello_shadows", arguments, Scene::new, Scene::draw)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    run(&std::env::args().skip(1).collect::<Vec<_>>())
+    run(&support::arguments())
 }

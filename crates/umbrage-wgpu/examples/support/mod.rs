@@ -1,5 +1,10 @@
 //! What any wgpu program has and shadows have nothing to do with: a device, a window or a picture,
 //! a pipeline.
+#![allow(dead_code, unused_imports, reason = "each example uses its own part of this module")]
+
+mod net;
+mod screen;
+mod town;
 
 use std::error::Error;
 use std::sync::Arc;
@@ -14,26 +19,46 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, EventLoop};
 use winit::window::{Window, WindowId};
 
-type Result<T> = std::result::Result<T, Box<dyn Error>>;
-type New<S> = fn(&wgpu::Device, wgpu::TextureFormat) -> Result<S>;
+pub use net::{net_texture, skin_layout};
+pub use screen::{screen_pass, screen_pipeline, texture_group, textures};
+pub use town::{TO_SUN, Town, walk};
+
+pub type Result<T> = std::result::Result<T, Box<dyn Error>>;
+type New<S> = fn(&wgpu::Device, &wgpu::Queue, wgpu::TextureFormat) -> Result<S>;
 type Draw<S> = fn(&mut S, &wgpu::Device, &wgpu::Queue, &Target, f64) -> Result<()>;
 
 /// A position and a normal.
 pub const ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
 
-const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+const ATTACHED: wgpu::TextureUsages =
+    wgpu::TextureUsages::RENDER_ATTACHMENT.union(wgpu::TextureUsages::TEXTURE_BINDING);
 const SKY: wgpu::Color = wgpu::Color { r: 0.3, g: 0.45, b: 0.7, a: 1.0 };
 
 /// A picture that is drawn, with its depth: reversed, 0 infinitely far away.
 pub struct Target {
     pub size: [u32; 2],
-    color: wgpu::TextureView,
-    depth: wgpu::TextureView,
+    pub color: wgpu::TextureView,
+    pub depth: wgpu::TextureView,
+}
+
+/// Runs an example: in a window, or with `--picture FILE.png` as one picture.
+pub fn run<S>(name: &'static str, arguments: &[String], new: New<S>, draw: Draw<S>) -> Result<()> {
+    match arguments {
+        [] => in_window(name, new, draw),
+        [option, path] if option == "--picture" => in_picture(path, new, draw),
+        _ => Err(format!("usage: {name} [--picture FILE.png]").into()),
+    }
+}
+
+/// What the command line holds.
+pub fn arguments() -> Vec<String> {
+    std::env::args().skip(1).collect()
 }
 
 impl Target {
     fn new(device: &wgpu::Device, picture: &wgpu::Texture) -> Self {
-        let depth = texture(device, [picture.width(), picture.height()], DEPTH, wgpu::TextureUsages::RENDER_ATTACHMENT);
+        let depth = texture(device, [picture.width(), picture.height()], DEPTH, ATTACHED);
         Self {
             size: [picture.width(), picture.height()],
             color: picture.create_view(&Default::default()),
@@ -43,16 +68,45 @@ impl Target {
 
     /// Begins a pass over the sky.
     pub fn begin<'e>(&self, encoder: &'e mut wgpu::CommandEncoder) -> wgpu::RenderPass<'e> {
+        self.begin_far(encoder, 0.0)
+    }
+
+    /// Begins a pass over the sky, which has this depth.
+    pub fn begin_far<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, depth: f32) -> wgpu::RenderPass<'e> {
+        self.begin_into(encoder, &self.color, wgpu::LoadOp::Clear(SKY), depth)
+    }
+
+    /// Begins a pass over what is drawn already, with a new depth.
+    pub fn begin_again<'e>(&self, encoder: &'e mut wgpu::CommandEncoder) -> wgpu::RenderPass<'e> {
+        self.begin_into(encoder, &self.color, wgpu::LoadOp::Load, 0.0)
+    }
+
+    /// Begins a pass into another colour, with the depth of this picture.
+    pub fn begin_other<'e>(
+        &self,
+        encoder: &'e mut wgpu::CommandEncoder,
+        color: &wgpu::TextureView,
+    ) -> wgpu::RenderPass<'e> {
+        self.begin_into(encoder, color, wgpu::LoadOp::Clear(wgpu::Color::BLACK), 0.0)
+    }
+
+    fn begin_into<'e>(
+        &self,
+        encoder: &'e mut wgpu::CommandEncoder,
+        view: &wgpu::TextureView,
+        load: wgpu::LoadOp<wgpu::Color>,
+        far: f32,
+    ) -> wgpu::RenderPass<'e> {
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.color,
+                view,
                 depth_slice: None,
                 resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(SKY), store: wgpu::StoreOp::Store },
+                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(far), store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),
             ..Default::default()
@@ -60,29 +114,46 @@ impl Target {
     }
 }
 
-fn texture(
+pub fn texture(
     device: &wgpu::Device,
     size: [u32; 2],
     format: wgpu::TextureFormat,
     usage: wgpu::TextureUsages,
 ) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
+    device.create_texture(&texture_descriptor(size, format, usage))
+}
+
+fn texture_descriptor(
+    [width, height]: [u32; 2],
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::TextureDescriptor<'static> {
+    wgpu::TextureDescriptor {
         label: None,
-        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format,
         usage,
         view_formats: &[],
-    })
+    }
 }
 
 /// A uniform buffer for the camera's matrix, its layout, and the group that binds it.
 pub fn camera(device: &wgpu::Device) -> (wgpu::Buffer, wgpu::BindGroupLayout, wgpu::BindGroup) {
+    uniform(device, wgpu::ShaderStages::VERTEX, 64)
+}
+
+/// A uniform buffer of `size` bytes, its layout, and the group that binds it.
+pub fn uniform(
+    device: &wgpu::Device,
+    visibility: wgpu::ShaderStages,
+    size: u64,
+) -> (wgpu::Buffer, wgpu::BindGroupLayout, wgpu::BindGroup) {
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
-        size: 64,
+        size,
         usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });
@@ -91,7 +162,6 @@ pub fn camera(device: &wgpu::Device) -> (wgpu::Buffer, wgpu::BindGroupLayout, wg
         has_dynamic_offset: false,
         min_binding_size: None,
     };
-    let visibility = wgpu::ShaderStages::VERTEX;
     let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: None,
         entries: &[wgpu::BindGroupLayoutEntry { binding: 0, visibility, ty, count: None }],
@@ -109,8 +179,20 @@ pub fn pipeline(
     device: &wgpu::Device,
     text: &str,
     groups: &[Option<&wgpu::BindGroupLayout>],
-    vertices: wgpu::VertexBufferLayout<'_>,
+    vertices: &[Option<wgpu::VertexBufferLayout<'_>>],
     format: wgpu::TextureFormat,
+) -> wgpu::RenderPipeline {
+    pipeline_with(device, text, groups, vertices, format, wgpu::CompareFunction::Greater)
+}
+
+/// [`pipeline`] for another depth than the reversed one.
+pub fn pipeline_with(
+    device: &wgpu::Device,
+    text: &str,
+    groups: &[Option<&wgpu::BindGroupLayout>],
+    vertices: &[Option<wgpu::VertexBufferLayout<'_>>],
+    format: wgpu::TextureFormat,
+    compare: wgpu::CompareFunction,
 ) -> wgpu::RenderPipeline {
     let source = wgpu::ShaderSource::Wgsl(text.into());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
@@ -122,13 +204,13 @@ pub fn pipeline(
             module: &module,
             entry_point: None,
             compilation_options: Default::default(),
-            buffers: &[Some(vertices)],
+            buffers: vertices,
         },
         primitive: wgpu::PrimitiveState { cull_mode: None, ..Default::default() },
         depth_stencil: Some(wgpu::DepthStencilState {
             format: DEPTH,
             depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Greater),
+            depth_compare: Some(compare),
             stencil: Default::default(),
             bias: Default::default(),
         }),
@@ -168,14 +250,14 @@ fn device(adapter: &wgpu::Adapter) -> Result<(wgpu::Device, wgpu::Queue)> {
 }
 
 /// Draws one frame and writes it as a PNG.
-pub fn in_picture<S>(path: &str, new: New<S>, draw: Draw<S>) -> Result<()> {
+fn in_picture<S>(path: &str, new: New<S>, draw: Draw<S>) -> Result<()> {
     const SIZE: [u32; 2] = [768, 512];
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
     let (device, queue) = device(&adapter)?;
     let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
     let picture = texture(&device, SIZE, wgpu::TextureFormat::Rgba8UnormSrgb, usage);
-    let mut scene = new(&device, picture.format())?;
+    let mut scene = new(&device, &queue, picture.format())?;
     draw(&mut scene, &device, &queue, &Target::new(&device, &picture), 0.0)?;
 
     // Rows of 768 pixels need no padding.
@@ -198,13 +280,14 @@ pub fn in_picture<S>(path: &str, new: New<S>, draw: Draw<S>) -> Result<()> {
 }
 
 /// Draws frame after frame in a window, until it is closed.
-pub fn in_window<S>(new: New<S>, draw: Draw<S>) -> Result<()> {
-    let mut app = App { new, draw, shown: None, failure: None };
+fn in_window<S>(name: &'static str, new: New<S>, draw: Draw<S>) -> Result<()> {
+    let mut app = App { name, new, draw, shown: None, failure: None };
     EventLoop::new()?.run_app(&mut app)?;
     app.failure.map_or(Ok(()), Err)
 }
 
 struct App<S> {
+    name: &'static str,
     new: New<S>,
     draw: Draw<S>,
     shown: Option<Shown<S>>,
@@ -223,8 +306,8 @@ struct Shown<S> {
 }
 
 impl<S> Shown<S> {
-    fn open(event_loop: &ActiveEventLoop, new: New<S>) -> Result<Self> {
-        let attributes = Window::default_attributes().with_title("hello, shadows");
+    fn open(name: &str, event_loop: &ActiveEventLoop, new: New<S>) -> Result<Self> {
+        let attributes = Window::default_attributes().with_title(name);
         Self::open_in(Arc::new(event_loop.create_window(attributes)?), event_loop, new)
     }
 
@@ -242,7 +325,7 @@ impl<S> Shown<S> {
             .ok_or("the adapter cannot draw in this window")?;
         config.format = config.format.add_srgb_suffix();
         surface.configure(&device, &config);
-        let scene = new(&device, config.format)?;
+        let scene = new(&device, &queue, config.format)?;
         Ok(Self { window, surface, config, device, queue, scene, begun: Instant::now() })
     }
 
@@ -298,7 +381,7 @@ impl<S> App<S> {
 
 impl<S> ApplicationHandler for App<S> {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
-        let opened = Shown::open(event_loop, self.new);
+        let opened = Shown::open(self.name, event_loop, self.new);
         self.show(opened, event_loop);
     }
 
