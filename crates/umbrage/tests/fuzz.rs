@@ -167,9 +167,16 @@ fn shown(view: &View, boxes: &[Aabb]) -> Vec<(usize, DVec3)> {
     points
 }
 
+/// A sheet less than 2 mm above a receiver may count as touching it: bounds are rounded.
+const TOUCHES: f64 = 2e-3;
+
 /// Where the ray from `point` towards the light leaves a box, if it passes through it more than a
-/// millimetre away.
+/// millimetre away, and the box is no sheet that the point touches.
 fn shaded_from(bounds: &Aabb, point: DVec3, direction: DVec3) -> Option<DVec3> {
+    let is_flat = |axis: usize| bounds.max[axis] - bounds.min[axis] <= TOUCHES;
+    if (0..3).any(|axis| is_flat(axis) && (point[axis] - bounds.min[axis]).abs() <= TOUCHES) {
+        return None;
+    }
     let (mut enter, mut leave) = (1e-3, f64::INFINITY);
     for axis in 0..3 {
         let (p, d) = (point[axis], -direction[axis]);
