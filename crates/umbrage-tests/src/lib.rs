@@ -8,6 +8,7 @@
 //! `tests/comparators.rs` proves that every comparison can say no; `tests/regressions` holds the
 //! references and the ceilings.
 
+pub mod boxes;
 pub mod closed;
 pub mod compare;
 pub mod golden;

@@ -135,6 +135,13 @@ pub struct Technique {
     pub settings: RenderSettings,
 }
 
+impl Default for Technique {
+    /// What a user gets who chooses nothing.
+    fn default() -> Self {
+        Self::configured("default", ShadowConfig::default())
+    }
+}
+
 impl Technique {
     /// PSSM with maps of one size: practical scheme with λ = 0.5, fitted to the scene, not
     /// stabilised, one nearest texel, no blend, no fade, 32-bit depth: the tightest, hardest and
@@ -160,13 +167,14 @@ impl Technique {
         Self { name: "ssm".to_owned(), ..Self::pssm(1, map_size) }
     }
 
-    /// What a user gets who chooses nothing: four maps, exact stillness, 3 × 3 filter, blend and
-    /// fade.
+    /// The preset `papers`: four maps, exact stillness, 3 × 3 filter, blend and fade.
     #[must_use]
-    pub fn default_of_the_command() -> Self {
-        let mut technique = Self::pssm(4, 1024);
-        technique.settings.config = Preset::Papers.config();
-        Self { name: "default".to_owned(), ..technique }
+    pub fn papers() -> Self {
+        Self::configured("papers", Preset::Papers.config())
+    }
+
+    fn configured(name: &str, config: ShadowConfig) -> Self {
+        Self { name: name.to_owned(), settings: RenderSettings { config, ..Self::pssm(4, 1024).settings } }
     }
 
     /// With another filter.

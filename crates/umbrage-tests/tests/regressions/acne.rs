@@ -25,7 +25,7 @@ fn measure(world: World) -> Option<[AcneAndLeak; 2]> {
     let gpu = gpu()?;
     let stage = Stage::of(world);
     let truth = Truth::build(&stage.scene, &stage.pose, stage.view("near", SIZE).eye()).expect("rays can meet a world");
-    let settings = Technique::default_of_the_command().settings;
+    let settings = Technique::default().settings;
     let settings = RenderSettings {
         size: SIZE,
         config: umbrage::ShadowConfig { far_fade: 0.1, ..settings.config.clone() },
@@ -126,7 +126,7 @@ fn a_city_has_neither_acne_nor_leaks() {
     let scene = load_gltf(file.as_ref(), &GltfOptions::default()).expect("the city is in the repository");
     let pose = scene.pose(0.0).expect("a pose");
     let size = [400, 300];
-    let settings = RenderSettings { size, ..Technique::default_of_the_command().settings };
+    let settings = RenderSettings { size, ..Technique::default().settings };
     let mut renderer = Renderer::new(gpu, &scene, &settings).expect("a renderer");
     for (eye, ahead, elevation) in [
         (DVec3::new(-13.211, -7.951, -33.167), DVec3::new(0.0147, 0.0, 0.9999), 80.0_f64),

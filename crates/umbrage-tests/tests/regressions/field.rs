@@ -5,46 +5,12 @@ use glam::DVec3;
 use image::GrayAlphaImage;
 use umbrage::{DirectionalLight, Frustum, View};
 use umbrage_render::{Frame, Outputs, RenderSettings, Renderer};
-use umbrage_scene::{Material, Mesh, Node, Primitive, Scene};
+use umbrage_scene::{Primitive, Scene};
+use umbrage_tests::boxes::{add, cuboid, ground, scene};
 use umbrage_tests::stage::{Technique, gpu};
 use umbrage_truth::{Hit, Truth};
 
 const SIZE: [u32; 2] = [240, 180];
-
-/// A scene with one material.
-fn scene() -> Scene {
-    Scene { materials: vec![Material::default()], ..Scene::default() }
-}
-
-fn add(scene: &mut Scene, primitive: Primitive) {
-    scene.nodes.push(Node { mesh: Some(scene.meshes.len()), ..Node::default() });
-    scene.meshes.push(Mesh { primitives: vec![primitive], ..Mesh::default() });
-}
-
-/// A rectangle from `corner` along `a` and `b`, its front where `a × b` points.
-fn rectangle(into: &mut Primitive, corner: DVec3, a: DVec3, b: DVec3) {
-    let first = into.positions.len() as u32;
-    let normal = a.cross(b).normalize().as_vec3().to_array();
-    for at in [corner, corner + a, corner + a + b, corner + b] {
-        into.positions.push(at.as_vec3().to_array());
-        into.normals.push(normal);
-    }
-    into.indices.extend([0, 1, 2, 0, 2, 3].map(|i| first + i));
-}
-
-/// A box of six rectangles, their fronts outside.
-fn cuboid(into: &mut Primitive, min: DVec3, size: DVec3) {
-    let [x, y, z] = [DVec3::X * size.x, DVec3::Y * size.y, DVec3::Z * size.z];
-    for (corner, a, b) in [(min, z, y), (min + x, y, z), (min, x, z), (min + y, z, x), (min, y, x), (min + z, x, y)] {
-        rectangle(into, corner, a, b);
-    }
-}
-
-fn ground(y: f64, half: f64) -> Primitive {
-    let mut primitive = Primitive::default();
-    rectangle(&mut primitive, DVec3::new(-half, y, half), DVec3::X * 2.0 * half, DVec3::NEG_Z * 2.0 * half);
-    primitive
-}
 
 fn look(eye: [f64; 3], target: [f64; 3], fov: f64, near: f64) -> View {
     let aspect = f64::from(SIZE[0]) / f64::from(SIZE[1]);
@@ -55,7 +21,7 @@ fn look(eye: [f64; 3], target: [f64; 3], fov: f64, near: f64) -> View {
 /// Masks at the defaults with maps of an edge, and the truth about each pixel.
 fn judged(scene: &Scene, views: &[View], sun: DVec3, edge: u32) -> Option<Vec<(GrayAlphaImage, Vec<Option<Hit>>)>> {
     let gpu = gpu()?;
-    let settings = Technique::default_of_the_command().settings;
+    let settings = Technique::default().settings;
     let config = umbrage::ShadowConfig {
         map_sizes: vec![edge; 4],
         range: umbrage::config::Range::Camera,

@@ -52,7 +52,7 @@ fn shots() -> Vec<Shot> {
     use World::{Chessboard, Knights, MiningTerrain, RobotWar};
     let pssm = |splits| Technique::pssm(splits, MAP);
     let ssm = || Technique::ssm(2 * MAP);
-    let default = Technique::default_of_the_command;
+    let default = Technique::default;
     vec![
         // How many splits.
         shot(RobotWar, "near", Mask, ssm()),
@@ -89,7 +89,7 @@ fn shots() -> Vec<Shot> {
         shot(MiningTerrain, "far", Mask, pssm(4).exact().d16().filter(Filter::Pcf3 { width_m: None })),
         shot(MiningTerrain, "dueling", Mask, pssm(4).independent().exact()),
         shot(MiningTerrain, "dueling", Picture, default()),
-        shot(MiningTerrain, "middle", Tint, default()),
+        shot(RobotWar, "near", Tint, default()),
     ]
 }
 

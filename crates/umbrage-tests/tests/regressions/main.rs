@@ -4,6 +4,7 @@
 mod acne;
 mod ceilings;
 mod field;
+mod foregrounds;
 mod goldens;
 mod paths;
 mod robot_war;

@@ -54,7 +54,7 @@ impl Walk {
     }
 
     fn flips(&self, stability: Stability) -> Option<Flips> {
-        let any = Technique::default_of_the_command();
+        let any = Technique::papers();
         let mut settings = RenderSettings { size: SIZE, ..any.settings };
         settings.config.map_sizes = vec![256; 4];
         settings.config.stability = stability.clone();
