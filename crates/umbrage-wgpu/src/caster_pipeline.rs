@@ -45,6 +45,8 @@ pub struct CasterPipeline<'a> {
     pub front_face: wgpu::FrontFace,
     /// Faces to cull. With `None`, single-sided walls cast shadows from both sides.
     pub cull_mode: Option<wgpu::Face>,
+    /// The application's own cache of compiled pipelines, where it has one (Vulkan).
+    pub cache: Option<&'a wgpu::PipelineCache>,
 }
 
 /// A vertex shader for positions relative to the frame's origin.
@@ -81,6 +83,7 @@ impl Default for CasterPipeline<'_> {
             strip_index_format: None,
             front_face: wgpu::FrontFace::Ccw,
             cull_mode: None,
+            cache: None,
         }
     }
 }
@@ -156,6 +159,6 @@ fn pipeline(maps: &ShadowMaps, options: &CasterPipeline<'_>) -> wgpu::RenderPipe
             targets: maps.caster_targets(),
         }),
         multiview_mask: maps.caster_multiview_mask(),
-        cache: None,
+        cache: options.cache,
     })
 }
