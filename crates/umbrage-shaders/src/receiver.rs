@@ -254,7 +254,7 @@ mod tests {
             "fn umbrage_filter_penumbra",
             "fn umbrage_filter_pairs",
             "fn umbrage_filter_tent",
-            "fn umbrage_filter_texel_lit",
+            "fn umbrage_filter_texel_seen",
             "fn umbrage_bias_warped_point",
             "fn umbrage_bias_meets_receiver",
             "fn umbrage_bias_without_plane",

@@ -244,10 +244,13 @@ struct BiasAnswer {
     let across = umbrage_crease_is_across(crease, it.beyond.zw, before);
     let bits = vec3u(vec3<bool>(behind, same, meets)) << vec3u(0u, 1u, 2u);
     let of_crease = vec2u(vec2<bool>(umbrage_crease_is_there(crease), across)) << vec2u(3u, 4u);
+    let own = umbrage_bias_is_own(at, it.tap.xy, it.tap.z);
+    let nearer = umbrage_bias_lies_before(at, it.tap.xy, it.tap.z, at.tolerance.rounding);
+    let of_plane = vec2u(vec2<bool>(own, nearer)) << vec2u(5u, 6u);
     let tolerance = vec4f(at.tolerance.bend, at.tolerance.past, at.tolerance.steep, at.tolerance.arrival);
     answers[id.x] = BiasAnswer(at.texel, at.slope, at.tilt, at.texel_m, at.linear, at.depth, at.range_m, tolerance,
-        umbrage_bias_reference(at, it.tap.xy, vec2f(0.5)), bits.x | bits.y | bits.z | of_crease.x | of_crease.y,
-        vec4f(crease.height, crease.rise, crease.unsure));
+        umbrage_bias_reference(at, it.tap.xy, vec2f(0.5)),
+        bits.x | bits.y | bits.z | of_crease.x | of_crease.y | of_plane.x | of_plane.y, vec4f(crease.height, crease.rise, crease.unsure));
 }";
 
 /// A plain map, a warped one, or a local light's of either kind of depth, around a point before it.
@@ -343,6 +346,8 @@ fn bias_decided(at: &twin::bias::Receiver, ask: &BiasAsk, stored: f32) -> u32 {
         | u32::from(at.meets_receiver(offset, stored, beyond)) << 2
         | u32::from(crease.is_there()) << 3
         | u32::from(crease.is_across(other, at.before_plane(other, stored))) << 4
+        | u32::from(at.is_own(offset, stored)) << 5
+        | u32::from(at.lies_before(offset, stored, at.tolerance.rounding)) << 6
 }
 
 /// Decisions of the twin that hold a little nearer and a little farther, and how many of them the
@@ -381,7 +386,7 @@ fn bias_agrees_in_every_kind_of_map() {
     let mut next = random();
     let asks: Vec<BiasAsk> = (0..20_000).map(|i| bias_ask(&mut next, i % 4)).collect();
     let answers: Vec<BiasAnswer> = gpu.compute(&source, &asks, None);
-    let mut seen = [[0; 2]; 5];
+    let mut seen = [[0; 2]; 7];
     for (ask, answer) in asks.iter().zip(&answers) {
         let at = bias_receiver(ask);
         let close = |found: f32, twin: f32, scale: f32| {
@@ -401,7 +406,7 @@ fn bias_agrees_in_every_kind_of_map() {
         // The tangent of a grazed surface is a quotient of small numbers.
         (0..4)
             .for_each(|i| close(answer.tolerance[i], tolerance[i], 5.0 * tolerance[i].abs() + 1.0 / at.range_m * 0.1));
-        (0..5).for_each(|bit| seen[bit][(answer.decided >> bit & 1) as usize] += 1);
+        (0..7).for_each(|bit| seen[bit][(answer.decided >> bit & 1) as usize] += 1);
     }
     let [sure, wrong] = bias_disagreements(&asks, &answers, bias_receiver);
     assert_eq!(wrong, 0, "of {sure}");

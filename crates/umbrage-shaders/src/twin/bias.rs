@@ -25,6 +25,9 @@ pub const PAST_TEXELS: f32 = 8.0;
 pub const CREASE_SLOPE: f32 = 1.9;
 /// `bias::CREASE_SHARE`: share of the receiver's own slope that it is at least.
 pub const CREASE_SHARE: f32 = 0.9;
+/// `bias::OWN_TEXELS`: how far before the receiver's plane a texel may lie to be of its own surface
+/// beyond doubt.
+pub const OWN_TEXELS: f32 = 0.05;
 /// `bias::ROUNDING`: share of the numbers involved that `f32` may have lost.
 pub const ROUNDING: f32 = 1.907_348_6e-6;
 /// `bias::SNAP_TEXELS`: texels by which casters are snapped.
@@ -44,6 +47,8 @@ pub struct Tolerance {
     pub arrival: f32,
     /// Least slope of a surface that makes a crease, per metre aside.
     pub crease: f32,
+    /// How far before the plane a texel is of the receiver's own surface beyond doubt.
+    pub own: f32,
     /// Constant bias, which [`Receiver::depth`] has taken off.
     pub constant: f32,
     /// What of it is for arithmetic and the texture's format.
@@ -112,6 +117,7 @@ pub fn receiver(split: &Split, position: [f32; 3], normal: [f32; 3], to_light: [
         tolerance: Tolerance {
             constant: bias_m / at.range_m,
             rounding: at.rounding_m / at.range_m,
+            own: (OWN_TEXELS * longer + at.rounding_m) / at.range_m,
             ..tolerance(tangent, at.texel_m, at.range_m)
         },
         crease: Crease::default(),
@@ -192,6 +198,7 @@ impl Receiver {
         self.tolerance.bend = 0.0;
         self.tolerance.steep = 0.0;
         self.tolerance.crease = 1e30;
+        self.tolerance.rounding = 1e30;
         self
     }
 
@@ -214,8 +221,25 @@ impl Receiver {
     /// any bias.
     #[must_use]
     pub fn before_plane(&self, offset: [f32; 2], stored: f32) -> f32 {
+        self.plane_at(offset) - stored
+    }
+
+    fn plane_at(&self, offset: [f32; 2]) -> f32 {
         let along = dot2([0, 1].map(|i| self.tilt[i] + self.slope[i]), offset);
-        self.depth + self.tolerance.constant + along - stored
+        self.depth + self.tolerance.constant + along
+    }
+
+    /// `bias::lies_before`: the texel's surface lies before the receiver's plane by more than `by`,
+    /// without any bias.
+    #[must_use]
+    pub fn lies_before(&self, offset: [f32; 2], stored: f32, by: f32) -> bool {
+        stored < self.as_stored(self.plane_at(offset) - by)
+    }
+
+    /// `bias::is_own`: the texel is of the receiver's own surface beyond doubt.
+    #[must_use]
+    pub fn is_own(&self, offset: [f32; 2], stored: f32) -> bool {
+        stored >= 1.0 || !self.lies_before(offset, stored, self.tolerance.own) && !self.is_past(offset, stored)
     }
 
     /// Whether what a texel stores, `offset` texels from the receiver, shades it: all of the

@@ -5,6 +5,9 @@
 pub const REACH: f32 = 2.0;
 /// `crease::WIDTH`: share of a texel within which a texel counts as one of the crease itself.
 pub const WIDTH: f32 = 0.1;
+/// `crease::MOST_FALL`: how much a surface may fall along one axis for what it rises along the
+/// other.
+pub const MOST_FALL: f32 = 0.6;
 
 /// `crease::Crease`: where a surface passes over the receiver; heights are depths before the
 /// receiver's plane.
@@ -30,7 +33,9 @@ impl Crease {
         };
         let height = before + of_axis(0) + of_axis(1);
         let is_steep = (away[0] / least[0]).powi(2) + (away[1] / least[1]).powi(2) >= 1.0;
-        let rises = before >= -unsure && away.iter().all(|&away| away >= -unsure);
+        let falls_little =
+            |i: usize| (farther[i] - away[i]).abs() <= 2.0 * unsure && -away[i] <= MOST_FALL * away[1 - i];
+        let rises = before >= -unsure && (0..2).all(|i| away[i] >= -unsure || falls_little(i));
         let is_over = height >= -unsure && height <= REACH * away[0].hypot(away[1]);
         let is_there = is_steep && rises && is_over;
         let rise = [0, 1].map(|i| if offset[i] >= 0.0 { away[i] } else { -away[i] });
@@ -87,7 +92,9 @@ mod tests {
         assert!(!crease(2.1, 2.6).is_there());
         assert!(!Crease::of(2.0, [0.5, 0.5], [[0.0, 0.0]; 2], [1.0; 2], 0.0).is_there(), "a roof over it");
         assert!(!Crease::of(0.4, [0.5, 0.5], [[0.4, 0.4]; 2], [1.0; 2], 0.0).is_there(), "a fold");
-        assert!(!Crease::of(0.4, [0.5, 0.5], [[2.0, -1.0]; 2], [1.0; 2], 0.0).is_there(), "the end of a wall");
+        assert!(!Crease::of(2.0, [0.5, 0.5], [[2.0, -1.3]; 2], [1.0; 2], 0.0).is_there(), "an edge that hangs");
+        let end = |fall: f32| Crease::of(2.0, [0.5, 0.5], [[2.0, -1.0], [2.0, -1.0 - fall]], [1.0; 2], 0.001);
+        assert!(end(0.0).is_there() && !end(0.5).is_there(), "a wall that goes on, and one that ends");
         let round = |curve: f32| Crease::of(1.0, [0.7, 0.0], [[1.3, 0.0], [1.3 - curve, 0.0]], [1.0; 2], 0.0);
         assert!(round(0.0).is_there() && !round(0.3).is_there(), "a round foot");
         assert!(!Crease::default().is_across([1.0, 0.0], 0.0));

@@ -172,12 +172,15 @@ const UMBRAGE_BIAS_CREASE_SLOPE: f32 = 1.9;
 
 const UMBRAGE_BIAS_CREASE_SHARE: f32 = 0.9;
 
+const UMBRAGE_BIAS_OWN_TEXELS: f32 = 0.05;
+
 struct UmbrageTolerance {
     bend: f32,
     past: f32,
     steep: f32,
     arrival: f32,
     crease: f32,
+    own: f32,
     constant: f32,
     rounding: f32
 }
@@ -238,6 +241,7 @@ fn umbrage_bias_receiver_at(at: UmbrageMapPoint, normal: vec3f, to_light: vec3f)
     result.tolerance = umbrage_bias_tolerance(tangent, at.texel_m, at.range_m);
     result.tolerance.constant = bias_m / at.range_m;
     result.tolerance.rounding = at.rounding_m / at.range_m;
+    result.tolerance.own = (UMBRAGE_BIAS_OWN_TEXELS * longer + at.rounding_m) / at.range_m;
     return result;
 }
 
@@ -308,6 +312,7 @@ fn umbrage_bias_without_plane(at: UmbrageReceiver, reach: vec2f) -> UmbrageRecei
     result.tolerance.bend = 0.0;
     result.tolerance.steep = 0.0;
     result.tolerance.crease = 1e30;
+    result.tolerance.rounding = 1e30;
     return result;
 }
 

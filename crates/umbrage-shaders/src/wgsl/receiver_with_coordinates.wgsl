@@ -164,12 +164,15 @@ const UMBRAGE_BIAS_CREASE_SLOPE: f32 = 1.9;
 
 const UMBRAGE_BIAS_CREASE_SHARE: f32 = 0.9;
 
+const UMBRAGE_BIAS_OWN_TEXELS: f32 = 0.05;
+
 struct UmbrageTolerance {
     bend: f32,
     past: f32,
     steep: f32,
     arrival: f32,
     crease: f32,
+    own: f32,
     constant: f32,
     rounding: f32
 }
@@ -217,6 +220,7 @@ fn umbrage_bias_receiver_at(at: UmbrageMapPoint, normal: vec3f, to_light: vec3f)
     result.tolerance = umbrage_bias_tolerance(tangent, at.texel_m, at.range_m);
     result.tolerance.constant = bias_m / at.range_m;
     result.tolerance.rounding = at.rounding_m / at.range_m;
+    result.tolerance.own = (UMBRAGE_BIAS_OWN_TEXELS * longer + at.rounding_m) / at.range_m;
     return result;
 }
 
@@ -255,6 +259,7 @@ fn umbrage_bias_without_plane(at: UmbrageReceiver, reach: vec2f) -> UmbrageRecei
     result.tolerance.bend = 0.0;
     result.tolerance.steep = 0.0;
     result.tolerance.crease = 1e30;
+    result.tolerance.rounding = 1e30;
     return result;
 }
 
@@ -277,11 +282,26 @@ fn umbrage_bias_crease_at(at: UmbrageReceiver, offset: vec2f, stored: f32, beyon
 
 @if(texels)
 fn umbrage_bias_before_plane(at: UmbrageReceiver, offset: vec2f, stored: f32) -> f32 {
+    return umbrage_bias_plane_at(at, offset) - stored;
+}
+
+@if(texels)
+fn umbrage_bias_plane_at(at: UmbrageReceiver, offset: vec2f) -> f32 {
     @if(warped)
     let along = dot(at.tilt + at.slope, offset);
     @if(!warped)
     let along = dot(at.slope, offset);
-    return at.depth + at.tolerance.constant + along - stored;
+    return at.depth + at.tolerance.constant + along;
+}
+
+@if(texels)
+fn umbrage_bias_lies_before(at: UmbrageReceiver, offset: vec2f, stored: f32, by: f32) -> bool {
+    return stored < umbrage_bias_as_stored(at, umbrage_bias_plane_at(at, offset) - by);
+}
+
+@if(texels)
+fn umbrage_bias_is_own(at: UmbrageReceiver, offset: vec2f, stored: f32) -> bool {
+    return stored >= 1.0 || !(umbrage_bias_lies_before(at, offset, stored, at.tolerance.own) || umbrage_bias_is_past(at, offset, stored));
 }
 
 @if(texels)
@@ -357,12 +377,16 @@ const UMBRAGE_CREASE_REACH: f32 = 2.0;
 
 const UMBRAGE_CREASE_WIDTH: f32 = 0.1;
 
+const UMBRAGE_CREASE_MOST_FALL: f32 = 0.6;
+
 fn umbrage_crease_crease_of(before: f32, offset: vec2f, away: vec2f, farther: vec2f, least: vec2f, unsure: f32) -> UmbrageCrease {
     let aside = abs(offset);
     let curve = dot(min(farther - away, vec2f(0.0)), 0.5 * aside * (aside + 1.0));
     let height = before - dot(away, aside) + curve;
     let is_steep = dot(away / least, away / least) >= 1.0;
-    let rises = before >= -unsure && all(away >= vec2f(-unsure));
+    let is_straight = abs(farther - away) <= vec2f(2.0 * unsure);
+    let falls_little = is_straight & (-away <= UMBRAGE_CREASE_MOST_FALL * away.yx);
+    let rises = before >= -unsure && all((away >= vec2f(-unsure)) | falls_little);
     let is_over = height >= -unsure && height <= UMBRAGE_CREASE_REACH * length(away);
     let side = select(vec2f(-1.0), vec2f(1.0), offset >= vec2f(0.0));
     let rise = select(vec2f(0.0), away * side, is_steep && rises && is_over);
@@ -574,6 +598,10 @@ const UMBRAGE_FILTER_GOLDEN_ANGLE: f32 = 2.3999632;
 
 const UMBRAGE_FILTER_LEAST_LIGHT: f32 = 0.05;
 
+const UMBRAGE_FILTER_DOUBTED_LIGHT: f32 = 0.5;
+
+const UMBRAGE_FILTER_LEAST_OWN: f32 = 0.02;
+
 fn umbrage_filter_radius(kind: u32) -> f32 {
     return array<f32, 10>(0.5, 1.0, 1.5, 2.5, 3.5, 2.5, 0.0, 0.0, 16.0, 16.0)[min(kind, UMBRAGE_FILTER_PCSS)];
 }
@@ -661,27 +689,32 @@ fn umbrage_filter_compare(layer: UmbrageLayer, texel: vec2f, depth: f32) -> f32 
     return umbrage_map_compare(layer.index, texel + layer.offset, layer.texels, depth);
 }
 
-@if(texels)
-fn umbrage_filter_four(layer: UmbrageLayer, at: UmbrageReceiver, first: vec2f, second: vec2f) -> f32 {
-    let corner = first + 0.5;
-    let texel = vec2i(floor(corner + layer.offset));
-    let offset = corner - at.texel;
-    let upper = vec2f(umbrage_filter_texel_lit(layer, texel, at, offset), umbrage_filter_texel_lit(layer, texel + vec2i(1, 0), at, offset + vec2f(1.0, 0.0)));
-    let lower = vec2f(umbrage_filter_texel_lit(layer, texel + vec2i(0, 1), at, offset + vec2f(0.0, 1.0)), umbrage_filter_texel_lit(layer, texel + vec2i(1, 1), at, offset + vec2f(1.0, 1.0)));
-    let rows = mix(upper, lower, second.y);
-    return mix(rows.x, rows.y, second.x);
+fn umbrage_filter_of_comparison(lit: f32) -> vec3f {
+    return vec3f(lit, lit, 0.0);
 }
 
 @if(texels)
-fn umbrage_filter_texel_lit(layer: UmbrageLayer, texel: vec2i, at: UmbrageReceiver, offset: vec2f) -> f32 {
+fn umbrage_filter_four(layer: UmbrageLayer, at: UmbrageReceiver, first: vec2f, second: vec2f) -> vec3f {
+    let corner = first + 0.5;
+    let texel = vec2i(floor(corner + layer.offset));
+    let offset = corner - at.texel;
+    let upper = mix(umbrage_filter_texel_seen(layer, texel, at, offset), umbrage_filter_texel_seen(layer, texel + vec2i(1, 0), at, offset + vec2f(1.0, 0.0)), second.x);
+    let lower = mix(umbrage_filter_texel_seen(layer, texel + vec2i(0, 1), at, offset + vec2f(0.0, 1.0)), umbrage_filter_texel_seen(layer, texel + vec2i(1, 1), at, offset + vec2f(1.0, 1.0)), second.x);
+    return mix(upper, lower, second.y);
+}
+
+@if(texels)
+fn umbrage_filter_texel_seen(layer: UmbrageLayer, texel: vec2i, at: UmbrageReceiver, offset: vec2f) -> vec3f {
     let stored = umbrage_map_load(layer.index, texel);
+    let before = select(0.0, 1.0, umbrage_bias_lies_before(at, offset, stored, at.tolerance.rounding));
     if umbrage_crease_is_across(at.crease, offset, umbrage_bias_before_plane(at, offset, stored)) {
-        return 0.0;
+        return vec3f(0.0, 0.0, before);
     }
     if umbrage_bias_lies_behind(at, offset, stored) || umbrage_bias_same_surface(at, offset, stored) {
-        return 1.0;
+        return vec3f(1.0, select(0.0, 1.0, umbrage_bias_is_own(at, offset, stored)), before);
     }
-    return select(0.0, 1.0, umbrage_bias_meets_receiver(at, offset, stored, umbrage_filter_beyond(layer, texel, offset, 1)));
+    let lit = umbrage_bias_meets_receiver(at, offset, stored, umbrage_filter_beyond(layer, texel, offset, 1));
+    return vec3f(select(0.0, 1.0, lit), 0.0, before);
 }
 
 @if(texels)
@@ -729,11 +762,12 @@ fn umbrage_filter_texel_at(layer: UmbrageLayer, centre: vec2f) -> vec2i {
 
 fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
     var asked = at;
+    var seen = vec3f(0.0);
     var lit = 0.0;
     for (var i = 0; i < 2; i++) {
-        let found = umbrage_filter_share_of_kernel(layer, kind, softness, asked, centre);
-        lit = select(found, select(lit, 0.0, found < UMBRAGE_FILTER_LEAST_LIGHT), i == 1);
-        if i == 1 || lit == 0.0 {
+        seen = umbrage_filter_share_of_kernel(layer, kind, softness, asked, centre);
+        lit = select(lit, seen.x, i == 0);
+        if i == 1 || seen.x == 0.0 || seen.z == 0.0 {
             break;
         }
         @if(texels)
@@ -744,15 +778,17 @@ fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSof
             break;
         }
     }
-    return lit;
+    let is_lit = seen.x >= select(0.0, UMBRAGE_FILTER_LEAST_LIGHT, umbrage_crease_is_there(asked.crease));
+    let is_seen_lit = seen.z == 0.0 || seen.x > UMBRAGE_FILTER_DOUBTED_LIGHT || seen.y >= UMBRAGE_FILTER_LEAST_OWN;
+    return select(0.0, min(lit, 1.0), is_lit && is_seen_lit);
 }
 
-fn umbrage_filter_share_of_kernel(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
+fn umbrage_filter_share_of_kernel(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> vec3f {
     @if(hard)
     {
         if kind == UMBRAGE_FILTER_HARD {
             let texel = floor(centre) + 0.5;
-            return umbrage_filter_compare(layer, texel, umbrage_bias_reference(at, texel - at.texel, vec2f(0.0)));
+            return umbrage_filter_of_comparison(umbrage_filter_compare(layer, texel, umbrage_bias_reference(at, texel - at.texel, vec2f(0.0))));
         }
     }
     @if(pcf2)
@@ -780,7 +816,7 @@ fn umbrage_filter_share_of_kernel(layer: UmbrageLayer, kind: u32, softness: Umbr
         return umbrage_filter_pairs(layer, kind, softness, at, centre);
     }
     @if(!pairs)
-    return 1.0;
+    return umbrage_filter_of_comparison(1.0);
 }
 
 @if(castano5)
@@ -811,31 +847,31 @@ fn umbrage_filter_pair(kind: u32, first: vec2f, centre: vec2f, r: vec2f) -> Umbr
 }
 
 @if(pairs)
-fn umbrage_filter_pairs(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
+fn umbrage_filter_pairs(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> vec3f {
     let r = umbrage_filter_half_width(softness.width_m, at.texel_m, umbrage_filter_radius(kind), umbrage_filter_radius(kind));
     let taps = i32(umbrage_filter_radius(kind) + 0.5);
     let corner = floor(centre - r);
-    var lit = 0.0;
+    var seen = vec3f(0.0);
     for (var j = 0; j < taps; j++) {
         for (var i = 0; i < taps; i++) {
             let first = corner + 2.0 * vec2f(f32(i), f32(j));
             let tap = umbrage_filter_pair(kind, first, centre, r);
-            lit += tap.weight.x * tap.weight.y * umbrage_filter_four(layer, at, first, tap.texel - 0.5 - first);
+            seen += tap.weight.x * tap.weight.y * umbrage_filter_four(layer, at, first, tap.texel - 0.5 - first);
         }
     }
-    return min(lit, 1.0);
+    return seen;
 }
 
 @if(disc)
-fn umbrage_filter_disc(layer: UmbrageLayer, at: UmbrageReceiver, centre: vec2f, wide: vec2f, turn: f32) -> f32 {
+fn umbrage_filter_disc(layer: UmbrageLayer, at: UmbrageReceiver, centre: vec2f, wide: vec2f, turn: f32) -> vec3f {
     let spread = sqrt(max(wide * wide - UMBRAGE_FILTER_TAP_SPREAD, vec2f(0.0)));
-    var lit = 0.0;
+    var seen = vec3f(0.0);
     for (var i = 0u; i < UMBRAGE_FILTER_DISC_TAPS; i++) {
         let texel = centre + spread * umbrage_filter_vogel(i, UMBRAGE_FILTER_DISC_TAPS, turn);
         let first = floor(texel - 0.5);
-        lit += umbrage_filter_four(layer, at, first, texel - 0.5 - first);
+        seen += umbrage_filter_four(layer, at, first, texel - 0.5 - first);
     }
-    return lit / f32(UMBRAGE_FILTER_DISC_TAPS);
+    return seen / f32(UMBRAGE_FILTER_DISC_TAPS);
 }
 
 @if(pcss)

@@ -164,12 +164,15 @@ const UMBRAGE_BIAS_CREASE_SLOPE: f32 = 1.9;
 
 const UMBRAGE_BIAS_CREASE_SHARE: f32 = 0.9;
 
+const UMBRAGE_BIAS_OWN_TEXELS: f32 = 0.05;
+
 struct UmbrageTolerance {
     bend: f32,
     past: f32,
     steep: f32,
     arrival: f32,
     crease: f32,
+    own: f32,
     constant: f32,
     rounding: f32
 }
@@ -217,6 +220,7 @@ fn umbrage_bias_receiver_at(at: UmbrageMapPoint, normal: vec3f, to_light: vec3f)
     result.tolerance = umbrage_bias_tolerance(tangent, at.texel_m, at.range_m);
     result.tolerance.constant = bias_m / at.range_m;
     result.tolerance.rounding = at.rounding_m / at.range_m;
+    result.tolerance.own = (UMBRAGE_BIAS_OWN_TEXELS * longer + at.rounding_m) / at.range_m;
     return result;
 }
 
@@ -255,6 +259,7 @@ fn umbrage_bias_without_plane(at: UmbrageReceiver, reach: vec2f) -> UmbrageRecei
     result.tolerance.bend = 0.0;
     result.tolerance.steep = 0.0;
     result.tolerance.crease = 1e30;
+    result.tolerance.rounding = 1e30;
     return result;
 }
 
@@ -496,6 +501,10 @@ const UMBRAGE_FILTER_GOLDEN_ANGLE: f32 = 2.3999632;
 
 const UMBRAGE_FILTER_LEAST_LIGHT: f32 = 0.05;
 
+const UMBRAGE_FILTER_DOUBTED_LIGHT: f32 = 0.5;
+
+const UMBRAGE_FILTER_LEAST_OWN: f32 = 0.02;
+
 fn umbrage_filter_radius(kind: u32) -> f32 {
     return array<f32, 10>(0.5, 1.0, 1.5, 2.5, 3.5, 2.5, 0.0, 0.0, 16.0, 16.0)[min(kind, UMBRAGE_FILTER_PCSS)];
 }
@@ -583,33 +592,40 @@ fn umbrage_filter_compare(layer: UmbrageLayer, texel: vec2f, depth: f32) -> f32 
     return umbrage_map_compare(layer.index, texel + layer.offset, layer.texels, depth);
 }
 
+fn umbrage_filter_of_comparison(lit: f32) -> vec3f {
+    return vec3f(lit, lit, 0.0);
+}
+
 @if(texels)
-fn umbrage_filter_four(layer: UmbrageLayer, at: UmbrageReceiver, first: vec2f, second: vec2f) -> f32 {
-    return umbrage_filter_compare(layer, first + 0.5 + second, umbrage_bias_reference(at, first + 1.0 - at.texel, vec2f(0.5)));
+fn umbrage_filter_four(layer: UmbrageLayer, at: UmbrageReceiver, first: vec2f, second: vec2f) -> vec3f {
+    return umbrage_filter_of_comparison(umbrage_filter_compare(layer, first + 0.5 + second, umbrage_bias_reference(at, first + 1.0 - at.texel, vec2f(0.5))));
 }
 
 fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
     var asked = at;
+    var seen = vec3f(0.0);
     var lit = 0.0;
     for (var i = 0; i < 2; i++) {
-        let found = umbrage_filter_share_of_kernel(layer, kind, softness, asked, centre);
-        lit = select(found, select(lit, 0.0, found < UMBRAGE_FILTER_LEAST_LIGHT), i == 1);
-        if i == 1 || lit == 0.0 {
+        seen = umbrage_filter_share_of_kernel(layer, kind, softness, asked, centre);
+        lit = select(lit, seen.x, i == 0);
+        if i == 1 || seen.x == 0.0 || seen.z == 0.0 {
             break;
         }
         if !umbrage_crease_is_there(asked.crease) {
             break;
         }
     }
-    return lit;
+    let is_lit = seen.x >= select(0.0, UMBRAGE_FILTER_LEAST_LIGHT, umbrage_crease_is_there(asked.crease));
+    let is_seen_lit = seen.z == 0.0 || seen.x > UMBRAGE_FILTER_DOUBTED_LIGHT || seen.y >= UMBRAGE_FILTER_LEAST_OWN;
+    return select(0.0, min(lit, 1.0), is_lit && is_seen_lit);
 }
 
-fn umbrage_filter_share_of_kernel(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
+fn umbrage_filter_share_of_kernel(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> vec3f {
     @if(hard)
     {
         if kind == UMBRAGE_FILTER_HARD {
             let texel = floor(centre) + 0.5;
-            return umbrage_filter_compare(layer, texel, umbrage_bias_reference(at, texel - at.texel, vec2f(0.0)));
+            return umbrage_filter_of_comparison(umbrage_filter_compare(layer, texel, umbrage_bias_reference(at, texel - at.texel, vec2f(0.0))));
         }
     }
     @if(pcf2)
@@ -637,7 +653,7 @@ fn umbrage_filter_share_of_kernel(layer: UmbrageLayer, kind: u32, softness: Umbr
         return umbrage_filter_pairs(layer, kind, softness, at, centre);
     }
     @if(!pairs)
-    return 1.0;
+    return umbrage_filter_of_comparison(1.0);
 }
 
 @if(castano5)
@@ -668,31 +684,31 @@ fn umbrage_filter_pair(kind: u32, first: vec2f, centre: vec2f, r: vec2f) -> Umbr
 }
 
 @if(pairs)
-fn umbrage_filter_pairs(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
+fn umbrage_filter_pairs(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> vec3f {
     let r = umbrage_filter_half_width(softness.width_m, at.texel_m, umbrage_filter_radius(kind), umbrage_filter_radius(kind));
     let taps = i32(umbrage_filter_radius(kind) + 0.5);
     let corner = floor(centre - r);
-    var lit = 0.0;
+    var seen = vec3f(0.0);
     for (var j = 0; j < taps; j++) {
         for (var i = 0; i < taps; i++) {
             let first = corner + 2.0 * vec2f(f32(i), f32(j));
             let tap = umbrage_filter_pair(kind, first, centre, r);
-            lit += tap.weight.x * tap.weight.y * umbrage_filter_four(layer, at, first, tap.texel - 0.5 - first);
+            seen += tap.weight.x * tap.weight.y * umbrage_filter_four(layer, at, first, tap.texel - 0.5 - first);
         }
     }
-    return min(lit, 1.0);
+    return seen;
 }
 
 @if(disc)
-fn umbrage_filter_disc(layer: UmbrageLayer, at: UmbrageReceiver, centre: vec2f, wide: vec2f, turn: f32) -> f32 {
+fn umbrage_filter_disc(layer: UmbrageLayer, at: UmbrageReceiver, centre: vec2f, wide: vec2f, turn: f32) -> vec3f {
     let spread = sqrt(max(wide * wide - UMBRAGE_FILTER_TAP_SPREAD, vec2f(0.0)));
-    var lit = 0.0;
+    var seen = vec3f(0.0);
     for (var i = 0u; i < UMBRAGE_FILTER_DISC_TAPS; i++) {
         let texel = centre + spread * umbrage_filter_vogel(i, UMBRAGE_FILTER_DISC_TAPS, turn);
         let first = floor(texel - 0.5);
-        lit += umbrage_filter_four(layer, at, first, texel - 0.5 - first);
+        seen += umbrage_filter_four(layer, at, first, texel - 0.5 - first);
     }
-    return lit / f32(UMBRAGE_FILTER_DISC_TAPS);
+    return seen / f32(UMBRAGE_FILTER_DISC_TAPS);
 }
 
 @if(pcss)
