@@ -181,6 +181,32 @@ fn textured(pictures: &[Vec<u8>]) -> Glb {
     glb
 }
 
+/// As files come from systems that take `Bark.png` and `bark.png` for one.
+#[test]
+fn a_texture_whose_name_differs_in_case_is_left_out_unless_an_alpha_mask_needs_it() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    std::fs::write(folder.path().join("Bark.png"), png(2, 2, [9, 8, 7, 255])).expect("a file");
+    if folder.path().join("bark.png").exists() {
+        // This file system takes them for one, too.
+        return;
+    }
+    let load = |name: &str, mode: &str| {
+        let mut glb = textured(&[png(1, 1, [0; 4])]);
+        glb.json["images"] = json!([{ "uri": name }]);
+        glb.json["materials"][0]["alphaMode"] = json!(mode);
+        let path = folder.path().join("tree.glb");
+        std::fs::write(&path, glb.bytes()).expect("a file");
+        load_gltf(&path, &GltfOptions::default())
+    };
+    let found = load("Bark.png", "MASK").unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((found.textures.len(), found.textures[0].width, found.notes.len()), (1, 2, 0));
+    let scene = load("bark.png", "OPAQUE").unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((scene.textures.len(), scene.placed_triangles()), (0, 1));
+    noted(&scene, &["images[0]", "bark.png", "left out"]);
+    let error = load("bark.png", "MASK").expect_err("its alpha is not known").to_string();
+    assert!(["materials[0]", "images[0]", "bark.png"].iter().all(|part| error.contains(part)), "{error}");
+}
+
 #[test]
 fn textures_beyond_the_budget_are_scaled_down() {
     let pictures: Vec<Vec<u8>> = [256, 256, 64].map(|edge| png(edge, edge, [9, 8, 7, 255])).into();

@@ -335,3 +335,33 @@ fn nodes_keep_the_digits_of_their_numbers() {
         assert_eq!(node.local.translation.to_array(), [100_000_000.125, 0.1, -999_999_999.75]);
     }
 }
+
+/// A triangle of 1 m for every 2 m of 2 × 2 km: loaded, posed and planned.
+#[test]
+fn a_million_instances_are_loaded_and_planned() {
+    const SIDE: usize = 1000;
+    let mut glb = Glb::triangle();
+    let places: Vec<f32> =
+        (0..SIDE * SIDE).flat_map(|i| [2.0 * (i % SIDE) as f32, 0.0, -2.0 * (i / SIDE) as f32]).collect();
+    let translations = glb.floats("VEC3", &places);
+    glb.json["nodes"][0]["extensions"] =
+        json!({ "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": translations } } });
+    glb.json["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
+    let scene = glb.scene();
+    assert_eq!((scene.placed_triangles(), scene.notes.len()), (SIDE * SIDE, 0));
+    let pose = scene.pose(0.0).expect("a pose");
+    let boxes: Vec<umbrage::Aabb> = pose.objects.iter().map(|object| object.bounds).collect();
+    assert_eq!(boxes.len(), SIDE * SIDE);
+    assert_eq!(boxes[SIDE * SIDE - 1].min, DVec3::new(1998.0, 0.0, -1998.0));
+
+    let lens = umbrage::Frustum::perspective(1.0, 1.5, 0.1, f64::INFINITY).expect("a lens");
+    let view = umbrage::View::look_at_upright(DVec3::new(1000.0, 2.0, 5.0), DVec3::new(1000.0, 0.0, -20.0), lens);
+    let sun = umbrage::DirectionalLight::new(DVec3::new(-0.5, -0.7, -0.3)).expect("a direction");
+    let mut planner = umbrage::Planner::new(&umbrage::ShadowConfig::default()).expect("the default is valid");
+    let inputs = umbrage::PlanInputs::new(view.as_ref().expect("a view"), sun, &boxes, &boxes);
+    let plan = planner.plan_frame(&inputs).expect("a plan");
+    let listed = |split: usize| plan.casters(split).len();
+    // The one at the view's middle casts into the first map; most of the field does into none.
+    assert!(plan.casters(0).contains(&(2 * SIDE as u32 + 500)), "{} casters", listed(0));
+    assert!(listed(0) < 1000 && (0..plan.splits.len()).map(listed).max() > Some(10_000));
+}
