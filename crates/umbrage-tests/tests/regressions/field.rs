@@ -114,7 +114,8 @@ fn narrow_lenses_show_lit_walls_lit() {
     }
 }
 
-/// A tyre of 64 facets around an axle along x, on the ground: rim, shoulder, tread, shoulder, rim.
+/// A tyre of 64 facets around an axle along x, on the ground: rim, shoulder, tread, shoulder and
+/// rim.
 fn wheel(into: &mut Primitive, x: f64) {
     const PROFILE: [[f64; 2]; 6] = [[-0.3, 0.33], [-0.3, 0.54], [-0.21, 0.6], [0.21, 0.6], [0.3, 0.54], [0.3, 0.33]];
     const FACETS: usize = 64;
@@ -132,7 +133,7 @@ fn wheel(into: &mut Primitive, x: f64) {
     }
 }
 
-/// Most pixels of wheels, two pixels or more from true edges, with false light or false shadow under
+/// Most pixels of wheels, two pixels or more from true edges, that are falsely lit or dark under
 /// light along their axle. Asked: next to none. Measured: 49 and 0 of 19,184.
 const MOST_ON_WHEELS: f64 = 0.003;
 
