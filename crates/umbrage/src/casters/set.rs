@@ -2,6 +2,7 @@
 
 mod changes;
 mod packing;
+mod query;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
