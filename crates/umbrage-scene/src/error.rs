@@ -47,6 +47,14 @@ pub enum Error {
         /// The worlds there are.
         worlds: String,
     },
+    /// A number of objects that a world cannot have.
+    #[error("{option}: {reason}")]
+    WorldOption {
+        /// The option of [`crate::procedural::WorldOptions`].
+        option: &'static str,
+        /// What is wrong with it, and what to do.
+        reason: String,
+    },
     /// The file as a whole is not what it claims to be, or it is cut short.
     #[error("{file}: {reason}")]
     Malformed {

@@ -33,6 +33,7 @@ mod model;
 mod morph;
 mod moved;
 mod open;
+mod outline;
 mod picture;
 mod pose;
 pub mod procedural;
@@ -46,5 +47,5 @@ pub use frame::{camera_view, invented_sun, invented_view, light_direction, scene
 pub use gltf::{GltfOptions, load_gltf, load_gltf_slice};
 pub use height_map::{HeightEncoding, HeightMapOptions, load_height_map};
 pub use model::*;
-pub use open::{EXTENSIONS, Extensions, OpenOptions, open};
-pub use pose::Poser;
+pub use open::{EXTENSIONS, Extensions, OpenOptions, open, open_watched};
+pub use pose::{Detail, Poser};

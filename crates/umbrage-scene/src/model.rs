@@ -1,6 +1,8 @@
 //! The scene as all other crates see it: meshes, materials, nodes, cameras, lights; no file format,
 //! no GPU.
 
+use std::collections::BTreeMap;
+
 use glam::{DAffine3, DQuat, DVec3, Mat4};
 use umbrage::Aabb;
 
@@ -11,6 +13,8 @@ pub struct Scene {
     pub name: String,
     /// Stored geometry.
     pub meshes: Vec<Mesh>,
+    /// By mesh, coarser shapes of what it shows, the finest of them first.
+    pub levels: BTreeMap<usize, Vec<DetailLevel>>,
     /// Never empty once loaded if there is a primitive: primitives without a material point at a
     /// default one.
     pub materials: Vec<Material>,
@@ -48,6 +52,24 @@ impl Mesh {
     #[must_use]
     pub fn is_morphed(&self) -> bool {
         self.primitives.iter().any(|primitive| !primitive.targets.is_empty())
+    }
+}
+
+/// A coarser shape of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DetailLevel {
+    /// Index into [`Scene::meshes`]; neither skinned nor morphed.
+    pub mesh: usize,
+    /// Metres, in the mesh's own space, of the smallest detail that it shows.
+    pub detail_m: f64,
+}
+
+impl Scene {
+    /// The coarsest shape of a mesh that shows details of so many metres of the mesh's own space.
+    #[must_use]
+    pub fn shape_of(&self, mesh: usize, detail_m: f64) -> usize {
+        let coarser = self.levels.get(&mesh).map_or(&[][..], Vec::as_slice);
+        coarser.iter().rev().find(|level| level.detail_m <= detail_m).map_or(mesh, |level| level.mesh)
     }
 }
 

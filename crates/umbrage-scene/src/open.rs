@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
-use crate::procedural::World;
+use crate::procedural::{Watch, World, WorldOptions};
 use crate::{Error, GltfOptions, HeightMapOptions, Result, Scene, load_gltf, load_height_map};
 
 /// How files are read.
@@ -15,6 +15,8 @@ pub struct OpenOptions {
     pub height_map: HeightMapOptions,
     /// How glTF files are read.
     pub gltf: GltfOptions,
+    /// How many objects worlds have.
+    pub world: WorldOptions,
 }
 
 /// Extensions of the files that [`open`] reads, in small letters and without the dot. Displayed,
@@ -42,11 +44,21 @@ impl fmt::Display for Extensions {
 /// extension, one of [`EXTENSIONS`].
 ///
 /// # Errors
-/// [`Error::UnknownScene`] if it is none of these; otherwise as [`load_gltf`] and
+/// [`Error::UnknownScene`] if it is none of these, [`Error::WorldOption`] for a number of objects
+/// that the scene does not have; otherwise as [`load_gltf`] and
 /// [`load_height_map`].
 pub fn open(spec: &str, options: &OpenOptions) -> Result<Scene> {
+    open_watched(spec, options, &|_| ())
+}
+
+/// [`open`] that says how far it is, where that takes long.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_watched(spec: &str, options: &OpenOptions, watch: Watch<'_>) -> Result<Scene> {
+    options.world.check(spec)?;
     if let Some(world) = World::from_name(spec) {
-        return Ok(world.build());
+        return world.build_with(&options.world, watch);
     }
     let path = Path::new(spec);
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();

@@ -4,6 +4,7 @@ use glam::{DAffine3, DMat3, DMat4, DVec3};
 use umbrage::Aabb;
 
 use crate::morph::morphed;
+use crate::outline::Outline;
 use crate::{AlphaMode, Error, Mesh, Object, Pose, Result, Scene, SkinnedMesh, Trs};
 
 /// Poses one scene again and again. What stands still is worked out once.
@@ -18,9 +19,30 @@ pub struct Poser<'s> {
     mesh_morphs: Vec<bool>,
     /// Which clips play: no earlier one that plays moves a node of theirs.
     plays: Vec<bool>,
-    /// Transform and bounds of each object whose vertices are the mesh's, from the last pose; in
-    /// the order of objects.
+    /// Transform and bounds of each object whose vertices are the mesh's and that is no instance,
+    /// from the last pose; in the order of objects.
     known_bounds: Vec<(DAffine3, Aabb)>,
+    /// Outlines of the meshes that instances show.
+    outlines: Vec<Option<Outline>>,
+    detail: Option<Detail>,
+}
+
+/// From where and how finely a scene is looked at: instances that are far away show coarser shapes
+/// ([`Scene::levels`]), in the picture and to rays alike.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Detail {
+    /// The eyes; the nearest one counts.
+    pub eyes: Vec<DVec3>,
+    /// The angle of the smallest detail to be seen, radians: a pixel's.
+    pub angle: f64,
+}
+
+impl Detail {
+    /// Metres of the smallest detail to be seen at a point.
+    fn at(&self, point: DVec3) -> f64 {
+        let away = self.eyes.iter().map(|eye| eye.distance(point)).fold(f64::INFINITY, f64::min);
+        self.angle * away
+    }
 }
 
 impl Scene {
@@ -31,6 +53,14 @@ impl Scene {
     /// [`Error::InvalidScene`] as [`Scene::validate`], [`Error::Pose`] as [`Poser::pose`].
     pub fn pose(&self, time_s: f64) -> Result<Pose> {
         Poser::new(self)?.pose(time_s)
+    }
+
+    /// [`Scene::pose`] with the shapes that can be told apart.
+    ///
+    /// # Errors
+    /// As [`Scene::pose`].
+    pub fn pose_for(&self, time_s: f64, detail: Detail) -> Result<Pose> {
+        Poser { detail: Some(detail), ..Poser::new(self)? }.pose(time_s)
     }
 
     /// Triangles that are stored.
@@ -47,6 +77,15 @@ impl Scene {
             node.mesh.and_then(|mesh| self.meshes.get(mesh)).map_or(0, |mesh| mesh.triangles() * copies)
         };
         self.nodes.iter().map(placed).sum()
+    }
+}
+
+impl Pose {
+    /// This pose without any object.
+    #[must_use]
+    pub fn clone_without_objects(&self) -> Self {
+        let (world_from_node, skinned) = (self.world_from_node.clone(), self.skinned.clone());
+        Self { objects: Vec::new(), world_from_node, skinned, bounds: self.bounds }
     }
 }
 
@@ -82,7 +121,9 @@ impl<'s> Poser<'s> {
             }
             plays.push(is_free);
         }
-        Ok(Self { scene, local_bounds, mesh_casts, mesh_morphs, plays, known_bounds: Vec::new() })
+        let outlines = outlines(scene);
+        let (known_bounds, detail) = (Vec::new(), None);
+        Ok(Self { scene, local_bounds, mesh_casts, mesh_morphs, plays, known_bounds, outlines, detail })
     }
 
     /// The scene `time_s` seconds after its clips began; each clip that plays is looped on its own.
@@ -119,14 +160,20 @@ impl<'s> Poser<'s> {
             let world_from_node = pose.world_from_node[index];
             let single = [Trs::IDENTITY];
             let copies: &[Trs] = if node.instances.is_empty() { &single } else { &node.instances };
+            pose.objects.reserve(copies.len());
             for (copy, node_from_local) in copies.iter().enumerate() {
                 let instance = (!node.instances.is_empty()).then_some(copy as u32);
                 let world_from_local = match instance {
                     Some(_) => world_from_node * node_from_local.to_affine(),
                     None => world_from_node,
                 };
+                let shown = match (&shape, instance) {
+                    (None, Some(_)) => self.shown(mesh, &world_from_local),
+                    _ => mesh,
+                };
                 let bounds = match &shape {
                     Some(shape) => shape_bounds(&scene.meshes[mesh], shape, &world_from_local),
+                    None if instance.is_some() => self.instance_bounds(shown, &world_from_local),
                     None => match known.next() {
                         Some((transform, bounds)) if transform == world_from_local => bounds,
                         _ => world_bounds(&scene.meshes[mesh], self.local_bounds[mesh], &world_from_local),
@@ -136,13 +183,13 @@ impl<'s> Poser<'s> {
                     let reason = format!("its mesh has no finite bounds in the world (instance {instance:?})");
                     return Err(self.error(scene.node_element(index), reason));
                 }
-                if shape.is_none() {
+                if shape.is_none() && instance.is_none() {
                     self.known_bounds.push((world_from_local, bounds));
                 }
                 pose.objects.push(Object {
                     node: index,
                     instance,
-                    mesh,
+                    mesh: shown,
                     world_from_local,
                     skinned: shape.as_ref().map(|_| pose.skinned.len()),
                     bounds,
@@ -153,6 +200,19 @@ impl<'s> Poser<'s> {
         }
         pose.bounds = pose.objects.iter().map(|object| object.bounds).reduce(Aabb::union);
         Ok(pose)
+    }
+
+    /// The shape of a mesh that an instance shows.
+    fn shown(&self, mesh: usize, world_from_local: &DAffine3) -> usize {
+        let Some(detail) = &self.detail else { return mesh };
+        let m = world_from_local.matrix3;
+        let scale = m.x_axis.length().max(m.y_axis.length()).max(m.z_axis.length()).max(f64::MIN_POSITIVE);
+        self.scene.shape_of(mesh, detail.at(world_from_local.translation) / scale)
+    }
+
+    fn instance_bounds(&self, mesh: usize, world_from_local: &DAffine3) -> Aabb {
+        let upright = self.outlines[mesh].as_ref().and_then(|outline| outline.bounds(world_from_local));
+        upright.unwrap_or_else(|| world_bounds(&self.scene.meshes[mesh], self.local_bounds[mesh], world_from_local))
     }
 
     fn error(&self, element: impl Into<String>, reason: impl Into<String>) -> Error {
@@ -247,6 +307,20 @@ impl<'s> Poser<'s> {
         let relative = |points: Vec<DVec3>| points.iter().map(|p| (*p - origin).as_vec3().to_array()).collect();
         Ok((SkinnedMesh { origin, positions: posed.into_iter().map(relative).collect(), normals }, bounds))
     }
+}
+
+/// Outlines of the meshes that instances may show, in all their shapes.
+fn outlines(scene: &Scene) -> Vec<Option<Outline>> {
+    let mut outlines = vec![None; scene.meshes.len()];
+    for mesh in scene.nodes.iter().filter(|node| !node.instances.is_empty()).filter_map(|node| node.mesh) {
+        let coarser = scene.levels.get(&mesh).into_iter().flatten().map(|level| level.mesh);
+        for shape in std::iter::once(mesh).chain(coarser) {
+            if outlines[shape].is_none() {
+                outlines[shape] = Outline::of(&scene.meshes[shape]);
+            }
+        }
+    }
+    outlines
 }
 
 /// A normal under a linear map: by its cofactor matrix, which is the inverse transpose up to scale

@@ -31,6 +31,7 @@ impl Scene {
                 || format!("is {width}×{height} pixels, but has {} bytes", texture.rgba.len()),
             )?;
         }
+        self.validate_levels()?;
         self.validate_nodes()?;
         for (i, skin) in self.skins.iter().enumerate() {
             let at = || format!("skins[{i}]");
@@ -76,6 +77,24 @@ impl Scene {
             || element("meshes", index, &mesh.name),
             || "has a weight of a morph target that is not finite".into(),
         )?;
+        Ok(())
+    }
+
+    fn validate_levels(&self) -> Result<()> {
+        let meshes = self.meshes.len();
+        for (&mesh, levels) in &self.levels {
+            let at = || format!("levels of mesh {mesh}");
+            self.check(mesh < meshes, at, || format!("there are {meshes} meshes"))?;
+            let mut before = 0.0;
+            for level in levels {
+                self.check(level.mesh < meshes, at, || format!("show mesh {}, but there are {meshes}", level.mesh))?;
+                self.check(!self.meshes[level.mesh].is_morphed(), at, || "have morph targets".into())?;
+                self.check(level.detail_m.is_finite() && level.detail_m > before, at, || {
+                    format!("are not ordered by growing detail_m: {} follows {before}", level.detail_m)
+                })?;
+                before = level.detail_m;
+            }
+        }
         Ok(())
     }
 

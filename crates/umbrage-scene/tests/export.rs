@@ -104,6 +104,7 @@ fn rich() -> Scene {
     };
     Scene {
         name: "rich".into(),
+        levels: Default::default(),
         meshes: vec![
             Mesh { name: "plain".into(), primitives: vec![primitive(0), primitive(2)], ..Mesh::default() },
             Mesh { primitives: vec![skinned], ..Mesh::default() },
@@ -300,7 +301,8 @@ fn a_real_city_comes_back() {
 
 #[test]
 fn worlds_come_back() {
-    for world in World::ALL {
+    let all = World::ALL.into_iter().filter(|world| !World::LARGE.contains(world));
+    for world in all {
         let (scene, back) = (world.build(), round(&world.build()));
         assert_eq!(scene.placed_triangles(), back.placed_triangles(), "{}", world.name());
         assert_eq!((scene.cameras.len(), scene.lights.len()), (back.cameras.len(), back.lights.len()));

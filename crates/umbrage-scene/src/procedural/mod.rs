@@ -1,10 +1,11 @@
 //! The four worlds of the paper on parallel-split shadow maps (Zhang, Sun, Xu, Lun 2006, section 5
-//! and table 1) and a dense wood beside them, built from nothing: the same triangles on every
-//! machine.
+//! and table 1), a dense wood, and worlds of up to millions of objects, built from nothing: the
+//! same triangles on every machine.
 
 mod chessmen;
 mod desert;
 mod figures;
+mod large;
 mod leaves;
 mod maths;
 mod mine;
@@ -19,7 +20,9 @@ mod terrain;
 mod thicket;
 mod worlds;
 
-use crate::Scene;
+use crate::{Result, Scene};
+
+pub use large::{Watch, WorldOptions};
 
 /// A procedural world.
 ///
@@ -41,13 +44,29 @@ pub enum World {
     /// one mesh; 1.1 million triangles. It is no world of the paper: it measures what hidden leaves
     /// cost.
     Thicket,
+    /// A million trees on 100 km² of mountains, or as many as [`WorldOptions::trees`] says; four
+    /// shapes of each kind.
+    Forest,
+    /// 100,000 buildings on a grid of streets, or as many as [`WorldOptions::buildings`] says.
+    CityBlocks,
 }
 
 impl World {
     /// The paper's worlds, in its order.
     pub const PAPER: [Self; 4] = [Self::RobotWar, Self::Chessboard, Self::Knights, Self::MiningTerrain];
     /// Every world.
-    pub const ALL: [Self; 5] = [Self::RobotWar, Self::Chessboard, Self::Knights, Self::MiningTerrain, Self::Thicket];
+    pub const ALL: [Self; 7] = [
+        Self::RobotWar,
+        Self::Chessboard,
+        Self::Knights,
+        Self::MiningTerrain,
+        Self::Thicket,
+        Self::Forest,
+        Self::CityBlocks,
+    ];
+    /// Those whose number of objects is an option alone: they take seconds and hundreds of
+    /// megabytes to build.
+    pub const LARGE: [Self; 2] = [Self::Forest, Self::CityBlocks];
 
     /// As it is called on the command line.
     #[must_use]
@@ -58,6 +77,8 @@ impl World {
             Self::Knights => "knights",
             Self::MiningTerrain => "mining-terrain",
             Self::Thicket => "thicket",
+            Self::Forest => "forest",
+            Self::CityBlocks => "city-blocks",
         }
     }
 
@@ -76,6 +97,8 @@ impl World {
             Self::Knights => "Knights",
             Self::MiningTerrain => "Mining Terrain",
             Self::Thicket => "Thicket",
+            Self::Forest => "Forest",
+            Self::CityBlocks => "City Blocks",
         }
     }
 
@@ -86,18 +109,39 @@ impl World {
             Self::RobotWar | Self::Chessboard | Self::Knights => (1.0, 800.0),
             Self::MiningTerrain => (1.0, 1000.0),
             Self::Thicket => (0.1, 200.0),
+            Self::Forest => (0.5, 4000.0),
+            Self::CityBlocks => (0.5, 3000.0),
         }
     }
 
-    /// Builds the world.
+    /// Builds the world with its own number of objects.
     #[must_use]
     pub fn build(self) -> Scene {
+        self.build_counted(&WorldOptions::default(), &|_| ())
+    }
+
+    /// Builds the world with a number of objects that [`WorldOptions`] may give, and says how far
+    /// it is.
+    ///
+    /// # Errors
+    /// [`crate::Error::WorldOption`] for a number that is not of this world, or out of its limits.
+    pub fn build_with(self, options: &WorldOptions, watch: Watch<'_>) -> Result<Scene> {
+        options.check(self.name())?;
+        Ok(self.build_counted(options, watch))
+    }
+
+    fn build_counted(self, options: &WorldOptions, watch: Watch<'_>) -> Scene {
         match self {
-            Self::RobotWar => worlds::robot_war(),
+            Self::RobotWar => match options.robots {
+                None => worlds::robot_war(),
+                Some(robots) => large::robots::robot_war(robots, watch),
+            },
             Self::Chessboard => worlds::chessboard(),
             Self::Knights => desert::knights(),
             Self::MiningTerrain => mine::mining_terrain(),
             Self::Thicket => thicket::thicket(),
+            Self::Forest => large::forest::forest(options.trees.unwrap_or(large::forest::TREES), watch),
+            Self::CityBlocks => large::city::city_blocks(options.buildings.unwrap_or(large::city::BUILDINGS), watch),
         }
     }
 }

@@ -98,6 +98,11 @@ impl Terrain {
         }
     }
 
+    /// The place on the ground that is nearest to one that may lie beyond it.
+    pub(super) fn nearest(&self, place: DVec2) -> DVec2 {
+        place.clamp(DVec2::splat(self.coordinate(0)), DVec2::splat(self.coordinate(self.posts() - 1)))
+    }
+
     /// Heights of a square's corners: north-west, north-east, south-west, south-east.
     fn corners(&self, column: usize, row: usize) -> [f64; 4] {
         let height = |column, row| self.heights[row * self.posts() + column];

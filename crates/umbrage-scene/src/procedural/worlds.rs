@@ -26,19 +26,7 @@ pub(super) fn robot_war() -> Scene {
     let sand = stage.paint("packed earth", 0xA2_96_84);
     Terrain::new(EDGE_M, 8, 3, |_| 0.0).place(&mut stage, &Surface { material: sand, tint: None, cast_shadow: false });
 
-    let metal = stage.paint("gun metal", 0x4A_4D_52);
-    let glass = stage.paint("visor", 0xD8_A2_3A);
-    let armours = [
-        stage.paint("rust red armour", 0x8C_58_4A),
-        stage.paint("olive armour", 0x74_78_58),
-        stage.paint("steel blue armour", 0x62_72_80),
-    ];
-    let meshes: Vec<usize> = armours
-        .iter()
-        .flat_map(|&armour| Make::ALL.map(|make| robot::robot(make, Livery { armour, metal, glass })))
-        .map(|mesh| stage.mesh(mesh))
-        .collect();
-
+    let meshes = robot_meshes(&mut stage);
     let mut random = Random::new(160);
     let mut scales: Vec<f64> = (0..160).map(|_| random.between(1.3, 2.7)).collect();
     scales.sort_by(|a, b| b.total_cmp(a));
@@ -50,13 +38,34 @@ pub(super) fn robot_war() -> Scene {
         stage.place(format!("robot {i}"), mesh, standing(dvec3(place.x, 0.0, place.y), yaw, scale));
     }
 
-    stage.sun(SkyPoint { bearing: 35.0, elevation: 31.0 }, SkyPoint { bearing: 130.0, elevation: 58.0 });
+    robot_sun(&mut stage);
     stage.camera("near", dvec3(129.3, 9.6, -149.4), dvec3(140.5, -14.6, -53.1));
     stage.camera("middle", dvec3(317.3, 36.0, 411.3), dvec3(229.6, 16.4, 367.4));
     stage.camera("far", dvec3(86.1, 75.0, -263.1), dvec3(146.7, 46.5, -188.7));
     stage.camera("dueling", dvec3(-549.4, 19.3, -139.2), dvec3(-463.7, 17.5, -190.7));
     stage.camera("aerial", dvec3(-250.0, 330.0, 520.0), dvec3(0.0, 0.0, -20.0));
     stage.scene
+}
+
+/// Every make of robot in every colour.
+pub(super) fn robot_meshes(stage: &mut Stage) -> Vec<usize> {
+    let metal = stage.paint("gun metal", 0x4A_4D_52);
+    let glass = stage.paint("visor", 0xD8_A2_3A);
+    let armours = [
+        stage.paint("rust red armour", 0x8C_58_4A),
+        stage.paint("olive armour", 0x74_78_58),
+        stage.paint("steel blue armour", 0x62_72_80),
+    ];
+    armours
+        .iter()
+        .flat_map(|&armour| Make::ALL.map(|make| robot::robot(make, Livery { armour, metal, glass })))
+        .map(|mesh| stage.mesh(mesh))
+        .collect()
+}
+
+/// The sun of Robot War.
+pub(super) fn robot_sun(stage: &mut Stage) {
+    stage.sun(SkyPoint { bearing: 35.0, elevation: 31.0 }, SkyPoint { bearing: 130.0, elevation: 58.0 });
 }
 
 /// A game on a board of 700 m × 700 m, all men still on it.

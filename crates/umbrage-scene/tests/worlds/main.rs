@@ -1,8 +1,9 @@
-//! The four worlds of the paper, and the wood beside them: what they hold, that their surfaces are
+//! The four worlds of the paper, the wood and the large ones: what they hold, that their surfaces are
 //! sound, that things stand where they should.
 
 mod census;
 mod ground;
+mod large;
 mod staging;
 mod surfaces;
 mod thicket;

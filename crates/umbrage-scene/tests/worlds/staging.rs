@@ -81,7 +81,7 @@ fn things_are_inside_and_apart() {
             World::Chessboard => 700.0,
             World::Knights => 1265.0,
             World::MiningTerrain => 1600.0,
-            World::Thicket => 120.0,
+            World::Thicket | World::Forest | World::CityBlocks => unreachable!("it is none of the paper's"),
         };
         for &time in moments(*world) {
             let pose = scene.pose(time).expect("a world has a pose");
