@@ -117,7 +117,7 @@ pub use mask::{MaskFrame, MaskNormals, ShadowMask};
 pub use moments::MomentStorage;
 pub use occluders::{Occluder, Occluders, stored_runs, stored_runs_layout, stored_runs_wgsl};
 pub use options::{FrameOptions, LightMaps, texture_format};
-pub use shadows::{Inputs, ShadowFrame, ShadowMap, Shadows};
+pub use shadows::{Inputs, ShadowFrame, ShadowMap, Shadows, ShapeDraw};
 pub use umbrage;
 pub use umbrage::config::{Filter, LightKind, ShadowConfig};
 pub use umbrage_shaders::layout::{MAX_COORDINATES, StoredRun, StoredSlot};

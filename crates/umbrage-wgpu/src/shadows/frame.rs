@@ -1,5 +1,6 @@
 //! A frame that was prepared, and its maps.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -81,6 +82,22 @@ impl<'a> ShadowFrame<'a> {
     }
 }
 
+/// Casters of a map that are drawn in one shape.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShapeDraw<S> {
+    /// The shape that was chosen.
+    pub shape: S,
+    /// The casters with their instances, as [`ShadowMap::casters`] has them.
+    pub casters: Vec<(u32, Range<u32>)>,
+}
+
+impl<S> ShapeDraw<S> {
+    /// The casters as ranges of neighbours: see [`ShadowMap::rows`], whose layouts they are for.
+    pub fn rows(&self) -> impl Iterator<Item = Range<u32>> + '_ {
+        draws::rows(&self.casters)
+    }
+}
+
 /// One pass that draws casters: into one map, or with a layered, instanced or mixed layout into
 /// those of several splits at once.
 #[derive(Clone, Copy, Debug)]
@@ -110,6 +127,16 @@ impl<'a> ShadowMap<'a> {
         }
         let (_, first) = self.place();
         first..first + self.shadows.maps.passes()[self.pass].splits().len()
+    }
+
+    /// Edge of a texel in metres, the longer one; of several splits the finest's. What a caster
+    /// has that is smaller leaves no shadow of its own: draw a coarser shape of it
+    /// ([`ShadowMap::shapes`]).
+    #[must_use]
+    pub fn texel_m(&self) -> f64 {
+        let splits = &self.shadows.plans[self.light()].splits;
+        let texels = splits.iter().take(self.splits().end).skip(self.splits().start);
+        texels.map(|split| split.texel_m.max_element()).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether it is a part of what is kept of a map, and not a map itself.
@@ -145,6 +172,37 @@ impl<'a> ShadowMap<'a> {
     /// with the instances that it is drawn with.
     pub fn casters(&self) -> impl ExactSizeIterator<Item = (u32, Range<u32>)> + use<'a> {
         self.shadows.draws.of_pass(self.pass).iter().cloned()
+    }
+
+    /// What to draw where an application has coarser shapes of its casters: `choose` gets a caster
+    /// and the edge of a texel ([`ShadowMap::texel_m`]) and says which shape the map shows. Draws
+    /// come shape by shape, each with its casters in the order of [`ShadowMap::casters`].
+    ///
+    /// A shape whose outline differs from the finest by less than a quarter of a texel leaves the
+    /// same shadow but for the texels along its edge. With [`umbrage::config::Cache::Kept`] the
+    /// choice may depend on nothing else: what is kept would show another shape than what is drawn
+    /// anew.
+    ///
+    /// ```no_run
+    /// # use umbrage_wgpu::{ShadowMap, wgpu};
+    /// # struct Mesh { indices: u32, detail_m: f64 }
+    /// # fn draw(map: &ShadowMap<'_>, pass: &mut wgpu::RenderPass<'_>, meshes: &[Mesh]) {
+    /// // Coarser meshes follow finer ones.
+    /// let coarsest = |_caster, texel_m| meshes.iter().rposition(|mesh| mesh.detail_m <= 0.25 * texel_m).unwrap_or(0);
+    /// for draw in map.shapes(coarsest) {
+    ///     for rows in draw.rows() {
+    ///         pass.draw_indexed(0..meshes[draw.shape].indices, 0, rows);
+    ///     }
+    /// }
+    /// # }
+    /// ```
+    pub fn shapes<S: Ord>(&self, mut choose: impl FnMut(u32, f64) -> S) -> Vec<ShapeDraw<S>> {
+        let texel_m = self.texel_m();
+        let mut by_shape: BTreeMap<S, Vec<(u32, Range<u32>)>> = BTreeMap::new();
+        for (caster, instances) in self.casters() {
+            by_shape.entry(choose(caster, texel_m)).or_default().push((caster, instances));
+        }
+        by_shape.into_iter().map(|(shape, casters)| ShapeDraw { shape, casters }).collect()
     }
 
     /// The casters as ranges of [`crate::Inputs::casters`], for an application whose instance

@@ -11,7 +11,7 @@ use umbrage::config::{LightKind, Rebuilds, ShadowConfig};
 use umbrage::{Held, Keeper, KeptFrame, KeptRegion, PlanInputs, Planner, PlannerOptions, ShadowPlan};
 
 use draws::Draws;
-pub use frame::{ShadowFrame, ShadowMap};
+pub use frame::{ShadowFrame, ShadowMap, ShapeDraw};
 pub use inputs::Inputs;
 
 use crate::{Error, FrameOptions, LightMaps, Occluders, Result, ShadowMaps};
