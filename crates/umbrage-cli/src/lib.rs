@@ -24,6 +24,7 @@ pub mod truth;
 pub mod tune;
 #[cfg(feature = "view")]
 pub mod view;
+pub mod world_args;
 pub mod worlds;
 
 use args::{Args, Command};

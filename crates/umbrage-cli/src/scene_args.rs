@@ -12,7 +12,7 @@ use umbrage_lab::{
 use umbrage_scene::procedural::World;
 use umbrage_scene::{EXTENSIONS, GltfOptions, HeightMapOptions, OpenOptions};
 
-use crate::switch::Switch;
+use crate::{switch::Switch, world_args::WorldArgs};
 
 /// Scene, picture size, camera, light and time.
 #[derive(Clone, Debug, clap::Args)]
@@ -38,6 +38,9 @@ pub struct SceneArgs {
     /// glTF: allow its files to lie outside its folder, such as ../textures/bark.png
     #[arg(long, help_heading = "Scene")]
     pub parent_folders: bool,
+    /// Numbers of objects.
+    #[command(flatten)]
+    pub world: WorldArgs,
     /// Move the scene, its cameras and lights by this many metres, to test shadows far from the
     /// world's origin; --eye, --target and --path are not moved
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Scene")]
@@ -171,6 +174,7 @@ impl SceneArgs {
                     texture_bytes: u64::from(self.texture_memory) << 20,
                     parent_folders: self.parent_folders,
                 },
+                world: self.world.into(),
             },
             move_scene: self.move_scene,
             time_s: self.time,

@@ -12,7 +12,7 @@ use umbrage_lab::{
 };
 use umbrage_scene::{HeightMapOptions, OpenOptions};
 
-use crate::scene_args::light_choice;
+use crate::{scene_args::light_choice, world_args::WorldArgs};
 
 /// Views, as typed.
 #[derive(Clone, Debug, clap::Args)]
@@ -26,6 +26,9 @@ pub struct ShotArgs {
     /// Height maps: metres added to every height
     #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
     pub height_offset: Option<f64>,
+    /// Numbers of objects.
+    #[command(flatten)]
+    pub world: WorldArgs,
     /// Move scenes, their cameras and lights by this many metres, to test shadows far from the
     /// world's origin; --eye, --target and --path are not moved
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true, help_heading = "Scene")]
@@ -140,6 +143,7 @@ impl ShotArgs {
                     height_offset: self.height_offset,
                     ..HeightMapOptions::default()
                 },
+                world: self.world.into(),
                 ..OpenOptions::default()
             },
             move_scene: self.move_scene,

@@ -8,11 +8,11 @@ use umbrage_lab::{
     output::{self, Staged, numbered_file},
     picture::{png, side_by_side},
     progress,
+    reach::truth_for,
     report::{TruthReport, TruthTimesMs, to_json},
     scene_setup::SceneSetup,
     sun_disc::sun_disc,
 };
-use umbrage_truth::Truth;
 
 use crate::{scene_options::SceneOptions, shadow_args::ShadowArgs};
 
@@ -42,7 +42,8 @@ pub fn run(args: &TruthArgs) -> Result<()> {
     output::check(&files, &[], &inputs)?;
     let setup = SceneSetup::open_views(&request)?;
     let began = Instant::now();
-    let truth = Truth::build(&setup.scene, &setup.pose, setup.shots[0].view.eye())?;
+    let views: Vec<_> = setup.shots.iter().flat_map(|shot| shot.views().map(|(_, view)| (view, shot.light))).collect();
+    let truth = truth_for(&setup.scene, &setup.pose, &views)?;
     let build = began.elapsed();
     let mut staged = Staged::default();
     let shots = || setup.shots.iter().filter(|shot| setup.is_wanted(shot));

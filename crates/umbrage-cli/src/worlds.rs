@@ -7,7 +7,7 @@ use umbrage_lab::{
     failure::{Failure, Result},
     output::{self, Staged},
 };
-use umbrage_scene::procedural::World;
+use umbrage_scene::procedural::{World, WorldOptions};
 
 use crate::print::print;
 
@@ -51,7 +51,13 @@ fn names() -> Vec<String> {
 fn list() -> Result<()> {
     let mut text = String::new();
     for world in World::ALL {
-        let scene = world.build();
+        // Cameras do not depend on how many objects there are.
+        let few = match world {
+            World::Forest => WorldOptions { trees: Some(1), ..WorldOptions::default() },
+            World::CityBlocks => WorldOptions { buildings: Some(1), ..WorldOptions::default() },
+            _ => WorldOptions::default(),
+        };
+        let scene = world.build_with(&few, &|_| ())?;
         let cameras: Vec<&str> = scene.cameras.iter().map(|camera| camera.name.as_str()).collect();
         text += &format!("{}\t{}\n", world.name(), cameras.join(" "));
     }

@@ -49,6 +49,11 @@ fn options_that_say_nonsense() {
         ("--path path.json --eye-height nan", &["--eye-height"]),
         ("--path nowhere.json", &["nowhere.json"]),
         ("--path tiny.glb", &["tiny.glb"]),
+        // Numbers of objects.
+        ("--trees 5", &["trees", "forest"]),
+        ("--robots 0", &["--robots"]),
+        ("--robots 100001", &["--robots"]),
+        ("--buildings many", &["--buildings"]),
         // Size, time, light.
         ("--size 0x600", &["--size"]),
         ("--size -800x600", &["--size"]),

@@ -10,7 +10,7 @@ use crate::{
     choose::{named, several},
     failure::{Failure, Result},
     lights::{self, NamedLight},
-    notes,
+    notes, open,
     report::{CameraReport, ShotReport, SunShown},
     scene_request::{CameraChoice, DEFAULT_FAR, DEFAULT_FOV, DEFAULT_NEAR, SceneRequest},
 };
@@ -106,19 +106,17 @@ impl SceneSetup {
             CameraChoice::Path { file, .. } => Some(CameraPath::load(file)?),
             _ => None,
         };
-        let scene = umbrage_scene::open(&request.scene, &request.files)?;
+        let scene = open::open(&request.scene, &request.files, request.move_scene)?;
         // At once, for they may say why what follows fails.
         notes::say(&scene.notes);
-        let scene = match request.move_scene {
-            Some(by) => scene.moved(by),
-            None => scene,
-        };
         let pose = scene.pose(request.time_s)?;
         let mut notes = scene.notes.clone();
         let frame_views = frame_views(request, &scene, &pose, path.as_ref(), &mut notes)?;
         let lights = lights::chosen(request, &scene, &pose, path.as_ref(), &mut notes)?;
         notes::say(&notes);
         let mut shots = under_the_light(request, frame_views, &lights)?;
+        let views = shots.iter().flat_map(|shot| shot.views().map(|(_, view)| view));
+        let pose = open::pose_seen(&scene, request.time_s, views, request.size)?.unwrap_or(pose);
         if let Some(only) = request.only_frame {
             let frames = shots.len();
             shots.truncate(only as usize + 1);
@@ -155,7 +153,7 @@ impl SceneSetup {
     #[must_use]
     pub fn frame<'s>(&'s self, shot: &Shot, view: &'s View, shadows_on: bool, tint: bool) -> Frame<'s> {
         let light = Lamp { light: shot.light, ..self.lights[0].lamp };
-        Frame { pose: &self.pose, view, light, more_lights: &self.more_lights, shadows_on, tint }
+        Frame { pose: &self.pose, moved: Some(&[]), view, light, more_lights: &self.more_lights, shadows_on, tint }
     }
 
     /// The part of a report that says what was looked at.

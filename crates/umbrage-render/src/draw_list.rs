@@ -124,8 +124,21 @@ impl Instances {
         leads: bool,
         objects: impl Iterator<Item = Copies>,
     ) -> Vec<Run> {
+        self.grouped_as(pose, origin, leads, objects, |object| object.mesh)
+    }
+
+    /// [`Instances::grouped`] with the meshes that `shape` says.
+    pub fn grouped_as(
+        &mut self,
+        pose: &Pose,
+        origin: DVec3,
+        leads: bool,
+        objects: impl Iterator<Item = Copies>,
+        shape: impl Fn(&Object) -> usize,
+    ) -> Vec<Run> {
+        let key = |object: &Object| run_key_as(object, shape(object));
         let mut keyed: Vec<_> =
-            objects.enumerate().map(|(rank, (i, codes))| (run_key(&pose.objects[i]), rank, i, codes)).collect();
+            objects.enumerate().map(|(rank, (i, codes))| (key(&pose.objects[i]), rank, i, codes)).collect();
         keyed.sort_unstable_by_key(|&(key, rank, ..)| (key, rank));
         // The rank of each run's first object: the runs below begin where the key changes.
         let mut ranks: Vec<usize> = Vec::new();
@@ -196,7 +209,11 @@ fn instance_buffer(gpu: &Gpu, count: u64) -> wgpu::Buffer {
 }
 
 fn run_key(object: &Object) -> (Source, bool) {
-    let source = object.skinned.map_or(Source::Mesh(object.mesh), Source::Skinned);
+    run_key_as(object, object.mesh)
+}
+
+fn run_key_as(object: &Object, mesh: usize) -> (Source, bool) {
+    let source = object.skinned.map_or(Source::Mesh(mesh), Source::Skinned);
     (source, object.world_from_local.matrix3.determinant() < 0.0)
 }
 

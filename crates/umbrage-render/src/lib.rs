@@ -7,6 +7,7 @@
 
 mod capture;
 mod casters;
+mod coarser;
 mod contact;
 mod cull;
 mod draw_list;

@@ -129,6 +129,7 @@ fn what_cannot_be_interpolated_is_refused() {
     let spot = SpotLight::new(DVec3::Y * 5.0, DVec3::NEG_Y, 0.6, 20.0).expect("a spot light");
     let frame = Frame {
         pose: &stage.pose,
+        moved: None,
         view: &view,
         light: umbrage::Light::Spot(spot).into(),
         more_lights: &[],

@@ -113,7 +113,8 @@ impl<'a> Rooms<'a> {
         let lens = Frustum::perspective(1.4, aspect, 0.05, 100.0).expect("a lens");
         let view = View::look_at_upright(eye.into(), target.into(), lens).expect("a view");
         let light = DirectionalLight::new(sun).expect("a direction").into();
-        let frame = Frame { pose: &pose, view: &view, light, more_lights: &[], shadows_on: true, tint: false };
+        let frame =
+            Frame { pose: &pose, moved: None, view: &view, light, more_lights: &[], shadows_on: true, tint: false };
         self.renderer.restart();
         let outputs = Outputs { mask: true, ..Outputs::default() };
         let mask = self.renderer.render(&frame, outputs).expect("a frame").mask.expect("a mask was asked for");

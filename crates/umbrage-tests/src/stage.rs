@@ -74,7 +74,7 @@ impl Stage {
     /// A view as a renderer takes it.
     #[must_use]
     pub fn frame<'a>(&'a self, view: &'a View, tint: bool) -> Frame<'a> {
-        Frame { pose: &self.pose, view, light: self.sun.into(), more_lights: &[], shadows_on: true, tint }
+        Frame { pose: &self.pose, moved: None, view, light: self.sun.into(), more_lights: &[], shadows_on: true, tint }
     }
 
     /// The view depths that the world's cameras show.

@@ -37,7 +37,7 @@ impl Room {
     }
 
     fn frame<'a>(&'a self, view: &'a View, light: Light, more_lights: &'a [Lamp]) -> Frame<'a> {
-        Frame { pose: &self.pose, view, light: light.into(), more_lights, shadows_on: true, tint: false }
+        Frame { pose: &self.pose, moved: None, view, light: light.into(), more_lights, shadows_on: true, tint: false }
     }
 }
 

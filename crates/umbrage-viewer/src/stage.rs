@@ -174,11 +174,7 @@ pub fn open(request: SceneRequest, enter: impl Fn(Step)) -> Result<Stage, Failur
         CameraChoice::Path { file, .. } => Some(CameraPath::load(file)?),
         _ => None,
     };
-    let scene = umbrage_scene::open(&request.scene, &request.files)?;
-    let scene = match request.move_scene {
-        Some(by) => scene.moved(by),
-        None => scene,
-    };
+    let scene = umbrage_lab::open::open(&request.scene, &request.files, request.move_scene)?;
     enter(Step::Posing);
     let pose = scene.pose(request.time_s)?;
     let mut notes = scene.notes.clone();

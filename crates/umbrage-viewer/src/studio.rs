@@ -313,6 +313,7 @@ impl Set<'_> {
         let more_lights: Vec<Lamp> = lights[1..].iter().map(|light| light.lamp).collect();
         let frame = Frame {
             pose,
+            moved: None,
             view: &shot.view,
             light: lights[0].lamp,
             more_lights: &more_lights,

@@ -24,6 +24,7 @@ use crate::{
     output::Staged,
     picture::png,
     progress,
+    reach::truth_for,
     report::to_json,
     scene_setup,
     session::adapter_description,
@@ -123,7 +124,7 @@ impl Run<'_> {
             before.into_iter().flatten().for_each(|finished| self.restore(finished));
             return Ok(());
         }
-        let truth = Truth::build(&set.scene, &set.pose, first.views[0].eye())?;
+        let truth = truth_for(&set.scene, &set.pose, &set.views())?;
         let mut renderers = Vec::new();
         for technique in self.techniques {
             let shadows = technique.shadows.clone().under_sun(self.settings.sun_angle);
@@ -191,6 +192,7 @@ impl Run<'_> {
             let is_shown = self.shown.contains(&[scene, of, k]);
             let frame = Frame {
                 pose: &set.pose,
+                moved: Some(&[]),
                 view,
                 light: series.light,
                 more_lights: &[],

@@ -10,7 +10,7 @@ use umbrage_scene::{CameraPath, Pose, Scene};
 use crate::{
     failure::{Failure, Result},
     lights::{self, NamedLight},
-    notes,
+    notes, open,
     scene_request::{CameraChoice, SceneRequest},
     scene_setup,
 };
@@ -73,6 +73,14 @@ pub struct SceneShots {
     pub series: Vec<Series>,
     /// What the loader left out and what was invented.
     pub notes: Vec<String>,
+}
+
+impl SceneShots {
+    /// All views, each under its light.
+    #[must_use]
+    pub fn views(&self) -> Vec<(&View, Light)> {
+        self.series.iter().flat_map(|series| series.views.iter().map(|view| (view, series.light.light))).collect()
+    }
 }
 
 /// One camera under one sun: a single view, or the frames of a walk.
@@ -157,11 +165,7 @@ impl ShotRequest {
     /// [`Failure::Input`] naming the file or option at fault.
     pub fn open(&self, name: &str) -> Result<SceneShots> {
         let path = self.path().map(CameraPath::load).transpose()?;
-        let scene = umbrage_scene::open(name, &self.base.files)?;
-        let scene = match self.base.move_scene {
-            Some(by) => scene.moved(by),
-            None => scene,
-        };
+        let scene = open::open(name, &self.base.files, self.base.move_scene)?;
         let pose = scene.pose(self.base.time_s)?;
         let mut notes = scene.notes.clone();
         let mut walks = Vec::new();
@@ -199,6 +203,8 @@ impl ShotRequest {
             }
         }
         notes::say(&notes);
+        let views = series.iter().flat_map(|series| &series.views);
+        let pose = open::pose_seen(&scene, self.base.time_s, views, self.base.size)?.unwrap_or(pose);
         Ok(SceneShots { name: name.to_owned(), scene, pose, series, notes })
     }
 

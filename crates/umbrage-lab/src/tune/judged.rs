@@ -2,7 +2,6 @@
 
 use indicatif::ProgressBar;
 use umbrage_render::{Frame, Gpu, Lamp, Outputs, ProbePoint, Renderer, Samples};
-use umbrage_truth::Truth;
 
 use super::{
     Settings,
@@ -19,6 +18,7 @@ use crate::{
     },
     failure::{Failure, Result},
     lights::NamedLight,
+    reach::truth_for,
     technique::{ShadowOptions, ShadowRequest},
 };
 
@@ -56,8 +56,7 @@ impl<'a> JudgedScene<'a> {
     /// # Errors
     /// [`Failure`] if the scene cannot be traced.
     pub fn trace(set: &'a SceneShots, settings: &Settings, bar: &ProgressBar) -> Result<Self> {
-        let Some(first) = set.series.first() else { return Ok(Self { set, series: Vec::new() }) };
-        let truth = Truth::build(&set.scene, &set.pose, first.views[0].eye())?;
+        let truth = truth_for(&set.scene, &set.pose, &set.views())?;
         let mut all = Vec::new();
         for series in &set.series {
             let mut frames = Vec::new();
@@ -103,6 +102,7 @@ impl<'a> JudgedScene<'a> {
             for frame in &series.frames {
                 let drawn = Frame {
                     pose: &self.set.pose,
+                    moved: Some(&[]),
                     view: &frame.judged.view,
                     light: series.light,
                     more_lights: &[],

@@ -5,10 +5,13 @@ use std::ops::Range;
 
 use glam::DVec3;
 use umbrage::Aabb;
+use umbrage::config::Edges;
 use umbrage_scene::{Object, Pose};
 use umbrage_wgpu::{MapPass, ShadowMap};
 
+use super::world::is_many;
 use super::{Frame, Gathered, Renderer};
+use crate::coarser::Coarser;
 use crate::draw_list::{Parts, Run};
 use crate::geometry::GpuPrimitive;
 use crate::shadow_mesh::{Cluster, descend};
@@ -25,21 +28,40 @@ const PART: u32 = 128;
 
 impl Renderer {
     /// What each pass over the maps draws; nothing where shadows are off.
-    pub(crate) fn caster_runs(&mut self, frame: &Frame<'_>, origin: DVec3, objects: &[usize]) -> Vec<Vec<Run>> {
+    pub(crate) fn caster_runs(&mut self, frame: &Frame<'_>, origin: DVec3, objects: &Gathered) -> Vec<Vec<Run>> {
         if !frame.shadows_on {
             return Vec::new();
         }
+        let coarser = std::mem::take(&mut self.coarser);
+        let runs = self.runs_of_maps(frame, origin, objects, &coarser);
+        self.coarser = coarser;
+        runs
+    }
+
+    fn runs_of_maps(
+        &mut self,
+        frame: &Frame<'_>,
+        origin: DVec3,
+        objects: &Gathered,
+        coarser: &Coarser,
+    ) -> Vec<Vec<Run>> {
         let pose = frame.pose;
+        // Texels that name triangles name those of the shape that is seen.
+        let names_casters = self.shadows.maps().edges() == Edges::Exact;
         // Of several lights or faces, objects are drawn whole.
         let is_one_light = self.shadows.maps().map_count() == self.shadows.maps().splits();
         let shown = self.shadows.frame();
         let passes = self.shadows.maps().passes();
         let mut all = vec![Vec::new(); shown.pass_count()];
         for map in shown.maps() {
-            let copies = map.casters().map(|(caster, codes)| (objects[caster as usize], codes));
+            let copies = map.casters().map(|(caster, codes)| (objects.object(caster), codes));
+            let shape = |object: &Object| match names_casters {
+                true => object.mesh,
+                false => coarser.shape(object, map.texel_m()),
+            };
             let leads = passes.get(map.index()).is_some_and(MapPass::leads);
             if !is_one_light || map.splits().len() > 1 || leads {
-                all[map.index()] = self.instances.grouped(pose, origin, leads, copies);
+                all[map.index()] = self.instances.grouped_as(pose, origin, leads, copies, shape);
                 continue;
             }
             let (mut whole, mut in_part) = (Vec::new(), Vec::new());
@@ -52,7 +74,7 @@ impl Renderer {
                     None => whole.push((index, codes)),
                 }
             }
-            let mut runs = self.instances.grouped(pose, origin, false, whole.into_iter());
+            let mut runs = self.instances.grouped_as(pose, origin, false, whole.into_iter(), shape);
             for (index, codes, parts) in in_part {
                 let own = self.instances.grouped(pose, origin, false, std::iter::once((index, codes)));
                 runs.extend(own.into_iter().map(|run| Run { parts: Some(parts.clone()), ..run }));
@@ -63,11 +85,11 @@ impl Renderer {
     }
 
     /// Adds what visible objects are made of, for the planner; false if no caster may be drawn in
-    /// part.
-    pub(super) fn receiver_clusters(&self, pose: &Pose, gathered: &Gathered, parts: &mut Vec<Aabb>) -> bool {
-        let Gathered { casters, visible, .. } = gathered;
+    /// part. Of thousands of objects each is a cluster of its own: the planner has their boxes.
+    pub(super) fn receiver_clusters(&self, pose: &Pose, visible: &[usize], parts: &mut Vec<Aabb>) -> bool {
         let (meshes, maps) = (&self.scene.meshes, self.shadows.maps());
-        if maps.map_count() > maps.splits() || !casters.iter().any(|&i| has_parts(&pose.objects[i], meshes)) {
+        let may_be_in_part = |object: &Object| self.is_listed(pose, object) && has_parts(object, meshes);
+        if maps.map_count() > maps.splits() || is_many(pose) || !pose.objects.iter().any(may_be_in_part) {
             return false;
         }
         for object in visible.iter().map(|&index| &pose.objects[index]) {

@@ -1,6 +1,6 @@
 //! What a frame is planned from. The lists are kept, so that steady frames allocate nothing.
 
-use umbrage::{Aabb, Light, View};
+use umbrage::{Aabb, Layers, Light, View};
 use umbrage_scene::Pose;
 
 use super::{Frame, Renderer};
@@ -11,8 +11,11 @@ use crate::{Error, Result};
 /// What a frame is planned from.
 #[derive(Default)]
 pub(crate) struct Gathered {
-    /// Objects that a plan may name as casters, by their numbers in the pose.
-    pub casters: Vec<usize>,
+    /// Objects that a plan may name as casters, by their numbers in the pose; empty where a set
+    /// holds them, whose casters are called by these numbers.
+    casters: Vec<usize>,
+    /// Whether a set holds them.
+    is_set: bool,
     /// Objects that the view may show, by the depth of their centres, near ones first.
     pub visible: Vec<usize>,
     pub lamps: Vec<Lamp>,
@@ -29,6 +32,11 @@ pub(crate) struct Gathered {
 }
 
 impl Gathered {
+    /// The object that a caster of a plan is.
+    pub fn object(&self, caster: u32) -> usize {
+        if self.is_set { caster as usize } else { self.casters[caster as usize] }
+    }
+
     pub fn clusters(&self) -> Option<&[Aabb]> {
         self.clusters.as_deref()
     }
@@ -40,21 +48,25 @@ impl Gathered {
     /// [`Error::LampSlots`]; and as `Renderer::follow`.
     pub fn gather(&mut self, renderer: &mut Renderer, frame: &Frame<'_>, asks_surfaces: bool) -> Result<()> {
         let pose = frame.pose;
+        renderer.follow(frame)?;
         self.casters.clear();
-        self.casters.extend(renderer.caster_indices(pose));
-        self.sort_near_to_far(pose, frame.view);
+        self.is_set = renderer.uses_set(pose);
+        if !self.is_set {
+            self.casters.extend(renderer.caster_indices(pose));
+        }
+        self.sort_near_to_far(renderer, pose, frame.view);
         self.gather_lamps(frame, renderer.shadows.lights().len())?;
         let mut clusters = self.clusters.take().unwrap_or_else(|| std::mem::take(&mut self.spare));
         clusters.clear();
-        if asks_surfaces && renderer.receiver_clusters(pose, self, &mut clusters) {
+        if asks_surfaces && renderer.receiver_clusters(pose, &self.visible, &mut clusters) {
             self.clusters = Some(clusters);
         } else {
             self.spare = clusters;
         }
         self.caster_boxes.clear();
         self.receiver_boxes.clear();
-        if renderer.keeps_maps() {
-            return renderer.follow(pose);
+        if self.is_set {
+            return Ok(());
         }
         self.caster_boxes.extend(self.casters.iter().map(|&object| pose.objects[object].bounds));
         self.receiver_boxes.extend(pose.objects.iter().map(|object| object.bounds));
@@ -72,10 +84,21 @@ impl Gathered {
         Ok(())
     }
 
-    fn sort_near_to_far(&mut self, pose: &Pose, view: &View) {
-        let seen = pose.objects.iter().enumerate().filter(|(_, object)| cull::may_be_seen(view, &object.bounds));
-        self.depths.clear();
-        self.depths.extend(seen.map(|(index, object)| (view.view_depth(object.bounds.center()), index)));
+    fn sort_near_to_far(&mut self, renderer: &Renderer, pose: &Pose, view: &View) {
+        let Self { depths, is_set, .. } = self;
+        depths.clear();
+        let mut add = |index: usize| {
+            let bounds = &pose.objects[index].bounds;
+            if cull::may_be_seen(view, bounds) {
+                depths.push((view.view_depth(bounds.center()), index));
+            }
+        };
+        if *is_set {
+            let test = |bounds: &Aabb| cull::may_be_seen(view, bounds);
+            renderer.world.set.each_receiver(Layers::ALL, test, |key, _| add(key as usize));
+        } else {
+            (0..pose.objects.len()).for_each(add);
+        }
         self.depths.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         self.visible.clear();
         self.visible.extend(self.depths.iter().map(|&(_, index)| index));
@@ -107,6 +130,7 @@ mod tests {
             let mut renderer = Renderer::new(&gpu, &scene, &settings).expect("a renderer");
             let frame = Frame {
                 pose: &pose,
+                moved: None,
                 view: &view,
                 light: Lamp::from(sun),
                 more_lights: &[],

@@ -24,7 +24,7 @@ impl Renderer {
     }
 
     /// What the casters of a plan are indices into: the objects of a pose that are drawn into maps,
-    /// by index; where something is kept of maps all objects.
+    /// by index; all objects where something is kept of maps, or where they are thousands.
     #[must_use]
     pub fn casters_of(&self, pose: &Pose) -> Vec<usize> {
         self.caster_indices(pose).collect()
@@ -32,7 +32,7 @@ impl Renderer {
 
     /// [`Renderer::casters_of`], one by one.
     pub(super) fn caster_indices(&self, pose: &Pose) -> impl Iterator<Item = usize> {
-        (0..pose.objects.len()).filter(|&index| self.is_listed(&pose.objects[index]))
+        (0..pose.objects.len()).filter(|&index| self.is_listed(pose, &pose.objects[index]))
     }
 
     /// Changes the config; `scene` is the one that the renderer was made with. The scene stays on

@@ -27,6 +27,7 @@ pub use self::world::KeptMaps;
 use self::world::WorldSet;
 use crate::capture::Capture;
 use crate::casters::Casters;
+use crate::coarser::Coarser;
 use crate::contact::Contact;
 use crate::draw_list::{Drawable, Instances};
 use crate::formats::MASK_FORMAT;
@@ -71,6 +72,10 @@ impl Default for RenderSettings {
 pub struct Frame<'a> {
     /// The scene at this moment; a pose of the scene that the renderer was made with.
     pub pose: &'a Pose,
+    /// Objects of the pose that differ from those of the last frame, by number; an empty list for
+    /// the same pose again. `None`: any may. Where objects are thousands, those that stand still
+    /// then cost nothing.
+    pub moved: Option<&'a [u32]>,
     /// The eye.
     pub view: &'a View,
     /// The first light: the one that masks and probes are of.
@@ -144,6 +149,7 @@ pub struct Renderer {
     world: WorldSet,
     kept: KeptMaps,
     gathered: Gathered,
+    pub(crate) coarser: Coarser,
 }
 
 impl Renderer {
@@ -211,6 +217,7 @@ impl Renderer {
                 world: WorldSet::default(),
                 kept: KeptMaps::default(),
                 gathered: Gathered::default(),
+                coarser: Coarser::of(scene),
                 materials,
                 shadows,
                 gpu: gpu.clone(),

@@ -6,19 +6,24 @@ use umbrage_scene::{AlphaMode, Pose};
 use umbrage_wgpu::{Inputs, Slice};
 use web_time::Instant;
 
+use super::world::is_many;
 use super::{Frame, Gathered, Renderer};
-use crate::Result;
 use crate::draw_list::{Run, once};
 use crate::forward::FrameUniform;
 use crate::geometry::check_object;
 use crate::lamps::Lamp;
 use crate::names::Names;
 use crate::view_list::ViewList;
+use crate::{Error, Result};
 
 /// The frame's origin moves in steps of this many metres, so that positions near the eye are exact
 /// to a tenth of a millimetre in `f32` and yet stay the same from frame to frame, which is what
 /// keeps stabilised maps still.
 const ORIGIN_STEP: f64 = 1024.0;
+
+/// Objects of the batch that is drawn first where there are many. Lower: more draws. Higher: more
+/// that is shaded and not seen.
+const NEAREST_BATCH: usize = 32;
 
 /// A frame that is planned and uploaded, ready to be recorded.
 pub(crate) struct Prepared {
@@ -55,13 +60,18 @@ impl Renderer {
 
     fn prepare_from(&mut self, gathered: &mut Gathered, frame: &Frame<'_>, surfaces_alone: bool) -> Result<Prepared> {
         let pose = frame.pose;
-        for (index, object) in pose.objects.iter().enumerate() {
+        for index in self.new_objects(frame).iter() {
+            let object = pose.objects.get(index).ok_or_else(|| Error::Scene {
+                what: "moved object",
+                index,
+                reason: format!("the pose has {} objects", pose.objects.len()),
+            })?;
             check_object(index, object, self.scene.meshes.len())?;
         }
         let view = frame.view;
         let origin = (view.eye() / ORIGIN_STEP).round() * ORIGIN_STEP;
         let plan_ms = self.plan(frame, origin, gathered, surfaces_alone)?;
-        let Gathered { casters, visible, lamps, .. } = &*gathered;
+        let Gathered { visible, lamps, .. } = &*gathered;
         self.skinned.update(&self.gpu, &self.scene_meshes, pose)?;
         let slices = self.write_cameras(view, lamps, origin)?;
         self.timer.restart();
@@ -72,8 +82,8 @@ impl Renderer {
             self.forward.bind(&self.gpu, &self.names.entries(&self.scene, Names::BINDING));
         }
         self.instances.clear(first_ids);
-        let caster_runs = self.caster_runs(frame, origin, casters);
-        let grouped = self.instances.grouped(pose, origin, false, visible.iter().copied().map(once));
+        let caster_runs = self.caster_runs(frame, origin, gathered);
+        let grouped = self.grouped_near_to_far(pose, origin, visible);
         let solid = ViewList::new(&self.drawable(), pose, view, &grouped);
         let far_to_near = self.with_translucent_parts(pose, visible.iter().rev().copied());
         let translucent = self.instances.ordered(pose, origin, far_to_near.iter().copied());
@@ -101,7 +111,7 @@ impl Renderer {
         let inputs = Inputs {
             casters: &gathered.caster_boxes,
             receivers: &gathered.receiver_boxes,
-            set: self.keeps_maps().then_some(&self.world.set),
+            set: self.uses_set(frame.pose).then_some(&self.world.set),
             kept_texels: self.kept.texels,
             redraws_kept: self.kept.redraws,
             receiver_clusters: gathered.clusters(),
@@ -128,6 +138,19 @@ impl Renderer {
             self.forward.prepare(&self.gpu, 1 + slice.split, &uniform);
         }
         Ok(slices)
+    }
+
+    /// Objects in view, those of one mesh together. Of many, near ones are drawn before far ones in
+    /// batches that double: what they hide then need not be shaded.
+    fn grouped_near_to_far(&mut self, pose: &Pose, origin: DVec3, visible: &[usize]) -> Vec<Run> {
+        let (mut runs, mut rest) = (Vec::new(), visible);
+        let mut batch = if is_many(pose) { NEAREST_BATCH } else { visible.len() };
+        while !rest.is_empty() {
+            let (near, far) = rest.split_at(batch.min(rest.len()));
+            runs.extend(self.instances.grouped(pose, origin, false, near.iter().copied().map(once)));
+            (rest, batch) = (far, 2 * batch);
+        }
+        runs
     }
 
     /// What lies in each slice of the view. `objects` is those in view, near ones first, and those

@@ -90,13 +90,12 @@ impl Renderer {
         spans_ms: Option<&[[f64; 2]]>,
     ) -> Vec<SplitStats> {
         let plan: &ShadowPlan = self.shadows.frame().plan(light);
-        let objects: Vec<&umbrage_scene::Object> =
-            frame.pose.objects.iter().filter(|object| self.is_listed(object)).collect();
+        let pose = frame.pose;
         let drawable = self.drawable();
         let dithered = self.shadows.maps().config().look.translucent == Translucent::Dithered;
         let triangles = |caster: &u32| {
             let drawn = |material: &GpuMaterial| dithered || material.alpha != AlphaMode::Blend;
-            drawable.triangles(objects[*caster as usize], drawn)
+            drawable.triangles(&pose.objects[self.gathered.object(*caster)], drawn)
         };
         let stats = |(i, split): (usize, &umbrage::Split)| {
             let shown = self.shadows.frame();

@@ -5,8 +5,11 @@ use umbrage::config::Cache;
 use umbrage::{Caster, CasterHandle, CasterSet, Motion};
 use umbrage_scene::{Object, Pose};
 
-use super::Renderer;
+use super::{Frame, Renderer};
 use crate::Result;
+
+/// A scene of more objects is kept as a set, whatever becomes of its maps.
+const MANY: usize = 4096;
 
 /// How maps are drawn of which something is kept ([`Cache::Kept`]).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,9 +39,14 @@ impl Renderer {
         self.shadows.config().cache == Cache::Kept
     }
 
+    /// Whether the objects of a pose are casters of a set, which plans name by their numbers.
+    pub(super) fn uses_set(&self, pose: &Pose) -> bool {
+        self.keeps_maps() || is_many(pose)
+    }
+
     /// Whether a plan may name an object as a caster.
-    pub(super) fn is_listed(&self, object: &umbrage_scene::Object) -> bool {
-        self.keeps_maps() || self.casts(object)
+    pub(super) fn is_listed(&self, pose: &Pose, object: &Object) -> bool {
+        self.uses_set(pose) || self.casts(object)
     }
 
     /// What a frame came to. Of one that failed it is not known which maps were drawn.
@@ -49,15 +57,52 @@ impl Renderer {
         drawn
     }
 
-    /// Makes the set follow the pose.
+    /// Lets the set follow a frame's pose, where there is one.
     ///
     /// # Errors
     /// [`crate::Error::Plan`] for boxes that are none.
-    pub(super) fn follow(&mut self, pose: &Pose) -> Result<()> {
+    pub(super) fn follow(&mut self, frame: &Frame<'_>) -> Result<()> {
+        if !self.uses_set(frame.pose) {
+            return Ok(());
+        }
         let mut world = std::mem::take(&mut self.world);
-        let followed = world.follow(pose, |object| self.casts(object));
+        let followed = world.follow(frame.pose, frame.moved, |object| self.casts(object));
         self.world = world;
         followed
+    }
+
+    /// Objects of which nothing is known from the last frame.
+    pub(super) fn new_objects<'f>(&self, frame: &Frame<'f>) -> Changed<'f> {
+        let is_followed = self.uses_set(frame.pose) && self.world.members.len() == frame.pose.objects.len();
+        match frame.moved {
+            Some(moved) if is_followed => Changed::These(moved),
+            _ => Changed::Any(frame.pose.objects.len()),
+        }
+    }
+}
+
+/// Whether a pose has too many objects to list them in every frame.
+pub(super) fn is_many(pose: &Pose) -> bool {
+    pose.objects.len() > MANY
+}
+
+/// Objects that may differ from those of the last frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Changed<'a> {
+    /// All of so many.
+    Any(usize),
+    /// These.
+    These(&'a [u32]),
+}
+
+impl Changed<'_> {
+    /// Their numbers.
+    pub fn iter(&self) -> impl Iterator<Item = usize> + '_ {
+        let (all, these) = match *self {
+            Self::Any(count) => (0..count, &[][..]),
+            Self::These(these) => (0..0, these),
+        };
+        all.chain(these.iter().map(|&object| object as usize))
     }
 }
 
@@ -65,14 +110,16 @@ impl Renderer {
 struct Member {
     handle: CasterHandle,
     caster: Caster,
-    mesh: usize,
-    world_from_local: DAffine3,
+    mesh: u32,
+    /// [`digest`] of its transform.
+    placed: u64,
 }
 
 impl WorldSet {
     /// Follows a pose. `casts` says which objects are drawn into maps. Skinned objects move; others
     /// are static, and the set is told when they are moved all the same.
-    pub fn follow(&mut self, pose: &Pose, casts: impl Fn(&Object) -> bool) -> Result<()> {
+    /// Only `moved` objects are looked at, if it is known which have moved.
+    pub fn follow(&mut self, pose: &Pose, moved: Option<&[u32]>, casts: impl Fn(&Object) -> bool) -> Result<()> {
         let caster = |(key, object): (usize, &Object)| {
             let motion = if object.skinned.is_some() { Motion::Moving } else { Motion::Static };
             Caster { motion, casts: casts(object), ..Caster::new(object.bounds, key as u32) }
@@ -86,10 +133,12 @@ impl WorldSet {
             self.members.extend(members.map(|((handle, caster), object)| Member::new(handle, caster, object)));
             return Ok(());
         }
-        for (member, (key, object)) in self.members.iter_mut().zip(pose.objects.iter().enumerate()) {
+        let changed = moved.map_or(Changed::Any(pose.objects.len()), Changed::These);
+        for key in changed.iter() {
+            let (Some(member), Some(object)) = (self.members.get_mut(key), pose.objects.get(key)) else { continue };
             let caster = caster((key, object));
-            let is_moved = member.world_from_local != object.world_from_local;
-            let (is_same_box, is_other) = (member.caster.bounds == caster.bounds, member.mesh != object.mesh);
+            let is_moved = member.placed != digest(&object.world_from_local);
+            let (is_same_box, is_other) = (member.caster.bounds == caster.bounds, member.mesh != object.mesh as u32);
             if is_other || member.caster != (Caster { bounds: member.caster.bounds, ..caster }) {
                 self.set.replace(member.handle, caster)?;
             } else if !is_same_box {
@@ -105,6 +154,12 @@ impl WorldSet {
 
 impl Member {
     fn new(handle: CasterHandle, caster: Caster, object: &Object) -> Self {
-        Self { handle, caster, mesh: object.mesh, world_from_local: object.world_from_local }
+        Self { handle, caster, mesh: object.mesh as u32, placed: digest(&object.world_from_local) }
     }
+}
+
+/// 64 bits of a transform, to tell whether it is another one (FNV-1a over its numbers).
+fn digest(transform: &DAffine3) -> u64 {
+    let fold = |hash: u64, part: f64| (hash ^ part.to_bits()).wrapping_mul(0x0000_0100_0000_01b3);
+    transform.to_cols_array().into_iter().fold(0xcbf2_9ce4_8422_2325, fold)
 }

@@ -149,7 +149,7 @@ impl Stage {
     }
 
     pub fn frame<'a>(pose: &'a Pose, view: &'a View, sun: DirectionalLight) -> Frame<'a> {
-        Frame { pose, view, light: sun.into(), more_lights: &[], shadows_on: true, tint: false }
+        Frame { pose, moved: None, view, light: sun.into(), more_lights: &[], shadows_on: true, tint: false }
     }
 
     pub fn render(&mut self, view: &View, sun: DirectionalLight, outputs: Outputs) -> Rendered {

@@ -140,7 +140,8 @@ fn a_city_has_neither_acne_nor_leaks() {
         let bearing = DVec3::new(-0.97478, 0.0, -0.01083).normalize();
         let sun = DirectionalLight::new(-(bearing * cosine + DVec3::Y * sine)).expect("a sun");
         let light = sun.into();
-        let frame = Frame { pose: &pose, view: &view, light, more_lights: &[], shadows_on: true, tint: false };
+        let frame =
+            Frame { pose: &pose, moved: None, view: &view, light, more_lights: &[], shadows_on: true, tint: false };
         let [ours, moved] = scores(&mut renderer, &truth, &frame, (sun, size), (1.0, 800.0));
         let [acne, leak] = [ours.acne_rate_beyond(), ours.leak_rate_beyond()];
         eprintln!("city {elevation}°: acne {acne:.5}, leak {leak:.5} of {}", ours.beyond);

@@ -34,7 +34,15 @@ fn judged(scene: &Scene, views: &[View], sun: DVec3, edge: u32) -> Option<Vec<(G
     let truth = Truth::build(scene, &pose, views[0].eye()).expect("rays can meet it");
     let each = |view: &View| {
         renderer.restart();
-        let frame = Frame { pose: &pose, view, light: sun.into(), more_lights: &[], shadows_on: true, tint: false };
+        let frame = Frame {
+            pose: &pose,
+            moved: None,
+            view,
+            light: sun.into(),
+            more_lights: &[],
+            shadows_on: true,
+            tint: false,
+        };
         let rendered = renderer.render(&frame, Outputs { mask: true, ..Outputs::default() }).expect("a frame");
         let truth = truth.mask(view, sun.direction(), SIZE, &|_| {}).expect("a truth");
         (rendered.mask.expect("a mask"), truth.hits().to_vec())

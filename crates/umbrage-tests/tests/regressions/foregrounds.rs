@@ -41,7 +41,8 @@ fn error(scene: &Scene, view: &View, sun: DVec3, config: &ShadowConfig) -> Optio
     let settings = RenderSettings { size: SIZE, config, ..RenderSettings::default() };
     let mut renderer = Renderer::new(gpu()?, scene, &settings).expect("a renderer");
     let (pose, light) = (scene.pose(0.0).expect("a pose"), DirectionalLight::new(sun).expect("a direction"));
-    let frame = Frame { pose: &pose, view, light: light.into(), more_lights: &[], shadows_on: true, tint: false };
+    let frame =
+        Frame { pose: &pose, moved: None, view, light: light.into(), more_lights: &[], shadows_on: true, tint: false };
     let rendered = renderer.render(&frame, Outputs { mask: true, ..Outputs::default() }).expect("a frame");
     let truth = Truth::build(scene, &pose, view.eye()).expect("rays can meet it");
     let truth = truth.mask(view, sun, SIZE, &|_| {}).expect("a truth");

@@ -64,7 +64,8 @@ impl Walk {
         let mut answers = |frame: usize, points: &[ProbePoint]| {
             let view = &self.views[frame];
             let light = self.sun.into();
-            let frame = Frame { pose: &self.pose, view, light, more_lights: &[], shadows_on: true, tint: false };
+            let frame =
+                Frame { pose: &self.pose, moved: None, view, light, more_lights: &[], shadows_on: true, tint: false };
             renderer.probe(&frame, points).expect("points of the scene")
         };
         let (mut all, mut kept) = (Flicker::default(), Flicker::default());

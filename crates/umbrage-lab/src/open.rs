@@ -1,0 +1,49 @@
+//! Opening a scene, with a bar while that takes long.
+
+use glam::DVec3;
+use umbrage::{Projection, View};
+use umbrage_scene::{Detail, OpenOptions, Pose, Scene};
+
+use crate::{failure::Result, progress};
+
+/// Opens a scene and moves it.
+///
+/// # Errors
+/// [`crate::failure::Failure::Input`] naming the file or option at fault.
+pub fn open(name: &str, files: &OpenOptions, move_scene: Option<DVec3>) -> Result<Scene> {
+    let bar = progress::fraction("building");
+    let scene = umbrage_scene::open_watched(name, files, &|done| progress::set_fraction(&bar, done));
+    bar.finish_and_clear();
+    let scene = scene?;
+    Ok(match move_scene {
+        Some(by) => scene.moved(by),
+        None => scene,
+    })
+}
+
+/// The pose in which views see a scene: with the shapes that they can tell apart in pictures of
+/// that size, where meshes have several. `None` where they have not.
+///
+/// # Errors
+/// As [`Scene::pose`].
+pub fn pose_seen<'v>(
+    scene: &Scene,
+    time_s: f64,
+    views: impl Iterator<Item = &'v View>,
+    size: [u32; 2],
+) -> Result<Option<Pose>> {
+    if scene.levels.is_empty() {
+        return Ok(None);
+    }
+    let (mut eyes, mut angle) = (Vec::new(), f64::INFINITY);
+    for view in views {
+        let frustum = view.frustum();
+        eyes.push(view.eye());
+        angle = angle.min(match frustum.projection {
+            Projection::Perspective => (frustum.top - frustum.bottom) / f64::from(size[1]),
+            // What is far away is as large as what is near.
+            Projection::Orthographic => 0.0,
+        });
+    }
+    Ok(Some(scene.pose_for(time_s, Detail { eyes, angle })?))
+}
