@@ -41,6 +41,7 @@ fn roots() -> Vec<Root> {
         text("pass::casters", &["views", "tiles"], "casters_views_tiles".into()),
         text("pass::contact", &[], "contact".into()),
         text("pass::kept", &[], "kept".into()),
+        text("pass::cull", &[], "cull".into()),
         text("pass::mask", &[], "mask".into()),
         text("pass::mask", &["normals"], "mask_with_normals".into()),
         text("receiver::api", &["depth_loads"], "receiver".into()),

@@ -369,3 +369,91 @@ pub struct StoredRun {
     /// The first of their indices.
     pub first_index: u32,
 }
+
+/// What is culled: `shaders/pass/cull.wesl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct CullFrame {
+    /// How many instances there are.
+    pub instances: u32,
+    /// How many splits.
+    pub splits: u32,
+    /// How many meshes.
+    pub meshes: u32,
+    /// Places for numbers of instances in each split.
+    pub room: u32,
+}
+
+/// The test of a split's casters, [`umbrage::CasterTest`](https://docs.rs/umbrage).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct CullSplit {
+    /// The way light travels.
+    pub direction: [f32; 3],
+    /// The first of its half spaces.
+    pub first_plane: u32,
+    /// Least corner of the receivers' box.
+    pub receivers_min: [f32; 3],
+    /// How many half spaces it has.
+    pub plane_count: u32,
+    /// Greatest corner of the receivers' box.
+    pub receivers_max: [f32; 3],
+    /// Whether that box is known.
+    pub has_receivers: u32,
+    /// Metres that a flat box may rise above the receivers' lowest point.
+    pub slack: f32,
+    /// Metres that any other box has to lie below it.
+    pub margin: f32,
+    /// The world axis of a mask's heights; 3 without a mask.
+    pub mask_axis: u32,
+    /// 1 or −1: height is so many times the coordinate.
+    pub mask_sign: f32,
+    /// Where the mask begins.
+    pub mask_begin: [f32; 2],
+    /// Metres of its cells.
+    pub mask_cell: [f32; 2],
+    /// How far a ray of light moves along its axes per metre of height.
+    pub mask_slope: [f32; 2],
+    /// Up to the alignment of 16 bytes.
+    pub _padding: [u32; 2],
+}
+
+/// An instance as culling sees it: its box in metres, relative to an origin of the application's.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct CullBox {
+    /// The middle.
+    pub center: [f32; 3],
+    /// Number of the mesh that it shows.
+    pub mesh: u32,
+    /// Half of what it measures along each axis; 0 or more.
+    pub half: [f32; 3],
+    /// 0; anything else for an instance that casts no shadow.
+    pub skip: u32,
+}
+
+/// Where the instances of a mesh are listed.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct CullMesh {
+    /// The first place of the mesh in each split.
+    pub first: u32,
+    /// How many places it has.
+    pub room: u32,
+}
+
+/// Arguments of an indexed indirect draw.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct CullDraw {
+    /// Indices of the mesh.
+    pub index_count: u32,
+    /// Instances that are drawn.
+    pub instance_count: u32,
+    /// The mesh's first index.
+    pub first_index: u32,
+    /// Added to each index.
+    pub base_vertex: i32,
+    /// 0: where numbers of instances begin is the offset of a vertex buffer.
+    pub first_instance: u32,
+}

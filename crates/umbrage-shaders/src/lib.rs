@@ -71,6 +71,12 @@ pub const MOMENT_PASSES_OF_SAMPLES: &str = text!("moment_passes_of_samples");
 /// `texture_depth_2d`.
 pub const KEPT_PASS: &str = text!("kept");
 
+/// The compute pass that culls instances, `shaders/pass/cull.wesl`: entry point `cull`, a workgroup
+/// of 64 for as many instances; binding 0 is a uniform [`layout::CullFrame`], 1 to 7 are storage
+/// buffers: [`layout::CullSplit`], half spaces, masks' heights, [`layout::CullBox`],
+/// [`layout::CullMesh`], and written [`layout::CullDraw`] and numbers of instances.
+pub const CULL_PASS: &str = text!("cull");
+
 /// How a receiver reads its maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Maps {

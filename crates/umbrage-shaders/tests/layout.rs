@@ -5,7 +5,8 @@ use std::mem::offset_of;
 use naga::proc::Layouter;
 use umbrage_shaders::layout::FilterKind;
 use umbrage_shaders::layout::{
-    CasterPass, Frame, KeptWindow, MomentPass, MomentSplit, Moments, Split, StoredRun, StoredSlot,
+    CasterPass, CullBox, CullDraw, CullFrame, CullMesh, CullSplit, Frame, KeptWindow, MomentPass, MomentSplit, Moments,
+    Split, StoredRun, StoredSlot,
 };
 use umbrage_shaders::{Casters, Maps, MomentMaps, ReceiverText};
 
@@ -89,6 +90,15 @@ fn members_of_moments_agree() {
     let maps = Maps { moments: Some(MomentMaps::Sampled), ..Maps::default() };
     let (receiver, passes) = (umbrage_shaders::receiver(0, maps), umbrage_shaders::MOMENT_PASSES);
     assert_eq!(in_rust!(MomentSplit: depth, radius, quads), in_wgsl(passes, "UmbrageMomentSplit"));
+    let cull = |name: &str| in_wgsl(umbrage_shaders::CULL_PASS, name);
+    assert_eq!(in_rust!(CullFrame: instances, splits, meshes, room), cull("UmbrageCullFrame"));
+    assert_eq!(in_rust!(CullBox: center, mesh, half, skip), cull("UmbrageCullBox"));
+    assert_eq!(in_rust!(CullMesh: first, room), cull("UmbrageCullMesh"));
+    let draw = in_rust!(CullDraw: index_count, instance_count, first_index, base_vertex, first_instance);
+    assert_eq!(draw, cull("UmbrageCullDraw"));
+    let split = in_rust!(CullSplit: direction, first_plane, receivers_min, plane_count, receivers_max, has_receivers,
+        slack, margin, mask_axis, mask_sign, mask_begin, mask_cell, mask_slope);
+    assert_eq!(split, cull("UmbrageCullSplit"));
     let kept = in_wgsl(umbrage_shaders::KEPT_PASS, "UmbrageKeptWindow");
     assert_eq!(in_rust!(KeptWindow: begin, corner, edge), kept);
     assert_eq!(in_rust!(MomentPass: split, size), in_wgsl(passes, "UmbrageMomentPass"));

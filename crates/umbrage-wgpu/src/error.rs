@@ -237,6 +237,42 @@ pub enum Error {
         /// The longest edge of any of the light's maps, metres.
         map_m: f64,
     },
+    /// Something that culling on the GPU was given cannot be used.
+    #[error("culling: {field}: {reason}")]
+    Culling {
+        /// The argument or its field.
+        field: &'static str,
+        /// What is wrong with it, and what to do.
+        reason: String,
+    },
+    /// The device has no buffer as large as culling needs.
+    #[error(
+        "{what} takes {bytes} bytes, but this device's storage buffers hold {limit} (max_storage_buffer_binding_size, \
+         max_buffer_size); cull fewer instances, or request the device with higher limits"
+    )]
+    CullingTooLarge {
+        /// Label of the buffer.
+        what: &'static str,
+        /// Its bytes.
+        bytes: u64,
+        /// The device's limit in bytes.
+        limit: u64,
+    },
+    /// The device runs no compute shaders.
+    #[error(
+        "this device runs no compute shader with seven storage buffers; make the lists with InstanceCulling::cull_on_cpu, or \
+         keep instances in an umbrage::CasterSet"
+    )]
+    CullingNeedsCompute,
+    /// A plan that has no test for culling on the GPU.
+    #[error(
+        "instances cannot be culled on the GPU: {what}; use one sun with generation per-split or multipass and cache off, or the \
+         casters of ShadowMap::casters"
+    )]
+    CullingPlan {
+        /// Why.
+        what: &'static str,
+    },
     /// More or fewer plans than lights.
     #[error("got {plans} lights, but these maps were made for {lights}; give one plan or light for each")]
     LightCount {

@@ -98,6 +98,7 @@
 
 mod caster_pipeline;
 mod contact;
+mod culling;
 mod device;
 mod error;
 mod local;
@@ -111,6 +112,7 @@ mod uniforms;
 
 pub use caster_pipeline::CasterPipeline;
 pub use contact::{ContactFrame, ContactOptions, ContactShadows, contact_wgsl};
+pub use culling::{CullInputs, CullMesh, CulledDraw, InstanceCulling};
 pub use error::{Error, Result};
 pub use maps::{MapPass, ShadowMaps, Slice, device_descriptor, optional_features};
 pub use mask::{MaskFrame, MaskNormals, ShadowMask};
@@ -120,5 +122,5 @@ pub use options::{FrameOptions, LightMaps, texture_format};
 pub use shadows::{Inputs, ShadowFrame, ShadowMap, Shadows, ShapeDraw};
 pub use umbrage;
 pub use umbrage::config::{Filter, LightKind, ShadowConfig};
-pub use umbrage_shaders::layout::{MAX_COORDINATES, StoredRun, StoredSlot};
+pub use umbrage_shaders::layout::{CullBox, CullDraw, MAX_COORDINATES, StoredRun, StoredSlot};
 pub use wgpu;

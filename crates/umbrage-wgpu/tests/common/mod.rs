@@ -92,6 +92,20 @@ impl Gpu {
         result
     }
 
+    /// The bytes of a buffer that can be copied from.
+    pub fn copied(&self, buffer: &wgpu::Buffer) -> Vec<u8> {
+        let back = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("Test::copied"),
+            size: buffer.size(),
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(buffer, 0, &back, 0, buffer.size());
+        self.queue.submit([encoder.finish()]);
+        self.read(&back)
+    }
+
     fn read(&self, buffer: &wgpu::Buffer) -> Vec<u8> {
         buffer.map_async(wgpu::MapMode::Read, .., |result| result.expect("a mappable buffer maps"));
         self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");

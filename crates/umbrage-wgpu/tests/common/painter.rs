@@ -78,7 +78,7 @@ impl Painter {
 }
 
 /// The texels of a split's map in a layer of its own.
-fn texels(gpu: &Gpu, shadows: &Shadows, split: usize) -> Vec<f32> {
+pub fn texels(gpu: &Gpu, shadows: &Shadows, split: usize) -> Vec<f32> {
     let (maps, size) = (shadows.maps(), shadows.maps().map_size(split));
     let texture = maps.map_texture(split);
     let (layer, corner) = maps.map_place(split);

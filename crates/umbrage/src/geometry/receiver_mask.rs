@@ -9,10 +9,10 @@
 use glam::{DVec2, DVec3};
 
 use super::volume::{Lies, Slice};
-use crate::Aabb;
+use crate::{Aabb, CasterMask};
 
 /// Cells along each edge of the grid.
-const CELLS: usize = 64;
+pub(crate) const CELLS: usize = 64;
 
 /// Steepest receiver, as depth along the light over length across it, whose plane a filter is
 /// followed along beyond the receiver's own box.
@@ -95,6 +95,19 @@ impl ReceiverMask {
                     }
                 }
             }
+        }
+    }
+
+    /// The mask for boxes relative to an origin, in `f32`.
+    pub fn caster_mask(&self, origin: DVec3) -> CasterMask {
+        let below = self.sign * origin[self.axes[0]];
+        CasterMask {
+            axis: self.axes[0] as u32,
+            sign: self.sign as f32,
+            slope: self.slope.as_vec2(),
+            begin: (self.begin - self.on_grid(origin)).as_vec2(),
+            cell: self.cell.as_vec2(),
+            lowest: self.lowest.iter().map(|&height| ((f64::from(height) - below) as f32).next_down()).collect(),
         }
     }
 
