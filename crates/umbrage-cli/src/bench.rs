@@ -4,16 +4,20 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 use umbrage_lab::{
-    bench::{self, Job},
-    failure::Result,
+    bench::{
+        self, Job,
+        scale::{self, ScaleJob},
+    },
+    failure::{Failure, Result},
     parse,
     scene_request::{CameraChoice, LightChoice, SceneRequest},
     technique::text,
 };
 use umbrage_render::Samples;
-use umbrage_scene::procedural::World;
+use umbrage_scene::OpenOptions;
+use umbrage_scene::procedural::{World, WorldOptions};
 
-use crate::switch::Switch;
+use crate::{switch::Switch, world_args::WorldArgs};
 
 /// The camera of a world that is taken if none is named: shadows near, in the middle and far in one
 /// picture.
@@ -59,9 +63,20 @@ pub struct BenchArgs {
     /// Seconds into the scenes' animations
     #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = parse::number, allow_hyphen_values = true)]
     pub time: f64,
-    /// Numbers of objects for GPU Gems' Figure 10-9, four splits each
-    #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "10,30,100,300,1000", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    /// Numbers of objects for GPU Gems' Figure 10-9, four splits each, or of trees for --scale
+    /// [default: 10,30,100,300,1000; with --scale 100,1000,10000,100000,1000000]
+    #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=i64::from(WorldOptions::MOST_TREES)))]
     pub objects: Vec<u32>,
+    /// A forest of ever more trees instead of scenes: cost over the number of objects, with nothing
+    /// kept of maps, and kept while the camera stands, walks, and one tree in a hundred moves
+    #[arg(long, conflicts_with_all = ["scenes", "techniques", "filters", "with", "paths", "camera", "sun", "time"])]
+    pub scale: bool,
+    /// With --scale: leave out larger numbers of objects
+    #[arg(long, value_name = "N", requires = "scale")]
+    pub scale_limit: Option<u32>,
+    /// Numbers of objects of the scenes.
+    #[command(flatten)]
+    pub world: WorldArgs,
     /// Measure every pair of generation and storage on each scene too, with PSSM(4; 512²)
     #[arg(long, value_enum, default_value_t)]
     pub paths: Switch,
@@ -73,8 +88,23 @@ pub struct BenchArgs {
     pub html: Option<PathBuf>,
 }
 
+/// Most objects of GPU Gems' Figure 10-9: they are nodes of a list.
+const MOST_OBJECTS: u32 = 100_000;
+
+/// Maps that can be kept: they stand exactly still.
+const SCALED: &str = "pssm:4:1024:preset=papers:scheme=log:label=PSSM(4; 1024²), exactly still";
+
 /// Runs the subcommand.
 pub fn run(args: &BenchArgs) -> Result<()> {
+    if args.scale {
+        return scale::run(&scale_job(args)?);
+    }
+    if let Some(objects) = args.objects.iter().find(|&&objects| objects > MOST_OBJECTS) {
+        return Err(Failure::input(format!(
+            "--objects {objects}: without --scale {MOST_OBJECTS} are the most; give fewer, or --scale"
+        )));
+    }
+    let objects = if args.objects.is_empty() { vec![10, 30, 100, 300, 1000] } else { args.objects.clone() };
     let (texts, with) =
         if args.filters { (bench::filter_techniques(), "") } else { (args.techniques.clone(), &*args.with) };
     let techniques = text::parse_all(&texts, with)?;
@@ -90,7 +120,7 @@ pub fn run(args: &BenchArgs) -> Result<()> {
         rounds: args.rounds,
         size: args.size,
         samples: if args.samples == "4" { Samples::Four } else { Samples::One },
-        objects: if args.filters { Vec::new() } else { args.objects.clone() },
+        objects: if args.filters { Vec::new() } else { objects },
         paths: args.paths == Switch::On,
         paths_with: args.with.clone(),
         json: args.json.clone(),
@@ -98,11 +128,23 @@ pub fn run(args: &BenchArgs) -> Result<()> {
     })
 }
 
+/// The job of `--scale`.
+fn scale_job(args: &BenchArgs) -> Result<ScaleJob> {
+    let mut objects =
+        if args.objects.is_empty() { vec![100, 1000, 10_000, 100_000, 1_000_000] } else { args.objects.clone() };
+    objects.retain(|&objects| args.scale_limit.is_none_or(|limit| objects <= limit));
+    let techniques = text::parse_all(&[SCALED.to_owned()], "")?;
+    let technique = techniques.into_iter().next().ok_or_else(|| Failure::other("no technique to measure"))?;
+    let (json, html) = (args.json.clone(), args.html.clone());
+    Ok(ScaleJob { objects, technique, rounds: args.rounds, size: args.size, json, html })
+}
+
 /// The scene, by the camera that was named, the one in the middle of a world, or its first.
 fn scene_request(args: &BenchArgs, scene: &str) -> Result<SceneRequest> {
     let of_world = World::from_name(scene).map(|_| CAMERA.to_owned());
     let camera = args.camera.clone().or(of_world);
     let request = SceneRequest {
+        files: OpenOptions { world: args.world.into(), ..OpenOptions::default() },
         time_s: args.time,
         light: args.sun.map_or(LightChoice::Default, LightChoice::Given),
         ..SceneRequest::new(scene, args.size)

@@ -73,11 +73,50 @@ fn every_path_has_its_row() {
 }
 
 #[test]
+fn every_number_of_objects_has_its_cases() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = Folder::new();
+    folder.succeed(
+        "bench --scale --objects 20,5000,900000 --scale-limit 5000 --size 64x48 --rounds 2 --json all.json -o page.html",
+    );
+    let report = folder.json("all.json");
+    let sizes = report["sizes"].as_array().expect("sizes");
+    assert_eq!(sizes.iter().map(|size| &size["trees"]).collect::<Vec<_>>(), [20, 5000]);
+    for size in sizes {
+        let cases = size["cases"].as_array().expect("cases");
+        let case = |name: &str| cases.iter().find(|case| case["case"] == name).expect("a case");
+        let median = |name: &str, value: &str| case(name)[value]["median"].as_f64().expect("a number");
+        assert_eq!(cases.len(), 4);
+        // The plan of tiles asks of instances what a list of them would have been asked.
+        let by_gpu = &size["by_gpu"];
+        assert!(by_gpu["pairs"].as_u64().is_some_and(|pairs| pairs > 0), "{by_gpu}");
+        assert!(by_gpu["cull_ms"]["median"].as_f64().is_some_and(|ms| ms > 0.0), "{by_gpu}");
+        assert_eq!(median("standing", "triangles"), 0.0, "what is kept costs nothing");
+        assert!(median("walking", "triangles") < 0.1 * median("uncached", "triangles"), "{size}");
+        for name in ["uncached", "standing", "walking", "movers"] {
+            assert!(median(name, "plan_us") > 0.0 && median(name, "pairs") > 0.0, "{name}: {size}");
+            assert!(case(name)["first_triangles"].as_u64().is_some_and(|count| count > 0), "{name}: {size}");
+        }
+    }
+    let page = fs::read_to_string(folder.at("page.html")).expect("the page");
+    for part in ["Over the number of objects", "kept, 1 % moves", "<svg"] {
+        assert!(page.contains(part), "the page lacks {part}");
+    }
+}
+
+#[test]
 fn mistakes_are_named() {
     let folder = Folder::new();
     folder.refuse("bench tiny.glb", &["-o"]);
     folder.refuse("bench tiny.glb --rounds 0 -o page.html", &["--rounds"]);
     folder.refuse("bench tiny.glb --objects 0 -o page.html", &["--objects"]);
+    folder.refuse("bench tiny.glb --objects 200000 -o page.html", &["--objects 200000", "--scale"]);
+    folder.refuse("bench tiny.glb --scale -o page.html", &["--scale"]);
+    folder.refuse("bench --scale-limit 9 -o page.html", &["--scale"]);
+    folder.refuse("bench --scale --scale-limit 9 -o page.html", &["--scale-limit"]);
+    folder.refuse("bench --scale", &["-o"]);
     folder.refuse("bench tiny.glb --techniques pssm:9:512 -o page.html", &["pssm:9:512"]);
     folder.refuse("bench tiny.glb --samples 3 -o page.html", &["--samples"]);
     folder.refuse("bench missing.glb -o page.html", &["missing.glb"]);

@@ -13,6 +13,7 @@ mod page;
 mod papers;
 mod report;
 mod run;
+pub mod scale;
 mod summary;
 
 pub use job::{Job, filter_techniques};
