@@ -48,13 +48,8 @@ pub fn measure(gpu: &Gpu, setup: &SceneSetup, job: &ScaleJob) -> Result<Option<G
     for round in 0..WARM_UP + job.rounds {
         let view = step(&shot.view, f64::from(round));
         let lights = [shot.shown_light()];
-        let inputs = Inputs {
-            casters: &tiles,
-            receivers: &tiles,
-            origin,
-            image_size: job.size,
-            ..Inputs::new(&view, &lights)
-        };
+        let inputs =
+            Inputs { casters: &tiles, receivers: &tiles, origin, image_size: job.size, ..Inputs::new(&view, &lights) };
         let begun = Instant::now();
         let frame = shadows.prepare(&gpu.queue, &inputs).map_err(refused)?;
         let inputs = CullInputs { instances: boxes.len() as u32, origin };

@@ -129,10 +129,14 @@ fn tree_at(terrain: &Terrain, (place, density): (DVec2, f64), random: &mut Rando
 /// How much trees like a place: 0 to 1. Clearings, scree and heights stay free.
 fn density(terrain: &Terrain, place: DVec2) -> f64 {
     let at = terrain.on_ground(place);
-    let clearing = noise::plane_octaves(75, place / 330.0, 3, 0.5);
-    let open = smoothstep(35.0, 60.0, place.length());
     let treeline = smoothstep(470.0, 330.0, at.y + 90.0 * noise::plane_octaves(76, place / 240.0, 2, 0.5));
-    open * smoothstep(-0.26, -0.02, clearing) * treeline * smoothstep(1.15, 0.75, steepness(terrain, place))
+    wooded(place) * treeline * smoothstep(1.15, 0.75, steepness(terrain, place))
+}
+
+/// 0 in clearings, one of which is the middle of the ground, 1 in the wood.
+fn wooded(place: DVec2) -> f64 {
+    let open = smoothstep(35.0, 60.0, place.length());
+    open * smoothstep(-0.26, -0.02, noise::plane_octaves(75, place / 330.0, 3, 0.5))
 }
 
 /// Metres up per metre along.
@@ -156,10 +160,10 @@ fn height(place: DVec2, edge: f64) -> f64 {
 fn soil_colour(at: DVec3, normal: DVec3) -> [f32; 3] {
     let place = DVec2::new(at.x, at.z);
     let patch = 0.5 + 0.7 * noise::plane_octaves(77, place / 60.0, 3, 0.55);
-    let forest = smoothstep(-0.26, -0.02, noise::plane_octaves(75, place / 330.0, 3, 0.5));
+    let forest = wooded(place);
     let rock = smoothstep(0.80, 0.66, normal.y).max(smoothstep(360.0, 500.0, at.y));
     let channel = |i: usize| {
-        let grass = mix([0.150, 0.210, 0.050][i], [0.290, 0.270, 0.095][i], patch);
+        let grass = mix([0.170, 0.240, 0.060][i], [0.330, 0.310, 0.110][i], patch);
         let litter = mix([0.070, 0.060, 0.030][i], [0.060, 0.075, 0.025][i], patch);
         let stone = mix([0.190, 0.180, 0.170][i], [0.300, 0.285, 0.265][i], patch);
         mix(mix(grass, litter, 0.75 * forest), stone, rock) as f32
