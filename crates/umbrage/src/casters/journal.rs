@@ -16,9 +16,13 @@ pub(crate) struct Change {
     pub new: Option<Aabb>,
 }
 
-/// Changes that are remembered, at most. Who has missed more has to take all for changed. 4,096 are
-/// some 600 kB.
+/// Changes that are remembered of a small set, at most. Who has missed more has to take all for
+/// changed. 4,096 are some 600 kB.
 const MOST: usize = 4096;
+
+/// Of a large set one change for so many casters is remembered: of a million 31,250, some 5 MB once
+/// so many change in a frame.
+const SHARE: usize = 32;
 
 /// The latest changes, by number.
 #[derive(Clone, Debug, Default)]
@@ -29,8 +33,9 @@ pub(super) struct Journal {
 }
 
 impl Journal {
-    pub fn note(&mut self, change: Change) {
-        if self.changes.len() == MOST {
+    /// Notes a change of a set of so many casters.
+    pub fn note(&mut self, change: Change, casters: usize) {
+        while self.changes.len() >= MOST.max(casters / SHARE) {
             self.changes.pop_front();
         }
         self.changes.push_back(change);
@@ -73,7 +78,7 @@ mod tests {
         let handle = set.insert(Caster::new(unit, 7)).expect("a box");
         let mut journal = Journal::default();
         for key in 0..2 * MOST as u32 {
-            journal.note(Change { handle, key, old: None, new: Some(unit) });
+            journal.note(Change { handle, key, old: None, new: Some(unit) }, set.len());
         }
         let end = journal.next();
         let keys = |from| journal.since(from).map(|changes| changes.map(|change| change.key).collect::<Vec<_>>());
@@ -82,6 +87,13 @@ mod tests {
         assert_eq!(keys(end - MOST as u64).map(|keys| keys.len()), Some(MOST));
         assert_eq!(keys(end - MOST as u64 - 1), None, "forgotten");
         assert_eq!(keys(end + 1), None, "another set's number");
+        let begin = journal.next();
+        for key in 0..2 * MOST as u32 {
+            journal.note(Change { handle, key, old: None, new: Some(unit) }, 2 * MOST * SHARE);
+        }
+        let remembered = journal.since(begin).map(Iterator::count);
+        assert_eq!(remembered, Some(2 * MOST), "more of a larger set");
+        let end = journal.next();
         journal.note_too_many();
         assert!(journal.since(end).is_none() && journal.since(journal.next()).is_some());
     }

@@ -9,6 +9,9 @@ use crate::technique::Technique;
 /// Frames that a case is drawn before any that counts: caches fill, and shaders compile.
 pub(super) const WARM_UP: u32 = 2;
 
+/// Frames after which what is held for a standing camera has settled, so that plans are copied.
+const SETTLED: u32 = 64;
+
 /// Numbers of objects, and where the figures go.
 #[derive(Debug)]
 pub struct ScaleJob {
@@ -29,7 +32,8 @@ pub struct ScaleJob {
 impl ScaleJob {
     /// How many frames are drawn.
     pub(super) fn frames(&self) -> u64 {
-        self.objects.len() as u64 * Case::ALL.len() as u64 * u64::from(self.rounds + WARM_UP)
+        let of_case = |case: Case| u64::from(case.settling() + WARM_UP + self.rounds);
+        self.objects.len() as u64 * Case::ALL.map(of_case).iter().sum::<u64>()
     }
 }
 
@@ -66,6 +70,12 @@ impl Case {
     #[must_use]
     pub const fn is_kept(self) -> bool {
         !matches!(self, Self::Uncached)
+    }
+
+    /// Frames that are planned before any is drawn, until nothing that is held changes any more.
+    #[must_use]
+    pub(super) const fn settling(self) -> u32 {
+        if matches!(self, Self::Standing) { SETTLED } else { 0 }
     }
 
     /// Whether the camera walks.

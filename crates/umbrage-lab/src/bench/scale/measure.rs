@@ -69,6 +69,12 @@ fn frames(
     let (mut stats, mut bare): (Vec<FrameStats>, Vec<FrameStats>) = (Vec::new(), Vec::new());
     let outputs = Outputs { picture: true, ..Outputs::default() };
     let shot = setup.shots[0].clone();
+    for _ in 0..case.settling() {
+        let frame = Frame { moved: Some(&[]), ..setup.frame(&shot, &shot.view, true, false) };
+        stats.push(renderer.render(&frame, Outputs::default())?.stats);
+        bar.inc(1);
+    }
+    let first_triangles = stats.drain(..).next().map(|stats| stats.shadow_triangles);
     for round in 0..WARM_UP + job.rounds {
         movers.step(&mut setup.pose, round);
         let view = if case.walks() { ahead(&shot.view, STEP_M * f64::from(round)) } else { shot.view };
@@ -86,7 +92,7 @@ fn frames(
         plan_us: counted(&|stats| 1e3 * stats.plan_ms, &stats),
         pairs: counted(&|stats| stats.splits.iter().map(|split| split.casters as f64).sum(), &stats),
         triangles: counted(&|stats| stats.shadow_triangles as f64, &stats),
-        first_triangles: stats.first().map_or(0, |stats| stats.shadow_triangles),
+        first_triangles: first_triangles.or(stats.first().map(|stats| stats.shadow_triangles)).unwrap_or(0),
         shadow_ms: counted(&|stats| stats.shadow_ms, &stats),
         frame_ms: counted(&|stats| stats.frame_ms, &stats),
         frame_without_ms: counted(&|stats| stats.frame_ms, &bare),

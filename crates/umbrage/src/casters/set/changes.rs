@@ -67,7 +67,7 @@ impl CasterSet {
     pub(super) fn note_end(&mut self, slot: u32) {
         if let Some(old) = self.static_bounds(slot) {
             let (handle, key) = (self.slots.handle(slot), self.about(slot).0);
-            self.journal.note(Change { handle, key, old: Some(old), new: None });
+            self.journal.note(Change { handle, key, old: Some(old), new: None }, self.len);
         }
         self.membership += 1;
     }
@@ -83,7 +83,7 @@ impl CasterSet {
         let new = self.static_bounds(slot);
         if old.is_some() || new.is_some() {
             let (handle, key) = (self.slots.handle(slot), self.about(slot).0);
-            self.journal.note(Change { handle, key, old, new });
+            self.journal.note(Change { handle, key, old, new }, self.len);
         }
     }
 }
