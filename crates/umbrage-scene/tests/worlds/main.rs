@@ -1,5 +1,5 @@
-//! The four worlds of the paper, the wood and the large ones: what they hold, that their surfaces are
-//! sound, that things stand where they should.
+//! The four worlds of the paper, the wood and the large ones: what they hold, that their surfaces
+//! are sound, that things stand where they should.
 
 mod census;
 mod ground;

@@ -31,7 +31,7 @@ pub struct SizeReport {
     pub open_ms: f64,
     /// One per case.
     pub cases: Vec<CaseReport>,
-    /// The same objects culled on the GPU, for a camera that walks; none without compute shaders.
+    /// What culling them on the GPU takes, for a camera that walks; none without compute shaders.
     pub by_gpu: Option<GpuReport>,
 }
 

@@ -182,7 +182,7 @@ fn cameras(stage: &mut Stage) {
     stage.sun(SkyPoint { bearing: 52.0, elevation: 38.0 }, SkyPoint { bearing: 120.0, elevation: 62.0 });
     let street = 0.5 * pitch(1);
     stage.camera("near", dvec3(-58.0, 2.0, street + 1.0), dvec3(40.0, 12.0, street - 18.0));
-    stage.camera("middle", dvec3(-76.0, 62.0, 92.0), dvec3(16.0, 6.0, -14.0));
+    stage.camera("middle", dvec3(-72.0, 18.0, 47.0), dvec3(20.0, 9.0, -12.0));
     stage.camera("far", dvec3(-420.0, 150.0, 520.0), dvec3(0.0, 50.0, 0.0));
     stage.camera("dueling", dvec3(-240.0, 12.0, street), dvec3(60.0, 30.0, street - 6.0));
     stage.camera("aerial", dvec3(-900.0, 560.0, 1150.0), dvec3(60.0, 0.0, -80.0));
