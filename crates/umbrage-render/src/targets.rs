@@ -25,7 +25,9 @@ pub(crate) struct PictureTarget {
     resolved: wgpu::TextureView,
     /// Several samples per pixel, to be resolved.
     samples: Option<wgpu::TextureView>,
-    depth: wgpu::TextureView,
+    pub depth: wgpu::TextureView,
+    /// Whether depth is kept for passes that come after.
+    pub keeps_depth: bool,
 }
 
 impl PictureTarget {
@@ -35,7 +37,13 @@ impl PictureTarget {
         let count = samples.count();
         let several = (count > 1).then(|| target_texture(gpu, "PictureTarget::samples", size, PICTURE_FORMAT, count));
         let depth = target_texture(gpu, "PictureTarget::depth", size, DEPTH_FORMAT, count);
-        Self { resolved: view(&texture), samples: several.as_ref().map(view), depth: view(&depth), texture }
+        Self {
+            resolved: view(&texture),
+            samples: several.as_ref().map(view),
+            depth: view(&depth),
+            keeps_depth: false,
+            texture,
+        }
     }
 
     pub fn begin<'e>(
@@ -49,7 +57,7 @@ impl PictureTarget {
             None => (&self.resolved, None),
         };
         let target = Target { label: "PictureTarget::pass", color, resolve_target, clear: wgpu::Color::BLACK };
-        begin(encoder, target, (&self.depth, false), turn, timestamp_writes)
+        begin(encoder, target, (&self.depth, self.keeps_depth), turn, timestamp_writes)
     }
 }
 
@@ -101,7 +109,7 @@ fn target_texture(
         format,
         usage: match (read_back, format) {
             (true, _) => usage | wgpu::TextureUsages::COPY_SRC,
-            (false, DEPTH_FORMAT) if sample_count == 1 => usage | wgpu::TextureUsages::TEXTURE_BINDING,
+            (false, DEPTH_FORMAT) => usage | wgpu::TextureUsages::TEXTURE_BINDING,
             (false, _) => usage,
         },
         view_formats: &[],

@@ -44,6 +44,8 @@ fn roots() -> Vec<Root> {
         text("pass::cull", &[], "cull".into()),
         text("pass::mask", &[], "mask".into()),
         text("pass::mask", &["normals"], "mask_with_normals".into()),
+        text("pass::seen", &[], "seen".into()),
+        text("pass::seen", &["multisampled"], "seen_of_samples".into()),
         text("receiver::api", &["depth_loads"], "receiver".into()),
         text("receiver::api", &[], "receiver_without_loads".into()),
         text("receiver::api", &["moments"], "receiver_of_moments".into()),

@@ -175,6 +175,13 @@ pub fn caster(group: u32, casters: Casters, members: &str) -> String {
     )
 }
 
+/// A compute shader, entry point `umbrage_seen`: from a picture's depth to the box of what each of
+/// its tiles shows. `samples`: the depth has several samples, of which the first one counts.
+#[must_use]
+pub fn seen(samples: bool) -> &'static str {
+    if samples { text!("seen_of_samples") } else { text!("seen") }
+}
+
 /// A whole pass to put behind a [`receiver`]: the entry points `umbrage_mask_vertex` and
 /// `umbrage_mask_fragment` turn a picture's depth (and its normals, if there is a texture of them)
 /// into a mask of what is lit.

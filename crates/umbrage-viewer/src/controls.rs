@@ -156,7 +156,7 @@ pub const SECTIONS: &[(&str, &[&str])] = &[
         &["edges", "filter", "filter-width", "sun-angle", "rotate-kernel", "msaa", "bleeding", "derivatives", "bias"],
     ),
     ("Borders between splits", &["selection", "bands", "transition", "blend"]),
-    ("Stillness and fit", &["stabilize", "extent-steps", "extent-levels", "fit", "warp", "tsm-focus"]),
+    ("Stillness and fit", &["stabilize", "extent-steps", "extent-levels", "fit", "fit-to", "warp", "tsm-focus"]),
     ("Look", &["shadow-strength", "shadow-colour", "translucent", "contact-shadows"]),
     (
         "Memory and passes",

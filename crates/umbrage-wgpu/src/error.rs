@@ -42,6 +42,12 @@ pub enum Error {
         "depth textures cannot be loaded on GL and WebGL2; compute visibility where surfaces are drawn instead of in a mask"
     )]
     MaskNeedsDepthLoads,
+    /// Depth that what was seen cannot be read from.
+    #[error("what was seen cannot be read: {reason}")]
+    SeenDepth {
+        /// What is wrong, and what to do.
+        reason: String,
+    },
     /// A mask was given normals that it was not made for, or none where it needs them.
     #[error("a mask with normals {normals:?} was {}; give a texture of normals with MaskNormals::Texture and with nothing else", if *.given { "given a texture of them" } else { "given none" })]
     MaskNormals {

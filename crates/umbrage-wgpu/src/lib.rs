@@ -107,6 +107,7 @@ mod mask;
 mod moments;
 mod occluders;
 mod options;
+mod seen;
 mod shadows;
 mod uniforms;
 
@@ -119,6 +120,7 @@ pub use mask::{MaskFrame, MaskNormals, ShadowMask};
 pub use moments::MomentStorage;
 pub use occluders::{Occluder, Occluders, stored_runs, stored_runs_layout, stored_runs_wgsl};
 pub use options::{FrameOptions, LightMaps, texture_format};
+pub use seen::SeenDepth;
 pub use shadows::{Inputs, ShadowFrame, ShadowMap, Shadows, ShapeDraw};
 pub use umbrage;
 pub use umbrage::config::{Filter, LightKind, ShadowConfig};

@@ -3,7 +3,8 @@
 use glam::DVec3;
 use umbrage::config::{DepthFormat, ExtentSteps, Filter, Look, Preset, Range, SplitScheme, Stability, Transition};
 use umbrage::{
-    Aabb, DirectionalLight, Error, FilterReach, Frustum, Planner, PlannerOptions, PointLight, ShadowConfig, View,
+    Aabb, DirectionalLight, Error, FilterReach, Frustum, PlanInputs, Planner, PlannerOptions, PointLight, ShadowConfig,
+    View,
 };
 
 fn refused(change: impl FnOnce(&mut ShadowConfig)) -> &'static str {
@@ -168,6 +169,10 @@ fn bounds() {
         assert!(matches!(casters, Error::InvalidBounds { list: "casters", index: 1, .. }), "{casters}");
         let receivers = planner.plan(&view, &light, &[good], &[bad]).expect_err("a bad receiver");
         assert!(matches!(receivers, Error::InvalidBounds { list: "receivers", index: 0, .. }), "{receivers}");
+        let (seen, boxes) = ([good, good, bad], [good]);
+        let inputs = PlanInputs { seen: Some(&seen), ..PlanInputs::new(&view, light, &boxes, &boxes) };
+        let seen = planner.plan_frame(&inputs).expect_err("a bad box");
+        assert!(matches!(seen, Error::InvalidBounds { list: "seen", index: 2, .. }), "{seen}");
     }
     assert!(planner.plan(&view, &light, &[], &[]).is_ok(), "an empty world is a world");
     let point = Aabb::new(DVec3::X * 50.0, DVec3::X * 50.0);

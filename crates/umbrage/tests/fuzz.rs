@@ -5,7 +5,7 @@ use glam::{DQuat, DVec2, DVec3, EulerRot};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use umbrage::config::{
-    Crop, ExtentSteps, Preset, Range, Selection, ShadowConfig, SplitMetric, SplitScheme, Stability, Transition,
+    Crop, ExtentSteps, FitTo, Preset, Range, Selection, ShadowConfig, SplitMetric, SplitScheme, Stability, Transition,
 };
 use umbrage::{
     Aabb, DirectionalLight, FilterReach, Frustum, PlanInputs, Planner, PlannerOptions, Projection, ShadowPlan, View,
@@ -18,6 +18,8 @@ struct Case {
     views: Vec<View>,
     sun: DirectionalLight,
     boxes: Vec<Aabb>,
+    /// What an earlier picture showed: parts of some boxes, or none of them.
+    seen: Option<Vec<Aabb>>,
     probes: Vec<DVec3>,
 }
 
@@ -35,7 +37,7 @@ fn cases() -> u32 {
 /// Any direction, with those among them in which axes coincide or nearly do.
 fn direction() -> impl Strategy<Value = DVec3> {
     let part = || prop_oneof![Just(0.0), Just(1.0), Just(-1.0), -1.0..1.0f64, Just(1e-7), Just(-1e-12)];
-    [part(), part(), part()].prop_map(DVec3::from).prop_filter("a direction", |d| d.length() > 1e-3)
+    [part(), part(), part()].prop_map(DVec3::from).prop_map(|d| if d.length() > 1e-3 { d } else { DVec3::NEG_Y })
 }
 
 fn settings() -> impl Strategy<Value = (ShadowConfig, PlannerOptions)> {
@@ -69,6 +71,7 @@ fn settings() -> impl Strategy<Value = (ShadowConfig, PlannerOptions)> {
                 range: if fits { Range::Visible } else { range },
                 transition: Transition::Blend { share },
                 crop: if dependent { Crop::SceneDependent } else { Crop::SceneIndependent },
+                fit_to: if dependent && selection == Selection::Map { FitTo::Depth } else { FitTo::Boxes },
                 ..Preset::Papers.config()
             };
             let reach = FilterReach { radius_texels, half_width_m: None };
@@ -94,6 +97,17 @@ fn boxes() -> impl Strategy<Value = Vec<Aabb>> {
         }
         boxes
     })
+}
+
+/// Of each box an eighth, or nothing.
+fn seen(boxes: &[Aabb], parts: &[u8; 8]) -> Vec<Aabb> {
+    let part = |(index, bounds): (usize, &Aabb)| {
+        let octant = parts[index % 8];
+        let side = |axis: u8| f64::from(octant >> axis & 1);
+        let begin = bounds.min + DVec3::new(side(0), side(1), side(2)) * bounds.half_extent();
+        (octant < 12).then(|| Aabb::new(begin, begin + bounds.half_extent()))
+    };
+    boxes.iter().enumerate().filter_map(part).collect()
 }
 
 fn lens() -> impl Strategy<Value = Frustum> {
@@ -122,27 +136,30 @@ fn any_case() -> impl Strategy<Value = Case> {
         lens(),
         (eye, direction(), off, any::<bool>()),
         steps,
-        prop::collection::vec(probe, 12),
+        (prop::collection::vec(probe, 12), prop::option::of(any::<[u8; 8]>())),
     )
-        .prop_map(|((mut settings, options), boxes, sun, lens, (eye, look, off, against), steps, probes)| {
-            let sun = DirectionalLight::new(sun).expect("a direction");
-            let along = if against { -sun.direction() } else { sun.direction() };
-            let ahead = (along + off * look).try_normalize().unwrap_or(along);
-            let up = if ahead.y.abs() > 0.99 { DVec3::X } else { DVec3::Y };
-            let mut at = DVec3::from(eye);
-            let mut views = vec![View::look_at(at, at + ahead, up, lens).expect("a view")];
-            for (step, turn) in steps {
-                at += DVec3::X * step;
-                let ahead = DQuat::from_euler(EulerRot::YXZ, turn, 0.1 * turn, 0.0) * ahead;
+        .prop_map(
+            |((mut settings, options), boxes, sun, lens, (eye, look, off, against), steps, (probes, parts))| {
+                let sun = DirectionalLight::new(sun).expect("a direction");
+                let along = if against { -sun.direction() } else { sun.direction() };
+                let ahead = (along + off * look).try_normalize().unwrap_or(along);
                 let up = if ahead.y.abs() > 0.99 { DVec3::X } else { DVec3::Y };
-                views.push(View::look_at(at, at + ahead, up, lens).expect("a view"));
-            }
-            let is_radial = settings.selection.metric() == SplitMetric::Distance;
-            if is_radial && lens.projection == Projection::Orthographic {
-                settings.selection = Selection::default();
-            }
-            Case { settings, options, views, sun, boxes, probes }
-        })
+                let mut at = DVec3::from(eye);
+                let mut views = vec![View::look_at(at, at + ahead, up, lens).expect("a view")];
+                for (step, turn) in steps {
+                    at += DVec3::X * step;
+                    let ahead = DQuat::from_euler(EulerRot::YXZ, turn, 0.1 * turn, 0.0) * ahead;
+                    let up = if ahead.y.abs() > 0.99 { DVec3::X } else { DVec3::Y };
+                    views.push(View::look_at(at, at + ahead, up, lens).expect("a view"));
+                }
+                let is_radial = settings.selection.metric() == SplitMetric::Distance;
+                if is_radial && lens.projection == Projection::Orthographic {
+                    settings.selection = Selection::default();
+                }
+                let seen = parts.map(|parts| seen(&boxes, &parts.map(|part| part % 16)));
+                Case { settings, options, views, sun, boxes, seen, probes }
+            },
+        )
 }
 
 /// Points of the boxes' surfaces that the view shows.
@@ -293,7 +310,8 @@ proptest! {
     fn every_plan_keeps_its_promises(case in any_case()) {
         let mut planner = Planner::with_options(&case.settings, case.options)?;
         for view in &case.views {
-            let inputs = PlanInputs::new(view, case.sun, &case.boxes, &case.boxes);
+            let seen = case.seen.as_deref();
+            let inputs = PlanInputs { seen, ..PlanInputs::new(view, case.sun, &case.boxes, &case.boxes) };
             let before = planner.held().clone();
             let plan = match planner.plan_frame(&inputs) {
                 Ok(plan) => plan.clone(),

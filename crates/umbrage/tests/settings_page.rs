@@ -122,6 +122,9 @@ const fn name(choice: Choice) -> &'static str {
         Choice::MoreThanFourSplits => "more than 4 `splits`",
         Choice::LocalLight => "spot and point lights",
         Choice::SeveralFaces => "several lights, point lights",
+        Choice::FitToDepth => "`fit-to depth`",
+        Choice::IntervalSelection => "`selection depth`",
+        Choice::SliceCrop => "`fit independent`",
     }
 }
 

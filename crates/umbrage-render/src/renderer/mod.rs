@@ -8,6 +8,7 @@ mod live;
 mod prepare;
 mod record;
 mod report;
+mod sight;
 mod views;
 mod world;
 
@@ -16,13 +17,14 @@ use std::sync::OnceLock;
 use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
 use umbrage::View;
-use umbrage::config::{Coordinates, Layout, LightKind, ShadowConfig, Translucent};
+use umbrage::config::{Coordinates, FitTo, Layout, LightKind, ShadowConfig, Translucent};
 use umbrage_scene::{Pose, Scene};
-use umbrage_wgpu::{LightMaps, MaskFrame, MaskNormals, ShadowMask, Shadows};
+use umbrage_wgpu::{LightMaps, MaskNormals, ShadowMask, Shadows};
 
 use self::gathered::Gathered;
 use self::prepare::Prepared;
 use self::record::{Clock, MapCapture, new_encoder};
+use self::sight::{Sight, camera_of};
 pub use self::world::KeptMaps;
 use self::world::WorldSet;
 use crate::capture::Capture;
@@ -150,6 +152,7 @@ pub struct Renderer {
     kept: KeptMaps,
     gathered: Gathered,
     pub(crate) coarser: Coarser,
+    sight: Sight,
 }
 
 impl Renderer {
@@ -218,6 +221,7 @@ impl Renderer {
                 kept: KeptMaps::default(),
                 gathered: Gathered::default(),
                 coarser: Coarser::of(scene),
+                sight: Sight::default(),
                 materials,
                 shadows,
                 gpu: gpu.clone(),
@@ -229,6 +233,7 @@ impl Renderer {
     /// not follow each other.
     pub fn restart(&mut self) {
         self.shadows.restart();
+        self.sight.forget();
     }
 
     /// Bytes of vertices, indices and textures on the GPU.
@@ -253,7 +258,10 @@ impl Renderer {
     pub fn render(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
         let frame = Frame { shadows_on: frame.shadows_on && self.shading == Shading::WithShadows, ..*frame };
-        let drawn = gpu.guarded("drawing a frame", || self.render_unguarded(&frame, outputs));
+        let drawn = gpu.guarded("drawing a frame", || {
+            self.look_around(&frame, outputs)?;
+            self.render_unguarded(&frame, outputs)
+        });
         self.or_forget(drawn)
     }
 
@@ -296,6 +304,7 @@ impl Renderer {
             }
             _ => None,
         };
+        self.look(&mut encoder, frame.view, prepared.origin, outputs)?;
         self.timer.record(&mut encoder);
         let wall = clock.after_all(encoder)?;
 
@@ -314,8 +323,9 @@ impl Renderer {
 
     /// Makes what is drawn to, when it is first asked for.
     fn make_targets(&mut self, outputs: Outputs) -> Result<()> {
-        if outputs.picture && self.picture.is_none() {
-            self.picture = Some(PictureTarget::new(&self.gpu, self.size, self.samples));
+        if outputs.picture {
+            let target = self.picture.get_or_insert_with(|| PictureTarget::new(&self.gpu, self.size, self.samples));
+            target.keeps_depth = self.shadows.config().fit_to == FitTo::Depth;
         }
         if outputs.mask && self.mask.is_none() {
             self.mask = Some(MaskTarget::new(&self.gpu, self.size));
@@ -349,15 +359,7 @@ impl Renderer {
         frame: &Frame<'_>,
         origin: DVec3,
     ) -> Result<()> {
-        let view = frame.view;
-        let camera = MaskFrame {
-            clip_from_eye: view.clip_from_relative(view.eye()),
-            eye: view.eye(),
-            forward: view.forward(),
-            origin,
-            empty_depth: 0.0,
-        };
-        shadow_mask.prepare(&self.gpu.queue, &camera)?;
+        shadow_mask.prepare(&self.gpu.queue, &camera_of(frame.view, origin))?;
         let group = shadow_mask.bind_group(&self.gpu.device, &target.depth, None)?;
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("Renderer::deferred_mask"),

@@ -115,6 +115,7 @@ impl Renderer {
             kept_texels: self.kept.texels,
             redraws_kept: self.kept.redraws,
             receiver_clusters: gathered.clusters(),
+            seen: self.sight.boxes(),
             origin,
             image_size: self.size,
             view_slot: self.view_slot,

@@ -102,3 +102,24 @@ fn a_mountain_behind_throws_its_shadow() {
     let view = look(DVec3::new(0.0, 1.7, 0.0), DVec3::new(0.0, -0.05, -1.0), 0.1);
     check("mountain", &scene, &view, DVec3::new(0.05, -0.38, -1.0), 0.3);
 }
+
+#[test]
+fn one_large_mesh_is_fitted_to_what_its_depth_shows() {
+    // A level that is one object, as files have it: its box says nothing of what a wall hides.
+    let mut level = ground(0.0, 300.0);
+    cuboid(&mut level, DVec3::new(-40.0, 0.0, -9.0), DVec3::new(80.0, 30.0, 0.4));
+    for i in 0..12 {
+        let x = 1.3 * f64::from(i) - 8.0;
+        cuboid(&mut level, DVec3::new(x, 0.2 * f64::from(i % 5), -8.4), DVec3::new(0.15, 1.0 + 0.1 * x.abs(), 0.15));
+        cuboid(&mut level, DVec3::new(20.0 * x, 0.0, -150.0), DVec3::new(9.0, 12.0, 9.0));
+    }
+    let mut scene = scene();
+    add(&mut scene, level);
+    let view = look(DVec3::new(0.0, 1.7, 0.0), DVec3::new(0.0, -0.1, -1.0), 0.1);
+    let sun = DVec3::new(-0.5, -0.7, -0.5);
+    let Some(by_boxes) = error(&scene, &view, sun, &ShadowConfig::default()) else { return };
+    let fitted = ShadowConfig { fit_to: umbrage::config::FitTo::Depth, ..ShadowConfig::default() };
+    let by_depth = error(&scene, &view, sun, &fitted).expect("a device");
+    let (boxes, depth) = (100.0 * by_boxes.rate(), 100.0 * by_depth.rate());
+    assert!(depth < 0.5 * boxes, "E {depth:.3} % by depth, {boxes:.3} % by boxes");
+}

@@ -34,6 +34,9 @@ pub struct Inputs<'a> {
     /// [`Inputs::receivers`]: [`umbrage::ShadowPlan::casts_into`] then rejects more parts of
     /// casters. `None`: not known.
     pub receiver_clusters: Option<&'a [Aabb]>,
+    /// Boxes that hold all that an earlier picture showed ([`umbrage::PlanInputs::seen`]). `None`:
+    /// not known.
+    pub seen: Option<&'a [Aabb]>,
     /// World point that positions in the application's shaders are relative to. Keep it within a
     /// kilometre or two of the eye and move it in whole steps: static shadows stand still between
     /// two steps.
@@ -67,6 +70,7 @@ impl<'a> Inputs<'a> {
             set: None,
             layers: Layers::ALL,
             receiver_clusters: None,
+            seen: None,
             origin: DVec3::ZERO,
             image_size: [1920, 1080],
             view_slot: 0,

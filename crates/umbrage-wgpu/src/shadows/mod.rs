@@ -172,6 +172,7 @@ impl Shadows {
         for ((planner, plan), light) in planners.iter_mut().zip(&mut self.plans).zip(inputs.lights) {
             let of_light = PlanInputs {
                 receiver_clusters: inputs.receiver_clusters,
+                seen: inputs.seen,
                 layers: inputs.layers,
                 image_size: inputs.image_size,
                 ..PlanInputs::new(inputs.view, *light, casters, receivers)

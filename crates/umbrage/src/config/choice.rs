@@ -2,8 +2,8 @@
 //! them back.
 
 use super::{
-    Cache, Coordinates, DepthFormat, Edges, Filter, Generation, Layout, LightKind, Range, Selection, ShadowConfig,
-    SplitMetric, SplitScheme, Stability, Storage, Transition,
+    Cache, Coordinates, Crop, DepthFormat, Edges, Filter, FitTo, Generation, Layout, LightKind, Range, Selection,
+    ShadowConfig, SplitMetric, SplitScheme, Stability, Storage, Transition,
 };
 use crate::Warp;
 
@@ -66,11 +66,17 @@ pub enum Choice {
     LocalLight,
     /// Several lights, or a light of several faces.
     SeveralFaces,
+    /// Maps are fitted to what an earlier frame's depth showed.
+    FitToDepth,
+    /// A point uses the split of its depth.
+    IntervalSelection,
+    /// Maps are cropped to slices of the view.
+    SliceCrop,
 }
 
 impl Choice {
     /// All choices that a rule may name.
-    pub const ALL: [Self; 28] = [
+    pub const ALL: [Self; 31] = [
         Self::Warp,
         Self::MapSelection,
         Self::DistanceMetric,
@@ -99,6 +105,9 @@ impl Choice {
         Self::MoreThanFourSplits,
         Self::LocalLight,
         Self::SeveralFaces,
+        Self::FitToDepth,
+        Self::IntervalSelection,
+        Self::SliceCrop,
     ];
 
     /// Whether a config for these lights makes this choice.
@@ -131,6 +140,9 @@ impl Choice {
             Self::DeferredCoordinates => config.coordinates == Coordinates::Deferred,
             Self::VertexCoordinates => config.coordinates == Coordinates::Vertex,
             Self::MoreThanFourSplits => config.splits() > 4,
+            Self::FitToDepth => config.fit_to == FitTo::Depth,
+            Self::IntervalSelection => config.selection != Selection::Map,
+            Self::SliceCrop => config.crop == Crop::SceneIndependent,
             Self::LocalLight => lights.iter().any(|light| *light != LightKind::Directional),
             Self::SeveralFaces => lights.iter().map(|light| light.faces()).sum::<usize>() > 1,
         }
@@ -159,6 +171,9 @@ impl Choice {
             Self::KeptMaps => &["cache"],
             Self::DeferredCoordinates | Self::VertexCoordinates => &["coordinates"],
             Self::LocalLight | Self::SeveralFaces => &["light"],
+            Self::FitToDepth => &["fit-to"],
+            Self::IntervalSelection => &["selection", "bands"],
+            Self::SliceCrop => &["fit"],
         }
     }
 
@@ -206,6 +221,9 @@ impl Choice {
             Self::ColourMaps | Self::OtherDepth => config.depth_format = DepthFormat::default(),
             Self::NotStill => config.stability = Stability::Exact,
             Self::KeptMaps => config.cache = Cache::Off,
+            Self::FitToDepth => config.fit_to = FitTo::Boxes,
+            Self::IntervalSelection => config.selection = Selection::Map,
+            Self::SliceCrop => config.crop = Crop::SceneDependent,
             Self::OneMap
             | Self::NotLayers
             | Self::NotOneTexture

@@ -91,3 +91,14 @@ impl Default for ExtentSteps {
         Self::PerDoubling(24)
     }
 }
+
+named! {
+    /// What planes and maps are fitted to.
+    pub enum FitTo as "what maps are fitted to" {
+        /// The boxes of the receivers in view
+        #[default]
+        Boxes = "boxes",
+        /// What an earlier frame's depth showed, where it is handed over; the last map serves the rest
+        Depth = "depth",
+    }
+}

@@ -30,7 +30,7 @@ pub use budget::Budget;
 pub use choice::Choice;
 pub use edges::Edges;
 pub use filter::{Derivatives, Filter, MomentKind, Moments, SUN_DEGREES};
-pub use fit::{Crop, ExtentSteps, Stability};
+pub use fit::{Crop, ExtentSteps, FitTo, Stability};
 pub use given::Given;
 pub use layout::{Cache, Coordinates, DepthFormat, Fallbacks, Generation, Layout, Storage};
 pub use look::{Look, ReceiverBias, Translucent};
@@ -115,6 +115,10 @@ pub struct ShadowConfig {
     pub far_fade: f64,
     /// What each map is cropped to.
     pub crop: Crop,
+    /// What planes and maps are fitted to. With [`FitTo::Depth`] and
+    /// [`crate::PlanInputs::seen`] all maps but the last serve what was seen alone: a wall before
+    /// the eye then takes no texels from what it shows. Spot and point lights ignore it.
+    pub fit_to: FitTo,
     /// Whether shadows stand still while the camera moves.
     pub stability: Stability,
     /// Whether the maps of a sun omit casters whose whole shadow is smaller than half a texel along
@@ -252,6 +256,7 @@ impl ShadowConfig {
             transition: _,
             far_fade,
             crop,
+            fit_to,
             stability,
             drop_small_casters,
             filter: _,
@@ -266,6 +271,7 @@ impl ShadowConfig {
         *map_sizes == other.map_sizes
             && *scheme == other.scheme
             && (*range, *selection, *crop) == (other.range, other.selection, other.crop)
+            && *fit_to == other.fit_to
             && (self.blend(), *far_fade) == (other.blend(), other.far_fade)
             && (stability, *drop_small_casters) == (&other.stability, other.drop_small_casters)
             && *cache == other.cache

@@ -2,8 +2,8 @@
 
 use super::names::named;
 use super::{
-    Cache, Coordinates, Crop, DepthFormat, Edges, ExtentSteps, Fallbacks, Filter, Layout, Look, Range, Selection,
-    ShadowConfig, SplitScheme, Stability, Transition,
+    Cache, Coordinates, Crop, DepthFormat, Edges, ExtentSteps, Fallbacks, Filter, FitTo, Layout, Look, Range,
+    Selection, ShadowConfig, SplitScheme, Stability, Transition,
 };
 
 named! {
@@ -37,6 +37,7 @@ impl Preset {
             transition: Transition::Blend { share: 0.1 },
             far_fade: 0.1,
             crop: Crop::SceneDependent,
+            fit_to: FitTo::Boxes,
             stability: Stability::Exact,
             drop_small_casters: false,
             filter: Filter::Pcf3 { width_m: None },

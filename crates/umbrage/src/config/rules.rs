@@ -81,6 +81,18 @@ pub const RULES: &[Rule] = &[
         "use generation per-split or layered, or a filter that compares depth, such as pcf5",
     ),
     rule(
+        Choice::FitToDepth,
+        Choice::IntervalSelection,
+        "what was not seen has to find the last map, whatever its depth",
+        "use selection map, or fit-to boxes",
+    ),
+    rule(
+        Choice::FitToDepth,
+        Choice::SliceCrop,
+        "maps that hold whole slices of the view have no use for what was seen",
+        "use fit dependent, or fit-to boxes",
+    ),
+    rule(
         Choice::OtherThanPcf3,
         Choice::ExactEdges,
         "exact edges look at three texels by three, and ask a filter of that size where casters have no name",

@@ -4,8 +4,8 @@
 use super::given::Wrong;
 use super::setting::{Kind, Rebuilds, Setting, Value};
 use super::{
-    Cache, Coordinates, Crop, DepthFormat, Derivatives, Edges, ExtentSteps, Fallbacks, Filter, Range, ReceiverBias,
-    Selection, SplitMetric, SplitScheme, Stability, Transition, Translucent,
+    Cache, Coordinates, Crop, DepthFormat, Derivatives, Edges, ExtentSteps, Fallbacks, Filter, FitTo, Range,
+    ReceiverBias, Selection, SplitMetric, SplitScheme, Stability, Transition, Translucent,
 };
 use super::{set, text, words};
 use crate::Warp;
@@ -176,6 +176,14 @@ pub const SETTINGS: &[Setting] = &[
             Stability::Approximate { steps: ExtentSteps::Levels(count) } => Some(Value::Count(count)),
             _ => None,
         },
+    },
+    Setting {
+        key: "fit-to",
+        help: "What planes and maps are fitted to",
+        kind: Kind::Words(FitTo::WORDS),
+        rebuilds: Rebuilds::Nothing,
+        set: |config, text, _| text.parse().map(|fit_to| config.fit_to = fit_to).map_err(Wrong::from),
+        get: |config| word(config.fit_to.word()),
     },
     Setting {
         key: "drop-small-casters",

@@ -18,6 +18,9 @@ pub(crate) struct Sight<'a> {
     pub receivers: &'a Gathered,
     /// The casters that can shade anything in range.
     pub casters: &'a Gathered,
+    /// What the last map shows, whatever its slice: all that may come into view, where `receivers`
+    /// are what was seen. `None`: its slice.
+    pub last_map: Option<Region>,
 }
 
 /// The part of the view between two candidate planes.

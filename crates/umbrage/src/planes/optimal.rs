@@ -85,6 +85,8 @@ struct Costs {
     weights_before: Vec<f64>,
     /// Texels across each map.
     texels: Vec<f64>,
+    /// Metres across the last map, where that does not follow from its slice.
+    last_edge: Option<f64>,
 }
 
 impl Costs {
@@ -114,6 +116,9 @@ impl Costs {
             return 0.0;
         }
         let edge = |i: usize| self.edges[i * self.len + k];
+        if let Some(edge) = self.last_edge.filter(|_| split + 1 == self.texels.len()) {
+            return weight * edge / self.texels[split];
+        }
         let edge = match before.map(|i| self.begins[i * self.len + j]) {
             Some((begin, share)) if share > 0.0 => edge(begin) + share * (edge(begin + 1) - edge(begin)),
             Some((begin, _)) => edge(begin),
@@ -301,6 +306,7 @@ impl Placement {
         let config = maps.config;
         let n = candidates.len();
         costs.reset(n, (0..config.splits()).map(|i| maps.texels(i)), weights);
+        costs.last_edge = sight.last_map.as_ref().map(|region| maps.edge(region, sight.fan));
         for i in 0..n {
             for j in i + 1..n {
                 costs.begins[i * n + j] = begin(sight.view, maps, candidates, i, j);

@@ -31,7 +31,15 @@ impl Scene {
     /// Of one split.
     pub fn of_split(split: &SplitFrame<'_>, in_view: &mut InView) -> Self {
         let SplitFrame { frame, sun, layout, index } = *split;
-        Self::new(frame, sun, SliceEnds::new(frame, layout.planes(), index), in_view)
+        let ends_of = |i: usize| SliceEnds::new(frame, layout.planes(), i);
+        let mut ends = ends_of(index);
+        let is_last = (index + 1..frame.config.splits()).all(|i| !ends_of(i).is_visible);
+        if in_view.is_seen && is_last && ends.is_visible {
+            // It serves whatever the maps before it do not: they show what was seen alone.
+            ends.from = ends.from.min(ends_of(0).from);
+        }
+        let seen_alone = in_view.is_seen && !is_last;
+        Self::new(frame, sun, ends, (in_view, seen_alone))
     }
 
     /// Of all splits: what any map may be asked about where maps are chosen by what they contain.
@@ -40,17 +48,17 @@ impl Scene {
         let (near, far) = (frustum.near, layout.range.far.min(frustum.far));
         let far = if far > near { far } else { near * 1.01 + 0.01 };
         // Each map has a margin of its own: none is added here.
-        Self::new(frame, sun, SliceEnds { from: near, to: far, is_visible: true }, in_view)
+        Self::new(frame, sun, SliceEnds { from: near, to: far, is_visible: true }, (in_view, false))
     }
 
-    fn new(frame: &Frame<'_>, sun: &Sun<'_>, ends: SliceEnds, in_view: &mut InView) -> Self {
+    fn new(frame: &Frame<'_>, sun: &Sun<'_>, ends: SliceEnds, (in_view, seen_alone): (&mut InView, bool)) -> Self {
         let slice = Slice::new(frame.view, ends.from, ends.to);
         let swept = slice.swept_towards_light(sun.direction);
         let mut region = Region::EMPTY;
         slice.corners.iter().for_each(|&corner| region.include_point(&sun.fan, corner));
         let receivers = match frame.config.crop {
             Crop::SceneIndependent => None,
-            Crop::SceneDependent => Some(in_view.receivers_in(&slice, sun)),
+            Crop::SceneDependent => Some(in_view.receivers_in(&slice, sun, seen_alone)),
         };
         let volume = CoverageVolume { slice, swept, receivers, margin: 0.0, is_void: !ends.is_visible };
         Self { ends, region, volume }

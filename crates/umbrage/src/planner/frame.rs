@@ -6,7 +6,7 @@ use super::inputs::PlanInputs;
 use super::options::PlannerOptions;
 use crate::bounds::Placed;
 use crate::casters::{Crowd, Most};
-use crate::config::Stability;
+use crate::config::{FitTo, Stability};
 use crate::geometry::region::Fan;
 use crate::geometry::volume::{Lies, Slice};
 use crate::margin::{EDGE_TEXELS, FilterReach};
@@ -24,6 +24,8 @@ pub(super) struct Frame<'a> {
     pub image_size: [u32; 2],
     pub casters: Crowd<'a>,
     pub receivers: Crowd<'a>,
+    /// What an earlier picture showed, where it is known and maps may be fitted to it.
+    pub seen: Option<Crowd<'a>>,
     /// Texels that a map keeps free around what it serves, at most.
     pub margin: f64,
 }
@@ -32,8 +34,7 @@ impl<'a> Frame<'a> {
     pub fn new(
         (config, options): (&'a ShadowConfig, &PlannerOptions),
         inputs: &PlanInputs<'a>,
-        casters: Crowd<'a>,
-        receivers: Crowd<'a>,
+        (casters, receivers, seen): (Crowd<'a>, Crowd<'a>, Option<Crowd<'a>>),
     ) -> Self {
         let reach = options.reach(config);
         Self {
@@ -44,6 +45,7 @@ impl<'a> Frame<'a> {
             image_size: inputs.image_size,
             casters,
             receivers,
+            seen: seen.filter(|_| config.fit_to == FitTo::Depth),
             margin: reach.radius_texels + EDGE_TEXELS,
         }
     }

@@ -1,12 +1,13 @@
 //! What the whole view may show: the boxes that all slices choose from.
 
 use super::frame::{Frame, Sun};
-use crate::Aabb;
 use crate::bounds::Placed;
 use crate::casters::{Gathered, Near};
 use crate::coverage::Served;
 use crate::geometry::region::Region;
 use crate::geometry::volume::{Lies, Slice};
+use crate::held::ends::Range;
+use crate::{Aabb, View};
 
 /// What the whole view may show.
 #[derive(Clone, Debug, Default)]
@@ -15,6 +16,10 @@ pub(super) struct InView {
     pub receivers: Gathered,
     /// Casters that some slice's sweep can meet.
     pub casters: Gathered,
+    /// What an earlier picture showed of it.
+    seen: Gathered,
+    /// Whether `seen` says where receivers are: it shows something.
+    pub is_seen: bool,
     /// Receivers that a slice cuts.
     across: Vec<u32>,
 }
@@ -24,6 +29,10 @@ impl InView {
         let frustum = frame.view.frustum();
         let whole = Slice::new(frame.view, frustum.near, far.min(frustum.far));
         frame.receivers.near(&Near { planes: &whole.planes, margin: 0.0 }, &mut self.receivers);
+        if let Some(seen) = &frame.seen {
+            seen.near(&Near { planes: &whole.planes, margin: 0.0 }, &mut self.seen);
+        }
+        self.is_seen = frame.seen.is_some() && self.seen.len() > 0;
         let swept = whole.swept_towards_light(sun.direction);
         // The margin around a split is a few of its texels: at most this share of its width.
         let across = whole.corners[4].distance(whole.corners[7]).max(whole.corners[0].distance(whole.corners[7]));
@@ -31,12 +40,32 @@ impl InView {
         frame.casters.near(&Near { planes: swept.planes(), margin }, &mut self.casters);
     }
 
-    /// The receivers' part of a slice: its bounds in the light's plane and in the world.
+    /// The receivers that planes are placed for.
+    pub fn sought(&self) -> &Gathered {
+        if self.is_seen { &self.seen } else { &self.receivers }
+    }
+
+    /// What all receivers in range and the casters over them take up across the light; `None` if
+    /// there are none.
+    pub fn shadowed(&mut self, view: &View, sun: &Sun<'_>, range: Range) -> Option<Region> {
+        let frustum = view.frustum();
+        let slice = Slice::new(view, frustum.near, range.far.min(frustum.far).max(1.01 * frustum.near + 0.01));
+        let (receivers, _) = self.receivers_in(&slice, sun, false);
+        let mut casters = Region::EMPTY;
+        for &Placed { center, half } in &self.casters.boxes {
+            casters.include_box(&sun.fan, center, half);
+        }
+        (!receivers.is_empty() && !casters.is_empty()).then(|| casters.within(&receivers))
+    }
+
+    /// The receivers' part of a slice, or the part of what was seen: its bounds in the light's
+    /// plane and in the world.
     ///
     /// What lies inside of the bounds of others is passed over: bounds do not depend on the order
     /// of receivers.
-    pub fn receivers_in(&mut self, slice: &Slice, sun: &Sun<'_>) -> Served {
-        let Self { receivers, across, .. } = self;
+    pub fn receivers_in(&mut self, slice: &Slice, sun: &Sun<'_>, seen_alone: bool) -> Served {
+        let Self { receivers, seen, across, .. } = self;
+        let receivers = if seen_alone { seen } else { receivers };
         let fan = &sun.fan;
         let mut region = Region::EMPTY;
         let mut bounds = Aabb::EMPTY;

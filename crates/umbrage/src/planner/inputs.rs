@@ -115,6 +115,11 @@ pub struct PlanInputs<'a> {
     /// receivers' own: [`crate::ShadowPlan::casts_into`] then rejects parts of casters that have
     /// none of them behind. `None`: not known. For [`crate::config::Crop::SceneDependent`].
     pub receiver_clusters: Option<&'a [Aabb]>,
+    /// World boxes that hold all that an earlier picture showed, from its depth. Planes are then
+    /// placed, and all maps but the last fitted, for what was seen instead of for all receivers in
+    /// view; the last map serves whatever has come into view since. `None`: not known. For
+    /// [`crate::config::FitTo::Depth`]; ignored otherwise, and by local lights.
+    pub seen: Option<&'a [Aabb]>,
     /// Pixels across the picture: a split is widened by one 2×2 pixel quad at its near side.
     pub image_size: [u32; 2],
 }
@@ -135,6 +140,7 @@ impl<'a> PlanInputs<'a> {
             receivers: receivers.into(),
             layers: Layers::ALL,
             receiver_clusters: None,
+            seen: None,
             image_size: [1920, 1080],
         }
     }
@@ -142,6 +148,7 @@ impl<'a> PlanInputs<'a> {
     /// Checks what can be wrong with lists and sizes.
     pub(super) fn check(&self) -> Result<()> {
         check_image_size(self.image_size)?;
+        check_boxes(self.seen.unwrap_or_default(), "seen")?;
         check_boxes(self.receiver_clusters.unwrap_or_default(), "receiver_clusters")
     }
 }

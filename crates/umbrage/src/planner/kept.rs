@@ -19,7 +19,9 @@ pub(super) struct Inputs {
 impl Inputs {
     /// Those of a plan of sets alone.
     pub fn of(inputs: &PlanInputs<'_>) -> Option<Self> {
-        let &PlanInputs { view, light, image_size, layers, receiver_clusters: None, .. } = inputs else { return None };
+        let &PlanInputs { view, light, image_size, layers, receiver_clusters: None, seen: None, .. } = inputs else {
+            return None;
+        };
         let (Boxes::Set(casters), Boxes::Set(receivers)) = (inputs.casters, inputs.receivers) else { return None };
         Some(Self { view: *view, light, image_size, layers, casters: casters.stamp(), receivers: receivers.stamp() })
     }

@@ -174,7 +174,7 @@ impl Layout {
         frame: &Frame<'_>,
         sun: &Sun<'_>,
         held: &mut Held,
-        in_view: &InView,
+        in_view: &mut InView,
         buffers: &mut LayoutBuffers,
     ) -> Result<()> {
         let config = frame.config;
@@ -182,8 +182,9 @@ impl Layout {
         let is_optimal = config.scheme == SplitScheme::Optimal;
         let LayoutBuffers { placement, planes } = buffers;
         if is_optimal {
-            let sight =
-                Sight { view: frame.view, fan: &sun.fan, receivers: &in_view.receivers, casters: &in_view.casters };
+            let last_map = if in_view.is_seen { in_view.shadowed(frame.view, sun, range) } else { None };
+            let (view, fan) = (frame.view, &sun.fan);
+            let sight = Sight { view, fan, receivers: in_view.sought(), casters: &in_view.casters, last_map };
             let most_half = self.around_all.map_or(DVec2::INFINITY, |all| all.half.truncate());
             let (margin, whole_width, image_size) = (frame.margin, self.whole_width, frame.image_size);
             let maps = Maps { config, image_size, margin, whole_width, most_half };

@@ -56,6 +56,8 @@ struct Buffers {
     /// Casters and receivers that come as lists.
     casters: BoxTree,
     receivers: BoxTree,
+    /// What an earlier picture showed.
+    seen: BoxTree,
     /// What the last plan looked at.
     visited: Visited,
     kept: Kept,
@@ -221,10 +223,11 @@ fn plan_with(
     if !is_one {
         inputs.receivers.place("receivers", &mut buffers.receivers)?;
     }
+    buffers.seen.fill(inputs.seen.unwrap_or_default().iter().map(|&bounds| crate::bounds::Placed::from(bounds)));
     plan.begin(inputs.view, inputs.light);
     plan.split_range.resize(inputs.casters.listed(), None);
     // A frame that is refused leaves what is held as it was.
-    let Buffers { casters, receivers, visited, kept, sun, local, held: next } = buffers;
+    let Buffers { casters, receivers, seen, visited, kept, sun, local, held: next } = buffers;
     let (eye, counter) = (inputs.view.eye(), Counter::default());
     let trees = (&*casters, &*receivers);
     let casters = inputs.casters.crowd(trees.0, (inputs.layers, Role::Caster), eye, &counter);
@@ -233,8 +236,9 @@ fn plan_with(
     let shows = |crowd: &Crowd<'_>| frame::shows_any(inputs.view, crowd);
     let are_replaced = receivers.is_empty() || (!shows(&receivers) && shows(&casters));
     let receivers = if are_replaced { casters } else { receivers };
+    let seen = inputs.seen.map(|_| Crowd::of_list(&*seen, eye, &counter));
     next.clone_from(held);
-    let frame = Frame::new(technique, inputs, casters, receivers);
+    let frame = Frame::new(technique, inputs, (casters, receivers, seen));
     match &inputs.light {
         Light::Directional(light) => directional::plan(&frame, light, next, sun, plan)?,
         Light::Spot(spot) => {

@@ -19,7 +19,7 @@ fn even(len: usize, far: f64, texels: &[f64], power: i32) -> (Vec<f64>, Costs) {
         }
     }
     let weights_before = depths.iter().map(|&depth| integral(depth) - integral(1.0)).collect();
-    (depths, Costs { len, edges, begins, weights_before, texels: texels.to_vec() })
+    (depths, Costs { len, edges, begins, weights_before, texels: texels.to_vec(), last_edge: None })
 }
 
 fn cheapest(costs: &Costs) -> Vec<usize> {
@@ -64,7 +64,7 @@ fn a_slice_without_weight_costs_nothing() {
         }
         weights_before.push(weights_before[i] + f64::from(u8::from(occupied(i))));
     }
-    let costs = Costs { len, edges, begins, weights_before, texels: vec![1.0; 2] };
+    let costs = Costs { len, edges, begins, weights_before, texels: vec![1.0; 2], last_edge: None };
     let planes = cheapest(&costs);
     assert!((9..=20).contains(&planes[1]), "{planes:?}");
     assert_eq!(costs.total(&planes), 8.0);
@@ -93,7 +93,7 @@ fn any_costs() -> impl Strategy<Value = Costs> {
                 Some(*sum)
             };
             let weights_before = std::iter::once(0.0).chain(weights.iter().scan(0.0, sum)).collect();
-            Costs { len, edges, begins, weights_before, texels }
+            Costs { len, edges, begins, weights_before, texels, last_edge: None }
         })
     })
 }
@@ -122,4 +122,14 @@ proptest! {
         let least = all_rows(costs.len, m).iter().map(|row| costs.total(row)).fold(f64::INFINITY, f64::min);
         prop_assert!((costs.total(&planes) - least).abs() <= 1e-12 * least.max(1e-300), "{} {least}", costs.total(&planes));
     }
+}
+
+#[test]
+fn a_last_map_that_shows_everything_gets_the_slice_of_least_weight() {
+    let (depths, costs) = even(33, 100.0, &[64.0; 2], -2);
+    let free = cheapest(&costs);
+    // Whatever its slice, it is three times as wide as the whole range: the first map takes more.
+    let whole = 3.0 * costs.edges[costs.len - 1];
+    let bound = cheapest(&Costs { last_edge: Some(whole), ..costs });
+    assert!(depths[bound[1]] > depths[free[1]], "{} {}", depths[bound[1]], depths[free[1]]);
 }

@@ -1,0 +1,102 @@
+//! What earlier frames showed, where maps are fitted to it (`fit-to depth`).
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use umbrage::config::FitTo;
+use umbrage::{Aabb, View};
+use umbrage_wgpu::{MaskFrame, SeenDepth};
+
+use super::{Frame, Outputs, Renderer};
+use crate::Result;
+
+/// What was seen, by view and by the samples of the depth that it is read from.
+#[derive(Default)]
+pub(super) struct Sight {
+    seen: BTreeMap<(u32, u32), SeenDepth>,
+    /// What the view of this frame showed last.
+    boxes: Option<Vec<Aabb>>,
+}
+
+impl Sight {
+    pub fn boxes(&self) -> Option<&[Aabb]> {
+        self.boxes.as_deref()
+    }
+
+    pub fn forget(&mut self) {
+        self.boxes = None;
+        self.seen.values_mut().for_each(SeenDepth::forget);
+    }
+}
+
+impl Renderer {
+    /// Whether maps are fitted to what was seen.
+    pub(super) fn fits_to_depth(&self) -> bool {
+        self.shadows.config().fit_to == FitTo::Depth
+    }
+
+    /// Takes what has come back of earlier frames of this view.
+    pub(super) fn remember(&mut self, view: &View) -> Result<()> {
+        self.sight.boxes = None;
+        let slot = self.view_slot;
+        for (_, seen) in self.sight.seen.range_mut((slot, 0)..=(slot, u32::MAX)) {
+            if let Some(boxes) = seen.boxes(view)? {
+                self.sight.boxes = Some(boxes.to_vec());
+            }
+        }
+        Ok(())
+    }
+
+    /// Draws what a camera at rest would have shown before, if nothing is known of it: the frame
+    /// that is asked for then looks as the next ones will.
+    pub(super) fn look_around(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<()> {
+        self.remember(frame.view)?;
+        if !self.fits_to_depth() || self.sight.boxes.is_some() || !(outputs.picture || outputs.mask) {
+            return Ok(());
+        }
+        self.render_unguarded(frame, Outputs { maps: false, ..outputs })?;
+        self.remember(frame.view)?;
+        // Pictures are waited for here in any case.
+        self.gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| umbrage_wgpu::Error::DeviceLost)?;
+        // Nothing is held of maps that were fitted without it.
+        self.shadows.restart();
+        self.remember(frame.view)
+    }
+
+    /// Records the reading of what this frame shows.
+    pub(super) fn look(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        view: &View,
+        origin: DVec3,
+        outputs: Outputs,
+    ) -> Result<()> {
+        if !self.fits_to_depth() {
+            return Ok(());
+        }
+        let (depth, samples) = match (&self.mask, &self.picture) {
+            (Some(mask), _) if outputs.mask => (&mask.depth, 1),
+            (_, Some(picture)) if outputs.picture => (&picture.depth, self.samples.count()),
+            _ => return Ok(()),
+        };
+        let seen = match self.sight.seen.entry((self.view_slot, samples)) {
+            std::collections::btree_map::Entry::Occupied(entry) => entry.into_mut(),
+            std::collections::btree_map::Entry::Vacant(entry) => {
+                entry.insert(SeenDepth::new(&self.gpu.device, samples)?)
+            }
+        };
+        seen.reduce(&self.gpu.queue, encoder, depth, &camera_of(view, origin))?;
+        Ok(())
+    }
+}
+
+/// The camera that drew the depth of a view.
+pub(super) fn camera_of(view: &View, origin: DVec3) -> MaskFrame {
+    MaskFrame {
+        clip_from_eye: view.clip_from_relative(view.eye()),
+        eye: view.eye(),
+        forward: view.forward(),
+        origin,
+        empty_depth: 0.0,
+    }
+}
