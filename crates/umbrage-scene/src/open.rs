@@ -6,7 +6,10 @@ use std::io::Read as _;
 use std::path::Path;
 
 use crate::procedural::{Watch, World, WorldOptions};
-use crate::{Error, GltfOptions, HeightMapOptions, Result, Scene, load_gltf, load_height_map};
+use crate::{
+    Error, GltfOptions, HeightMapOptions, Result, Scene, load_gltf, load_gltf_slice, load_height_map,
+    load_height_map_slice,
+};
 
 /// How files are read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -61,20 +64,75 @@ pub fn open_watched(spec: &str, options: &OpenOptions, watch: Watch<'_>) -> Resu
         return world.build_with(&options.world, watch);
     }
     let path = Path::new(spec);
-    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    match kind(spec, || is_glb(path))? {
+        Kind::Gltf => load_gltf(path, &options.gltf),
+        Kind::HeightMap => load_height_map(path, &options.height_map),
+    }
+}
+
+/// Opens a file whose content is in memory, as one that is dropped on a page: a .glb whatever it is
+/// called, or a file by its extension, one of [`EXTENSIONS`]. `name` stands for the file.
+///
+/// # Errors
+/// As [`open`], [`load_gltf_slice`] and [`load_height_map_slice`].
+pub fn open_slice(name: &str, bytes: &[u8], options: &OpenOptions) -> Result<Scene> {
+    match kind(name, || bytes.starts_with(GLB))? {
+        Kind::Gltf => load_gltf_slice(name, bytes, &options.gltf),
+        Kind::HeightMap => load_height_map_slice(name, bytes, &options.height_map),
+    }
+}
+
+/// What a file is.
+enum Kind {
+    Gltf,
+    HeightMap,
+}
+
+fn kind(spec: &str, is_glb: impl Fn() -> bool) -> Result<Kind> {
+    let extension = Path::new(spec).extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let is_of = |extensions: &[&str]| extensions.contains(&extension.as_str());
-    if is_of(EXTENSIONS.gltf) || is_glb(path) {
-        load_gltf(path, &options.gltf)
+    if is_of(EXTENSIONS.gltf) || is_glb() {
+        Ok(Kind::Gltf)
     } else if is_of(EXTENSIONS.height_map) {
-        load_height_map(path, &options.height_map)
+        Ok(Kind::HeightMap)
     } else {
         let worlds: Vec<&str> = World::ALL.iter().map(|world| world.name()).collect();
         Err(Error::UnknownScene { spec: spec.to_owned(), worlds: worlds.join(", ") })
     }
 }
 
+/// How a .glb begins.
+const GLB: &[u8; 4] = b"glTF";
+
 /// Whether a regular file begins as a .glb does; avatars (.vrm) are such files.
 fn is_glb(path: &Path) -> bool {
     let mut start = [0; 4];
-    path.is_file() && File::open(path).is_ok_and(|mut file| file.read_exact(&mut start).is_ok()) && start == *b"glTF"
+    path.is_file() && File::open(path).is_ok_and(|mut file| file.read_exact(&mut start).is_ok()) && start == *GLB
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export_glb;
+
+    #[test]
+    fn content_in_memory_is_opened_as_a_file_of_that_name() {
+        let options = OpenOptions::default();
+        let world = open("chessboard", &options).expect("a world");
+        let glb = export_glb(&world).expect("a file");
+        for name in ["board.glb", "board", "board.png.download"] {
+            let scene = open_slice(name, &glb, &options).expect(name);
+            assert_eq!(scene.meshes.len(), world.meshes.len(), "{name}");
+        }
+        let map = b"ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 2 3\n4 5 6\n7 8 9\n";
+        assert_eq!(open_slice("hills.asc", map, &options).expect("a map").name, "hills.asc");
+        for (name, bytes, why) in [
+            ("board.txt", &glb[4..], "board.txt"),
+            ("board.glb", &glb[..40], "board.glb"),
+            ("hills.asc", b"ncols", "hills.asc"),
+        ] {
+            let error = open_slice(name, bytes, &options).expect_err(name).to_string();
+            assert!(error.contains(why), "{error}");
+        }
+    }
 }

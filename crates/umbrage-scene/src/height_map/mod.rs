@@ -70,16 +70,31 @@ struct SideFile {
 /// scale known, a scale that is not above 0, a side file that does not fit the map, colours that
 /// are no heights, a map that is too small or too large.
 pub fn load_height_map(path: &Path, options: &HeightMapOptions) -> Result<Scene> {
+    load(path, &read_file(path)?, options, &|size| side_file(path, size))
+}
+
+/// Loads a height map from memory, without a side file; `name` stands for the file, and its
+/// extension says what is in it.
+///
+/// # Errors
+/// As [`load_height_map`].
+pub fn load_height_map_slice(name: &str, bytes: &[u8], options: &HeightMapOptions) -> Result<Scene> {
+    load(Path::new(name), bytes, options, &|_| Ok(None))
+}
+
+/// Reads the side file of a map of so many posts across and down.
+type Side<'a> = &'a dyn Fn([usize; 2]) -> Result<Option<SideFile>>;
+
+fn load(path: &Path, bytes: &[u8], options: &HeightMapOptions, side: Side<'_>) -> Result<Scene> {
     let wrong = |reason: String| Error::HeightMap { path: path.to_owned(), reason };
-    let bytes = read_file(path)?;
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let raster = match extension.as_str() {
-        "asc" => ascii::read(&bytes, path),
-        _ if is_tiff(&bytes) => geotiff::read(&bytes),
-        _ => pixels::read(&bytes, options.encoding),
+        "asc" => ascii::read(bytes, path),
+        _ if is_tiff(bytes) => geotiff::read(bytes),
+        _ => pixels::read(bytes, options.encoding),
     };
     let mut raster = raster.map_err(wrong)?;
-    let side = side_file(path, [raster.width, raster.height])?;
+    let side = side([raster.width, raster.height])?;
     let scale = scale(path, options, side.as_ref(), &mut raster)?;
     let holes = raster.values.iter().filter(|value| value.is_nan()).count();
     if holes > 0 {
