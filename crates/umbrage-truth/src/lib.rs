@@ -78,7 +78,7 @@ mod triangles;
 mod truth;
 
 pub use error::{Error, Result};
-pub use mask::{TruthMask, read_mask};
+pub use mask::{Tracing, TruthMask, read_mask};
 pub use soft::{SoftTruth, SunDisc};
 pub use truth::{Hit, Truth};
 

@@ -55,21 +55,39 @@ impl Truth {
         size: [u32; 2],
         progress: &(dyn Fn(f32) + Sync),
     ) -> Result<TruthMask> {
-        if size.contains(&0) {
-            return Err(Error::setting("size", format!("{} x {} pixels; give 1 or more each", size[0], size[1])));
-        }
-        let [width, height] = size.map(|n| n as usize);
-        let mut hits = vec![None; width * height];
+        let mut mask = empty(view, light, size)?;
+        let [width, height] = mask.size;
         let rows = AtomicUsize::new(0);
-        hits.par_chunks_mut(width * BLOCK).enumerate().for_each_init(Vec::new, |stack, (band, pixels)| {
-            for (x, y) in in_blocks(width, pixels.len() / width) {
-                let pixel = [x, band * BLOCK + y];
-                pixels[y * width + x] = self.look(view, light, (pixel, [width, height]), stack);
-            }
+        mask.hits.par_chunks_mut(width * BLOCK).enumerate().for_each_init(Vec::new, |stack, (band, pixels)| {
+            self.look_at_band(view, light, (band, [width, height]), pixels, stack);
             let done = rows.fetch_add(pixels.len() / width, Ordering::Relaxed) + pixels.len() / width;
             progress(done as f32 / height as f32);
         });
-        Ok(TruthMask { size: [width, height], light: *light, view: Some(*view), hits })
+        Ok(mask)
+    }
+
+    /// Begins the mask of [`Truth::mask_under`], to be traced a few rows at a time on the caller's
+    /// own thread, where that has other things to do between.
+    ///
+    /// # Errors
+    /// [`Error::InvalidSetting`] if the image has no pixels.
+    pub fn begin_mask(&self, view: &View, light: &Light, size: [u32; 2]) -> Result<Tracing<'_>> {
+        Ok(Tracing { truth: self, view: *view, mask: empty(view, light, size)?, bands: 0, stack: Vec::new() })
+    }
+
+    /// Looks at some rows of an image of a size, from row `band` · [`BLOCK`] on.
+    fn look_at_band(
+        &self,
+        view: &View,
+        light: &Light,
+        (band, size): (usize, [usize; 2]),
+        pixels: &mut [Option<Hit>],
+        stack: &mut Vec<u32>,
+    ) {
+        let width = size[0];
+        for (x, y) in in_blocks(width, pixels.len() / width) {
+            pixels[y * width + x] = self.look(view, light, ([x, band * BLOCK + y], size), stack);
+        }
     }
 
     /// What the view sees through the centre of one pixel of an image of a size.
@@ -85,6 +103,45 @@ impl Truth {
         let mut hit = self.first_hit(origin, direction, (frustum.near, frustum.far), stack)?;
         hit.lit = self.is_lit(&self.seen(origin, direction, &hit), hit.position, light, stack);
         Some(hit)
+    }
+}
+
+/// A mask of which nothing is traced yet.
+fn empty(view: &View, light: &Light, size: [u32; 2]) -> Result<TruthMask> {
+    if size.contains(&0) {
+        return Err(Error::setting("size", format!("{} x {} pixels; give 1 or more each", size[0], size[1])));
+    }
+    let size = size.map(|n| n as usize);
+    Ok(TruthMask { size, light: *light, view: Some(*view), hits: vec![None; size[0] * size[1]] })
+}
+
+/// A mask that is traced a few rows at a time: see [`Truth::begin_mask`].
+#[derive(Debug)]
+pub struct Tracing<'t> {
+    truth: &'t Truth,
+    view: View,
+    mask: TruthMask,
+    /// Bands of [`BLOCK`] rows that are traced.
+    bands: usize,
+    stack: Vec<u32>,
+}
+
+impl Tracing<'_> {
+    /// Traces the next rows. The share of all that is done then, in `[0, 1]`.
+    pub fn advance(&mut self) -> f32 {
+        let Self { truth, view, mask, bands, stack } = self;
+        let (size, light) = (mask.size, mask.light);
+        if let Some(pixels) = mask.hits.chunks_mut(size[0] * BLOCK).nth(*bands) {
+            truth.look_at_band(view, &light, (*bands, size), pixels, stack);
+            *bands += 1;
+        }
+        (*bands * BLOCK).min(size[1]) as f32 / size[1] as f32
+    }
+
+    /// The mask, or `None` while rows are missing.
+    #[must_use]
+    pub fn finish(self) -> Option<TruthMask> {
+        (self.bands * BLOCK >= self.mask.size[1]).then_some(self.mask)
     }
 }
 

@@ -248,6 +248,25 @@ fn a_lamp_throws_shadows_as_large_as_similar_triangles_say() {
 }
 
 #[test]
+fn a_mask_is_the_same_however_many_rows_are_traced_at_once() {
+    let mut stage = Stage::default();
+    stage.add(Shape::floor(30.0, 0.0), DAffine3::IDENTITY);
+    stage.add(Shape::floor(1.0, 2.0), DAffine3::IDENTITY);
+    let view = view(DVec3::new(6.0, 9.0, 7.0), DVec3::ZERO);
+    let truth = stage.truth(view.eye());
+    let light = Light::from(PointLight::new(DVec3::new(0.0, 4.0, 0.0), 6.0).unwrap());
+    // No multiple of eight rows: the last band is a narrower one.
+    let size = [40, 29];
+    let mut tracing = truth.begin_mask(&view, &light, size).unwrap();
+    assert!((tracing.advance() - 8.0 / 29.0).abs() < 1e-6, "eight rows at a time");
+    while tracing.advance() < 1.0 {}
+    let mask = truth.mask_under(&view, &light, size, &|_| {}).unwrap();
+    assert_eq!(tracing.finish().expect("all rows").hits(), mask.hits());
+    assert!(mask.hits().iter().flatten().any(|hit| hit.lit) && mask.hits().iter().flatten().any(|hit| !hit.lit));
+    assert!(truth.begin_mask(&view, &light, size).unwrap().finish().is_none(), "nothing is traced yet");
+}
+
+#[test]
 fn the_first_caster_is_what_a_map_would_store() {
     let mut stage = Stage::default();
     let sphere = stage.add(Shape::sphere(1.0, 64), DAffine3::from_translation(DVec3::new(0.0, 5.0, 0.0)));
