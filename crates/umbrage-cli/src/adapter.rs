@@ -1,6 +1,6 @@
 //! `umbrage adapter`: which graphics adapter would be used.
 
-use umbrage_lab::{failure::Result, session::adapter_description};
+use umbrage_lab::failure::Result;
 use umbrage_render::{Gpu, GpuOptions};
 
 use crate::print::print;
@@ -8,5 +8,5 @@ use crate::print::print;
 /// Prints the adapter's name, or fails if there is none.
 pub fn run() -> Result<()> {
     let gpu = Gpu::new(&GpuOptions::default())?;
-    print(&format!("{}\n", adapter_description(&gpu)))
+    print(&format!("{}\n", gpu.description()))
 }

@@ -36,6 +36,9 @@ pub struct ViewArgs {
     /// The picture alone, without panels (H brings them back)
     #[arg(long, help_heading = "Window")]
     pub bare: bool,
+    /// Let the time run at once, for scenes that move
+    #[arg(long, help_heading = "Window")]
+    pub run: bool,
     /// Write a picture of the window here (PNG) once everything is shown, and end
     #[arg(long, value_name = "PICTURE", help_heading = "Output")]
     pub screenshot: Option<PathBuf>,
@@ -82,6 +85,7 @@ pub fn run(args: &ViewArgs) -> Result<()> {
         held: false,
         other: args.compare.map(Preset::config),
         bare: args.bare,
+        runs: args.run,
         scale: args.scale,
         screenshot: args.screenshot.clone(),
         frames: u64::from(frames),

@@ -11,30 +11,45 @@
 //! * [`output`] makes files appear whole or not at all, [`failure`] says whose fault it is that
 //!   there are none.
 //!
+//! Without the feature `judge`, which is on by default, there are requests, scenes, views and
+//! lights alone.
+//!
 //! Messages name the options of the command `umbrage`, which is what a user of the laboratory
 //! types.
 
+#[cfg(feature = "judge")]
 pub mod bench;
 pub mod choose;
+#[cfg(feature = "judge")]
 pub mod compare;
 pub mod failure;
 pub mod gallery;
+#[cfg(feature = "judge")]
 pub mod journal;
 pub mod lights;
 pub mod notes;
 pub mod open;
+#[cfg(feature = "judge")]
 pub mod output;
+#[cfg(feature = "judge")]
 pub mod page;
 pub mod parse;
 pub mod picture;
+#[cfg(feature = "judge")]
 pub mod progress;
 pub mod reach;
 pub mod report;
 pub mod scene_request;
 pub mod scene_setup;
+#[cfg(feature = "judge")]
 pub mod session;
+#[cfg(feature = "judge")]
 pub mod split_views;
+#[cfg(feature = "judge")]
 pub mod sun_disc;
+#[cfg(feature = "judge")]
 pub mod technique;
+#[cfg(feature = "judge")]
 pub mod theory;
+#[cfg(feature = "judge")]
 pub mod tune;

@@ -4,12 +4,15 @@ use glam::DVec3;
 use umbrage::{Projection, View};
 use umbrage_scene::{Detail, OpenOptions, Pose, Scene};
 
-use crate::{failure::Result, progress};
+use crate::failure::Result;
+#[cfg(feature = "judge")]
+use crate::progress;
 
 /// Opens a scene and moves it.
 ///
 /// # Errors
 /// [`crate::failure::Failure::Input`] naming the file or option at fault.
+#[cfg(feature = "judge")]
 pub fn open(name: &str, files: &OpenOptions, move_scene: Option<DVec3>) -> Result<Scene> {
     let bar = progress::fraction("building");
     let scene = umbrage_scene::open_watched(name, files, &|done| progress::set_fraction(&bar, done));

@@ -29,7 +29,7 @@ impl Session {
         let gpu = Gpu::new(&GpuOptions::default())?;
         let settings = shadows.render_settings(request.size, Samples::default(), lights::kinds(&setup.lights));
         let renderer = Renderer::new(&gpu, &setup.scene, &settings)?;
-        Ok(Self { renderer, shadows, adapter: adapter_description(&gpu) })
+        Ok(Self { renderer, shadows, adapter: gpu.description() })
     }
 
     /// What the renderer is told about one view of a shot.
@@ -123,18 +123,5 @@ fn split_report(split: &SplitStats) -> SplitReport {
         draws: u64::from(split.draws),
         triangles: split.triangles,
         bytes: split.bytes,
-    }
-}
-
-/// The adapter for reports: its name, its interface and its driver.
-#[must_use]
-pub fn adapter_description(gpu: &Gpu) -> String {
-    let info = &gpu.adapter_info;
-    let driver = [info.driver.as_str(), info.driver_info.as_str()];
-    let driver: Vec<&str> = driver.into_iter().filter(|part| !part.is_empty()).collect();
-    if driver.is_empty() {
-        format!("{} ({})", info.name, info.backend)
-    } else {
-        format!("{} ({}, {})", info.name, info.backend, driver.join(" "))
     }
 }

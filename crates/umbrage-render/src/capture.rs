@@ -1,6 +1,6 @@
 //! Textures back from the GPU.
 
-use crate::{Error, Gpu, Result};
+use crate::{Error, Gpu, Result, waiting};
 
 /// A texture on its way back: the copy is recorded, its bytes can be read once the commands have
 /// run.
@@ -54,8 +54,8 @@ impl Capture {
     }
 
     /// Waits for the commands and returns the rows without their padding.
-    pub fn read(self, gpu: &Gpu) -> Result<Vec<u8>> {
-        let padded = read_buffer(gpu, &self.buffer)?;
+    pub async fn read(self, gpu: &Gpu) -> Result<Vec<u8>> {
+        let padded = read_buffer(gpu, &self.buffer).await?;
         if self.row_bytes == self.padded_row_bytes {
             return Ok(padded);
         }
@@ -63,27 +63,11 @@ impl Capture {
     }
 }
 
-/// How long a callback may be on its way after the device has nothing left to do. Only a lost
-/// device takes that long.
-const CALLBACK_PATIENCE: std::time::Duration = std::time::Duration::from_secs(60);
-
 /// Waits until everything submitted has run, and returns a mappable buffer's content.
-pub(crate) fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>> {
-    const DURING: &str = "reading results back";
-    let failed = |message: String| Error::Device { during: DURING, message };
-    let (sender, receiver) = std::sync::mpsc::channel();
-    buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-        // The receiver lives until the end of this function; if it is gone nobody wants to know.
-        let _ = sender.send(result);
-    });
-    gpu.wait()?;
-    // Another thread that waits for the same device may have taken this buffer's callback and be
-    // about to call it.
-    receiver
-        .recv_timeout(CALLBACK_PATIENCE)
-        .map_err(|_| failed("the buffer was never mapped".to_owned()))?
-        .map_err(|error| failed(error.to_string()))?;
-    let bytes = buffer.get_mapped_range(..).map_err(|error| failed(error.to_string()))?.to_vec();
+pub(crate) async fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>> {
+    waiting::mapped(gpu, buffer).await?;
+    let unread = |message: String| Error::Device { during: waiting::READING, message };
+    let bytes = buffer.get_mapped_range(..).map_err(|error| unread(error.to_string()))?.to_vec();
     buffer.unmap();
     Ok(bytes)
 }

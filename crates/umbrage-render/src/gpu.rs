@@ -4,7 +4,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
+use crate::capture::Capture;
 use crate::formats::{DEPTH_FORMAT, MASK_FORMAT, PICTURE_FORMAT};
+use crate::waiting::Scopes;
 use crate::{Error, Result, probe};
 
 /// What the device is asked for.
@@ -59,6 +61,21 @@ impl Fault {
 }
 
 impl Gpu {
+    /// The adapter for reports: its name, its interface and its driver.
+    #[must_use]
+    pub fn description(&self) -> String {
+        let info = &self.adapter_info;
+        let driver = [info.driver.as_str(), info.driver_info.as_str()];
+        let driver: Vec<&str> = driver.into_iter().filter(|part| !part.is_empty()).collect();
+        // Browsers name no adapter of WebGPU's.
+        let name = if info.name.is_empty() { "adapter without a name" } else { &info.name };
+        if driver.is_empty() {
+            format!("{name} ({})", info.backend)
+        } else {
+            format!("{name} ({}, {})", info.backend, driver.join(" "))
+        }
+    }
+
     /// Whether shaders can load from depth textures: not on GL, where every depth texture is for
     /// comparisons only.
     pub(crate) fn depth_loads(&self) -> bool {
@@ -84,13 +101,10 @@ impl Gpu {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         let adapter = choose_adapter(&instance).await?;
         let info = adapter.get_info();
+        let described = device_descriptor(&adapter);
+        let required_features = described.required_features.difference(options.withhold);
         let (device, queue) = adapter
-            .request_device(&wgpu::DeviceDescriptor {
-                label: Some("Gpu::device"),
-                required_features: adapter.features() & wanted_features().difference(options.withhold),
-                required_limits: adapter.limits(),
-                ..Default::default()
-            })
+            .request_device(&wgpu::DeviceDescriptor { required_features, ..described })
             .await
             .map_err(|error| Error::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
         Ok(Self::from_parts(info, device, queue))
@@ -106,31 +120,46 @@ impl Gpu {
         Self { adapter_info, device, queue, faults }
     }
 
+    /// The pixels of a texture, row after row, once all that was submitted has run.
+    ///
+    /// # Errors
+    /// [`Error::BufferSize`] or [`Error::Device`] if they cannot be read back.
+    pub async fn pixels(&self, texture: &wgpu::Texture) -> Result<Vec<u8>> {
+        let size = [texture.width(), texture.height()];
+        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("pixels") });
+        let capture = Capture::record(self, &mut encoder, texture, 0, size)?;
+        self.queue.submit([encoder.finish()]);
+        capture.read(self).await
+    }
+
+    /// The first error of the device that no call of this crate has told of yet.
+    ///
+    /// # Errors
+    /// That error, said to have come during `during`.
+    pub fn check(&self, during: &'static str) -> Result<()> {
+        self.faults.check(during)
+    }
+
     /// Runs `work` and turns whatever the device had to complain about into an error. In a browser,
-    /// where complaints come later, they surface in the next call instead.
+    /// where complaints come later, they surface in a later call instead.
     pub(crate) fn guarded<T>(&self, during: &'static str, work: impl FnOnce() -> Result<T>) -> Result<T> {
-        #[cfg(not(target_arch = "wasm32"))]
-        {
-            let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-            let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
-            let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
-            let result = work();
-            // Scopes close in the reverse order. Memory comes first in the report: the others
-            // follow from it.
-            let validation = pollster::block_on(validation.pop());
-            let internal = pollster::block_on(internal.pop());
-            let memory = pollster::block_on(memory.pop());
-            if let Some(error) = memory.or(internal).or(validation) {
-                return Err(Fault::from(error).into_error(during));
-            }
-            self.faults.check(during)?;
-            result
+        // Nothing is awaited, so that it is done when it is polled first.
+        pollster::block_on(self.guarded_async(during, async || work()))
+    }
+
+    /// [`Gpu::guarded`] for work that waits for the device.
+    pub(crate) async fn guarded_async<T>(
+        &self,
+        during: &'static str,
+        work: impl AsyncFnOnce() -> Result<T>,
+    ) -> Result<T> {
+        let scopes = Scopes::open(&self.device);
+        let result = work().await;
+        if let Some(error) = scopes.close().await {
+            return Err(Fault::from(error).into_error(during));
         }
-        #[cfg(target_arch = "wasm32")]
-        {
-            self.faults.check(during)?;
-            work()
-        }
+        self.faults.check(during)?;
+        result
     }
 
     /// [`Error::BufferSize`] unless `bytes` fit into one buffer of this device.
@@ -158,14 +187,6 @@ impl Gpu {
         })
     }
 
-    /// Waits until everything submitted has run.
-    pub(crate) fn wait(&self) -> Result<()> {
-        self.device
-            .poll(wgpu::PollType::wait_indefinitely())
-            .map(|_| ())
-            .map_err(|error| Error::Device { during: "waiting for the device", message: error.to_string() })
-    }
-
     /// The largest edge of a texture.
     pub(crate) fn max_texture_edge(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
@@ -180,6 +201,18 @@ impl Faults {
     fn check(&self, during: &'static str) -> Result<()> {
         let fault = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
         fault.map_or(Ok(()), |fault| Err(fault.into_error(during)))
+    }
+}
+
+/// What a device is asked for: the adapter's own limits, and all features that shadows or timing
+/// can use. For [`Gpu::from_parts`].
+#[must_use]
+pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    wgpu::DeviceDescriptor {
+        label: Some("Gpu::device"),
+        required_features: adapter.features() & wanted_features(),
+        required_limits: adapter.limits(),
+        ..Default::default()
     }
 }
 

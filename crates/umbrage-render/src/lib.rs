@@ -12,6 +12,7 @@ mod contact;
 mod cull;
 mod draw_list;
 mod error;
+#[cfg(not(target_arch = "wasm32"))]
 mod fade;
 mod formats;
 mod forward;
@@ -32,10 +33,11 @@ mod surfaces;
 mod targets;
 mod timing;
 mod view_list;
+mod waiting;
 
 pub use error::{Error, Result};
 pub use forward::Samples;
-pub use gpu::{Gpu, GpuOptions};
+pub use gpu::{Gpu, GpuOptions, device_descriptor};
 pub use lamps::{Lamp, MOST_LAMPS};
 pub use probe::{ProbeAnswer, ProbePoint};
 pub use renderer::{Frame, KeptMaps, Outputs, RenderSettings, Rendered, Renderer};

@@ -206,8 +206,8 @@ impl Probe {
 
 impl PendingAnswers {
     /// Waits for the answers, in the order of the points.
-    pub fn read(self, gpu: &Gpu) -> Result<Vec<ProbeAnswer>> {
-        let numbers: Vec<[f32; 2]> = bytemuck::pod_collect_to_vec(&self.capture.read(gpu)?);
+    pub async fn read(self, gpu: &Gpu) -> Result<Vec<ProbeAnswer>> {
+        let numbers: Vec<[f32; 2]> = bytemuck::pod_collect_to_vec(&self.capture.read(gpu).await?);
         let answer = |&[visibility, split]: &[f32; 2]| ProbeAnswer { visibility, split: split as i32 };
         Ok(numbers[..self.count].iter().map(answer).collect())
     }

@@ -147,7 +147,7 @@ impl Timer {
     }
 
     /// Waits for the answers.
-    pub fn read(&self, gpu: &Gpu) -> Result<Measured> {
+    pub async fn read(&self, gpu: &Gpu) -> Result<Measured> {
         let passes = self.slots.len();
         if passes == 0 {
             return Ok(Measured::default());
@@ -156,7 +156,7 @@ impl Timer {
         let spans_ms = match &self.timestamps {
             None => None,
             Some(queries) => {
-                let ticks = queries.read(gpu)?;
+                let ticks = queries.read(gpu).await?;
                 let start = ticks[0];
                 let since_start = |tick: u64| tick.saturating_sub(start) as f64 * ms_per_tick;
                 Some(ticks.chunks(2).take(passes).map(|span| [since_start(span[0]), since_start(span[1])]).collect())
@@ -165,7 +165,7 @@ impl Timer {
         let counts = match &self.statistics {
             None => None,
             Some(queries) => {
-                let numbers = queries.read(gpu)?;
+                let numbers = queries.read(gpu).await?;
                 // In the order of the bits of PipelineStatisticsTypes.
                 let count = |n: &[u64]| PassCounts { vertices: n[0], primitives: n[1], fragments: n[2] };
                 Some(numbers.chunks(STRIDE as usize / size_of::<u64>()).take(passes).map(count).collect())
@@ -201,7 +201,7 @@ impl Queries {
         encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readable, 0, self.readable.size());
     }
 
-    fn read(&self, gpu: &Gpu) -> Result<Vec<u64>> {
-        Ok(bytemuck::pod_collect_to_vec(&read_buffer(gpu, &self.readable)?))
+    async fn read(&self, gpu: &Gpu) -> Result<Vec<u64>> {
+        Ok(bytemuck::pod_collect_to_vec(&read_buffer(gpu, &self.readable).await?))
     }
 }

@@ -21,8 +21,17 @@ pub enum Error {
          (Debian, Ubuntu: apt-get install mesa-vulkan-drivers), or check WGPU_BACKEND"
     )]
     NoAdapter(String),
+    /// The page is in a browser without either interface to graphics.
+    #[error(
+        "This page draws with WebGPU or WebGL2, and this browser offers neither ({0}). Try a current Chrome, Edge, \
+         Firefox or Safari, and switch hardware acceleration on in its settings."
+    )]
+    NoInterface(String),
+    /// The program has a defect.
+    #[error("The viewer has stopped because of a defect. Please report it: {0}")]
+    Defect(String),
     /// The window's device was lost, and another one does not open.
-    #[error("the window's graphics device was lost and does not come back: {0}")]
+    #[error("the window's graphics device was lost and does not come back ({0}); start again, or reload the page")]
     Lost(String),
     /// The scene of a screenshot could not be shown.
     #[error("{0}")]

@@ -1,10 +1,11 @@
-//! The thread that traces rays: what shadows should be, how coarse maps are, and what was clicked
-//! on.
+//! What traces rays beside the window: what shadows should be, how coarse maps are, and what was
+//! clicked on.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, channel};
 
+use futures_channel::mpsc::{UnboundedReceiver, UnboundedSender, unbounded};
 use glam::{DVec2, DVec3};
 use image::{Rgba, RgbaImage};
 use umbrage::config::Selection;
@@ -12,6 +13,7 @@ use umbrage::{Bias, Frustum, ShadowPlan, Split, View};
 use umbrage_truth::scores::{Answers, Domain, TexelGradient, acne_and_leak};
 use umbrage_truth::{Hit, Truth, TruthMask};
 
+use crate::platform;
 use crate::studio::{Drawn, Shot};
 
 /// What is laid over the picture.
@@ -114,7 +116,7 @@ pub struct MapLook {
     pub stored: Option<(usize, f64)>,
 }
 
-/// What the thread says.
+/// What it says.
 #[derive(Debug)]
 pub enum Finding {
     /// An overlay.
@@ -125,10 +127,10 @@ pub enum Finding {
     Failed(String),
 }
 
-/// The thread.
+/// What traces rays.
 #[derive(Debug)]
 pub struct Judge {
-    questions: Sender<Question>,
+    questions: UnboundedSender<Question>,
     findings: Receiver<Finding>,
     progress: Arc<AtomicU32>,
 }
@@ -142,27 +144,29 @@ impl Judge {
     /// # Errors
     /// If the system has no thread left.
     pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Self> {
-        let (questions, inbox) = channel();
+        let (questions, mut inbox) = unbounded();
         let (outbox, findings) = channel();
         let progress = Arc::new(AtomicU32::new(0));
         let shared = Arc::clone(&progress);
-        let work = move || {
+        let work = async move || {
             let mut court = Court { truth: None, progress: shared, wake: Box::new(wake) };
-            while let Some(question) = latest(&inbox) {
+            while let Some(question) = latest(&mut inbox).await {
                 court.progress.store(0, Ordering::Relaxed);
-                let finding = court.answer(question).unwrap_or_else(Finding::Failed);
+                // Where there is one thread for all, it shows first that this is under way.
+                platform::pause().await;
+                let finding = court.answer(question).await.unwrap_or_else(Finding::Failed);
                 drop(outbox.send(finding));
                 (court.wake)();
             }
         };
-        std::thread::Builder::new().name("judge".to_owned()).spawn(work)?;
+        platform::spawn("judge", work)?;
         Ok(Self { questions, findings, progress })
     }
 
-    /// Asks. False if the thread has ended.
+    /// Asks. False if it has ended.
     #[must_use]
     pub fn ask(&self, question: Question) -> bool {
-        self.questions.send(question).is_ok()
+        self.questions.unbounded_send(question).is_ok()
     }
 
     /// What is new.
@@ -178,9 +182,9 @@ impl Judge {
 }
 
 /// The last question that waits; a click is not dropped for an overlay.
-fn latest(inbox: &Receiver<Question>) -> Option<Question> {
-    let mut question = inbox.recv().ok()?;
-    for next in inbox.try_iter() {
+async fn latest(inbox: &mut UnboundedReceiver<Question>) -> Option<Question> {
+    let mut question = inbox.recv().await.ok()?;
+    while let Ok(next) = inbox.try_recv() {
         if matches!((&question, &next), (Question::Pick(..), Question::Overlay(..))) {
             continue;
         }
@@ -197,9 +201,11 @@ struct Court {
 }
 
 impl Court {
-    fn answer(&mut self, question: Question) -> Result<Finding, String> {
+    async fn answer(&mut self, question: Question) -> Result<Finding, String> {
         match question {
-            Question::Overlay(drawn, overlay) => self.lay(&drawn, overlay).map(|laid| Finding::Laid(Box::new(laid))),
+            Question::Overlay(drawn, overlay) => {
+                self.lay(&drawn, overlay).await.map(|laid| Finding::Laid(Box::new(laid)))
+            }
             Question::Pick(drawn, at) => {
                 let surface = self.surface(&drawn, at)?;
                 Ok(Finding::Picked(Box::new(Picked { drawn, at, surface })))
@@ -219,7 +225,7 @@ impl Court {
         self.truth.as_ref().map(|(.., truth)| truth).ok_or_else(|| "there is no tree of the scene".to_owned())
     }
 
-    fn lay(&mut self, drawn: &Drawn, overlay: Overlay) -> Result<Laid, String> {
+    async fn lay(&mut self, drawn: &Drawn, overlay: Overlay) -> Result<Laid, String> {
         let progress = Arc::clone(&self.progress);
         self.truth(drawn)?;
         let Some((.., truth)) = &self.truth else { return Err("there is no tree of the scene".to_owned()) };
@@ -234,7 +240,8 @@ impl Court {
             }
         };
         let view = &drawn.shot.view;
-        let traced = truth.mask_under(view, &light, drawn.shot.size, &heard).map_err(|error| error.to_string())?;
+        let traced = platform::mask(truth, view, &light, drawn.shot.size, &heard).await;
+        let traced = traced.map_err(|error| error.to_string())?;
         let taken = drawn.taken.first().ok_or("there is no picture to judge")?;
         let (picture, sums) = match overlay {
             Overlay::Density => density(view, &traced, &taken.stats.plan, drawn.shot.size),

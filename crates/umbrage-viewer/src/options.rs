@@ -7,6 +7,7 @@ use umbrage::ShadowConfig;
 use umbrage_lab::scene_request::SceneRequest;
 
 use crate::judge::Overlay;
+use crate::link::Linked;
 use crate::session::{Show, Tab};
 
 /// What the viewer starts with.
@@ -26,12 +27,34 @@ pub struct Options {
     pub other: Option<ShadowConfig>,
     /// Whether the panels are hidden.
     pub bare: bool,
+    /// Whether time runs at once.
+    pub runs: bool,
     /// Size of text and controls: 1 is the screen's own.
     pub scale: f32,
     /// Writes a picture of the window here (PNG) and ends.
     pub screenshot: Option<PathBuf>,
     /// Pictures of the scene before the screenshot.
     pub frames: u64,
+}
+
+impl Options {
+    /// Shows what a link shows; `wrong` is what could not be read of it.
+    #[must_use]
+    pub fn of_link(linked: Linked, wrong: Option<String>) -> Self {
+        Self {
+            request: linked.request,
+            config: linked.config,
+            notes: linked.notes.into_iter().chain(wrong).collect(),
+            show: Show { tint: linked.tint, ..Show::default() },
+            held: false,
+            other: None,
+            bare: linked.bare,
+            runs: linked.runs,
+            scale: 1.0,
+            screenshot: None,
+            frames: 1,
+        }
+    }
 }
 
 /// Something to show at once, by its word.

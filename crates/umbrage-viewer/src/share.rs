@@ -71,8 +71,13 @@ impl Spelled {
     /// As options of `umbrage render` and `umbrage view`.
     #[must_use]
     pub fn command_line(&self) -> String {
-        let given = self.given.iter().map(|(key, value)| format!(" --{key}={value}"));
-        format!("--preset={}{}", self.preset, given.collect::<String>())
+        self.options().collect::<Vec<_>>().join(" ")
+    }
+
+    /// Each option of [`Spelled::command_line`].
+    pub fn options(&self) -> impl Iterator<Item = String> {
+        let given = self.given.iter().map(|(key, value)| format!("--{key}={value}"));
+        std::iter::once(format!("--preset={}", self.preset)).chain(given)
     }
 }
 

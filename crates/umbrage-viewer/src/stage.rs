@@ -1,10 +1,10 @@
 //! Scenes, opened beside the window: what is shown stays until the next one is there.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use umbrage::View;
 use umbrage_lab::failure::Failure;
@@ -13,8 +13,10 @@ use umbrage_lab::lights::{self, NamedLight};
 use umbrage_lab::scene_request::{CameraChoice, SceneRequest};
 use umbrage_lab::scene_setup::frame_views;
 use umbrage_scene::{CameraPath, Pose, Scene};
+use web_time::Instant;
 
 use crate::path::Following;
+use crate::platform::{self, Movable};
 
 /// The view of a gallery that a scene of the menu begins with.
 const FIRST_SHOT: &str = "middle";
@@ -118,25 +120,25 @@ pub struct Opening {
 }
 
 impl Opening {
-    /// Opens a scene on a thread of its own; `wake` is called when something is new.
-    pub fn start(request: SceneRequest, wake: impl Fn() + Send + 'static) -> Self {
+    /// Opens a scene beside all else, from `bytes` if they are there; `wake` is called when
+    /// something is new.
+    pub fn start(request: SceneRequest, bytes: Option<Arc<[u8]>>, wake: impl Fn() + Movable + 'static) -> Self {
         let (sender, result) = channel();
         let step = Arc::new(AtomicU8::new(0));
         let at = Arc::clone(&step);
         let spec = request.scene.clone();
-        let work = move || {
+        let work = async move || {
             let enter = |step: Step| {
                 at.store(step as u8, Ordering::Relaxed);
                 wake();
             };
             // The window may have gone meanwhile.
-            drop(sender.send(open(request, enter).map_err(|failure| failure.to_string())));
+            drop(sender.send(open(request, bytes, enter).await.map_err(|failure| failure.to_string())));
             enter(Step::Done);
         };
-        let spawned = std::thread::Builder::new().name("open".to_owned()).spawn(work);
-        let opening = Self { spec, begun: Instant::now(), step, result };
-        drop(spawned);
-        opening
+        // What could not begin ends without a result, which `poll` says.
+        drop(platform::spawn("open", work));
+        Self { spec, begun: Instant::now(), step, result }
     }
 
     /// The step that is done now.
@@ -163,18 +165,22 @@ impl Opening {
     }
 }
 
-/// Opens what a request names.
+/// Opens what a request names, from `bytes` if they are there.
 ///
 /// # Errors
 /// [`Failure::Input`] naming the file or option at fault.
-pub fn open(request: SceneRequest, enter: impl Fn(Step)) -> Result<Stage, Failure> {
+pub async fn open(request: SceneRequest, bytes: Option<Arc<[u8]>>, enter: impl Fn(Step)) -> Result<Stage, Failure> {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     enter(Step::Reading);
     let path = match &request.camera {
         CameraChoice::Path { file, .. } => Some(CameraPath::load(file)?),
         _ => None,
     };
-    let scene = umbrage_lab::open::open(&request.scene, &request.files, request.move_scene)?;
+    let scene = platform::scene(&request, bytes).await?;
+    let scene = match request.move_scene {
+        Some(by) => scene.moved(by),
+        None => scene,
+    };
     enter(Step::Posing);
     let pose = scene.pose(request.time_s)?;
     let mut notes = scene.notes.clone();
@@ -228,23 +234,9 @@ impl Shipped {
             shots.iter().find(|shot| shot.name == FIRST_SHOT).or(shots.first()).ok_or("the scene has no view")?;
         let request = self.0.request(shot, size).map_err(|failure| failure.to_string())?;
         let is_file = self.0.scene.contains('/');
-        let scene =
-            if is_file { find(Path::new(self.0.scene))?.display().to_string() } else { self.0.scene.to_owned() };
+        let scene = if is_file { platform::shipped(self.0.scene)? } else { self.0.scene.to_owned() };
         Ok(SceneRequest { scene, ..request })
     }
-}
-
-/// A file of the repository: below the working folder, or below a folder that the program lies in.
-fn find(file: &Path) -> Result<PathBuf, String> {
-    let here = std::env::current_dir().ok();
-    let program = std::env::current_exe().ok();
-    let folders = here.iter().chain(&program).flat_map(|path| path.ancestors());
-    folders.map(|folder| folder.join(file)).find(|path| path.is_file()).ok_or_else(|| {
-        format!(
-            "{}: not found below this folder or the program's; start in umbrage's repository, or drop the file here",
-            file.display()
-        )
-    })
 }
 
 #[cfg(test)]
@@ -264,7 +256,7 @@ mod tests {
     #[test]
     fn scenes_open_beside_and_say_what_was_wrong() {
         let wait = |request| {
-            let opening = Opening::start(request, || ());
+            let opening = Opening::start(request, None, || ());
             loop {
                 if let Some(result) = opening.poll() {
                     return result;

@@ -1,19 +1,21 @@
-//! The thread that draws. It has a graphics device of its own, so that the window goes on however
-//! long a picture takes, and opens another if that one is lost.
+//! What draws, beside the window. On a desktop it is a thread with a graphics device of its own, so
+//! that the window goes on however long a picture takes; it opens another device if that one is
+//! lost. In a browser it is a task that draws with the window's device.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::Instant;
 
+use futures_channel::mpsc::{UnboundedReceiver, UnboundedSender, unbounded};
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
 use umbrage::{DirectionalLight, ShadowConfig, View};
 use umbrage_lab::lights::{self, NamedLight};
-use umbrage_lab::session::adapter_description;
 use umbrage_render::{
     Frame, FrameStats, Gpu, GpuOptions, Lamp, Outputs, ProbeAnswer, ProbePoint, RenderSettings, Renderer, Samples,
 };
 use umbrage_scene::{Pose, Poser};
+use web_time::Instant;
 
+use crate::platform::{self, Movable};
 use crate::stage::Stage;
 
 /// Everything that a picture depends on.
@@ -73,6 +75,8 @@ pub struct Order {
     pub shot: Shot,
     /// What is wanted beside it.
     pub wants: Wants,
+    /// What draws it, where that is not a device of the studio's own.
+    pub gpu: Option<Gpu>,
 }
 
 /// A picture by one config.
@@ -113,7 +117,7 @@ pub struct Drawn {
     pub wall_ms: f64,
 }
 
-/// What the thread says.
+/// What it says.
 #[derive(Debug)]
 pub enum News {
     /// The adapter that draws.
@@ -122,7 +126,7 @@ pub enum News {
     Busy(&'static str),
     /// Pictures.
     Drawn(Box<Drawn>),
-    /// Why there are none; the thread goes on.
+    /// Why there are none; it goes on.
     Failed {
         /// What was to be drawn.
         shot: Box<Shot>,
@@ -131,10 +135,10 @@ pub enum News {
     },
 }
 
-/// The thread.
+/// What draws.
 #[derive(Debug)]
 pub struct Studio {
-    orders: Sender<Order>,
+    orders: UnboundedSender<Order>,
     news: Receiver<News>,
 }
 
@@ -143,18 +147,17 @@ impl Studio {
     ///
     /// # Errors
     /// If the system has no thread left.
-    pub fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let (orders, inbox) = channel();
+    pub fn start(wake: impl Fn() + Movable + 'static) -> std::io::Result<Self> {
+        let (orders, inbox) = unbounded();
         let (outbox, news) = channel();
-        let tell = Tell { outbox, wake: Box::new(wake) };
-        std::thread::Builder::new().name("studio".to_owned()).spawn(move || work(&inbox, &tell))?;
+        platform::spawn("studio", async move || work(inbox, Tell { outbox, wake }).await)?;
         Ok(Self { orders, news })
     }
 
-    /// Asks for a picture. False if the thread has ended.
+    /// Asks for a picture. False if it has ended.
     #[must_use]
     pub fn order(&self, order: Order) -> bool {
-        self.orders.send(order).is_ok()
+        self.orders.unbounded_send(order).is_ok()
     }
 
     /// What is new.
@@ -163,35 +166,49 @@ impl Studio {
     }
 }
 
-struct Tell {
+struct Tell<W> {
     outbox: Sender<News>,
-    wake: Box<dyn Fn() + Send>,
+    wake: W,
 }
 
-impl Tell {
+impl<W: Fn()> Tell<W> {
     fn say(&self, news: News) {
         // Nobody listens once the window is closed.
         drop(self.outbox.send(news));
         (self.wake)();
     }
+
+    /// Says what takes a moment, and lets it be shown where one thread does all.
+    async fn busy(&self, with: &'static str) {
+        self.say(News::Busy(with));
+        platform::pause().await;
+    }
 }
 
-fn work(inbox: &Receiver<Order>, tell: &Tell) {
+async fn work(mut inbox: UnboundedReceiver<Order>, tell: Tell<impl Fn()>) {
     let mut gpu = None;
-    let mut next = inbox.recv().ok();
+    let mut next = inbox.recv().await.ok();
     while let Some(order) = next {
-        next = with_scene(order, inbox, tell, &mut gpu);
+        next = with_scene(order, &mut inbox, &tell, &mut gpu).await;
     }
 }
 
 /// The last order that waits, or the next that comes; `None` once nobody can order.
-fn latest(inbox: &Receiver<Order>) -> Option<Order> {
-    let first = inbox.recv().ok()?;
-    Some(inbox.try_iter().last().unwrap_or(first))
+async fn latest(inbox: &mut UnboundedReceiver<Order>) -> Option<Order> {
+    let mut order = inbox.recv().await.ok()?;
+    while let Ok(later) = inbox.try_recv() {
+        order = later;
+    }
+    Some(order)
 }
 
 /// Draws one scene, until another is ordered.
-fn with_scene(first: Order, inbox: &Receiver<Order>, tell: &Tell, gpu: &mut Option<Gpu>) -> Option<Order> {
+async fn with_scene(
+    first: Order,
+    inbox: &mut UnboundedReceiver<Order>,
+    tell: &Tell<impl Fn()>,
+    gpu: &mut Option<Gpu>,
+) -> Option<Order> {
     let stage = Arc::clone(&first.stage);
     let mut order = first;
     let mut set = match Poser::new(&stage.scene) {
@@ -200,12 +217,12 @@ fn with_scene(first: Order, inbox: &Receiver<Order>, tell: &Tell, gpu: &mut Opti
         }
         Err(error) => {
             tell.say(News::Failed { shot: Box::new(order.shot), why: error.to_string() });
-            return latest(inbox);
+            return latest(inbox).await;
         }
     };
     loop {
         let shot = order.shot.clone();
-        match set.draw(order, tell, gpu) {
+        match set.draw(order, tell, gpu).await {
             Ok(drawn) => tell.say(News::Drawn(Box::new(drawn))),
             Err(failure) => {
                 if failure.lost_device {
@@ -215,7 +232,7 @@ fn with_scene(first: Order, inbox: &Receiver<Order>, tell: &Tell, gpu: &mut Opti
                 tell.say(News::Failed { shot: Box::new(shot), why: failure.why });
             }
         }
-        order = latest(inbox)?;
+        order = latest(inbox).await?;
         if order.stage.id != stage.id {
             return Some(order);
         }
@@ -250,14 +267,18 @@ struct Booth {
 }
 
 impl Set<'_> {
-    fn draw(&mut self, order: Order, tell: &Tell, gpu: &mut Option<Gpu>) -> Result<Drawn, Failure> {
+    async fn draw(&mut self, order: Order, tell: &Tell<impl Fn()>, gpu: &mut Option<Gpu>) -> Result<Drawn, Failure> {
         let begun = Instant::now();
-        let Order { shot, wants, .. } = order;
+        let Order { shot, wants, gpu: shared, .. } = order;
         let (pose, lights) = self.pose(&shot)?;
-        let gpu = open(gpu, tell)?;
+        if shared.as_ref().is_some_and(|shared| gpu.as_ref().is_none_or(|known| known.device != shared.device)) {
+            self.booths.clear();
+            *gpu = None;
+        }
+        let gpu = open(gpu, shared, tell).await?;
         let mut taken = Vec::new();
         for (slot, config) in shot.configs.iter().enumerate() {
-            taken.push(self.take(slot, config, (&shot, &wants), (&pose, &lights), (gpu, tell))?);
+            taken.push(self.take(slot, config, (&shot, &wants), (&pose, &lights), (gpu, tell)).await?);
         }
         // A comparison that has ended gives its memory back.
         self.booths.truncate(shot.configs.len());
@@ -281,20 +302,20 @@ impl Set<'_> {
         Ok((pose, lights))
     }
 
-    fn take(
+    async fn take(
         &mut self,
         slot: usize,
         config: &ShadowConfig,
         (shot, wants): (&Shot, &Wants),
         (pose, lights): (&Pose, &[NamedLight]),
-        (gpu, tell): (&Gpu, &Tell),
+        (gpu, tell): (&Gpu, &Tell<impl Fn()>),
     ) -> Result<Taken, Failure> {
         let kinds = lights::kinds(lights);
         let (config, mut notes) = config.for_lights(&kinds);
         let scene = &self.stage.scene;
         self.booths.truncate(self.booths.len().min(if self.is_made_for(slot, &kinds) { usize::MAX } else { slot }));
         if self.booths.len() == slot {
-            tell.say(News::Busy("uploading the scene and building its pipelines"));
+            tell.busy("uploading the scene and building its pipelines").await;
             let slots = kinds.iter().copied().map(Into::into).collect();
             let settings =
                 RenderSettings { size: shot.size, samples: Samples::default(), config: config.clone(), lights: slots };
@@ -303,7 +324,7 @@ impl Set<'_> {
         let renderer = &mut self.booths[slot].renderer;
         if *renderer.config() != config {
             if renderer.config().rebuilds(&config).is_some_and(|(what, _)| what > umbrage::config::Rebuilds::Nothing) {
-                tell.say(News::Busy("making shaders and maps for the new settings"));
+                tell.busy("making shaders and maps for the new settings").await;
             }
             renderer.plan_for(None)?;
             renderer.set_config(scene, &config)?;
@@ -321,9 +342,9 @@ impl Set<'_> {
             tint: shot.tint,
         };
         let maps = wants.maps && config.filter.samples() == 1 && shot.shadows_on;
-        let rendered = renderer.render(&frame, Outputs { picture: true, mask: wants.mask, maps })?;
+        let rendered = renderer.render_async(&frame, Outputs { picture: true, mask: wants.mask, maps }).await?;
         let answer = match wants.probe {
-            Some(point) => renderer.probe(&frame, &[point])?.into_iter().next(),
+            Some(point) => renderer.probe_async(&frame, &[point]).await?.into_iter().next(),
             None => None,
         };
         notes.extend(rendered.stats.notes.iter().cloned());
@@ -347,15 +368,20 @@ impl Set<'_> {
     }
 }
 
-/// The device, opened if there is none.
-fn open<'g>(gpu: &'g mut Option<Gpu>, tell: &Tell) -> Result<&'g Gpu, Failure> {
+/// The device: the one that is shared, or one that is opened, if there is none.
+async fn open<'g>(gpu: &'g mut Option<Gpu>, shared: Option<Gpu>, tell: &Tell<impl Fn()>) -> Result<&'g Gpu, Failure> {
     match gpu {
         Some(gpu) => Ok(gpu),
         None => {
-            tell.say(News::Busy("opening the graphics device"));
-            let opened = gpu.insert(Gpu::new(&GpuOptions::default())?);
-            tell.say(News::Adapter(adapter_description(opened)));
-            Ok(opened)
+            let opened = match shared {
+                Some(shared) => shared,
+                None => {
+                    tell.busy("opening the graphics device").await;
+                    Gpu::open(&GpuOptions::default()).await?
+                }
+            };
+            tell.say(News::Adapter(opened.description()));
+            Ok(gpu.insert(opened))
         }
     }
 }

@@ -19,7 +19,6 @@ use crate::{
     progress,
     report::to_json,
     scene_setup::{SceneSetup, Shot},
-    session::adapter_description,
     technique::text,
 };
 
@@ -72,7 +71,7 @@ pub fn run(job: &Job) -> Result<()> {
     let tables = job.scenes.len() * (job.techniques.len() + pairs.len()) + job.objects.len() * crowd.len();
     let bar = progress::steps(rounds * tables as u64, "frames with and without shadows");
     let mut report = Report {
-        adapter: adapter_description(&gpu),
+        adapter: gpu.description(),
         size: job.size,
         samples: if job.samples == Samples::Four { "4" } else { "1" }.into(),
         rounds: job.rounds,

@@ -27,7 +27,6 @@ use crate::{
     reach::truth_for,
     report::to_json,
     scene_setup,
-    session::adapter_description,
     technique::Technique,
 };
 
@@ -40,7 +39,7 @@ const REPRODUCE: &str = "umbrage render OPTIONS-OF-THE-VIEW OPTIONS-OF-THE-TECHN
 pub fn run(job: Job) -> Result<()> {
     let Job { techniques, scenes, settings, outputs, notes, resume, command } = job;
     let gpu = Gpu::new(&GpuOptions::default())?;
-    let of = description(&techniques, &scenes, &settings, &adapter_description(&gpu));
+    let of = description(&techniques, &scenes, &settings, &gpu.description());
     let journal = resume.as_deref().map(|path| journal::open(path, &of)).transpose()?;
     let shown = sheet_shots::chosen(&scenes, settings.columns);
     let views: usize = scenes.iter().flat_map(|scene| &scene.series).map(|series| series.views.len()).sum();
@@ -326,7 +325,7 @@ impl Run<'_> {
         let comparison = Comparison {
             command: self.command,
             reproduce: REPRODUCE,
-            adapter: adapter_description(self.gpu),
+            adapter: self.gpu.description(),
             size: self.settings.size,
             least_edges: self.settings.least_edges,
             pairs: report::pairs(&labels, &self.views)?,

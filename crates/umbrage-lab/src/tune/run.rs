@@ -13,8 +13,7 @@ use super::{
     record::{Outcome, Run, Shard, ViewName},
 };
 use crate::{
-    compare::shots::SceneShots, failure::Result, journal::Journal, notes, progress, session::adapter_description,
-    technique::text::Settings as Given,
+    compare::shots::SceneShots, failure::Result, journal::Journal, notes, progress, technique::text::Settings as Given,
 };
 
 /// A search, everything checked that can be before a frame is drawn.
@@ -75,7 +74,7 @@ pub fn run(job: &Job) -> Result<()> {
     let gpu = Gpu::new(&GpuOptions::default())?;
     let run = Run {
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        adapter: adapter_description(&gpu),
+        adapter: gpu.description(),
         budget: job.budget.to_string(),
         axes: job.axes.clone(),
         with: job.with.clone(),

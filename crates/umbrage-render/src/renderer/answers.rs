@@ -10,7 +10,11 @@ use crate::probe::{self, Probe, ProbeAnswer, ProbePoint, Responder};
 use crate::{Result, cull};
 
 impl Renderer {
-    pub(crate) fn probe_unguarded(&mut self, frame: &Frame<'_>, points: &[ProbePoint]) -> Result<Vec<ProbeAnswer>> {
+    pub(crate) async fn probe_unguarded(
+        &mut self,
+        frame: &Frame<'_>,
+        points: &[ProbePoint],
+    ) -> Result<Vec<ProbeAnswer>> {
         let gpu = self.gpu.clone();
         let prepared = self.prepare(frame, false)?;
         let rounds = if prepared.slices.is_empty() { 1 } else { prepared.caster_runs.len() };
@@ -24,7 +28,7 @@ impl Renderer {
             gpu.queue.submit([encoder.finish()]);
             let maps = if sliced { self.shadows.maps().slice_bind_group(round) } else { self.shadows.bind_group() };
             for (batch, points) in points.chunks(probe::BATCH).enumerate() {
-                let replies = self.ask(frame, &prepared, maps, points)?;
+                let replies = self.ask(frame, &prepared, maps, points).await?;
                 if round == 0 {
                     answers.extend(replies);
                     continue;
@@ -40,7 +44,7 @@ impl Renderer {
     }
 
     /// Asks one batch of points.
-    fn ask(
+    async fn ask(
         &self,
         frame: &Frame<'_>,
         prepared: &Prepared,
@@ -56,7 +60,7 @@ impl Renderer {
         let named = self.names.entries(&self.scene, Probe::NAMES);
         let pending = self.probe_pass().record(gpu, &mut encoder, (maps, &named), prepared.origin, &asked)?;
         gpu.queue.submit([encoder.finish()]);
-        let mut replies = pending.read(gpu)?;
+        let mut replies = pending.read(gpu).await?;
         for (reply, (point, responder)) in replies.iter_mut().zip(&asked) {
             let faces_light = point.normal.dot(frame.light.light.to_light(point.position)) > 0.0;
             let unshaded = f32::from(u8::from(faces_light));

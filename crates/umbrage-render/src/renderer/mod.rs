@@ -2,6 +2,8 @@
 //! out.
 
 mod answers;
+#[cfg(not(target_arch = "wasm32"))]
+mod blocking;
 mod caster_runs;
 mod gathered;
 mod live;
@@ -9,6 +11,7 @@ mod prepare;
 mod record;
 mod report;
 mod sight;
+#[cfg(not(target_arch = "wasm32"))]
 mod views;
 mod world;
 
@@ -42,7 +45,7 @@ use crate::probe::{self, Probe, ProbeAnswer, ProbePoint};
 use crate::stats::FrameStats;
 use crate::targets::{MaskTarget, PictureTarget};
 use crate::timing::Timer;
-use crate::{Error, Gpu, Result, maps};
+use crate::{Error, Gpu, Result, maps, waiting};
 
 /// What is settled before the first frame.
 #[derive(Clone, Debug)]
@@ -248,20 +251,23 @@ impl Renderer {
         self.shadows.maps().layout()
     }
 
-    /// Draws a frame and waits for what was asked for.
+    /// Draws a frame and waits for what was asked for, without blocking in a browser. Elsewhere the
+    /// future is ready when it is polled first, as in [`Renderer::render`].
     ///
     /// # Errors
     /// [`Error::Plan`] if camera, range or bounds are wrong, [`Error::Scene`] if the pose is not
     /// one of this scene, [`Error::LampSlots`], [`Error::LampCount`] or [`Error::Shadows`] if the
     /// lights are not those that the renderer was made for, [`Error::OutOfMemory`] or
     /// [`Error::Device`] if the device fails.
-    pub fn render(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
+    pub async fn render_async(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
         let frame = Frame { shadows_on: frame.shadows_on && self.shading == Shading::WithShadows, ..*frame };
-        let drawn = gpu.guarded("drawing a frame", || {
-            self.look_around(&frame, outputs)?;
-            self.render_unguarded(&frame, outputs)
-        });
+        let drawn = gpu
+            .guarded_async("drawing a frame", async || {
+                self.look_around(&frame, outputs).await?;
+                self.render_unguarded(&frame, outputs).await
+            })
+            .await;
         self.or_forget(drawn)
     }
 
@@ -271,15 +277,15 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Probe`] naming a point that is not finite or has no normal, and those of
-    /// [`Renderer::render`].
-    pub fn probe(&mut self, frame: &Frame<'_>, points: &[ProbePoint]) -> Result<Vec<ProbeAnswer>> {
+    /// [`Renderer::render_async`].
+    pub async fn probe_async(&mut self, frame: &Frame<'_>, points: &[ProbePoint]) -> Result<Vec<ProbeAnswer>> {
         probe::check(points)?;
         let gpu = self.gpu.clone();
-        let answers = gpu.guarded("answering probes", || self.probe_unguarded(frame, points));
+        let answers = gpu.guarded_async("answering probes", async || self.probe_unguarded(frame, points).await).await;
         self.or_forget(answers)
     }
 
-    fn render_unguarded(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
+    async fn render_unguarded(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
         self.make_targets(outputs)?;
         let prepared = Prepared { every_map: outputs.maps, ..self.prepare(frame, true)? };
@@ -288,7 +294,7 @@ impl Renderer {
         if outputs.maps && samples > 1 {
             return Err(Error::MapsOfSamples { samples });
         }
-        let (recorded, mut encoder) = self.record(new_encoder(&gpu), &mut clock, &prepared, outputs)?;
+        let (recorded, mut encoder) = self.record(new_encoder(&gpu), &mut clock, &prepared, outputs).await?;
         let mask = match &self.mask {
             Some(target) if outputs.mask => {
                 if let Some(shadow_mask) = self.shadow_mask.as_ref() {
@@ -306,17 +312,18 @@ impl Renderer {
         };
         self.look(&mut encoder, frame.view, prepared.origin, outputs)?;
         self.timer.record(&mut encoder);
-        let wall = clock.after_all(encoder)?;
+        let wall = clock.after_all(encoder).await?;
 
-        let stats = self.stats(frame, &prepared, &recorded, &self.timer.read(&gpu)?, wall);
+        let stats = self.stats(frame, &prepared, &recorded, &self.timer.read(&gpu).await?, wall);
         let [width, height] = self.size;
         const SIZED: &str = "a capture has as many bytes as its picture";
-        let read = |capture: Option<Capture>| capture.map(|capture| capture.read(&gpu)).transpose();
+        let picture = read(&gpu, picture).await?;
+        let mask = read(&gpu, mask).await?;
         Ok(Rendered {
-            picture: read(picture)?.map(|bytes| RgbaImage::from_raw(width, height, bytes).expect(SIZED)),
+            picture: picture.map(|bytes| RgbaImage::from_raw(width, height, bytes).expect(SIZED)),
             // Visibility and hit are grey and alpha already.
-            mask: read(mask)?.map(|bytes| GrayAlphaImage::from_raw(width, height, bytes).expect(SIZED)),
-            maps: self.map_pictures(recorded.maps)?,
+            mask: mask.map(|bytes| GrayAlphaImage::from_raw(width, height, bytes).expect(SIZED)),
+            maps: self.map_pictures(recorded.maps).await?,
             stats,
         })
     }
@@ -376,14 +383,16 @@ impl Renderer {
     }
 
     /// The splits' maps as pictures, nearest first.
-    fn map_pictures(&self, mut maps: Vec<MapCapture>) -> Result<Vec<GrayImage>> {
+    async fn map_pictures(&self, mut maps: Vec<MapCapture>) -> Result<Vec<GrayImage>> {
         maps.sort_by_key(|map| map.split);
         let format = self.shadows.maps().config().depth_format;
-        let picture = |map: MapCapture| {
-            let depths = maps::depths_of(&map.capture.read(&self.gpu)?, format);
-            Ok(maps::picture_of(&depths, map.row, map.corner, self.shadows.maps().map_size(map.split)))
-        };
-        maps.into_iter().map(picture).collect()
+        let mut pictures = Vec::with_capacity(maps.len());
+        for map in maps {
+            let depths = maps::depths_of(&map.capture.read(&self.gpu).await?, format);
+            let size = self.shadows.maps().map_size(map.split);
+            pictures.push(maps::picture_of(&depths, map.row, map.corner, size));
+        }
+        Ok(pictures)
     }
 
     /// Whether masks are made from the picture's depth.
@@ -397,6 +406,14 @@ impl Renderer {
     }
 }
 
+/// The bytes of what was asked for.
+async fn read(gpu: &Gpu, capture: Option<Capture>) -> Result<Option<Vec<u8>>> {
+    match capture {
+        Some(capture) => capture.read(gpu).await.map(Some),
+        None => Ok(None),
+    }
+}
+
 /// Fallbacks that are taken.
 pub(crate) fn notes_of(shadows: &Shadows, contact: Option<&Contact>, timer: &Timer) -> Vec<String> {
     let mut notes = shadows.notes().to_vec();
@@ -404,7 +421,9 @@ pub(crate) fn notes_of(shadows: &Shadows, contact: Option<&Contact>, timer: &Tim
         notes.push("no loads from depth textures on GL: no contact shadows".to_owned());
     }
     if !timer.has_timestamps() {
-        notes.push("no timestamp queries: times of the GPU are measured by the CPU's clock".to_owned());
+        let instead =
+            if waiting::BLOCKS { "times of the GPU are measured by the CPU's clock" } else { "no times of passes" };
+        notes.push(format!("no timestamp queries: {instead}"));
     }
     notes
 }

@@ -11,7 +11,7 @@ use crate::draw_list::Drawn;
 use crate::forward::Bindings;
 use crate::targets::{MaskTarget, PictureTarget, Turn};
 use crate::timing::Timer;
-use crate::{Gpu, Result};
+use crate::{Gpu, Result, waiting};
 
 /// A split's map on its way back.
 pub(crate) struct MapCapture {
@@ -33,7 +33,7 @@ pub(crate) struct Recorded {
 
 impl Renderer {
     /// Records everything that is drawn, in as many submissions as the clock asks for.
-    pub(crate) fn record(
+    pub(crate) async fn record(
         &mut self,
         mut encoder: wgpu::CommandEncoder,
         clock: &mut Clock,
@@ -51,7 +51,7 @@ impl Renderer {
                     recorded.maps.push(self.capture(&mut encoder, split)?);
                 }
             }
-            encoder = clock.after_maps(encoder)?;
+            encoder = clock.after_maps(encoder).await?;
             self.record_depth(&mut encoder, prepared, &mut recorded);
             let contact = self.contact.as_ref().map(|contact| &contact.bind_group);
             let bindings = Bindings { frame: self.forward.bind_group(0), maps: self.shadows.bind_group(), contact };
@@ -75,7 +75,8 @@ impl Renderer {
             }
         } else {
             self.record_depth(&mut encoder, prepared, &mut recorded);
-            encoder = self.record_slices(encoder, clock, prepared, outputs, (mask, picture), &mut recorded)?;
+            let targets = (mask, picture);
+            encoder = self.record_slices(encoder, clock, prepared, outputs, targets, &mut recorded).await?;
         }
         (self.mask, self.picture) = (kept_mask, kept_picture);
         Ok((recorded, encoder))
@@ -152,7 +153,7 @@ impl Renderer {
 
     /// Multipass: each slice's map, then what of the view lies in that slice, front to back. What
     /// is translucent comes afterwards, back to front, and needs the maps once more.
-    fn record_slices(
+    async fn record_slices(
         &mut self,
         mut encoder: wgpu::CommandEncoder,
         clock: &mut Clock,
@@ -168,7 +169,7 @@ impl Renderer {
             if outputs.maps {
                 recorded.maps.push(self.capture(&mut encoder, part.slice.split)?);
             }
-            encoder = clock.after_maps(encoder)?;
+            encoder = clock.after_maps(encoder).await?;
             let (first, last) = (i == 0, i + 1 == slices.len());
             if let Some(target) = mask {
                 let slot = self.timer.next(1);
@@ -194,14 +195,14 @@ impl Renderer {
                     drawn
                 });
             }
-            encoder = clock.after_view(encoder)?;
+            encoder = clock.after_view(encoder).await?;
         }
         let (Some(target), true) = (picture, translucent) else { return Ok(encoder) };
         for (i, part) in slices.iter().enumerate().rev() {
             // The farthest slice's map is still there.
             if i + 1 < slices.len() {
                 self.record_map(&mut encoder, part.slice.split, prepared, recorded);
-                encoder = clock.after_maps(encoder)?;
+                encoder = clock.after_maps(encoder).await?;
             }
             let slot = self.timer.next(1);
             let turn = Turn { first: false, last: i == 0 };
@@ -211,7 +212,7 @@ impl Renderer {
                 self.forward.draw_translucent(pass, self.bindings(&part.slice), &self.drawable(), &part.translucent)
             });
             drop(pass);
-            encoder = clock.after_view(encoder)?;
+            encoder = clock.after_view(encoder).await?;
         }
         Ok(encoder)
     }
@@ -235,8 +236,8 @@ pub(crate) fn new_encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
     gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("Renderer::encoder") })
 }
 
-/// Submits a frame: at once where the GPU takes the time itself, else maps and view apart with a
-/// wait after each.
+/// Submits a frame: at once where the GPU takes the time itself, or where a wait would take longer
+/// than what it measures; else maps and view apart with a wait after each.
 pub(crate) struct Clock {
     gpu: Gpu,
     by_cpu: bool,
@@ -248,40 +249,40 @@ pub(crate) struct Clock {
 
 impl Clock {
     pub fn start(gpu: &Gpu, timer: &Timer) -> Self {
-        let by_cpu = !timer.has_timestamps();
+        let by_cpu = waiting::BLOCKS && !timer.has_timestamps();
         Self { gpu: gpu.clone(), by_cpu, begun: Instant::now(), done_ms: 0.0, shadow_ms: 0.0 }
     }
 
     /// Submits, waits, and returns how long that took since the last time.
-    fn lap(&mut self, encoder: wgpu::CommandEncoder) -> Result<f64> {
+    async fn lap(&mut self, encoder: wgpu::CommandEncoder) -> Result<f64> {
         self.gpu.queue.submit([encoder.finish()]);
-        self.gpu.wait()?;
+        waiting::idle(&self.gpu).await?;
         let now = self.begun.elapsed().as_secs_f64() * 1e3;
         Ok(now - std::mem::replace(&mut self.done_ms, now))
     }
 
     /// What comes before was maps.
-    pub fn after_maps(&mut self, encoder: wgpu::CommandEncoder) -> Result<wgpu::CommandEncoder> {
+    pub async fn after_maps(&mut self, encoder: wgpu::CommandEncoder) -> Result<wgpu::CommandEncoder> {
         if !self.by_cpu {
             return Ok(encoder);
         }
-        self.shadow_ms += self.lap(encoder)?;
+        self.shadow_ms += self.lap(encoder).await?;
         Ok(new_encoder(&self.gpu))
     }
 
     /// What comes before was the view, and more maps follow.
-    pub fn after_view(&mut self, encoder: wgpu::CommandEncoder) -> Result<wgpu::CommandEncoder> {
+    pub async fn after_view(&mut self, encoder: wgpu::CommandEncoder) -> Result<wgpu::CommandEncoder> {
         if !self.by_cpu {
             return Ok(encoder);
         }
-        self.lap(encoder)?;
+        self.lap(encoder).await?;
         Ok(new_encoder(&self.gpu))
     }
 
     /// Milliseconds of the maps and of the frame, if the CPU measures.
-    pub fn after_all(mut self, encoder: wgpu::CommandEncoder) -> Result<Option<(f64, f64)>> {
+    pub async fn after_all(mut self, encoder: wgpu::CommandEncoder) -> Result<Option<(f64, f64)>> {
         if self.by_cpu {
-            self.lap(encoder)?;
+            self.lap(encoder).await?;
             return Ok(Some((self.shadow_ms, self.done_ms)));
         }
         self.gpu.queue.submit([encoder.finish()]);

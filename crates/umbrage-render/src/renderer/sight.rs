@@ -8,7 +8,7 @@ use umbrage::{Aabb, View};
 use umbrage_wgpu::{MaskFrame, SeenDepth};
 
 use super::{Frame, Outputs, Renderer};
-use crate::Result;
+use crate::{Result, waiting};
 
 /// What was seen, by view and by the samples of the depth that it is read from.
 #[derive(Default)]
@@ -49,15 +49,15 @@ impl Renderer {
 
     /// Draws what a camera at rest would have shown before, if nothing is known of it: the frame
     /// that is asked for then looks as the next ones will.
-    pub(super) fn look_around(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<()> {
+    pub(super) async fn look_around(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<()> {
         self.remember(frame.view)?;
         if !self.fits_to_depth() || self.sight.boxes.is_some() || !(outputs.picture || outputs.mask) {
             return Ok(());
         }
-        self.render_unguarded(frame, Outputs { maps: false, ..outputs })?;
+        self.render_unguarded(frame, Outputs { maps: false, ..outputs }).await?;
         self.remember(frame.view)?;
         // Pictures are waited for here in any case.
-        self.gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| umbrage_wgpu::Error::DeviceLost)?;
+        waiting::idle(&self.gpu).await?;
         // Nothing is held of maps that were fitted without it.
         self.shadows.restart();
         self.remember(frame.view)

@@ -1,21 +1,22 @@
-//! The viewer between the session and the controls: threads on one side, panels on the other.
+//! The viewer between the session and the controls: what works beside the window on one side,
+//! panels on the other.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use egui::{Key, Modifiers};
 use umbrage_lab::scene_request::SceneRequest;
+use umbrage_render::Gpu;
 
 use crate::judge::{Judge, Overlay};
+use crate::link::{self, Linked};
 use crate::panel::{self, Fields};
+use crate::platform::{self, Arrival, Wake};
 use crate::session::{Session, Tab};
-use crate::share::{self, Spelled};
+use crate::share;
 use crate::stage::Shipped;
-use crate::studio::Studio;
+use crate::studio::{Order, Studio};
 use crate::textures::Textures;
-
-/// Called, from any thread, when there is something new to show.
-pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// Time between two frames of what moves by itself.
 const FRAME: std::time::Duration = std::time::Duration::from_millis(16);
@@ -35,6 +36,8 @@ pub struct App {
     pub(crate) textures: Textures,
     studio: Option<Studio>,
     judge: Option<Judge>,
+    /// The window's device, where it is shared.
+    gpu: Option<Gpu>,
     wake: Wake,
 }
 
@@ -51,14 +54,26 @@ impl App {
             textures: Textures::default(),
             studio: None,
             judge: None,
+            gpu: None,
             wake,
         }
     }
 
     /// Opens a scene beside the one that is shown.
     pub fn open(&mut self, request: SceneRequest) {
+        self.open_with(request, None);
+    }
+
+    /// Opens a scene whose file's content is there already.
+    fn open_with(&mut self, request: SceneRequest, bytes: Option<Arc<[u8]>>) {
         let wake = Arc::clone(&self.wake);
-        self.session.open(request, move || wake());
+        self.session.open(request, bytes, move || wake());
+    }
+
+    /// Draws with this device from now on, which the window draws with too.
+    pub fn share_device(&mut self, gpu: Gpu) {
+        self.gpu = Some(gpu);
+        self.session.try_again();
     }
 
     /// Opens a scene of the menu.
@@ -76,7 +91,7 @@ impl App {
         self.open(request);
     }
 
-    /// Lets time go by, hears the threads and gives them what is next.
+    /// Lets time go by, hears what works beside the window and gives it what is next.
     pub fn step(&mut self, seconds: f64) {
         self.session.tick(seconds);
         if let Some(studio) = &self.studio {
@@ -86,6 +101,7 @@ impl App {
             judge.findings().for_each(|finding| self.session.found(finding));
         }
         if let Some(order) = self.session.next_order() {
+            let order = Order { gpu: self.gpu.clone(), ..order };
             let started = match &self.studio {
                 Some(studio) => studio.order(order.clone()),
                 None => false,
@@ -145,9 +161,8 @@ impl App {
 
     /// Dropped files, pasted text and keys that belong to no control.
     fn take_events(&mut self, ctx: &egui::Context) {
-        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
-        if let Some(file) = dropped.last() {
-            let path = file.path().to_owned();
+        let dropped = ctx.input(|input| input.raw.dropped_files.last().map(|file| file.path().to_owned()));
+        if let Some(path) = dropped {
             self.open_file(&path);
         }
         let help = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F1));
@@ -239,30 +254,43 @@ impl App {
     /// The command that shows what is shown.
     #[must_use]
     pub fn command_line(&self) -> String {
-        let vector = |v: glam::DVec3| format!("{},{},{}", v.x, v.y, v.z);
-        let mut command = "umbrage view".to_owned();
-        if let (Some(stage), Some(camera)) = (&self.session.stage, &self.session.camera) {
-            let scene = &stage.request.scene;
-            command += &if scene.contains(char::is_whitespace) { format!(" '{scene}'") } else { format!(" {scene}") };
-            let view = camera.view();
-            if *view != stage.view {
-                command += &format!(" --eye={} --target={}", vector(view.eye()), vector(camera.pivot()));
-                command += &camera.fov_degrees().map(|fov| format!(" --fov={fov}")).unwrap_or_default();
-                command += &format!(" --near={} --far={}", view.frustum().near, view.frustum().far);
+        link::command_line(&self.session)
+    }
+
+    /// The address that shows what is shown, where the viewer has one. It becomes the page's.
+    pub fn link(&self) -> Option<String> {
+        platform::link(&link::fragment(&self.session))
+    }
+
+    /// Takes in what came from outside of the window.
+    pub fn arrive(&mut self, arrival: Arrival) {
+        match arrival {
+            // Given to the controls: a field may be waiting for it.
+            Arrival::Pasted(_) => {}
+            Arrival::Dropped { name, bytes } => {
+                let files = self.session.stage.as_ref().map(|stage| stage.request.files).unwrap_or_default();
+                let request = SceneRequest { files, ..SceneRequest::new(name, self.session.size) };
+                self.open_with(request, Some(bytes.into()));
             }
-            if self.session.time_s != 0.0 {
-                command += &format!(" --time={}", self.session.time_s);
+            Arrival::Address(fragment) => {
+                let shown = self.session.stage.as_ref().map(|stage| stage.request.scene.clone()).unwrap_or_default();
+                match link::read(&fragment, &shown, self.session.size) {
+                    Ok(linked) => self.follow(linked),
+                    Err(why) => self.session.say(true, why),
+                }
             }
-            let own = self.session.sun == crate::sun::Sun::OfScene;
-            let given = matches!(stage.request.light, umbrage_lab::scene_request::LightChoice::Given(_));
-            if let (true, Some(sun)) = (!own || given, self.session.shown_sun()) {
-                command += &format!(" --sun={}", vector(sun.direction()));
-            }
+            Arrival::Said(is_error, text) => self.session.say(is_error, text),
+            Arrival::Lost(why) => self.session.say(true, why),
         }
-        if self.session.show.tint {
-            command += " --tint";
-        }
-        format!("{command} {}", Spelled::of(&self.session.config).command_line())
+    }
+
+    /// Shows what a link shows.
+    fn follow(&mut self, linked: Linked) {
+        linked.notes.into_iter().for_each(|note| self.session.say(false, note));
+        self.session.set_config(linked.config);
+        self.session.show.tint = linked.tint;
+        (self.bare, self.session.playing) = (linked.bare, linked.runs);
+        self.open(linked.request);
     }
 }
 

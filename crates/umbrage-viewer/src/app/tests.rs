@@ -21,7 +21,8 @@ impl Desk {
     /// A viewer with the chessboard and no threads.
     fn new() -> Self {
         let mut session = Session::new(ShadowConfig::default(), [640, 480]);
-        session.enter(stage::open(SceneRequest::new("chessboard", [64, 48]), |_| ()).expect("a world"));
+        let request = SceneRequest::new("chessboard", [64, 48]);
+        session.enter(pollster::block_on(stage::open(request, None, |_| ())).expect("a world"));
         session.messages.clear();
         let ctx = egui::Context::default();
         ctx.all_styles_mut(|style| style.animation_time = 0.0);

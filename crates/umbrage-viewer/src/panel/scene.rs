@@ -148,15 +148,12 @@ fn save(session: &mut Session) {
     let sun = session.shown_sun().map(|sun| sun.direction());
     let written = recording.finish(sun).and_then(|path| {
         let text = path.to_json().map_err(|error| error.to_string())?;
-        crate::window::write_new("umbrage-path", "json", text.as_bytes())
+        crate::platform::save("umbrage-path", "json", text.as_bytes())
     });
     match written {
         Ok(file) => session.say(
             false,
-            format!(
-                "wrote {}; draw it with `umbrage render SCENE --path {0} --frames 60 -o picture.png`",
-                file.display()
-            ),
+            format!("wrote {file}; draw it with `umbrage render SCENE --path {file} --frames 60 -o picture.png`"),
         ),
         Err(why) => session.say(true, why),
     }

@@ -51,12 +51,14 @@ fn carry(app: &mut App, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         ui.menu_button("copy", |ui| {
             let spelled = Spelled::of(&app.session.config);
-            for (name, text) in [
+            let link = app.link().map(|link| ("as a link that shows this", link));
+            let texts = [
                 ("as Rust", spelled.rust()),
                 ("as a file for --config (TOML)", spelled.toml()),
                 ("as options", spelled.command_line()),
                 ("as the command that shows this", app.command_line()),
-            ] {
+            ];
+            for (name, text) in texts.into_iter().chain(link) {
                 if ui.button(name).on_hover_text(&text).clicked() {
                     ui.ctx().copy_text(text);
                     ui.close();

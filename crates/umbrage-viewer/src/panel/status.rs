@@ -28,12 +28,13 @@ pub fn status(app: &mut App, ui: &mut Ui) {
                 let coarse = if drawn.shot.size == session.size { "" } else { ", coarse while it moves" };
                 ui.label(format!("{width} × {height}{coarse}"));
                 ui.separator();
-                ui.label(format!(
-                    "maps {:.1} ms, view {:.1} ms",
-                    taken.stats.shadow_ms,
-                    taken.stats.frame_ms - taken.stats.shadow_ms
-                ))
-                .on_hover_text("On the graphics device, of the last picture");
+                let (maps, all) = (taken.stats.shadow_ms, taken.stats.frame_ms);
+                // WebGL2 measures nothing.
+                let (times, of) = match all > 0.0 {
+                    true => (format!("maps {maps:.1} ms, view {:.1} ms", all - maps), "On the graphics device"),
+                    false => (format!("drawn in {:.0} ms", drawn.wall_ms), "From the order to the picture"),
+                };
+                ui.label(times).on_hover_text(format!("{of}, of the last picture"));
                 ui.separator();
                 ui.label(format!("{} of maps", bytes(taken.stats.bytes)));
                 ui.separator();

@@ -1,6 +1,7 @@
 //! What the viewer knows and decides, without a window: what is opened, drawn, judged and shown
 //! next.
 
+mod orders;
 mod show;
 
 use std::collections::VecDeque;
@@ -12,13 +13,13 @@ use umbrage::config::{Layout, LightKind};
 use umbrage::{DirectionalLight, Light, ShadowConfig, View};
 use umbrage_lab::lights;
 use umbrage_lab::scene_request::SceneRequest;
-use umbrage_render::ProbePoint;
 
 use crate::camera::{Camera, Motion};
-use crate::judge::{Finding, Laid, Overlay, Picked, Question};
+use crate::judge::{Laid, Overlay, Picked};
 use crate::path::{Following, Recording};
+use crate::platform::Movable;
 use crate::stage::{Opening, Stage};
-use crate::studio::{Drawn, News, Order, Shot, Wants};
+use crate::studio::{Drawn, Shot};
 use crate::sun::{SkyPoint, Sun};
 pub use show::{Message, Show, Tab, Times};
 
@@ -141,8 +142,20 @@ impl Session {
     }
 
     /// Opens a scene beside the one that is shown. One that is still being opened is given up.
-    pub fn open(&mut self, request: SceneRequest, wake: impl Fn() + Send + 'static) {
-        self.opening = Some(Opening::start(request, wake));
+    /// `bytes` are the content of its file, where that is there already.
+    pub fn open(&mut self, request: SceneRequest, bytes: Option<Arc<[u8]>>, wake: impl Fn() + Movable + 'static) {
+        self.opening = Some(Opening::start(request, bytes, wake));
+    }
+
+    /// Draws again what could not be drawn: there is another device.
+    pub fn try_again(&mut self) {
+        self.failed = None;
+    }
+
+    /// Whether all is drawn, and nothing moves.
+    #[must_use]
+    pub fn is_settled(&self) -> bool {
+        self.opening.is_none() && !self.in_flight && self.settled && !self.is_moving() && self.is_up_to_date()
     }
 
     /// Takes over a scene that is open.
@@ -302,192 +315,6 @@ impl Session {
     /// Asks what lies under a point of the picture.
     pub fn pick(&mut self, at: DVec2) {
         self.click = Some(at);
-    }
-
-    /// What is to be drawn now.
-    #[must_use]
-    pub fn shot(&self) -> Option<Shot> {
-        let (stage, camera) = (self.stage.as_ref()?, self.camera.as_ref()?);
-        let slow = self.times.back().is_some_and(|times| times.wall > SLOW_MS);
-        let coarse = slow && self.is_moving();
-        Some(Shot {
-            stage: stage.id,
-            time_s: self.time_s,
-            view: *camera.view(),
-            planned_for: self.frozen,
-            sun: self.last_sun,
-            configs: std::iter::once(&self.config).chain(&self.other).cloned().collect(),
-            size: if coarse { self.size.map(|edge| edge.div_ceil(2)) } else { self.size },
-            tint: self.show.tint,
-            shadows_on: self.show.shadows,
-        })
-    }
-
-    /// What is wanted beside the picture.
-    fn wants(&self, shot: &Shot) -> Wants {
-        let probe = self.picked.as_ref().filter(|picked| picked.drawn.shot == *shot).and_then(|picked| {
-            let surface = picked.surface.as_ref()?;
-            Some(ProbePoint { position: surface.position, normal: surface.normal })
-        });
-        Wants { maps: self.show.tab == Some(Tab::Maps), mask: self.show.overlay == Some(Overlay::Errors), probe }
-    }
-
-    /// The next picture to ask for: none while one is on its way, or nothing has changed.
-    pub fn next_order(&mut self) -> Option<Order> {
-        // At night the last sun stays.
-        if let Ok(sun) = self.sun.light() {
-            self.last_sun = sun.filter(|_| self.shown_sun().is_some());
-        }
-        if self.in_flight {
-            return None;
-        }
-        let shot = self.shot()?;
-        if self.failed.as_ref() == Some(&shot) {
-            return None;
-        }
-        let stage = Arc::clone(self.stage.as_ref()?);
-        let is_still = self.drawn.as_ref().is_some_and(|drawn| drawn.shot == shot);
-        let wants = if is_still { self.wants(&shot) } else { Wants::default() };
-        let is_met = is_still && self.drawn.as_ref().is_some_and(|drawn| wants.are_met_by(&drawn.wants));
-        if is_met && self.settled {
-            return None;
-        }
-        self.in_flight = true;
-        Some(Order { stage, shot, wants })
-    }
-
-    /// The order could not be given: the thread is gone.
-    pub fn order_lost(&mut self, why: &str) {
-        self.in_flight = false;
-        self.say(true, why);
-    }
-
-    /// Takes in what the studio says.
-    pub fn hear(&mut self, news: News) {
-        match news {
-            News::Adapter(adapter) => self.adapter = Some(adapter),
-            News::Busy(what) => self.busy = Some(what),
-            News::Failed { shot, why } => {
-                (self.in_flight, self.busy) = (false, None);
-                self.say(true, why);
-                self.failed = Some(*shot);
-            }
-            News::Drawn(drawn) => {
-                (self.in_flight, self.busy, self.failed) = (false, None, None);
-                // A picture of a scene that was left is nobody's.
-                if self.is_of_stage(&drawn.shot) {
-                    self.show_picture(*drawn);
-                }
-            }
-        }
-    }
-
-    fn show_picture(&mut self, drawn: Drawn) {
-        self.pictures += 1;
-        if let Some(taken) = drawn.taken.first() {
-            let stats = &taken.stats;
-            let maps = stats.shadow_ms;
-            let view = (stats.frame_ms - maps).max(0.0);
-            self.times.push_back(Times { plan: stats.plan_ms, maps, view, wall: drawn.wall_ms });
-            while self.times.len() > HISTORY {
-                self.times.pop_front();
-            }
-        }
-        let plans = |drawn: &Drawn| drawn.taken.iter().map(|taken| Arc::clone(&taken.stats.plan)).collect::<Vec<_>>();
-        // Stabilised maps go back to a fresh plan's in small steps while the camera stands.
-        let holds = drawn.shot.configs.iter().any(ShadowConfig::is_stabilised) && drawn.shot.shadows_on;
-        let before = self.drawn.as_ref().filter(|before| before.shot == drawn.shot);
-        self.repeats = if before.is_some() { self.repeats + 1 } else { 0 };
-        let is_tedious = drawn.wall_ms > SLOW_MS && self.repeats >= MOST_SLOW_REPEATS;
-        self.settled = !holds || is_tedious || before.is_some_and(|before| plans(before) == plans(&drawn));
-        let notes: Vec<String> = drawn.taken.iter().flat_map(|taken| taken.notes.clone()).collect();
-        if self.drawn.as_ref().is_none_or(|before| before.shot.configs != drawn.shot.configs) {
-            notes.into_iter().for_each(|note| self.say(false, note));
-        }
-        self.drawn = Some(Arc::new(drawn));
-    }
-
-    /// Whether the picture is the one that is wanted, with all that was asked for.
-    #[must_use]
-    pub fn is_up_to_date(&self) -> bool {
-        let Some((shot, drawn)) = self.shot().zip(self.drawn.as_ref()) else { return false };
-        drawn.shot == shot
-            && self.wants(&shot).are_met_by(&drawn.wants)
-            && (self.show.overlay.is_none() || self.fitting_overlay().is_some())
-            && self.judging.is_none()
-            && self.click.is_none()
-    }
-
-    /// The overlay of the picture that is shown.
-    #[must_use]
-    pub fn fitting_overlay(&self) -> Option<&Laid> {
-        let drawn = self.drawn.as_ref()?;
-        self.laid.as_ref().filter(|laid| laid.shot == drawn.shot && Some(laid.overlay) == self.show.overlay)
-    }
-
-    /// The next question to the judge: about the picture that is shown, once nothing moves.
-    pub fn next_question(&mut self) -> Option<Question> {
-        if self.judging.is_some() {
-            return None;
-        }
-        let drawn = self.drawn.as_ref()?;
-        let shot = self.shot()?;
-        if drawn.shot != shot || self.in_flight && !self.settled {
-            return None;
-        }
-        let follows = || {
-            // What was clicked on is asked again in each new picture.
-            let picked = self.picked.as_ref().filter(|picked| picked.drawn.shot != shot)?;
-            let surface = picked.surface.as_ref()?;
-            project(&shot.view, surface.position).map(|(at, _)| at)
-        };
-        if let Some(at) = self.click.take().or_else(follows) {
-            self.judging = Some((shot, None));
-            return Some(Question::Pick(Arc::clone(drawn), at));
-        }
-        let overlay = self.show.overlay?;
-        let has_mask = overlay != Overlay::Errors || drawn.wants.mask;
-        let is_there = self.laid.as_ref().is_some_and(|laid| laid.shot == shot && laid.overlay == overlay);
-        if is_there || !has_mask || !self.settled {
-            return None;
-        }
-        self.judging = Some((shot, Some(overlay)));
-        Some(Question::Overlay(Arc::clone(drawn), overlay))
-    }
-
-    /// Whether rays are being traced.
-    #[must_use]
-    pub fn is_judging(&self) -> bool {
-        self.judging.is_some()
-    }
-
-    /// Takes in what the judge says.
-    pub fn found(&mut self, finding: Finding) {
-        let asked = self.judging.take();
-        match finding {
-            Finding::Laid(laid) => self.laid = Some(*laid),
-            Finding::Picked(picked) => {
-                if let (Some(surface), Some(camera)) = (&picked.surface, &mut self.camera) {
-                    camera.set_pivot(surface.position);
-                }
-                self.picked = Some(*picked);
-            }
-            Finding::Failed(why) => {
-                self.say(true, why);
-                match asked {
-                    // Not asked again for this picture.
-                    Some((_, Some(_))) => self.show.overlay = None,
-                    _ => self.picked = None,
-                }
-            }
-        }
-    }
-
-    /// The question could not be asked: the thread is gone.
-    pub fn question_lost(&mut self, why: &str) {
-        self.judging = None;
-        self.show.overlay = None;
-        self.say(true, why);
     }
 
     /// How long the scene that is being opened has taken.

@@ -5,10 +5,12 @@ use umbrage::config::Preset;
 use umbrage_lab::scene_request::LightChoice;
 
 use super::*;
+use crate::judge::{Finding, Question};
 use crate::stage;
+use crate::studio::{News, Order};
 
 fn stage(scene: &str) -> Stage {
-    stage::open(SceneRequest::new(scene, [64, 48]), |_| ()).expect(scene)
+    pollster::block_on(stage::open(SceneRequest::new(scene, [64, 48]), None, |_| ())).expect(scene)
 }
 
 fn session() -> Session {
@@ -113,7 +115,7 @@ fn what_takes_time_is_asked_for_while_nothing_moves() {
 fn a_scene_that_does_not_open_leaves_the_one_that_is_there() {
     let mut session = session();
     let shown = session.stage.as_ref().expect("a scene").id;
-    session.open(SceneRequest::new("no-such-scene.glb", [64, 48]), || ());
+    session.open(SceneRequest::new("no-such-scene.glb", [64, 48]), None, || ());
     while session.opening.is_some() {
         session.tick(0.01);
     }

@@ -1,0 +1,16 @@
+//! Waiting for the device. A thread of a program blocks; a page in a browser must not, and is
+//! called back. All else of this crate is written once, as `async` functions that a program runs to
+//! their end with `block_on`.
+
+#[cfg(not(target_arch = "wasm32"))]
+mod native;
+#[cfg(target_arch = "wasm32")]
+mod web;
+
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) use native::{BLOCKS, Scopes, idle, mapped};
+#[cfg(target_arch = "wasm32")]
+pub(crate) use web::{BLOCKS, Scopes, idle, mapped};
+
+/// What is awaited while results are read back, for messages.
+pub(crate) const READING: &str = "reading results back";

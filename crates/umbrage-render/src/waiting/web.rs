@@ -1,0 +1,75 @@
+//! Waiting in a browser: the page goes on and is called back.
+
+use futures_channel::oneshot;
+use wasm_bindgen::{JsCast, JsValue};
+use wasm_bindgen_futures::JsFuture;
+
+use super::READING;
+use crate::{Error, Gpu, Result};
+
+/// Whether waiting costs nothing but the wait itself: here each wait costs a turn of the page.
+pub(crate) const BLOCKS: bool = false;
+
+/// Milliseconds between two looks at a device that calls nobody back by itself.
+const TURN_MS: i32 = 2;
+
+/// Waits until everything submitted has run.
+pub(crate) async fn idle(gpu: &Gpu) -> Result<()> {
+    let (sender, receiver) = oneshot::channel();
+    gpu.queue.on_submitted_work_done(move || {
+        // The receiver is gone if nobody waits any more.
+        let _nobody_waits = sender.send(());
+    });
+    called(gpu, "waiting for the device", receiver).await
+}
+
+/// Waits until everything submitted has run and a buffer can be read.
+pub(crate) async fn mapped(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<()> {
+    let (sender, receiver) = oneshot::channel();
+    buffer.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));
+    let result = called(gpu, READING, receiver).await?;
+    result.map_err(|error| Error::Device { during: READING, message: error.to_string() })
+}
+
+/// Waits for a callback of the device.
+async fn called<T>(gpu: &Gpu, during: &'static str, mut receiver: oneshot::Receiver<T>) -> Result<T> {
+    let never = |_| Error::Device { during, message: "the device never answered".to_owned() };
+    if gpu.adapter_info.backend == wgpu::Backend::BrowserWebGpu {
+        return receiver.await.map_err(never);
+    }
+    // WebGL has fences, which somebody has to look at.
+    loop {
+        let _none_runs_there = gpu.device.poll(wgpu::PollType::Poll);
+        if let Some(result) = receiver.try_recv().map_err(never)? {
+            return Ok(result);
+        }
+        turn().await;
+    }
+}
+
+/// Lets the page do what it has to do.
+async fn turn() {
+    let timer = js_sys::Promise::new(&mut |resolve, _| {
+        // A page without timers has nothing to wait with: the loop then spins.
+        let set: Option<js_sys::Function> =
+            js_sys::Reflect::get(&js_sys::global(), &"setTimeout".into()).ok().and_then(|f| f.dyn_into().ok());
+        if let Some(set) = set {
+            drop(set.call2(&JsValue::NULL, &resolve, &TURN_MS.into()));
+        }
+    });
+    drop(JsFuture::from(timer).await);
+}
+
+/// Complaints of the device come later here: they surface as faults of a later call.
+pub(crate) struct Scopes;
+
+impl Scopes {
+    pub fn open(_: &wgpu::Device) -> Self {
+        Self
+    }
+
+    #[expect(clippy::unused_async, reason = "as it is where complaints are caught")]
+    pub async fn close(self) -> Option<wgpu::Error> {
+        None
+    }
+}

@@ -1,0 +1,151 @@
+//! A page in a browser: tasks in place of threads, addresses in place of files.
+
+mod outside;
+mod page;
+mod tasks;
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use umbrage::{Light, View};
+use umbrage_lab::failure::Failure;
+use umbrage_lab::scene_request::SceneRequest;
+use umbrage_scene::Scene;
+use umbrage_scene::procedural::World;
+use umbrage_truth::{Truth, TruthMask};
+use wasm_bindgen::JsCast;
+use web_time::Instant;
+use winit::application::ApplicationHandler;
+use winit::event_loop::{EventLoop, OwnedDisplayHandle};
+use winit::platform::web::{EventLoopExtWebSys, WindowAttributesExtWebSys};
+use winit::window::{Window, WindowAttributes};
+
+pub(crate) use self::outside::Outside;
+pub(crate) use self::page::{first_address, give_up, link, save, take_copies, tell};
+pub use self::tasks::Movable;
+pub(crate) use self::tasks::{finish, pause, spawn};
+use crate::{Error, Result};
+
+/// Whether what draws the scene uses the window's device.
+pub(crate) const SHARES_DEVICE: bool = true;
+
+/// How long rays are traced before the page is let go on.
+const TRACED_AT_ONCE: Duration = Duration::from_millis(40);
+
+/// The interface to graphics: WebGPU, or WebGL2 where that is missing.
+pub(crate) async fn instance(display: OwnedDisplayHandle) -> wgpu::Instance {
+    let wanted = wgpu::InstanceDescriptor::new_with_display_handle(Box::new(display));
+    let backends = match page::query("api").as_deref() {
+        Some("webgl2") => wgpu::Backends::GL,
+        _ => wgpu::Backends::BROWSER_WEBGPU | wgpu::Backends::GL,
+    };
+    wgpu::util::new_instance_with_webgpu_detection(wgpu::InstanceDescriptor { backends, ..wanted }).await
+}
+
+/// The page's canvas, as a window.
+pub(crate) fn attributes(_title: &str, _size: [u32; 2]) -> WindowAttributes {
+    let canvas = page::element(page::CANVAS).and_then(|element| element.dyn_into().ok());
+    // What the page keeps from the browser is chosen key by key: see `outside`.
+    Window::default_attributes().with_canvas(canvas).with_prevent_default(false)
+}
+
+/// That nothing draws.
+pub(crate) fn no_graphics(reason: String) -> Error {
+    Error::NoInterface(reason)
+}
+
+/// What is particular about the controls here: keys that a browser magnifies pages by are its own,
+/// and of `egui`'s fonts there are those that the controls use.
+pub(crate) fn adapt(ctx: &egui::Context) {
+    ctx.set_fonts(fonts());
+    ctx.options_mut(|options| options.zoom_with_keyboard = false);
+    let agent = page::window().and_then(|window| window.navigator().user_agent().ok());
+    ctx.set_os(egui::os::OperatingSystem::from_user_agent(&agent.unwrap_or_default()));
+}
+
+/// The letters of the controls: each family falls back on the other's face.
+fn fonts() -> egui::FontDefinitions {
+    use egui::FontFamily::{Monospace, Proportional};
+    let faces = [
+        ("Ubuntu-Light", epaint_default_fonts::UBUNTU_LIGHT),
+        ("Hack", epaint_default_fonts::HACK_REGULAR),
+        ("egui-icons", epaint_default_fonts::EGUI_ICONS),
+    ];
+    let mut fonts = egui::FontDefinitions::empty();
+    for (name, bytes) in faces {
+        fonts.font_data.insert(name.to_owned(), Arc::new(egui::FontData::from_static(bytes)));
+    }
+    let [letters, code, icons] = faces.map(|(name, _)| name.to_owned());
+    fonts.families.insert(Monospace, vec![code.clone(), letters.clone(), icons.clone()]);
+    fonts.families.insert(Proportional, vec![letters, code, icons]);
+    fonts
+}
+
+/// Opens what a request names: a world, bytes that were dropped, or an address of the page's own
+/// server.
+///
+/// # Errors
+/// [`Failure::Input`] naming the address or the file at fault.
+pub(crate) async fn scene(request: &SceneRequest, bytes: Option<Arc<[u8]>>) -> Result<Scene, Failure> {
+    // The page shows what it is about to do.
+    pause().await;
+    if bytes.is_none() && World::from_name(&request.scene).is_some() {
+        return Ok(umbrage_scene::open(&request.scene, &request.files)?);
+    }
+    let bytes = match bytes {
+        Some(bytes) => bytes,
+        None => page::fetched(&request.scene).await.map_err(Failure::input)?.into(),
+    };
+    Ok(umbrage_scene::open_slice(&request.scene, &bytes, &request.files)?)
+}
+
+/// Traces a mask between other things that the page has to do.
+///
+/// # Errors
+/// As [`Truth::begin_mask`].
+pub(crate) async fn mask(
+    truth: &Truth,
+    view: &View,
+    light: &Light,
+    size: [u32; 2],
+    progress: &(dyn Fn(f32) + Sync),
+) -> umbrage_truth::Result<TruthMask> {
+    let mut tracing = truth.begin_mask(view, light, size)?;
+    let mut since = Instant::now();
+    loop {
+        let done = tracing.advance();
+        progress(done);
+        if done >= 1.0 {
+            return Ok(tracing.finish().expect("all rows are traced"));
+        }
+        if since.elapsed() > TRACED_AT_ONCE {
+            pause().await;
+            since = Instant::now();
+        }
+    }
+}
+
+/// Where a file of the repository lies: below the page, as `cargo xtask web` lays it.
+///
+/// # Errors
+/// None here; a file that is not there is said when it is fetched.
+pub(crate) fn shipped(file: &str) -> Result<String, String> {
+    Ok(file.to_owned())
+}
+
+/// Runs the viewer: it goes on after this has returned.
+#[expect(clippy::unnecessary_wraps, reason = "as events may stop coming")]
+pub(crate) fn run<T: 'static, V: ApplicationHandler<T> + 'static>(
+    events: EventLoop<T>,
+    viewer: V,
+) -> Result<Option<V>> {
+    events.spawn_app(viewer);
+    Ok(None)
+}
+
+/// Says on the page what went wrong where there is no viewer to say it.
+pub(crate) fn say_panics() {
+    std::panic::set_hook(Box::new(|panic| {
+        give_up(&Error::Defect(panic.to_string()));
+    }));
+}

@@ -1,0 +1,13 @@
+//! The page's program: `cargo xtask web` builds it, with `index.html` beside it.
+
+#[cfg(target_arch = "wasm32")]
+fn main() {
+    umbrage_viewer::page::open();
+}
+
+/// On a desktop there is `umbrage view`.
+#[cfg(not(target_arch = "wasm32"))]
+fn main() {
+    eprintln!("this is a page for a browser: build and serve it with `cargo xtask web`");
+    std::process::exit(2);
+}
