@@ -1,6 +1,6 @@
 //! What CI runs, and a developer before a commit.
 
-use std::{env, path::Path, process::Command};
+use std::{env, process::Command};
 
 use anyhow::{Context, Result};
 use serde::Deserialize;
@@ -8,6 +8,7 @@ use serde::Deserialize;
 use crate::{
     adapter,
     run::{build_umbrage, cargo, output, run, succeeds},
+    web,
 };
 
 /// Tests that need an adapter fail without one, rather than skip, where this is 1.
@@ -15,10 +16,6 @@ const REQUIRE_GPU: &str = "UMBRAGE_REQUIRE_GPU";
 /// Tests write their references again if this is 1.
 const BLESS: &str = "UMBRAGE_BLESS";
 
-/// What a browser runs.
-const WASM_TARGET: &str = "wasm32-unknown-unknown";
-/// The crates that must build for it.
-const WASM_CRATES: [&str; 4] = ["umbrage", "umbrage-shaders", "umbrage-wgpu", "umbrage-render"];
 /// The crates whose tests need no adapter and are done in a minute: what `--quick` runs.
 const QUICK_CRATES: [&str; 5] = ["umbrage", "umbrage-shaders", SHADERS_JOIN, "umbrage-scene", "xtask"];
 /// Joins the WGSL that is checked in.
@@ -32,7 +29,7 @@ pub fn test() -> Result<()> {
     // Before anything is built of texts that are out of date.
     run(cargo().args(["test", "--package", SHADERS_JOIN]))?;
     run(cargo().args(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
-    check_wasm()?;
+    web::check_crates()?;
     run(cargo().args(["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))?;
     check_features()?;
     check_packages()?;
@@ -176,27 +173,9 @@ fn packages() -> Result<Vec<Package>> {
     Ok(metadata.packages)
 }
 
-/// Checks the crates that a browser runs, where the compiler has that target.
-fn check_wasm() -> Result<()> {
-    if !has_target(WASM_TARGET) {
-        eprintln!(
-            "xtask: SKIPPED: the compiler has no {WASM_TARGET}; `rustup target add {WASM_TARGET}` lets the browser's build be checked"
-        );
-        return Ok(());
-    }
-    run(cargo().args(["check", "--target", WASM_TARGET]).args(of(&WASM_CRATES)))
-}
-
 /// Options that choose crates.
 fn of(names: &[&'static str]) -> Vec<&'static str> {
     names.iter().flat_map(|&name| ["--package", name]).collect()
-}
-
-fn has_target(target: &str) -> bool {
-    let output = Command::new("rustc").args(["--print", "target-libdir", "--target", target]).output();
-    output.is_ok_and(|output| {
-        output.status.success() && Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_dir()
-    })
 }
 
 fn is_set(variable: &str) -> bool {

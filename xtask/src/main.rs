@@ -11,6 +11,7 @@ mod demo;
 mod documents;
 mod results;
 mod run;
+mod web;
 
 use std::process::ExitCode;
 
@@ -21,9 +22,12 @@ Usage: cargo xtask COMMAND
 
   demo    install the software Vulkan driver if there is no graphics adapter, build, render the four worlds and the
           city, and write out/demo/index.html
-  test [--quick]
+  test [--quick | --web]
           formatting, lints, documentation, features, packages, the build for the browser and all tests, as CI runs them;
-          --quick: formatting and the tests of what needs no graphics adapter, in under two minutes once it is built
+          --quick: formatting and the tests of what needs no graphics adapter, in under two minutes once it is built;
+          --web: the viewer in a browser (Chromium), on WebGPU and on WebGL2, beside the native picture
+  web [--no-serve] [--out FOLDER] [--port NUMBER]
+          build the viewer as a page into out/web, and serve it on this machine
   book [--pictures]
           build the book into out/book; --pictures redraws its pictures instead
   fuzz    check 1,000,000 plans of random scenes and load 100,000 mutated files; UMBRAGE_FUZZ_CASES, UMBRAGE_FUZZ_FILES
@@ -43,6 +47,8 @@ fn main() -> ExitCode {
         ["demo"] => demo::run_demo(),
         ["test"] => check::test(),
         ["test", "--quick"] => check::quick(),
+        ["test", "--web"] => web::check_in_browser(),
+        ["web", ref options @ ..] => web::Ask::read(options).and_then(|ask| web::web(&ask)),
         ["book"] => book::build(),
         ["book", "--pictures"] => book::draw(),
         ["shaders"] => check::shaders(),

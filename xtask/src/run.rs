@@ -76,3 +76,32 @@ pub fn build_umbrage(release: bool) -> Result<PathBuf> {
     }
     Ok(binary)
 }
+
+/// Installs Debian's packages, or says how: not every system has them, and not everybody may.
+pub fn install(packages: &[&str]) -> Result<()> {
+    let names = packages.join(" ");
+    if !succeeds(Command::new("apt-get").arg("--version")) {
+        bail!("this is no Debian-like system; install what it has for {names}, and run this again");
+    }
+    let by_sudo = !is_root();
+    if by_sudo && !succeeds(Command::new("sudo").args(["-n", "true"])) {
+        bail!(
+            "{names} has to be installed, and that needs rights that I do not have. Run this, then try again:\n\n    \
+             sudo apt-get install -y {names}\n"
+        );
+    }
+    eprintln!("xtask: installing {names}");
+    let apt = |arguments: &[&str]| {
+        let mut command = Command::new(if by_sudo { "sudo" } else { "env" });
+        if by_sudo {
+            command.args(["-n", "env"]);
+        }
+        run(command.args(["DEBIAN_FRONTEND=noninteractive", "apt-get"]).args(arguments))
+    };
+    apt(&["update"])?;
+    apt(&[&["install", "-y", "--no-install-recommends"], packages].concat())
+}
+
+fn is_root() -> bool {
+    Command::new("id").arg("-u").output().is_ok_and(|output| output.stdout.trim_ascii() == b"0")
+}

@@ -1,0 +1,214 @@
+//! A browser that is driven as a person drives it: Chromium without a window, over the pipe of its
+//! DevTools protocol.
+
+use std::{
+    io::{BufRead as _, BufReader, Write as _},
+    path::PathBuf,
+    process::{Child, ChildStdin, Command, Stdio},
+    sync::mpsc::{Receiver, RecvTimeoutError, channel},
+    thread,
+    time::{Duration, Instant},
+};
+
+use anyhow::{Context, Result, anyhow, bail};
+use base64::{Engine as _, prelude::BASE64_STANDARD};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+use crate::run::succeeds;
+
+/// Names that Chromium has on one system or another.
+const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+/// How long an answer may take: software draws slowly, and a busy page answers late.
+const PATIENCE: Duration = Duration::from_secs(120);
+/// Between two looks at the page.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// The program, if it is there.
+pub fn find() -> Option<PathBuf> {
+    NAMES.iter().map(PathBuf::from).find(|name| succeeds(Command::new(name).arg("--version")))
+}
+
+/// A running browser with one page.
+pub struct Browser {
+    child: Child,
+    orders: ChildStdin,
+    answers: Receiver<Value>,
+    session: Value,
+    next: u64,
+    /// What the page complained of.
+    pub complaints: Vec<String>,
+    _profile: TempDir,
+}
+
+impl Browser {
+    /// Starts the browser with a window of this size and these switches.
+    pub fn start(program: &PathBuf, size: [u32; 2], switches: &[&str]) -> Result<Self> {
+        let profile = tempfile::tempdir().context("there is no place for a profile")?;
+        // The browser listens on descriptor 3 and answers on 4.
+        let mut child = Command::new("sh")
+            .args(["-c", "exec \"$0\" \"$@\" 3<&0 4>&1 0</dev/null 1>/dev/null"])
+            .arg(program)
+            .args(["--headless", "--no-sandbox", "--no-first-run", "--remote-debugging-pipe", "--hide-scrollbars"])
+            .arg(format!("--user-data-dir={}", profile.path().display()))
+            .arg(format!("--window-size={},{}", size[0], size[1]))
+            .args(switches)
+            .arg("about:blank")
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .context("the browser does not start")?;
+        let orders = child.stdin.take().context("the browser takes no orders")?;
+        let said = child.stdout.take().context("the browser says nothing")?;
+        let (sender, answers) = channel();
+        thread::spawn(move || {
+            for message in BufReader::new(said).split(0).map_while(std::io::Result::ok) {
+                let Ok(message) = serde_json::from_slice(&message) else { continue };
+                if sender.send(message).is_err() {
+                    return;
+                }
+            }
+        });
+        let mut browser =
+            Self { child, orders, answers, session: Value::Null, next: 0, complaints: Vec::new(), _profile: profile };
+        browser.open_page(size)?;
+        Ok(browser)
+    }
+
+    fn open_page(&mut self, size: [u32; 2]) -> Result<()> {
+        let target = self.call("Target.createTarget", json!({ "url": "about:blank" }))?["targetId"].clone();
+        let attached = self.call("Target.attachToTarget", json!({ "targetId": target, "flatten": true }))?;
+        self.session = attached["sessionId"].clone();
+        for domain in ["Page.enable", "Runtime.enable", "Log.enable"] {
+            self.call(domain, json!({}))?;
+        }
+        self.resize(size)
+    }
+
+    /// Makes the window as large as this, in pixels.
+    pub fn resize(&mut self, [width, height]: [u32; 2]) -> Result<()> {
+        let screen = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.call("Emulation.setDeviceMetricsOverride", screen).map(drop)
+    }
+
+    /// Gives an order and waits for what comes of it.
+    pub fn call(&mut self, method: &str, params: Value) -> Result<Value> {
+        self.next += 1;
+        let id = self.next;
+        let mut order = json!({ "id": id, "method": method, "params": params });
+        if !self.session.is_null() {
+            order["sessionId"] = self.session.clone();
+        }
+        let mut bytes = serde_json::to_vec(&order).context("an order is no JSON")?;
+        bytes.push(0);
+        self.orders.write_all(&bytes).with_context(|| format!("{method}: the browser has gone"))?;
+        loop {
+            let answer = self.answers.recv_timeout(PATIENCE).map_err(|error| match error {
+                RecvTimeoutError::Timeout => anyhow!("{method}: no answer within {} s", PATIENCE.as_secs()),
+                RecvTimeoutError::Disconnected => anyhow!("{method}: the browser has gone"),
+            })?;
+            if answer["id"] == id {
+                if let Some(error) = answer.get("error") {
+                    bail!("{method}: {error}");
+                }
+                return Ok(answer["result"].clone());
+            }
+            self.hear(&answer);
+        }
+    }
+
+    /// Takes down what the page complains of.
+    fn hear(&mut self, event: &Value) {
+        let params = &event["params"];
+        match event["method"].as_str() {
+            Some("Runtime.exceptionThrown") => {
+                self.complaints.push(params["exceptionDetails"]["exception"]["description"].to_string());
+            }
+            Some("Runtime.consoleAPICalled") if params["type"] == "error" => {
+                self.complaints.push(params["args"][0]["value"].to_string());
+            }
+            Some("Log.entryAdded") if params["entry"]["level"] == "error" => {
+                self.complaints.push(params["entry"]["text"].to_string());
+            }
+            _ => {}
+        }
+    }
+
+    /// Opens an address, from nothing.
+    pub fn open(&mut self, address: &str) -> Result<()> {
+        self.call("Page.navigate", json!({ "url": "about:blank" }))?;
+        self.call("Page.navigate", json!({ "url": address })).map(drop)
+    }
+
+    /// What an expression of JavaScript is, as text.
+    pub fn text(&mut self, expression: &str) -> Result<String> {
+        let asked = json!({ "expression": format!("String({expression})"), "awaitPromise": true });
+        let answer = self.call("Runtime.evaluate", asked)?;
+        if let Some(error) = answer.get("exceptionDetails") {
+            bail!("{expression}: {error}");
+        }
+        Ok(answer["result"]["value"].as_str().unwrap_or_default().to_owned())
+    }
+
+    /// What the page says of itself under a key.
+    pub fn data(&mut self, key: &str) -> Result<String> {
+        self.text(&format!("document.documentElement?.dataset.{key} ?? ''"))
+    }
+
+    /// Waits until the page says what is wanted; complaints and a missing viewer end the wait.
+    pub fn wait(
+        &mut self,
+        what: &str,
+        limit: Duration,
+        mut is_there: impl FnMut(&mut Self) -> Result<bool>,
+    ) -> Result<()> {
+        let begun = Instant::now();
+        while !is_there(self)? {
+            let message =
+                self.text("document.getElementById('message')?.hidden === false ? message.textContent : ''")?;
+            let errors = self.data("errors")?;
+            if !(message.is_empty() && errors.is_empty()) {
+                bail!("{what}: the page says: {message}{errors}\n{}", self.complaints.join("\n"));
+            }
+            if begun.elapsed() > limit {
+                bail!("{what}: not within {} s\n{}", limit.as_secs(), self.complaints.join("\n"));
+            }
+            thread::sleep(LOOK);
+        }
+        Ok(())
+    }
+
+    /// Clicks, or drags from the first point to the last.
+    pub fn drag(&mut self, points: &[[f64; 2]]) -> Result<()> {
+        let mouse = |kind: &str, [x, y]: [f64; 2], buttons: u32| {
+            let button = if kind == "mouseMoved" && buttons == 0 { "none" } else { "left" };
+            json!({ "type": kind, "x": x, "y": y, "button": button, "buttons": buttons, "clickCount": 1 })
+        };
+        let (Some(&first), Some(&last)) = (points.first(), points.last()) else { return Ok(()) };
+        let mut events = vec![mouse("mouseMoved", first, 0), mouse("mousePressed", first, 1)];
+        events.extend(points.iter().skip(1).map(|&point| mouse("mouseMoved", point, 1)));
+        events.push(mouse("mouseReleased", last, 0));
+        for event in events {
+            self.call("Input.dispatchMouseEvent", event)?;
+            // The controls see the pointer frame by frame, as it is with a hand.
+            thread::sleep(LOOK);
+        }
+        Ok(())
+    }
+
+    /// What is to be seen, as PNG.
+    pub fn picture(&mut self) -> Result<Vec<u8>> {
+        let taken = self.call("Page.captureScreenshot", json!({ "format": "png" }))?;
+        BASE64_STANDARD.decode(taken["data"].as_str().unwrap_or_default()).context("the screenshot is no picture")
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        drop(self.call("Browser.close", json!({})));
+        drop(self.child.kill());
+        drop(self.child.wait());
+    }
+}

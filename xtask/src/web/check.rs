@@ -1,0 +1,199 @@
+//! The page, tried as a person tries it: in a browser, on WebGPU and on WebGL2.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+    time::{Duration, Instant},
+};
+
+use anyhow::{Context, Result, bail, ensure};
+
+use super::{
+    browser::{self, Browser},
+    build, pictures, serve, toolchain,
+};
+use crate::{
+    adapter,
+    run::{build_umbrage, install, root, run},
+};
+
+/// Pixels of the browser's window: software draws every one.
+const SIZE: [u32; 2] = [960, 600];
+/// Largest share of pixels in which the browser's picture may differ from the native one.
+const MOST_DIFFERENT: f64 = 0.005;
+/// How long a picture may take until all is shown.
+const PATIENCE: Duration = Duration::from_secs(300);
+/// Frames of the search for memory that grows; `UMBRAGE_WEB_FRAMES` chooses others.
+const FRAMES: u64 = 200;
+/// Pixels of the window for them: memory does not depend on how many there are.
+const SMALL: [u32; 2] = [160, 120];
+/// Bytes that a page may hold more after them: a page of WebAssembly's memory is 64 KiB, and
+/// allocators take some at once.
+const MOST_GROWTH: u64 = 1 << 20;
+
+/// An interface, and the switches that give it to a browser without a window or a graphics card.
+struct Api {
+    name: &'static str,
+    switches: &'static [&'static str],
+    /// What the adapter's description contains.
+    adapter: &'static str,
+}
+
+const APIS: [Api; 2] = [
+    Api {
+        name: "webgpu",
+        switches: &["--enable-unsafe-webgpu", "--use-angle=gl-egl", "--ignore-gpu-blocklist"],
+        adapter: "(webgpu",
+    },
+    Api { name: "webgl2", switches: &["--use-angle=gl-egl", "--ignore-gpu-blocklist"], adapter: "(gl" },
+];
+
+/// Where a hand finds things at [`SIZE`]: what happens shows whether they are still there.
+mod places {
+    /// A world in the menu.
+    pub const ROBOT_WAR: [f64; 2] = [46.0, 37.0];
+    /// From the handle of the number of splits, 4, to the left.
+    pub const SPLITS: [[f64; 2]; 4] = [[749.0, 205.0], [745.0, 205.0], [740.0, 205.0], [733.0, 205.0]];
+}
+
+/// Opens the page in a browser, uses it and compares what it shows with the native picture.
+pub fn check_in_browser() -> Result<()> {
+    let way = toolchain::find()?.context("there is no way to compile for a browser here")?;
+    let program = match browser::find() {
+        Some(program) => program,
+        None => {
+            install(&["chromium"])?;
+            browser::find().context("Chromium is installed and does not start")?
+        }
+    };
+    let umbrage = build_umbrage(false)?;
+    adapter::ensure(&umbrage)?;
+    let folder = root().join("out/web");
+    build(&way, &folder)?;
+    let address = serve::Server::open(&folder, 0)?.start();
+    let kept = root().join("out/web-test");
+    fs::create_dir_all(&kept).with_context(|| format!("{} cannot be made", kept.display()))?;
+    for api in &APIS {
+        let mut visit =
+            Visit { browser: Browser::start(&program, SIZE, api.switches)?, api, address: &address, kept: &kept };
+        visit.first_picture()?;
+        visit.use_controls()?;
+        visit.compare(&umbrage)?;
+        visit.run_on()?;
+    }
+    without_an_interface(&program, &address)
+}
+
+/// A browser that looks at the page.
+struct Visit<'a> {
+    browser: Browser,
+    api: &'a Api,
+    address: &'a str,
+    kept: &'a Path,
+}
+
+impl Visit<'_> {
+    fn say(&self, what: &str) {
+        eprintln!("xtask: {}: {what}", self.api.name);
+    }
+
+    fn open(&mut self, fragment: &str) -> Result<()> {
+        self.browser.open(&format!("{}index.html#{fragment}", self.address))
+    }
+
+    /// Waits until all is shown.
+    fn wait(&mut self, what: &str) -> Result<()> {
+        self.browser.wait(what, PATIENCE, |browser| Ok(browser.data("shown")? == "all"))
+    }
+
+    fn keep(&mut self, what: &str) -> Result<PathBuf> {
+        let path = self.kept.join(format!("{}-{what}.png", self.api.name));
+        fs::write(&path, self.browser.picture()?).with_context(|| format!("{} cannot be written", path.display()))?;
+        Ok(path)
+    }
+
+    /// The page opens with the chessboard, on the right interface.
+    fn first_picture(&mut self) -> Result<()> {
+        self.open("chessboard")?;
+        self.wait("the chessboard")?;
+        let adapter = self.browser.data("adapter")?;
+        ensure!(adapter.contains(self.api.adapter), "{}: the page draws with {adapter}", self.api.name);
+        let first = self.browser.text("Math.round(performance.now())")?;
+        self.say(&format!("{adapter}; all is shown {first} ms after the page began to load"));
+        self.keep("panels").map(drop)
+    }
+
+    /// A world is picked in the menu, and a slider is dragged.
+    fn use_controls(&mut self) -> Result<()> {
+        let begun = Instant::now();
+        self.browser.drag(&[places::ROBOT_WAR])?;
+        self.browser.wait("a click on Robot War", PATIENCE, |b| Ok(b.data("command")?.contains(" robot-war ")))?;
+        self.wait("Robot War")?;
+        self.say(&format!("another world after {:.1} s", begun.elapsed().as_secs_f64()));
+        let before = self.browser.data("command")?;
+        self.browser.drag(&places::SPLITS)?;
+        self.browser.wait("a drag of the slider", PATIENCE, |b| Ok(b.data("command")? != before))?;
+        self.wait("other splits")?;
+        let after = self.browser.data("command")?;
+        let took = self.browser.data("wall")?;
+        self.say(&format!("{after}: drawn in {took} ms"));
+        self.keep("used").map(drop)
+    }
+
+    /// What the page's address shows is what the command draws.
+    fn compare(&mut self, umbrage: &Path) -> Result<()> {
+        let link = self.browser.text("location.hash.slice(1)")?;
+        self.open(&format!("{link}&bare"))?;
+        self.wait("the page's own link")?;
+        let shown = pictures::read(&self.keep("picture")?)?;
+        let command = self.browser.data("command")?;
+        let path = self.kept.join(format!("{}-native.png", self.api.name));
+        let words = command.strip_prefix("umbrage view ").with_context(|| format!("{command:?} is no command"))?;
+        let size = format!("{}x{}", shown.width(), shown.height());
+        run(Command::new(umbrage)
+            .arg("render")
+            .args(words.split_whitespace())
+            .args(["--size", &size, "-o"])
+            .arg(&path))?;
+        let difference = pictures::difference(&shown, &pictures::read(&path)?)?;
+        self.say(&format!("{:.3} % of the pixels differ from the native picture", 100.0 * difference));
+        if difference > MOST_DIFFERENT {
+            bail!("{}: more than {} %; see {}", self.api.name, 100.0 * MOST_DIFFERENT, self.kept.display());
+        }
+        Ok(())
+    }
+
+    /// Time runs on, and memory does not grow.
+    fn run_on(&mut self) -> Result<()> {
+        let frames: u64 = std::env::var("UMBRAGE_WEB_FRAMES").ok().and_then(|n| n.parse().ok()).unwrap_or(FRAMES);
+        self.browser.resize(SMALL)?;
+        self.open("chessboard&bare&run")?;
+        let count = |browser: &mut Browser| -> Result<u64> { Ok(browser.data("pictures")?.parse().unwrap_or(0)) };
+        let limit = PATIENCE + Duration::from_secs(frames);
+        self.browser.wait("the first frames", limit, |browser| Ok(count(browser)? >= frames / 4))?;
+        let memory = |browser: &mut Browser| -> Result<u64> { Ok(browser.data("memory")?.parse()?) };
+        let before = memory(&mut self.browser)?;
+        self.browser.wait("more frames", limit, |browser| Ok(count(browser)? >= frames))?;
+        let after = memory(&mut self.browser)?;
+        self.say(&format!("{frames} frames: from {before} to {after} bytes of memory"));
+        ensure!(after <= before + MOST_GROWTH, "{}: memory grows from {before} to {after} bytes", self.api.name);
+        Ok(())
+    }
+}
+
+/// A browser that has neither interface says so.
+fn without_an_interface(program: &PathBuf, address: &str) -> Result<()> {
+    let mut browser = Browser::start(program, SIZE, &["--disable-gpu", "--disable-3d-apis", "--disable-webgpu"])?;
+    browser.open(&format!("{address}index.html"))?;
+    let shown = "document.getElementById('message')?.hidden === false ? message.textContent : ''";
+    let begun = Instant::now();
+    loop {
+        let said = browser.text(shown)?;
+        if said.contains("WebGPU or WebGL2") {
+            eprintln!("xtask: neither: {said}");
+            return Ok(());
+        }
+        ensure!(begun.elapsed() < PATIENCE, "a browser without graphics is told nothing but {said:?}");
+    }
+}

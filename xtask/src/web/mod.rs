@@ -1,0 +1,172 @@
+//! `cargo xtask web`: the viewer as a page, and a server for it.
+
+mod browser;
+mod check;
+mod pictures;
+mod serve;
+mod toolchain;
+
+use std::{
+    fs,
+    io::Write as _,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use anyhow::{Context, Result, bail};
+use flate2::{Compression, write::GzEncoder};
+
+pub use self::check::check_in_browser;
+use self::toolchain::Way;
+use crate::run::{cargo, output, root, run, succeeds};
+
+/// The page's crate, and the crates that applications build for browsers.
+const PAGE: &str = "umbrage-web";
+const CRATES: [&str; 5] = [PAGE, "umbrage", "umbrage-shaders", "umbrage-wgpu", "umbrage-render"];
+/// Bytes that a visitor has to load before the page runs, at most.
+const MOST_BYTES: usize = 3_500_000;
+/// Files that the page's menu opens, with what their licences ask for.
+const ASSETS: [&str; 3] = ["assets/city_candela.glb", "assets/README.md", "assets/ATTRIBUTION-stk.txt"];
+/// Where the server listens if nobody says where.
+const PORT: u16 = 8080;
+
+/// What `cargo xtask web` is told.
+pub struct Ask {
+    out: PathBuf,
+    serves: bool,
+    port: u16,
+}
+
+impl Ask {
+    /// Reads the options.
+    pub fn read(options: &[&str]) -> Result<Self> {
+        let mut ask = Self { out: root().join("out/web"), serves: true, port: PORT };
+        let mut options = options.iter();
+        while let Some(&option) = options.next() {
+            let mut value = || options.next().with_context(|| format!("{option} needs a value"));
+            match option {
+                "--no-serve" => ask.serves = false,
+                "--out" => ask.out = PathBuf::from(value()?),
+                "--port" => {
+                    ask.port = value()?.parse().with_context(|| format!("{option}: give a number up to 65535"))?
+                }
+                _ => bail!("web {option}: there are --no-serve, --out FOLDER and --port NUMBER"),
+            }
+        }
+        Ok(ask)
+    }
+}
+
+/// Builds the page, and serves it until it is interrupted.
+pub fn web(ask: &Ask) -> Result<()> {
+    let way = toolchain::find()?.context("there is no way to compile for a browser here")?;
+    build(&way, &ask.out)?;
+    if !ask.serves {
+        return Ok(());
+    }
+    let server = serve::Server::open(&ask.out, ask.port)?;
+    eprintln!("xtask: the viewer is at {} until Ctrl + C", server.address());
+    server.run();
+    Ok(())
+}
+
+/// Checks the crates that a browser runs, where there is a way to compile them.
+pub fn check_crates() -> Result<()> {
+    let Some(way) = toolchain::find()? else { return Ok(()) };
+    run(way.cargo("check").args(CRATES.iter().flat_map(|name| ["--package", name])))
+}
+
+/// Builds the page into a folder that any server of static files can show.
+fn build(way: &Way, out: &Path) -> Result<()> {
+    run(way.cargo("build").args(["--package", PAGE]))?;
+    let bindgen = bindgen()?;
+    fs::create_dir_all(out).with_context(|| format!("{} cannot be made", out.display()))?;
+    run(Command::new(bindgen)
+        .args([
+            "--target",
+            "web",
+            "--no-typescript",
+            "--remove-name-section",
+            "--remove-producers-section",
+            "--out-dir",
+        ])
+        .arg(out)
+        .arg(Way::program(PAGE)))?;
+    copy(&root().join("crates").join(PAGE).join("index.html"), &out.join("index.html"))?;
+    for asset in ASSETS {
+        copy(&root().join(asset), &out.join(asset))?;
+    }
+    report(out)
+}
+
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    if let Some(folder) = to.parent() {
+        fs::create_dir_all(folder).with_context(|| format!("{} cannot be made", folder.display()))?;
+    }
+    fs::copy(from, to).map(drop).with_context(|| format!("{} cannot be copied to {}", from.display(), to.display()))
+}
+
+/// Says how large the page is. Larger than [`MOST_BYTES`] is an error.
+fn report(out: &Path) -> Result<()> {
+    let mut sum = 0;
+    for name in ["index.html", "umbrage-web.js", "umbrage-web_bg.wasm"] {
+        let bytes = fs::read(out.join(name)).with_context(|| format!("{name} was not built"))?;
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+        encoder.write_all(&bytes).context("gzip")?;
+        let packed = encoder.finish().context("gzip")?.len();
+        eprintln!("xtask: {name}: {} bytes, {packed} as gzip", bytes.len());
+        sum += packed;
+    }
+    eprintln!("xtask: {}: {sum} bytes to load, as gzip", out.display());
+    if sum > MOST_BYTES {
+        bail!("the page is larger than {MOST_BYTES} bytes; see what `umbrage-viewer` has begun to depend on");
+    }
+    Ok(())
+}
+
+/// `wasm-bindgen` of the version that the page is linked with; built once, in some minutes.
+fn bindgen() -> Result<PathBuf> {
+    let lock = fs::read_to_string(root().join("Cargo.lock")).context("Cargo.lock cannot be read")?;
+    let version = locked(&lock, "wasm-bindgen").context("Cargo.lock has no wasm-bindgen")?;
+    let is_it =
+        |program: &Path| output(Command::new(program).arg("--version")).is_ok_and(|said| said.ends_with(version));
+    let folder = toolchain::folder().join("bindgen");
+    let built = folder.join("bin").join(format!("wasm-bindgen{}", std::env::consts::EXE_SUFFIX));
+    for program in [PathBuf::from("wasm-bindgen"), built.clone()] {
+        if succeeds(Command::new(&program).arg("--version")) && is_it(&program) {
+            return Ok(program);
+        }
+    }
+    run(cargo().args(["install", "wasm-bindgen-cli", "--version", version, "--root"]).arg(folder))?;
+    Ok(built)
+}
+
+/// The version of a package in a lock file.
+fn locked<'l>(lock: &'l str, package: &str) -> Option<&'l str> {
+    let (_, behind) = lock.split_once(&format!("name = \"{package}\"\nversion = \""))?;
+    behind.split('"').next()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_locked_version_is_that_of_the_package_alone() {
+        let lock = "[[package]]\nname = \"wasm-bindgen-futures\"\nversion = \"0.4.80\"\n\n\
+                    [[package]]\nname = \"wasm-bindgen\"\nversion = \"0.2.130\"\n";
+        assert_eq!(locked(lock, "wasm-bindgen"), Some("0.2.130"));
+        assert_eq!(locked(lock, "wasm"), None);
+    }
+
+    #[test]
+    fn options_are_read_or_said_to_be_wrong() {
+        let ask = Ask::read(&["--no-serve", "--out", "somewhere", "--port", "9000"]).expect("options");
+        assert_eq!((ask.serves, ask.out.as_path(), ask.port), (false, Path::new("somewhere"), 9000));
+        for (options, why) in [(&["--port", "high"][..], "--port"), (&["--out"], "--out"), (&["--fast"], "--no-serve")]
+        {
+            let error = Ask::read(options).err().expect("wrong").to_string();
+            assert!(error.contains(why), "{error}");
+        }
+    }
+}
