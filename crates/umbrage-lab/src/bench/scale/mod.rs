@@ -19,7 +19,6 @@ use crate::{
     output::{self, Staged},
     progress,
     report::to_json,
-    session::adapter_description,
 };
 
 /// Measures every case at every number of objects, and writes what was asked for.
@@ -38,7 +37,7 @@ pub fn run(job: &ScaleJob) -> Result<()> {
     let gpu = Gpu::new(&GpuOptions::default())?;
     let bar = progress::steps(job.frames(), "frames");
     let mut report = ScaleReport {
-        adapter: adapter_description(&gpu),
+        adapter: gpu.description(),
         size: job.size,
         rounds: job.rounds,
         technique: job.technique.label.clone(),
