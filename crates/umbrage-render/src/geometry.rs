@@ -13,6 +13,7 @@ use umbrage::config::Edges;
 use umbrage_scene::{AlphaMode, Object, Pose, Primitive, Scene, SkinnedMesh};
 use umbrage_wgpu::{StoredRun, stored_runs};
 
+use crate::cut;
 use crate::named::{Named, NamedRuns};
 use crate::shadow_mesh::{Cluster, Merged, clusters};
 use crate::{Error, Gpu, Result};
@@ -80,7 +81,8 @@ impl Geometry {
                 })?;
             }
         }
-        let meshes: Vec<&[Primitive]> = scene.meshes.iter().map(|mesh| mesh.primitives.as_slice()).collect();
+        let cut = cut::meshes(scene);
+        let meshes: Vec<&[Primitive]> = cut.iter().map(|primitives| &**primitives).collect();
         Self::of_primitives(gpu, &meshes, edges, |primitive| match scene.materials[primitive.material].alpha {
             AlphaMode::Opaque => Matter::Solid,
             AlphaMode::Mask { .. } | AlphaMode::Blend => Matter::Textured,

@@ -10,6 +10,7 @@ mod casters;
 mod coarser;
 mod contact;
 mod cull;
+mod cut;
 mod draw_list;
 mod error;
 #[cfg(not(target_arch = "wasm32"))]

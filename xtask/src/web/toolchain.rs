@@ -131,6 +131,10 @@ fn linker() -> Option<PathBuf> {
 
 /// Downloads Debian's compiler and unpacks it.
 fn unpack(root: &Path) -> Result<()> {
+    // Lists of an older day name an older compiler. Where they may not be renewed they have to do.
+    if !succeeds(Command::new("apt-get").arg("update")) {
+        eprintln!("xtask: the lists of packages are those of the last `apt-get update`");
+    }
     let mut packages: Vec<String> = PACKAGES.map(str::to_owned).to_vec();
     let mut known = 0;
     while known < packages.len() {

@@ -35,9 +35,14 @@ fn look(eye: DVec3, ahead: DVec3, near: f64) -> View {
     View::look_at_upright(eye, eye + ahead, frustum).expect("a view")
 }
 
-/// E of the default config with maps of 512², or of one with other choices.
+/// A config with maps of 512².
+fn small(config: ShadowConfig) -> ShadowConfig {
+    ShadowConfig { map_sizes: vec![512; 4], ..config }
+}
+
+/// E of a config.
 fn error(scene: &Scene, view: &View, sun: DVec3, config: &ShadowConfig) -> Option<MisShadowed> {
-    let config = ShadowConfig { map_sizes: vec![512; 4], ..config.clone() };
+    let config = config.clone();
     let settings = RenderSettings { size: SIZE, config, ..RenderSettings::default() };
     let mut renderer = Renderer::new(gpu()?, scene, &settings).expect("a renderer");
     let (pose, light) = (scene.pose(0.0).expect("a pose"), DirectionalLight::new(sun).expect("a direction"));
@@ -53,10 +58,10 @@ fn error(scene: &Scene, view: &View, sun: DVec3, config: &ShadowConfig) -> Optio
 
 /// E is at most `most` per cent, and the bound is no gift: the papers' settings are beyond it.
 fn check(name: &str, scene: &Scene, view: &View, sun: DVec3, most: f64) {
-    let Some(score) = error(scene, view, sun, &ShadowConfig::default()) else { return };
+    let Some(score) = error(scene, view, sun, &small(ShadowConfig::default())) else { return };
     let e = 100.0 * score.rate();
     assert!(e <= most, "{name}: E {e:.3} %, asked {most}: {score:?}");
-    let papers = umbrage::config::Preset::Papers.config();
+    let papers = small(umbrage::config::Preset::Papers.config());
     let papers = 100.0 * error(scene, view, sun, &papers).expect("a device").rate();
     assert!(papers > most, "{name}: the papers' settings have E {papers:.3} %, within {most}");
 }
@@ -104,6 +109,27 @@ fn a_mountain_behind_throws_its_shadow() {
 }
 
 #[test]
+fn a_ground_of_any_size_shows_the_shadows_of_small_boxes() {
+    for half in [10.0, 2000.0, 500_000.0] {
+        let mut scene = scene();
+        add(&mut scene, ground(0.0, half));
+        for i in 0..9 {
+            let mut block = Primitive::default();
+            let (x, z) = (f64::from(i % 3), f64::from(i / 3));
+            cuboid(&mut block, DVec3::new(2.6 * x - 3.0, 0.0, -8.0 + 2.2 * z), DVec3::ONE);
+            add(&mut scene, block);
+        }
+        // glTF's infinite lens.
+        let frustum = Frustum::perspective(60f64.to_radians(), 4.0 / 3.0, 0.1, f64::INFINITY).expect("a lens");
+        let view = View::look_at_upright(DVec3::new(0.0, 4.0, 4.0), DVec3::new(0.0, 0.0, -5.0), frustum);
+        let view = view.expect("a view");
+        let sun = DVec3::new(-0.5, -0.7, -0.3);
+        let Some(score) = error(&scene, &view, sun, &ShadowConfig::default()) else { return };
+        assert!(100.0 * score.rate() <= 0.06, "{half} m: {score:?}");
+    }
+}
+
+#[test]
 fn one_large_mesh_is_fitted_to_what_its_depth_shows() {
     // A level that is one object, as files have it: its box says nothing of what a wall hides.
     let mut level = ground(0.0, 300.0);
@@ -117,9 +143,9 @@ fn one_large_mesh_is_fitted_to_what_its_depth_shows() {
     add(&mut scene, level);
     let view = look(DVec3::new(0.0, 1.7, 0.0), DVec3::new(0.0, -0.1, -1.0), 0.1);
     let sun = DVec3::new(-0.5, -0.7, -0.5);
-    let Some(by_boxes) = error(&scene, &view, sun, &ShadowConfig::default()) else { return };
+    let Some(by_boxes) = error(&scene, &view, sun, &small(ShadowConfig::default())) else { return };
     let fitted = ShadowConfig { fit_to: umbrage::config::FitTo::Depth, ..ShadowConfig::default() };
-    let by_depth = error(&scene, &view, sun, &fitted).expect("a device");
+    let by_depth = error(&scene, &view, sun, &small(fitted)).expect("a device");
     let (boxes, depth) = (100.0 * by_boxes.rate(), 100.0 * by_depth.rate());
     assert!(depth < 0.5 * boxes, "E {depth:.3} % by depth, {boxes:.3} % by boxes");
 }
