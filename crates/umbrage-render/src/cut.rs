@@ -1,9 +1,9 @@
 //! Huge triangles are cut before they are uploaded.
 //!
-//! A device places the vertices of a triangle in `f32`, and what lies between them by their places:
-//! in the middle of a ground of two triangles of 1,000 km, a fragment is off by 3 cm, several texels
-//! of a map (`docs/notes/coordinates.md`). Vertices of smaller triangles are placed as exactly as
-//! they are near the eye.
+//! A device places the vertices of a triangle in `f32`, and what lies between them by their
+//! places: in the middle of a ground of two triangles of 1,000 km, a fragment is off by 3 cm,
+//! several texels of a map (`docs/notes/coordinates.md`). Vertices of smaller triangles are placed
+//! as exactly as they are near the eye.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -40,7 +40,7 @@ pub(crate) fn meshes(scene: &Scene) -> Vec<Cow<'_, [Primitive]>> {
     scene.meshes.iter().enumerate().map(mesh).collect()
 }
 
-/// By how much nodes enlarge each mesh, at most; `None` for one that moves by skin or morph targets.
+/// By how much nodes enlarge each mesh, at most; `None` for one that skins or morph targets move.
 fn scales(scene: &Scene) -> Vec<Option<f64>> {
     let mut of_meshes: Vec<Option<f64>> = scene.meshes.iter().map(|mesh| (!mesh.is_morphed()).then_some(0.0)).collect();
     let mut of_nodes: Vec<f64> = Vec::with_capacity(scene.nodes.len());

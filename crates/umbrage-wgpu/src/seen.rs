@@ -31,8 +31,8 @@ const MOST_STEP: f64 = 0.1;
 ///
 /// A compute pass makes a box of each of 32 × 24 tiles. The boxes come back one to three frames
 /// later; nothing waits for them, and pictures that come while three others are on their way are
-/// passed over. Source: \[SDSM10\] fits to the frame's samples; ours keeps boxes of tiles, so that any
-/// later view, light and split can be fitted to them.
+/// passed over. Source: \[SDSM10\] fits to the frame's samples; ours keeps boxes of tiles, so that
+/// any later view, light and split can be fitted to them.
 ///
 /// ```no_run
 /// # use umbrage_wgpu::{Inputs, MaskFrame, SeenDepth, Shadows, wgpu};

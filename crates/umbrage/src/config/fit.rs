@@ -98,7 +98,7 @@ named! {
         /// The boxes of the receivers in view
         #[default]
         Boxes = "boxes",
-        /// What an earlier frame's depth showed, where it is handed over; the last map serves the rest
+        /// What the last frames' depth showed, if it is handed over; the last map serves the rest
         Depth = "depth",
     }
 }

@@ -10,7 +10,7 @@ use umbrage_render::Gpu;
 use umbrage_scene::{Pose, Scene};
 use umbrage_wgpu::{CullBox, CullDraw, CullInputs, CullMesh, Inputs, InstanceCulling, Shadows, wgpu};
 
-use super::job::{ScaleJob, WARM_UP};
+use super::job::{STEP_M, ScaleJob, WARM_UP, ahead};
 use super::report::GpuReport;
 use crate::{
     bench::summary::Summary,
@@ -80,7 +80,7 @@ pub fn measure(gpu: &Gpu, setup: &SceneSetup, job: &ScaleJob) -> Result<Option<G
 
 /// The view, so many steps of a walk further on.
 fn step(view: &View, steps: f64) -> View {
-    super::measure::ahead(view, super::measure::STEP_M * steps)
+    ahead(view, STEP_M * steps)
 }
 
 /// The objects' boxes relative to an origin.

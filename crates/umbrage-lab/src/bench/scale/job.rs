@@ -2,12 +2,17 @@
 
 use std::path::PathBuf;
 
+use glam::DVec3;
 use serde::Serialize;
+use umbrage::View;
 
 use crate::technique::Technique;
 
 /// Frames that a case is drawn before any that counts: caches fill, and shaders compile.
 pub(super) const WARM_UP: u32 = 2;
+
+/// Metres that a walking camera goes in a frame: 1.4 m/s at 60 Hz.
+pub(super) const STEP_M: f64 = 1.4 / 60.0;
 
 /// Frames after which what is held for a standing camera has settled, so that plans are copied.
 const SETTLED: u32 = 64;
@@ -83,4 +88,11 @@ impl Case {
     pub const fn walks(self) -> bool {
         matches!(self, Self::Uncached | Self::Walking)
     }
+}
+
+/// A view so many metres further on.
+pub(super) fn ahead(view: &View, metres: f64) -> View {
+    let level = DVec3::new(view.forward().x, 0.0, view.forward().z).normalize_or_zero();
+    View::look_at_upright(view.eye() + metres * level, view.eye() + metres * level + view.forward(), *view.frustum())
+        .unwrap_or(*view)
 }

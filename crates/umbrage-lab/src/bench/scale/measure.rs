@@ -5,11 +5,11 @@ use std::time::Instant;
 use glam::DVec3;
 use indicatif::ProgressBar;
 use umbrage::config::Cache;
-use umbrage::{Aabb, View};
+use umbrage::Aabb;
 use umbrage_render::{Frame, FrameStats, Gpu, LightMaps, Outputs, RenderSettings, Renderer, Samples};
 use umbrage_scene::{OpenOptions, Pose, procedural::World, procedural::WorldOptions};
 
-use super::job::{Case, ScaleJob, WARM_UP};
+use super::job::{Case, STEP_M, ScaleJob, WARM_UP, ahead};
 use super::report::{CaseReport, SizeReport};
 use crate::{
     bench::summary::Summary,
@@ -18,9 +18,6 @@ use crate::{
     scene_request::{CameraChoice, SceneRequest},
     scene_setup::SceneSetup,
 };
-
-/// Metres that a walking camera goes in a frame: 1.4 m/s at 60 Hz.
-pub(super) const STEP_M: f64 = 1.4 / 60.0;
 
 /// One object in so many moves.
 const MOVES: usize = 100;
@@ -97,13 +94,6 @@ fn frames(
         frame_ms: counted(&|stats| stats.frame_ms, &stats),
         frame_without_ms: counted(&|stats| stats.frame_ms, &bare),
     })
-}
-
-/// A view so many metres further on.
-pub(super) fn ahead(view: &View, metres: f64) -> View {
-    let level = DVec3::new(view.forward().x, 0.0, view.forward().z).normalize_or_zero();
-    View::look_at_upright(view.eye() + metres * level, view.eye() + metres * level + view.forward(), *view.frustum())
-        .unwrap_or(*view)
 }
 
 /// Objects that move, with where they stand.
