@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use glam::DVec3;
 use indicatif::ProgressBar;
-use umbrage::config::Cache;
 use umbrage::Aabb;
+use umbrage::config::Cache;
 use umbrage_render::{Frame, FrameStats, Gpu, LightMaps, Outputs, RenderSettings, Renderer, Samples};
 use umbrage_scene::{OpenOptions, Pose, procedural::World, procedural::WorldOptions};
 
