@@ -12,16 +12,26 @@ use crate::progress;
 ///
 /// # Errors
 /// [`crate::failure::Failure::Input`] naming the file or option at fault.
-#[cfg(feature = "judge")]
 pub fn open(name: &str, files: &OpenOptions, move_scene: Option<DVec3>) -> Result<Scene> {
-    let bar = progress::fraction("building");
-    let scene = umbrage_scene::open_watched(name, files, &|done| progress::set_fraction(&bar, done));
-    bar.finish_and_clear();
-    let scene = scene?;
+    let scene = watched(name, files)?;
     Ok(match move_scene {
         Some(by) => scene.moved(by),
         None => scene,
     })
+}
+
+#[cfg(feature = "judge")]
+fn watched(name: &str, files: &OpenOptions) -> Result<Scene> {
+    let bar = progress::fraction("building");
+    let scene = umbrage_scene::open_watched(name, files, &|done| progress::set_fraction(&bar, done));
+    bar.finish_and_clear();
+    Ok(scene?)
+}
+
+/// There is no terminal to show a bar on.
+#[cfg(not(feature = "judge"))]
+fn watched(name: &str, files: &OpenOptions) -> Result<Scene> {
+    Ok(umbrage_scene::open(name, files)?)
 }
 
 /// The pose in which views see a scene: with the shapes that they can tell apart in pictures of
