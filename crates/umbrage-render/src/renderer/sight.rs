@@ -16,6 +16,8 @@ pub(super) struct Sight {
     seen: BTreeMap<(u32, u32), SeenDepth>,
     /// What the view of this frame showed last.
     boxes: Option<Vec<Aabb>>,
+    /// From where each view was looked around last: again from there shows nothing new.
+    looked: BTreeMap<u32, View>,
 }
 
 impl Sight {
@@ -25,6 +27,7 @@ impl Sight {
 
     pub fn forget(&mut self) {
         self.boxes = None;
+        self.looked.clear();
         self.seen.values_mut().for_each(SeenDepth::forget);
     }
 }
@@ -54,12 +57,16 @@ impl Renderer {
         if !self.fits_to_depth() || self.sight.boxes.is_some() || !(outputs.picture || outputs.mask) {
             return Ok(());
         }
+        // A view of the sky alone never shows anything.
+        if self.sight.looked.insert(self.view_slot, *frame.view) == Some(*frame.view) {
+            return Ok(());
+        }
         self.render_unguarded(frame, Outputs { maps: false, ..outputs }).await?;
         self.remember(frame.view)?;
         // Pictures are waited for here in any case.
         waiting::idle(&self.gpu).await?;
         // Nothing is held of maps that were fitted without it.
-        self.shadows.restart();
+        self.shadows.restart_view(self.view_slot);
         self.remember(frame.view)
     }
 

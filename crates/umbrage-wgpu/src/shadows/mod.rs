@@ -379,6 +379,12 @@ impl Shadows {
         self.forget_kept();
     }
 
+    /// [`Shadows::restart`] for one view, [`Inputs::view_slot`]: after a cut. Other views, and what
+    /// is kept of maps, stay as they are.
+    pub fn restart_view(&mut self, view_slot: u32) {
+        self.planners.remove(&view_slot);
+    }
+
     /// Forgets what is kept of maps, for an application that has prepared a frame and not drawn all
     /// of its maps. What stabilised maps hold on to stays.
     pub fn forget_kept(&mut self) {
