@@ -153,8 +153,8 @@ fn joined(sources: &Path, (root, features, name): &Root) -> Result<Text> {
     Ok(Text { name: name.clone(), wgsl: compiled.to_string() })
 }
 
-/// Turns the path of an item in `lib` into a name in our own namespace: `lib::filter::tent` is
-/// `umbrage_filter_tent`, `lib::bias::MAX_SLOPE` is `UMBRAGE_BIAS_MAX_SLOPE` and
+/// Turns the path of an item in `lib` into a name in our own namespace: `lib::kernel::pair` is
+/// `umbrage_kernel_pair`, `lib::bias::MAX_SLOPE` is `UMBRAGE_BIAS_MAX_SLOPE` and
 /// `lib::layout::Split` is `UmbrageSplit`. Items of a root, and those that are in the namespace
 /// already, keep their names. The default of `wesl` counts underscores (`package_lib_filter_tent`,
 /// `__1` …), which reads worse in an error message of the app's shader.

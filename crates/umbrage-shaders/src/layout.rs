@@ -72,9 +72,9 @@ impl FilterKind {
     pub(crate) const fn parts(self) -> &'static [&'static str] {
         match self {
             Self::Hard => &["hard"],
-            Self::Pcf2 => &["pcf2", "texels"],
-            Self::Pcf3 | Self::Pcf5 | Self::Pcf7 => &["tent", "pairs", "texels"],
-            Self::Castano5 => &["castano5", "pairs", "texels"],
+            Self::Pcf2 => &["pcf2", "square", "texels"],
+            Self::Pcf3 | Self::Pcf5 | Self::Pcf7 => &["tent", "square", "texels"],
+            Self::Castano5 => &["castano5", "square", "texels"],
             Self::Disc => &["disc", "texels"],
             Self::Pcss => &["pcss", "disc", "texels"],
             Self::Vsm => &["vsm"],

@@ -89,6 +89,8 @@ pub struct Maps {
     pub without_loads: bool,
     /// Length of the array of frames.
     pub frames: u32,
+    /// Most splits of any light, 1 to [`layout::MAX_SPLITS`].
+    pub splits: u32,
     /// Maps hold moments of depth, of one light.
     pub moments: Option<MomentMaps>,
     /// Vertex shaders may make the shadow coordinates of every split:
@@ -103,7 +105,15 @@ pub struct Maps {
 impl Default for Maps {
     /// One light, read with everything that a device can have.
     fn default() -> Self {
-        Self { bound: Bound::Array, r32f: false, without_loads: false, frames: 1, moments: None, coordinates: false }
+        Self {
+            bound: Bound::Array,
+            r32f: false,
+            without_loads: false,
+            frames: 1,
+            splits: layout::MAX_SPLITS as u32,
+            moments: None,
+            coordinates: false,
+        }
     }
 }
 

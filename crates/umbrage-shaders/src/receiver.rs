@@ -165,6 +165,7 @@ pub fn receiver(group: u32, text: impl Into<ReceiverText>) -> String {
     let text: ReceiverText = text.into();
     let ReceiverText { maps, filter, exact, .. } = text;
     let frames = maps.frames.max(1);
+    let splits = maps.splits.clamp(1, layout::MAX_SPLITS as u32);
     let loads = maps.r32f || !maps.without_loads;
     let root = match (maps.moments, loads, maps.coordinates) {
         (Some(_), _, false) => text!("receiver_of_moments"),
@@ -192,7 +193,8 @@ pub fn receiver(group: u32, text: impl Into<ReceiverText>) -> String {
     let root = variant::resolved(root, |name| text.has(name));
     let ids = if exact { text!("ids") } else { "" };
     format!(
-        "const UMBRAGE_RECEIVER_GROUP = {group}u;\nconst UMBRAGE_FRAMES = {frames}u;\n{filter}{maps}\n{ids}{root}\n"
+        "const UMBRAGE_RECEIVER_GROUP = {group}u;\nconst UMBRAGE_FRAMES = {frames}u;\n\
+         const UMBRAGE_SPLITS = {splits}u;\n{filter}{maps}\n{ids}{root}\n"
     )
 }
 
@@ -250,11 +252,10 @@ mod tests {
         };
         let (text, full) = (receiver(0, least), receiver(0, all));
         for gone in [
-            "fn umbrage_filter_disc",
-            "fn umbrage_filter_penumbra",
-            "fn umbrage_filter_pairs",
-            "fn umbrage_filter_tent",
-            "fn umbrage_filter_texel_seen",
+            "fn umbrage_disc_",
+            "fn umbrage_square_",
+            "fn umbrage_kernel_integral",
+            "fn umbrage_texel_texel_seen",
             "fn umbrage_bias_warped_point",
             "fn umbrage_bias_meets_receiver",
             "fn umbrage_bias_without_plane",
@@ -268,7 +269,13 @@ mod tests {
         ] {
             assert!(!text.contains(gone), "{gone} is in the text");
         }
-        for there in ["fn umbrage_filter_disc", "fn umbrage_select_choose_by_map", ".transition", ".slice"] {
+        for there in [
+            "fn umbrage_disc_shares",
+            "fn umbrage_square_shares",
+            "fn umbrage_select_choose_by_map",
+            ".transition",
+            ".slice",
+        ] {
             assert!(full.contains(there), "{there} is not in the full text");
         }
         assert!(5 * lines(&least) < 4 * lines(&all), "{} of {}", lines(&least), lines(&all));

@@ -8,21 +8,21 @@ pub mod crease;
 pub mod edges;
 pub mod moments;
 
-/// `filter::MOST_BLOCKER_M`: metres from a surface within which casters give it a penumbra as wide
+/// `kernel::MOST_BLOCKER_M`: metres from a surface within which casters give it a penumbra as wide
 /// as the sun asks for.
 pub const MOST_BLOCKER_M: f32 = 200.0;
 
-/// `filter::DISC_RADIUS`: texels of a disc that was given no width.
+/// `kernel::DISC_RADIUS`: texels of a disc that was given no width.
 pub const DISC_RADIUS: f32 = 3.0;
 
-/// `filter::tent_integral`: the share of a tent of half width `r` around 0 that lies left of `x`.
+/// `kernel::integral`: the share of a tent of half width `r` around 0 that lies left of `x`.
 #[must_use]
 pub fn tent_integral(x: f32, r: f32) -> f32 {
     let y = (x / r).clamp(-1.0, 1.0);
     0.5 + y - 0.5 * y * y.abs()
 }
 
-/// `filter::tent_tap` along one axis: the place of the hardware tap over texels `first` and
+/// `kernel::pair` of a tent along one axis: the place of the hardware tap over texels `first` and
 /// `first + 1`, and its weight.
 #[must_use]
 pub fn tent_tap(first: f32, centre: f32, r: f32) -> (f32, f32) {
@@ -32,7 +32,7 @@ pub fn tent_tap(first: f32, centre: f32, r: f32) -> (f32, f32) {
     (first + 0.5 + (above - between) / weight.max(1e-9), weight)
 }
 
-/// `filter::half_width` along one axis: half the kernel in texels, from its width and the texel in
+/// `kernel::half_width` along one axis: half the kernel in texels, from its width and the texel in
 /// metres; `own` where `width_m` is 0. Never more than `most`, 1 or more texels, which is what the
 /// taps reach.
 #[must_use]
@@ -40,7 +40,7 @@ pub fn half_width(width_m: f32, texel_m: f32, own: f32, most: f32) -> f32 {
     if width_m > 0.0 { (0.5 * width_m / texel_m).clamp(1.0, most) } else { own.min(most) }
 }
 
-/// `filter::vogel`: point `i` of `count` on Vogel's spiral over the unit disc.
+/// `disc::vogel`: point `i` of `count` on Vogel's spiral over the unit disc.
 #[must_use]
 pub fn vogel(i: u32, count: u32, turn: f32) -> [f32; 2] {
     let angle = i as f32 * 2.399_963_2 + turn;

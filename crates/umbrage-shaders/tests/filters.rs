@@ -105,7 +105,7 @@ fn widths_become_texels_within_their_limits() {
 fn constants_agree() {
     let text = umbrage_shaders::receiver(0, umbrage_shaders::Maps::default());
     for (name, value) in [("MOST_BLOCKER_M", MOST_BLOCKER_M), ("DISC_RADIUS", DISC_RADIUS)] {
-        let declared = format!("const UMBRAGE_FILTER_{name}: f32 = {value:?};");
+        let declared = format!("const UMBRAGE_KERNEL_{name}: f32 = {value:?};");
         assert!(text.contains(&declared), "{declared} is not in the text");
     }
 }

@@ -5,8 +5,15 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use umbrage_shaders::layout::{BiasKind, FilterKind, MetricKind, SelectionKind, TransitionKind};
 use umbrage_shaders::{Bound, Casters, Lights, Maps, MomentMaps, Projection, ReceiverText};
 
-const WITHOUT_LOADS: Maps =
-    Maps { bound: Bound::Array, r32f: false, without_loads: true, frames: 7, moments: None, coordinates: false };
+const WITHOUT_LOADS: Maps = Maps {
+    bound: Bound::Array,
+    r32f: false,
+    without_loads: true,
+    frames: 7,
+    splits: 8,
+    moments: None,
+    coordinates: false,
+};
 
 /// Every way to bind maps and to read them.
 fn all_maps() -> Vec<Maps> {
@@ -31,6 +38,7 @@ const MOMENTS: Maps = Maps {
     r32f: false,
     without_loads: false,
     frames: 1,
+    splits: 4,
     moments: Some(MomentMaps::Sampled),
     coordinates: false,
 };

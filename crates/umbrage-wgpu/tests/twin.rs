@@ -21,14 +21,14 @@ fn random() -> impl FnMut() -> f32 {
 #[test]
 fn tent_taps_agree() {
     let Some(gpu) = Gpu::new() else { return };
-    let source = umbrage_shaders::receiver(1, umbrage_shaders::Maps::default())
+    let source = umbrage_shaders::receiver(1, umbrage_shaders::Maps { without_loads: true, ..Default::default() })
         + "@group(0) @binding(0) var<storage, read> input: array<vec4f>;
            @group(0) @binding(1) var<storage, read_write> output: array<vec4f>;
            @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
                if id.x >= arrayLength(&input) { return; }
                let it = input[id.x];
-               let tap = umbrage_filter_tent_tap(vec2f(it.x), vec2f(it.y), vec2f(it.z));
-               output[id.x] = vec4f(tap.texel.x, tap.weight.x, umbrage_filter_tent_integral(vec2f(it.w), vec2f(it.z)).x, 0.0);
+               let tap = umbrage_kernel_pair(2u, vec2f(it.x), vec2f(it.y), vec2f(it.z));
+               output[id.x] = vec4f(tap.texel.x, tap.weight.x, umbrage_kernel_integral(vec2f(it.w), vec2f(it.z)).x, 0.0);
            }";
     let mut next = random();
     let input: Vec<[f32; 4]> = (0..20_000)
@@ -56,13 +56,13 @@ fn tent_taps_agree() {
 #[test]
 fn castano_s_taps_weigh_texels_as_published() {
     let Some(gpu) = Gpu::new() else { return };
-    let source = umbrage_shaders::receiver(1, umbrage_shaders::Maps::default())
+    let source = umbrage_shaders::receiver(1, umbrage_shaders::Maps { without_loads: true, ..Default::default() })
         + "@group(0) @binding(0) var<storage, read> input: array<vec2f>;
            @group(0) @binding(1) var<storage, read_write> output: array<vec2f>;
            @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
                if id.x >= arrayLength(&input) { return; }
                let it = input[id.x];
-               let tap = umbrage_filter_castano_tap(vec2f(it.x), vec2f(it.y));
+               let tap = umbrage_kernel_pair(5u, vec2f(it.x), vec2f(it.y), vec2f(2.5));
                output[id.x] = vec2f(tap.texel.x - it.x - 0.5, tap.weight.x);
            }";
     let mut next = random();
@@ -91,7 +91,7 @@ fn filters_reach_as_far_as_they_say() {
         + "@group(0) @binding(0) var<storage, read> input: array<u32>;
            @group(0) @binding(1) var<storage, read_write> output: array<f32>;
            @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
-               if id.x < arrayLength(&input) { output[id.x] = umbrage_filter_radius(input[id.x]); }
+               if id.x < arrayLength(&input) { output[id.x] = umbrage_kernel_radius(input[id.x]); }
            }";
     // A disc without a width reaches what its width in texels says, less than the most.
     let of = |filter| match filter {
@@ -117,9 +117,9 @@ fn discs_widths_and_noise_agree() {
            @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
                if id.x >= arrayLength(&input) { return; }
                let it = input[id.x];
-               let point = umbrage_filter_vogel(u32(it.x), 32u, it.y);
+               let point = umbrage_disc_vogel(u32(it.x), 32u, it.y);
                // What the taps reach is less than the kernel's own width for one half of them.
-               let wide = umbrage_filter_half_width(it.z, vec2f(it.w), 2.5, select(15.0, 2.0, (id.x & 1u) == 1u)).x;
+               let wide = umbrage_kernel_half_width(it.z, vec2f(it.w), 2.5, select(15.0, 2.0, (id.x & 1u) == 1u)).x;
                output[id.x] = vec4f(point, wide, umbrage_filter_gradient_noise(vec2f(it.x + 0.5, it.x * 2.0 + 0.5)));
            }";
     let mut next = random();

@@ -82,12 +82,8 @@ const UMBRAGE_MAP_SNAP_LIMIT: f32 = 32768.0;
 
 const UMBRAGE_MAP_DEPTH_ROUNDING: f32 = 1.52587890625e-5;
 
-fn umbrage_map_is_warped(split: UmbrageSplit) -> bool {
-    return any(split.w_row != vec4f(0.0));
-}
-
-fn umbrage_map_is_warped_for_vertex(split: UmbrageSplit, position: vec3f) -> bool {
-    return umbrage_map_is_warped(split) | (position.x > 3e38);
+fn umbrage_map_is_warped(split: UmbrageSplit, position: vec3f) -> bool {
+    return any(split.w_row != vec4f(0.0)) | (position.x > 3e38);
 }
 
 fn umbrage_map_w_at(split: UmbrageSplit, position: vec3f) -> f32 {
@@ -98,7 +94,7 @@ fn umbrage_map_plane_from_world(split: UmbrageSplit, position: vec3f) -> vec2f {
     let point = vec4f(position, 1.0);
     let place = vec2f(dot(split.u_row, point), dot(split.v_row, point));
     {
-        if umbrage_map_is_warped(split) {
+        if umbrage_map_is_warped(split, position) {
             return place / umbrage_map_w_at(split, position);
         }
     }
@@ -120,7 +116,7 @@ fn umbrage_map_clip_from_map(split: UmbrageSplit, at: vec3f) -> vec4f {
 }
 
 fn umbrage_map_clip_from_caster(split: UmbrageSplit, position: vec3f) -> vec4f {
-    if umbrage_map_is_warped_for_vertex(split, position) {
+    if umbrage_map_is_warped(split, position) {
         let point = vec4f(position, 1.0);
         let w = umbrage_map_w_at(split, position);
         let place = vec2f(dot(split.u_row, point), dot(split.v_row, point));

@@ -76,7 +76,7 @@ fn umbrage_point(query: UmbrageQuery) -> UmbragePoint {
 }
 
 fn umbrage_answer(query: UmbrageQuery, point: UmbragePoint) -> UmbrageShadow {
-    let first = umbrage_frames[query.light].first_frame;
+    let first = umbrage_frame_first_frame(query.light);
     let is_alone = query.split >= 0;
     var frame = umbrage_frame_frame_at(query.light, point.position);
     if is_alone {
@@ -118,9 +118,14 @@ fn umbrage_answer(query: UmbrageQuery, point: UmbragePoint) -> UmbrageShadow {
         @if(!any_transition)
         let blends = true;
         let last = select(0u, 1u, blends && choice.share > 0.0);
-        for (var i = 0u; i <= last; i++) {
+        var i = 0u;
+        loop {
             let found = umbrage_shade_visibility(frame, select(index, choice.next, i == 1u), point);
             visibility = select(mix(visibility, found, choice.share), found, i == 0u);
+            if i == last {
+                break;
+            }
+            i++;
         }
         tint = select(tint, mix(tint, umbrage_tint_of_split(choice.next), choice.share), last == 1u);
     }
@@ -403,6 +408,54 @@ fn umbrage_crease_is_across(crease: UmbrageCrease, offset: vec2f, before: f32) -
     return umbrage_crease_is_there(crease) && (height <= width || before + width >= height);
 }
 
+const UMBRAGE_DISC_DISC_TAPS: u32 = 32u;
+
+const UMBRAGE_DISC_BLOCKER_TAPS: u32 = 32u;
+
+const UMBRAGE_DISC_TAP_SPREAD: f32 = 0.6666667;
+
+const UMBRAGE_DISC_GOLDEN_ANGLE: f32 = 2.3999632;
+
+@if(disc)
+fn umbrage_disc_vogel(i: u32, count: u32, turn: f32) -> vec2f {
+    let angle = f32(i) * UMBRAGE_DISC_GOLDEN_ANGLE + turn;
+    return sqrt((f32(i) + 0.5) / f32(count)) * vec2f(cos(angle), sin(angle));
+}
+
+@if(disc)
+fn umbrage_disc_shares(layer: UmbrageLayer, at: UmbrageReceiver, centre: vec2f, wide: vec2f, turn: f32) -> vec3f {
+    let spread = sqrt(max(wide * wide - UMBRAGE_DISC_TAP_SPREAD, vec2f(0.0)));
+    var seen = vec3f(0.0);
+    for (var i = 0u; i < UMBRAGE_DISC_DISC_TAPS; i++) {
+        let texel = centre + spread * umbrage_disc_vogel(i, UMBRAGE_DISC_DISC_TAPS, turn);
+        let first = floor(texel - 0.5);
+        seen += umbrage_texel_four(layer, at, first, texel - 0.5 - first);
+    }
+    return seen / f32(UMBRAGE_DISC_DISC_TAPS);
+}
+
+@if(pcss)
+fn umbrage_disc_penumbra(layer: UmbrageLayer, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> vec2f {
+    let search = umbrage_kernel_search_radius(softness, at);
+    let texel_m = max(at.texel_m.x, at.texel_m.y);
+    var weights = 0.0;
+    var distances = 0.0;
+    for (var i = 0u; i < UMBRAGE_DISC_BLOCKER_TAPS; i++) {
+        let share = (f32(i) + 0.5) / f32(UMBRAGE_DISC_BLOCKER_TAPS);
+        let texel = floor(centre + search * sqrt(share) * umbrage_disc_vogel(i, UMBRAGE_DISC_BLOCKER_TAPS, softness.turn)) + 0.5;
+        let offset = texel - at.texel;
+        let stored = umbrage_map_load(layer.index, vec2i(floor(texel + layer.offset)));
+        let distance_m = (at.depth + dot(at.tilt, offset) - stored) * at.range_m;
+        let aside_m = length(offset * at.texel_m) - texel_m;
+        if stored < umbrage_bias_reference(at, offset, vec2f(0.0)) && aside_m <= softness.sun_tangent * distance_m {
+            weights += share;
+            distances += share * distance_m;
+        }
+    }
+    let mean_m = distances / max(weights, 1e-9);
+    return clamp(softness.sun_tangent * mean_m / at.texel_m, vec2f(UMBRAGE_KERNEL_LEAST_RADIUS), vec2f(softness.most));
+}
+
 @if(exact)
 struct UmbrageRun {
     row_x: vec4f,
@@ -572,65 +625,115 @@ fn umbrage_edges_is_before(a: vec3f, b: vec3f, c: vec3f, shear: vec2f, along: f3
     return abs(dot(normal, a)) > (lost + UMBRAGE_EDGES_LOST * reach) * length(normal);
 }
 
-const UMBRAGE_FILTER_HARD: u32 = 0u;
-
-const UMBRAGE_FILTER_PCF2: u32 = 1u;
-
-const UMBRAGE_FILTER_CASTANO5: u32 = 5u;
-
-const UMBRAGE_FILTER_DISC: u32 = 8u;
-
-const UMBRAGE_FILTER_PCSS: u32 = 9u;
-
-const UMBRAGE_FILTER_LEAST_RADIUS: f32 = 1.0;
-
-const UMBRAGE_FILTER_DISC_RADIUS: f32 = 3.0;
-
-const UMBRAGE_FILTER_DISC_TAPS: u32 = 32u;
-
-const UMBRAGE_FILTER_BLOCKER_TAPS: u32 = 32u;
-
-const UMBRAGE_FILTER_MOST_BLOCKER_M: f32 = 200.0;
-
-const UMBRAGE_FILTER_TAP_SPREAD: f32 = 0.6666667;
-
-const UMBRAGE_FILTER_GOLDEN_ANGLE: f32 = 2.3999632;
-
 const UMBRAGE_FILTER_LEAST_LIGHT: f32 = 0.05;
 
 const UMBRAGE_FILTER_DOUBTED_LIGHT: f32 = 0.5;
 
 const UMBRAGE_FILTER_LEAST_OWN: f32 = 0.02;
 
-fn umbrage_filter_radius(kind: u32) -> f32 {
-    return array<f32, 10>(0.5, 1.0, 1.5, 2.5, 3.5, 2.5, 0.0, 0.0, 16.0, 16.0)[min(kind, UMBRAGE_FILTER_PCSS)];
+fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
+    var asked = at;
+    var seen = vec3f(0.0);
+    var lit = 0.0;
+    @if(square)
+    let plain = umbrage_square_plain(layer, kind, softness, at, centre);
+    @if(!square)
+    let plain = UMBRAGE_KERNEL_UNSURE;
+    for (var i = 0; i < 2; i++) {
+        seen = umbrage_filter_share_of_kernel(layer, kind, softness, asked, centre, plain == UMBRAGE_KERNEL_UNSURE);
+        lit = select(lit, seen.x, i == 0);
+        let is_done = i == 1 || seen.x == 0.0 || seen.z == 0.0;
+        @if(texels)
+        {
+            asked = umbrage_texel_with_crease(layer, at, !is_done);
+        }
+        if is_done || !umbrage_crease_is_there(asked.crease) {
+            break;
+        }
+    }
+    let is_lit = seen.x >= select(0.0, UMBRAGE_FILTER_LEAST_LIGHT, umbrage_crease_is_there(asked.crease));
+    let is_seen_lit = seen.z == 0.0 || seen.x > UMBRAGE_FILTER_DOUBTED_LIGHT || seen.y >= UMBRAGE_FILTER_LEAST_OWN;
+    return select(select(0.0, min(lit, 1.0), is_lit && is_seen_lit), plain, plain != UMBRAGE_KERNEL_UNSURE);
 }
 
-fn umbrage_filter_widest(kind: u32, reach: f32) -> f32 {
-    return select(umbrage_filter_radius(kind), reach - 1.0, kind >= UMBRAGE_FILTER_DISC);
+fn umbrage_filter_share_of_kernel(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f, is_asked: bool) -> vec3f {
+    @if(hard)
+    {
+        if kind == UMBRAGE_KERNEL_HARD {
+            let texel = floor(centre) + 0.5;
+            return umbrage_texel_of_comparison(umbrage_texel_compare(layer, texel, umbrage_bias_reference(at, texel - at.texel, vec2f(0.0))));
+        }
+    }
+    @if(pcss)
+    {
+        if kind == UMBRAGE_KERNEL_PCSS {
+            return umbrage_disc_shares(layer, at, centre, umbrage_disc_penumbra(layer, softness, at, centre), softness.turn);
+        }
+    }
+    @if(disc)
+    {
+        if kind == UMBRAGE_KERNEL_DISC {
+            let wide = umbrage_kernel_half_width(softness.width_m, at.texel_m, UMBRAGE_KERNEL_DISC_RADIUS, softness.most);
+            return umbrage_disc_shares(layer, at, centre, wide, softness.turn);
+        }
+    }
+    @if(square)
+    {
+        return umbrage_square_shares(layer, kind, softness, at, centre, is_asked);
+    }
+    @if(!square)
+    return umbrage_texel_of_comparison(1.0);
+}
+
+fn umbrage_filter_gradient_noise(pixel: vec2f) -> f32 {
+    return fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
+}
+
+const UMBRAGE_KERNEL_HARD: u32 = 0u;
+
+const UMBRAGE_KERNEL_PCF2: u32 = 1u;
+
+const UMBRAGE_KERNEL_CASTANO5: u32 = 5u;
+
+const UMBRAGE_KERNEL_DISC: u32 = 8u;
+
+const UMBRAGE_KERNEL_PCSS: u32 = 9u;
+
+const UMBRAGE_KERNEL_LEAST_RADIUS: f32 = 1.0;
+
+const UMBRAGE_KERNEL_DISC_RADIUS: f32 = 3.0;
+
+const UMBRAGE_KERNEL_MOST_BLOCKER_M: f32 = 200.0;
+
+fn umbrage_kernel_radius(kind: u32) -> f32 {
+    return array<f32, 10>(0.5, 1.0, 1.5, 2.5, 3.5, 2.5, 0.0, 0.0, 16.0, 16.0)[min(kind, UMBRAGE_KERNEL_PCSS)];
+}
+
+fn umbrage_kernel_widest(kind: u32, reach: f32) -> f32 {
+    return select(umbrage_kernel_radius(kind), reach - 1.0, kind >= UMBRAGE_KERNEL_DISC);
 }
 
 @if(slope_bias)
-fn umbrage_filter_reach(kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver) -> vec2f {
+fn umbrage_kernel_reach(kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver) -> vec2f {
     @if(pcss)
     {
-        if kind == UMBRAGE_FILTER_PCSS {
-            return umbrage_filter_search_radius(softness, at) + 1.0;
+        if kind == UMBRAGE_KERNEL_PCSS {
+            return umbrage_kernel_search_radius(softness, at) + 1.0;
         }
     }
-    if kind == UMBRAGE_FILTER_DISC {
-        return umbrage_filter_half_width(softness.width_m, at.texel_m, UMBRAGE_FILTER_DISC_RADIUS, softness.most) + 1.0;
+    if kind == UMBRAGE_KERNEL_DISC {
+        return umbrage_kernel_half_width(softness.width_m, at.texel_m, UMBRAGE_KERNEL_DISC_RADIUS, softness.most) + 1.0;
     }
-    if kind <= UMBRAGE_FILTER_PCF2 {
-        return vec2f(umbrage_filter_radius(kind));
+    if kind <= UMBRAGE_KERNEL_PCF2 {
+        return vec2f(umbrage_kernel_radius(kind));
     }
-    return umbrage_filter_half_width(softness.width_m, at.texel_m, umbrage_filter_radius(kind), umbrage_filter_radius(kind)) + 0.5;
+    return umbrage_kernel_half_width(softness.width_m, at.texel_m, umbrage_kernel_radius(kind), umbrage_kernel_radius(kind)) + 0.5;
 }
 
 @if(pcss)
-fn umbrage_filter_search_radius(softness: UmbrageSoftness, at: UmbrageReceiver) -> vec2f {
-    let farthest_m = clamp(at.depth * at.range_m, 0.0, UMBRAGE_FILTER_MOST_BLOCKER_M);
-    return clamp(softness.sun_tangent * farthest_m / at.texel_m, vec2f(UMBRAGE_FILTER_LEAST_RADIUS), vec2f(softness.most));
+fn umbrage_kernel_search_radius(softness: UmbrageSoftness, at: UmbrageReceiver) -> vec2f {
+    let farthest_m = clamp(at.depth * at.range_m, 0.0, UMBRAGE_KERNEL_MOST_BLOCKER_M);
+    return clamp(softness.sun_tangent * farthest_m / at.texel_m, vec2f(UMBRAGE_KERNEL_LEAST_RADIUS), vec2f(softness.most));
 }
 
 struct UmbrageSoftness {
@@ -640,260 +743,43 @@ struct UmbrageSoftness {
     most: f32
 }
 
-fn umbrage_filter_half_width(width_m: f32, texel_m: vec2f, own: f32, most: f32) -> vec2f {
+fn umbrage_kernel_half_width(width_m: f32, texel_m: vec2f, own: f32, most: f32) -> vec2f {
     let wanted = 0.5 * width_m / texel_m;
-    return select(vec2f(min(own, most)), clamp(wanted, vec2f(UMBRAGE_FILTER_LEAST_RADIUS), vec2f(most)), width_m > 0.0);
+    return select(vec2f(min(own, most)), clamp(wanted, vec2f(UMBRAGE_KERNEL_LEAST_RADIUS), vec2f(most)), width_m > 0.0);
 }
 
-@if(disc)
-fn umbrage_filter_vogel(i: u32, count: u32, turn: f32) -> vec2f {
-    let angle = f32(i) * UMBRAGE_FILTER_GOLDEN_ANGLE + turn;
-    return sqrt((f32(i) + 0.5) / f32(count)) * vec2f(cos(angle), sin(angle));
-}
-
-fn umbrage_filter_gradient_noise(pixel: vec2f) -> f32 {
-    return fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
-}
+const UMBRAGE_KERNEL_UNSURE: f32 = -1.0;
 
 @if(tent)
-fn umbrage_filter_tent_integral(x: vec2f, r: vec2f) -> vec2f {
+fn umbrage_kernel_integral(x: vec2f, r: vec2f) -> vec2f {
     let y = clamp(x / r, vec2f(-1.0), vec2f(1.0));
     return 0.5 + y - 0.5 * y * abs(y);
 }
 
-@if(pairs)
-struct UmbrageTap {
-    texel: vec2f,
-    weight: vec2f
-}
-
-@if(tent)
-fn umbrage_filter_tent_tap(first: vec2f, centre: vec2f, r: vec2f) -> UmbrageTap {
-    let left = first - centre;
-    let below = umbrage_filter_tent_integral(left, r);
-    let between = umbrage_filter_tent_integral(left + 1.0, r);
-    let above = umbrage_filter_tent_integral(left + 2.0, r);
-    let weight = above - below;
-    return UmbrageTap(first + 0.5 + (above - between) / max(weight, vec2f(1e-9)), weight);
-}
-
-struct UmbrageLayer {
-    index: u32,
-    texels: vec2f,
-    offset: vec2f,
-    first: vec2i,
-    last: vec2i
-}
-
-fn umbrage_filter_compare(layer: UmbrageLayer, texel: vec2f, depth: f32) -> f32 {
-    return umbrage_map_compare(layer.index, texel + layer.offset, layer.texels, depth);
-}
-
-fn umbrage_filter_of_comparison(lit: f32) -> vec3f {
-    return vec3f(lit, lit, 0.0);
-}
-
-@if(texels)
-fn umbrage_filter_four(layer: UmbrageLayer, at: UmbrageReceiver, first: vec2f, second: vec2f) -> vec3f {
-    let corner = first + 0.5;
-    let texel = vec2i(floor(corner + layer.offset));
-    let offset = corner - at.texel;
-    let upper = mix(umbrage_filter_texel_seen(layer, texel, at, offset), umbrage_filter_texel_seen(layer, texel + vec2i(1, 0), at, offset + vec2f(1.0, 0.0)), second.x);
-    let lower = mix(umbrage_filter_texel_seen(layer, texel + vec2i(0, 1), at, offset + vec2f(0.0, 1.0)), umbrage_filter_texel_seen(layer, texel + vec2i(1, 1), at, offset + vec2f(1.0, 1.0)), second.x);
-    return mix(upper, lower, second.y);
-}
-
-@if(texels)
-fn umbrage_filter_texel_seen(layer: UmbrageLayer, texel: vec2i, at: UmbrageReceiver, offset: vec2f) -> vec3f {
-    let stored = umbrage_map_load(layer.index, texel);
-    let before = select(0.0, 1.0, umbrage_bias_lies_before(at, offset, stored, at.tolerance.rounding));
-    if umbrage_crease_is_across(at.crease, offset, umbrage_bias_before_plane(at, offset, stored)) {
-        return vec3f(0.0, 0.0, before);
-    }
-    if umbrage_bias_lies_behind(at, offset, stored) || umbrage_bias_same_surface(at, offset, stored) {
-        return vec3f(1.0, select(0.0, 1.0, umbrage_bias_is_own(at, offset, stored)), before);
-    }
-    let lit = umbrage_bias_meets_receiver(at, offset, stored, umbrage_filter_beyond(layer, texel, offset, 1));
-    return vec3f(select(0.0, 1.0, lit), 0.0, before);
-}
-
-@if(texels)
-fn umbrage_filter_beyond(layer: UmbrageLayer, texel: vec2i, offset: vec2f, steps: i32) -> vec2f {
-    let next = clamp(texel + select(vec2i(-steps), vec2i(steps), offset >= vec2f(0.0)), layer.first, layer.last);
-    return vec2f(umbrage_map_load(layer.index, vec2i(next.x, texel.y)), umbrage_map_load(layer.index, vec2i(texel.x, next.y)));
-}
-
-@if(texels)
-fn umbrage_filter_with_crease(layer: UmbrageLayer, at: UmbrageReceiver) -> UmbrageReceiver {
-    var result = at;
-    let first = floor(at.texel - 0.5) + 0.5;
-    var stored = vec4f(0.0);
-    var is_flat = true;
-    for (var i = 0; i < 4; i++) {
-        let centre = umbrage_filter_corner_of_four(first, i);
-        stored[i] = umbrage_map_load(layer.index, umbrage_filter_texel_at(layer, centre));
-        is_flat = is_flat && umbrage_bias_before_plane(at, centre - at.texel, stored[i]) <= at.tolerance.rounding;
-    }
-    if is_flat {
-        return result;
-    }
-    for (var i = 0; i < 4; i++) {
-        let centre = umbrage_filter_corner_of_four(first, i);
-        let offset = centre - at.texel;
-        let texel = umbrage_filter_texel_at(layer, centre);
-        let next = umbrage_filter_beyond(layer, texel, offset, 1);
-        result.crease = umbrage_bias_crease_at(at, offset, stored[i], next, umbrage_filter_beyond(layer, texel, offset, 2));
-        if umbrage_crease_is_there(result.crease) {
-            break;
-        }
-    }
-    return result;
-}
-
-@if(texels)
-fn umbrage_filter_corner_of_four(first: vec2f, i: i32) -> vec2f {
-    return first + vec2f(vec2i(i & 1, i >> 1));
-}
-
-@if(texels)
-fn umbrage_filter_texel_at(layer: UmbrageLayer, centre: vec2f) -> vec2i {
-    return clamp(vec2i(floor(centre + layer.offset)), layer.first, layer.last);
-}
-
-fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
-    var asked = at;
-    var seen = vec3f(0.0);
-    var lit = 0.0;
-    for (var i = 0; i < 2; i++) {
-        seen = umbrage_filter_share_of_kernel(layer, kind, softness, asked, centre);
-        lit = select(lit, seen.x, i == 0);
-        if i == 1 || seen.x == 0.0 || seen.z == 0.0 {
-            break;
-        }
-        @if(texels)
-        {
-            asked = umbrage_filter_with_crease(layer, at);
-        }
-        if !umbrage_crease_is_there(asked.crease) {
-            break;
-        }
-    }
-    let is_lit = seen.x >= select(0.0, UMBRAGE_FILTER_LEAST_LIGHT, umbrage_crease_is_there(asked.crease));
-    let is_seen_lit = seen.z == 0.0 || seen.x > UMBRAGE_FILTER_DOUBTED_LIGHT || seen.y >= UMBRAGE_FILTER_LEAST_OWN;
-    return select(0.0, min(lit, 1.0), is_lit && is_seen_lit);
-}
-
-fn umbrage_filter_share_of_kernel(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> vec3f {
-    @if(hard)
-    {
-        if kind == UMBRAGE_FILTER_HARD {
-            let texel = floor(centre) + 0.5;
-            return umbrage_filter_of_comparison(umbrage_filter_compare(layer, texel, umbrage_bias_reference(at, texel - at.texel, vec2f(0.0))));
-        }
-    }
-    @if(pcf2)
-    {
-        if kind == UMBRAGE_FILTER_PCF2 {
-            let first = floor(centre - 0.5);
-            return umbrage_filter_four(layer, at, first, centre - 0.5 - first);
-        }
-    }
-    @if(pcss)
-    {
-        if kind == UMBRAGE_FILTER_PCSS {
-            return umbrage_filter_disc(layer, at, centre, umbrage_filter_penumbra(layer, softness, at, centre), softness.turn);
-        }
-    }
-    @if(disc)
-    {
-        if kind == UMBRAGE_FILTER_DISC {
-            let wide = umbrage_filter_half_width(softness.width_m, at.texel_m, UMBRAGE_FILTER_DISC_RADIUS, softness.most);
-            return umbrage_filter_disc(layer, at, centre, wide, softness.turn);
-        }
-    }
-    @if(pairs)
-    {
-        return umbrage_filter_pairs(layer, kind, softness, at, centre);
-    }
-    @if(!pairs)
-    return umbrage_filter_of_comparison(1.0);
-}
-
 @if(castano5)
-fn umbrage_filter_castano_weight(x: vec2f) -> vec2f {
+fn umbrage_kernel_castano(x: vec2f) -> vec2f {
     let tents = max(3.0 - abs(x), vec2f(0.0)) + max(2.0 - abs(x), vec2f(0.0)) - max(1.0 - abs(x), vec2f(0.0));
     return tents / 12.0;
 }
 
-@if(castano5)
-fn umbrage_filter_castano_tap(first: vec2f, centre: vec2f) -> UmbrageTap {
-    let second = umbrage_filter_castano_weight(first + 1.5 - centre);
-    let weight = umbrage_filter_castano_weight(first + 0.5 - centre) + second;
-    return UmbrageTap(first + 0.5 + second / max(weight, vec2f(1e-9)), weight);
-}
-
-@if(pairs)
-fn umbrage_filter_pair(kind: u32, first: vec2f, centre: vec2f, r: vec2f) -> UmbrageTap {
+@if(square)
+fn umbrage_kernel_weight_of(kind: u32, left: vec2f, centre: vec2f, half: vec2f) -> vec2f {
+    @if(pcf2)
+    {
+        if kind == UMBRAGE_KERNEL_PCF2 {
+            return max(1.0 - abs(left + 0.5 - centre), vec2f(0.0));
+        }
+    }
     @if(castano5)
     {
-        if kind == UMBRAGE_FILTER_CASTANO5 {
-            return umbrage_filter_castano_tap(first, centre);
+        if kind == UMBRAGE_KERNEL_CASTANO5 {
+            return umbrage_kernel_castano(left + 0.5 - centre);
         }
     }
     @if(tent)
-    return umbrage_filter_tent_tap(first, centre, r);
+    return umbrage_kernel_integral(left + 1.0 - centre, half) - umbrage_kernel_integral(left - centre, half);
     @if(!tent)
-    return UmbrageTap(first, vec2f(0.0));
-}
-
-@if(pairs)
-fn umbrage_filter_pairs(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> vec3f {
-    let r = umbrage_filter_half_width(softness.width_m, at.texel_m, umbrage_filter_radius(kind), umbrage_filter_radius(kind));
-    let taps = i32(umbrage_filter_radius(kind) + 0.5);
-    let corner = floor(centre - r);
-    var seen = vec3f(0.0);
-    for (var j = 0; j < taps; j++) {
-        for (var i = 0; i < taps; i++) {
-            let first = corner + 2.0 * vec2f(f32(i), f32(j));
-            let tap = umbrage_filter_pair(kind, first, centre, r);
-            seen += tap.weight.x * tap.weight.y * umbrage_filter_four(layer, at, first, tap.texel - 0.5 - first);
-        }
-    }
-    return seen;
-}
-
-@if(disc)
-fn umbrage_filter_disc(layer: UmbrageLayer, at: UmbrageReceiver, centre: vec2f, wide: vec2f, turn: f32) -> vec3f {
-    let spread = sqrt(max(wide * wide - UMBRAGE_FILTER_TAP_SPREAD, vec2f(0.0)));
-    var seen = vec3f(0.0);
-    for (var i = 0u; i < UMBRAGE_FILTER_DISC_TAPS; i++) {
-        let texel = centre + spread * umbrage_filter_vogel(i, UMBRAGE_FILTER_DISC_TAPS, turn);
-        let first = floor(texel - 0.5);
-        seen += umbrage_filter_four(layer, at, first, texel - 0.5 - first);
-    }
-    return seen / f32(UMBRAGE_FILTER_DISC_TAPS);
-}
-
-@if(pcss)
-fn umbrage_filter_penumbra(layer: UmbrageLayer, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> vec2f {
-    let search = umbrage_filter_search_radius(softness, at);
-    let texel_m = max(at.texel_m.x, at.texel_m.y);
-    var weights = 0.0;
-    var distances = 0.0;
-    for (var i = 0u; i < UMBRAGE_FILTER_BLOCKER_TAPS; i++) {
-        let share = (f32(i) + 0.5) / f32(UMBRAGE_FILTER_BLOCKER_TAPS);
-        let texel = floor(centre + search * sqrt(share) * umbrage_filter_vogel(i, UMBRAGE_FILTER_BLOCKER_TAPS, softness.turn)) + 0.5;
-        let offset = texel - at.texel;
-        let stored = umbrage_map_load(layer.index, vec2i(floor(texel + layer.offset)));
-        let distance_m = (at.depth + dot(at.tilt, offset) - stored) * at.range_m;
-        let aside_m = length(offset * at.texel_m) - texel_m;
-        if stored < umbrage_bias_reference(at, offset, vec2f(0.0)) && aside_m <= softness.sun_tangent * distance_m {
-            weights += share;
-            distances += share * distance_m;
-        }
-    }
-    let mean_m = distances / max(weights, 1e-9);
-    return clamp(softness.sun_tangent * mean_m / at.texel_m, vec2f(UMBRAGE_FILTER_LEAST_RADIUS), vec2f(softness.most));
+    return vec2f(0.0);
 }
 
 struct UmbrageSplit {
@@ -956,6 +842,140 @@ fn umbrage_map_covers(split: UmbrageSplit, at: vec3f) -> bool {
     return all(at.xy >= vec2f(0.0)) && all(at.xy <= vec2f(split.size));
 }
 
+@if(square)
+struct UmbrageSquare {
+    corner: vec2f,
+    side: i32,
+    half: vec2f
+}
+
+@if(square)
+fn umbrage_square_square_of(kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> UmbrageSquare {
+    @if(pcf2)
+    {
+        if kind == UMBRAGE_KERNEL_PCF2 {
+            return UmbrageSquare(floor(centre - 0.5), 2, vec2f(1.0));
+        }
+    }
+    let half = umbrage_kernel_half_width(softness.width_m, at.texel_m, umbrage_kernel_radius(kind), umbrage_kernel_radius(kind));
+    return UmbrageSquare(floor(centre - half), 2 * i32(umbrage_kernel_radius(kind) + 0.5), half);
+}
+
+@if(square)
+fn umbrage_square_shares(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f, is_asked: bool) -> vec3f {
+    let texels = umbrage_square_square_of(kind, softness, at, centre);
+    let count = select(0, texels.side * texels.side, is_asked);
+    var seen = vec3f(0.0);
+    for (var i = 0; i < count; i++) {
+        let first = texels.corner + vec2f(vec2i(i % texels.side, i / texels.side));
+        let weight = umbrage_kernel_weight_of(kind, first, centre, texels.half);
+        seen += weight.x * weight.y * umbrage_texel_texel_seen(layer, at, first);
+    }
+    return seen;
+}
+
+@if(square)
+fn umbrage_square_plain(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
+    if kind >= UMBRAGE_KERNEL_DISC || kind == UMBRAGE_KERNEL_HARD || any(at.tilt != vec2f(0.0)) || at.linear.y > 0.0 {
+        return UMBRAGE_KERNEL_UNSURE;
+    }
+    let texels = umbrage_square_square_of(kind, softness, at, centre);
+    var nearest = 2.0;
+    var farthest = -1.0;
+    var lowest = 1e30;
+    var highest = -1e30;
+    for (var i = 0; i < texels.side * texels.side; i++) {
+        let texel = texels.corner + vec2f(vec2i(i % texels.side, i / texels.side)) + 0.5;
+        let stored = umbrage_map_load(layer.index, vec2i(floor(texel + layer.offset)));
+        let over = stored - dot(at.slope, texel - at.texel);
+        nearest = min(nearest, stored);
+        farthest = max(farthest, stored);
+        lowest = min(lowest, over);
+        highest = max(highest, over);
+    }
+    let is_own = highest <= at.depth + at.tolerance.past;
+    let bias = max(at.tolerance.constant - at.tolerance.rounding, 0.0);
+    if lowest >= at.depth + bias && (is_own || nearest >= at.depth) {
+        return 1.0;
+    }
+    let aside = max(abs(texels.corner + 0.5 - at.texel), abs(texels.corner + f32(texels.side) - 0.5 - at.texel));
+    let tolerance = max(at.tolerance.bend * length(aside), at.tolerance.steep * length(aside * at.texel_m));
+    if farthest < min(at.depth, 1.0) && highest < at.depth - tolerance {
+        return 0.0;
+    }
+    return UMBRAGE_KERNEL_UNSURE;
+}
+
+struct UmbrageLayer {
+    index: u32,
+    texels: vec2f,
+    offset: vec2f,
+    first: vec2i,
+    last: vec2i
+}
+
+fn umbrage_texel_compare(layer: UmbrageLayer, texel: vec2f, depth: f32) -> f32 {
+    return umbrage_map_compare(layer.index, texel + layer.offset, layer.texels, depth);
+}
+
+fn umbrage_texel_of_comparison(lit: f32) -> vec3f {
+    return vec3f(lit, lit, 0.0);
+}
+
+@if(texels)
+fn umbrage_texel_texel_seen(layer: UmbrageLayer, at: UmbrageReceiver, first: vec2f) -> vec3f {
+    let texel = vec2i(floor(first + 0.5 + layer.offset));
+    let offset = first + 0.5 - at.texel;
+    let stored = umbrage_map_load(layer.index, texel);
+    let before = select(0.0, 1.0, umbrage_bias_lies_before(at, offset, stored, at.tolerance.rounding));
+    if umbrage_crease_is_across(at.crease, offset, umbrage_bias_before_plane(at, offset, stored)) {
+        return vec3f(0.0, 0.0, before);
+    }
+    if umbrage_bias_lies_behind(at, offset, stored) || umbrage_bias_same_surface(at, offset, stored) {
+        return vec3f(1.0, select(0.0, 1.0, umbrage_bias_is_own(at, offset, stored)), before);
+    }
+    let lit = umbrage_bias_meets_receiver(at, offset, stored, umbrage_texel_beyond(layer, texel, offset, 1));
+    return vec3f(select(0.0, 1.0, lit), 0.0, before);
+}
+
+@if(texels)
+fn umbrage_texel_beyond(layer: UmbrageLayer, texel: vec2i, offset: vec2f, steps: i32) -> vec2f {
+    let next = clamp(texel + select(vec2i(-steps), vec2i(steps), offset >= vec2f(0.0)), layer.first, layer.last);
+    return vec2f(umbrage_map_load(layer.index, vec2i(next.x, texel.y)), umbrage_map_load(layer.index, vec2i(texel.x, next.y)));
+}
+
+@if(texels)
+fn umbrage_texel_with_crease(layer: UmbrageLayer, at: UmbrageReceiver, is_asked: bool) -> UmbrageReceiver {
+    var found = at.crease;
+    let first = floor(at.texel - 0.5) + 0.5;
+    let count = select(0, 4, is_asked);
+    var is_flat = true;
+    for (var i = 0; i < count; i++) {
+        let centre = first + vec2f(vec2i(i & 1, i >> 1));
+        let offset = centre - at.texel;
+        let texel = clamp(vec2i(floor(centre + layer.offset)), layer.first, layer.last);
+        let stored = umbrage_map_load(layer.index, texel);
+        let next = umbrage_texel_beyond(layer, texel, offset, 1);
+        let crease = umbrage_bias_crease_at(at, offset, stored, next, umbrage_texel_beyond(layer, texel, offset, 2));
+        is_flat = is_flat && umbrage_bias_before_plane(at, offset, stored) <= at.tolerance.rounding;
+        if !umbrage_crease_is_there(found) && umbrage_crease_is_there(crease) {
+            found = crease;
+        }
+    }
+    var result = at;
+    if !is_flat {
+        result.crease = found;
+    }
+    return result;
+}
+
+@if(disc)
+fn umbrage_texel_four(layer: UmbrageLayer, at: UmbrageReceiver, first: vec2f, second: vec2f) -> vec3f {
+    let upper = mix(umbrage_texel_texel_seen(layer, at, first), umbrage_texel_texel_seen(layer, at, first + vec2f(1.0, 0.0)), second.x);
+    let lower = mix(umbrage_texel_texel_seen(layer, at, first + vec2f(0.0, 1.0)), umbrage_texel_texel_seen(layer, at, first + 1.0), second.x);
+    return mix(upper, lower, second.y);
+}
+
 fn umbrage_tint_of_split(index: u32) -> vec3f {
     return array<vec3f, 8>(vec3f(1.0, 0.45, 0.45), vec3f(0.45, 1.0, 0.45), vec3f(0.45, 0.6, 1.0), vec3f(1.0, 1.0, 0.4), vec3f(1.0, 0.45, 1.0), vec3f(0.4, 1.0, 1.0), vec3f(1.0, 0.7, 0.35), vec3f(0.7, 0.5, 1.0))[min(index, 7u)];
 }
@@ -1000,7 +1020,7 @@ fn umbrage_frame_view_depth(frame: u32, position: vec3f) -> f32 {
 }
 
 fn umbrage_frame_frame_at(light: u32, position: vec3f) -> u32 {
-    let first = umbrage_frames[light].first_frame;
+    let first = umbrage_frame_first_frame(light);
     @if(!faces)
     return first;
     @if(faces)
@@ -1013,6 +1033,10 @@ fn umbrage_frame_frame_at(light: u32, position: vec3f) -> u32 {
         let face = 2u * axis + select(0u, 1u, along < 0.0);
         return first + min(face, max(umbrage_frames[first].face_count, 1u) - 1u);
     }
+}
+
+fn umbrage_frame_first_frame(light: u32) -> u32 {
+    return select(umbrage_frames[light].first_frame, 0u, UMBRAGE_FRAMES == 1u);
 }
 
 fn umbrage_frame_to_light(frame: u32, position: vec3f) -> vec3f {
@@ -1041,7 +1065,8 @@ fn umbrage_frame_illuminates(frame: u32, position: vec3f) -> bool {
         let distance = length(from_light);
         let along = -dot(umbrage_frames[frame].to_light, from_light);
         let range = umbrage_frames[frame].light_range_m;
-        return range == 0.0 || (distance <= range && along >= umbrage_frames[frame].cone_cosine * distance);
+        let is_inside = (distance <= range) & (along >= umbrage_frames[frame].cone_cosine * distance);
+        return (range == 0.0) | is_inside;
     }
 }
 
@@ -1089,30 +1114,20 @@ fn umbrage_select_choose_by_depth(frame: u32, depth: f32, slice: u32) -> Umbrage
 @if(by_map)
 fn umbrage_select_choose_by_map(frame: u32, point: UmbragePoint) -> UmbrageChoice {
     let split_count = umbrage_frames[frame].split_count + umbrage_zero(point.position.x);
-    let index = umbrage_select_map_at(frame, 0u, point);
-    if index == split_count {
-        return UmbrageChoice(index, index, 0.0);
+    var index = split_count;
+    var next = split_count;
+    var depth_inside = 0.0;
+    for (var i = 0u; i < UMBRAGE_SPLITS; i++) {
+        let it = UMBRAGE_SPLITS - 1u - i;
+        let within = umbrage_select_inside(frame, it, point);
+        let contains = (within >= 0.0) & (it < split_count);
+        next = select(next, index, contains);
+        index = select(index, it, contains);
+        depth_inside = select(depth_inside, within, contains);
     }
-    let depth_inside = umbrage_select_inside(frame, index, point);
-    let band = 0.5 * umbrage_frames[frame].map_blend * umbrage_frames[frame].splits[index].size;
-    if depth_inside >= band {
-        return UmbrageChoice(index, index, 0.0);
-    }
-    let next = umbrage_select_map_at(frame, index + 1u, point);
-    return UmbrageChoice(index, next, select(1.0 - depth_inside / band, 0.0, next == split_count));
-}
-
-@if(by_map)
-fn umbrage_select_map_at(frame: u32, first: u32, point: UmbragePoint) -> u32 {
-    let split_count = umbrage_frames[frame].split_count + umbrage_zero(point.position.x);
-    var index = first + umbrage_zero(point.position.x);
-    while (index < split_count) {
-        if umbrage_select_inside(frame, index, point) >= 0.0 {
-            break;
-        }
-        index++;
-    }
-    return index;
+    let band = 0.5 * umbrage_frames[frame].map_blend * umbrage_frames[frame].splits[min(index, 7u)].size;
+    let is_inner = (next == split_count) | (depth_inside >= band);
+    return UmbrageChoice(index, next, select(1.0 - depth_inside / band, 0.0, is_inner));
 }
 
 @if(by_map)
@@ -1131,11 +1146,8 @@ fn umbrage_select_place_in_map(split: UmbrageSplit, index: u32, point: UmbragePo
 fn umbrage_select_split_at(frame: u32, depth: f32) -> u32 {
     let split_count = umbrage_frames[frame].split_count + umbrage_zero(depth);
     var index = 0u;
-    while (index < split_count) {
-        if depth < umbrage_frames[frame].splits[index].far {
-            break;
-        }
-        index++;
+    for (var i = 0u; i < UMBRAGE_SPLITS; i++) {
+        index += select(0u, 1u, (i < split_count) & (depth >= umbrage_frames[frame].splits[i].far));
     }
     return index;
 }
@@ -1158,7 +1170,7 @@ fn umbrage_shade_visibility(frame: u32, index: u32, point: UmbragePoint) -> f32 
             return 1.0;
         }
     }
-    let split = umbrage_frames[frame].splits[index];
+    let split = umbrage_frames[frame].splits[index + umbrage_zero(position.x)];
     if split.is_empty != 0u || !umbrage_map_covers(split, umbrage_select_place_in_map(split, index, point)) {
         return 1.0;
     }
@@ -1188,18 +1200,18 @@ fn umbrage_shade_lit_share(frame: u32, split: UmbrageSplit, index: u32, plane: U
     }
     let turn = umbrage_frames[frame].turn_per_pixel * (point.noise - 0.5);
     let frame_width_m = umbrage_frames[frame].filter_width_m;
-    let most = umbrage_filter_widest(kind, margin);
+    let most = umbrage_kernel_widest(kind, margin);
     let softness = UmbrageSoftness(frame_width_m, umbrage_frames[frame].sun_tangent, turn, most);
     var at = plane;
     @if(plane_bias && slope_bias)
     {
         if umbrage_frames[frame].bias_kind + umbrage_zero(plane.texel.x) == UMBRAGE_SHADE_SLOPE_BIAS {
-            at = umbrage_bias_without_plane(at, umbrage_filter_reach(kind, softness, at));
+            at = umbrage_bias_without_plane(at, umbrage_kernel_reach(kind, softness, at));
         }
     }
     @if(!plane_bias)
     {
-        at = umbrage_bias_without_plane(at, umbrage_filter_reach(kind, softness, at));
+        at = umbrage_bias_without_plane(at, umbrage_kernel_reach(kind, softness, at));
     }
     let lit = umbrage_filter_lit_share(layer, kind, softness, at, clamp(at.texel, first, last));
     @if(exact)

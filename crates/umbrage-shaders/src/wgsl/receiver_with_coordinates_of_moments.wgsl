@@ -90,7 +90,7 @@ fn umbrage_point(query: UmbrageQuery) -> UmbragePoint {
 }
 
 fn umbrage_answer(query: UmbrageQuery, point: UmbragePoint) -> UmbrageShadow {
-    let first = umbrage_frames[query.light].first_frame;
+    let first = umbrage_frame_first_frame(query.light);
     let is_alone = query.split >= 0;
     var frame = umbrage_frame_frame_at(query.light, point.position);
     if is_alone {
@@ -132,9 +132,14 @@ fn umbrage_answer(query: UmbrageQuery, point: UmbragePoint) -> UmbrageShadow {
         @if(!any_transition)
         let blends = true;
         let last = select(0u, 1u, blends && choice.share > 0.0);
-        for (var i = 0u; i <= last; i++) {
+        var i = 0u;
+        loop {
             let found = umbrage_shade_visibility(frame, select(index, choice.next, i == 1u), point);
             visibility = select(mix(visibility, found, choice.share), found, i == 0u);
+            if i == last {
+                break;
+            }
+            i++;
         }
         tint = select(tint, mix(tint, umbrage_tint_of_split(choice.next), choice.share), last == 1u);
     }
@@ -491,7 +496,7 @@ fn umbrage_frame_view_depth(frame: u32, position: vec3f) -> f32 {
 }
 
 fn umbrage_frame_frame_at(light: u32, position: vec3f) -> u32 {
-    let first = umbrage_frames[light].first_frame;
+    let first = umbrage_frame_first_frame(light);
     @if(!faces)
     return first;
     @if(faces)
@@ -504,6 +509,10 @@ fn umbrage_frame_frame_at(light: u32, position: vec3f) -> u32 {
         let face = 2u * axis + select(0u, 1u, along < 0.0);
         return first + min(face, max(umbrage_frames[first].face_count, 1u) - 1u);
     }
+}
+
+fn umbrage_frame_first_frame(light: u32) -> u32 {
+    return select(umbrage_frames[light].first_frame, 0u, UMBRAGE_FRAMES == 1u);
 }
 
 fn umbrage_frame_to_light(frame: u32, position: vec3f) -> vec3f {
@@ -532,7 +541,8 @@ fn umbrage_frame_illuminates(frame: u32, position: vec3f) -> bool {
         let distance = length(from_light);
         let along = -dot(umbrage_frames[frame].to_light, from_light);
         let range = umbrage_frames[frame].light_range_m;
-        return range == 0.0 || (distance <= range && along >= umbrage_frames[frame].cone_cosine * distance);
+        let is_inside = (distance <= range) & (along >= umbrage_frames[frame].cone_cosine * distance);
+        return (range == 0.0) | is_inside;
     }
 }
 
@@ -580,30 +590,20 @@ fn umbrage_select_choose_by_depth(frame: u32, depth: f32, slice: u32) -> Umbrage
 @if(by_map)
 fn umbrage_select_choose_by_map(frame: u32, point: UmbragePoint) -> UmbrageChoice {
     let split_count = umbrage_frames[frame].split_count + umbrage_zero(point.position.x);
-    let index = umbrage_select_map_at(frame, 0u, point);
-    if index == split_count {
-        return UmbrageChoice(index, index, 0.0);
+    var index = split_count;
+    var next = split_count;
+    var depth_inside = 0.0;
+    for (var i = 0u; i < UMBRAGE_SPLITS; i++) {
+        let it = UMBRAGE_SPLITS - 1u - i;
+        let within = umbrage_select_inside(frame, it, point);
+        let contains = (within >= 0.0) & (it < split_count);
+        next = select(next, index, contains);
+        index = select(index, it, contains);
+        depth_inside = select(depth_inside, within, contains);
     }
-    let depth_inside = umbrage_select_inside(frame, index, point);
-    let band = 0.5 * umbrage_frames[frame].map_blend * umbrage_frames[frame].splits[index].size;
-    if depth_inside >= band {
-        return UmbrageChoice(index, index, 0.0);
-    }
-    let next = umbrage_select_map_at(frame, index + 1u, point);
-    return UmbrageChoice(index, next, select(1.0 - depth_inside / band, 0.0, next == split_count));
-}
-
-@if(by_map)
-fn umbrage_select_map_at(frame: u32, first: u32, point: UmbragePoint) -> u32 {
-    let split_count = umbrage_frames[frame].split_count + umbrage_zero(point.position.x);
-    var index = first + umbrage_zero(point.position.x);
-    while (index < split_count) {
-        if umbrage_select_inside(frame, index, point) >= 0.0 {
-            break;
-        }
-        index++;
-    }
-    return index;
+    let band = 0.5 * umbrage_frames[frame].map_blend * umbrage_frames[frame].splits[min(index, 7u)].size;
+    let is_inner = (next == split_count) | (depth_inside >= band);
+    return UmbrageChoice(index, next, select(1.0 - depth_inside / band, 0.0, is_inner));
 }
 
 @if(by_map)
@@ -622,11 +622,8 @@ fn umbrage_select_place_in_map(split: UmbrageSplit, index: u32, point: UmbragePo
 fn umbrage_select_split_at(frame: u32, depth: f32) -> u32 {
     let split_count = umbrage_frames[frame].split_count + umbrage_zero(depth);
     var index = 0u;
-    while (index < split_count) {
-        if depth < umbrage_frames[frame].splits[index].far {
-            break;
-        }
-        index++;
+    for (var i = 0u; i < UMBRAGE_SPLITS; i++) {
+        index += select(0u, 1u, (i < split_count) & (depth >= umbrage_frames[frame].splits[i].far));
     }
     return index;
 }
@@ -660,7 +657,7 @@ fn umbrage_shade_visibility(frame: u32, index: u32, point: UmbragePoint) -> f32 
             return 1.0;
         }
     }
-    let split = umbrage_frames[frame].splits[index];
+    let split = umbrage_frames[frame].splits[index + umbrage_zero(position.x)];
     if split.is_empty != 0u || !umbrage_map_covers(split, umbrage_select_place_in_map(split, index, point)) {
         return 1.0;
     }

@@ -392,6 +392,7 @@ impl ShadowMaps {
             r32f: self.config.depth_format.is_colour(),
             without_loads: !self.depth_loads,
             frames: self.slots.iter().map(|slot| slot.kind.faces() as u32).sum(),
+            splits: self.slots.iter().map(|slot| slot.sizes.len() as u32).max().unwrap_or(1),
             moments: self.moments.as_ref().map(Moments::maps),
             coordinates: self.config.coordinates == Coordinates::Vertex,
         }
