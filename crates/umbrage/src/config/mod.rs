@@ -117,7 +117,8 @@ pub struct ShadowConfig {
     pub crop: Crop,
     /// What planes and maps are fitted to. With [`FitTo::Depth`] and
     /// [`crate::PlanInputs::seen`] all maps but the last serve what was seen alone: a wall before
-    /// the eye then takes no texels from what it shows. Spot and point lights ignore it.
+    /// the eye then takes no texels from what it shows. Spot and point lights ignore it, and so do
+    /// maps that stand exactly still, which show whole slices of the view.
     pub fit_to: FitTo,
     /// Whether shadows stand still while the camera moves.
     pub stability: Stability,

@@ -45,7 +45,8 @@ impl<'a> Frame<'a> {
             image_size: inputs.image_size,
             casters,
             receivers,
-            seen: seen.filter(|_| config.fit_to == FitTo::Depth),
+            // Maps that stand exactly still show whole slices of the view, whatever was seen.
+            seen: seen.filter(|_| config.fit_to == FitTo::Depth && config.stability != Stability::Exact),
             margin: reach.radius_texels + EDGE_TEXELS,
         }
     }

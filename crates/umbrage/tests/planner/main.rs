@@ -6,7 +6,9 @@ mod cases;
 use glam::DVec3;
 use proptest::prelude::*;
 use umbrage::DepthConvention::{MinusOneToOne, ZeroToOne};
-use umbrage::config::{Crop, Filter, Preset, Range, Selection, ShadowConfig, SplitScheme, Stability, Transition};
+use umbrage::config::{
+    Crop, Filter, FitTo, Preset, Range, Selection, ShadowConfig, SplitScheme, Stability, Transition,
+};
 use umbrage::{Aabb, DirectionalLight, Frustum, PlanInputs, Planner, Projection, ShadowPlan, View};
 
 use cases::*;
@@ -338,4 +340,21 @@ fn a_range_without_end_stops_at_the_scene() {
     let still = planes_of(Stability::Exact);
     assert_eq!(still[..4], tight[..4]);
     assert!((still[4] / (70.0f64.powi(2) + 26.0).sqrt() - 2f64.powf(1.0 / 16.0)).abs() < 1e-9, "{still:?}");
+}
+
+#[test]
+fn maps_that_stand_exactly_still_take_nothing_from_what_was_seen() {
+    let boxes = robots(40);
+    let seen: Vec<Aabb> = boxes[..10].iter().map(|it| Aabb::new(it.min, 0.5 * (it.min + it.max))).collect();
+    let lens = Frustum::perspective(1.0, 4.0 / 3.0, 0.1, 500.0).unwrap();
+    let view = View::look_at_upright(DVec3::new(-5.0, 2.0, -8.0), DVec3::new(20.0, 0.0, 30.0), lens).unwrap();
+    let sun = DirectionalLight::new(DVec3::new(0.3, -0.6, 0.5)).unwrap();
+    let plan = |stability, seen| {
+        let config = ShadowConfig { stability, fit_to: FitTo::Depth, ..ShadowConfig::default() };
+        let inputs = PlanInputs { seen, ..PlanInputs::new(&view, sun, &boxes, &boxes) };
+        Planner::new(&config).unwrap().plan_frame(&inputs).unwrap().clone()
+    };
+    assert!(plan(Stability::Exact, Some(&seen)) == plan(Stability::Exact, None));
+    // Others do take something from it.
+    assert!(plan(ShadowConfig::default().stability, Some(&seen)) != plan(ShadowConfig::default().stability, None));
 }
