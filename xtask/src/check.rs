@@ -69,11 +69,12 @@ pub fn bless() -> Result<()> {
     Ok(())
 }
 
-/// The fuzzers of plans and loaders, long enough to find what CI's short runs do not.
+/// The fuzzers of plans, loaders and exact edges, long enough to find what CI's short runs do not.
 pub fn fuzz() -> Result<()> {
     for (package, test, variable, count) in [
         ("umbrage", "fuzz", "UMBRAGE_FUZZ_CASES", "1000000"),
         ("umbrage-scene", "mutated", "UMBRAGE_FUZZ_FILES", "100000"),
+        ("umbrage-shaders", "soups", "UMBRAGE_FUZZ_SOUPS", "1000000"),
     ] {
         let mut tests = cargo();
         tests.args(["test", "--release", "--package", package, "--test", test, "--", "--nocapture"]);

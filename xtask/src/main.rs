@@ -30,8 +30,8 @@ Usage: cargo xtask COMMAND
           build the viewer as a page into out/web, and serve it on this machine
   book [--pictures]
           build the book into out/book; --pictures redraws its pictures instead
-  fuzz    check 1,000,000 plans of random scenes and load 100,000 mutated files; UMBRAGE_FUZZ_CASES, UMBRAGE_FUZZ_FILES
-          and UMBRAGE_FUZZ_SEED choose others
+  fuzz    check 1,000,000 plans of random scenes, load 100,000 mutated files and test exact edges on 1,000,000 soups of
+          triangles; UMBRAGE_FUZZ_CASES, UMBRAGE_FUZZ_FILES, UMBRAGE_FUZZ_SOUPS and UMBRAGE_FUZZ_SEED choose others
   shaders join the modules of umbrage-shaders/shaders into the texts that are checked in, umbrage-shaders/src/wgsl
   package pack every crate that is published and build each from its package
   bless   redraw the reference pictures of the tests

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use umbrage::config::SplitMetric;
+use umbrage::config::{Edges, SplitMetric};
 use umbrage_lab::{
     failure::{Failure, Result},
     notes,
@@ -39,6 +39,10 @@ pub struct RenderArgs {
     /// nothing was hit)
     #[arg(long, value_name = "MASK", help_heading = "Output")]
     pub visibility: Option<PathBuf>,
+    /// With --edges exact, write what triangles decide here (PNG, to be laid over the picture:
+    /// yellow lit, blue dark, red left to the filter, transparent where depth decides)
+    #[arg(long, value_name = "PICTURE", help_heading = "Output")]
+    pub edge_counts: Option<PathBuf>,
     /// Write each split's map into this folder, as pictures
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub maps: Option<PathBuf>,
@@ -54,12 +58,16 @@ pub struct RenderArgs {
 /// Runs the subcommand.
 pub fn run(args: &RenderArgs) -> Result<()> {
     let Asked { scene: request, shadows } = Asked::new(&args.scene, &args.shadows)?;
-    let files: Vec<&Path> =
-        [&args.picture, &args.visibility, &args.report].into_iter().flatten().map(AsRef::as_ref).collect();
+    let files: Vec<&Path> = [&args.picture, &args.visibility, &args.edge_counts, &args.report]
+        .into_iter()
+        .flatten()
+        .map(AsRef::as_ref)
+        .collect();
     let folders: Vec<&Path> = args.maps.iter().chain(&args.split_views).map(AsRef::as_ref).collect();
     if files.is_empty() && folders.is_empty() {
         return Err(Failure::input(
-            "nothing to write: give -o PICTURE, --visibility MASK, --maps DIR, --split-views DIR or --report JSON",
+            "nothing to write: give -o PICTURE, --visibility MASK, --edge-counts PICTURE, --maps DIR, --split-views DIR or \
+             --report JSON",
         ));
     }
     let inputs: Vec<&Path> = request.inputs().into_iter().chain(args.shadows.file()).collect();
@@ -102,6 +110,9 @@ pub fn run(args: &RenderArgs) -> Result<()> {
 
 /// Refuses what cannot be written of several views, or of splits by distance.
 fn check_views(args: &RenderArgs, setup: &SceneSetup, shadows: &ShadowRequest) -> Result<()> {
+    if args.edge_counts.is_some() && shadows.config.edges != Edges::Exact {
+        return Err(Failure::input("--edge-counts shows what exact edges do; give --edges exact"));
+    }
     let has_several = setup.shots.iter().any(|shot| !shot.beside.is_empty());
     if args.maps.is_some() && has_several {
         return Err(Failure::input("--maps and several cameras: maps are of one view; name one --camera"));
@@ -118,7 +129,12 @@ fn check_views(args: &RenderArgs, setup: &SceneSetup, shadows: &ShadowRequest) -
 }
 
 fn outputs(args: &RenderArgs) -> Outputs {
-    Outputs { picture: args.picture.is_some(), mask: args.visibility.is_some(), maps: args.maps.is_some() }
+    Outputs {
+        picture: args.picture.is_some(),
+        mask: args.visibility.is_some(),
+        maps: args.maps.is_some(),
+        edges: args.edge_counts.is_some() || args.report.is_some(),
+    }
 }
 
 /// Puts pictures, masks and maps of a shot's views among the outputs.
@@ -130,6 +146,10 @@ fn stage(args: &RenderArgs, number: Option<u32>, views: &mut [Rendered], staged:
     let masks: Vec<_> = views.iter_mut().filter_map(|view| view.mask.take()).collect();
     if let (Some(path), false) = (&args.visibility, masks.is_empty()) {
         staged.file(&numbered_file(path, number), png(&side_by_side(masks))?)?;
+    }
+    let edges: Vec<_> = views.iter().filter_map(|view| Some(view.edges.as_ref()?.picture())).collect();
+    if let (Some(path), false) = (&args.edge_counts, edges.is_empty()) {
+        staged.file(&numbered_file(path, number), png(&side_by_side(edges))?)?;
     }
     if let Some(path) = &args.maps {
         let maps = views[0].maps.iter().enumerate();
@@ -143,5 +163,6 @@ fn stage(args: &RenderArgs, number: Option<u32>, views: &mut [Rendered], staged:
 fn report(session: &Session, request: &SceneRequest, setup: &SceneSetup, shot: &Shot, views: &[Rendered]) -> Report {
     let beside = shot.beside.iter().zip(&views[1..]);
     let beside = beside.map(|((camera, view), of)| beside_report(setup, camera, view, &of.stats)).collect();
-    Report { beside, ..session.report(request, setup, shot, &views[0].stats) }
+    let edges = views[0].edges.as_ref().map(|edges| edges.sums().into());
+    Report { beside, edges, ..session.report(request, setup, shot, &views[0].stats) }
 }

@@ -24,7 +24,7 @@ pub struct ViewArgs {
     #[command(flatten)]
     pub shadows: ShadowArgs,
     /// Show at once: tint, frusta, held (maps held for the first view, seen from behind it),
-    /// density, errors, maps, planes, times, casters
+    /// density, errors, tests, maps, planes, times, casters
     #[arg(long, value_name = "WHAT,…", value_delimiter = ',', help_heading = "Window")]
     pub show: Vec<ShowAtStart>,
     /// Compare with a preset: a wipe between two pictures

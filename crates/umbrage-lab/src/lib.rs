@@ -22,6 +22,7 @@ pub mod bench;
 pub mod choose;
 #[cfg(feature = "judge")]
 pub mod compare;
+pub mod edges;
 pub mod failure;
 pub mod gallery;
 #[cfg(feature = "judge")]

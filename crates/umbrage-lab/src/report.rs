@@ -63,6 +63,9 @@ pub struct Report {
     pub dropped_casters: Vec<u32>,
     /// The splits of the first light, nearest first; the others' are in `lights`.
     pub splits: Vec<SplitReport>,
+    /// What exact edges did for the picture of the first light; none where edges are sampled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub edges: Option<crate::edges::EdgesReport>,
     /// The views beside the first one, from left to right.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub beside: Vec<BesideReport>,

@@ -73,6 +73,7 @@ impl Session {
             triangles: stats.shadow_triangles,
             dropped_casters: stats.plan.dropped_casters.clone(),
             splits: stats.splits.iter().map(split_report).collect(),
+            edges: None,
             beside: Vec::new(),
             probe: None,
             notes: setup.notes.iter().chain(&self.shadows.notes).chain(&stats.notes).cloned().collect(),

@@ -10,8 +10,8 @@ use crate::{Frame, Lamp, Outputs, ProbeAnswer, ProbePoint, Rendered, Renderer, R
 
 impl Renderer {
     /// As [`Renderer::render`], under the suns of `fade` in place of the frame's. While two suns
-    /// are shown, pictures are mixed in linear display light and masks as they are; maps and
-    /// numbers are those of the sun that is faded to, times those of both together.
+    /// are shown, pictures are mixed in linear display light and masks as they are; maps, counts
+    /// of edges and numbers are those of the sun that is faded to, times those of both together.
     ///
     /// Maps of each sun are held apart, so that what stabilisation holds goes on through a fade.
     ///
@@ -22,7 +22,7 @@ impl Renderer {
             self.end_fade();
             return self.render(&under(frame, fade.to), outputs);
         }
-        let from = self.render(&under(frame, fade.from), Outputs { maps: false, ..outputs })?;
+        let from = self.render(&under(frame, fade.from), Outputs { maps: false, edges: false, ..outputs })?;
         let to = self.as_faded_to(|this| this.render(&under(frame, fade.to), outputs))?;
         let mut stats = to.stats;
         stats.plan_ms += from.stats.plan_ms;
@@ -33,6 +33,7 @@ impl Renderer {
             picture: from.picture.zip(to.picture).map(|(from, to)| mixed_pictures(from, &to, fade)),
             mask: from.mask.zip(to.mask).map(|(from, to)| mixed_masks(from, &to, fade)),
             maps: to.maps,
+            edges: to.edges,
             stats,
         })
     }

@@ -1,6 +1,7 @@
 //! The passes that draw the scene as the eye sees it: the picture and the visibility mask.
 
 use std::borrow::Cow;
+use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3};
 use umbrage::config::{Coordinates, Edges, Layout};
@@ -10,6 +11,7 @@ use umbrage_wgpu::{ShadowMaps, Slice};
 
 use crate::contact::Contact;
 use crate::draw_list::{Drawable, Drawn, Run, Show};
+use crate::edge_counts::COUNTS_FORMAT;
 use crate::formats::{MASK_FORMAT, PICTURE_FORMAT};
 use crate::lamps::{Lamp, LampUniform, MOST_LAMPS};
 use crate::materials::{GpuMaterial, Materials};
@@ -154,6 +156,8 @@ pub(crate) struct Forward {
     sky: Sky,
     /// Depth alone, for contact shadows.
     depth: SurfacePipelines,
+    /// What exact edges do, for who asks: WGSL, what makes its pipelines, and these.
+    counts: Option<(String, Recipe, OnceLock<SurfacePipelines>)>,
 }
 
 impl Forward {
@@ -217,6 +221,10 @@ impl Forward {
             label: Some("Forward::depth_shader"),
             source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::depth())),
         });
+        let counts = (shadows == Shading::WithShadows && maps.edges() == Edges::Exact).then(|| {
+            let library = maps.counting_receiver_wgsl(2) + &umbrage_wgpu::stored_runs_wgsl(0, Names::BINDING);
+            shaders::edge_counts(&library, coordinates)
+        });
         let samples_per_pixel = samples.count();
         let shading = Recipe {
             constants: vec![("LEAST_COVERAGE", samples.least_coverage()), ("SLICED", f64::from(u8::from(sliced)))],
@@ -279,6 +287,7 @@ impl Forward {
             mask: shading
                 .pipelines("Forward::mask", [mask("fs_mask_opaque"), mask("fs_mask_masked"), mask("fs_mask_opaque")]),
             depth: drawn_first.pipelines("Forward::depth", before("fs_exact", None, 1)),
+            counts: counts.map(|text| (text, Recipe { depth: Depth::Drawn, ..shading.clone() }, OnceLock::new())),
             sky: Sky::new(Recipe { layout: sky_layout, depth: Depth::Drawn, ..shading }, samples_per_pixel),
         }
     }
@@ -346,6 +355,27 @@ impl Forward {
         solid: &ViewList,
     ) -> Drawn {
         draw_visible(pass, bindings, drawable, solid, (self.mask_depth.as_ref(), &self.mask))
+    }
+
+    /// Draws what exact edges do for everything solid; nothing where edges are sampled.
+    pub fn draw_counts(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        bindings: Bindings<'_>,
+        drawable: &Drawable<'_>,
+        solid: &ViewList,
+    ) {
+        let Some((text, recipe, made)) = &self.counts else { return };
+        let pipelines = made.get_or_init(|| {
+            let module = recipe.gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("Forward::counts"),
+                source: wgpu::ShaderSource::Wgsl(Cow::Borrowed(text)),
+            });
+            let of = |entry| Surface { fragment_entry: Some(entry), format: Some(COUNTS_FORMAT), ..Surface::default() };
+            let surfaces = ["fs_counts_opaque", "fs_counts_masked", "fs_counts_opaque"].map(of);
+            Recipe { module, ..recipe.clone() }.pipelines("Forward::counts", surfaces)
+        });
+        draw_visible(pass, bindings, drawable, solid, (None, pipelines));
     }
 }
 

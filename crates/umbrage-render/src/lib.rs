@@ -12,6 +12,7 @@ mod contact;
 mod cull;
 mod cut;
 mod draw_list;
+mod edge_counts;
 mod error;
 #[cfg(not(target_arch = "wasm32"))]
 mod fade;
@@ -36,6 +37,7 @@ mod timing;
 mod view_list;
 mod waiting;
 
+pub use edge_counts::{EdgeCause, EdgeCount, EdgeCounts, EdgeSums};
 pub use error::{Error, Result};
 pub use forward::Samples;
 pub use gpu::{Gpu, GpuOptions, device_descriptor};

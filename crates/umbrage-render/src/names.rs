@@ -42,6 +42,26 @@ impl Names {
         buffers.into_iter().zip(binding..).map(entry).collect()
     }
 
+    /// Layout of the four buffers alone, for masks.
+    pub fn layout_of_mask(gpu: &Gpu) -> wgpu::BindGroupLayout {
+        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("Names::layout"),
+            entries: &Self::layout(0),
+        })
+    }
+
+    /// The four buffers alone, where there are names.
+    pub fn group_of_mask(&self, gpu: &Gpu, geometry: &Geometry) -> Option<wgpu::BindGroup> {
+        let entries = self.entries(geometry, 0);
+        (!entries.is_empty()).then(|| {
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("Names::group"),
+                layout: &Self::layout_of_mask(gpu),
+                entries: &entries,
+            })
+        })
+    }
+
     /// Gives ids to what has come, takes those of what has gone, and uploads where all of them
     /// stand. The first value has each object's first id, 0 without one; the second says whether
     /// the buffer is another one.

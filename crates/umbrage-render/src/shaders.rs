@@ -46,6 +46,11 @@ pub(crate) fn forward(library: &str, coordinates: Coordinates, contact: bool) ->
     [library, &contact, scene, view, include_str!("shaders/forward.wgsl"), surface].join("\n")
 }
 
+/// [`forward`] with counts of what exact edges do; the library's text is one that counts.
+pub(crate) fn edge_counts(library: &str, coordinates: Coordinates) -> String {
+    forward(library, coordinates, false) + include_str!("shaders/edge_counts.wgsl")
+}
+
 /// Instead of the library's text: a picture without a word about shadows.
 pub(crate) const WITHOUT_SHADOWS: &str = include_str!("shaders/without_shadows.wgsl");
 
@@ -65,7 +70,8 @@ mod tests {
     use std::mem::offset_of;
 
     use naga::valid::Capabilities;
-    use umbrage_shaders::{Casters, Maps, receiver};
+    use umbrage_shaders::layout::FilterKind;
+    use umbrage_shaders::{Casters, ExactEdges, Maps, ReceiverText, receiver};
 
     use super::*;
     use crate::forward::FrameUniform;
@@ -110,6 +116,10 @@ mod tests {
             let library = |members| umbrage_shaders::caster(0, Casters { views, tiles, ids: false }, members);
             assert_eq!(parsed(&casters(&library(""))).entry_points.len(), 2);
         }
+        let exact = Some(ExactEdges { positions: 4, counted: true });
+        let counting = ReceiverText { exact, filter: Some(FilterKind::Pcf3), ..ReceiverText::default() };
+        let library = receiver(2, counting) + &umbrage_shaders::stored_runs(0, 1);
+        assert!(!parsed(&edge_counts(&library, Coordinates::World)).entry_points.is_empty());
         for maps in [Maps::default(), Maps { without_loads: true, ..Maps::default() }] {
             let with_coordinates = receiver(2, Maps { coordinates: true, ..maps });
             for source in [

@@ -1,7 +1,7 @@
 //! The textures that the eye's passes draw into.
 
 use crate::Gpu;
-use crate::formats::{DEPTH_FORMAT, MASK_FORMAT, PICTURE_FORMAT};
+use crate::formats::{DEPTH_FORMAT, PICTURE_FORMAT};
 use crate::forward::Samples;
 
 /// Where a pass stands among the passes that draw one target together.
@@ -72,8 +72,9 @@ pub(crate) struct MaskTarget {
 }
 
 impl MaskTarget {
-    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
-        let texture = target_texture(gpu, "MaskTarget::visibility", size, MASK_FORMAT, 1);
+    /// `format` is that of masks, or that of other numbers of pixels.
+    pub fn new(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) -> Self {
+        let texture = target_texture(gpu, "MaskTarget::pixels", size, format, 1);
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         let depth = target_texture(gpu, "MaskTarget::depth", size, DEPTH_FORMAT, 1);
         Self { color: view(&texture), depth: view(&depth), texture }

@@ -8,7 +8,7 @@ use umbrage::config::{DepthFormat, Filter, ShadowConfig};
 use umbrage_render::{Error, Frame, Gpu, GpuOptions, Outputs, ProbePoint, RenderSettings, Renderer};
 use umbrage_scene::{Pose, Scene, Texture};
 
-const ALL: Outputs = Outputs { picture: true, mask: true, maps: true };
+const ALL: Outputs = Outputs { picture: true, mask: true, maps: true, edges: false };
 
 #[test]
 fn an_empty_scene_is_a_picture_of_the_sky() {

@@ -13,7 +13,7 @@ use umbrage::{DirectionalLight, View};
 use umbrage_render::{Error, Gpu, Outputs, RenderSettings, Renderer};
 use umbrage_scene::Scene;
 
-const PICTURE: Outputs = Outputs { picture: true, mask: false, maps: false };
+const PICTURE: Outputs = Outputs { picture: true, mask: false, maps: false, edges: false };
 
 fn town() -> Scene {
     scene(vec![

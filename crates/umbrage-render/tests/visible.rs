@@ -8,7 +8,7 @@ use image::RgbaImage;
 use umbrage_render::{Frame, Outputs, Renderer};
 use umbrage_scene::{AlphaMode, Material, Primitive, Scene, Texture, TextureFilter, Wrap};
 
-const PICTURE: Outputs = Outputs { picture: true, mask: false, maps: false };
+const PICTURE: Outputs = Outputs { picture: true, mask: false, maps: false, edges: false };
 
 /// A box, a ball and a card with holes on a ground.
 fn garden() -> Scene {

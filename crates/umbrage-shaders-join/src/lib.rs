@@ -70,6 +70,10 @@ fn roots() -> Vec<Root> {
             texts.push(("maps::separate", features, format!("separate_{count}{name}")));
         }
     }
+    for count in 1..=MOST_MAPS {
+        let features = (1..=count).map(|map| format!("maps_{map}")).collect();
+        texts.push(("maps::ids", features, format!("ids_{count}")));
+    }
     texts
 }
 
@@ -77,7 +81,7 @@ fn roots() -> Vec<Root> {
 /// casters are drawn into several layers or tiles. `moments`: maps hold moments of depth.
 /// `multisampled`: depth has four samples per texel. `own_taps`: the shader takes an anisotropic
 /// sample's taps. `by_hand`: and no sampler filters moments. `normals`: a mask has a buffer of
-/// normals. `coordinates`: receivers take shadow coordinates that vertex shaders made. `maps_2` to
+/// normals. `coordinates`: receivers take shadow coordinates that vertex shaders made. `maps_1` to
 /// `maps_8` come beside these.
 const FEATURES: [&str; 10] = [
     "depth_loads",
@@ -120,7 +124,7 @@ pub fn join(sources: &Path) -> Result<Vec<Text>> {
 
 fn joined(sources: &Path, (root, features, name): &Root) -> Result<Text> {
     let names = HouseNames::default();
-    let counts: Vec<String> = (2..=MOST_MAPS).map(|map| format!("maps_{map}")).collect();
+    let counts: Vec<String> = (1..=MOST_MAPS).map(|map| format!("maps_{map}")).collect();
     let known = FEATURES.into_iter().chain(counts.iter().map(String::as_str));
     let features = Features {
         // All other conditions are choices that a receiver's text may be made without at run time:

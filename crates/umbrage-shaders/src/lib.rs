@@ -23,8 +23,9 @@
 //! | 2 | `sampler_comparison` with `LessEqual`, clamped to the edge; nearest for [`layout::FilterKind::Hard`], else linear |
 //! | 3 … | [`Bound::Separate`]: a `texture_depth_2d` for each split. [`Bound::Cube`]: its faces as layers, where loads are possible |
 //!
-//! With [`ReceiverText::exact`] binding 3 is a `texture_2d_array<u32>`, cleared to 0: the id of the
-//! run of triangles that each texel of binding 1 shows.
+//! With [`ReceiverText::exact`] the next binding is a `texture_2d_array<u32>`, cleared to 0: the id
+//! of the run of triangles that each texel shows. With [`Bound::Separate`] it is a
+//! `texture_2d<u32>` for each split.
 //!
 //! With [`Maps::r32f`] the textures are `f32` that need no filtering; there is no comparison
 //! sampler then, but a cube has a plain one at 2.
@@ -44,7 +45,7 @@ mod receiver;
 pub mod twin;
 mod variant;
 
-pub use receiver::{Lights, Projection, ReceiverText, receiver, stored_runs};
+pub use receiver::{ExactEdges, Lights, Projection, ReceiverText, receiver, stored_runs};
 
 /// How a receiver's maps are bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -194,11 +195,12 @@ pub fn seen(samples: bool) -> &'static str {
 
 /// A whole pass to put behind a [`receiver`]: the entry points `umbrage_mask_vertex` and
 /// `umbrage_mask_fragment` turn a picture's depth (and its normals, if there is a texture of them)
-/// into a mask of what is lit.
+/// into a mask of what is lit. `footprint`: queries say what their pixel covers, for
+/// [`ExactEdges`] of several positions.
 #[must_use]
-pub fn mask(group: u32, normals: bool) -> String {
+pub fn mask(group: u32, normals: bool, footprint: bool) -> String {
     let text = if normals { text!("mask_with_normals") } else { text!("mask") };
-    format!("const UMBRAGE_MASK_GROUP = {group}u;\n{text}\n")
+    format!("const UMBRAGE_MASK_GROUP = {group}u;\nconst UMBRAGE_MASK_FOOTPRINT = {footprint};\n{text}\n")
 }
 
 /// Text to put before a shader that asks for contact shadows: `fn

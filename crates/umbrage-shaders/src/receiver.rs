@@ -34,6 +34,17 @@ const SEPARATE_R32F: [&str; layout::MAX_SPLITS] = [
     text!("separate_8_r32f"),
 ];
 
+const SEPARATE_IDS: [&str; layout::MAX_SPLITS] = [
+    text!("ids_1"),
+    text!("ids_2"),
+    text!("ids_3"),
+    text!("ids_4"),
+    text!("ids_5"),
+    text!("ids_6"),
+    text!("ids_7"),
+    text!("ids_8"),
+];
+
 /// Lights that receivers may be asked about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Lights {
@@ -56,6 +67,59 @@ pub enum Projection {
     /// Either, split by split.
     #[default]
     Any,
+}
+
+/// How triangles that texels name decide where a shadow ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ExactEdges {
+    /// Positions of a pixel that are decided, each lit or dark: 1, the query's own, 4 or 8, which
+    /// lie as the samples of a pixel do.
+    pub positions: u32,
+    /// Whether the text counts what it does, for a debug view: it then has `umbrage_edge_counts()
+    /// -> vec4u`, of all questions of an invocation.
+    pub counted: bool,
+}
+
+impl Default for ExactEdges {
+    /// One position, nothing counted.
+    fn default() -> Self {
+        Self { positions: 1, counted: false }
+    }
+}
+
+impl ExactEdges {
+    /// Sixteenths of a pixel from its middle, of one position, and of the usual samples of 4 and 8
+    /// (<https://registry.khronos.org/vulkan/specs/latest/html/vkspec.html#primsrast-multisampling>).
+    const ONE: &[[i32; 2]] = &[[0, 0]];
+    const FOUR: &[[i32; 2]] = &[[-2, -6], [6, -2], [-6, 2], [2, 6]];
+    const EIGHT: &[[i32; 2]] = &[[1, -3], [-1, 3], [5, 1], [-3, -5], [-5, 5], [-7, -1], [3, 7], [7, -7]];
+
+    /// Where the positions lie, in pixels to the right and down from the middle.
+    #[must_use]
+    pub fn places(self) -> Vec<[f32; 2]> {
+        self.sixteenths().iter().map(|place| place.map(|by| by as f32 / 16.0)).collect()
+    }
+
+    const fn sixteenths(self) -> &'static [[i32; 2]] {
+        match self.positions {
+            0..=3 => Self::ONE,
+            4..=7 => Self::FOUR,
+            _ => Self::EIGHT,
+        }
+    }
+
+    /// The constants that `shaders/lib/edges.wesl` asks for.
+    fn constants(self, ids_binding: usize) -> String {
+        let packed = |axis: usize| {
+            let nibble = |(i, place): (usize, &[i32; 2])| ((place[axis] + 8) as u32) << (4 * i);
+            self.sixteenths().iter().enumerate().map(nibble).sum::<u32>()
+        };
+        let (samples, right, below) = (self.sixteenths().len(), packed(0), packed(1));
+        format!(
+            "const UMBRAGE_IDS_BINDING = {ids_binding}u;\nconst UMBRAGE_EDGE_SAMPLES = {samples}u;\n\
+             const UMBRAGE_EDGE_RIGHT = {right}u;\nconst UMBRAGE_EDGE_BELOW = {below}u;\n"
+        )
+    }
 }
 
 /// What a receiver's text is made for; everything else is not in it. Where a choice is `None` the
@@ -81,10 +145,10 @@ pub struct ReceiverText {
     pub lights: Lights,
     /// One map may be used for one split after the other: [`layout::Frame::slice`] is looked at.
     pub sliced: bool,
-    /// Texels name the triangles that they show, and those decide where a shadow of a sun ends: see
-    /// [`stored_runs`]. For [`Bound::Array`] of depth that can be loaded from, and no other filter
-    /// than [`FilterKind::Pcf3`].
-    pub exact: bool,
+    /// Texels name the triangles that they show, and those decide where a shadow ends: see
+    /// [`stored_runs`]. For depth that can be loaded from, and no other filter than
+    /// [`FilterKind::Pcf3`].
+    pub exact: Option<ExactEdges>,
 }
 
 impl Default for ReceiverText {
@@ -106,7 +170,7 @@ impl From<Maps> for ReceiverText {
             projection: Projection::Any,
             lights: Lights::Any,
             sliced: true,
-            exact: false,
+            exact: None,
         }
     }
 }
@@ -139,7 +203,8 @@ impl ReceiverText {
             "local" => !suns_alone,
             "faces" => self.lights == Lights::Any,
             "sliced" => self.sliced,
-            "exact" => self.exact,
+            "exact" => self.exact.is_some(),
+            "counted" => self.exact.is_some_and(|exact| exact.counted),
             "linear" => !suns_alone && self.maps.r32f,
             _ => unreachable!("the condition {name} stands for no choice"),
         }
@@ -164,7 +229,7 @@ impl ReceiverText {
 pub fn receiver(group: u32, text: impl Into<ReceiverText>) -> String {
     let text: ReceiverText = text.into();
     let ReceiverText { maps, filter, exact, .. } = text;
-    let frames = maps.frames.max(1);
+    let (frames, bound) = (maps.frames.max(1), maps.bound);
     let splits = maps.splits.clamp(1, layout::MAX_SPLITS as u32);
     let loads = maps.r32f || !maps.without_loads;
     let root = match (maps.moments, loads, maps.coordinates) {
@@ -191,10 +256,16 @@ pub fn receiver(group: u32, text: impl Into<ReceiverText>) -> String {
     };
     let filter = filter.map_or_else(String::new, |kind| format!("const UMBRAGE_FILTER = {}u;\n", kind as u32));
     let root = variant::resolved(root, |name| text.has(name));
-    let ids = if exact { text!("ids") } else { "" };
+    let ids = match (exact, bound) {
+        (None, _) => String::new(),
+        (Some(edges), Bound::Array) => edges.constants(3) + text!("ids"),
+        // Beside the faces as layers.
+        (Some(edges), Bound::Cube) => edges.constants(4) + text!("ids"),
+        (Some(edges), Bound::Separate(count)) => edges.constants(3 + count) + SEPARATE_IDS[count - 1],
+    };
     format!(
         "const UMBRAGE_RECEIVER_GROUP = {group}u;\nconst UMBRAGE_FRAMES = {frames}u;\n\
-         const UMBRAGE_SPLITS = {splits}u;\n{filter}{maps}\n{ids}{root}\n"
+         const UMBRAGE_SPLITS = {splits}u;\n{filter}{maps}\n{ids}\n{root}\n"
     )
 }
 

@@ -4,9 +4,10 @@
 use std::collections::BTreeMap;
 
 use proptest::prelude::*;
+use umbrage_shaders::ExactEdges;
 use umbrage_shaders::layout::{RUN_TRIANGLES, Split};
 use umbrage_shaders::twin::bias::{self, Receiver};
-use umbrage_shaders::twin::edges::{Around, Decision, LEAST_M, ROUND, Ray, Run, decided};
+use umbrage_shaders::twin::edges::{Around, Decision, LEAST_M, ROUND, Ray, Run, decided, shades, shares as shared};
 
 type Triangle = [[f32; 3]; 3];
 
@@ -61,7 +62,7 @@ impl Map {
     /// The decision at a point of a surface, ids changed by `id`.
     fn decide(&self, point: [f32; 3], normal: [f32; 3], id: impl Fn(usize) -> u32) -> Decision {
         let at = self.receiver(point, normal);
-        let ray = Ray { origin: point, to_light: [0.0, 1.0, 0.0] };
+        let ray = Ray::to_sun(point, [0.0, 1.0, 0.0]);
         decided(&at, &self.around(&at, id), ray, |id| &self.runs[id as usize - 1])
     }
 
@@ -159,6 +160,36 @@ fn what_has_no_name_is_left_to_the_filter() {
     assert_eq!(map.decide([5.2, 0.0, 0.5], up, id_of), Decision::Lit);
     assert_eq!(map.decide([7.5, 0.0, 0.5], up, without_name), Decision::Covered);
     assert_eq!(map.decide([3.2, 0.0, 0.5], up, without_name), Decision::Lit);
+}
+
+/// A lamp hangs under a plate: what stands farther away than it shades nothing.
+#[test]
+fn nothing_beyond_the_light_shades() {
+    let run = Run::in_frame(&quad([-2.0, 2.0], [-2.0, 2.0], 4.0));
+    let ray = |length_m: f32| Ray { length_m, ..Ray::to_sun([0.3, 0.0, 0.1], [0.0, 1.0, 0.0]) };
+    assert_eq!([3.9, 4.1, 3e38].map(|length_m| shades(&run, ray(length_m))), [false, true, true]);
+}
+
+/// Of several positions of a pixel those are shaded that a triangle stands over.
+#[test]
+fn positions_of_a_pixel_are_decided_one_by_one() {
+    let ground = quad([-60.0, 60.0], [-60.0, 60.0], 0.0);
+    let plate = quad([5.3, 9.0], [-20.0, 20.0], 4.0);
+    let map = Map::of(1.0, &[ground, plate].concat());
+    let mut shares = Vec::new();
+    for step in 0..41u8 {
+        let point = [5.3 + 0.02 * (f32::from(step) - 20.1), 0.0, 0.5];
+        let at = map.receiver(point, [0.0, 1.0, 0.0]);
+        let pixel = [[0.4, 0.0, 0.0], [0.0, 0.0, 0.4]];
+        let ray = Ray { pixel, ..Ray::to_sun(point, [0.0, 1.0, 0.0]) };
+        let edges = ExactEdges { positions: 4, counted: false };
+        let (_, share) = shared(&at, &map.around(&at, id_of), ray, edges, |id| &map.runs[id as usize - 1]);
+        let outside = edges.places().iter().filter(|place| point[0] + 0.4 * place[0] < 5.3).count();
+        assert_eq!(share, outside as f32 / 4.0, "{point:?}");
+        shares.push(outside);
+    }
+    shares.dedup();
+    assert_eq!(shares, [4, 3, 2, 1, 0]);
 }
 
 fn corner() -> impl Strategy<Value = [f32; 3]> {

@@ -78,7 +78,8 @@ fn members_agree() {
 
 #[test]
 fn members_of_stored_runs_agree() {
-    let exact = ReceiverText { exact: true, filter: Some(FilterKind::Pcf3), ..ReceiverText::default() };
+    let exact =
+        ReceiverText { exact: Some(Default::default()), filter: Some(FilterKind::Pcf3), ..ReceiverText::default() };
     let text = umbrage_shaders::receiver(0, exact) + &umbrage_shaders::stored_runs(1, 2);
     let (size, members) = in_rust!(StoredSlot: row_x, row_y, row_z, first_run);
     assert_eq!((size, members), in_wgsl(&text, "UmbrageStoredSlot"));

@@ -3,7 +3,7 @@
 use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use umbrage_shaders::layout::{BiasKind, FilterKind, MetricKind, SelectionKind, TransitionKind};
-use umbrage_shaders::{Bound, Casters, Lights, Maps, MomentMaps, Projection, ReceiverText};
+use umbrage_shaders::{Bound, Casters, ExactEdges, Lights, Maps, MomentMaps, Projection, ReceiverText};
 
 const WITHOUT_LOADS: Maps = Maps {
     bound: Bound::Array,
@@ -169,14 +169,15 @@ fn every_way_to_read_and_to_draw_maps_is_valid_wgsl() {
 /// Every receiver that may have exact edges, with the stored runs beside it.
 #[test]
 fn exact_edges_are_valid_wgsl() {
-    let suns = [Lights::Suns, Lights::Any];
+    let suns = [Lights::Suns, Lights::Single, Lights::Any];
     let projections = [Projection::Plain, Projection::Warped, Projection::Any];
+    let filter = Some(FilterKind::Pcf3);
     for (coordinates, lights, projection) in
         [false, true].into_iter().flat_map(|c| suns.into_iter().flat_map(move |l| projections.map(|p| (c, l, p))))
     {
         let maps = Maps { coordinates, ..Maps::default() };
-        let filter = Some(FilterKind::Pcf3);
-        let text = ReceiverText { exact: true, filter, lights, projection, ..maps.into() };
+        let exact = Some(ExactEdges { positions: if coordinates { 1 } else { 4 }, counted: lights == Lights::Suns });
+        let text = ReceiverText { exact, filter, lights, projection, ..maps.into() };
         let (module, _) =
             validated(&(umbrage_shaders::receiver(1, text) + &umbrage_shaders::stored_runs(0, 3) + FRAGMENT));
         let bound = |name: &str| {
@@ -185,6 +186,18 @@ fn exact_edges_are_valid_wgsl() {
         };
         assert_eq!([bound("umbrage_ids"), bound("umbrage_slots")], [Some((1, 3)), Some((0, 3))]);
         assert_eq!(bound("umbrage_run_positions"), Some((0, 6)));
+    }
+    for (bound, ids) in [(Bound::Cube, [4, 4]), (Bound::Separate(1), [4, 4]), (Bound::Separate(8), [11, 18])] {
+        let maps = Maps { bound, ..Maps::default() };
+        let text = ReceiverText { exact: Some(ExactEdges::default()), filter, ..maps.into() };
+        let (module, _) =
+            validated(&(umbrage_shaders::receiver(1, text) + &umbrage_shaders::stored_runs(0, 3) + FRAGMENT));
+        let named = module
+            .global_variables
+            .iter()
+            .filter(|(_, v)| v.name.as_deref().is_some_and(|n| n.starts_with("umbrage_ids")));
+        let bound: Vec<u32> = named.filter_map(|(_, v)| v.binding.map(|it| it.binding)).collect();
+        assert_eq!([bound.iter().min(), bound.iter().max()], [ids.first(), ids.last()]);
     }
     // Without the choice nobody has them, and nobody has to declare what they ask.
     let sampled = umbrage_shaders::receiver(0, ReceiverText::default());
@@ -274,7 +287,7 @@ fn every_name_is_in_our_namespace() {
 #[test]
 fn deferred_masks_stand_behind_receivers() {
     for normals in [false, true] {
-        validated(&(umbrage_shaders::receiver(1, Maps::default()) + &umbrage_shaders::mask(0, normals)));
+        validated(&(umbrage_shaders::receiver(1, Maps::default()) + &umbrage_shaders::mask(0, normals, normals)));
     }
 }
 

@@ -2,7 +2,7 @@
 //! rays, and against those drawn alone.
 
 use image::GrayAlphaImage;
-use umbrage::config::{DepthFormat, ShadowConfig, Stability};
+use umbrage::config::{DepthFormat, Edges, Filter, ShadowConfig, Stability};
 use umbrage::{Light, View};
 use umbrage_render::{Frame, Lamp, Outputs, RenderSettings, Renderer};
 use umbrage_scene::{Pose, Scene, camera_view, scene_light};
@@ -13,7 +13,7 @@ use umbrage_truth::Truth;
 use umbrage_truth::scores::{Answers, Domain, MisShadowed, mis_shadowed};
 
 const SIZE: [u32; 2] = [240, 180];
-const MASK: Outputs = Outputs { picture: false, mask: true, maps: false };
+const MASK: Outputs = Outputs { picture: false, mask: true, maps: false, edges: false };
 
 struct Room {
     scene: Scene,
@@ -97,6 +97,39 @@ fn masks_of_lamps_are_nearly_true() {
     }
 }
 
+/// Triangles that texels name decide the edges of a lamp's shadows, too.
+#[test]
+fn exact_edges_of_lamps_are_truer() {
+    let Some(gpu) = gpu() else { return };
+    let room = Room::new();
+    let truth = Truth::build(&room.scene, &room.pose, room.view("door").eye()).expect("rays can meet a room");
+    for (name, cameras) in [("pendant", ["door", "table"]), ("reading", ["door", "wall"]), ("washer", ["wall", "door"])]
+    {
+        let light = room.light(name);
+        let error = |edges: Edges| {
+            let mut settings = settings(&[light], Stability::Exact);
+            let filter = Filter::Pcf3 { width_m: None };
+            settings.config = ShadowConfig { edges, filter, map_sizes: vec![256; 2], ..settings.config };
+            let mut renderer = Renderer::new(gpu, &room.scene, &settings).expect("a renderer");
+            let mut all = MisShadowed::default();
+            for camera in cameras {
+                let view = room.view(camera);
+                let exact = truth.mask_under(&view, &light, SIZE, &|_| {}).expect("a mask");
+                let domain = Domain::new(&exact, (0.1, 40.0)).expect("a range");
+                let drawn = mask(&mut renderer, &room.frame(&view, light, &[]));
+                let score = mis_shadowed(&domain, &Answers::from_mask(&drawn)).expect("the same size");
+                all.pixels += score.pixels;
+                all.false_shadow += score.false_shadow;
+                all.false_light += score.false_light;
+            }
+            all
+        };
+        let (sampled, exact) = (error(Edges::Sampled), error(Edges::Exact));
+        eprintln!("{name}: sampled {:.5} ({sampled:?}), exact {:.5} ({exact:?})", sampled.rate(), exact.rate());
+        assert!(exact.rate() < 0.5 * sampled.rate(), "{name}");
+    }
+}
+
 #[test]
 fn linear_depth_decides_as_perspective_depth_does() {
     let Some(gpu) = gpu() else { return };
@@ -132,7 +165,8 @@ fn a_light_among_others_is_as_it_is_alone() {
     assert_eq!(rendered.mask, Some(mask(&mut alone, &room.frame(&view, reading, &[]))));
     assert_eq!(rendered.stats.more_lights.iter().map(|light| light.splits.len()).collect::<Vec<_>>(), [12, 2]);
     // The picture has the light of all: no pixel is darker than with one, and some are brighter.
-    let one = alone.render(&room.frame(&view, reading, &[]), Outputs { picture: true, mask: false, maps: false });
+    let one = alone
+        .render(&room.frame(&view, reading, &[]), Outputs { picture: true, mask: false, maps: false, edges: false });
     let (one, all) = (one.expect("a frame").picture.expect("a picture"), rendered.picture.expect("a picture"));
     let brighter = one.pixels().zip(all.pixels()).filter(|(one, all)| all.0[0] > one.0[0].saturating_add(20)).count();
     assert!(one.pixels().zip(all.pixels()).all(|(one, all)| all.0[0] >= one.0[0].saturating_sub(1)));

@@ -10,6 +10,7 @@ use glam::{DVec2, DVec3};
 use image::{Rgba, RgbaImage};
 use umbrage::config::Selection;
 use umbrage::{Bias, Frustum, ShadowPlan, Split, View};
+use umbrage_render::EdgeSums;
 use umbrage_truth::scores::{Answers, Domain, TexelGradient, acne_and_leak};
 use umbrage_truth::{Hit, Truth, TruthMask};
 
@@ -23,6 +24,8 @@ pub enum Overlay {
     Density,
     /// Where the shadow is wrong.
     Errors,
+    /// Where exact edges test triangles.
+    Tests,
 }
 
 /// What is asked.
@@ -57,6 +60,8 @@ pub enum Sums {
         /// One in a hundred has fewer.
         lowest: f64,
     },
+    /// What exact edges did.
+    Tests(EdgeSums),
     /// Shares of the pixels that face the light within the shadowed range.
     Errors {
         /// Dark though nothing stands before the light, and no edge is near.
@@ -226,6 +231,13 @@ impl Court {
     }
 
     async fn lay(&mut self, drawn: &Drawn, overlay: Overlay) -> Result<Laid, String> {
+        if overlay == Overlay::Tests {
+            // Counted with the picture: no ray is needed.
+            let counts = drawn.taken.first().and_then(|taken| taken.edges.as_ref());
+            let counts = counts.ok_or("edges are sampled and test no triangle; choose edges exact")?;
+            let sums = Sums::Tests(counts.sums());
+            return Ok(Laid { shot: drawn.shot.clone(), overlay, picture: counts.picture(), sums });
+        }
         let progress = Arc::clone(&self.progress);
         self.truth(drawn)?;
         let Some((.., truth)) = &self.truth else { return Err("there is no tree of the scene".to_owned()) };
@@ -249,6 +261,7 @@ impl Court {
                 let mask = taken.mask.as_ref().ok_or("there is no mask to judge")?;
                 errors(view, &traced, &taken.stats.plan, &Answers::from_mask(mask))?
             }
+            Overlay::Tests => return Err("triangles are counted and not traced".to_owned()),
         };
         Ok(Laid { shot: drawn.shot.clone(), overlay, picture, sums })
     }

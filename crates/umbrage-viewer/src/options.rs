@@ -70,18 +70,21 @@ pub enum ShowAtStart {
     Density,
     /// Where shadows are wrong.
     Errors,
+    /// Where exact edges test triangles.
+    Tests,
     /// A tab.
     Tab(Tab),
 }
 
 impl ShowAtStart {
     /// All of them, by their words.
-    pub const ALL: [(&'static str, Self); 9] = [
+    pub const ALL: [(&'static str, Self); 10] = [
         ("tint", Self::Tint),
         ("frusta", Self::Frusta),
         ("held", Self::Held),
         ("density", Self::Density),
         ("errors", Self::Errors),
+        ("tests", Self::Tests),
         ("maps", Self::Tab(Tab::Maps)),
         ("planes", Self::Tab(Tab::Planes)),
         ("times", Self::Tab(Tab::Times)),
@@ -97,6 +100,7 @@ impl ShowAtStart {
             Self::Held => options.held = true,
             Self::Density => show.overlay = Some(Overlay::Density),
             Self::Errors => show.overlay = Some(Overlay::Errors),
+            Self::Tests => show.overlay = Some(Overlay::Tests),
             Self::Tab(tab) => show.tab = Some(tab),
         }
     }

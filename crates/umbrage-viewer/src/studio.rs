@@ -10,7 +10,8 @@ use image::{GrayAlphaImage, GrayImage, RgbaImage};
 use umbrage::{DirectionalLight, ShadowConfig, View};
 use umbrage_lab::lights::{self, NamedLight};
 use umbrage_render::{
-    Frame, FrameStats, Gpu, GpuOptions, Lamp, Outputs, ProbeAnswer, ProbePoint, RenderSettings, Renderer, Samples,
+    EdgeCounts, Frame, FrameStats, Gpu, GpuOptions, Lamp, Outputs, ProbeAnswer, ProbePoint, RenderSettings, Renderer,
+    Samples,
 };
 use umbrage_scene::{Pose, Poser};
 use web_time::Instant;
@@ -48,6 +49,8 @@ pub struct Wants {
     pub maps: bool,
     /// The visibility of each pixel.
     pub mask: bool,
+    /// What exact edges do for each pixel.
+    pub edges: bool,
     /// What the maps say of a point.
     pub probe: Option<ProbePoint>,
 }
@@ -56,7 +59,8 @@ impl Wants {
     /// Whether what was given holds all that is wanted.
     #[must_use]
     pub fn are_met_by(&self, given: &Self) -> bool {
-        (given.maps || !self.maps) && (given.mask || !self.mask) && (self.probe.is_none() || self.probe == given.probe)
+        let probe = self.probe.is_none() || self.probe == given.probe;
+        (given.maps || !self.maps) && (given.mask || !self.mask) && (given.edges || !self.edges) && probe
     }
 
     /// Whether nothing is wanted.
@@ -86,6 +90,8 @@ pub struct Taken {
     pub picture: RgbaImage,
     /// The visibility mask, if it was wanted.
     pub mask: Option<GrayAlphaImage>,
+    /// What exact edges did, if it was wanted and edges are exact.
+    pub edges: Option<EdgeCounts>,
     /// The maps, if they were wanted.
     pub maps: Vec<GrayImage>,
     /// Numbers and plans.
@@ -342,7 +348,8 @@ impl Set<'_> {
             tint: shot.tint,
         };
         let maps = wants.maps && config.filter.samples() == 1 && shot.shadows_on;
-        let rendered = renderer.render_async(&frame, Outputs { picture: true, mask: wants.mask, maps }).await?;
+        let outputs = Outputs { picture: true, mask: wants.mask, maps, edges: wants.edges };
+        let rendered = renderer.render_async(&frame, outputs).await?;
         let answer = match wants.probe {
             Some(point) => renderer.probe_async(&frame, &[point]).await?.into_iter().next(),
             None => None,
@@ -354,6 +361,7 @@ impl Set<'_> {
                 lost_device: false,
             })?,
             mask: rendered.mask,
+            edges: rendered.edges,
             maps: rendered.maps,
             stats: rendered.stats,
             casters: renderer.casters_of(pose),

@@ -115,6 +115,12 @@ pub enum Error {
         "edges exact loads from depth maps, which GL cannot, and fallbacks are forbidden; allow fallbacks, or use edges sampled"
     )]
     NoExactEdges,
+    /// A mask knows no triangles.
+    #[error(
+        "edges exact asks which triangles texels name, and a mask's pass knows none; use ShadowMask::with_runs, or edges \
+         sampled"
+    )]
+    MaskNeedsRuns,
     /// A pipeline for casters would leave the ids of what is behind it in the maps.
     #[error(
         "the fragment shader of {label} does not return the UmbrageTexel that exact edges want, and would leave the id of \
@@ -174,11 +180,13 @@ pub enum Error {
     },
     /// More maps than textures that a shader can sample.
     #[error(
-        "storage separate needs a sampled texture for each of the {count} maps in map_sizes, but a shader of this device samples {limit} \
-         at most (max_sampled_textures_per_shader_stage); use fewer splits, or storage array"
+        "storage separate needs {count} sampled textures for the {maps} maps in map_sizes, but a shader of this device samples \
+         {limit} at most (max_sampled_textures_per_shader_stage); use fewer splits, or storage array"
     )]
     TooManyTextures {
-        /// Textures needed.
+        /// Maps asked for.
+        maps: usize,
+        /// Textures needed: one for each map, with exact edges two.
         count: usize,
         /// The device's limit.
         limit: u32,

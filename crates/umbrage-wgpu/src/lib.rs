@@ -60,6 +60,11 @@
 //!    buffers of the application's ([`stored_runs_layout`], [`stored_runs`]), or two functions of
 //!    its own.
 //!
+//! It holds for all lights and storages. With [`umbrage::config::ShadowConfig::edge_samples`] of 4
+//! or 8 that many positions of a pixel are decided, and edges are smooth; the query has to know its
+//! pixel then (`umbrage_fragment_query`). Deferred masks ask through [`ShadowMask::with_runs`].
+//! [`ShadowMaps::counting_receiver_wgsl`] counts what is tested, for debug views.
+//!
 //! A run is told by a flat vertex attribute, so that no feature of the device is needed: each
 //! triangle's first vertex has to belong to one run alone, which turning the order of corners and,
 //! now and then, a second copy of a vertex achieves. Where a device has `PRIMITIVE_INDEX`, a
@@ -91,8 +96,9 @@
 //!
 //! Call `umbrage_fragment_query` in uniform control flow only. It passes on the pixel, which
 //! dithered transitions and rotated kernels need, and the pixel's footprint, from which moment
-//! filters ([`Filter::is_prefiltered`]) choose a mip level. Without it they read the finest level,
-//! which shimmers in the distance. All other functions work in any control flow and any stage.
+//! filters ([`Filter::is_prefiltered`]) choose a mip level and exact edges the positions that they
+//! decide. Without it the former read the finest level, which shimmers in the distance, and the
+//! latter decide the position alone. All other functions work in any control flow and any stage.
 //!
 //! Put caster WGSL and receiver WGSL into separate shader modules: both declare the shared types.
 
@@ -116,7 +122,7 @@ pub use contact::{ContactFrame, ContactOptions, ContactShadows, contact_wgsl};
 pub use culling::{CullInputs, CullMesh, CulledDraw, InstanceCulling};
 pub use error::{Error, Result};
 pub use maps::{MapPass, ShadowMaps, Slice, device_descriptor, optional_features};
-pub use mask::{MaskFrame, MaskNormals, ShadowMask};
+pub use mask::{MaskFrame, MaskNormals, MaskRuns, ShadowMask};
 pub use moments::MomentStorage;
 pub use occluders::{Occluder, Occluders, stored_runs, stored_runs_layout, stored_runs_wgsl};
 pub use options::{FrameOptions, LightMaps, texture_format};

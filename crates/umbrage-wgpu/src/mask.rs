@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, DVec3};
-use umbrage::config::{Coordinates, ShadowConfig};
+use umbrage::config::{Coordinates, Edges, ShadowConfig};
 
 use crate::{Error, Result, ShadowMaps};
 
@@ -83,18 +83,56 @@ pub struct ShadowMask {
     normals: MaskNormals,
 }
 
+/// What a mask asks of casters, with exact edges.
+#[derive(Clone, Copy, Debug)]
+pub struct MaskRuns<'a> {
+    /// The two functions `umbrage_run` and `umbrage_corner`, with bindings in group 2:
+    /// [`crate::stored_runs_wgsl`]`(2, …)`, or the application's own.
+    pub wgsl: &'a str,
+    /// Layout of group 2.
+    pub layout: &'a wgpu::BindGroupLayout,
+}
+
 impl ShadowMask {
     /// For masks of `format` (`R8Unorm` holds what is lit, `Rg8Unorm` also where something is).
     ///
     /// # Errors
     /// [`Error::MaskNeedsDepthLoads`] where depth textures cannot be loaded from, [`Error::Config`]
     /// with [`umbrage::config::Layout::Reused`], whose maps are gone when the picture's depth is
-    /// complete, and with [`umbrage::config::Edges::Exact`], as the mask's pass knows no triangles.
+    /// complete, [`Error::MaskNeedsRuns`] with [`Edges::Exact`].
     pub fn new(
         device: &wgpu::Device,
         maps: &ShadowMaps,
         format: wgpu::TextureFormat,
         normals: MaskNormals,
+    ) -> Result<Self> {
+        match maps.edges() {
+            Edges::Exact => Err(Error::MaskNeedsRuns),
+            Edges::Sampled => Self::with(device, maps, format, normals, None),
+        }
+    }
+
+    /// [`ShadowMask::new`] for exact edges: set bind group 2 in the pass before
+    /// [`ShadowMask::draw`]. With [`Edges::Sampled`] it is not asked for.
+    ///
+    /// # Errors
+    /// As [`ShadowMask::new`].
+    pub fn with_runs(
+        device: &wgpu::Device,
+        maps: &ShadowMaps,
+        format: wgpu::TextureFormat,
+        normals: MaskNormals,
+        runs: MaskRuns<'_>,
+    ) -> Result<Self> {
+        Self::with(device, maps, format, normals, (maps.edges() == Edges::Exact).then_some(runs))
+    }
+
+    fn with(
+        device: &wgpu::Device,
+        maps: &ShadowMaps,
+        format: wgpu::TextureFormat,
+        normals: MaskNormals,
+        runs: Option<MaskRuns<'_>>,
     ) -> Result<Self> {
         if device.adapter_info().backend == wgpu::Backend::Gl {
             return Err(Error::MaskNeedsDepthLoads);
@@ -130,14 +168,17 @@ impl ShadowMask {
             label: Some("ShadowMask::layout"),
             entries: &entries,
         });
-        let text = maps.receiver_wgsl(1) + &umbrage_shaders::mask(0, normals == MaskNormals::Texture);
+        let footprint = runs.is_some() && maps.config().edge_samples > 1;
+        let own = umbrage_shaders::mask(0, normals == MaskNormals::Texture, footprint);
+        let text = maps.receiver_wgsl(1) + runs.map_or("", |runs| runs.wgsl) + &own;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("ShadowMask::shader"),
             source: wgpu::ShaderSource::Wgsl(Cow::Owned(text)),
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("ShadowMask::pipeline_layout"),
-            bind_group_layouts: &[Some(&layout), Some(maps.receiver_layout())],
+            bind_group_layouts: &[Some(&layout), Some(maps.receiver_layout()), runs.map(|runs| runs.layout)]
+                [..if runs.is_some() { 3 } else { 2 }],
             immediate_size: 0,
         });
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -207,7 +248,8 @@ impl ShadowMask {
         }))
     }
 
-    /// Draws the mask into a pass of one colour target and no depth. Changes bind groups 0 and 1.
+    /// Draws the mask into a pass of one colour target and no depth. Changes bind groups 0 and 1;
+    /// with [`MaskRuns`] the application has set group 2.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, maps: &ShadowMaps, group: &wgpu::BindGroup) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, group, &[]);

@@ -8,6 +8,7 @@ use common::{Answer, Ask, Gpu, NAMED, PCF3, SUN, World, ask, config, cuboid, gro
 use glam::{DVec3, Mat3, Quat, Vec3};
 use umbrage::ShadowPlan;
 use umbrage::config::Edges;
+use umbrage_shaders::ExactEdges;
 use umbrage_shaders::twin::edges::{LEAST_M, Ray, Run, shades};
 use umbrage_wgpu::{CasterPipeline, Error, FrameOptions, MaskNormals, ShadowMaps, ShadowMask, Shadows};
 
@@ -106,6 +107,9 @@ fn edges_are_exact_in_every_layout() {
     for layout in [
         "storage=array",
         "storage=atlas",
+        "storage=separate",
+        "storage=cube",
+        "storage=cube generation=layered",
         "storage=reused transition=hard",
         "generation=layered",
         "generation=instanced",
@@ -115,12 +119,13 @@ fn edges_are_exact_in_every_layout() {
         "storage=array generation=per-split bias=slope",
     ] {
         let Some(gpu) = Gpu::new() else { return };
-        let mut world = World::new(gpu, &config(&[96, 64], PCF3, &format!("blend=0 edges=exact {layout}")));
+        // The faces of a cube have one size.
+        let sizes = if layout.starts_with("storage=cube") { [64, 64] } else { [96, 64] };
+        let mut world = World::new(gpu, &config(&sizes, PCF3, &format!("blend=0 edges=exact {layout}")));
         let (mut asked, mut shifted) = (0, 0);
         for edge in [0.13f32, 0.333] {
             let triangles = stage(edge);
             let one_map = layout.starts_with("storage=reused");
-            let sizes = [96, 64];
             let mut plan = stage_plan(&sizes);
             if one_map {
                 // The map that was drawn last answers for its own slice.
@@ -140,6 +145,48 @@ fn edges_are_exact_in_every_layout() {
         assert_eq!(asked, 800);
         // The comparison can say no: to ids that are one too high.
         assert!(shifted > 60, "{layout}: {shifted}");
+    }
+}
+
+/// A pixel of 0.2 m by 0.2 m of the ground, its middle a hundredth of that to either side of the
+/// plate's edge and farther: lit by as many of its positions as lie outside.
+#[test]
+fn smooth_edges_have_the_share_of_a_pixel_that_is_lit() {
+    const PIXEL: f32 = 0.2;
+    for samples in [4, 8] {
+        let Some(gpu) = Gpu::new() else { return };
+        let settings = format!("blend=0 edges=exact edge-samples={samples}");
+        let mut world = World::new(gpu, &config(&[96, 64], PCF3, &settings));
+        let edge = 0.133;
+        let triangles = stage(edge);
+        world.draw(&stage_plan(&[96, 64]), &FrameOptions::default(), &triangles);
+        let asks: Vec<Ask> = (0..201u8)
+            .map(|i| ask(Vec3::new(edge + PIXEL * (f32::from(i) - 100.3) / 100.0, 0.0, 0.4), Vec3::Y))
+            .collect();
+        let smooth = ASK.replace(
+            "let shadow = umbrage_shadow(umbrage_query(asks[id.x].position.xyz, asks[id.x].normal.xyz));",
+            &format!(
+                "var query = umbrage_query(asks[id.x].position.xyz, asks[id.x].normal.xyz);
+                 query.dx = vec3f({PIXEL}, 0.0, 0.0);
+                 query.dy = vec3f(0.0, 0.0, {PIXEL});
+                 let shadow = umbrage_shadow(query);"
+            ),
+        );
+        assert_ne!(smooth, ASK);
+        let source = world.maps.receiver_wgsl(1) + &smooth;
+        let corners = triangles.iter().take(3 * NAMED).map(|corner| ask(*corner, Vec3::Y));
+        let mut all: Vec<Ask> = asks.iter().copied().chain(corners).collect();
+        all[0] = all[0].with((all.len() - asks.len()) as f32, 0.0);
+        let found: Vec<Answer> = world.gpu.compute(&source, &all, Some(&world.maps));
+        let places = ExactEdges { positions: samples, counted: false }.places();
+        assert_eq!(places.len(), samples as usize);
+        let mut shares = std::collections::BTreeSet::new();
+        for (ask, answer) in asks.iter().zip(&found) {
+            let lit = places.iter().filter(|place| ask.position().x + PIXEL * place[0] < edge).count();
+            assert_eq!(answer.visibility, lit as f32 / samples as f32, "{samples} samples, {ask:?}");
+            shares.insert(lit);
+        }
+        assert_eq!(shares.len(), samples as usize + 1, "each share is there");
     }
 }
 
@@ -203,7 +250,8 @@ fn umbrage_run(id: u32) -> UmbrageRun {
 fn umbrage_corner(run: UmbrageRun, corner: u32) -> vec3f { return asks[run.first].corners[corner].xyz; }
 @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= arrayLength(&asks) { return; }
-    found[id.x] = u32(umbrage_edges_shades(id.x, UmbrageRay(asks[id.x].origin.xyz, asks[id.x].to_light.xyz)));
+    let ray = UmbrageRay(asks[id.x].origin.xyz, asks[id.x].to_light.xyz, 3.0e38, vec3f(0.0), vec3f(0.0));
+    found[id.x] = u32(umbrage_edges_lit_past(id.x, ray, 1u) == 0u);
 }";
 
 #[test]
@@ -244,7 +292,7 @@ fn triangles_are_tested_as_by_the_twin() {
     let twin = |ask: &RunAsk, origin: [f32; 3]| {
         let triangles: Vec<[[f32; 3]; 3]> = ask.corners.chunks(3).map(|t| [xyz(t[0]), xyz(t[1]), xyz(t[2])]).collect();
         let run = Run { rows: ask.rows, min: xyz(ask.min), max: xyz(ask.max), triangles };
-        shades(&run, Ray { origin, to_light: xyz(ask.to_light) })
+        shades(&run, Ray::to_sun(origin, xyz(ask.to_light)))
     };
     let disagree = |twin: &dyn Fn(&RunAsk, [f32; 3]) -> bool| {
         let differs = |(ask, found): &(&RunAsk, &u32)| twin(ask, xyz(ask.origin)) != (**found == 1);
@@ -331,7 +379,7 @@ fn what_does_not_go_with_ids_is_refused_by_name() {
     shadows.caster_pipeline(&discarding(&named, "of ids")).expect("it writes 0");
     shadows.caster_pipeline(&CasterPipeline::default()).expect("ids are written for it");
     let mask = ShadowMask::new(&gpu.device, shadows.maps(), wgpu::TextureFormat::R8Unorm, MaskNormals::FromDepth);
-    assert!(matches!(mask.expect_err("a mask knows no triangles"), Error::Config(_)));
+    assert!(matches!(mask.expect_err("a mask knows no triangles"), Error::MaskNeedsRuns));
     // Two maps of 64² texels of 4 bytes, and as many ids.
     let bytes =
         |settings: &str| ShadowMaps::new(&gpu.device, &config(&[64; 2], PCF3, settings), &SUN).expect("maps").bytes();

@@ -258,7 +258,7 @@ fn more_separate_maps_than_textures_are_refused() {
     // limit.
     let eight = laid_out(&[64; 8], PCF3, Layout::Separate, DepthFormat::D32Float);
     gpu.checked(|| ShadowMaps::new(&gpu.device, &eight, &SUN).expect("eight textures"));
-    let message = Error::TooManyTextures { count: 24, limit: 16 }.to_string();
+    let message = Error::TooManyTextures { maps: 24, count: 24, limit: 16 }.to_string();
     assert!(message.contains("separate") && message.contains("map_sizes") && message.contains("16"), "{message}");
 }
 

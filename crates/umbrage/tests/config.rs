@@ -107,7 +107,6 @@ fn choose(choice: Choice) -> (&'static str, &'static [LightKind]) {
         Choice::TiledLayers => ("generation=mixed", sun),
         Choice::OneMap => ("storage=reused", sun),
         Choice::NotLayers => ("storage=atlas", sun),
-        Choice::NotOneTexture => ("storage=separate", sun),
         Choice::NotPerSplit => ("generation=layered", sun),
         Choice::CubeFaces => ("storage=cube", sun),
         Choice::MoreThanSixSplits => ("splits=7", sun),
@@ -155,12 +154,12 @@ fn every_pair_of_choices_is_refused_exactly_where_a_rule_says_so() {
                 (Choice::MapSelection | Choice::FitToDepth, Choice::DistanceMetric)
                     | (Choice::DistanceMetric, Choice::MapSelection | Choice::FitToDepth)
                     | (
-                        Choice::OneMap | Choice::NotLayers | Choice::NotOneTexture | Choice::CubeFaces,
+                        Choice::OneMap | Choice::NotLayers | Choice::CubeFaces,
                         Choice::NotPerSplit | Choice::TiledLayers
                     )
                     | (
                         Choice::NotPerSplit | Choice::TiledLayers,
-                        Choice::OneMap | Choice::NotLayers | Choice::NotOneTexture | Choice::CubeFaces
+                        Choice::OneMap | Choice::NotLayers | Choice::CubeFaces
                     )
                     | (Choice::MoreThanSixSplits | Choice::MoreThanFourSplits, Choice::UnequalSizes)
                     | (Choice::UnequalSizes, Choice::MoreThanSixSplits | Choice::MoreThanFourSplits)

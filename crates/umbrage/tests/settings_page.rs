@@ -109,7 +109,6 @@ const fn name(choice: Choice) -> &'static str {
         Choice::TiledLayers => "`generation mixed`",
         Choice::OneMap => "`storage reused`",
         Choice::NotLayers => "`storage` other than `array`",
-        Choice::NotOneTexture => "`storage separate` or `cube`",
         Choice::NotPerSplit => "`generation` other than `per-split`",
         Choice::CubeFaces => "`storage cube`",
         Choice::MoreThanSixSplits => "more than 6 `splits`",

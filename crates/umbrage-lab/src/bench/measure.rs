@@ -97,12 +97,15 @@ pub fn measure(
         }
     }
     let [first, ..] = &all[..] else { return Ok(Vec::new()) };
-    Ok(techniques
-        .iter()
-        .zip(&all)
-        .zip(&last)
-        .filter_map(|((technique, measured), stats)| Some(row(technique, measured, first, stats.as_ref()?)))
-        .collect())
+    let rows = techniques.iter().zip(&all).zip(&last);
+    let rows = rows.filter_map(|((technique, measured), stats)| Some(row(technique, measured, first, stats.as_ref()?)));
+    let mut rows: Vec<Row> = rows.collect();
+    for (row, renderer) in rows.iter_mut().zip(&mut renderers) {
+        // Counted by a text of its own, and not in the rounds.
+        let counted = renderer.render(&frame(true), Outputs { edges: true, ..Outputs::default() })?;
+        row.edges = counted.edges.map(|edges| edges.sums().into());
+    }
+    Ok(rows)
 }
 
 fn row(technique: &Technique, measured: &Rounds, baseline: &Rounds, stats: &FrameStats) -> Row {
@@ -142,6 +145,7 @@ fn row(technique: &Technique, measured: &Rounds, baseline: &Rounds, stats: &Fram
         draws: u64::from(stats.shadow_draws),
         triangles: stats.shadow_triangles,
         map_bytes: stats.bytes,
+        edges: None,
         shadow_counts: stats.shadow_counts.map(counts),
         view_counts: stats.view_counts.map(counts),
     }

@@ -99,6 +99,9 @@ pub struct Row {
     pub triangles: u64,
     /// Bytes of the maps.
     pub map_bytes: u64,
+    /// What exact edges did for a picture; none where edges are sampled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub edges: Option<crate::edges::EdgesReport>,
     /// Pipeline statistics of the maps.
     pub shadow_counts: Option<Counts>,
     /// Pipeline statistics of the picture.

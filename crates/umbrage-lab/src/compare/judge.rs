@@ -4,7 +4,7 @@ use glam::{DMat2, DVec2, DVec3};
 use image::{GrayAlphaImage, Rgb, RgbImage};
 use serde::{Deserialize, Serialize};
 use umbrage::{ShadowPlan, Split, View};
-use umbrage_render::FrameStats;
+use umbrage_render::{EdgeCause, EdgeCounts, FrameStats};
 use umbrage_scene::Pose;
 use umbrage_truth::{
     Hit, SoftTruth, Truth, TruthMask,
@@ -14,6 +14,7 @@ use umbrage_truth::{
     },
 };
 
+use crate::edges::{ByCause, EdgesReport};
 use crate::{failure::Result, sun_disc::sun_disc};
 
 /// Neighbouring pixels whose depths differ by this share, or whose normals' cosine is less than
@@ -121,12 +122,27 @@ pub struct Scores {
     /// E_pen: the same over penumbrae.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub e_pen: Option<f64>,
+    /// What exact edges did, and which of it was wrong; none where edges are sampled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub edges: Option<EdgeScores>,
     /// Decisions on and beside the borders of splits.
     pub seams: SeamScores,
     /// What it cost.
     pub cost: Cost,
     /// View depths of the planes (with radial bands distances), metres.
     pub planes_m: Vec<f64>,
+}
+
+/// What exact edges did in a view, and which of it was wrong.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct EdgeScores {
+    /// What they did.
+    #[serde(flatten)]
+    pub did: EdgesReport,
+    /// Falsely dark pixels, as shares of the scored ones, by what decided them.
+    pub false_shadow: ByCause,
+    /// Falsely lit ones.
+    pub false_light: ByCause,
 }
 
 /// Counts of [`Seams`], to be pooled over views.
@@ -243,6 +259,23 @@ pub fn score(judged: &ViewTruth, mask: &GrayAlphaImage, stats: &FrameStats, imag
     };
     scores.planes_m.clone_from(&stats.plan.planes);
     Ok(scores)
+}
+
+/// What exact edges did in a view, and which of it was wrong.
+#[must_use]
+pub fn edge_scores(judged: &ViewTruth, mask: &GrayAlphaImage, edges: &EdgeCounts) -> EdgeScores {
+    let (answers, domain) = (Answers::from_mask(mask), &judged.domain);
+    let wrong = |lit: bool| {
+        let of = |cause: EdgeCause| {
+            let is_wrong = |&&pixel: &&usize| {
+                let answer = answers.visibility()[pixel].is_some_and(|answer| (answer >= 0.5) != lit);
+                domain.lit(pixel) == lit && answer && edges.pixels()[pixel].is_some_and(|count| count.cause == cause)
+            };
+            domain.pixels().iter().filter(is_wrong).count() as f64 / domain.pixels().len().max(1) as f64
+        };
+        ByCause::of(of)
+    };
+    EdgeScores { did: edges.sums().into(), false_shadow: wrong(true), false_light: wrong(false) }
 }
 
 /// The seam score of one view; nothing where there is nothing to score or no border.

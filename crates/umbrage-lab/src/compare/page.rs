@@ -136,6 +136,14 @@ fn soft_figures() -> [Figures; 2] {
     ]
 }
 
+/// The columns of exact edges.
+fn edge_figures() -> [Figures; 2] {
+    [
+        (Column::best("undecided %", Best::Lowest), |t| percent(t.mean.undecided, 2)),
+        (Column::best("triangles each", Best::Lowest), |t| number(t.mean.triangles_per_undecided, 1)),
+    ]
+}
+
 fn table(comparison: &Comparison) -> Section {
     let mut figures = figures();
     let metrics = comparison.techniques.iter().any(|technique| technique.mean.ssim.is_some());
@@ -145,8 +153,12 @@ fn table(comparison: &Comparison) -> Section {
     if comparison.techniques.iter().any(|technique| technique.mean.e_soft.is_some()) {
         figures.extend(soft_figures());
     }
+    if comparison.techniques.iter().any(|technique| technique.mean.undecided.is_some()) {
+        figures.extend(edge_figures());
+    }
     let caption = "Means over the views that count; the best of a column in bold. Acne and leak: wrong farther than 2 + 1.5 m pixels from \
-         true edges. Seam: E within 2 px of a split's border over the larger E of its sides, pooled over all views; 1 is none, 1.1 the most.";
+         true edges. Seam: E within 2 px of a split's border over the larger E of its sides, pooled over all views; 1 is none, 1.1 the most. Undecided: \
+         points that exact edges test against triangles, and how many of these each of them is.";
     let (columns, cells): (Vec<_>, Vec<_>) = figures.into_iter().unzip();
     let table = comparison.techniques.iter().fold(Table::new(caption, columns), |table, technique| {
         table.row(cells.iter().map(|of| of(technique)).collect())

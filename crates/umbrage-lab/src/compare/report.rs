@@ -102,6 +102,12 @@ pub struct Means {
     pub flip: Option<f64>,
     /// SSIM against the mask of the truth.
     pub ssim: Option<f64>,
+    /// With exact edges, the share of the points that depth alone does not decide.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub undecided: Option<f64>,
+    /// With exact edges, triangles that are tested for each of these.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub triangles_per_undecided: Option<f64>,
     /// Casters, summed over splits.
     pub caster_split_pairs: Option<f64>,
     /// Draw calls into maps.
@@ -269,6 +275,8 @@ pub fn means(number: usize, views: &[ViewReport], walks: &[WalkReport]) -> Means
         standing_flicker_per_edge: flicker(|f| f.standing_per_edge),
         flip: over(&|scores| scores.flip),
         ssim: over(&|scores| scores.ssim),
+        undecided: over(&|scores| scores.edges.map(|edges| edges.did.undecided)),
+        triangles_per_undecided: over(&|scores| scores.edges.and_then(|edges| edges.did.triangles_per_undecided)),
         caster_split_pairs: cost(|cost| cost.caster_split_pairs),
         draws: cost(|cost| cost.draws),
         triangles: cost(|cost| cost.triangles),

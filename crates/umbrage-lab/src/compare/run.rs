@@ -9,7 +9,7 @@ use umbrage_truth::{Truth, scores::shared_points};
 use super::{
     job::{Job, Settings},
     journal::{self, Finished},
-    judge::{ViewTruth, score},
+    judge::{ViewTruth, edge_scores, score},
     page,
     report::{self, Comparison, TechniqueReport, ViewReport, WalkReport},
     sheet::{self, Label, SheetShot},
@@ -206,12 +206,13 @@ impl Run<'_> {
             let both: Vec<ProbePoint> = old_points.iter().chain(&points).copied().collect();
             let (mut scores, mut shown) = (Vec::new(), Vec::new());
             for (number, (technique, renderer)) in self.techniques.iter().zip(renderers.iter_mut()).enumerate() {
-                let wanted = Outputs { picture: is_shown, mask: true, maps: false };
+                let wanted = Outputs { picture: is_shown, mask: true, maps: false, edges: true };
                 let coloured = Frame { tint: frame.tint || technique.shadows.options.tint, ..frame };
                 let rendered = renderer.render(&coloured, wanted).map_err(|error| in_technique(technique, error))?;
                 let mask = rendered.mask.ok_or_else(|| Failure::other("the renderer gave no mask"))?;
                 let image_metrics = is_shown && self.settings.image_metrics;
-                let of_view = score(&judged, &mask, &rendered.stats, image_metrics)?;
+                let mut of_view = score(&judged, &mask, &rendered.stats, image_metrics)?;
+                of_view.edges = rendered.edges.map(|edges| edge_scores(&judged, &mask, &edges));
                 scores.push(of_view.clone());
                 let mut flipped = Vec::new();
                 if !both.is_empty() {
@@ -279,7 +280,7 @@ impl Run<'_> {
         };
         let mut plain = |light| -> Result<_> {
             let frame = Frame { light, shadows_on: false, ..*frame };
-            let wanted = Outputs { picture: true, mask: false, maps: false };
+            let wanted = Outputs { picture: true, ..Outputs::default() };
             renderer.render(&frame, wanted)?.picture.ok_or_else(|| Failure::other("the renderer gave no picture"))
         };
         let plain = Plain { lit: plain(frame.light)?, dark: plain(against)? };

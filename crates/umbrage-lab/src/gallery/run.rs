@@ -87,7 +87,7 @@ fn draw(
     let of_view = scene_setup::Shot { camera: view.camera.clone(), view: view.view, ..setup.shots[0].clone() };
     // Shots do not follow each other: what earlier ones hold must not show.
     session.renderer.restart();
-    let all = Outputs { picture: true, mask: true, maps: true };
+    let all = Outputs { picture: true, mask: true, maps: true, edges: false };
     let frame = setup.frame(&of_view, &of_view.view, true, false);
     let rendered = session.renderer.render_views(&[frame], of_view.shown.as_ref(), all)?.remove(0);
     session.renderer.restart();

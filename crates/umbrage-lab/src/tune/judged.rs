@@ -109,7 +109,7 @@ impl<'a> JudgedScene<'a> {
                     shadows_on: true,
                     tint: false,
                 };
-                let wanted = Outputs { picture: false, mask: true, maps: false };
+                let wanted = Outputs { picture: false, mask: true, maps: false, edges: false };
                 let rendered = renderer.render(&drawn, wanted).map_err(in_candidate)?;
                 let mask = rendered.mask.ok_or_else(|| Failure::other("the renderer gave no mask"))?;
                 let scores = score(&frame.judged, &mask, &rendered.stats, false)?;

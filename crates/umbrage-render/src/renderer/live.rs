@@ -95,7 +95,7 @@ impl Renderer {
         let config = self.shadows.config();
         self.contact = gpu.guarded("resizing the picture", || Ok(Contact::wanted(&gpu, config, size)))?;
         // Targets are made when a frame wants them.
-        (self.picture, self.mask, self.size) = (None, None, size);
+        (self.picture, self.mask, self.counts, self.size) = (None, None, None, size);
         Ok(())
     }
 

@@ -20,9 +20,9 @@ use std::sync::OnceLock;
 use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
 use umbrage::View;
-use umbrage::config::{Coordinates, FitTo, Layout, LightKind, ShadowConfig, Translucent};
+use umbrage::config::{Coordinates, Edges, FitTo, Layout, LightKind, ShadowConfig, Translucent};
 use umbrage_scene::{Pose, Scene};
-use umbrage_wgpu::{LightMaps, MaskNormals, ShadowMask, Shadows};
+use umbrage_wgpu::{LightMaps, MaskNormals, MaskRuns, ShadowMask, Shadows};
 
 use self::gathered::Gathered;
 use self::prepare::Prepared;
@@ -35,6 +35,7 @@ use crate::casters::Casters;
 use crate::coarser::Coarser;
 use crate::contact::Contact;
 use crate::draw_list::{Drawable, Instances};
+use crate::edge_counts::{COUNTS_FORMAT, EdgeCounts};
 use crate::formats::MASK_FORMAT;
 use crate::forward::{Forward, Samples, Shading};
 use crate::geometry::{Geometry, SceneMeshes, SkinnedGeometry};
@@ -103,6 +104,8 @@ pub struct Outputs {
     pub mask: bool,
     /// Each split's depth map.
     pub maps: bool,
+    /// What exact edges do for each pixel: a pass of its own, with a text that counts.
+    pub edges: bool,
 }
 
 /// What came out of a frame.
@@ -115,6 +118,8 @@ pub struct Rendered {
     pub mask: Option<GrayAlphaImage>,
     /// Each split's depths, stretched: black is nearest to the light, white is empty.
     pub maps: Vec<GrayImage>,
+    /// What exact edges did for the first light; none where edges are sampled.
+    pub edges: Option<EdgeCounts>,
     /// Numbers.
     pub stats: FrameStats,
 }
@@ -149,6 +154,7 @@ pub struct Renderer {
     pub(crate) picture: Option<PictureTarget>,
     pub(crate) mask: Option<MaskTarget>,
     pub(crate) shadow_mask: Option<ShadowMask>,
+    pub(crate) counts: Option<MaskTarget>,
     pub(crate) notes: Vec<String>,
     /// The objects that maps are planned for, where something is kept of these.
     world: WorldSet,
@@ -219,6 +225,7 @@ impl Renderer {
                 picture: None,
                 mask: None,
                 shadow_mask: None,
+                counts: None,
                 notes,
                 world: WorldSet::default(),
                 kept: KeptMaps::default(),
@@ -310,6 +317,10 @@ impl Renderer {
             }
             _ => None,
         };
+        let edges = match &self.counts {
+            Some(target) if outputs.edges => Some(Capture::record(&gpu, &mut encoder, &target.texture, 0, self.size)?),
+            _ => None,
+        };
         self.look(&mut encoder, frame.view, prepared.origin, outputs)?;
         self.timer.record(&mut encoder);
         let wall = clock.after_all(encoder).await?;
@@ -319,11 +330,14 @@ impl Renderer {
         const SIZED: &str = "a capture has as many bytes as its picture";
         let picture = read(&gpu, picture).await?;
         let mask = read(&gpu, mask).await?;
+        let edges = read(&gpu, edges).await?;
         Ok(Rendered {
             picture: picture.map(|bytes| RgbaImage::from_raw(width, height, bytes).expect(SIZED)),
             // Visibility and hit are grey and alpha already.
             mask: mask.map(|bytes| GrayAlphaImage::from_raw(width, height, bytes).expect(SIZED)),
             maps: self.map_pictures(recorded.maps).await?,
+            edges: edges
+                .map(|bytes| EdgeCounts::read(self.size, &bytemuck::pod_collect_to_vec::<u8, [u16; 4]>(&bytes))),
             stats,
         })
     }
@@ -335,11 +349,15 @@ impl Renderer {
             target.keeps_depth = self.shadows.config().fit_to == FitTo::Depth;
         }
         if outputs.mask && self.mask.is_none() {
-            self.mask = Some(MaskTarget::new(&self.gpu, self.size));
+            self.mask = Some(MaskTarget::new(&self.gpu, self.size, MASK_FORMAT));
         }
         if outputs.mask && self.is_deferred() && self.shadow_mask.is_none() {
-            let mask = ShadowMask::new(&self.gpu.device, self.shadows.maps(), MASK_FORMAT, MaskNormals::FromDepth)?;
-            self.shadow_mask = Some(mask);
+            self.shadow_mask = Some(self.new_shadow_mask()?);
+        }
+        match outputs.edges && self.shadows.maps().edges() == Edges::Exact {
+            true if self.counts.is_none() => self.counts = Some(MaskTarget::new(&self.gpu, self.size, COUNTS_FORMAT)),
+            true => {}
+            false => self.counts = None,
         }
         Ok(())
     }
@@ -355,6 +373,13 @@ impl Renderer {
             materials: &self.materials,
             instances: &self.instances,
         }
+    }
+
+    fn new_shadow_mask(&self) -> Result<ShadowMask> {
+        let (device, maps) = (&self.gpu.device, self.shadows.maps());
+        let layout = Names::layout_of_mask(&self.gpu);
+        let runs = MaskRuns { wgsl: &umbrage_wgpu::stored_runs_wgsl(2, 0), layout: &layout };
+        Ok(ShadowMask::with_runs(device, maps, MASK_FORMAT, MaskNormals::FromDepth, runs)?)
     }
 
     /// Replaces the mask by what its depth alone says.
@@ -378,6 +403,10 @@ impl Renderer {
             })],
             ..Default::default()
         });
+        let runs = self.names.group_of_mask(&self.gpu, &self.scene);
+        if let Some(runs) = &runs {
+            pass.set_bind_group(2, runs, &[]);
+        }
         shadow_mask.draw(&mut pass, self.shadows.maps(), &group);
         Ok(())
     }

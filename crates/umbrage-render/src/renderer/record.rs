@@ -41,8 +41,9 @@ impl Renderer {
         outputs: Outputs,
     ) -> Result<(Recorded, wgpu::CommandEncoder)> {
         let mut recorded = Recorded::default();
-        let (kept_mask, kept_picture) = (self.mask.take(), self.picture.take());
+        let (kept_mask, kept_picture, kept_counts) = (self.mask.take(), self.picture.take(), self.counts.take());
         let mask = kept_mask.as_ref().filter(|_| outputs.mask);
+        let counts = kept_counts.as_ref().filter(|_| outputs.edges);
         let picture = kept_picture.as_ref().filter(|_| outputs.picture);
         if prepared.slices.is_empty() {
             self.draw_maps(&mut encoder, 0..prepared.caster_runs.len(), prepared, &mut recorded);
@@ -62,6 +63,10 @@ impl Renderer {
                     self.forward.draw_mask(pass, bindings, &self.drawable(), &prepared.solid)
                 });
             }
+            if let Some(target) = counts {
+                let mut pass = target.begin(&mut encoder, Turn::ONLY, None);
+                self.forward.draw_counts(&mut pass, bindings, &self.drawable(), &prepared.solid);
+            }
             if let Some(target) = picture {
                 let slot = self.timer.next(1);
                 let mut pass = target.begin(&mut encoder, Turn::ONLY, self.timer.timestamp_writes(slot));
@@ -75,10 +80,10 @@ impl Renderer {
             }
         } else {
             self.record_depth(&mut encoder, prepared, &mut recorded);
-            let targets = (mask, picture);
+            let targets = (mask, picture, counts);
             encoder = self.record_slices(encoder, clock, prepared, outputs, targets, &mut recorded).await?;
         }
-        (self.mask, self.picture) = (kept_mask, kept_picture);
+        (self.mask, self.picture, self.counts) = (kept_mask, kept_picture, kept_counts);
         Ok((recorded, encoder))
     }
 
@@ -159,7 +164,7 @@ impl Renderer {
         clock: &mut Clock,
         prepared: &Prepared,
         outputs: Outputs,
-        (mask, picture): (Option<&MaskTarget>, Option<&PictureTarget>),
+        (mask, picture, counts): (Option<&MaskTarget>, Option<&PictureTarget>, Option<&MaskTarget>),
         recorded: &mut Recorded,
     ) -> Result<wgpu::CommandEncoder> {
         let slices = &prepared.slices;
@@ -178,6 +183,11 @@ impl Renderer {
                 recorded.view += self.timer.counted(&mut pass, slot, |pass| {
                     self.forward.draw_mask(pass, self.bindings(&part.slice), &self.drawable(), &part.solid)
                 });
+            }
+            if let Some(target) = counts {
+                let mut pass = target.begin(&mut encoder, Turn { first, last }, None);
+                self.set_slice(&mut pass, &part.slice);
+                self.forward.draw_counts(&mut pass, self.bindings(&part.slice), &self.drawable(), &part.solid);
             }
             if let Some(target) = picture {
                 let slot = self.timer.next(1);

@@ -61,7 +61,7 @@ impl Renderer {
         if self.sight.looked.insert(self.view_slot, *frame.view) == Some(*frame.view) {
             return Ok(());
         }
-        self.render_unguarded(frame, Outputs { maps: false, ..outputs }).await?;
+        self.render_unguarded(frame, Outputs { maps: false, edges: false, ..outputs }).await?;
         self.remember(frame.view)?;
         // Pictures are waited for here in any case.
         waiting::idle(&self.gpu).await?;

@@ -1,6 +1,7 @@
 //! `lib/edges.wesl` on the CPU: whether the triangles that texels name shade a point.
 
 use super::bias::Receiver;
+use crate::ExactEdges;
 
 /// `edges::LEAST_M`: metres along the light within which nothing shades.
 pub const LEAST_M: f32 = 0.002;
@@ -45,13 +46,25 @@ impl Run {
     }
 }
 
-/// `edges::Ray`: a point's way to the light.
+/// `edges::Ray`: a point's way to the light, and the pixel round the point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     /// Metres from the frame's origin.
     pub origin: [f32; 3],
     /// Unit vector towards the light.
     pub to_light: [f32; 3],
+    /// Metres to the light.
+    pub length_m: f32,
+    /// How the position changes to the next pixel on the right and to the next one below, metres.
+    pub pixel: [[f32; 3]; 2],
+}
+
+impl Ray {
+    /// The way of a point without a pixel to a sun.
+    #[must_use]
+    pub const fn to_sun(origin: [f32; 3], to_light: [f32; 3]) -> Self {
+        Self { origin, to_light, length_m: 3e38, pixel: [[0.0; 3]; 2] }
+    }
 }
 
 /// What the nine texels round a point hold, in the order of [`ROUND`].
@@ -71,9 +84,9 @@ pub struct Around {
 pub enum Decision {
     /// Nothing stands in its way.
     Lit,
-    /// All four texels round it hold something before it.
+    /// All texels that count hold something before it.
     Covered,
-    /// A triangle that a texel names stands in its way.
+    /// A triangle that a texel names stands in its way, or in that of some positions of its pixel.
     Shaded,
     /// A caster without a name may stand in its way: the filter answers.
     Undecided,
@@ -81,24 +94,45 @@ pub enum Decision {
 
 /// `edges::decided`: `runs` gives the run of an id that is not 0.
 pub fn decided<'a>(at: &Receiver, around: &Around, ray: Ray, runs: impl Fn(u32) -> &'a Run) -> Decision {
+    shares(at, around, ray, ExactEdges::default(), runs).0
+}
+
+/// `edges::decided` of several positions of a pixel: what is decided, and the share of them that
+/// no triangle shades.
+pub fn shares<'a>(
+    at: &Receiver,
+    around: &Around,
+    ray: Ray,
+    edges: ExactEdges,
+    runs: impl Fn(u32) -> &'a Run,
+) -> (Decision, f32) {
     let dark = dark_round(at, around);
     if dark == 0 {
-        return Decision::Lit;
+        return (Decision::Lit, 1.0);
     }
+    let places = edges.places();
     let beyond = [0, 1].map(|axis| at.texel[axis] - around.middle[axis] >= 0.5);
     let four = four_of(beyond);
-    if dark & four == four {
-        return Decision::Covered;
+    let enough = if places.len() > 1 { 511 } else { four };
+    if dark & enough == enough {
+        return (Decision::Covered, 0.0);
     }
-    let mut without_name = false;
+    let (mut without_name, mut lit) = (false, vec![true; places.len()]);
     for (i, &id) in around.ids.iter().enumerate() {
         if id == 0 {
             without_name |= dark & four & (1 << i) != 0;
-        } else if !around.ids[..i].contains(&id) && shades(runs(id), ray) {
-            return Decision::Shaded;
+        } else if !around.ids[..i].contains(&id) {
+            let shaded = shaded_places(runs(id), ray, &places);
+            lit.iter_mut().zip(shaded).for_each(|(lit, shaded)| *lit &= !shaded);
         }
     }
-    if without_name { Decision::Undecided } else { Decision::Lit }
+    let share = lit.iter().filter(|lit| **lit).count() as f32 / places.len() as f32;
+    let decision = match () {
+        () if without_name && share > 0.0 => Decision::Undecided,
+        () if share < 1.0 => Decision::Shaded,
+        () => Decision::Lit,
+    };
+    (decision, share)
 }
 
 /// `edges::four_of`: which of [`ROUND`] are the four texels round a point, as bits.
@@ -125,36 +159,48 @@ pub fn dark_round(at: &Receiver, around: &Around) -> u32 {
     dark
 }
 
-/// `edges::shades`: whether a run of triangles shades a point.
+/// `edges::lit_past` of one position: whether a run of triangles shades a point.
 #[must_use]
 pub fn shades(run: &Run, ray: Ray) -> bool {
+    shaded_places(run, ray, &[[0.0; 2]])[0]
+}
+
+/// `edges::lit_past`: which of some places of a pixel a run of triangles shades.
+fn shaded_places(run: &Run, ray: Ray, places: &[[f32; 2]]) -> Vec<bool> {
+    let own = |v: [f32; 3]| run.rows.map(|[x, y, z, _]| dot([x, y, z], v));
     let origin = run.rows.map(|[x, y, z, w]| dot([x, y, z], ray.origin) + w);
-    let to_light = run.rows.map(|[x, y, z, _]| dot([x, y, z], ray.to_light));
+    let (to_light, pixel) = (own(ray.to_light), ray.pixel.map(own));
     let lost = LOST * (largest(ray.origin) * length(to_light) + largest(origin));
-    if !meets_box(run, origin, to_light, lost) {
-        return false;
+    let several = if places.len() > 1 { 0.5 } else { 0.0 };
+    let by = [0, 1, 2].map(|axis| several * (pixel[0][axis].abs() + pixel[1][axis].abs()) + lost);
+    if !meets_box(run, origin, to_light, by, ray.length_m) {
+        return vec![false; places.len()];
     }
     let axis = dominant(to_light);
     let along = turned(to_light, axis);
     let shear = [along[0] / along[2], along[1] / along[2]];
-    run.triangles.iter().any(|corners| {
-        let [a, b, c] = corners.map(|corner| turned(minus(corner, origin), axis));
-        is_before([a, b, c], shear, along[2], lost)
-    })
+    let shaded = |[right, below]: &[f32; 2]| {
+        let aside = turned([0, 1, 2].map(|axis| right * pixel[0][axis] + below * pixel[1][axis]), axis);
+        run.triangles.iter().any(|corners| {
+            let corners = corners.map(|corner| minus(turned(minus(corner, origin), axis), aside));
+            is_before(corners, shear, along[2], [ray.length_m, lost])
+        })
+    };
+    places.iter().map(shaded).collect()
 }
 
-fn meets_box(run: &Run, origin: [f32; 3], direction: [f32; 3], lost: f32) -> bool {
-    let (mut enters, mut leaves) = (0.0f32, f32::INFINITY);
+fn meets_box(run: &Run, origin: [f32; 3], direction: [f32; 3], by: [f32; 3], length_m: f32) -> bool {
+    let (mut enters, mut leaves) = (0.0f32, length_m);
     for axis in 0..3 {
         let inverse = 1.0 / if direction[axis].abs() < 1e-20 { 1e-20 } else { direction[axis] };
-        let one = (run.min[axis] - lost - origin[axis]) * inverse;
-        let other = (run.max[axis] + lost - origin[axis]) * inverse;
+        let one = (run.min[axis] - by[axis] - origin[axis]) * inverse;
+        let other = (run.max[axis] + by[axis] - origin[axis]) * inverse;
         (enters, leaves) = (enters.max(one.min(other)), leaves.min(one.max(other)));
     }
     enters <= leaves
 }
 
-fn is_before([a, b, c]: [[f32; 3]; 3], shear: [f32; 2], along: f32, lost: f32) -> bool {
+fn is_before([a, b, c]: [[f32; 3]; 3], shear: [f32; 2], along: f32, [length_m, lost]: [f32; 2]) -> bool {
     let [p, q, r] = [a, b, c].map(|corner| [corner[0] - shear[0] * corner[2], corner[1] - shear[1] * corner[2]]);
     let weights = [r[0] * q[1] - r[1] * q[0], p[0] * r[1] - p[1] * r[0], q[0] * p[1] - q[1] * p[0]];
     let twice_area: f32 = weights.iter().sum();
@@ -163,7 +209,7 @@ fn is_before([a, b, c]: [[f32; 3]; 3], shear: [f32; 2], along: f32, lost: f32) -
         return false;
     }
     let metres = dot(weights, [a[2], b[2], c[2]]) / (twice_area * along);
-    if metres <= LEAST_M {
+    if metres <= LEAST_M || metres >= length_m {
         return false;
     }
     let normal = cross(minus(b, a), minus(c, a));

@@ -25,6 +25,10 @@ fn umbrage_mask_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let position = umbrage_mask.eye + from_eye;
     var query = umbrage_query(position, umbrage_mask_normal(pixel, from_eye));
     query.pixel = at.xy;
+    if UMBRAGE_MASK_FOOTPRINT {
+        query.dx = umbrage_mask_step(pixel, from_eye, vec2i(1, 0));
+        query.dy = umbrage_mask_step(pixel, from_eye, vec2i(0, 1));
+    }
     let shadow = umbrage_shadow(query);
     return vec4f(select(shadow.visibility, 1.0, is_empty), select(1.0, 0.0, is_empty), 0.0, 1.0);
 }

@@ -28,6 +28,10 @@ fn umbrage_mask_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let position = umbrage_mask.eye + from_eye;
     var query = umbrage_query(position, umbrage_mask_normal(pixel, from_eye));
     query.pixel = at.xy;
+    if UMBRAGE_MASK_FOOTPRINT {
+        query.dx = umbrage_mask_step(pixel, from_eye, vec2i(1, 0));
+        query.dy = umbrage_mask_step(pixel, from_eye, vec2i(0, 1));
+    }
     let shadow = umbrage_shadow(query);
     return vec4f(select(shadow.visibility, 1.0, is_empty), select(1.0, 0.0, is_empty), 0.0, 1.0);
 }
@@ -42,6 +46,17 @@ fn umbrage_mask_position(pixel: vec2i) -> vec3f {
 
 fn umbrage_mask_normal(pixel: vec2i, from_eye: vec3f) -> vec3f {
     return umbrage_mask_towards_eye(textureLoad(umbrage_mask_normals, pixel, 0).xyz, from_eye);
+}
+
+fn umbrage_mask_step(pixel: vec2i, from_eye: vec3f, direction: vec2i) -> vec3f {
+    let size = vec2i(textureDimensions(umbrage_mask_depth));
+    let ahead = umbrage_mask_position(clamp(pixel + direction, vec2i(0), size - 1)) - from_eye;
+    let behind = from_eye - umbrage_mask_position(clamp(pixel - direction, vec2i(0), size - 1));
+    let is_last = any(pixel + direction >= size);
+    let is_first = any(pixel - direction < vec2i(0));
+    let ahead_differs = abs(dot(ahead, umbrage_mask.forward));
+    let behind_differs = abs(dot(behind, umbrage_mask.forward));
+    return select(ahead, behind, is_last || (!is_first && behind_differs < ahead_differs));
 }
 
 fn umbrage_mask_towards_eye(normal: vec3f, from_eye: vec3f) -> vec3f {

@@ -70,6 +70,11 @@ const UMBRAGE_BLEND: u32 = 0u;
 
 const UMBRAGE_DITHER: u32 = 1u;
 
+@if(exact && counted)
+fn umbrage_edge_counts() -> vec4u {
+    return umbrage_edges_counts;
+}
+
 fn umbrage_point(query: UmbrageQuery) -> UmbragePoint {
     var point: UmbragePoint;
     point.position = query.position;
@@ -78,6 +83,8 @@ fn umbrage_point(query: UmbrageQuery) -> UmbragePoint {
     {
         point.dx = query.dx;
         point.dy = query.dy;
+    }
+    {
         point.slice = query.quad_split;
     }
     return point;
@@ -326,6 +333,9 @@ struct UmbrageCrease {
     rise: vec2f,
     unsure: f32
 }
+
+@if(exact && counted)
+var<private> umbrage_edges_counts: vec4u;
 
 fn umbrage_filter_gradient_noise(pixel: vec2f) -> f32 {
     return fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));

@@ -61,11 +61,21 @@ const UMBRAGE_BLEND: u32 = 0u;
 
 const UMBRAGE_DITHER: u32 = 1u;
 
+@if(exact && counted)
+fn umbrage_edge_counts() -> vec4u {
+    return umbrage_edges_counts;
+}
+
 fn umbrage_point(query: UmbrageQuery) -> UmbragePoint {
     var point: UmbragePoint;
     point.position = query.position;
     point.normal = query.normal;
     point.noise = select(umbrage_filter_gradient_noise(query.pixel), 0.5, query.pixel.x < 0.0);
+    @if(exact)
+    {
+        point.dx = query.dx;
+        point.dy = query.dy;
+    }
     return point;
 }
 
@@ -395,11 +405,14 @@ struct UmbrageRun {
 @if(exact)
 struct UmbrageRay {
     origin: vec3f,
-    to_light: vec3f
+    to_light: vec3f,
+    length_m: f32,
+    dx: vec3f,
+    dy: vec3f
 }
 
-@if(exact)
-const UMBRAGE_EDGES_UNDECIDED: f32 = -1.0;
+@if(exact && counted)
+var<private> umbrage_edges_counts: vec4u;
 
 @if(exact)
 const UMBRAGE_EDGES_LEAST_M: f32 = 0.002;
@@ -425,6 +438,12 @@ fn umbrage_edges_step_of(i: u32) -> vec2i {
 }
 
 @if(exact)
+fn umbrage_edges_place_of(i: u32) -> vec2f {
+    let sixteenths = vec2u(UMBRAGE_EDGE_RIGHT >> (4u * i), UMBRAGE_EDGE_BELOW >> (4u * i)) & vec2u(15u);
+    return (vec2f(sixteenths) - 8.0) / 16.0;
+}
+
+@if(exact)
 fn umbrage_edges_four_of(beyond: vec2<bool>) -> u32 {
     let right = select(0u, 1u, beyond.x);
     let below = select(0u, 1u, beyond.y);
@@ -436,14 +455,20 @@ fn umbrage_edges_decided(layer: UmbrageLayer, at: UmbrageReceiver, centre: vec2f
     let middle = floor(centre + layer.offset);
     let dark = umbrage_edges_dark_round(layer, at, middle);
     if dark == 0u {
+        @if(counted)
+        umbrage_edges_count(1u, 0u, 0u);
         return 1.0;
     }
     let four = umbrage_edges_four_of(fract(centre + layer.offset) >= vec2f(0.5));
-    if (dark & four) == four {
+    let enough = select(four, 511u, UMBRAGE_EDGE_SAMPLES > 1u);
+    if (dark & enough) == enough {
+        @if(counted)
+        umbrage_edges_count(2u, 0u, 0u);
         return 0.0;
     }
     var asked = array<u32, 9>();
     var without_name = false;
+    var lit = (1u << UMBRAGE_EDGE_SAMPLES) - 1u;
     for (var i = 0u; i < 9u; i++) {
         let id = umbrage_map_id(layer.index, umbrage_edges_texel_round(layer, middle, i));
         if id == 0u {
@@ -455,11 +480,23 @@ fn umbrage_edges_decided(layer: UmbrageLayer, at: UmbrageReceiver, centre: vec2f
             is_new = is_new && asked[j] != id;
         }
         asked[i] = id;
-        if is_new && umbrage_edges_shades(id, ray) {
-            return 0.0;
+        if is_new {
+            lit = umbrage_edges_lit_past(id, ray, lit);
+            if lit == 0u {
+                break;
+            }
         }
     }
-    return select(1.0, UMBRAGE_EDGES_UNDECIDED, without_name);
+    let share = f32(countOneBits(lit)) / f32(UMBRAGE_EDGE_SAMPLES);
+    let is_open = without_name && lit != 0u;
+    @if(counted)
+    umbrage_edges_count(select(select(3u, 4u, share < 1.0), 5u, is_open), 0u, 0u);
+    return select(share, -share, is_open);
+}
+
+@if(exact && counted)
+fn umbrage_edges_count(cause: u32, runs: u32, triangles: u32) {
+    umbrage_edges_counts = vec4u(max(umbrage_edges_counts.x, cause), umbrage_edges_counts.y + select(0u, 1u, cause > 0u), umbrage_edges_counts.zw + vec2u(runs, triangles));
 }
 
 @if(exact)
@@ -483,39 +520,55 @@ fn umbrage_edges_dark_round(layer: UmbrageLayer, at: UmbrageReceiver, middle: ve
 }
 
 @if(exact)
-fn umbrage_edges_shades(id: u32, ray: UmbrageRay) -> bool {
+fn umbrage_edges_lit_past(id: u32, ray: UmbrageRay, lit: u32) -> u32 {
     let run = umbrage_run(id);
     let point = vec4f(ray.origin, 1.0);
     let origin = vec3f(dot(run.row_x, point), dot(run.row_y, point), dot(run.row_z, point));
-    let to_light = vec3f(dot(run.row_x.xyz, ray.to_light), dot(run.row_y.xyz, ray.to_light), dot(run.row_z.xyz, ray.to_light));
+    let to_light = umbrage_edges_own(run, ray.to_light);
     let largest = max(max(abs(ray.origin.x), abs(ray.origin.y)), abs(ray.origin.z));
     let own_largest = max(max(abs(origin.x), abs(origin.y)), abs(origin.z));
     let lost = UMBRAGE_EDGES_LOST * (largest * length(to_light) + own_largest);
-    if !umbrage_edges_meets_box(run, origin, to_light, lost) {
-        return false;
+    let dx = umbrage_edges_own(run, ray.dx);
+    let dy = umbrage_edges_own(run, ray.dy);
+    let pixel = select(vec3f(0.0), 0.5 * (abs(dx) + abs(dy)), UMBRAGE_EDGE_SAMPLES > 1u);
+    @if(counted)
+    umbrage_edges_count(0u, 1u, 0u);
+    if !umbrage_edges_meets_box(run, origin, to_light, pixel + lost, ray.length_m) {
+        return lit;
     }
     let axis = umbrage_edges_dominant(to_light);
     let along = umbrage_edges_turned(to_light, axis);
     let shear = along.xy / along.z;
-    for (var i = 0u; i < run.triangles; i++) {
+    var left = lit;
+    for (var i = 0u; i < run.triangles && left != 0u; i++) {
         let a = umbrage_edges_turned(umbrage_corner(run, 3u * i) - origin, axis);
         let b = umbrage_edges_turned(umbrage_corner(run, 3u * i + 1u) - origin, axis);
         let c = umbrage_edges_turned(umbrage_corner(run, 3u * i + 2u) - origin, axis);
-        if umbrage_edges_is_before(a, b, c, shear, along.z, lost) {
-            return true;
+        @if(counted)
+        umbrage_edges_count(0u, 0u, 1u);
+        for (var k = 0u; k < UMBRAGE_EDGE_SAMPLES; k++) {
+            let place = umbrage_edges_place_of(k);
+            let aside = umbrage_edges_turned(place.x * dx + place.y * dy, axis);
+            let shades = umbrage_edges_is_before(a - aside, b - aside, c - aside, shear, along.z, vec2f(ray.length_m, lost));
+            left &= ~select(0u, 1u << k, shades);
         }
     }
-    return false;
+    return left;
 }
 
 @if(exact)
-fn umbrage_edges_meets_box(run: UmbrageRun, origin: vec3f, direction: vec3f, lost: f32) -> bool {
+fn umbrage_edges_own(run: UmbrageRun, v: vec3f) -> vec3f {
+    return vec3f(dot(run.row_x.xyz, v), dot(run.row_y.xyz, v), dot(run.row_z.xyz, v));
+}
+
+@if(exact)
+fn umbrage_edges_meets_box(run: UmbrageRun, origin: vec3f, direction: vec3f, by: vec3f, length_m: f32) -> bool {
     let inverse = 1.0 / select(direction, vec3f(1e-20), abs(direction) < vec3f(1e-20));
-    let one = (run.min - lost - origin) * inverse;
-    let other = (run.max + lost - origin) * inverse;
+    let one = (run.min - by - origin) * inverse;
+    let other = (run.max + by - origin) * inverse;
     let enters = min(one, other);
     let leaves = max(one, other);
-    return max(max(enters.x, enters.y), max(enters.z, 0.0)) <= min(leaves.x, min(leaves.y, leaves.z));
+    return max(max(enters.x, enters.y), max(enters.z, 0.0)) <= min(min(leaves.x, leaves.y), min(leaves.z, length_m));
 }
 
 @if(exact)
@@ -531,7 +584,7 @@ fn umbrage_edges_turned(v: vec3f, axis: u32) -> vec3f {
 }
 
 @if(exact)
-fn umbrage_edges_is_before(a: vec3f, b: vec3f, c: vec3f, shear: vec2f, along: f32, lost: f32) -> bool {
+fn umbrage_edges_is_before(a: vec3f, b: vec3f, c: vec3f, shear: vec2f, along: f32, bounds: vec2f) -> bool {
     let p = a.xy - shear * a.z;
     let q = b.xy - shear * b.z;
     let r = c.xy - shear * c.z;
@@ -542,12 +595,12 @@ fn umbrage_edges_is_before(a: vec3f, b: vec3f, c: vec3f, shear: vec2f, along: f3
         return false;
     }
     let metres = dot(weights, vec3f(a.z, b.z, c.z)) / (twice_area * along);
-    if metres <= UMBRAGE_EDGES_LEAST_M {
+    if metres <= UMBRAGE_EDGES_LEAST_M || metres >= bounds.x {
         return false;
     }
     let normal = cross(b - a, c - a);
     let reach = max(max(length(a), length(b)), length(c));
-    return abs(dot(normal, a)) > (lost + UMBRAGE_EDGES_LOST * reach) * length(normal);
+    return abs(dot(normal, a)) > (bounds.y + UMBRAGE_EDGES_LOST * reach) * length(normal);
 }
 
 const UMBRAGE_FILTER_LEAST_LIGHT: f32 = 0.05;
@@ -873,7 +926,11 @@ var<uniform> umbrage_frames: array<UmbrageFrame, UMBRAGE_FRAMES>;
 struct UmbragePoint {
     position: vec3f,
     normal: vec3f,
-    noise: f32
+    noise: f32,
+    @if(exact)
+    dx: vec3f,
+    @if(exact)
+    dy: vec3f
 }
 
 fn umbrage_frame_view_depth(frame: u32, position: vec3f) -> f32 {
@@ -1060,10 +1117,11 @@ fn umbrage_shade_lit_share(frame: u32, split: UmbrageSplit, index: u32, plane: U
     let map_last = map_first + vec2i(i32(split.size) - 1);
     let layer = UmbrageLayer(split.layer, split.layer_texels, split.texel_offset + split.corner, map_first, map_last);
     @if(exact)
+    var found = 0.0;
+    @if(exact)
     {
-        let ray = UmbrageRay(point.position, towards_light);
-        let found = umbrage_edges_decided(layer, plane, clamp(plane.texel, first, last), ray);
-        if found != UMBRAGE_EDGES_UNDECIDED {
+        found = umbrage_edges_decided(layer, plane, clamp(plane.texel, first, last), umbrage_shade_ray_of(frame, plane, point, towards_light));
+        if found >= 0.0 {
             return found;
         }
     }
@@ -1084,7 +1142,19 @@ fn umbrage_shade_lit_share(frame: u32, split: UmbrageSplit, index: u32, plane: U
     }
     let lit = umbrage_filter_lit_share(layer, kind, softness, at, clamp(at.texel, first, last));
     @if(exact)
-    return select(0.0, 1.0, lit >= 0.5);
+    return select(0.0, -found, lit >= 0.5);
     @if(!exact)
     return lit;
+}
+
+@if(exact)
+fn umbrage_shade_ray_of(frame: u32, at: UmbrageReceiver, point: UmbragePoint, towards_light: vec3f) -> UmbrageRay {
+    @if(!local)
+    let metres = 3e38;
+    @if(local)
+    let metres = select(3e38, distance(umbrage_frames[frame].light_position, point.position), umbrage_frames[frame].light_range_m > 0.0);
+    let longest = 2.0 * max(at.texel_m.x, at.texel_m.y);
+    let dx = point.dx * min(1.0, longest / max(length(cross(point.dx, towards_light)), 1e-20));
+    let dy = point.dy * min(1.0, longest / max(length(cross(point.dy, towards_light)), 1e-20));
+    return UmbrageRay(point.position, towards_light, metres, dx, dy);
 }

@@ -145,7 +145,7 @@ fn whatever_a_device_lacks_everything_renders() {
             technique.settings.size = SIZE;
             technique.settings.config.range = stage.range();
             let mut renderer = Renderer::new(&gpu, &stage.scene, &technique.settings).expect("a renderer");
-            let outputs = Outputs { mask: true, picture: true, maps: true };
+            let outputs = Outputs { mask: true, picture: true, maps: true, edges: false };
             let rendered = renderer.render(&stage.frame(&view, false), outputs).expect("a frame");
             let stats = rendered.stats;
             assert_eq!(stats.splits.len(), rendered.maps.len());

@@ -213,7 +213,8 @@ impl App {
             session.show.overlay = match session.show.overlay {
                 None => Some(Overlay::Density),
                 Some(Overlay::Density) => Some(Overlay::Errors),
-                Some(Overlay::Errors) => None,
+                Some(Overlay::Errors) => Some(Overlay::Tests),
+                Some(Overlay::Tests) => None,
             };
         }
         for (key, (tab, _)) in [Key::Num1, Key::Num2, Key::Num3, Key::Num4].into_iter().zip(Tab::ALL) {

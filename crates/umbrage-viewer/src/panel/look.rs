@@ -2,6 +2,7 @@
 
 use egui::{Align2, Color32, Pos2, ProgressBar, Rect, Sense, TextStyle, Ui, Vec2};
 use umbrage::config::Preset;
+use umbrage_render::{EdgeCause, EdgeCounts, EdgeSums};
 
 use crate::app::App;
 use crate::judge::{ERROR_COLOURS, Overlay, Sums, density_colour};
@@ -35,6 +36,11 @@ pub(super) fn look(app: &mut App, ui: &mut Ui) {
             "errors",
             "Each pixel against the exact shadow: acne, leaks, and what an edge's resolution explains; rays are traced while \
              nothing moves",
+        ),
+        (
+            Some(Overlay::Tests),
+            "tests of triangles",
+            "Where texels disagree and exact edges ask the triangles that they name; the stronger, the more were tested",
         ),
     ] {
         if ui.radio(session.show.overlay == overlay, text).on_hover_text(help).clicked() {
@@ -84,6 +90,27 @@ fn legend(session: &Session, ui: &mut Ui) {
             if let Some(Sums::Errors { pixels, .. }) = sums {
                 ui.weak(format!("of {pixels} pixels that face the light"));
             }
+        }
+        Some(Overlay::Tests) => {
+            let sums = match sums {
+                Some(Sums::Tests(sums)) => sums,
+                _ => EdgeSums::default(),
+            };
+            let share = |count: u64| 100.0 * count as f64 / sums.points.max(1) as f64;
+            let causes = [
+                ("lit: none is hit", EdgeCause::Missed),
+                ("dark: one is hit", EdgeCause::Hit),
+                ("no name: the filter", EdgeCause::Filter),
+            ];
+            for ((text, cause), [r, g, b]) in causes.into_iter().zip(EdgeCounts::COLOURS) {
+                ui.horizontal(|ui| {
+                    let (rect, _) = ui.allocate_exact_size(Vec2::splat(10.0), Sense::hover());
+                    ui.painter().rect_filled(rect, 2.0, Color32::from_rgb(r, g, b));
+                    ui.label(format!("{text} {:.2} %", share(sums.of(cause))));
+                });
+            }
+            let each = sums.triangles as f64 / sums.tested().max(1) as f64;
+            ui.weak(format!("{:.2} % of {} pixels, {each:.1} triangles each", share(sums.tested()), sums.points));
         }
         None => {}
     }

@@ -35,7 +35,9 @@ impl Session {
             let surface = picked.surface.as_ref()?;
             Some(ProbePoint { position: surface.position, normal: surface.normal })
         });
-        Wants { maps: self.show.tab == Some(Tab::Maps), mask: self.show.overlay == Some(Overlay::Errors), probe }
+        let overlay = self.show.overlay;
+        let (mask, edges) = (overlay == Some(Overlay::Errors), overlay == Some(Overlay::Tests));
+        Wants { maps: self.show.tab == Some(Tab::Maps), mask, edges, probe }
     }
 
     /// The next picture to ask for: none while one is on its way, or nothing has changed.
@@ -152,7 +154,11 @@ impl Session {
             return Some(Question::Pick(Arc::clone(drawn), at));
         }
         let overlay = self.show.overlay?;
-        let has_mask = overlay != Overlay::Errors || drawn.wants.mask;
+        let has_mask = match overlay {
+            Overlay::Density => true,
+            Overlay::Errors => drawn.wants.mask,
+            Overlay::Tests => drawn.wants.edges,
+        };
         let is_there = self.laid.as_ref().is_some_and(|laid| laid.shot == shot && laid.overlay == overlay);
         if is_there || !has_mask || !self.settled {
             return None;

@@ -155,15 +155,21 @@ impl MapBindings {
             let ty = wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false };
             (binding, ty, Bound::View(view))
         };
-        let ids = targets.ids.as_ref().map(|ids| {
+        // Behind the maps: `UMBRAGE_IDS_BINDING` of `umbrage_shaders::receiver`.
+        let (first, view_dimension) = match it.storage {
+            Storage::Separate => (3 + targets.maps.len() as u32, D2),
+            Storage::Cube => (4, D2Array),
+            _ => (3, D2Array),
+        };
+        let ids = targets.ids.iter().zip(first..).map(|(ids, binding)| {
             let view = ids.create_view(&wgpu::TextureViewDescriptor {
                 label: Some("ShadowMaps::ids"),
-                dimension: Some(D2Array),
+                dimension: Some(view_dimension),
                 ..Default::default()
             });
             let sample_type = wgpu::TextureSampleType::Uint;
-            let ty = wgpu::BindingType::Texture { sample_type, view_dimension: D2Array, multisampled: false };
-            (3, ty, Bound::View(view))
+            let ty = wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false };
+            (binding, ty, Bound::View(view))
         });
         let mut list: Vec<_> = match it.storage {
             Storage::Separate => (0..targets.maps.len()).map(|index| map(3 + index as u32, index, D2)).collect(),

@@ -1,6 +1,6 @@
 //! What the device allows.
 
-use umbrage::config::Storage;
+use umbrage::config::{Edges, Storage};
 
 use super::place::{Place, Viewport};
 use super::slot::Slot;
@@ -9,15 +9,21 @@ use super::targets;
 use crate::{Error, Result};
 
 /// What the device holds of layers and of textures.
-pub(super) fn check_limits(device: &wgpu::Device, storage: Storage, arrangement: &Arrangement) -> Result<()> {
+pub(super) fn check_limits(
+    device: &wgpu::Device,
+    (storage, edges): (Storage, Edges),
+    arrangement: &Arrangement,
+) -> Result<()> {
     let limits = device.limits();
     let (layers, limit) = (targets::layers_needed(device, storage, arrangement), limits.max_texture_array_layers);
     if layers > limit {
         return Err(Error::TooManyLayers { count: layers, limit });
     }
-    let (count, limit) = (arrangement.tiles.len(), limits.max_sampled_textures_per_shader_stage);
+    let (maps, limit) = (arrangement.tiles.len(), limits.max_sampled_textures_per_shader_stage);
+    // Ids lie beside each map.
+    let count = if edges == Edges::Exact { 2 * maps } else { maps };
     if storage == Storage::Separate && count > limit as usize {
-        return Err(Error::TooManyTextures { count, limit });
+        return Err(Error::TooManyTextures { maps, count, limit });
     }
     Ok(())
 }

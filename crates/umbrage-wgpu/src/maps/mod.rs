@@ -12,16 +12,13 @@ mod slices;
 pub(crate) mod slot;
 pub(crate) mod storage;
 mod targets;
+mod texts;
 
 use std::num::NonZeroU32;
 
 use umbrage::ShadowPlan;
-use umbrage::config::{
-    Cache, Coordinates, DepthFormat, Edges, Filter, Generation, Layout, LightKind, Rebuilds, Selection, ShadowConfig,
-    SplitMetric, Storage,
-};
-use umbrage_shaders::layout::{MetricKind, SelectionKind};
-use umbrage_shaders::{Bound, Casters, Lights, Maps, Projection, ReceiverText};
+use umbrage::config::{Cache, DepthFormat, Edges, Filter, Generation, Layout, Rebuilds, ShadowConfig};
+use umbrage_shaders::Casters;
 
 use choose::{Abilities, Chosen};
 use groups::{Received, Uniforms};
@@ -35,7 +32,7 @@ use storage::Arrangement;
 use targets::Targets;
 
 use crate::moments::{MomentStorage, Moments};
-use crate::options::{filter_kind, texture_format, transition_kind};
+use crate::options::texture_format;
 use crate::{Error, FrameOptions, LightMaps, Result, device};
 
 /// Features that make shadows better where an adapter has them; [`device_descriptor`] requests
@@ -138,7 +135,7 @@ impl ShadowMaps {
         let (storage, generation) = (layout.storage(), layout.generation());
         let passes = MapPass::all(generation, sizes.len(), abilities);
         let arrangement = Arrangement::new(storage, generation, &passes, sizes, limits.max_texture_dimension_2d)?;
-        check_limits(device, storage, &arrangement)?;
+        check_limits(device, (storage, edges), &arrangement)?;
 
         let targets = Targets::new(device, config, (storage, edges), sizes, &arrangement, &passes);
         let depth_loads = abilities.depth_loads;
@@ -337,67 +334,6 @@ impl ShadowMaps {
         umbrage_shaders::caster(group, Casters { views, tiles, ids: self.edges == Edges::Exact }, members)
     }
 
-    /// What any shader needs to ask for visibility; `group` is the index at which the app binds
-    /// [`ShadowMaps::receiver_bind_group`]. With [`Coordinates::Vertex`] vertex shaders may make
-    /// the coordinates of every split's map (`umbrage_shadow_coordinates` and
-    /// `umbrage_shadow_from_coordinates`, see `umbrage_shaders::Maps::coordinates`). On GL and
-    /// WebGL2, where depth textures cannot be loaded from, [`Filter::Pcss`] is [`Filter::Disc`],
-    /// unless the format is [`DepthFormat::R32Float`].
-    #[must_use]
-    pub fn receiver_wgsl(&self, group: u32) -> String {
-        umbrage_shaders::receiver(group, self.receiver_text())
-    }
-
-    /// What receivers' text is made for: what the config settles, and nothing else.
-    fn receiver_text(&self) -> ReceiverText {
-        let config = &self.config;
-        let kinds = || self.slots.iter().map(|slot| slot.kind);
-        let lights = match () {
-            () if kinds().all(|kind| kind == LightKind::Directional) => Lights::Suns,
-            () if kinds().all(|kind| kind.faces() == 1) => Lights::Single,
-            () => Lights::Any,
-        };
-        // Splits of local lights are chosen by view depth, whatever a sun's are chosen by.
-        let of_suns = lights == Lights::Suns;
-        let (selection, metric) = match config.selection {
-            Selection::Map => (SelectionKind::Map, None),
-            Selection::Interval(SplitMetric::ViewDepth) => (SelectionKind::Depth, Some(MetricKind::ViewDepth)),
-            Selection::Interval(SplitMetric::Distance) => (SelectionKind::Depth, Some(MetricKind::Distance)),
-        };
-        ReceiverText {
-            filter: Some(filter_kind(&config.filter)),
-            selection: of_suns.then_some(selection),
-            metric: metric.filter(|_| of_suns).or((of_suns).then_some(MetricKind::ViewDepth)),
-            transition: Some(transition_kind(config.transition)),
-            // Part of the look, which changes from frame to frame.
-            bias: None,
-            // A split whose warp has nothing to gain has a plain map.
-            projection: if config.first_warp().is_some() { Projection::Any } else { Projection::Plain },
-            lights,
-            sliced: self.layout.storage() == Storage::Reused,
-            exact: self.edges == Edges::Exact,
-            ..self.receiver_maps().into()
-        }
-    }
-
-    /// How receivers read these maps.
-    fn receiver_maps(&self) -> Maps {
-        let bound = match self.layout.storage() {
-            Storage::Separate => Bound::Separate(self.splits()),
-            Storage::Cube => Bound::Cube,
-            Storage::Array | Storage::Atlas | Storage::Reused => Bound::Array,
-        };
-        Maps {
-            bound,
-            r32f: self.config.depth_format.is_colour(),
-            without_loads: !self.depth_loads,
-            frames: self.slots.iter().map(|slot| slot.kind.faces() as u32).sum(),
-            splits: self.slots.iter().map(|slot| slot.sizes.len() as u32).max().unwrap_or(1),
-            moments: self.moments.as_ref().map(Moments::maps),
-            coordinates: self.config.coordinates == Coordinates::Vertex,
-        }
-    }
-
     /// The config that they carry out.
     #[must_use]
     pub fn config(&self) -> &ShadowConfig {
@@ -419,11 +355,14 @@ impl ShadowMaps {
         self.edges
     }
 
-    /// The texture of what each texel of the maps names, with [`Edges::Exact`]: `R32Uint`, with the
-    /// layers and the places of [`ShadowMaps::map_texture`]. Can be copied from.
+    /// The texture of what each texel of the map of split `split` names, with [`Edges::Exact`]:
+    /// `R32Uint`, with the layers and the places of [`ShadowMaps::map_texture`]. Can be copied from.
+    ///
+    /// # Panics
+    /// If `split` is not less than [`ShadowMaps::map_count`].
     #[must_use]
-    pub fn id_texture(&self) -> Option<&wgpu::Texture> {
-        self.targets.ids.as_ref()
+    pub fn id_texture(&self, split: usize) -> Option<&wgpu::Texture> {
+        self.targets.id(self.places[split].tile.layer)
     }
 
     /// Whether pipelines for casters and receivers that were made for `other` fit these maps too.

@@ -17,8 +17,8 @@ pub(super) struct Targets {
     separate: bool,
     /// Depth buffers beside maps that are colours.
     depths: Vec<wgpu::Texture>,
-    /// What each texel of the one texture of maps shows, with exact edges.
-    pub ids: Option<wgpu::Texture>,
+    /// What each texel of the maps shows, with exact edges: a texture for each of `maps`.
+    pub ids: Vec<wgpu::Texture>,
     attachments: Vec<Attachments>,
 }
 
@@ -61,22 +61,23 @@ impl Targets {
             Storage::Cube => vec![map(it.layer_texels, it.layers)],
             _ => vec![map(it.layer_texels, array_layers(it.layers, it.layer_texels, backend))],
         };
-        let ids = (edges == Edges::Exact).then(|| {
-            let layers = maps[0].depth_or_array_layers();
-            texture(device, "ShadowMaps::ids", ID_FORMAT, it.layer_texels, [layers, 1], read)
-        });
+        let id = |map: &wgpu::Texture| {
+            let texels = [map.width(), map.height()];
+            texture(device, "ShadowMaps::ids", ID_FORMAT, texels, [map.depth_or_array_layers(), 1], read)
+        };
+        let ids: Vec<wgpu::Texture> = if edges == Edges::Exact { maps.iter().map(id).collect() } else { Vec::new() };
         // Passes follow each other, so that those of one size share a depth buffer.
         let mut depths: Vec<wgpu::Texture> = Vec::new();
         let attachments = passes
             .iter()
             .map(|pass| {
                 let tile = it.tiles[pass.splits().start];
-                let map = if separate { &maps[tile.layer as usize] } else { &maps[0] };
-                let first = if separate { 0 } else { tile.layer };
+                let (number, first) = if separate { (tile.layer as usize, 0) } else { (0, tile.layer) };
+                let map = &maps[number];
                 let views = pass.views() as u32;
                 let keeps = storage == Storage::Atlas && pass.is_alone() && pass.splits().start > 0;
                 if !format.is_colour() {
-                    let colour = ids.as_ref().map(|ids| view(ids, first, views));
+                    let colour = ids.get(number).map(|ids| view(ids, first, views));
                     return Attachments { colour, clear: NO_ID, depth: view(map, first, views), keeps };
                 }
                 let same_size = |depth: &wgpu::Texture| depth.width() == map.width() && depth.height() == map.height();
@@ -96,6 +97,11 @@ impl Targets {
     /// The texture that holds what a tile calls its layer.
     pub fn map(&self, layer: u32) -> &wgpu::Texture {
         &self.maps[if self.separate { layer as usize } else { 0 }]
+    }
+
+    /// The texture of ids beside it.
+    pub fn id(&self, layer: u32) -> Option<&wgpu::Texture> {
+        self.ids.get(if self.separate { layer as usize } else { 0 })
     }
 
     /// Which layer of that texture it is.

@@ -40,8 +40,6 @@ pub enum Choice {
     OneMap,
     /// Maps are not plain layers of one texture.
     NotLayers,
-    /// Maps are neither layers nor tiles of one texture.
-    NotOneTexture,
     /// Maps are not drawn one by one.
     NotPerSplit,
     /// Maps are faces of a cube.
@@ -76,7 +74,7 @@ pub enum Choice {
 
 impl Choice {
     /// All choices that a rule may name.
-    pub const ALL: [Self; 31] = [
+    pub const ALL: [Self; 30] = [
         Self::Warp,
         Self::MapSelection,
         Self::DistanceMetric,
@@ -92,7 +90,6 @@ impl Choice {
         Self::TiledLayers,
         Self::OneMap,
         Self::NotLayers,
-        Self::NotOneTexture,
         Self::NotPerSplit,
         Self::CubeFaces,
         Self::MoreThanSixSplits,
@@ -129,7 +126,6 @@ impl Choice {
             Self::TiledLayers => config.layout == Layout::MixedArray,
             Self::OneMap => config.layout == Layout::Reused,
             Self::NotLayers => config.layout.storage() != Storage::Array,
-            Self::NotOneTexture => matches!(config.layout.storage(), Storage::Separate | Storage::Cube),
             Self::NotPerSplit => config.layout.generation() != Generation::PerSplit,
             Self::CubeFaces => config.layout.storage() == Storage::Cube,
             Self::MoreThanSixSplits => config.splits() > 6,
@@ -160,10 +156,10 @@ impl Choice {
             Self::Band => &["blend", "transition"],
             Self::MomentFilter | Self::SunFilter => &["filter", "msaa", "bleeding", "derivatives"],
             Self::OtherThanPcf3 => &["filter", "sun-angle", "rotate-kernel", "msaa", "bleeding", "derivatives"],
-            Self::ExactEdges => &["edges"],
+            Self::ExactEdges => &["edges", "edge-samples"],
             Self::SeveralSamples => &["msaa"],
             Self::ColourMaps | Self::OtherDepth => &["depth-format"],
-            Self::OneMap | Self::NotLayers | Self::NotOneTexture | Self::CubeFaces => &["storage", "generation"],
+            Self::OneMap | Self::NotLayers | Self::CubeFaces => &["storage", "generation"],
             Self::NotPerSplit | Self::TiledLayers => &["generation", "storage"],
             Self::MoreThanSixSplits | Self::MoreThanFourSplits => &["splits", "map-size", "planes"],
             Self::UnequalSizes => &["map-size"],
@@ -212,7 +208,7 @@ impl Choice {
             Self::MomentFilter | Self::SunFilter | Self::OtherThanPcf3 => {
                 config.filter = Filter::Pcf3 { width_m: None };
             }
-            Self::ExactEdges => config.edges = Edges::Sampled,
+            Self::ExactEdges => (config.edges, config.edge_samples) = (Edges::Sampled, 1),
             Self::SeveralSamples => {
                 if let Filter::Moments(moments) = &mut config.filter {
                     moments.samples = 1;
@@ -224,12 +220,7 @@ impl Choice {
             Self::FitToDepth => config.fit_to = FitTo::Boxes,
             Self::IntervalSelection => config.selection = Selection::Map,
             Self::SliceCrop => config.crop = Crop::SceneDependent,
-            Self::OneMap
-            | Self::NotLayers
-            | Self::NotOneTexture
-            | Self::NotPerSplit
-            | Self::CubeFaces
-            | Self::TiledLayers => {
+            Self::OneMap | Self::NotLayers | Self::NotPerSplit | Self::CubeFaces | Self::TiledLayers => {
                 config.layout = Layout::Array;
             }
             Self::DeferredCoordinates | Self::VertexCoordinates => config.coordinates = Coordinates::World,

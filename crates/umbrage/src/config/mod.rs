@@ -129,9 +129,10 @@ pub struct ShadowConfig {
     pub drop_small_casters: bool,
     /// How a map is filtered.
     pub filter: Filter,
-    /// What decides where a shadow ends. With [`Edges::Exact`] a texel names the triangles that it
-    /// shows, beside their depth, and the filter is asked only where casters have no name.
+    /// What decides where a shadow ends.
     pub edges: Edges,
+    /// Positions of a pixel that [`Edges::Exact`] decides, for smooth edges: 1, 4 or 8.
+    pub edge_samples: u32,
     /// What a texel of a map stores.
     pub depth_format: DepthFormat,
     /// Where maps are stored and how they are drawn.
@@ -262,6 +263,7 @@ impl ShadowConfig {
             drop_small_casters,
             filter: _,
             edges: _,
+            edge_samples: _,
             depth_format: _,
             layout: _,
             cache,
@@ -446,6 +448,10 @@ impl ShadowConfig {
     }
 
     fn check_filter(&self) -> Result<()> {
+        if !matches!(self.edge_samples, 1 | 4 | 8) {
+            let samples = self.edge_samples;
+            return Err(Error::setting("edge-samples", format!("{samples} samples are not supported; give 1, 4 or 8")));
+        }
         if let Some(width) = self.filter.width_m()
             && !(width > 0.0 && width <= 1e6)
         {

@@ -42,6 +42,7 @@ impl Preset {
             drop_small_casters: false,
             filter: Filter::Pcf3 { width_m: None },
             edges: Edges::Sampled,
+            edge_samples: 1,
             depth_format: DepthFormat::D32Float,
             layout: Layout::Array,
             cache: Cache::Off,

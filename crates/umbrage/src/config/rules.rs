@@ -105,18 +105,6 @@ pub const RULES: &[Rule] = &[
         "use depth-format d32f or d16, or edges sampled",
     ),
     rule(
-        Choice::NotOneTexture,
-        Choice::ExactEdges,
-        "the names of triangles are read as layers of one texture",
-        "use storage array, atlas or reused, or edges sampled",
-    ),
-    rule(
-        Choice::DeferredCoordinates,
-        Choice::ExactEdges,
-        "a mask is made from the picture's depth by a pass that knows no triangles",
-        "use coordinates world, or edges sampled",
-    ),
-    rule(
         Choice::SeveralSamples,
         Choice::NotPerSplit,
         "layers of several samples cannot be drawn at once",
@@ -224,12 +212,6 @@ pub const RULES: &[Rule] = &[
         Choice::LocalLight,
         "the filter needs depth that is linear in metres, which only a directional light has",
         "use another filter, such as pcf5, or a directional light",
-    ),
-    rule(
-        Choice::ExactEdges,
-        Choice::LocalLight,
-        "triangles are tested along parallel light",
-        "use edges sampled, or a directional light",
     ),
     rule(
         Choice::VertexCoordinates,

@@ -4,7 +4,7 @@ use super::given::{Given, Wrong, refuse, refuse_other};
 use super::names::unknown;
 use super::text::{count, map_sizes, number, numbers, range, switch};
 use super::{
-    ExtentSteps, Filter, Generation, Layout, Moments, Range, Selection, ShadowConfig, SplitMetric, SplitScheme,
+    Edges, ExtentSteps, Filter, Generation, Layout, Moments, Range, Selection, ShadowConfig, SplitMetric, SplitScheme,
     Stability, Storage, Transition, words,
 };
 use crate::{MAX_SPLITS, Warp};
@@ -327,6 +327,22 @@ pub(super) fn moments<'a>(config: &'a mut ShadowConfig, key: &str) -> Result<&'a
             ))
         }
     }
+}
+
+pub(super) fn edges(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
+    config.edges = text.parse()?;
+    if config.edges != Edges::Exact {
+        config.edge_samples = 1;
+    }
+    Ok(())
+}
+
+pub(super) fn edge_samples(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
+    if config.edges != Edges::Exact {
+        return refuse("edge-samples applies to edges exact only; omit it, or use edges exact".to_owned());
+    }
+    config.edge_samples = count(text)?;
+    Ok(())
 }
 
 pub(super) fn transition(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {

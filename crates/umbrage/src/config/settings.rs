@@ -305,8 +305,16 @@ pub const SETTINGS: &[Setting] = &[
         help: "What decides where a shadow ends",
         kind: Kind::Words(Edges::WORDS),
         rebuilds: Rebuilds::Pipelines,
-        set: |config, text, _| text.parse().map(|edges| config.edges = edges).map_err(Wrong::from),
+        set: set::edges,
         get: |config| word(config.edges.word()),
+    },
+    Setting {
+        key: "edge-samples",
+        help: "Exact edges: positions of a pixel that are decided, for smooth edges",
+        kind: Kind::CountOf(&[1, 4, 8]),
+        rebuilds: Rebuilds::Pipelines,
+        set: set::edge_samples,
+        get: |config| (config.edges == Edges::Exact).then_some(Value::Count(config.edge_samples)),
     },
     Setting {
         key: "fallbacks",

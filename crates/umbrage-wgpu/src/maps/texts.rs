@@ -1,0 +1,87 @@
+//! The texts that receivers put before their shaders.
+
+use umbrage::config::{Coordinates, Edges, LightKind, Selection, SplitMetric, Storage};
+#[cfg(doc)]
+use umbrage::config::{DepthFormat, Filter};
+use umbrage_shaders::layout::{MetricKind, SelectionKind};
+use umbrage_shaders::{Bound, ExactEdges, Lights, Maps, Projection, ReceiverText};
+
+use super::ShadowMaps;
+use crate::moments::Moments;
+use crate::options::{filter_kind, transition_kind};
+
+impl ShadowMaps {
+    /// What any shader needs to ask for visibility; `group` is the index at which the app binds
+    /// [`ShadowMaps::receiver_bind_group`]. With [`Coordinates::Vertex`] vertex shaders may make
+    /// the coordinates of every split's map (`umbrage_shadow_coordinates` and
+    /// `umbrage_shadow_from_coordinates`, see `umbrage_shaders::Maps::coordinates`). On GL and
+    /// WebGL2, where depth textures cannot be loaded from, [`Filter::Pcss`] is [`Filter::Disc`],
+    /// unless the format is [`DepthFormat::R32Float`].
+    #[must_use]
+    pub fn receiver_wgsl(&self, group: u32) -> String {
+        umbrage_shaders::receiver(group, self.receiver_text())
+    }
+
+    /// [`ShadowMaps::receiver_wgsl`] that counts what exact edges do, for a debug view. With
+    /// [`Edges::Exact`] it has `umbrage_edge_counts() -> vec4u`, of all questions of an invocation:
+    /// the farthest cause (0 nothing was asked, 1 no texel is dark, 2 all that count are, 3
+    /// triangles were asked and none is hit, 4 one is, 5 the filter answered), the maps that were
+    /// asked, the runs whose boxes were, the triangles.
+    #[must_use]
+    pub fn counting_receiver_wgsl(&self, group: u32) -> String {
+        let text = self.receiver_text();
+        let exact = text.exact.map(|exact| ExactEdges { counted: true, ..exact });
+        umbrage_shaders::receiver(group, ReceiverText { exact, ..text })
+    }
+
+    /// What receivers' text is made for: what the config settles, and nothing else.
+    fn receiver_text(&self) -> ReceiverText {
+        let config = &self.config;
+        let kinds = || self.slots.iter().map(|slot| slot.kind);
+        let lights = match () {
+            () if kinds().all(|kind| kind == LightKind::Directional) => Lights::Suns,
+            () if kinds().all(|kind| kind.faces() == 1) => Lights::Single,
+            () => Lights::Any,
+        };
+        // Splits of local lights are chosen by view depth, whatever a sun's are chosen by.
+        let of_suns = lights == Lights::Suns;
+        let (selection, metric) = match config.selection {
+            Selection::Map => (SelectionKind::Map, None),
+            Selection::Interval(SplitMetric::ViewDepth) => (SelectionKind::Depth, Some(MetricKind::ViewDepth)),
+            Selection::Interval(SplitMetric::Distance) => (SelectionKind::Depth, Some(MetricKind::Distance)),
+        };
+        ReceiverText {
+            filter: Some(filter_kind(&config.filter)),
+            selection: of_suns.then_some(selection),
+            metric: metric.filter(|_| of_suns).or((of_suns).then_some(MetricKind::ViewDepth)),
+            transition: Some(transition_kind(config.transition)),
+            // Part of the look, which changes from frame to frame.
+            bias: None,
+            // A split whose warp has nothing to gain has a plain map.
+            projection: if config.first_warp().is_some() { Projection::Any } else { Projection::Plain },
+            lights,
+            sliced: self.layout.storage() == Storage::Reused,
+            exact: (self.edges == Edges::Exact)
+                .then_some(ExactEdges { positions: config.edge_samples, counted: false }),
+            ..self.receiver_maps().into()
+        }
+    }
+
+    /// How receivers read these maps.
+    fn receiver_maps(&self) -> Maps {
+        let bound = match self.layout.storage() {
+            Storage::Separate => Bound::Separate(self.splits()),
+            Storage::Cube => Bound::Cube,
+            Storage::Array | Storage::Atlas | Storage::Reused => Bound::Array,
+        };
+        Maps {
+            bound,
+            r32f: self.config.depth_format.is_colour(),
+            without_loads: !self.depth_loads,
+            frames: self.slots.iter().map(|slot| slot.kind.faces() as u32).sum(),
+            splits: self.slots.iter().map(|slot| slot.sizes.len() as u32).max().unwrap_or(1),
+            moments: self.moments.as_ref().map(Moments::maps),
+            coordinates: self.config.coordinates == Coordinates::Vertex,
+        }
+    }
+}
