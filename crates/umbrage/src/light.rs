@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::bounds::MOST_METRES;
-use crate::{Error, Result};
+use crate::{Error, Result, maths};
 
 /// Share of a local light's range within which nothing casts, unless another is given: a
 /// lamp's own glass.
@@ -231,7 +231,7 @@ impl Light {
             Self::Spot(light) => {
                 let from_light = point - light.position;
                 let distance = from_light.length();
-                distance <= light.range && light.direction.dot(from_light) >= light.outer_angle.cos() * distance
+                distance <= light.range && light.direction.dot(from_light) >= maths::cos(light.outer_angle) * distance
             }
             Self::Point(light) => point.distance(light.position) <= light.range,
         }

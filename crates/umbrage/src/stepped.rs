@@ -1,6 +1,6 @@
 //! A sun that moves in steps.
 
-use crate::{DirectionalLight, Error, Result};
+use crate::{DirectionalLight, Error, Result, maths};
 
 /// Follows a moving sun in steps, so that shadows stand still between two of them, and returns how
 /// to fade from one to the next.
@@ -86,7 +86,7 @@ impl SteppedSun {
         let passed = if elapsed < self.duration { elapsed / self.duration } else { 1.0 };
         if fade.is_fading() {
             fade.weight = (fade.weight + passed).min(1.0);
-        } else if fade.to.direction().angle_between(sun.direction()) >= self.step {
+        } else if maths::angle_between(fade.to.direction(), sun.direction()) >= self.step {
             fade = SunFade { from: fade.to, to: *sun, weight: passed };
         }
         if !fade.is_fading() {

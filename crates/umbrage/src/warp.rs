@@ -8,7 +8,7 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-use crate::{Projection, View};
+use crate::{Projection, View, maths};
 
 /// How a map spreads its texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -254,7 +254,7 @@ fn psm(target: &WarpTarget<'_>) -> Option<[DVec4; 3]> {
     let (least, most) = bounds(target.receivers.iter().map(|&p| perspective.dot((p - view.eye()).extend(1.0))))?;
     // Light across the view may have all of the camera's own perspective, from near to far; light
     // along it none.
-    let share = (n / f).powf(view.forward().cross(target.light).length());
+    let share = maths::pow(n / f, view.forward().cross(target.light).length());
     let lacking = share * most - least;
     let turn = if lacking > 0.0 { lacking / (lacking + plain * (1.0 - share)) } else { 0.0 };
     let w = perspective * (1.0 - turn) + DVec4::W * (plain * turn);

@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3, DVec4};
 
 use super::matrix::Matrix;
 use crate::bounds::{LEAST_METRES, MOST_METRES};
-use crate::{Error, Result};
+use crate::{Error, Result, maths};
 
 /// The largest tangent between a perspective camera's axis and a side of its view.
 const WIDEST: f64 = 1e6;
@@ -72,7 +72,7 @@ impl Frustum {
         if !(aspect > 0.0 && aspect.is_finite()) {
             return Err(Error::camera("aspect", aspect, "a positive width / height"));
         }
-        let top = (0.5 * fov_y).tan();
+        let top = maths::tan(0.5 * fov_y);
         let right = top * aspect;
         Self { projection: Projection::Perspective, left: -right, right, bottom: -top, top, near, far }.validated()
     }

@@ -2,6 +2,7 @@
 
 use super::names::{Word, named};
 use crate::margin::FilterReach;
+use crate::maths;
 
 /// How a map is filtered.
 ///
@@ -184,7 +185,7 @@ impl Filter {
     pub fn half_width_m(&self) -> Option<f64> {
         match *self {
             Self::Disc { width_m, .. } => width_m.map(|width| 0.5 * width),
-            Self::Pcss { sun_degrees, .. } => Some((0.5 * sun_degrees).to_radians().tan() * MOST_BLOCKER_M),
+            Self::Pcss { sun_degrees, .. } => Some(maths::tan((0.5 * sun_degrees).to_radians()) * MOST_BLOCKER_M),
             _ => None,
         }
     }

@@ -5,7 +5,7 @@ use glam::{DMat4, DVec2, DVec3};
 use super::volume::{Plane, Slice};
 use crate::bounds::Placed;
 use crate::light::map_axes;
-use crate::{Aabb, PointLight, SpotLight};
+use crate::{Aabb, PointLight, SpotLight, maths};
 
 /// The least share of a map's longer edge that its shorter one is, for receivers that the light
 /// sees edge-on.
@@ -40,7 +40,7 @@ pub(crate) struct Part {
 impl LightFrustum {
     /// All that a spot light shines into.
     pub fn of_spot(light: &SpotLight) -> Self {
-        let slope = light.outer_angle().tan();
+        let slope = maths::tan(light.outer_angle());
         Self::new(light.position(), light.direction(), slope, (light.near(), light.range()))
     }
 

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::volume::Lies;
 use crate::bounds::Placed;
+use crate::maths;
 
 /// Directions over half a turn. A map's rectangle may stand on any pair that is a quarter turn
 /// apart, so the step between candidate rectangles is 180° / 32 = 5.6°, which costs at most 5 % of
@@ -34,7 +35,7 @@ impl Fan {
     pub fn new(first: DVec3, depth: DVec3) -> Self {
         let second = depth.cross(first);
         let directions = std::array::from_fn(|i| {
-            let (sin, cos) = (std::f64::consts::PI * i as f64 / DIRECTIONS as f64).sin_cos();
+            let (sin, cos) = maths::sin_cos(std::f64::consts::PI * i as f64 / DIRECTIONS as f64);
             cos * first + sin * second
         });
         let axes = [0, 1, 2].map(|axis| directions.map(|direction: DVec3| direction[axis]));

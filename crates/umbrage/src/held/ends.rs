@@ -1,6 +1,7 @@
 //! The ends of the shadowed range, held where maps have to stand still.
 
 use super::size::HeldSize;
+use crate::maths;
 
 /// The view depths that the planes between splits divide.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,13 +36,13 @@ struct HeldStep {
 
 impl HeldStep {
     fn hold(&mut self, size: f64) -> f64 {
-        let steps = size.log2() * STEPS_PER_OCTAVE;
+        let steps = maths::log2(size) * STEPS_PER_OCTAVE;
         let step = match self.held {
             Some(held) if steps <= held && steps > held - HYSTERESIS => held,
             _ => steps.ceil(),
         };
         self.held = Some(step);
-        2f64.powf(step / STEPS_PER_OCTAVE).max(size)
+        maths::exp2(step / STEPS_PER_OCTAVE).max(size)
     }
 }
 

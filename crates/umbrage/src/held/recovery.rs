@@ -8,7 +8,7 @@
 use glam::DVec2;
 
 use super::size::ENOUGH;
-use crate::{MAX_SPLITS, View};
+use crate::{MAX_SPLITS, View, maths};
 
 /// Frames for which the camera stands before anything recovers: a pause between two steps is not a
 /// standstill.
@@ -184,7 +184,7 @@ impl Recovery {
                     let has_few_rounds = (DURATION as usize) < 2 * row.splits * row.splits;
                     self.goes_back = has_few_rounds && row.is_in_the_way_of(target);
                     let rounds = frames_left / row.splits as u32 / if self.goes_back { 2 } else { 1 };
-                    self.step = row.ratio(target).powf(1.0 / f64::from(rounds.max(1))).max(STEP);
+                    self.step = maths::pow(row.ratio(target), 1.0 / f64::from(rounds.max(1))).max(STEP);
                 }
             }
             let plane = if self.is_way_back { row.splits + 1 - self.left } else { self.left };

@@ -6,6 +6,7 @@ use glam::DVec2;
 use super::size::ENOUGH;
 use crate::config::ExtentSteps;
 use crate::geometry::region::{DIRECTIONS, Region};
+use crate::maths;
 
 /// Relative room for rounding, so that an extent that keeps its value while the camera walks keeps
 /// its step as well.
@@ -33,7 +34,8 @@ impl Rectangle {
 
     /// In whole steps, the smallest that stands on `direction`.
     fn around(target: &Region, direction: usize, steps: f64) -> Self {
-        let round_up = |extent: f64| 2f64.powf((steps * (extent * (1.0 + ROUNDING)).log2()).ceil() / steps).max(extent);
+        let round_up =
+            |extent: f64| maths::exp2((steps * maths::log2(extent * (1.0 + ROUNDING))).ceil() / steps).max(extent);
         Self { direction, extent: needed(target, direction).map(round_up) }
     }
 
@@ -65,7 +67,7 @@ impl HeldRectangle {
             ExtentSteps::PerDoubling(count) => {
                 let steps = f64::from(count);
                 let best = least(target, steps);
-                let excess = 2f64.powf(2.0 / steps);
+                let excess = maths::exp2(2.0 / steps);
                 let excess = if refits { excess.min(ENOUGH * ENOUGH) } else { excess };
                 let enough = best.area() * excess * (1.0 + ROUNDING);
                 let grown = self.held.map(|held| held.grown_to(target, steps));
@@ -86,7 +88,7 @@ impl HeldRectangle {
 /// two steps of rounding and two of hysteresis, should all of them fall to one edge.
 pub(crate) fn longest_edge(steps: ExtentSteps, widest: f64, whole: f64) -> f64 {
     match steps {
-        ExtentSteps::PerDoubling(count) => widest * 2f64.powf(4.0 / f64::from(count)),
+        ExtentSteps::PerDoubling(count) => widest * maths::exp2(4.0 / f64::from(count)),
         ExtentSteps::Levels(count) => widest + whole / f64::from(count),
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::Frustum;
+use crate::{Frustum, maths};
 
 /// Rounds a size up to geometric steps, with one step of hysteresis, so that it changes rarely.
 ///
@@ -40,8 +40,8 @@ impl HeldSize {
 
     /// Holds a size in so many steps to a doubling.
     pub fn hold_in_steps(&mut self, size: f64, steps: f64) -> f64 {
-        let step = |size: f64| 2f64.powf((size.log2() * steps).ceil() / steps).max(size);
-        let lowest = |held: f64| held * 2f64.powf(-2.0 / steps);
+        let step = |size: f64| maths::exp2((maths::log2(size) * steps).ceil() / steps).max(size);
+        let lowest = |held: f64| held * maths::exp2(-2.0 / steps);
         let value = match self.held {
             None => size,
             Some(held) if size <= held * (1.0 + ROUNDING) && size >= lowest(held) => held,
@@ -73,7 +73,7 @@ impl HeldLens {
     /// `frustum`, or one around it that is wider by the same factor on all sides on which it may
     /// grow: one that lies beside the axis is not moved away from it.
     pub fn hold(&mut self, frustum: &Frustum) -> Frustum {
-        let width = (frustum.right - frustum.left).hypot(frustum.top - frustum.bottom);
+        let width = maths::hypot(frustum.right - frustum.left, frustum.top - frustum.bottom);
         let wider = (self.width.hold_in_steps(width, LENS_STEPS_PER_OCTAVE) / width).max(1.0);
         Frustum {
             left: frustum.left.min(frustum.left * wider),

@@ -219,7 +219,7 @@ impl Cells {
             Projection::Orthographic => pair[1] - pair[0],
         };
         let edges = |pair: &[f64], cell: &Cell| match projection {
-            Projection::Perspective => self.unit * cell.edges as f64 * (pair[0] * pair[1]).powf(-1.5),
+            Projection::Perspective => self.unit * cell.edges as f64 * to_minus_three_halves(pair[0] * pair[1]),
             Projection::Orthographic => self.unit * cell.edges as f64,
         };
         let shadowed = || depths.windows(2).zip(&self.cells).filter(|(_, cell)| !cell.casters.is_empty());
@@ -265,6 +265,11 @@ fn between_depths(view: &View, bounds: &Aabb, from: f64, to: f64, mut each: impl
             }
         }
     }
+}
+
+/// `x` to the power of −3/2, by operations that are exactly defined.
+fn to_minus_three_halves(x: f64) -> f64 {
+    1.0 / (x * x.sqrt())
 }
 
 #[cfg(test)]

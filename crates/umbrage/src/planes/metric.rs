@@ -1,5 +1,7 @@
 //! What the planes between splits measure: view depth, or distance from the eye.
 
+use glam::DVec3;
+
 use crate::config::SplitMetric;
 use crate::{Error, Projection, Result, View};
 
@@ -11,7 +13,9 @@ impl SplitMetric {
         let f = view.frustum();
         match self {
             Self::ViewDepth => 1.0,
-            Self::Distance => 1.0 / f.left.abs().max(f.right.abs()).hypot(f.bottom.abs().max(f.top.abs())).hypot(1.0),
+            Self::Distance => {
+                DVec3::new(f.left.abs().max(f.right.abs()), f.bottom.abs().max(f.top.abs()), 1.0).length_recip()
+            }
         }
     }
 

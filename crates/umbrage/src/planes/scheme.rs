@@ -1,7 +1,7 @@
 //! Where the planes between splits stand, and which view depths each map has to serve.
 
 use crate::config::{SplitMetric, SplitScheme, check_range};
-use crate::{Error, Result, View};
+use crate::{Error, Result, View, maths};
 
 /// Computes the `m + 1` planes `C_0 ..= C_m` between `near` and `far` (view depths in metres) into
 /// `planes`.
@@ -17,7 +17,7 @@ pub fn split_planes(scheme: &SplitScheme, near: f64, far: f64, splits: usize, pl
     check_range(near, far)?;
     let m = splits as f64;
     let share = |i: usize| i as f64 / m;
-    let logarithmic = |i: usize| near * (far / near).powf(share(i));
+    let logarithmic = |i: usize| near * maths::pow(far / near, share(i));
     let uniform = |i: usize| near + (far - near) * share(i);
     planes.clear();
     planes.push(near);

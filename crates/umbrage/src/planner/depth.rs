@@ -12,6 +12,7 @@ use crate::bounds::Placed;
 use crate::casters::Most;
 use crate::config::Cache;
 use crate::held::depths::HeldDepths;
+use crate::maths;
 
 /// Depths along the light between which still maps lie whose depth is not clamped, metres; `None`
 /// if nothing says so.
@@ -94,6 +95,6 @@ fn with_room(near: f64, far: f64, texel: f64, step: Option<f64>) -> (f64, f64) {
     let room = 4.0 * texel + 1e-4 * (far - near);
     let (near, far) = (near - room, far + room);
     let Some(step) = step else { return (near, far) };
-    let step = 2f64.powf(step.log2().round());
+    let step = maths::exp2(maths::log2(step).round());
     ((near / step).floor() * step, (far / step).ceil() * step)
 }

@@ -22,7 +22,7 @@ use crate::held::Held;
 use crate::held::recovery::Standing;
 use crate::held::size::HeldSize;
 use crate::planes::scheme::{blend_begin, coverage, split_planes};
-use crate::{Error, Light, Result, ShadowPlan, Split};
+use crate::{Error, Light, Result, ShadowPlan, Split, maths};
 
 /// Share of its depths that a map keeps free before its first caster and behind its last receiver,
 /// for rounding.
@@ -266,7 +266,11 @@ fn part_in(frame: &Frame<'_>, frustum: &LightFrustum, slice: &Slice, receivers: 
 fn depths(target: &Part, least: f64, stands_still: bool) -> (f64, f64) {
     let far = target.far * (1.0 + DEPTH_ROOM);
     let near = (target.near.max(least) * (1.0 - DEPTH_ROOM)).min(0.5 * far);
-    if stands_still { (2f64.powf(near.log2().floor()), 2f64.powf(far.log2().ceil())) } else { (near, far) }
+    if stands_still {
+        (maths::exp2(maths::log2(near).floor()), maths::exp2(maths::log2(far).ceil()))
+    } else {
+        (near, far)
+    }
 }
 
 /// View depths that shadows cover, `C_0` and `C_m`, and whether they fade at the end: the setting;

@@ -6,7 +6,7 @@ use crate::config::check_range;
 use crate::config::{self, SplitMetric, Stability};
 use crate::held::ends::{HeldEnds, Range};
 use crate::planes::visible::visible_range;
-use crate::{Projection, Result};
+use crate::{Projection, Result, maths};
 
 /// The least length of a range that is fitted to what is visible, as a share of its far end.
 const LEAST_RANGE: f64 = 0.01;
@@ -86,7 +86,7 @@ fn first_shown(frame: &Frame<'_>, extent: &Extent, deepest: f64, held: &mut Held
     if frustum.projection == Projection::Perspective {
         return frustum.near;
     }
-    let aside = frustum.left.abs().max(frustum.right.abs()).hypot(frustum.bottom.abs().max(frustum.top.abs()));
+    let aside = maths::hypot(frustum.left.abs().max(frustum.right.abs()), frustum.bottom.abs().max(frustum.top.abs()));
     let first = (extent.nearest * extent.nearest - aside * aside).max(0.0).sqrt();
     if first <= frustum.near {
         return frustum.near;

@@ -11,7 +11,7 @@ use super::frame::{Frame, Sun};
 use crate::bounds::Placed;
 use crate::casters::Most;
 use crate::geometry::volume::lies_below;
-use crate::{Aabb, Projection, View};
+use crate::{Aabb, Projection, View, maths};
 
 /// Receivers that fill less than this share of the picture together, and lie beyond all others,
 /// are ignored in the range.
@@ -29,7 +29,7 @@ const LOOKING_AWAY: f64 = 0.5;
 
 /// Classes of distance, one for each doubling, from 2^-[`NEAREST`] m on.
 const CLASSES: usize = 96;
-const NEAREST: f64 = 32.0;
+const NEAREST: i32 = 32;
 
 /// Casters without thickness whose shadows are looked for receiver by receiver; more are taken for
 /// the worst.
@@ -128,8 +128,8 @@ fn visible_distance(frame: &Frame<'_>) -> f64 {
     let (eye, frustum) = (frame.view.eye(), frame.view.frustum());
     let side = DVec2::new(frustum.left.abs().max(frustum.right.abs()), frustum.bottom.abs().max(frustum.top.abs()));
     let most = match frustum.projection {
-        Projection::Perspective => frustum.far * side.length().hypot(1.0),
-        Projection::Orthographic => frustum.far.abs().max(frustum.near.abs()).hypot(side.length()),
+        Projection::Perspective => frustum.far * maths::hypot(side.length(), 1.0),
+        Projection::Orthographic => maths::hypot(frustum.far.abs().max(frustum.near.abs()), side.length()),
     };
     if frustum.projection == Projection::Orthographic {
         return most;
@@ -163,7 +163,7 @@ impl Shares<'_> {
         let farthest = class;
         loop {
             self.add(class, &mut sum);
-            let begin = 2f64.powf(class as f64 - NEAREST);
+            let begin = begin_of(class);
             if sum >= LEAST_UNITS {
                 return (class < farthest).then_some((2.0 * begin).next_down());
             }
@@ -189,7 +189,7 @@ impl Shares<'_> {
     /// Adds the shares of a class, up to what is enough.
     fn add(&self, of: usize, sum: &mut u64) {
         let eye = self.frame.view.eye();
-        let (begin, end) = (2f64.powf(of as f64 - NEAREST), 2f64.powf(of as f64 + 1.0 - NEAREST));
+        let (begin, end) = (begin_of(of), begin_of(of + 1));
         let begin = if of == 0 { 0.0 } else { begin * (1.0 - 1e-9) };
         let end = if of == CLASSES - 1 { f64::INFINITY } else { end * (1.0 + 1e-9) };
         let end = end.min(self.most);
@@ -209,7 +209,12 @@ impl Shares<'_> {
 
 /// The class of a distance.
 fn class(distance: f64) -> usize {
-    (distance.log2() + NEAREST).clamp(0.0, (CLASSES - 1) as f64) as usize
+    (maths::doubling(distance) + NEAREST).clamp(0, CLASSES as i32 - 1) as usize
+}
+
+/// Where a class begins, metres.
+fn begin_of(class: usize) -> f64 {
+    maths::exp2(class as f64 - f64::from(NEAREST))
 }
 
 /// The whole picture in whole numbers.
