@@ -25,5 +25,5 @@ mod book {
             $(#[doc = include_str!(concat!("../../../book/src/", $file))] mod $name {})*
         };
     }
-    pages!(wgpu: "adopt-wgpu.md", engine: "adopt-engine.md", presets: "presets.md");
+    pages!(wgpu: "adopt-wgpu.md", engine: "adopt-engine.md", presets: "presets.md", interop: "interop.md");
 }

@@ -49,6 +49,7 @@ mod coverage;
 mod error;
 mod geometry;
 mod held;
+mod interop;
 mod keeper;
 mod light;
 mod margin;

@@ -2,7 +2,8 @@
 
 use glam::{DAffine3, DMat4, Mat4};
 
-/// A 4×4 matrix of columns, as an application has it: of `glam` or plain arrays, in `f32` or `f64`.
+/// A 4×4 matrix as an application has it: of `glam`, plain arrays of columns, or with the feature
+/// `mint` that crate's matrices of columns or rows, in `f32` or `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrix(pub DMat4);
 
