@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use crate::{
     adapter,
-    run::{build_umbrage, cargo, output, run, succeeds},
+    run::{build_umbrage, cargo, output, root, run, succeeds},
     web,
 };
 
@@ -20,6 +20,8 @@ const BLESS: &str = "UMBRAGE_BLESS";
 const QUICK_CRATES: [&str; 5] = ["umbrage", "umbrage-shaders", SHADERS_JOIN, "umbrage-scene", "xtask"];
 /// Joins the WGSL that is checked in.
 const SHADERS_JOIN: &str = "umbrage-shaders-join";
+/// The plugin for Bevy: a workspace of its own, so that its versions stay apart from ours.
+const BEVY: &str = "integrations/bevy";
 /// Features that build C++; they are checked where there is a compiler for it.
 const CPP_FEATURES: [&str; 1] = ["flip"];
 
@@ -47,6 +49,20 @@ pub fn test() -> Result<()> {
 pub fn quick() -> Result<()> {
     run(cargo().args(["fmt", "--all", "--check"]))?;
     run(cargo().arg("test").args(of(&QUICK_CRATES)))
+}
+
+/// Formatting, lints, documentation and tests of the plugin for Bevy. Its tests need no adapter.
+pub fn bevy() -> Result<()> {
+    let folder = root().join(BEVY);
+    let in_folder = |arguments: &[&str]| {
+        let mut command = cargo();
+        command.current_dir(&folder).args(arguments);
+        command
+    };
+    run(&mut in_folder(&["fmt", "--all", "--check"]))?;
+    run(&mut in_folder(&["clippy", "--all-targets", "--locked", "--", "-D", "warnings"]))?;
+    run(in_folder(&["doc", "--no-deps", "--locked"]).env("RUSTDOCFLAGS", "-D warnings"))?;
+    run(&mut in_folder(&["test", "--locked"]))
 }
 
 /// Writes the joined WGSL again.

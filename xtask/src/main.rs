@@ -22,10 +22,11 @@ Usage: cargo xtask COMMAND
 
   demo    install the software Vulkan driver if there is no graphics adapter, build, render the four worlds and the
           city, and write out/demo/index.html
-  test [--quick | --web]
+  test [--quick | --web | --bevy]
           formatting, lints, documentation, features, packages, the build for the browser and all tests, as CI runs them;
           --quick: formatting and the tests of what needs no graphics adapter, in under two minutes once it is built;
-          --web: the viewer in a browser (Chromium), on WebGPU and on WebGL2, beside the native picture
+          --web: the viewer in a browser (Chromium), on WebGPU and on WebGL2, beside the native picture;
+          --bevy: the plugin for Bevy, integrations/bevy, which is a workspace of its own and builds Bevy
   web [--no-serve] [--out FOLDER] [--port NUMBER]
           build the viewer as a page into out/web, and serve it on this machine
   book [--pictures]
@@ -48,6 +49,7 @@ fn main() -> ExitCode {
         ["test"] => check::test(),
         ["test", "--quick"] => check::quick(),
         ["test", "--web"] => web::check_in_browser(),
+        ["test", "--bevy"] => check::bevy(),
         ["web", ref options @ ..] => web::Ask::read(options).and_then(|ask| web::web(&ask)),
         ["book"] => book::build(),
         ["book", "--pictures"] => book::draw(),
