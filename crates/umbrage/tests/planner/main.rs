@@ -362,3 +362,34 @@ fn maps_that_stand_exactly_still_take_nothing_from_what_was_seen() {
     // Others do take something from it.
     assert!(plan(ShadowConfig::default().stability, Some(&seen)) != plan(ShadowConfig::default().stability, None));
 }
+
+/// A flat box that the sun runs along, before an eye that looks into the sun: no slice has a cost.
+#[test]
+fn optimal_planes_rise_where_nothing_tells_them_apart() {
+    let boxes = [Aabb::new(
+        DVec3::new(11.090_098_818_047_199, 3.826_762_684_421_987, -14.797_194_115_257_29),
+        DVec3::new(37.152_999_571_978_1, 77.800_685_747_368_69, -14.797_194_115_257_29),
+    )];
+    let mut lens = Frustum::perspective(1.0, 1.0, 0.01, f64::INFINITY).unwrap();
+    (lens.left, lens.right) = (-0.952_232_912_830_234_1, 0.952_232_912_830_234_1);
+    (lens.bottom, lens.top) = (-0.406_651_069_227_589_65, 0.406_651_069_227_589_65);
+    let eye = DVec3::new(-10.696_849_041_235_982, 22.660_893_468_366_33, 0.0);
+    let view = View::look_at(eye, eye + DVec3::Y, DVec3::X, lens).unwrap();
+    let config = ShadowConfig {
+        map_sizes: vec![256; 4],
+        scheme: SplitScheme::Optimal,
+        range: Range::Visible,
+        transition: Transition::Blend { share: 0.0 },
+        crop: Crop::SceneIndependent,
+        stability: Stability::tight(),
+        ..Preset::Papers.config()
+    };
+    let options = umbrage::PlannerOptions {
+        filter_reach: Some(umbrage::FilterReach { radius_texels: 0.5, half_width_m: None }),
+        ..Default::default()
+    };
+    let mut planner = Planner::with_options(&config, options).unwrap();
+    let sun = DirectionalLight::new(DVec3::NEG_Y).unwrap();
+    let plan = planner.plan(&view, &sun, &boxes, &boxes).unwrap();
+    assert!(plan.planes.windows(2).all(|pair| pair[0] < pair[1]), "{:?}", plan.planes);
+}
