@@ -356,7 +356,7 @@ impl ShadowMaps {
     }
 
     /// The texture of what each texel of the map of split `split` names, with [`Edges::Exact`]:
-    /// `R32Uint`, with the layers and the places of [`ShadowMaps::map_texture`]. Can be copied from.
+    /// `R32Uint`, with the layers and the places of [`ShadowMaps::map_texture`]. Can be copied.
     ///
     /// # Panics
     /// If `split` is not less than [`ShadowMaps::map_count`].

@@ -246,7 +246,7 @@ impl Placement {
         self.search.cheapest(&self.costs, &mut self.best);
         match held.filter(inside) {
             Some(inner) if self.is_good_enough(inner) => planes[1..m].copy_from_slice(inner),
-            // Costs that are no numbers compare with nothing: planes then stand as for an even scene.
+            // Where no slice has a cost planes stand as for an even scene.
             _ if self.best.windows(2).all(|pair| pair[0] < pair[1]) => {
                 for (plane, &index) in planes[1..m].iter_mut().zip(&self.best[1..m]) {
                     *plane = self.candidates[index];
