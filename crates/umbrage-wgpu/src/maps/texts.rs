@@ -79,7 +79,8 @@ impl ShadowMaps {
             r32f: self.config.depth_format.is_colour(),
             without_loads: !self.depth_loads,
             frames: self.slots.iter().map(|slot| slot.kind.faces() as u32).sum(),
-            splits: self.slots.iter().map(|slot| slot.sizes.len() as u32).max().unwrap_or(1),
+            // Not how many there are: another number of splits leaves pipelines valid.
+            splits: umbrage_shaders::layout::MAX_SPLITS as u32,
             moments: self.moments.as_ref().map(Moments::maps),
             coordinates: self.config.coordinates == Coordinates::Vertex,
         }
