@@ -4,7 +4,7 @@ use glam::{DVec3, Vec2, Vec3, Vec4};
 
 use crate::bounds::rounding;
 use crate::coverage::CoverageVolume;
-use crate::geometry::receiver_mask::CELLS;
+use crate::geometry::receiver_mask::CasterMask;
 use crate::geometry::region::Fan;
 use crate::{ShadowPlan, Split};
 
@@ -49,29 +49,6 @@ pub struct BelowTest {
     pub slack: f32,
     /// Metres that any other box has to lie below it.
     pub margin: f32,
-}
-
-/// A grid across the light that holds the least height of a receiver in each cell; *height* is the
-/// coordinate along a world axis, counted towards the light.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct CasterMask {
-    /// The world axis of heights: 0, 1 or 2. Those of the grid follow it.
-    pub axis: u32,
-    /// 1 or −1: height is so many times the coordinate.
-    pub sign: f32,
-    /// How far a ray of light moves along the grid's axes per metre of height.
-    pub slope: Vec2,
-    /// Where the grid begins.
-    pub begin: Vec2,
-    /// Metres of a cell.
-    pub cell: Vec2,
-    /// Least heights, row after row of [`CasterMask::EDGE`] cells; infinite where nothing is.
-    pub lowest: Vec<f32>,
-}
-
-impl CasterMask {
-    /// Cells along either edge of the grid.
-    pub const EDGE: usize = CELLS;
 }
 
 impl ShadowPlan {

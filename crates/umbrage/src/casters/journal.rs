@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::slots::CasterHandle;
+use super::handle::CasterHandle;
 use crate::Aabb;
 
 /// One change of one static caster that throws shadows.

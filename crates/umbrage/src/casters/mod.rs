@@ -1,6 +1,7 @@
 //! A kept set of casters: what a planner is given instead of lists where there are many.
 
 mod curve;
+mod handle;
 mod journal;
 mod kind;
 mod loose;
@@ -10,11 +11,11 @@ mod slots;
 pub(crate) mod tree;
 mod view;
 
+pub use handle::CasterHandle;
 pub(crate) use journal::Change;
 pub use kind::Layers;
 pub(crate) use kind::Role;
 pub use set::{Caster, CasterSet, Motion};
-pub use slots::CasterHandle;
 pub use tree::Visited;
 pub(crate) use tree::{BoxTree, Counter, Near};
 pub(crate) use view::{Crowd, Gathered, Group, Most};

@@ -6,11 +6,12 @@ mod query;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::handle::CasterHandle;
 use super::journal::Journal;
 use super::kind::{Kind, Kinds, Layers};
 use super::loose::{Entry, Loose};
 use super::packed::{RUN, Run, on_lattice};
-use super::slots::{CasterHandle, PackedPlace, Place, Slots};
+use super::slots::{PackedPlace, Place, Slots};
 use crate::{Aabb, Error, Result};
 
 /// Whether a caster is expected to move.

@@ -1,22 +1,7 @@
 //! Handles that stay while places change.
 
-use std::fmt;
-
+use super::handle::CasterHandle;
 use crate::{Error, Result};
-
-/// Names a caster of a [`crate::CasterSet`] until it is removed. A handle of a removed caster never
-/// names another one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct CasterHandle {
-    index: u32,
-    generation: u8,
-}
-
-impl fmt::Display for CasterHandle {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{}v{}", self.index, self.generation)
-    }
-}
 
 /// Where a caster is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

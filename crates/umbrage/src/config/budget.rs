@@ -1,11 +1,9 @@
 //! Maps that a budget of memory or texels pays for.
 
-use std::fmt;
-use std::str::FromStr;
+mod config;
+mod parse;
 
-use super::{Filter, Preset, ShadowConfig};
-use crate::margin::FilterReach;
-use crate::{Error, Result};
+use std::fmt;
 
 /// Edges of maps are multiples of so many texels: devices keep textures in tiles of 8² and larger,
 /// and the rest of a tile would be paid for and not used.
@@ -69,13 +67,6 @@ impl Budget {
         edge - edge % EDGE_STEP
     }
 
-    /// Edge in texels of the smallest map that [`Budget::edge`] gives and that a filter works in.
-    #[must_use]
-    pub fn least_edge(filter: &Filter, is_stabilised: bool) -> u32 {
-        let margins = FilterReach::from(filter).least_map_size(is_stabilised);
-        filter.least_map_size().max(margins).next_multiple_of(EDGE_STEP)
-    }
-
     /// The budget in its own unit that so many texels take.
     #[must_use]
     pub const fn of_texels(self, texels: u64, texel_bytes: u64) -> Self {
@@ -97,39 +88,6 @@ impl Budget {
     }
 }
 
-impl FromStr for Budget {
-    type Err = Error;
-
-    /// A number and its unit: `8MB`, `8 MiB`, `1.5Mtexel`.
-    fn from_str(text: &str) -> Result<Self> {
-        let refuse = |reason: String| Error::InvalidBudget { text: text.trim().to_owned(), reason };
-        let end = text.trim().find(|c: char| c.is_alphabetic()).unwrap_or(text.trim().len());
-        let (number, unit) = text.trim().split_at(end);
-        let known = |units: &[(&str, u64)]| units.iter().find(|(name, _)| *name == unit).map(|(_, factor)| *factor);
-        let (factor, budget): (u64, fn(u64) -> Self) = match (known(&BYTES), known(&TEXELS)) {
-            (Some(factor), _) => (factor, Self::Bytes),
-            (None, Some(factor)) => (factor, Self::Texels),
-            (None, None) => {
-                let names = BYTES.iter().chain(&TEXELS).map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
-                let reason =
-                    if unit.is_empty() { "it has no unit".to_owned() } else { format!("{unit:?} is not a known unit") };
-                return Err(refuse(format!("{reason}; give one of {names}, as in 8MiB")));
-            }
-        };
-        let number: f64 = number
-            .trim()
-            .parse()
-            .map_err(|_| refuse(format!("{:?} is not a number; write for example 8MiB", number.trim())))?;
-        let amount = (number * factor as f64).floor();
-        // Beyond 2^53 a float no longer counts.
-        if !(1.0..=9_007_199_254_740_992.0).contains(&amount) {
-            return Err(refuse("out of range; give at least 1 B or 1 texel, at most 8 PiB".to_owned()));
-        }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked above")]
-        Ok(budget(amount as u64))
-    }
-}
-
 impl fmt::Display for Budget {
     /// In the largest unit that divides it, multiples of 1024 before those of 1000.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -140,50 +98,5 @@ impl fmt::Display for Budget {
         let unit = units.iter().find(|(_, factor)| amount >= *factor && amount.is_multiple_of(*factor));
         let (name, factor) = unit.copied().unwrap_or(units[units.len() - 1]);
         write!(f, "{} {name}", amount / factor)
-    }
-}
-
-/// From so many texels on, so many splits.
-struct Rung {
-    texels: u64,
-    splits: usize,
-    filter: Filter,
-}
-
-/// The best number of splits hardly depends on the budget (docs/notes/budget.md): four, and fewer
-/// where maps of four would be narrower than 64 texels. Each rung begins where its maps take every
-/// texel of the budget, so that no larger budget has fewer texels.
-const RUNGS: [Rung; 3] = [
-    Rung { texels: 0, splits: 1, filter: Filter::Pcf3 { width_m: None } },
-    Rung { texels: 2 * 64 * 64, splits: 2, filter: Filter::Pcf3 { width_m: None } },
-    Rung { texels: 4 * 64 * 64, splits: 4, filter: Filter::Pcf3 { width_m: None } },
-];
-
-impl ShadowConfig {
-    /// [`Preset::Balanced`] within a budget: number of splits, sizes of maps and filter. Maps never
-    /// take more than the budget; a larger budget never has fewer texels.
-    ///
-    /// ```
-    /// use umbrage::config::{Budget, ShadowConfig};
-    ///
-    /// let config = ShadowConfig::for_budget("8MiB".parse()?)?;
-    /// assert!(4 * config.texels() <= 8 << 20);
-    /// # Ok::<(), umbrage::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// [`Error::BudgetTooSmall`] if it does not pay for the map of a single split; it says the
-    /// least that does.
-    pub fn for_budget(budget: Budget) -> Result<Self> {
-        let balanced = Preset::Balanced.config();
-        let texel_bytes = balanced.depth_format.texel_bytes();
-        let rung = RUNGS.iter().rev().find(|rung| budget.texels(texel_bytes) >= rung.texels).unwrap_or(&RUNGS[0]);
-        let least = Budget::least_edge(&rung.filter, balanced.is_stabilised());
-        let edge = budget.edge(rung.splits, texel_bytes);
-        if edge < least {
-            let least = budget.of_texels(u64::from(least) * u64::from(least), texel_bytes);
-            return Err(Error::BudgetTooSmall { budget, least });
-        }
-        Ok(Self { map_sizes: vec![edge; rung.splits], filter: rung.filter, ..balanced })
     }
 }

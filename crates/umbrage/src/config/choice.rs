@@ -1,112 +1,12 @@
-//! The choices that exclude others: whether a config makes them, in which words, and how to take
-//! them back.
+//! What a choice means: whether a config makes it, in which words, and how to take it back.
 
 use super::{
-    Cache, Coordinates, Crop, DepthFormat, Edges, Filter, FitTo, Generation, Layout, LightKind, Range, Selection,
-    ShadowConfig, SplitMetric, SplitScheme, Stability, Storage, Transition,
+    Cache, Choice, Coordinates, Crop, DepthFormat, Edges, Filter, FitTo, Generation, Layout, LightKind, Range,
+    Selection, ShadowConfig, SplitMetric, SplitScheme, Stability, Storage, Transition,
 };
 use crate::Warp;
 
-/// A choice that excludes others.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Choice {
-    /// A map that spreads its texels unevenly.
-    Warp,
-    /// A point uses the first map that contains it.
-    MapSelection,
-    /// Split planes measure the distance from the eye.
-    DistanceMetric,
-    /// The range follows the receivers in view.
-    VisibleRange,
-    /// The planes of least predicted error.
-    OptimalScheme,
-    /// Neighbouring splits are joined in a band.
-    Band,
-    /// A filter that blurs moments of depth.
-    MomentFilter,
-    /// A filter that needs depth in metres along parallel light.
-    SunFilter,
-    /// A filter that is not a tent of three texels.
-    OtherThanPcf3,
-    /// Triangles that texels name decide where a shadow ends.
-    ExactEdges,
-    /// Maps have several samples of depth in a texel.
-    SeveralSamples,
-    /// Maps are colours and not depth.
-    ColourMaps,
-    /// Layers that hold several maps.
-    TiledLayers,
-    /// One map is used for one split after the other.
-    OneMap,
-    /// Maps are not plain layers of one texture.
-    NotLayers,
-    /// Maps are not drawn one by one.
-    NotPerSplit,
-    /// Maps are faces of a cube.
-    CubeFaces,
-    /// More splits than a cube has faces.
-    MoreThanSixSplits,
-    /// Maps of different sizes.
-    UnequalSizes,
-    /// Maps that do not stand exactly still.
-    NotStill,
-    /// Maps of another format than 32-bit depth.
-    OtherDepth,
-    /// What static casters draw is kept.
-    KeptMaps,
-    /// Pixels make the coordinates of maps from the picture's depth.
-    DeferredCoordinates,
-    /// Vertices make the coordinates of maps.
-    VertexCoordinates,
-    /// More splits than vertex shaders pass coordinates for.
-    MoreThanFourSplits,
-    /// A spot or point light.
-    LocalLight,
-    /// Several lights, or a light of several faces.
-    SeveralFaces,
-    /// Maps are fitted to what an earlier frame's depth showed.
-    FitToDepth,
-    /// A point uses the split of its depth.
-    IntervalSelection,
-    /// Maps are cropped to slices of the view.
-    SliceCrop,
-}
-
 impl Choice {
-    /// All choices that a rule may name.
-    pub const ALL: [Self; 30] = [
-        Self::Warp,
-        Self::MapSelection,
-        Self::DistanceMetric,
-        Self::VisibleRange,
-        Self::OptimalScheme,
-        Self::Band,
-        Self::MomentFilter,
-        Self::SunFilter,
-        Self::OtherThanPcf3,
-        Self::ExactEdges,
-        Self::SeveralSamples,
-        Self::ColourMaps,
-        Self::TiledLayers,
-        Self::OneMap,
-        Self::NotLayers,
-        Self::NotPerSplit,
-        Self::CubeFaces,
-        Self::MoreThanSixSplits,
-        Self::UnequalSizes,
-        Self::NotStill,
-        Self::OtherDepth,
-        Self::KeptMaps,
-        Self::DeferredCoordinates,
-        Self::VertexCoordinates,
-        Self::MoreThanFourSplits,
-        Self::LocalLight,
-        Self::SeveralFaces,
-        Self::FitToDepth,
-        Self::IntervalSelection,
-        Self::SliceCrop,
-    ];
-
     /// Whether a config for these lights makes this choice.
     #[must_use]
     pub fn holds(self, config: &ShadowConfig, lights: &[LightKind]) -> bool {

@@ -8,6 +8,7 @@
 mod apply;
 mod budget;
 mod choice;
+mod conflict;
 mod edges;
 mod filter;
 mod fit;
@@ -27,7 +28,7 @@ mod text;
 mod words;
 
 pub use budget::Budget;
-pub use choice::Choice;
+pub use conflict::{Choice, Conflict, Rule};
 pub use edges::Edges;
 pub use filter::{Derivatives, Filter, MomentKind, Moments, SUN_DEGREES};
 pub use fit::{Crop, ExtentSteps, FitTo, Stability};
@@ -37,7 +38,7 @@ pub use look::{Look, ReceiverBias, Translucent};
 pub use names::Word;
 pub(crate) use names::unknown;
 pub use presets::Preset;
-pub use rules::{Conflict, RULES, Rule};
+pub use rules::RULES;
 pub use setting::{Kind, Rebuilds, Setting, Value};
 pub use settings::SETTINGS;
 pub(crate) use splits::check_range;

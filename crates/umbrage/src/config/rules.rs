@@ -1,22 +1,7 @@
 //! Which choices exclude each other, as data: messages, the documented table and the test of all
 //! pairs come from it.
 
-use std::fmt;
-
-use super::{Choice, LightKind, ShadowConfig};
-
-/// Two choices that exclude each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Rule {
-    /// The choice that is reset if neither was given.
-    pub first: Choice,
-    /// The other choice.
-    pub second: Choice,
-    /// Why they exclude each other.
-    pub reason: &'static str,
-    /// What to do.
-    pub remedy: &'static str,
-}
+use super::{Choice, Conflict, LightKind, Rule, ShadowConfig};
 
 /// All pairs of choices that exclude each other.
 pub const RULES: &[Rule] = &[
@@ -271,23 +256,5 @@ impl Rule {
     #[must_use]
     pub fn conflict(&self, config: &ShadowConfig) -> Conflict {
         Conflict { rule: *self, first: self.first.say(config), second: self.second.say(config) }
-    }
-}
-
-/// Two settings that exclude each other.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Conflict {
-    /// The rule that is broken.
-    pub rule: Rule,
-    /// The first choice as `key value`.
-    pub first: String,
-    /// The second choice as `key value`.
-    pub second: String,
-}
-
-impl fmt::Display for Conflict {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { rule, first, second } = self;
-        write!(f, "{first} and {second} exclude each other: {}; {}", rule.reason, rule.remedy)
     }
 }

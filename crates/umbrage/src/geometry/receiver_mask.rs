@@ -6,10 +6,10 @@
 //! queries; ours is a small grid on the CPU, made from boxes, so that it is known before anything
 //! is drawn.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec2};
 
 use super::volume::{Lies, Slice};
-use crate::{Aabb, CasterMask};
+use crate::Aabb;
 
 /// Cells along each edge of the grid.
 pub(crate) const CELLS: usize = 64;
@@ -21,6 +21,29 @@ const STEEPEST: f64 = 4.0;
 /// A world axis that the light crosses is least steep to where its rise over one metre of the axis
 /// is at least this.
 const LEAST_RISE: f64 = 0.1;
+
+/// A grid across the light that holds the least height of a receiver in each cell; *height* is the
+/// coordinate along a world axis, counted towards the light.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CasterMask {
+    /// The world axis of heights: 0, 1 or 2. Those of the grid follow it.
+    pub axis: u32,
+    /// 1 or −1: height is so many times the coordinate.
+    pub sign: f32,
+    /// How far a ray of light moves along the grid's axes per metre of height.
+    pub slope: Vec2,
+    /// Where the grid begins.
+    pub begin: Vec2,
+    /// Metres of a cell.
+    pub cell: Vec2,
+    /// Least heights, row after row of [`CasterMask::EDGE`] cells; infinite where nothing is.
+    pub lowest: Vec<f32>,
+}
+
+impl CasterMask {
+    /// Cells along either edge of the grid.
+    pub const EDGE: usize = CELLS;
+}
 
 /// A grid across the light that holds, cell by cell, how far down the light the receivers of a
 /// split reach.

@@ -1,8 +1,9 @@
 //! What a set says of its static casters' changes to those who keep what these have drawn.
 
 use super::CasterSet;
+use crate::casters::handle::CasterHandle;
 use crate::casters::journal::Change;
-use crate::casters::slots::{CasterHandle, Place};
+use crate::casters::slots::Place;
 use crate::{Aabb, Result};
 
 /// Of casters that come together, so many are noted one by one; more make all count as changed.
