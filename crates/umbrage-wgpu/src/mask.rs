@@ -1,5 +1,9 @@
 //! Deferred shadows: from the picture's depth to a mask of what is lit.
 
+mod normals;
+
+pub use normals::MaskNormals;
+
 use std::borrow::Cow;
 
 use bytemuck::{Pod, Zeroable};
@@ -7,18 +11,6 @@ use glam::{DMat4, DVec3};
 use umbrage::config::{Coordinates, Edges, ShadowConfig};
 
 use crate::{Error, Result, ShadowMaps};
-
-/// Where the mask's pass takes its normals from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum MaskNormals {
-    /// From the depth of neighbouring pixels. Exact on planes; wrong where a surface is a pixel or
-    /// two wide, which then may shade itself or lie turned away from the light.
-    #[default]
-    FromDepth,
-    /// From a texture as large as the depth, `texture_2d<f32>` with a format that has a sign: unit
-    /// vectors of the world, of the surfaces themselves and not of their shading.
-    Texture,
-}
 
 /// The camera that drew the depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
