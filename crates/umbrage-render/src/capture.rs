@@ -63,6 +63,20 @@ impl Capture {
     }
 }
 
+impl Gpu {
+    /// The pixels of a texture, row after row, once all that was submitted has run.
+    ///
+    /// # Errors
+    /// [`Error::BufferSize`] or [`Error::Device`] if they cannot be read back.
+    pub async fn pixels(&self, texture: &wgpu::Texture) -> Result<Vec<u8>> {
+        let size = [texture.width(), texture.height()];
+        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("pixels") });
+        let capture = Capture::record(self, &mut encoder, texture, 0, size)?;
+        self.queue.submit([encoder.finish()]);
+        capture.read(self).await
+    }
+}
+
 /// Waits until everything submitted has run, and returns a mappable buffer's content.
 pub(crate) async fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>> {
     waiting::mapped(gpu, buffer).await?;

@@ -4,10 +4,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
-use crate::capture::Capture;
-use crate::formats::{DEPTH_FORMAT, MASK_FORMAT, PICTURE_FORMAT};
+use crate::formats::{ANSWERS_FORMAT, DEPTH_FORMAT, MASK_FORMAT, PICTURE_FORMAT, POINTS_FORMAT};
 use crate::waiting::Scopes;
-use crate::{Error, Result, probe};
+use crate::{Error, Result};
 
 /// What the device is asked for.
 #[derive(Clone, Copy, Debug, Default)]
@@ -120,18 +119,6 @@ impl Gpu {
         Self { adapter_info, device, queue, faults }
     }
 
-    /// The pixels of a texture, row after row, once all that was submitted has run.
-    ///
-    /// # Errors
-    /// [`Error::BufferSize`] or [`Error::Device`] if they cannot be read back.
-    pub async fn pixels(&self, texture: &wgpu::Texture) -> Result<Vec<u8>> {
-        let size = [texture.width(), texture.height()];
-        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("pixels") });
-        let capture = Capture::record(self, &mut encoder, texture, 0, size)?;
-        self.queue.submit([encoder.finish()]);
-        capture.read(self).await
-    }
-
     /// The first error of the device that no call of this crate has told of yet.
     ///
     /// # Errors
@@ -230,8 +217,8 @@ const TEXTURES: [(wgpu::TextureFormat, wgpu::TextureUsages); 6] = [
     (MASK_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
     (DEPTH_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
     (DEPTH_FORMAT, wgpu::TextureUsages::TEXTURE_BINDING),
-    (probe::POINTS_FORMAT, wgpu::TextureUsages::TEXTURE_BINDING),
-    (probe::ANSWERS_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
+    (POINTS_FORMAT, wgpu::TextureUsages::TEXTURE_BINDING),
+    (ANSWERS_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
 ];
 
 /// What an adapter lacks that every renderer needs; `None` if nothing.
@@ -308,7 +295,7 @@ mod tests {
     fn an_adapter_that_cannot_draw_is_told_from_one_that_can() {
         assert_eq!(lacking(|_| wgpu::TextureUsages::all()), None);
         let as_opengl_without_extensions = |format| match format {
-            probe::ANSWERS_FORMAT => wgpu::TextureUsages::TEXTURE_BINDING,
+            ANSWERS_FORMAT => wgpu::TextureUsages::TEXTURE_BINDING,
             _ => wgpu::TextureUsages::all(),
         };
         assert_eq!(lacking(as_opengl_without_extensions).as_deref(), Some("cannot draw into Rg32Float textures"));

@@ -8,13 +8,9 @@ use umbrage_wgpu::ShadowMaps;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 
 use crate::capture::Capture;
+use crate::formats::{ANSWERS_FORMAT, POINTS_FORMAT};
 use crate::names::Names;
 use crate::{Error, Gpu, Result, shaders};
-
-/// Points with what answers for them.
-pub(crate) const POINTS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
-/// What comes back for each point.
-pub(crate) const ANSWERS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 
 /// A point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,13 +4,16 @@
 
 #[cfg(not(target_arch = "wasm32"))]
 mod native;
+mod scopes;
 #[cfg(target_arch = "wasm32")]
 mod web;
 
 #[cfg(not(target_arch = "wasm32"))]
-pub(crate) use native::{BLOCKS, Scopes, idle, mapped};
+pub(crate) use native::{BLOCKS, idle, mapped};
 #[cfg(target_arch = "wasm32")]
-pub(crate) use web::{BLOCKS, Scopes, idle, mapped};
+pub(crate) use web::{BLOCKS, idle, mapped};
+
+pub(crate) use scopes::Scopes;
 
 /// What is awaited while results are read back, for messages.
 pub(crate) const READING: &str = "reading results back";

@@ -37,28 +37,3 @@ pub(crate) async fn mapped(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<()> {
         .map_err(|_| failed("the buffer was never mapped".to_owned()))?
         .map_err(|error| failed(error.to_string()))
 }
-
-/// Catches what the device complains about, on this thread.
-pub(crate) struct Scopes {
-    memory: wgpu::ErrorScopeGuard,
-    internal: wgpu::ErrorScopeGuard,
-    validation: wgpu::ErrorScopeGuard,
-}
-
-impl Scopes {
-    pub fn open(device: &wgpu::Device) -> Self {
-        let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
-        let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        Self { memory, internal, validation }
-    }
-
-    /// The first complaint. Memory comes first: the others follow from it.
-    pub async fn close(self) -> Option<wgpu::Error> {
-        // Scopes close in the reverse order.
-        let validation = self.validation.pop().await;
-        let internal = self.internal.pop().await;
-        let memory = self.memory.pop().await;
-        memory.or(internal).or(validation)
-    }
-}

@@ -59,17 +59,3 @@ async fn turn() {
     });
     drop(JsFuture::from(timer).await);
 }
-
-/// Complaints of the device come later here: they surface as faults of a later call.
-pub(crate) struct Scopes;
-
-impl Scopes {
-    pub fn open(_: &wgpu::Device) -> Self {
-        Self
-    }
-
-    #[expect(clippy::unused_async, reason = "as it is where complaints are caught")]
-    pub async fn close(self) -> Option<wgpu::Error> {
-        None
-    }
-}
