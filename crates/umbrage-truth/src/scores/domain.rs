@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use super::edges::edges_of;
 use crate::{Error, Result, TruthMask};
 
 /// Least n_g·l of a scored pixel; below it the surface is dark by its own slope.
@@ -10,6 +9,9 @@ pub const LEAST_FACING: f64 = 0.02;
 
 /// Least |B*| of a view that counts: wholly lit and wholly shaded views say nothing.
 pub const LEAST_EDGES: usize = 2000;
+
+/// Neighbours whose depths differ by this share of the nearer one lie on different surfaces.
+const SAME_SURFACE: f64 = 0.05;
 
 /// The scored pixels of a frame, Ω_f, with their depths and the truth.
 #[derive(Clone, Debug)]
@@ -129,6 +131,25 @@ impl Domain {
         }
         Ok(())
     }
+}
+
+/// B(V): pixels with a right or lower neighbour on the same surface, both in Ω_f, that decides
+/// otherwise.
+pub(super) fn edges_of(domain: &Domain, lit: impl Fn(usize) -> bool) -> Vec<usize> {
+    let [width, _] = domain.size();
+    let count = domain.size()[0] * domain.size()[1];
+    let differs = |pixel: usize, other: usize| same_surface(domain, pixel, other) && lit(pixel) != lit(other);
+    let has_edge = |&pixel: &usize| {
+        (pixel % width + 1 < width && differs(pixel, pixel + 1))
+            || (pixel + width < count && differs(pixel, pixel + width))
+    };
+    domain.pixels().iter().copied().filter(has_edge).collect()
+}
+
+/// Whether two neighbours, the first in Ω_f, lie in Ω_f both and on one surface.
+pub(super) fn same_surface(domain: &Domain, pixel: usize, other: usize) -> bool {
+    let (z, other_z) = (domain.depth(pixel), domain.depth(other));
+    domain.contains(other) && (z - other_z).abs() < SAME_SURFACE * z.min(other_z)
 }
 
 /// Whether two images have one size.

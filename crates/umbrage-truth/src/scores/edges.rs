@@ -1,14 +1,12 @@
 //! D: how far the shadows' edges lie apart.
 
+use super::domain::edges_of;
 use super::stats::percentile;
 use super::{Answers, Domain};
 use crate::Result;
 
 /// Pixels at which an edge that is missed altogether is counted.
 pub const EDGE_DISTANCE_CAP: f64 = 64.0;
-
-/// Neighbours whose depths differ by this share of the nearer one lie on different surfaces.
-const SAME_SURFACE: f64 = 0.05;
 
 /// Distance between the true edges and the technique's, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,25 +43,6 @@ pub fn edge_distance(domain: &Domain, answers: &Answers) -> Result<Option<EdgeDi
         true_edges: truth.len(),
         answered_edges: answered.len(),
     }))
-}
-
-/// B(V): pixels with a right or lower neighbour on the same surface, both in Ω_f, that decides
-/// otherwise.
-pub(super) fn edges_of(domain: &Domain, lit: impl Fn(usize) -> bool) -> Vec<usize> {
-    let [width, _] = domain.size();
-    let count = domain.size()[0] * domain.size()[1];
-    let differs = |pixel: usize, other: usize| same_surface(domain, pixel, other) && lit(pixel) != lit(other);
-    let has_edge = |&pixel: &usize| {
-        (pixel % width + 1 < width && differs(pixel, pixel + 1))
-            || (pixel + width < count && differs(pixel, pixel + width))
-    };
-    domain.pixels().iter().copied().filter(has_edge).collect()
-}
-
-/// Whether two neighbours, the first in Ω_f, lie in Ω_f both and on one surface.
-pub(super) fn same_surface(domain: &Domain, pixel: usize, other: usize) -> bool {
-    let (z, other_z) = (domain.depth(pixel), domain.depth(other));
-    domain.contains(other) && (z - other_z).abs() < SAME_SURFACE * z.min(other_z)
 }
 
 /// Squared distance in pixels from every pixel to the nearest of `seeds`, exact; infinite without

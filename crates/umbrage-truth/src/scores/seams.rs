@@ -1,6 +1,7 @@
 //! The seam score: whether shadows are worse where one split meets the next.
 
-use super::edges::{same_surface, squared_distances};
+use super::domain::same_surface;
+use super::edges::squared_distances;
 use super::{Answers, Domain, MisShadowed};
 use crate::{Error, Result};
 
