@@ -1,13 +1,12 @@
 //! Scenes by name: a world, or a file whose loader its extension or content chooses.
 
-use std::fmt;
 use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
 use crate::procedural::{Watch, World, WorldOptions};
 use crate::{
-    Error, GltfOptions, HeightMapOptions, Result, Scene, load_gltf, load_gltf_slice, load_height_map,
+    EXTENSIONS, Error, GltfOptions, HeightMapOptions, Result, Scene, load_gltf, load_gltf_slice, load_height_map,
     load_height_map_slice,
 };
 
@@ -20,27 +19,6 @@ pub struct OpenOptions {
     pub gltf: GltfOptions,
     /// How many objects worlds have.
     pub world: WorldOptions,
-}
-
-/// Extensions of the files that [`open`] reads, in small letters and without the dot. Displayed,
-/// they are a list for messages.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Extensions {
-    /// Of glTF files.
-    pub gltf: &'static [&'static str],
-    /// Of height maps.
-    pub height_map: &'static [&'static str],
-}
-
-/// All extensions that [`open`] reads.
-pub const EXTENSIONS: Extensions =
-    Extensions { gltf: &["glb", "gltf", "vrm"], height_map: &["png", "webp", "tif", "tiff", "asc"] };
-
-impl fmt::Display for Extensions {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let list = |extensions: &[&str]| extensions.iter().map(|e| format!(".{e}")).collect::<Vec<_>>().join(", ");
-        write!(f, "{}, a height map ({})", list(self.gltf), list(self.height_map))
-    }
 }
 
 /// Opens a world by its name; a file that is a .glb whatever it is called; or a file by its
