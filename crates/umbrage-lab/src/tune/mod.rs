@@ -15,13 +15,15 @@ pub mod output;
 mod page;
 pub mod record;
 mod run;
+mod settings;
 
 pub use candidates::{Axis, axis};
 pub use error::Error;
 pub use merge::merge;
 pub use output::Outputs;
 pub use record::{Shard, shard};
-pub use run::{Job, Settings, run};
+pub use run::{Job, run};
+pub use settings::Settings;
 
 /// The option that names a file of results, and what its lines are of.
 pub(crate) const RESULTS: crate::journal::Kind = crate::journal::Kind { option: "--results", run: "tune run" };

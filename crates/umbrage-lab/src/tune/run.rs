@@ -6,7 +6,7 @@ use umbrage::config::{Budget, LightKind};
 use umbrage_render::{Gpu, GpuOptions};
 
 use super::{
-    Axis, Error, Outputs, RESULTS,
+    Axis, Error, Outputs, RESULTS, Settings,
     candidates::Grid,
     judged::{JudgedScene, judge},
     output,
@@ -39,19 +39,6 @@ pub struct Job {
     pub shard: Shard,
     /// Where things go.
     pub outputs: Outputs,
-}
-
-/// What holds for all candidates.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Pixels across and down.
-    pub size: [u32; 2],
-    /// View depths in metres that are scored; none: the camera's near and far.
-    pub shadow_range: Option<(f64, f64)>,
-    /// Degrees across the sun, for pcss.
-    pub sun_angle: Option<f64>,
-    /// Edge pixels of the true shadow that a view needs to count.
-    pub least_edges: usize,
 }
 
 /// Judges the candidates of the shard that no earlier run judged; writes the outputs, unless the
