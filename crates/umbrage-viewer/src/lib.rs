@@ -24,7 +24,6 @@ pub mod link;
 mod options;
 #[cfg(target_arch = "wasm32")]
 pub mod page;
-pub mod panel;
 pub mod path;
 mod platform;
 pub mod session;
@@ -35,6 +34,7 @@ pub mod sun;
 mod textures;
 pub mod window;
 
+pub use app::panel;
 pub use error::{Error, Result};
 pub use options::{Options, ShowAtStart};
 pub use window::run;

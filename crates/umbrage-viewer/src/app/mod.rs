@@ -1,6 +1,8 @@
 //! The viewer between the session and the controls: what works beside the window on one side,
 //! panels on the other.
 
+pub mod panel;
+
 use std::path::Path;
 use std::sync::Arc;
 
@@ -10,13 +12,13 @@ use umbrage_render::Gpu;
 
 use crate::judge::{Judge, Overlay};
 use crate::link::{self, Linked};
-use crate::panel::{self, Fields};
 use crate::platform::{self, Arrival, Wake};
 use crate::session::{Session, Tab};
 use crate::share;
 use crate::stage::Shipped;
 use crate::studio::{Order, Studio};
 use crate::textures::Textures;
+use panel::Fields;
 
 /// Time between two frames of what moves by itself.
 const FRAME: std::time::Duration = std::time::Duration::from_millis(16);
