@@ -27,7 +27,8 @@ fn files(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     }
 }
 
-fn sources(endings: &[&str]) -> Vec<(PathBuf, String)> {
+/// The repository's files with one of these endings, each with its text.
+pub fn sources(endings: &[&str]) -> Vec<(PathBuf, String)> {
     let mut found = Vec::new();
     files(&root(), endings, &mut found);
     found.sort();

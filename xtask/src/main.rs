@@ -9,6 +9,8 @@ mod circles;
 mod demo;
 #[cfg(test)]
 mod documents;
+#[cfg(test)]
+mod lengths;
 mod results;
 mod run;
 mod web;
