@@ -11,6 +11,8 @@ mod demo;
 mod documents;
 #[cfg(test)]
 mod lengths;
+#[cfg(test)]
+mod published;
 mod results;
 mod run;
 mod web;
