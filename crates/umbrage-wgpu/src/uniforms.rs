@@ -284,6 +284,9 @@ fn row(xyz: DVec3, w: f64) -> [f32; 4] {
 }
 
 #[cfg(test)]
+mod bias_tests;
+
+#[cfg(test)]
 mod tests {
     use glam::{DVec2, DVec3};
     use proptest::prelude::*;
@@ -300,7 +303,7 @@ mod tests {
     }
 
     /// A stabilised split of a light and a point near which its map lies.
-    fn split_near(direction: DVec3, center: DVec3, texel: f64, size: u32) -> umbrage::Split {
+    pub(super) fn split_near(direction: DVec3, center: DVec3, texel: f64, size: u32) -> umbrage::Split {
         let light = DirectionalLight::new(direction).expect("not zero");
         let (u_axis, v_axis) = light.map_axes();
         let depth_axis = light.direction();
@@ -472,27 +475,5 @@ mod tests {
         let straight = flat([middle(0), middle(1), middle(2)]);
         let right = (0..3).map(|k| shares[k] * middle(k)).sum::<f32>() / shares.iter().sum::<f32>();
         assert!((straight - right).abs() > 100.0, "{straight} and {right}");
-    }
-
-    /// The bias for engines with other shaders is that of ours.
-    #[test]
-    fn the_planners_bias_has_the_shaders_constants() {
-        let text = umbrage_shaders::receiver(0, umbrage_shaders::Maps::default());
-        let constant = |name: &str| -> f64 {
-            let begin = format!("const UMBRAGE_BIAS_{name}: f32 = ");
-            let value = text.lines().find_map(|line| line.strip_prefix(&begin)?.strip_suffix(';'));
-            value.and_then(|value| value.parse().ok()).unwrap_or_else(|| panic!("{name} is not in the text"))
-        };
-        let texel = DVec2::new(0.3, 0.1);
-        let planned = umbrage::Split { texel_m: texel, ..split_near(DVec3::NEG_Y, DVec3::ZERO, 0.1, 1024) };
-        let of = |tangent: f64| planned.bias((planned.u_axis * tangent - planned.depth_axis).normalize());
-        assert!((of(0.0).constant_m - constant("TEXEL_BIAS") * texel.max_element()).abs() < 1e-12);
-        let corner = |tangent: f64| of(tangent).corner_per_texel / texel.min_element();
-        for (tangent, expected) in
-            [(1.0, constant("CORNER_SLOPE")), (10.0, constant("FOLD") * 101.0), (40.0, constant("MOST_CORNER_SLOPE"))]
-        {
-            assert!((corner(tangent) - expected).abs().max_element() < 1e-9, "{} for {expected}", corner(tangent));
-        }
-        assert_eq!(umbrage::STEEPEST, constant("MAX_SLOPE"));
     }
 }
