@@ -4,6 +4,7 @@ use std::{
     env,
     path::{Path, PathBuf},
     process::{Command, Stdio},
+    time::Instant,
 };
 
 use anyhow::{Context, Result, bail};
@@ -21,14 +22,17 @@ pub fn cargo() -> Command {
     command
 }
 
-/// Runs `command` with its output on the terminal.
+/// Runs `command` with its output on the terminal. Says how long it took, so that a check that
+/// became slow is seen.
 pub fn run(command: &mut Command) -> Result<()> {
     let shown = shown(command);
     eprintln!("xtask: {shown}");
+    let start = Instant::now();
     let status = command.status().with_context(|| format!("{shown} did not start"))?;
     if !status.success() {
         bail!("{shown} failed: {status}");
     }
+    eprintln!("xtask: {:.0} s for {shown}", start.elapsed().as_secs_f64());
     Ok(())
 }
 
@@ -64,8 +68,9 @@ pub fn build_umbrage(release: bool) -> Result<PathBuf> {
     let mut build = cargo();
     match release {
         true => build.args(["build", "--release", "--package", "umbrage-cli"]),
-        // With the features that the tests are built with: one build serves both.
-        false => build.args(["build", "--workspace", "--bin", "umbrage"]),
+        // As the tests build it: `cargo build` would choose other features, and build dependencies
+        // once more for them.
+        false => build.args(["test", "--workspace", "--no-run", "--quiet"]),
     };
     run(&mut build)?;
     let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |dir| root().join(dir));

@@ -40,7 +40,7 @@ impl Samples {
 
     /// Least coverage at which an alpha-tested pixel is drawn: with several samples its coverage
     /// decides how many.
-    fn least_coverage(self) -> f64 {
+    pub(crate) fn least_coverage(self) -> f64 {
         match self {
             Self::One => 0.5,
             Self::Four => 0.0,
@@ -79,6 +79,7 @@ pub(crate) struct FrameUniform {
     pub ray_right: [f32; 3],
     pub far: f32,
     pub ray_up: PaddedVec3,
+    pub shadow_colour: PaddedVec3,
     pub lamps: [LampUniform; MOST_LAMPS],
 }
 
@@ -87,7 +88,13 @@ const NIGHT: f32 = 0.2;
 
 impl FrameUniform {
     /// `slice` is the part of the view that is drawn, if not all of it is.
-    pub fn new(view: &View, lamps: &[Lamp], origin: DVec3, slice: Option<&Slice>) -> Result<Self> {
+    pub fn new(
+        view: &View,
+        lamps: &[Lamp],
+        shadow_colour: DVec3,
+        origin: DVec3,
+        slice: Option<&Slice>,
+    ) -> Result<Self> {
         let clip = view.clip_from_relative(view.eye());
         let sun = lamps.iter().find_map(|lamp| match lamp.light {
             Light::Directional(sun) => Some(sun.direction()),
@@ -117,6 +124,7 @@ impl FrameUniform {
             ray_right: (axes.x_axis * half[0]).as_vec3().to_array(),
             far: frustum.far as f32,
             ray_up: (axes.y_axis * half[1]).into(),
+            shadow_colour: shadow_colour.into(),
             lamps: LampUniform::all(lamps, origin)?,
         })
     }
@@ -308,6 +316,11 @@ impl Forward {
         &self.bind_groups[index]
     }
 
+    /// Layout of [`Forward::bind_group`].
+    pub fn frame_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.frame_layout
+    }
+
     /// Draws the depth of everything solid for contact shadows.
     pub fn draw_depth(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &Drawable<'_>, solid: &ViewList) -> Drawn {
         pass.set_bind_group(0, self.bind_group(0), &[]);
@@ -444,7 +457,8 @@ fn draw_visible(
     drawn
 }
 
-fn pick_pieces(
+/// Draws what has a depth: materials that are not translucent.
+pub(crate) fn pick_pieces(
     pass: &mut wgpu::RenderPass<'_>,
     drawable: &Drawable<'_>,
     solid: &ViewList,
@@ -455,7 +469,7 @@ fn pick_pieces(
     })
 }
 
-fn bind(pass: &mut wgpu::RenderPass<'_>, bindings: Bindings<'_>) {
+pub(crate) fn bind(pass: &mut wgpu::RenderPass<'_>, bindings: Bindings<'_>) {
     pass.set_bind_group(0, bindings.frame, &[]);
     pass.set_bind_group(2, bindings.maps, &[]);
     if let Some(contact) = bindings.contact {

@@ -33,6 +33,7 @@ mod shadow_mesh;
 mod stats;
 mod surfaces;
 mod targets;
+mod through_mask;
 mod timing;
 mod view_list;
 mod waiting;

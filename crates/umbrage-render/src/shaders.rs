@@ -2,19 +2,23 @@
 
 use umbrage::config::Coordinates;
 
+const SCENE: &str = include_str!("shaders/scene.wgsl");
+const VIEW: &str = include_str!("shaders/view.wgsl");
+const NORMALS: &str = include_str!("shaders/normals.wgsl");
+
 /// Bind group 0 is what [`umbrage_wgpu::ShadowMaps::caster_wgsl`] declares, 1 the material.
 pub(crate) fn casters(library: &str) -> String {
-    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster.wgsl")].join("\n")
+    [library, SCENE, include_str!("shaders/caster.wgsl")].join("\n")
 }
 
 /// WGSL of casters whose triangles maps name.
 pub(crate) fn named_casters(library: &str) -> String {
-    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster_named.wgsl")].join("\n")
+    [library, SCENE, include_str!("shaders/caster_named.wgsl")].join("\n")
 }
 
 /// WGSL of casters with holes; the library's text has [`MASKED_MEMBERS`].
 pub(crate) fn masked_casters(library: &str) -> String {
-    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster_masked.wgsl")].join("\n")
+    [library, SCENE, include_str!("shaders/caster_masked.wgsl")].join("\n")
 }
 
 /// What a caster with holes hands to its fragments.
@@ -22,7 +26,7 @@ pub(crate) const MASKED_MEMBERS: &str = "@location(0) uv: vec2f, @location(1) al
 
 /// WGSL of casters that let some light through; the library's text has [`DITHERED_MEMBERS`].
 pub(crate) fn dithered_casters(library: &str) -> String {
-    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster_dithered.wgsl")].join("\n")
+    [library, SCENE, include_str!("shaders/caster_dithered.wgsl")].join("\n")
 }
 
 /// What such a caster hands to its fragments.
@@ -42,8 +46,7 @@ pub(crate) fn forward(library: &str, coordinates: Coordinates, contact: bool) ->
         Coordinates::World | Coordinates::Deferred => include_str!("shaders/surface.wgsl"),
         Coordinates::Vertex => include_str!("shaders/surface_with_coordinates.wgsl"),
     };
-    let [scene, view] = [include_str!("shaders/scene.wgsl"), include_str!("shaders/view.wgsl")];
-    [library, &contact, scene, view, include_str!("shaders/forward.wgsl"), surface].join("\n")
+    [library, &contact, SCENE, VIEW, NORMALS, include_str!("shaders/forward.wgsl"), surface].join("\n")
 }
 
 /// [`forward`] with counts of what exact edges do; the library's text is one that counts.
@@ -54,10 +57,18 @@ pub(crate) fn edge_counts(library: &str, coordinates: Coordinates) -> String {
 /// Instead of the library's text: a picture without a word about shadows.
 pub(crate) const WITHOUT_SHADOWS: &str = include_str!("shaders/without_shadows.wgsl");
 
+/// Instead of the library's text: a picture that takes the first light's shadows from a mask, the
+/// texture of bind group 2.
+pub(crate) const LIT: &str = include_str!("shaders/lit.wgsl");
+
 /// Bind group 0 is the frame, 1 the material. No shadow is asked about.
 pub(crate) fn depth() -> String {
-    [include_str!("shaders/scene.wgsl"), include_str!("shaders/view.wgsl"), include_str!("shaders/depth.wgsl")]
-        .join("\n")
+    [SCENE, VIEW, include_str!("shaders/depth.wgsl")].join("\n")
+}
+
+/// Depth and normals, for a mask. Bind group 0 is the frame, 1 the material.
+pub(crate) fn facing() -> String {
+    [SCENE, VIEW, NORMALS, include_str!("shaders/facing.wgsl")].join("\n")
 }
 
 /// Bind group 0 is the points, 1 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares.
@@ -126,7 +137,9 @@ mod tests {
                 forward(&receiver(2, maps), Coordinates::World, true),
                 forward(&with_coordinates, Coordinates::Vertex, true),
                 forward(WITHOUT_SHADOWS, Coordinates::World, false),
+                forward(LIT, Coordinates::World, false),
                 depth(),
+                facing(),
                 probe(&receiver(1, maps)),
                 probe(&receiver(1, Maps { coordinates: true, ..maps })),
             ] {
@@ -140,7 +153,7 @@ mod tests {
         let module = parsed(&forward(&receiver(2, Maps::default()), Coordinates::World, true));
         let frame = offsets!(
             FrameUniform: clip_from_eye, eye, is_orthographic, forward, lamp_count, to_sun, daylight, ray_center, near,
-            ray_right, far, ray_up, lamps
+            ray_right, far, ray_up, shadow_colour, lamps
         );
         assert_eq!(layout(&module, "Frame"), frame);
         let lamp = offsets!(LampUniform: position, range, to_light, outer_cosine, color, inner_cosine);

@@ -17,6 +17,8 @@ pub(crate) enum Vertices {
     Positions,
     /// That, texture coordinates and alpha.
     Outlines,
+    /// Everything but colour, for normals of a mask.
+    Facing,
     /// Everything.
     #[default]
     Whole,
@@ -27,6 +29,7 @@ impl Vertices {
         match self {
             Self::Positions => "vs_solid",
             Self::Outlines => "vs_outline",
+            Self::Facing => "vs_facing",
             Self::Whole => "vs_main",
         }
     }
@@ -36,7 +39,7 @@ impl Vertices {
         match self {
             Self::Positions => 2,
             Self::Outlines => 3,
-            Self::Whole => 4,
+            Self::Facing | Self::Whole => 4,
         }
     }
 }

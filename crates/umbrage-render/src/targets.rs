@@ -11,11 +11,15 @@ pub(crate) struct Turn {
     pub first: bool,
     /// Resolves samples; nothing is kept for a later pass.
     pub last: bool,
+    /// Depth is there already and stays as it is.
+    pub has_depth: bool,
 }
 
 impl Turn {
     /// The only pass.
-    pub const ONLY: Self = Self { first: true, last: true };
+    pub const ONLY: Self = Self { first: true, last: true, has_depth: false };
+    /// The only pass after one that drew depth.
+    pub const OVER_DEPTH: Self = Self { has_depth: true, ..Self::ONLY };
 }
 
 /// The textures that a picture is drawn into.
@@ -148,7 +152,7 @@ fn begin<'e>(
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: depth,
             depth_ops: Some(wgpu::Operations {
-                load: if turn.first { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load },
+                load: if turn.first && !turn.has_depth { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load },
                 store: keep_depth,
             }),
             stencil_ops: None,

@@ -3,8 +3,9 @@
 use crate::capture::read_buffer;
 use crate::{Gpu, Result};
 
-/// Passes of a frame beside those of its maps: the mask and the picture.
-const VIEW_PASSES: u32 = 2;
+/// Passes of a frame beside those of its maps: the depth for contact shadows, the mask and the
+/// picture, which may be three: its normals, a mask of them and itself.
+const VIEW_PASSES: u32 = 5;
 /// Passes for each map at most: drawn slice by slice, a map goes with the mask and the picture, and
 /// once more with the picture for what is translucent.
 const PASSES_OF_A_MAP: u32 = 5;

@@ -254,7 +254,7 @@ pub struct Frame {
     pub shadow_colour: [f32; 3],
     /// A [`BiasKind`].
     pub bias_kind: u32,
-    /// Where the eye stands, relative to the frame's origin, metres; read with `is_radial`.
+    /// Where the eye stands, relative to the frame's origin, metres.
     pub eye: [f32; 3],
     /// A [`MetricKind`]: with [`MetricKind::Distance`] all view depths of the frame are distances.
     pub is_radial: u32,

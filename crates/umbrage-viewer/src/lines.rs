@@ -2,6 +2,7 @@
 //! them.
 
 use glam::{DVec2, DVec3};
+use umbrage::config::SplitMetric;
 use umbrage::{Aabb, ShadowPlan, Split, View};
 
 /// A line between two world points.
@@ -77,7 +78,7 @@ pub struct SplitLines {
 pub fn frusta(plan: &ShadowPlan, planned: &View) -> Vec<SplitLines> {
     let per_face = (plan.splits.len() / plan.faces().max(1)).max(1);
     let of = |(index, split): (usize, &Split)| {
-        let slice = plan.radial_eye.is_none().then(|| slice(planned, split.near, split.far));
+        let slice = (plan.metric() == SplitMetric::ViewDepth).then(|| slice(planned, split.near, split.far));
         SplitLines {
             split: index % per_face,
             slice: slice.into_iter().flatten().collect(),

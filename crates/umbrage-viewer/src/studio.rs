@@ -323,8 +323,13 @@ impl Set<'_> {
         if self.booths.len() == slot {
             tell.busy("uploading the scene and building its pipelines").await;
             let slots = kinds.iter().copied().map(Into::into).collect();
-            let settings =
-                RenderSettings { size: shot.size, samples: Samples::default(), config: config.clone(), lights: slots };
+            let settings = RenderSettings {
+                size: shot.size,
+                samples: Samples::default(),
+                config: config.clone(),
+                lights: slots,
+                ..RenderSettings::default()
+            };
             self.booths.push(Booth { renderer: Renderer::new(gpu, scene, &settings)?, lights: kinds });
         }
         let renderer = &mut self.booths[slot].renderer;

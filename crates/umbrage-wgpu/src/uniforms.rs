@@ -56,10 +56,9 @@ fn check_choices(plan: &ShadowPlan, config: &ShadowConfig) -> Result<()> {
         let word = |by_map| if by_map { "map" } else { "depth" };
         return mismatch("selection", word(by_map), word(!by_map));
     }
-    let radial = config.selection == Selection::Interval(SplitMetric::Distance);
-    if radial != plan.radial_eye.is_some() {
-        let word = |radial| if radial { "radial" } else { "planar" };
-        return mismatch("bands", word(radial), word(!radial));
+    let [made_for, given] = [config.selection.metric(), plan.metric()];
+    if made_for != given {
+        return mismatch("bands", &made_for.to_string(), &given.to_string());
     }
     let has_warp = plan.splits.iter().any(|split| split.light_position.is_none() && split.warp.is_some());
     if has_warp && config.first_warp().is_none() {
@@ -112,8 +111,8 @@ fn frame(
         map_blend: plan.blend as f32,
         bias_kind: bias_kind(look.bias) as u32,
         shadow_colour: look.colour.map(|part| part as f32),
-        eye: plan.radial_eye.map_or([0.0; 3], |eye| (eye - options.origin).as_vec3().to_array()),
-        is_radial: plan.radial_eye.is_some().into(),
+        eye: (plan.eye - options.origin).as_vec3().to_array(),
+        is_radial: (plan.metric() == SplitMetric::Distance).into(),
         ..layout::Frame::default()
     };
     local::place_light(&mut frame, plan, options.origin);
@@ -143,8 +142,8 @@ fn check_plan(plan: &ShadowPlan, slot: &Slot) -> Result<()> {
     if let Some(plane) = plan.planes.iter().find(|plane| !plane.is_finite()) {
         return bad("planes", *plane, "finite view depths");
     }
-    if plan.radial_eye.is_some_and(|eye| !eye.is_finite()) {
-        return bad("radial_eye", f64::NAN, "three finite numbers");
+    if !plan.eye.is_finite() {
+        return bad("eye", f64::NAN, "three finite numbers");
     }
     if !is_unit(plan.light_direction) {
         return bad("light_direction", plan.light_direction.length(), "a vector of length 1");

@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use crate::casters::Gathered;
-use crate::config::Selection;
+use crate::config::{Selection, SplitMetric};
 use crate::coverage::PlanCoverage;
 use crate::{Aabb, DepthConvention, Light, View};
 
@@ -18,13 +18,14 @@ pub const MAX_SPLITS: usize = 8;
 pub struct ShadowPlan {
     /// The splits, nearest first; of a point light those of its first face, then those of the next.
     pub splits: Vec<Split>,
-    /// `C_0 ..= C_m`: view depths in metres; see [`ShadowPlan::radial_eye`].
+    /// `C_0 ..= C_m`: view depths in metres; with radial bands distances to the eye, see
+    /// [`ShadowPlan::metric`].
     pub planes: Vec<f64>,
     /// The plane that measures view depth: `xyz · point + w`, in metres.
     pub view_depth_plane: DVec4,
-    /// With [`crate::config::SplitMetric::Distance`] the eye, metres: all depths of this plan are
-    /// then distances to it. `None`: view depths.
-    pub radial_eye: Option<DVec3>,
+    /// Where the view looks from, metres; of a parallel projection the point that
+    /// [`View::eye`] gives.
+    pub eye: DVec3,
     /// The way light travels, a unit vector; the axis of a spot light. A point light has none and
     /// the value is straight down.
     pub light_direction: DVec3,
@@ -56,7 +57,7 @@ impl ShadowPlan {
     /// Empties the plan for a frame.
     pub(crate) fn begin(&mut self, view: &View, light: Light) {
         self.view_depth_plane = view.forward().extend(-view.forward().dot(view.eye()));
-        self.radial_eye = None;
+        self.eye = view.eye();
         self.light_direction = match light {
             Light::Directional(sun) => sun.direction(),
             Light::Spot(spot) => spot.direction(),
@@ -81,7 +82,7 @@ impl ShadowPlan {
         self.split_range.clone_from(&other.split_range);
         self.dropped_casters.clone_from(&other.dropped_casters);
         self.coverage.copy_from(&other.coverage);
-        (self.view_depth_plane, self.radial_eye) = (other.view_depth_plane, other.radial_eye);
+        (self.view_depth_plane, self.eye) = (other.view_depth_plane, other.eye);
         (self.light_direction, self.light) = (other.light_direction, other.light);
         (self.fade_begin, self.selection, self.blend) = (other.fade_begin, other.selection, other.blend);
     }
@@ -111,10 +112,16 @@ impl ShadowPlan {
     /// distance to the eye.
     #[must_use]
     pub fn depth_at(&self, point: DVec3) -> f64 {
-        match self.radial_eye {
-            Some(eye) => eye.distance(point),
-            None => self.view_depth_plane.truncate().dot(point) + self.view_depth_plane.w,
+        match self.metric() {
+            SplitMetric::Distance => self.eye.distance(point),
+            SplitMetric::ViewDepth => self.view_depth_plane.truncate().dot(point) + self.view_depth_plane.w,
         }
+    }
+
+    /// What the plan's depths measure.
+    #[must_use]
+    pub const fn metric(&self) -> SplitMetric {
+        self.selection.metric()
     }
 
     /// How many times the settings' splits there are; see [`Light::faces`].
@@ -195,7 +202,8 @@ impl ShadowPlan {
 /// metres, and the stored depth is `A − B/w`, 0 at `depth_near` and 1 at `depth_far`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Split {
-    /// Where the slice begins, `C_i`: a view depth in metres; see [`ShadowPlan::radial_eye`].
+    /// Where the slice begins, `C_i`: a view depth in metres; with radial bands a distance to the
+    /// eye, see [`ShadowPlan::metric`].
     pub near: f64,
     /// Where the slice ends, `C_{i+1}`.
     pub far: f64,

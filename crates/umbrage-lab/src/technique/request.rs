@@ -105,7 +105,7 @@ impl ShadowRequest {
     #[must_use]
     pub fn render_settings(&self, size: [u32; 2], samples: Samples, lights: Vec<LightKind>) -> RenderSettings {
         let lights = lights.into_iter().map(LightMaps::from).collect();
-        RenderSettings { size, samples, config: self.config.clone(), lights }
+        RenderSettings { size, samples, config: self.config.clone(), lights, ..RenderSettings::default() }
     }
 
     /// A setting's value as text; empty where the config has no such setting.

@@ -71,6 +71,7 @@ impl Renderer {
                 self.forward = Forward::new(&gpu, maps, materials, samples, with, self.shading);
                 self.probe = OnceLock::new();
                 self.shadow_mask = None;
+                self.through_mask = None;
                 self.dithered_nodes = dithered_nodes(scene, config);
             }
             self.notes = notes_of(&self.shadows, self.contact.as_ref(), &self.timer);
@@ -96,6 +97,9 @@ impl Renderer {
         self.contact = gpu.guarded("resizing the picture", || Ok(Contact::wanted(&gpu, config, size)))?;
         // Targets are made when a frame wants them.
         (self.picture, self.mask, self.counts, self.size) = (None, None, None, size);
+        if let Some(through) = &mut self.through_mask {
+            through.forget_picture();
+        }
         Ok(())
     }
 

@@ -6,6 +6,7 @@ mod answers;
 mod blocking;
 mod caster_runs;
 mod gathered;
+mod lit;
 mod live;
 mod prepare;
 mod record;
@@ -45,6 +46,7 @@ use crate::names::Names;
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint};
 use crate::stats::FrameStats;
 use crate::targets::{MaskTarget, PictureTarget};
+use crate::through_mask::ThroughMask;
 use crate::timing::Timer;
 use crate::{Error, Gpu, Result, maps, waiting};
 
@@ -60,6 +62,10 @@ pub struct RenderSettings {
     pub config: ShadowConfig,
     /// The lights of a frame, the first one first: one sun by default.
     pub lights: Vec<LightMaps>,
+    /// Pictures may take the first light's shadows from a mask that is made of their depth and
+    /// normals, which asks once per pixel however small triangles are. It is done where nothing is
+    /// lost by it: one light, one sample per pixel. `false`: every fragment asks for itself.
+    pub through_mask: bool,
 }
 
 impl Default for RenderSettings {
@@ -69,6 +75,7 @@ impl Default for RenderSettings {
             samples: Samples::default(),
             config: ShadowConfig::default(),
             lights: vec![LightKind::Directional.into()],
+            through_mask: true,
         }
     }
 }
@@ -154,6 +161,9 @@ pub struct Renderer {
     pub(crate) picture: Option<PictureTarget>,
     pub(crate) mask: Option<MaskTarget>,
     pub(crate) shadow_mask: Option<ShadowMask>,
+    /// Whether pictures may go through a mask, and what that takes, made when first needed.
+    may_mask: bool,
+    through_mask: Option<ThroughMask>,
     pub(crate) counts: Option<MaskTarget>,
     pub(crate) notes: Vec<String>,
     /// The objects that maps are planned for, where something is kept of these.
@@ -225,6 +235,8 @@ impl Renderer {
                 picture: None,
                 mask: None,
                 shadow_mask: None,
+                may_mask: settings.through_mask,
+                through_mask: None,
                 counts: None,
                 notes,
                 world: WorldSet::default(),
@@ -295,7 +307,8 @@ impl Renderer {
     async fn render_unguarded(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
         self.make_targets(outputs)?;
-        let prepared = Prepared { every_map: outputs.maps, ..self.prepare(frame, true)? };
+        let mut prepared = Prepared { every_map: outputs.maps, ..self.prepare(frame, true)? };
+        prepared.is_through_mask = outputs.picture && self.prepare_lit(frame, prepared.origin)?;
         let mut clock = Clock::start(&gpu, &self.timer);
         let samples = self.shadows.maps().config().filter.samples();
         if outputs.maps && samples > 1 {

@@ -39,6 +39,8 @@ pub(crate) struct Prepared {
     /// Whether maps without casters are cleared too: nobody reads those of several lights or
     /// faces, but they may be wanted as pictures.
     pub every_map: bool,
+    /// Whether the picture takes the first light's shadows from a mask.
+    pub is_through_mask: bool,
 }
 
 /// What lies in one slice of the view.
@@ -98,6 +100,7 @@ impl Renderer {
             slices,
             objects_in_view: visible.len(),
             every_map: false,
+            is_through_mask: false,
         })
     }
 
@@ -129,13 +132,14 @@ impl Renderer {
 
     /// Writes the cameras of the view and of its slices, which are returned.
     fn write_cameras(&mut self, view: &View, lamps: &[Lamp], origin: DVec3) -> Result<Vec<Slice>> {
-        self.forward.prepare(&self.gpu, 0, &FrameUniform::new(view, lamps, origin, None)?);
+        let colour = DVec3::from_array(self.shadows.config().look.colour);
+        self.forward.prepare(&self.gpu, 0, &FrameUniform::new(view, lamps, colour, origin, None)?);
         if let Some(contact) = &self.contact {
             contact.prepare(&self.gpu, view, origin)?;
         }
         let slices = self.shadows.frame().slices(view);
         for slice in &slices {
-            let uniform = FrameUniform::new(view, lamps, origin, Some(slice))?;
+            let uniform = FrameUniform::new(view, lamps, colour, origin, Some(slice))?;
             self.forward.prepare(&self.gpu, 1 + slice.split, &uniform);
         }
         Ok(slices)

@@ -10,6 +10,7 @@ use crate::capture::Capture;
 use crate::draw_list::Drawn;
 use crate::forward::Bindings;
 use crate::targets::{MaskTarget, PictureTarget, Turn};
+use crate::through_mask::ThroughMask;
 use crate::timing::Timer;
 use crate::{Gpu, Result, waiting};
 
@@ -42,6 +43,7 @@ impl Renderer {
     ) -> Result<(Recorded, wgpu::CommandEncoder)> {
         let mut recorded = Recorded::default();
         let (kept_mask, kept_picture, kept_counts) = (self.mask.take(), self.picture.take(), self.counts.take());
+        let kept_through = self.through_mask.take();
         let mask = kept_mask.as_ref().filter(|_| outputs.mask);
         let counts = kept_counts.as_ref().filter(|_| outputs.edges);
         let picture = kept_picture.as_ref().filter(|_| outputs.picture);
@@ -68,15 +70,8 @@ impl Renderer {
                 self.forward.draw_counts(&mut pass, bindings, &self.drawable(), &prepared.solid);
             }
             if let Some(target) = picture {
-                let slot = self.timer.next(1);
-                let mut pass = target.begin(&mut encoder, Turn::ONLY, self.timer.timestamp_writes(slot));
-                recorded.view += self.timer.counted(&mut pass, slot, |pass| {
-                    let drawable = self.drawable();
-                    let mut drawn = self.forward.draw_solid(pass, bindings, &drawable, &prepared.solid);
-                    self.forward.draw_sky(pass, bindings);
-                    drawn += self.forward.draw_translucent(pass, bindings, &drawable, &prepared.translucent);
-                    drawn
-                });
+                let through = kept_through.as_ref().filter(|_| prepared.is_through_mask);
+                recorded.view += self.record_picture(&mut encoder, target, through, prepared);
             }
         } else {
             self.record_depth(&mut encoder, prepared, &mut recorded);
@@ -84,7 +79,41 @@ impl Renderer {
             encoder = self.record_slices(encoder, clock, prepared, outputs, targets, &mut recorded).await?;
         }
         (self.mask, self.picture, self.counts) = (kept_mask, kept_picture, kept_counts);
+        self.through_mask = kept_through;
         Ok((recorded, encoder))
+    }
+
+    /// Records the picture, all of it.
+    fn record_picture(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &PictureTarget,
+        through: Option<&ThroughMask>,
+        prepared: &Prepared,
+    ) -> Drawn {
+        let mut all = Drawn::default();
+        let turn = match through {
+            Some(through) => {
+                all += self.record_lit(encoder, through, target, &prepared.solid);
+                Turn::OVER_DEPTH
+            }
+            None => Turn::ONLY,
+        };
+        let contact = self.contact.as_ref().map(|contact| &contact.bind_group);
+        let bindings = Bindings { frame: self.forward.bind_group(0), maps: self.shadows.bind_group(), contact };
+        let slot = self.timer.next(1);
+        let mut pass = target.begin(encoder, turn, self.timer.timestamp_writes(slot));
+        all += self.timer.counted(&mut pass, slot, |pass| {
+            let drawable = self.drawable();
+            let mut drawn = match through {
+                Some(through) => through.draw_solid(pass, bindings, &drawable, &prepared.solid),
+                None => self.forward.draw_solid(pass, bindings, &drawable, &prepared.solid),
+            };
+            self.forward.draw_sky(pass, bindings);
+            drawn += self.forward.draw_translucent(pass, bindings, &drawable, &prepared.translucent);
+            drawn
+        });
+        all
     }
 
     /// Records the picture's depth, for contact shadows.
@@ -178,20 +207,24 @@ impl Renderer {
             let (first, last) = (i == 0, i + 1 == slices.len());
             if let Some(target) = mask {
                 let slot = self.timer.next(1);
-                let mut pass = target.begin(&mut encoder, Turn { first, last }, self.timer.timestamp_writes(slot));
+                let mut pass = target.begin(
+                    &mut encoder,
+                    Turn { first, last, has_depth: false },
+                    self.timer.timestamp_writes(slot),
+                );
                 self.set_slice(&mut pass, &part.slice);
                 recorded.view += self.timer.counted(&mut pass, slot, |pass| {
                     self.forward.draw_mask(pass, self.bindings(&part.slice), &self.drawable(), &part.solid)
                 });
             }
             if let Some(target) = counts {
-                let mut pass = target.begin(&mut encoder, Turn { first, last }, None);
+                let mut pass = target.begin(&mut encoder, Turn { first, last, has_depth: false }, None);
                 self.set_slice(&mut pass, &part.slice);
                 self.forward.draw_counts(&mut pass, self.bindings(&part.slice), &self.drawable(), &part.solid);
             }
             if let Some(target) = picture {
                 let slot = self.timer.next(1);
-                let turn = Turn { first, last: last && !translucent };
+                let turn = Turn { first, last: last && !translucent, has_depth: false };
                 let mut pass = target.begin(&mut encoder, turn, self.timer.timestamp_writes(slot));
                 self.set_slice(&mut pass, &part.slice);
                 recorded.view += self.timer.counted(&mut pass, slot, |pass| {
@@ -215,7 +248,7 @@ impl Renderer {
                 encoder = clock.after_maps(encoder).await?;
             }
             let slot = self.timer.next(1);
-            let turn = Turn { first: false, last: i == 0 };
+            let turn = Turn { first: false, last: i == 0, has_depth: false };
             let mut pass = target.begin(&mut encoder, turn, self.timer.timestamp_writes(slot));
             self.set_slice(&mut pass, &part.slice);
             recorded.view += self.timer.counted(&mut pass, slot, |pass| {

@@ -3,8 +3,11 @@
 use super::bias::Receiver;
 use crate::ExactEdges;
 
-/// `edges::LEAST_M`: metres along the light within which nothing shades.
+/// `edges::LEAST_M`: metres along the light within which nothing shades that is as good as parallel
+/// to the point's surface.
 pub const LEAST_M: f32 = 0.002;
+/// `edges::PARALLEL`: cosine from which on two surfaces are as good as parallel.
+pub const PARALLEL: f32 = 0.866;
 /// `edges::SLACK_TEXELS`: texels that a stored depth may lie before the receiver's plane before the
 /// point is tested, beside the receiver's own bias.
 pub const SLACK_TEXELS: f32 = 0.25;
@@ -51,6 +54,10 @@ impl Run {
 pub struct Ray {
     /// Metres from the frame's origin.
     pub origin: [f32; 3],
+    /// Unit normal of the point's surface.
+    pub normal: [f32; 3],
+    /// From the point to the eye, metres.
+    pub to_eye: [f32; 3],
     /// Unit vector towards the light.
     pub to_light: [f32; 3],
     /// Metres to the light.
@@ -60,10 +67,10 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// The way of a point without a pixel to a sun.
+    /// The way of a point without a pixel to a sun; an eye looks along the point's normal.
     #[must_use]
-    pub const fn to_sun(origin: [f32; 3], to_light: [f32; 3]) -> Self {
-        Self { origin, to_light, length_m: 3e38, pixel: [[0.0; 3]; 2] }
+    pub const fn to_sun(origin: [f32; 3], normal: [f32; 3], to_light: [f32; 3]) -> Self {
+        Self { origin, normal, to_eye: normal, to_light, length_m: 3e38, pixel: [[0.0; 3]; 2] }
     }
 }
 
@@ -179,14 +186,35 @@ fn shaded_places(run: &Run, ray: Ray, places: &[[f32; 2]]) -> Vec<bool> {
     let axis = dominant(to_light);
     let along = turned(to_light, axis);
     let shear = [along[0] / along[2], along[1] / along[2]];
+    let surface = Surface {
+        normal: turned(plane_of(own, ray.normal), axis),
+        to_eye: turned(own(ray.to_eye), axis),
+        to_light: along,
+    };
     let shaded = |[right, below]: &[f32; 2]| {
         let aside = turned([0, 1, 2].map(|axis| right * pixel[0][axis] + below * pixel[1][axis]), axis);
         run.triangles.iter().any(|corners| {
             let corners = corners.map(|corner| minus(turned(minus(corner, origin), axis), aside));
-            is_before(corners, shear, along[2], [ray.length_m, lost])
+            is_before(corners, surface, shear, [ray.length_m, lost])
         })
     };
     places.iter().map(shaded).collect()
+}
+
+/// `edges::Surface`: that of a point, in a run's own space, axes turned.
+#[derive(Clone, Copy)]
+struct Surface {
+    normal: [f32; 3],
+    to_eye: [f32; 3],
+    to_light: [f32; 3],
+}
+
+/// `edges::plane_of`: a normal in a run's own space, where `own` takes directions.
+fn plane_of(own: impl Fn([f32; 3]) -> [f32; 3], normal: [f32; 3]) -> [f32; 3] {
+    let aside = if normal[0].abs() > 0.7 { [0.0, 1.0, 0.0] } else { [1.0, 0.0, 0.0] };
+    let u = cross(normal, aside);
+    let plane = cross(own(u), own(cross(normal, u)));
+    if dot(plane, own(normal)) > 0.0 { plane } else { plane.map(|x| -x) }
 }
 
 fn meets_box(run: &Run, origin: [f32; 3], direction: [f32; 3], by: [f32; 3], length_m: f32) -> bool {
@@ -200,7 +228,7 @@ fn meets_box(run: &Run, origin: [f32; 3], direction: [f32; 3], by: [f32; 3], len
     enters <= leaves
 }
 
-fn is_before([a, b, c]: [[f32; 3]; 3], shear: [f32; 2], along: f32, [length_m, lost]: [f32; 2]) -> bool {
+fn is_before([a, b, c]: [[f32; 3]; 3], surface: Surface, shear: [f32; 2], [length_m, lost]: [f32; 2]) -> bool {
     let [p, q, r] = [a, b, c].map(|corner| [corner[0] - shear[0] * corner[2], corner[1] - shear[1] * corner[2]]);
     let weights = [r[0] * q[1] - r[1] * q[0], p[0] * r[1] - p[1] * r[0], q[0] * p[1] - q[1] * p[0]];
     let twice_area: f32 = weights.iter().sum();
@@ -208,13 +236,16 @@ fn is_before([a, b, c]: [[f32; 3]; 3], shear: [f32; 2], along: f32, [length_m, l
     if !is_under || twice_area == 0.0 {
         return false;
     }
-    let metres = dot(weights, [a[2], b[2], c[2]]) / (twice_area * along);
-    if metres <= LEAST_M || metres >= length_m {
-        return false;
-    }
+    let metres = dot(weights, [a[2], b[2], c[2]]) / (twice_area * surface.to_light[2]);
     let normal = cross(minus(b, a), minus(c, a));
-    let reach = length(a).max(length(b)).max(length(c));
-    dot(normal, a).abs() > (lost + LOST * reach) * length(normal)
+    let lost = lost + LOST * length(a).max(length(b)).max(length(c));
+    let highest = [a, b, c].map(|corner| dot(surface.normal, corner)).into_iter().fold(f32::MIN, f32::max);
+    let is_parallel = dot(normal, surface.normal).abs() > PARALLEL * length(normal) * length(surface.normal);
+    let rises = !is_parallel && highest > lost * length(surface.normal);
+    if dot(normal, a).abs() <= lost * length(normal) {
+        return rises && dot(normal, surface.to_eye) * dot(normal, surface.to_light) < 0.0;
+    }
+    metres > if rises { 0.0 } else { LEAST_M } && metres < length_m
 }
 
 fn dominant(v: [f32; 3]) -> usize {

@@ -15,7 +15,7 @@ use super::scope::Scope;
 use super::snap;
 use super::warped::WarpPoints;
 use crate::bounds::Placed;
-use crate::config::{Crop, Range, Selection, SplitMetric};
+use crate::config::{Crop, Range, Selection};
 use crate::held::Held;
 use crate::{DirectionalLight, Result, ShadowPlan, Split, Warp};
 
@@ -81,7 +81,6 @@ fn describe(frame: &Frame<'_>, sun: &Sun<'_>, layout: &Layout, plan: &mut Shadow
     plan.planes.extend(layout.planes());
     plan.selection = config.selection;
     plan.blend = config.blend();
-    plan.radial_eye = (metric == SplitMetric::Distance).then(|| view.eye());
     // Behind the last receiver and beyond the camera's far plane there is nothing to fade into.
     let last_shown = view.frustum().far / metric.least_depth_share(view);
     let fades = matches!(config.range, Range::Metres { far, .. } if far < last_shown);
