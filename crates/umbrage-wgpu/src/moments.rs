@@ -15,7 +15,7 @@ pub enum MomentStorage {
     /// 32-bit floats, filtered by the hardware's sampler: needs `FLOAT32_FILTERABLE` (see
     /// [`crate::optional_features`]).
     F32,
-    /// 16-bit floats, for the exponential filters, with smaller exponents. They leak more light.
+    /// 16-bit floats, for the exponential filters, with exponents that fit. They leak more light.
     F16,
     /// 32-bit floats that the receiver's shader filters itself, for filters for which 16 bits are
     /// not enough.
@@ -29,7 +29,7 @@ const MOST_RADIUS: f64 = 15.0;
 /// same width in metres, unless that is less than the width of linear sampling.
 const DEFAULT_TEXELS: f64 = 8.0;
 
-/// Size of the smallest mip level in texels: no pixel covers more of a map than that.
+/// Edge of the smallest mip level in texels: no pixel covers more of a map than that.
 const LEAST_LEVEL: u32 = 4;
 
 /// Most texels along the longer axis of a pixel's footprint that a sampler reads.

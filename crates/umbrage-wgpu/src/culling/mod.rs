@@ -44,7 +44,7 @@ pub struct CullInputs {
 /// each instance. A compute pass writes the numbers of the instances that pass one after the other,
 /// mesh by mesh, and counts them in the arguments of indirect draws. The numbers are a vertex
 /// buffer that advances by instance, bound at the offset where those of a mesh begin. The device
-/// therefore needs no first instances, counts of draws or draw indices.
+/// therefore needs no feature for first instances, counts of draws or draw indices.
 ///
 /// The plan is made without a list: [`crate::Inputs::casters`] and [`crate::Inputs::receivers`] are
 /// a few boxes that contain all instances, such as a level's tiles. The test is that of the

@@ -40,7 +40,7 @@ impl<'a> ShadowFrame<'a> {
         ShadowMap { shadows: self.shadows, pass }
     }
 
-    /// Number of passes of [`ShadowFrame::map`].
+    /// Number of passes; [`ShadowFrame::map`] takes an index below it.
     #[must_use]
     pub fn pass_count(&self) -> usize {
         self.shadows.maps.passes().len() + self.shadows.regions().len()
