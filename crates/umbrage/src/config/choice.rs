@@ -1,5 +1,4 @@
-//! The choices that exclude others: whether a config makes them, in which words, and how to take
-//! them back.
+//! Choices that exclude others: whether a config makes them, their words, and how to reset them.
 
 use super::{
     Cache, Coordinates, Crop, DepthFormat, Edges, Filter, FitTo, Generation, Layout, LightKind, Range, Selection,
@@ -52,11 +51,11 @@ pub enum Choice {
     NotStill,
     /// Maps of another format than 32-bit depth.
     OtherDepth,
-    /// What static casters draw is kept.
+    /// Maps keep the depth drawn by static casters.
     KeptMaps,
-    /// Pixels make the coordinates of maps from the picture's depth.
+    /// Pixels compute the coordinates of maps from the image's depth.
     DeferredCoordinates,
-    /// Vertices make the coordinates of maps.
+    /// Vertex shaders compute the coordinates of maps.
     VertexCoordinates,
     /// More splits than vertex shaders pass coordinates for.
     MoreThanFourSplits,
@@ -107,7 +106,7 @@ impl Choice {
         Self::SliceCrop,
     ];
 
-    /// Whether a config for these lights makes this choice.
+    /// Returns whether a config for these lights makes this choice.
     #[must_use]
     pub fn holds(self, config: &ShadowConfig, lights: &[LightKind]) -> bool {
         match self {
@@ -144,7 +143,7 @@ impl Choice {
         }
     }
 
-    /// The settings that make this choice, the most telling one first.
+    /// Settings that make this choice, the most characteristic one first.
     #[must_use]
     pub const fn keys(self) -> &'static [&'static str] {
         match self {
@@ -191,13 +190,14 @@ impl Choice {
         }
     }
 
-    /// Whether each light's plan makes the choice by itself, and not all maps together.
+    /// Returns whether the choice is made by each light's plan by itself, and not by all maps
+    /// together.
     #[must_use]
     pub const fn is_per_light(self) -> bool {
         matches!(self, Self::Warp | Self::MapSelection | Self::DistanceMetric | Self::OptimalScheme)
     }
 
-    /// Takes the choice back to what excludes nothing. False where there is no such choice.
+    /// Resets the choice to a value that excludes nothing. Returns false if there is no such value.
     pub fn relax(self, config: &mut ShadowConfig) -> bool {
         match self {
             Self::Warp => config.stability = Stability::tight(),
