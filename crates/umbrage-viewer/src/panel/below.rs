@@ -6,7 +6,7 @@ use super::plots;
 use crate::app::App;
 use crate::session::Tab;
 
-/// The tabs, and the one that is open.
+/// Lays out the tabs, and the one that is open.
 pub fn below(app: &mut App, ui: &mut Ui) {
     Panel::bottom("tabs").show(ui, |ui| {
         ui.horizontal(|ui| {
