@@ -1,5 +1,5 @@
-//! umbrage's laboratory: what it takes to judge shadows, draw them side by side, measure their cost
-//! and show the theory behind them.
+//! umbrage's laboratory: judging shadows, drawing them side by side, measuring their cost and
+//! showing the theory behind them.
 //!
 //! * [`technique`]: how shadows are made, as options, as settings and under a name;
 //! * [`scene_request`] and [`scene_setup`]: what is looked at, asked for and opened;

@@ -123,7 +123,8 @@ pub fn choose(
     Ok((chosen, notes))
 }
 
-/// Lists the settings that change with one that is excluded now, for display before it is chosen.
+/// Lists the settings that differ between two configs, for display before an excluded setting is
+/// chosen.
 #[must_use]
 pub fn changes(before: &ShadowConfig, after: &ShadowConfig) -> Vec<String> {
     let changed = SETTINGS.iter().filter(|setting| setting.get(before) != setting.get(after));
