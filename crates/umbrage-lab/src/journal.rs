@@ -51,8 +51,8 @@ pub struct Kept<T> {
 }
 
 /// Reads a file of this kind. `line` reads a finished part from a line; its error says what is
-/// wrong with the line. `expected` is the description of the expected run; of another run's file
-/// only the first line is read.
+/// wrong with the line. `expected` is the description of the expected run; a file of another run is
+/// refused before its further lines are read.
 ///
 /// # Errors
 /// [`Failure::Input`] with the file: it cannot be read, is no journal, belongs to another run than

@@ -49,7 +49,7 @@ pub struct SceneRequest {
     /// Number of the only frame that is shown, of several. Frames before it are drawn, for state
     /// that maps keep from frame to frame, but are not shown.
     pub only_frame: Option<u32>,
-    /// The request as options of `umbrage render`, for reports; empty if nobody typed any.
+    /// The request as options of `umbrage render`, for reports; empty if the request was not typed.
     pub options: Vec<String>,
 }
 

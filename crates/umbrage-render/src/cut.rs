@@ -1,9 +1,9 @@
 //! Huge triangles are cut before they are uploaded.
 //!
-//! A device places the vertices of a triangle in `f32`, and what lies between them by their
-//! places: in the middle of a ground of two triangles of 1,000 km, a fragment is off by 3 cm,
-//! several texels of a map (`docs/notes/coordinates.md`). Vertices of smaller triangles are placed
-//! as exactly as they are near the eye.
+//! A device places the vertices of a triangle in `f32`, and interpolates the fragments between
+//! them: in the middle of a ground of two triangles of 1,000 km, a fragment is off by 3 cm, several
+//! texels of a map (`docs/notes/coordinates.md`). Vertices of smaller triangles are placed as
+//! exactly as they are near the eye.
 
 use std::borrow::Cow;
 use std::collections::HashMap;

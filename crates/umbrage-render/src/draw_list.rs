@@ -247,7 +247,7 @@ pub(crate) struct Drawable<'a> {
     pub instances: &'a Instances,
 }
 
-/// Numbers of what a pass has drawn.
+/// Numbers of draw calls and triangles of a pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Drawn {
     /// Number of draw calls.

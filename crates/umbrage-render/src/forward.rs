@@ -82,7 +82,7 @@ pub(crate) struct FrameUniform {
     pub lamps: [LampUniform; MOST_LAMPS],
 }
 
-/// Brightness of the sky without a sun: enough to tell corners apart where no lamp shines.
+/// Brightness of the sky without a sun: enough to distinguish corners that no lamp lights.
 const NIGHT: f32 = 0.2;
 
 impl FrameUniform {

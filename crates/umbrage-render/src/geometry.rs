@@ -1,10 +1,9 @@
 //! Vertices and indices on the GPU. Rigid geometry is uploaded once, skinned geometry every frame.
 //!
 //! Vertices lie in three streams, so that a shadow pass reads positions only: positions, normals,
-//! and the *surface* (texture coordinates and colour). What is opaque has indices of its own for
-//! shadow passes where that spares vertices, and more of them where maps name triangles. Indices
-//! count from the start of the whole buffer,
-//! which spares base vertices.
+//! and the *surface* (texture coordinates and colour). Opaque primitives have separate indices for
+//! shadow passes where that spares vertices, and a further set where maps name triangles. Indices
+//! count from the start of the whole buffer, which spares base vertices.
 
 use std::ops::Range;
 
@@ -52,7 +51,7 @@ impl GpuPrimitive {
 enum Matter {
     /// Opaque and rigid: only positions matter.
     Solid,
-    /// Not opaque everywhere: the surface's alpha matters too.
+    /// Not opaque everywhere: the alpha of the surface matters too.
     Textured,
     /// Skinned: its vertices change every frame.
     Moving,

@@ -19,9 +19,9 @@ pub(crate) enum Alpha {
     Used,
 }
 
-/// All levels of a texture, level 0 first, each as tightly packed sRGB bytes. Where alpha is used,
-/// invisible texels get the colour of the visible ones around them, so that a sample between both
-/// keeps its colour. Alpha is never changed in level 0.
+/// Computes all levels of a texture, level 0 first, each as tightly packed sRGB bytes. Where alpha
+/// is used, invisible texels get the colour of the visible ones around them, so that a sample
+/// between both keeps its colour. Alpha is never changed in level 0.
 pub(crate) fn all_levels(texture: &Texture, alpha: Alpha) -> Vec<Vec<u8>> {
     let (mut width, mut height) = (texture.width as usize, texture.height as usize);
     let mut levels = vec![texture.rgba.clone()];

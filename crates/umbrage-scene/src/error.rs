@@ -55,7 +55,7 @@ pub enum Error {
         /// Fault and remedy.
         reason: String,
     },
-    /// The file as a whole is not what it claims to be, or it is cut short.
+    /// The file as a whole is malformed or cut short.
     #[error("{file}: {reason}")]
     Malformed {
         /// The file.

@@ -203,8 +203,8 @@ const GEMS_RESULTS: Preset = Preset {
     ..GEMS_FIGURE
 };
 
-/// *Practical Cascaded Shadow Maps*, Figures 4.1.2 to 4.1.6: what flickers when the observer goes
-/// on. A frame is 0.15 m and 0.003 rad.
+/// *Practical Cascaded Shadow Maps*, Figures 4.1.2 to 4.1.6: flicker while the observer moves. A
+/// frame is 0.15 m and 0.003 rad.
 const STILLNESS: Preset = Preset {
     name: "stillness",
     about: "The kinds of stabilisation along a walk",
@@ -238,7 +238,7 @@ const PSVSM: Preset = Preset {
     ..FIGURE_8
 };
 
-/// Every filter on the same maps, under a sun of three degrees where the command says so.
+/// Every filter on the same maps, under a sun of three degrees if the command asks for it.
 const FILTERS: Preset = Preset {
     name: "filters",
     about: "Every filter on the same maps",

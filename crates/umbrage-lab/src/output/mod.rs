@@ -122,7 +122,7 @@ impl Default for Staged {
 }
 
 impl Staged {
-    /// Writes a file that is to appear at `target`, in place of what may be there.
+    /// Writes a file that is to appear at `target`, in place of an existing file.
     ///
     /// # Errors
     /// [`Failure::Input`] with the target: it is a folder, its folder is missing, the disk is full,

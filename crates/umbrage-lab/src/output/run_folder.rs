@@ -1,4 +1,4 @@
-//! The hidden folder in which a run keeps what is not finished, beside where it is to appear.
+//! The hidden folder in which a run keeps unfinished outputs, beside their final place.
 //!
 //! A run holds a lock on a file in its folder for as long as it lives. The system releases the lock
 //! of a run that was killed, so the next run that writes to the same place recognises abandoned

@@ -230,7 +230,7 @@ pub fn parse_all(texts: &[String], with: &str) -> Result<Vec<Technique>> {
 /// them; the last entry of a key wins. Techniques with the same name are numbered.
 ///
 /// # Errors
-/// Errors of [`TechniqueSource::finish`].
+/// As [`TechniqueSource::finish`].
 pub fn finish(
     sources: &[TechniqueSource],
     with: &Settings,

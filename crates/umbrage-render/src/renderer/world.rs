@@ -119,8 +119,8 @@ struct Member {
 
 impl WorldSet {
     /// Updates the set to a pose. `casts` returns whether an object is drawn into maps. Skinned
-    /// objects count as moving, others as static, and the set is told when a static one is moved.
-    /// Only `moved` objects are examined, if given.
+    /// objects count as moving, others as static, and the set is notified when a static one is
+    /// moved. Only `moved` objects are examined, if given.
     pub fn follow(&mut self, pose: &Pose, moved: Option<&[u32]>, casts: impl Fn(&Object) -> bool) -> Result<()> {
         let caster = |(key, object): (usize, &Object)| {
             let motion = if object.skinned.is_some() { Motion::Moving } else { Motion::Static };

@@ -1,5 +1,5 @@
-//! Accessors and buffer views. Every range is checked before a byte is read; nothing is trusted
-//! because the JSON says so.
+//! Accessors and buffer views. Every range is checked before a byte is read; nothing in the JSON is
+//! trusted.
 
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::validation::Checked;
@@ -42,7 +42,7 @@ pub(super) fn view<'d>(document: &'d Document<'_>, index: usize, user: &str) -> 
 /// Choice of the elements of an accessor that are read.
 #[derive(Clone, Copy)]
 pub(super) enum Wanted<'w> {
-    /// All of them.
+    /// All elements.
     All,
     /// Elements with these indices, which rise.
     Only(&'w [u32]),

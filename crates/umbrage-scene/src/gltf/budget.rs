@@ -2,8 +2,8 @@
 //! or to none.
 //!
 //! Each limit is an amount that every file may have and an amount for each byte of the file and the
-//! files it names. The numbers are ours: several times what real files make of a byte, and for a
-//! file of 1 MB little enough to be loaded in seconds and some hundred MiB.
+//! files it names. The numbers are ours: several times the amounts per byte of real files, and
+//! small enough that a file of 1 MB loads in seconds and takes some hundred MiB.
 
 use std::cell::Cell;
 

@@ -1,12 +1,12 @@
-//! glTF 2.0 as users have it: .glb, or .gltf with its files beside it.
+//! Loader of glTF 2.0: .glb, or .gltf with the files beside it.
 //!
-//! The JSON is parsed by the `gltf` crate's types. Everything that follows an index, a length or a
-//! URI is done here and checked here: that crate's own accessors and its validation panic on files
-//! that lie (an accessor beyond its buffer, a `POSITION` that does not exist, a .glb header shorter
-//! than itself).
+//! The JSON is parsed by the `gltf` crate's types. Every index, length and URI is followed and
+//! checked here, because that crate's own accessors and its validation panic on inconsistent files
+//! (an accessor beyond its buffer, a `POSITION` that does not exist, a .glb header shorter than
+//! itself).
 //!
-//! What a shape does not depend on never stops a file: an unreadable texture, animation, camera or
-//! light is left out, and [`Scene::notes`] says so.
+//! Elements that no shape depends on never stop a file: an unreadable texture, animation, camera or
+//! light is left out, with a note in [`Scene::notes`].
 
 mod accessors;
 mod animations;

@@ -1,4 +1,4 @@
-//! Heights from pictures: grey in whatever form, or metres packed into colours.
+//! Heights from pictures: grey in any format, or metres packed into colours.
 
 use image::{DynamicImage, ImageFormat};
 

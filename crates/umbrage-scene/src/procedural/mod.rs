@@ -44,10 +44,10 @@ pub enum World {
     /// one mesh; 1.1 million triangles. It is not from the paper; it measures the cost of hidden
     /// leaves.
     Thicket,
-    /// A million trees on 100 km² of mountains, or as many as [`WorldOptions::trees`] says; four
-    /// shapes of each kind.
+    /// A million trees on 100 km² of mountains, or [`WorldOptions::trees`] of them; four levels of
+    /// detail of each kind.
     Forest,
-    /// 100,000 buildings on a grid of streets, or as many as [`WorldOptions::buildings`] says.
+    /// 100,000 buildings on a grid of streets, or [`WorldOptions::buildings`] of them.
     CityBlocks,
 }
 

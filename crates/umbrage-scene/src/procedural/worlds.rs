@@ -148,8 +148,8 @@ fn position(side: &str) -> Vec<([u8; 2], Piece)> {
     men
 }
 
-/// Two by two squares around the origin, the light ones at north-west and south-east, each of 2 × 2
-/// cells.
+/// Makes two by two squares around the origin, the light ones at north-west and south-east, each of
+/// 2 × 2 cells.
 fn four_squares(square: f64, [light, dark]: [usize; 2]) -> Mesh {
     let mut sculpture = super::sculpt::Sculpture::default();
     for (column, row) in [(0, 0), (1, 0), (0, 1), (1, 1)] {

@@ -19,8 +19,8 @@ enum ScaledBy {
     Nodes,
 }
 
-/// Hills, boxes, a sphere, a fence of thin slats, leaves of two single-sided faces, a decal and a
-/// lid: what rounding can hurt.
+/// Makes hills, boxes, a sphere, a fence of thin slats, leaves of two single-sided faces, a decal
+/// and a lid: shapes that are sensitive to rounding.
 fn village(scale: f64, by: ScaledBy, moved: DVec3) -> Stage {
     let mut stage = Stage::default();
     let mut add = |mut shape: Shape, at: DAffine3, single_sided: bool| {

@@ -1,4 +1,4 @@
-//! Below the picture: maps, planes, times, casters.
+//! The tabs below the picture: maps, planes, times, casters.
 
 use egui::{Panel, ScrollArea, Ui};
 

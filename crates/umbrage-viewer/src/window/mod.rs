@@ -31,7 +31,7 @@ const PATIENCE: Duration = Duration::from_secs(600);
 /// pivot.
 const STEP_BACK: f64 = 0.9;
 
-/// Event that tells of news from a task.
+/// Event that a task sends when it has news.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct News;
 
