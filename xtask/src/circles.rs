@@ -1,4 +1,4 @@
-//! Files of one crate that use each other in a circle. A module and its parents may.
+//! Check for files of one crate that use each other in a circle. A module and its parents may.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -13,11 +13,11 @@ use syn::{
 
 use crate::run::root;
 
-/// A module's path in its crate, empty for the root.
+/// Path of a module in its crate; empty for the root.
 type Module = Vec<String>;
 
-/// The paths that a file names, but for its tests: `use` trees and paths in code that begin with
-/// `crate`, `self` or `super`.
+/// Paths in a file, without its tests: `use` trees, and paths in code that begin with `crate`,
+/// `self` or `super`.
 #[derive(Default)]
 struct Named(Vec<Vec<String>>);
 
@@ -50,7 +50,8 @@ impl<'ast> Visit<'ast> for Named {
     }
 }
 
-/// The module that a path of `from` leads to: the longest part of it that is one.
+/// Returns the module that a path in `from` leads to: the longest part of the path that is a
+/// module.
 fn target(path: &[String], from: &Module, modules: &BTreeMap<Module, PathBuf>) -> Option<Module> {
     let (mut at, mut rest) = match path.first()?.as_str() {
         "crate" => (Vec::new(), &path[1..]),
@@ -72,7 +73,7 @@ fn target(path: &[String], from: &Module, modules: &BTreeMap<Module, PathBuf>) -
     Some(at)
 }
 
-/// The modules of a crate, each with its file.
+/// Lists the modules of a crate, each with its file.
 fn modules(source: &Path, at: &Module, found: &mut BTreeMap<Module, PathBuf>) {
     for entry in fs::read_dir(source).unwrap_or_else(|error| panic!("{}: {error}", source.display())).flatten() {
         let path = entry.path();
@@ -87,7 +88,7 @@ fn modules(source: &Path, at: &Module, found: &mut BTreeMap<Module, PathBuf>) {
     }
 }
 
-/// Which modules each module uses, but for its parents and children.
+/// Returns the modules that each module uses, without its parents and children.
 fn uses(modules: &BTreeMap<Module, PathBuf>) -> BTreeMap<Module, BTreeSet<Module>> {
     let is_kin = |a: &Module, b: &Module| a.starts_with(b) || b.starts_with(a);
     let used = |(module, path): (&Module, &PathBuf)| {
@@ -100,7 +101,7 @@ fn uses(modules: &BTreeMap<Module, PathBuf>) -> BTreeMap<Module, BTreeSet<Module
     modules.iter().map(used).collect()
 }
 
-/// Modules that can be reached from themselves.
+/// Returns the modules that can be reached from themselves.
 fn in_circles(uses: &BTreeMap<Module, BTreeSet<Module>>) -> Vec<String> {
     let is_in_circle = |start: &Module| {
         let mut seen = BTreeSet::new();

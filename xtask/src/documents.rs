@@ -1,5 +1,4 @@
-//! What must hold of the documents: links lead somewhere, and papers are cited by keys that are
-//! explained.
+//! Checks of the documents: links lead to existing targets, and papers are cited by explained keys.
 
 use std::{
     collections::BTreeSet,
@@ -9,10 +8,10 @@ use std::{
 
 use crate::run::root;
 
-/// Folders whose files are no sources.
+/// Folders without sources.
 const LEFT_OUT: [&str; 4] = ["target", "out", ".git", "assets"];
 
-/// All files below `folder` with one of these endings.
+/// Lists all files below `folder` with one of these endings.
 fn files(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display())) {
         let path = entry.expect("an entry of a folder can be read").path();
@@ -34,7 +33,7 @@ fn sources(endings: &[&str]) -> Vec<(PathBuf, String)> {
     found.into_iter().map(|path| (path.clone(), fs::read_to_string(path).expect("sources are text"))).collect()
 }
 
-/// Targets of the links and pictures of a Markdown text that lie in the repository.
+/// Returns the targets in the repository of the links and pictures of a Markdown text.
 fn local_links(text: &str) -> Vec<String> {
     let mut code = false;
     let lines = text.lines().filter(|line| {
@@ -55,7 +54,7 @@ fn local_links(text: &str) -> Vec<String> {
     links
 }
 
-/// What GitHub makes of headings.
+/// Returns the anchors that GitHub makes of headings.
 fn anchors(text: &str) -> BTreeSet<String> {
     let headings =
         text.lines().filter_map(|line| line.strip_prefix('#')).map(|line| line.trim_start_matches('#').trim());
@@ -67,8 +66,8 @@ fn anchors(text: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// The keys of papers in a text, as docs/papers.md forms them: a capital first and two digits last,
-/// or one of the two without.
+/// Returns the keys of papers in a text, in the form of docs/papers.md: a capital first and two
+/// digits last, or one of the two without.
 fn cited(text: &str) -> BTreeSet<String> {
     let mut keys = BTreeSet::new();
     for part in text.split('[').skip(1) {
@@ -85,7 +84,7 @@ fn cited(text: &str) -> BTreeSet<String> {
     keys
 }
 
-/// The keys that docs/papers.md explains: first cells of its tables.
+/// Returns the keys that docs/papers.md explains: the first cells of its tables.
 fn explained(papers: &str) -> BTreeSet<String> {
     let rows = papers.lines().filter_map(|line| line.strip_prefix("| [")?.split_once("] |"));
     rows.map(|(key, _)| key.to_owned()).collect()
@@ -138,11 +137,11 @@ fn links_and_keys_are_found() {
     assert_eq!(explained("| key | paper |\n| [GG3-10] | F. Zhang |\n"), BTreeSet::from(["GG3-10".to_owned()]));
 }
 
-/// Columns that a line of prose may have.
+/// Largest number of columns of a line of prose.
 const MOST_COLUMNS: usize = 100;
 
-/// Numbers of the lines of prose that are too long: of a Markdown text's all but code, tables and
-/// links, of a source's comments.
+/// Returns the numbers of the lines of prose that are too long. Prose is a Markdown text without
+/// code, tables and links, or a source's comments.
 fn long_lines(text: &str, is_markdown: bool) -> Vec<usize> {
     let mut code = false;
     let mut long = Vec::new();
@@ -184,8 +183,8 @@ fn long_lines_are_found_and_tables_are_not() {
     assert_eq!(long_lines(&format!("let x = 1; {long}\n/// {long}\n    // short\n//! | {long}"), false), [2]);
 }
 
-/// Items whose page begins with another item's: "The same …" means nothing to a reader who came by
-/// a search.
+/// No item's page begins with a reference to another item's, such as "The same …", which a reader
+/// who came by a search does not understand.
 #[test]
 fn pages_of_items_stand_alone() {
     let mut found = Vec::new();

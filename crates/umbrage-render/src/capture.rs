@@ -1,8 +1,8 @@
-//! Textures back from the GPU.
+//! Reading textures back from the GPU.
 
 use crate::{Error, Gpu, Result, waiting};
 
-/// A texture on its way back: the copy is recorded, its bytes can be read once the commands have
+/// A texture being read back. The copy is recorded; its bytes can be read once the commands have
 /// run.
 pub(crate) struct Capture {
     buffer: wgpu::Buffer,

@@ -1,10 +1,10 @@
-//! Coarser shapes of meshes, by what a split of a shadow map can show.
+//! Coarser levels of detail of meshes, chosen by the detail that a split of a shadow map can show.
 
 use std::collections::BTreeMap;
 
 use umbrage_scene::{DetailLevel, Object, Scene};
 
-/// For each mesh that has coarser shapes, and for each of these, what is coarser still.
+/// Levels of detail, by mesh and level: for each, the levels that are coarser.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Coarser(BTreeMap<usize, Vec<DetailLevel>>);
 

@@ -1,12 +1,12 @@
-//! Formats of what a frame is drawn to.
+//! Formats of the textures that a frame is drawn to.
 
-/// What the picture is drawn in before it is resolved; the samples of a pixel share one shading.
+/// Format of the picture before it is resolved. The samples of a pixel share one shading.
 pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-/// Red is visibility, green says that a surface was hit.
+/// Format of masks: red is visibility, green is 1 where a surface was hit.
 pub(crate) const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Unorm;
-/// Unit normals for a mask. Sixteen bits would turn planes by a millimetre within a texel.
+/// Format of unit normals for a mask. Sixteen bits would turn planes by a millimetre within a texel.
 pub(crate) const NORMALS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
-/// What the first light reaches, for a picture.
+/// Format of the mask that a picture takes its shadows from: red is visibility.
 pub(crate) const LIT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
-/// What the eye's depth is drawn in: reversed, 0 infinitely far away.
+/// Format of the eye's depth: reversed, 0 infinitely far away.
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;

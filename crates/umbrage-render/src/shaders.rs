@@ -1,4 +1,4 @@
-//! The WGSL of every pass: the library's text, what all passes share, and the pass's own.
+//! WGSL of every pass: the library's text, the code that all passes share, and the pass's own.
 
 use umbrage::config::Coordinates;
 
@@ -6,7 +6,8 @@ const SCENE: &str = include_str!("shaders/scene.wgsl");
 const VIEW: &str = include_str!("shaders/view.wgsl");
 const NORMALS: &str = include_str!("shaders/normals.wgsl");
 
-/// Bind group 0 is what [`umbrage_wgpu::ShadowMaps::caster_wgsl`] declares, 1 the material.
+/// WGSL of casters. Bind group 0 is what [`umbrage_wgpu::ShadowMaps::caster_wgsl`] declares, 1 the
+/// material.
 pub(crate) fn casters(library: &str) -> String {
     [library, SCENE, include_str!("shaders/caster.wgsl")].join("\n")
 }
@@ -21,7 +22,7 @@ pub(crate) fn masked_casters(library: &str) -> String {
     [library, SCENE, include_str!("shaders/caster_masked.wgsl")].join("\n")
 }
 
-/// What a caster with holes hands to its fragments.
+/// Members that a caster with holes passes to its fragment shader.
 pub(crate) const MASKED_MEMBERS: &str = "@location(0) uv: vec2f, @location(1) alpha: f32,";
 
 /// WGSL of casters that let some light through; the library's text has [`DITHERED_MEMBERS`].
@@ -29,12 +30,13 @@ pub(crate) fn dithered_casters(library: &str) -> String {
     [library, SCENE, include_str!("shaders/caster_dithered.wgsl")].join("\n")
 }
 
-/// What such a caster hands to its fragments.
+/// Members that a caster that lets some light through passes to its fragment shader.
 pub(crate) const DITHERED_MEMBERS: &str =
     "@location(0) uv: vec2f, @location(1) alpha: f32, @location(2) @interpolate(flat) offset: vec2f,";
 
-/// Bind group 0 is the frame, 1 the material, 2 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`]
-/// declares, 3 with contact shadows what [`umbrage_wgpu::contact_wgsl`] declares.
+/// WGSL of the view. Bind group 0 is the frame, 1 the material, 2 what
+/// [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares, 3 with contact shadows what
+/// [`umbrage_wgpu::contact_wgsl`] declares.
 pub(crate) fn forward(library: &str, coordinates: Coordinates, contact: bool) -> String {
     const WITHOUT: &str =
         "fn with_contact(visibility: f32, position: vec3f, normal: vec3f) -> f32 { return min(visibility, 1.0); }";
@@ -49,29 +51,30 @@ pub(crate) fn forward(library: &str, coordinates: Coordinates, contact: bool) ->
     [library, &contact, SCENE, VIEW, NORMALS, include_str!("shaders/forward.wgsl"), surface].join("\n")
 }
 
-/// [`forward`] with counts of what exact edges do; the library's text is one that counts.
+/// WGSL of the view with counts of exact edges. The library's text is one that counts.
 pub(crate) fn edge_counts(library: &str, coordinates: Coordinates) -> String {
     forward(library, coordinates, false) + include_str!("shaders/edge_counts.wgsl")
 }
 
-/// Instead of the library's text: a picture without a word about shadows.
+/// Text in place of the library's for pictures without shadow code.
 pub(crate) const WITHOUT_SHADOWS: &str = include_str!("shaders/without_shadows.wgsl");
 
-/// Instead of the library's text: a picture that takes the first light's shadows from a mask, the
+/// Text in place of the library's for pictures that take the first light's shadows from a mask, the
 /// texture of bind group 2.
 pub(crate) const LIT: &str = include_str!("shaders/lit.wgsl");
 
-/// Bind group 0 is the frame, 1 the material. No shadow is asked about.
+/// WGSL of depth passes. Bind group 0 is the frame, 1 the material. No shadow is looked up.
 pub(crate) fn depth() -> String {
     [SCENE, VIEW, include_str!("shaders/depth.wgsl")].join("\n")
 }
 
-/// Depth and normals, for a mask. Bind group 0 is the frame, 1 the material.
+/// WGSL of passes that draw depth and normals for a mask. Bind group 0 is the frame, 1 the material.
 pub(crate) fn facing() -> String {
     [SCENE, VIEW, NORMALS, include_str!("shaders/facing.wgsl")].join("\n")
 }
 
-/// Bind group 0 is the points, 1 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares.
+/// WGSL of probes. Bind group 0 is the points, 1 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`]
+/// declares.
 pub(crate) fn probe(library: &str) -> String {
     [library, include_str!("shaders/probe.wgsl")].join("\n")
 }
@@ -99,7 +102,7 @@ mod tests {
         module
     }
 
-    /// Members of a struct with their offsets, and its size.
+    /// Returns the members of a struct with their offsets, and its size.
     fn layout(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
         let (_, ty) =
             module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).expect("the struct is there");

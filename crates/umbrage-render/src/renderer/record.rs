@@ -1,5 +1,5 @@
-//! The passes of a frame, in the order in which they are recorded: all maps and then the view, or,
-//! where one map is used for one split after the other, map and view slice by slice.
+//! The passes of a frame, in the order in which they are recorded: all maps and then the view.
+//! Where one map is used for one split after the other, map and view alternate slice by slice.
 
 use umbrage_wgpu::Slice;
 use web_time::Instant;
@@ -14,26 +14,26 @@ use crate::through_mask::ThroughMask;
 use crate::timing::Timer;
 use crate::{Gpu, Result, waiting};
 
-/// A split's map on its way back.
+/// A split's map that is being read back.
 pub(crate) struct MapCapture {
     pub split: usize,
-    /// Texels across the layer that it lies in.
+    /// Width of the map's layer in texels.
     pub row: u32,
     pub corner: [u32; 2],
     pub capture: Capture,
 }
 
-/// What was recorded.
+/// Passes and captures of a frame that were recorded.
 #[derive(Default)]
 pub(crate) struct Recorded {
-    /// Each pass over maps: which, what it drew, and where it stands among the frame's passes.
+    /// Each pass over maps: its index, what it drew, and its index among the frame's passes.
     pub map_passes: Vec<(usize, Drawn, usize)>,
     pub view: Drawn,
     pub maps: Vec<MapCapture>,
 }
 
 impl Renderer {
-    /// Records everything that is drawn, in as many submissions as the clock asks for.
+    /// Records all passes of a frame, in as many submissions as the clock needs.
     pub(crate) async fn record(
         &mut self,
         mut encoder: wgpu::CommandEncoder,
@@ -127,8 +127,8 @@ impl Renderer {
         }
     }
 
-    /// Records passes over the maps, but for maps of several lights or faces in which there is no
-    /// caster: those are not read.
+    /// Records the passes over the maps. Maps of several lights or faces without a caster are
+    /// skipped, because they are not read.
     pub(crate) fn draw_maps(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -175,7 +175,7 @@ impl Renderer {
         recorded.map_passes.push((index, drawn, slot.pass as usize));
     }
 
-    /// Records a map's way back.
+    /// Records the copy of a map that is read back.
     fn capture(&self, encoder: &mut wgpu::CommandEncoder, split: usize) -> Result<MapCapture> {
         let texture = self.shadows.maps().map_texture(split);
         // Depth is copied in whole layers only; a smaller map is cut out of its layer afterwards.
@@ -185,8 +185,8 @@ impl Renderer {
         Ok(MapCapture { split, row: texels[0], corner, capture })
     }
 
-    /// Multipass: each slice's map, then what of the view lies in that slice, front to back. What
-    /// is translucent comes afterwards, back to front, and needs the maps once more.
+    /// Records multipass: each slice's map and then the objects of the view in that slice, front to
+    /// back. Translucent surfaces come afterwards, back to front, and need the maps once more.
     async fn record_slices(
         &mut self,
         mut encoder: wgpu::CommandEncoder,
@@ -279,13 +279,13 @@ pub(crate) fn new_encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
     gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("Renderer::encoder") })
 }
 
-/// Submits a frame: at once where the GPU takes the time itself, or where a wait would take longer
-/// than what it measures; else maps and view apart with a wait after each.
+/// Submits a frame. The submission is one if the GPU takes the times, or if a wait would take
+/// longer than the work; else maps and view are submitted apart with a wait after each.
 pub(crate) struct Clock {
     gpu: Gpu,
     by_cpu: bool,
     begun: Instant,
-    /// When the last submission was done, milliseconds since the beginning.
+    /// Milliseconds from the beginning to the end of the last submission.
     done_ms: f64,
     shadow_ms: f64,
 }
@@ -296,7 +296,7 @@ impl Clock {
         Self { gpu: gpu.clone(), by_cpu, begun: Instant::now(), done_ms: 0.0, shadow_ms: 0.0 }
     }
 
-    /// Submits, waits, and returns how long that took since the last time.
+    /// Submits commands, waits, and returns the milliseconds since the last time.
     async fn lap(&mut self, encoder: wgpu::CommandEncoder) -> Result<f64> {
         self.gpu.queue.submit([encoder.finish()]);
         waiting::idle(&self.gpu).await?;
@@ -304,7 +304,7 @@ impl Clock {
         Ok(now - std::mem::replace(&mut self.done_ms, now))
     }
 
-    /// What comes before was maps.
+    /// Ends the measurement of commands that drew maps.
     pub async fn after_maps(&mut self, encoder: wgpu::CommandEncoder) -> Result<wgpu::CommandEncoder> {
         if !self.by_cpu {
             return Ok(encoder);
@@ -313,7 +313,7 @@ impl Clock {
         Ok(new_encoder(&self.gpu))
     }
 
-    /// What comes before was the view, and more maps follow.
+    /// Ends the measurement of commands that drew the view, if more maps follow.
     pub async fn after_view(&mut self, encoder: wgpu::CommandEncoder) -> Result<wgpu::CommandEncoder> {
         if !self.by_cpu {
             return Ok(encoder);
@@ -322,7 +322,7 @@ impl Clock {
         Ok(new_encoder(&self.gpu))
     }
 
-    /// Milliseconds of the maps and of the frame, if the CPU measures.
+    /// Returns the milliseconds of the maps and of the frame, if the CPU measures.
     pub async fn after_all(mut self, encoder: wgpu::CommandEncoder) -> Result<Option<(f64, f64)>> {
         if self.by_cpu {
             self.lap(encoder).await?;

@@ -1,16 +1,16 @@
-//! Waiting by blocking the thread: every future here is ready when it is polled first.
+//! Waiting by blocking the thread. Every future here is ready when it is first polled.
 
 use std::time::Duration;
 
 use super::READING;
 use crate::{Error, Gpu, Result};
 
-/// Whether waiting costs nothing but the wait itself, so that a frame may be cut into pieces whose
+/// True if a wait costs nothing but its own time. A frame may then be submitted in pieces whose
 /// times are taken.
 pub(crate) const BLOCKS: bool = true;
 
-/// How long a callback may be on its way after the device has nothing left to do. Only a lost
-/// device takes that long.
+/// Longest delay of a callback after the device has finished all work. Only a lost device takes
+/// that long.
 const CALLBACK_PATIENCE: Duration = Duration::from_secs(60);
 
 /// Waits until everything submitted has run.
@@ -38,7 +38,7 @@ pub(crate) async fn mapped(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<()> {
         .map_err(|error| failed(error.to_string()))
 }
 
-/// Catches what the device complains about, on this thread.
+/// Catches the device's errors on this thread.
 pub(crate) struct Scopes {
     memory: wgpu::ErrorScopeGuard,
     internal: wgpu::ErrorScopeGuard,
@@ -53,7 +53,7 @@ impl Scopes {
         Self { memory, internal, validation }
     }
 
-    /// The first complaint. Memory comes first: the others follow from it.
+    /// Returns the first error. Errors of memory come first, because the others follow from them.
     pub async fn close(self) -> Option<wgpu::Error> {
         // Scopes close in the reverse order.
         let validation = self.validation.pop().await;
