@@ -8,7 +8,8 @@ use crate::ExactEdges;
 pub const LEAST_M: f32 = 0.002;
 /// `edges::PARALLEL`: cosine from which on two surfaces are as good as parallel.
 pub const PARALLEL: f32 = 0.866;
-/// `edges::SLACK_TEXELS`: texels by which a stored depth may lie in front of the receiver's plane
+/// `edges::SLACK_TEXELS`: texels, of the shorter edge, by which a stored depth may lie in front of
+/// the receiver's plane
 /// before the point is tested, in addition to the receiver's own bias.
 pub const SLACK_TEXELS: f32 = 0.25;
 /// `edges::STEEPEST`: tangent of the steepest angle at which the receiver's plane is followed.
@@ -157,7 +158,7 @@ pub fn dark_round(at: &Receiver, around: &Around) -> u32 {
         let most = STEEPEST * at.texel_m[axis] / at.range_m;
         at.slope[axis].clamp(-most, most)
     });
-    let slack = (SLACK_TEXELS * at.texel_m[0].max(at.texel_m[1]) + LEAST_M) / at.range_m;
+    let slack = SLACK_TEXELS * at.texel_m[0].min(at.texel_m[1]) / at.range_m;
     let mut dark = 0;
     for (i, step) in ROUND.iter().enumerate() {
         let offset: [f32; 2] = std::array::from_fn(|axis| around.middle[axis] + step[axis] + 0.5 - at.texel[axis]);
@@ -232,20 +233,24 @@ fn meets_box(run: &Run, origin: [f32; 3], direction: [f32; 3], by: [f32; 3], len
 fn is_before([a, b, c]: [[f32; 3]; 3], surface: Surface, shear: [f32; 2], [length_m, lost]: [f32; 2]) -> bool {
     let [p, q, r] = [a, b, c].map(|corner| [corner[0] - shear[0] * corner[2], corner[1] - shear[1] * corner[2]]);
     let weights = [r[0] * q[1] - r[1] * q[0], p[0] * r[1] - p[1] * r[0], q[0] * p[1] - q[1] * p[0]];
-    let twice_area: f32 = weights.iter().sum();
-    let is_under = weights.iter().all(|weight| *weight >= 0.0) || weights.iter().all(|weight| *weight <= 0.0);
-    if !is_under || twice_area == 0.0 {
-        return false;
-    }
-    let metres = dot(weights, [a[2], b[2], c[2]]) / (twice_area * surface.to_light[2]);
     let normal = cross(minus(b, a), minus(c, a));
-    let lost = lost + LOST * length(a).max(length(b)).max(length(c));
+    let reach = length(a).max(length(b)).max(length(c));
+    let lost = lost + LOST * reach;
     let highest = [a, b, c].map(|corner| dot(surface.normal, corner)).into_iter().fold(f32::MIN, f32::max);
     let is_parallel = dot(normal, surface.normal).abs() > PARALLEL * length(normal) * length(surface.normal);
     let rises = !is_parallel && highest > lost * length(surface.normal);
+    let all_on_one_side =
+        |by: f32| weights.iter().all(|weight| *weight >= -by) || weights.iter().all(|weight| *weight <= by);
     if dot(normal, a).abs() <= lost * length(normal) {
-        return rises && dot(normal, surface.to_eye) * dot(normal, surface.to_light) < 0.0;
+        // An edge's function is its length times how far it is passed.
+        let is_met = all_on_one_side(2.0 * lost * reach);
+        return is_met && rises && dot(normal, surface.to_eye) * dot(normal, surface.to_light) < 0.0;
     }
+    let twice_area: f32 = weights.iter().sum();
+    if !all_on_one_side(0.0) || twice_area == 0.0 {
+        return false;
+    }
+    let metres = dot(weights, [a[2], b[2], c[2]]) / (twice_area * surface.to_light[2]);
     metres > if rises { 0.0 } else { LEAST_M } && metres < length_m
 }
 

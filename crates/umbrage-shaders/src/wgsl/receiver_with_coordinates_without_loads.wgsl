@@ -474,7 +474,7 @@ fn umbrage_edges_texel_round(layer: UmbrageLayer, middle: vec2f, i: u32) -> vec2
 fn umbrage_edges_dark_round(layer: UmbrageLayer, at: UmbrageReceiver, middle: vec2f) -> u32 {
     let most = UMBRAGE_EDGES_STEEPEST * at.texel_m / at.range_m;
     let slope = clamp(at.slope, -most, most);
-    let slack = (UMBRAGE_EDGES_SLACK_TEXELS * max(at.texel_m.x, at.texel_m.y) + UMBRAGE_EDGES_LEAST_M) / at.range_m;
+    let slack = UMBRAGE_EDGES_SLACK_TEXELS * min(at.texel_m.x, at.texel_m.y) / at.range_m;
     var dark = 0u;
     for (var i = 0u; i < 9u; i++) {
         let texel = umbrage_edges_texel_round(layer, middle, i);
@@ -580,20 +580,23 @@ fn umbrage_edges_is_before(corners: array<vec3f, 3>, surface: UmbrageSurface, sh
     let q = b.xy - shear * b.z;
     let r = c.xy - shear * c.z;
     let weights = vec3f(r.x * q.y - r.y * q.x, p.x * r.y - p.y * r.x, q.x * p.y - q.y * p.x);
+    let normal = cross(b - a, c - a);
+    let reach = max(max(length(a), length(b)), length(c));
+    let lost = bounds.y + UMBRAGE_EDGES_LOST * reach;
+    let highest = max(max(dot(surface.normal, a), dot(surface.normal, b)), dot(surface.normal, c));
+    let is_parallel = abs(dot(normal, surface.normal)) > UMBRAGE_EDGES_PARALLEL * length(normal) * length(surface.normal);
+    let rises = !is_parallel && highest > lost * length(surface.normal);
+    if abs(dot(normal, a)) <= lost * length(normal) {
+        let passed = vec3f(2.0 * lost * reach);
+        let is_met = all(weights >= -passed) || all(weights <= passed);
+        return is_met && rises && dot(normal, surface.to_eye) * dot(normal, surface.to_light) < 0.0;
+    }
     let twice_area = weights.x + weights.y + weights.z;
     let is_under = all(weights >= vec3f(0.0)) || all(weights <= vec3f(0.0));
     if !is_under || twice_area == 0.0 {
         return false;
     }
     let metres = dot(weights, vec3f(a.z, b.z, c.z)) / (twice_area * surface.to_light.z);
-    let normal = cross(b - a, c - a);
-    let lost = bounds.y + UMBRAGE_EDGES_LOST * max(max(length(a), length(b)), length(c));
-    let highest = max(max(dot(surface.normal, a), dot(surface.normal, b)), dot(surface.normal, c));
-    let is_parallel = abs(dot(normal, surface.normal)) > UMBRAGE_EDGES_PARALLEL * length(normal) * length(surface.normal);
-    let rises = !is_parallel && highest > lost * length(surface.normal);
-    if abs(dot(normal, a)) <= lost * length(normal) {
-        return rises && dot(normal, surface.to_eye) * dot(normal, surface.to_light) < 0.0;
-    }
     return metres > select(UMBRAGE_EDGES_LEAST_M, 0.0, rises) && metres < bounds.x;
 }
 

@@ -78,10 +78,12 @@ fn a_room_of_slabs_is_dark() {
 #[test]
 fn exact_edges_leave_rooms_dark() {
     let config = ShadowConfig { edges: Edges::Exact, ..sized(1024) };
+    let mut lit = Vec::new();
     for walls in [Walls::Thin, Walls::Shell(0.01), Walls::Shell(0.05), Walls::Slabs(0.02), Walls::Slabs(0.2)] {
         let Some(light) = light(walls, &config) else { return };
-        assert_eq!(light.more_than_2_percent, 0, "{walls:?}: {light:?}");
+        lit.extend((light.more_than_2_percent > 0).then_some((walls, light)));
     }
+    assert!(lit.is_empty(), "{lit:#?}");
 }
 
 /// The comparison can say no: to a room with a wall missing.
