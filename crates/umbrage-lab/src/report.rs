@@ -43,7 +43,7 @@ pub struct Report {
     /// Metric of `planes_m` and of the splits' ends: `planar` for view depth, `radial` for distance
     /// to the eye.
     pub bands: String,
-    /// Split scheme: `uniform`, `log`, `practical`, `manual` or `fitted`.
+    /// Split scheme: `uniform`, `log`, `practical`, `manual` or `optimal`.
     pub scheme: String,
     /// Warp of all splits or of each: `none`, `psm`, `lispsm` or `tsm`.
     pub warp: Vec<String>,

@@ -20,8 +20,8 @@ impl Coarser {
         Self(coarser)
     }
 
-    /// The coarsest shape of an object whose details are no larger than `detail_m` metres of the
-    /// world.
+    /// Returns the coarsest mesh of an object whose smallest detail is no larger than `detail_m`
+    /// metres in the world.
     pub fn shape(&self, object: &Object, detail_m: f64) -> usize {
         let Some(levels) = self.0.get(&object.mesh).filter(|_| object.skinned.is_none()) else { return object.mesh };
         let m = object.world_from_local.matrix3;

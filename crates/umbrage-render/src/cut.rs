@@ -22,8 +22,8 @@ const MOST_PIECES: f64 = 64.0;
 /// enough already.
 const MOST_LONG: usize = 64;
 
-/// The meshes of a scene, with huge triangles cut. Meshes that move by skins and morph targets are
-/// left as they are.
+/// Returns the meshes of a scene, with huge triangles cut. Meshes that skins or morph targets move
+/// stay unchanged.
 pub(crate) fn meshes(scene: &Scene) -> Vec<Cow<'_, [Primitive]>> {
     let scales = scales(scene);
     let cut = |(index, mesh): (usize, &'_ umbrage_scene::Mesh)| -> Option<Vec<Primitive>> {

@@ -16,7 +16,7 @@ pub enum Error {
         /// Message of the driver loader, or of the search by name.
         reason: String,
     },
-    /// The adapter would not open a device.
+    /// The adapter could not open a device.
     #[error("graphics adapter {adapter:?} opens no device: {reason}; try another with WGPU_ADAPTER_NAME")]
     NoDevice {
         /// Name of the adapter.

@@ -93,7 +93,8 @@ impl Gpu {
         pollster::block_on(Self::open(options))
     }
 
-    /// [`Gpu::new`] for callers that may not block, such as a page in a browser.
+    /// Opens an adapter as [`Gpu::new`] does, for callers that may not block, such as a page in a
+    /// browser.
     ///
     /// # Errors
     /// [`Error::NoAdapter`] or [`Error::NoDevice`].

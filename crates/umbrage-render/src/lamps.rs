@@ -18,15 +18,15 @@ pub const MOST_LAMPS: usize = 8;
 pub struct Lamp {
     /// The light that casts shadows.
     pub light: Light,
-    /// Linear RGB, 1 at most.
+    /// Colour in linear RGB, 1 at most.
     pub color: Vec3,
-    /// Radians from a spot light's axis up to which it is as bright as on the axis; other lights
-    /// ignore it.
+    /// Angle in radians around a spot light's axis within which it is as bright as on the axis;
+    /// ignored for other lights.
     pub inner_angle: f64,
 }
 
 impl From<Light> for Lamp {
-    /// A white light; a spot light softens over its outer half.
+    /// Makes a white light. A spot light softens over its outer half.
     fn from(light: Light) -> Self {
         let inner_angle = if let Light::Spot(spot) = light { 0.5 * spot.outer_angle() } else { 0.0 };
         Self { light, color: Vec3::ONE, inner_angle }

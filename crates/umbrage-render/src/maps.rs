@@ -23,7 +23,7 @@ pub(crate) fn picture_of(depths: &[f32], row: u32, corner: [u32; 2], size: u32) 
     })
 }
 
-/// Depths in \[0,1\] from a map's bytes.
+/// Reads depths in \[0,1\] from a map's bytes.
 pub(crate) fn depths_of(bytes: &[u8], format: DepthFormat) -> Vec<f32> {
     match format {
         DepthFormat::D32Float | DepthFormat::R32Float => bytemuck::pod_collect_to_vec(bytes),

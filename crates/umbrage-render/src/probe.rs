@@ -40,7 +40,7 @@ pub struct ProbeAnswer {
 pub(crate) enum Responder {
     /// The split that the view chooses.
     View,
-    /// This split, though the view does not show the point.
+    /// A given split, for a point that the view does not show.
     Split(usize),
     /// No split: no map covers the point. It is lit unless turned away from the light.
     Nobody,

@@ -20,7 +20,7 @@ pub struct SplitStats {
     pub warped: bool,
     /// Number of casters in the split's list: mesh nodes or instances, not primitives.
     pub casters: usize,
-    /// Milliseconds on the GPU of the passes that draw its map, which may draw others with it;
+    /// Milliseconds on the GPU of the passes that draw the map, which may draw others with it;
     /// `None` without timestamp queries.
     pub gpu_ms: Option<f64>,
     /// Number of draw calls that draw into the map. Instances share a draw call, and so may splits.

@@ -55,8 +55,8 @@ impl Scene {
         Poser::new(self)?.pose(time_s)
     }
 
-    /// Poses the scene as [`Scene::pose`] does, with the coarsest levels of detail that `detail`
-    /// cannot tell apart.
+    /// Poses the scene as [`Scene::pose`] does, with the coarsest levels of detail that look like
+    /// the finest at the resolution of `detail`.
     ///
     /// # Errors
     /// As [`Scene::pose`].

@@ -68,7 +68,7 @@ pub struct Ceiling {
     pub ceiling: f64,
 }
 
-/// A score that rose.
+/// A score above its ceiling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exceeded {
     /// Score that is measured now.

@@ -158,7 +158,7 @@ fn transform_error(of: &Placed, common: DMat3, from_pivot: DVec3, normal: DVec3)
     (common.transpose() * normal).abs().dot(off).min(longest)
 }
 
-/// The inverse of a matrix that has one.
+/// Returns the inverse of an invertible matrix.
 fn inverse(matrix: DMat3) -> Option<DMat3> {
     let inverse = matrix.inverse();
     (matrix.determinant() != 0.0 && inverse.is_finite()).then_some(inverse)

@@ -39,7 +39,7 @@ pub enum Error {
         /// Fault and remedy.
         reason: String,
     },
-    /// Two things that are compared pixel by pixel have different sizes.
+    /// Two images or lists that are compared element by element have different sizes.
     #[error("{what} is {got:?}, but the truth it is compared with is {expected:?}; render both at one size")]
     SizeMismatch {
         /// Name of the input with the wrong size.

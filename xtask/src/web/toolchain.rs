@@ -25,7 +25,7 @@ const NEEDED: [&str; 2] = ["libstd-rust-web-", "libllvm"];
 pub enum Way {
     /// The compiler has the target.
     Target,
-    /// Debian's compiler, which builds the standard library first.
+    /// Debian's compiler, with which the standard library is built first.
     Source {
         /// Folder in which the packages are unpacked, as `usr`.
         root: PathBuf,

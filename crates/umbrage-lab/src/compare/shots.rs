@@ -21,7 +21,7 @@ const INTO_ELEVATION: f64 = 11.0;
 /// Elevations of the suns of `metrics` in degrees.
 const METRICS_ELEVATIONS: [f64; 2] = [43.0, 11.0];
 
-/// One entry of `--suns`.
+/// One value of `--suns`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SunSpec {
     /// The scene's own sun, or the one that `--sun` or `--light` chooses.

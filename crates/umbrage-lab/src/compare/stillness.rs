@@ -108,7 +108,7 @@ impl Stillness {
 /// Split that decides on a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Decides {
-    /// One split alone.
+    /// A single split.
     Split(usize),
     /// Two splits that are blended, or one that fades out. Their shares change as the eye moves,
     /// and soft edges with them.

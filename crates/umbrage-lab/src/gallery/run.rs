@@ -1,4 +1,4 @@
-//! Draws the gallery.
+//! Drawing the gallery: pictures, reports, and the page.
 
 use std::{
     fs,

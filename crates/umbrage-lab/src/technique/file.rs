@@ -11,7 +11,7 @@ use crate::failure::{Failure, Result};
 /// Content of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConfigFile {
-    /// The settings of shadows.
+    /// Config of the shadows.
     pub config: ShadowConfig,
     /// Request of the picture, if the file is a report.
     pub drawn: Option<Drawn>,

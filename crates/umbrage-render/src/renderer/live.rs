@@ -37,7 +37,7 @@ impl Renderer {
 
     /// Changes the config. `scene` is the scene that the renderer was made with: it stays on the
     /// device. State of stabilised maps stays where the change does not concern it. Returns the
-    /// largest part that was rebuilt.
+    /// most expensive rebuild that took place.
     ///
     /// # Errors
     /// As [`Renderer::new`], and [`Error::SlicesOfAnotherView`]. The config is then unchanged.

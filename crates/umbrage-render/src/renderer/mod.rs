@@ -83,13 +83,13 @@ impl Default for RenderSettings {
 /// Inputs that vary from frame to frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
-    /// The scene at this moment; a pose of the scene that the renderer was made with.
+    /// Pose of the scene that the renderer was made with.
     pub pose: &'a Pose,
     /// Objects of the pose that differ from those of the last frame, by index; an empty list for an
     /// equal pose. `None` means that any may differ. Given a list, objects that do not move cost
     /// nothing, which matters with thousands.
     pub moved: Option<&'a [u32]>,
-    /// The eye.
+    /// View that is drawn.
     pub view: &'a View,
     /// The first light. Masks and probes are computed for this light.
     pub light: Lamp,
@@ -105,13 +105,14 @@ pub struct Frame<'a> {
 /// Choice of a frame's outputs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Outputs {
-    /// The shaded picture.
+    /// True if the shaded picture is wanted.
     pub picture: bool,
-    /// The visibility mask.
+    /// True if the visibility mask is wanted.
     pub mask: bool,
-    /// Each split's depth map.
+    /// True if each split's depth map is wanted.
     pub maps: bool,
-    /// Counts of exact edges for each pixel, drawn by a pass of its own whose shader counts.
+    /// True if counts of exact edges are wanted for each pixel. A pass of its own draws them, with
+    /// a shader that counts.
     pub edges: bool,
 }
 

@@ -16,8 +16,8 @@ pub(super) struct Sight {
     seen: BTreeMap<(u32, u32), SeenDepth>,
     /// Boxes around the surfaces that this frame's view showed last.
     boxes: Option<Vec<Aabb>>,
-    /// Cameras from which each view's surroundings were drawn last. Drawing them again from there
-    /// shows nothing new.
+    /// Camera of the last extra frame of each view ([`Renderer::look_around`]). Another one from
+    /// there would show nothing new.
     looked: BTreeMap<u32, View>,
 }
 
@@ -51,7 +51,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// Draws the frames that a camera at rest would have shown before, if nothing is known of the
+    /// Draws the frame that a camera at rest would have shown before, if nothing is known of the
     /// view. The requested frame then looks as the next ones will.
     pub(super) async fn look_around(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<()> {
         self.remember(frame.view)?;

@@ -113,7 +113,7 @@ struct Member {
     handle: CasterHandle,
     caster: Caster,
     mesh: u32,
-    /// [`digest`] of its transform.
+    /// Hash of the object's transform, by [`digest`].
     placed: u64,
 }
 

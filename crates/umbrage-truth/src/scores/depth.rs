@@ -14,7 +14,7 @@ const BINS: usize = 8;
 pub struct DepthBin {
     /// View depth in metres at which the bin begins.
     pub near: f64,
-    /// View depth in metres at which it ends.
+    /// View depth in metres at which the bin ends.
     pub far: f64,
     /// Decisions in the bin.
     pub score: MisShadowed,

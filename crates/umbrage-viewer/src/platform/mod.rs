@@ -4,8 +4,7 @@
 //! | | desktop | browser |
 //! |---|---|---|
 //! | `spawn`, `pause`, `finish` | threads, which may block | tasks of the page, which must not |
-//! | `SHARES_DEVICE` | the renderer has a device of its own | one device for all: WebGL2 has no
-//! other |
+//! | `SHARES_DEVICE` | the renderer has its own device | one device for all: WebGL2 has no other |
 //! | `instance`, `attributes` | by `WGPU_BACKEND`; a window | WebGPU, else WebGL2; the page's canvas |
 //! | `mask` | on every core | a few rows at a time |
 //! | `scene`, `shipped` | files | addresses of the page's own server |
