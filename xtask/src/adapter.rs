@@ -1,4 +1,4 @@
-//! A graphics adapter for machines that have none: Mesa's software Vulkan.
+//! Installation of a graphics adapter on machines that have none: Mesa's software Vulkan.
 
 use std::{path::Path, process::Command};
 
@@ -9,7 +9,7 @@ use crate::run::install;
 const PACKAGES: [&str; 2] = ["mesa-vulkan-drivers", "libvulkan1"];
 
 /// Makes sure that `umbrage` finds an adapter, and returns its name. Installs the software driver
-/// where it may.
+/// if it may.
 pub fn ensure(umbrage: &Path) -> Result<String> {
     if let Some(name) = find(umbrage)? {
         return Ok(name);
@@ -25,7 +25,7 @@ pub fn ensure(umbrage: &Path) -> Result<String> {
     }
 }
 
-/// The adapter that `umbrage` would use.
+/// Returns the adapter that `umbrage` would use.
 fn find(umbrage: &Path) -> Result<Option<String>> {
     let output = Command::new(umbrage)
         .arg("adapter")

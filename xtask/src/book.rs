@@ -13,7 +13,7 @@ use crate::{
     run::{build_umbrage, cargo, root, run, succeeds},
 };
 
-/// Where pictures are kept.
+/// Folder of the pictures.
 const PICTURES_FOLDER: &str = "book/src/images";
 const EXAMPLES_FOLDER: &str = "crates/umbrage-wgpu/examples";
 const EXAMPLES_PICTURES_FOLDER: &str = "docs/images/examples";
@@ -26,8 +26,8 @@ struct Picture {
 
 const SIZE: &str = "--size 640x360";
 
-/// All pictures, in the order of the book. Those of symptoms name the setting that provokes them,
-/// as the book does.
+/// All pictures, in the order of the book. Pictures of symptoms name the setting that provokes
+/// them, as the book does.
 const PICTURES: [Picture; 7] = [
     Picture { name: "one-map", words: "render robot-war --camera near --technique ssm --preset papers" },
     Picture { name: "four-splits", words: "render robot-war --camera near --tint" },
@@ -76,7 +76,7 @@ pub fn draw() -> Result<()> {
     Ok(())
 }
 
-/// The names of the examples.
+/// Returns the names of the examples.
 fn examples() -> Result<Vec<String>> {
     let folder = root().join(EXAMPLES_FOLDER);
     let entries = fs::read_dir(&folder).with_context(|| format!("cannot read {}", folder.display()))?;
@@ -96,7 +96,7 @@ fn copy(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The program `mdbook`: the one on the path, or one of our own.
+/// Returns the program `mdbook`: the one on the path, or one that is installed here.
 fn mdbook() -> Result<PathBuf> {
     let on_path = PathBuf::from("mdbook");
     if succeeds(Command::new(&on_path).arg("--version")) {
@@ -110,7 +110,7 @@ fn mdbook() -> Result<PathBuf> {
     Ok(own)
 }
 
-/// The version that the book is written for.
+/// Version of `mdbook` that the book is written for.
 const MDBOOK: &str = "0.5";
 
 #[cfg(test)]

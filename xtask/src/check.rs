@@ -1,4 +1,4 @@
-//! What CI runs, and a developer before a commit.
+//! Checks that CI runs, and a developer before a commit.
 
 use std::{env, process::Command};
 
@@ -11,21 +11,23 @@ use crate::{
     web,
 };
 
-/// Tests that need an adapter fail without one, rather than skip, where this is 1.
+/// Environment variable: if it is 1, tests that need an adapter fail without one, rather than skip.
 const REQUIRE_GPU: &str = "UMBRAGE_REQUIRE_GPU";
-/// Tests write their references again if this is 1.
+/// Environment variable: if it is 1, tests write their references again.
 const BLESS: &str = "UMBRAGE_BLESS";
 
-/// The crates whose tests need no adapter and are done in a minute: what `--quick` runs.
+/// Crates whose tests need no adapter and take less than a minute: `--quick` runs them.
 const QUICK_CRATES: [&str; 5] = ["umbrage", "umbrage-shaders", SHADERS_JOIN, "umbrage-scene", "xtask"];
-/// Joins the WGSL that is checked in.
+/// Name of the crate that joins the checked-in WGSL.
 const SHADERS_JOIN: &str = "umbrage-shaders-join";
-/// The plugin for Bevy: a workspace of its own, so that its versions stay apart from ours.
+/// Folder of the plugin for Bevy: a workspace of its own, so that its versions stay apart from
+/// ours.
 const BEVY: &str = "integrations/bevy";
-/// Features that build C++; they are checked where there is a compiler for it.
+/// Features that build C++. They are checked where there is a compiler for it.
 const CPP_FEATURES: [&str; 1] = ["flip"];
 
-/// Formatting, lints, documentation, features, packages, the browser's build, all tests.
+/// Checks formatting, lints, documentation, features, packages, and the browser's build, and runs
+/// all tests.
 pub fn test() -> Result<()> {
     run(cargo().args(["fmt", "--all", "--check"]))?;
     // Before anything is built of texts that are out of date.
@@ -45,13 +47,14 @@ pub fn test() -> Result<()> {
     run(&mut tests)
 }
 
-/// Formatting, and the tests of what needs no adapter.
+/// Checks formatting, and runs the tests that need no adapter.
 pub fn quick() -> Result<()> {
     run(cargo().args(["fmt", "--all", "--check"]))?;
     run(cargo().arg("test").args(of(&QUICK_CRATES)))
 }
 
-/// Formatting, lints, documentation and tests of the plugin for Bevy. Its tests need no adapter.
+/// Checks formatting, lints and documentation of the plugin for Bevy, and runs its tests, which
+/// need no adapter.
 pub fn bevy() -> Result<()> {
     let folder = root().join(BEVY);
     let in_folder = |arguments: &[&str]| {
@@ -70,14 +73,14 @@ pub fn shaders() -> Result<()> {
     run(cargo().args(["run", "--quiet", "--package", SHADERS_JOIN]))
 }
 
-/// Packs every crate that is published, in the order of their dependencies, and builds each from
-/// its package alone.
+/// Packs all published crates, in the order of their dependencies, and builds each from its package
+/// alone.
 pub fn package() -> Result<()> {
     run(cargo().args(["package", "--workspace", "--allow-dirty"]).args(unpublished()?))
 }
 
-/// The tests of pictures, accepting what they see as the new reference. Ceilings of scores are
-/// constants and stay as they are.
+/// Runs the tests of pictures and accepts their pictures as the new references. Ceilings of scores
+/// are constants and stay unchanged.
 pub fn bless() -> Result<()> {
     adapter::ensure(&build_umbrage(false)?)?;
     run(cargo().args(["test", "--package", "umbrage-tests"]).env(BLESS, "1").env(REQUIRE_GPU, "1"))?;
@@ -85,7 +88,7 @@ pub fn bless() -> Result<()> {
     Ok(())
 }
 
-/// The fuzzers of plans, loaders and exact edges, long enough to find what CI's short runs do not.
+/// Runs the fuzzers of plans, loaders and exact edges, longer than CI does.
 pub fn fuzz() -> Result<()> {
     for (package, test, variable, count) in [
         ("umbrage", "fuzz", "UMBRAGE_FUZZ_CASES", "1000000"),
@@ -102,8 +105,8 @@ pub fn fuzz() -> Result<()> {
     Ok(())
 }
 
-/// Whether there is an adapter, after trying to install one. None is an error where the environment
-/// demands one.
+/// Returns whether there is an adapter, after trying to install one. Its lack is an error if the
+/// environment demands one.
 fn has_adapter() -> Result<bool> {
     match adapter::ensure(&build_umbrage(false)?) {
         Ok(name) => {
@@ -118,12 +121,12 @@ fn has_adapter() -> Result<bool> {
     }
 }
 
-/// Packs every crate that is published without building it: manifests, versions of siblings, files.
+/// Packs all published crates without building them: manifests, versions of siblings, files.
 fn check_packages() -> Result<()> {
     run(cargo().args(["package", "--workspace", "--allow-dirty", "--no-verify", "--quiet"]).args(unpublished()?))
 }
 
-/// Options that leave out the crates that are not published.
+/// Returns options that leave out the crates that are not published.
 fn unpublished() -> Result<Vec<String>> {
     let unpublished = packages()?.into_iter().filter(|package| !package.is_published());
     Ok(unpublished.flat_map(|package| ["--exclude".to_owned(), package.name]).collect())
@@ -165,12 +168,12 @@ fn check_features() -> Result<()> {
     Ok(())
 }
 
-/// A crate of the workspace, as `cargo metadata` tells of it.
+/// A crate of the workspace, as in `cargo metadata`.
 #[derive(Deserialize)]
 struct Package {
     name: String,
     features: std::collections::BTreeMap<String, Vec<String>>,
-    /// The registries that it may be published to; all where there is no list.
+    /// Registries that the crate may be published to; all if there is no list.
     publish: Option<Vec<String>>,
 }
 
@@ -190,7 +193,7 @@ fn packages() -> Result<Vec<Package>> {
     Ok(metadata.packages)
 }
 
-/// Options that choose crates.
+/// Returns options that choose crates.
 fn of(names: &[&'static str]) -> Vec<&'static str> {
     names.iter().flat_map(|&name| ["--package", name]).collect()
 }

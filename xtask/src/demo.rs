@@ -1,4 +1,4 @@
-//! `cargo xtask demo`: the gallery, with a graphics adapter if there has to be one first.
+//! `cargo xtask demo`: draws the gallery, after installing a graphics adapter if there is none.
 
 use std::process::Command;
 

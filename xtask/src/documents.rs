@@ -1,5 +1,4 @@
-//! What must hold of the documents: links lead somewhere, and papers are cited by keys that are
-//! explained.
+//! Checks of the documents: links lead to existing targets, and papers are cited by explained keys.
 
 use std::{
     collections::BTreeSet,
@@ -9,10 +8,10 @@ use std::{
 
 use crate::run::root;
 
-/// Folders whose files are no sources.
+/// Folders without sources.
 const LEFT_OUT: [&str; 4] = ["target", "out", ".git", "assets"];
 
-/// All files below `folder` with one of these endings.
+/// Lists all files below `folder` with one of these endings.
 fn files(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display())) {
         let path = entry.expect("an entry of a folder can be read").path();
@@ -35,7 +34,7 @@ pub fn sources(endings: &[&str]) -> Vec<(PathBuf, String)> {
     found.into_iter().map(|path| (path.clone(), fs::read_to_string(path).expect("sources are text"))).collect()
 }
 
-/// Targets of the links and pictures of a Markdown text that lie in the repository.
+/// Returns the targets in the repository of the links and pictures of a Markdown text.
 fn local_links(text: &str) -> Vec<String> {
     let mut code = false;
     let lines = text.lines().filter(|line| {
@@ -56,7 +55,7 @@ fn local_links(text: &str) -> Vec<String> {
     links
 }
 
-/// What GitHub makes of headings.
+/// Returns the anchors that GitHub makes of headings.
 fn anchors(text: &str) -> BTreeSet<String> {
     let headings =
         text.lines().filter_map(|line| line.strip_prefix('#')).map(|line| line.trim_start_matches('#').trim());
@@ -68,8 +67,8 @@ fn anchors(text: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// The keys of papers in a text, as docs/papers.md forms them: a capital first and two digits last,
-/// or one of the two without.
+/// Returns the keys of papers in a text, in the form of docs/papers.md: a capital first and two
+/// digits last, or one of the two without.
 fn cited(text: &str) -> BTreeSet<String> {
     let mut keys = BTreeSet::new();
     for part in text.split('[').skip(1) {
@@ -86,7 +85,7 @@ fn cited(text: &str) -> BTreeSet<String> {
     keys
 }
 
-/// The keys that docs/papers.md explains: first cells of its tables.
+/// Returns the keys that docs/papers.md explains: the first cells of its tables.
 fn explained(papers: &str) -> BTreeSet<String> {
     let rows = papers.lines().filter_map(|line| line.strip_prefix("| [")?.split_once("] |"));
     rows.map(|(key, _)| key.to_owned()).collect()
@@ -139,11 +138,11 @@ fn links_and_keys_are_found() {
     assert_eq!(explained("| key | paper |\n| [GG3-10] | F. Zhang |\n"), BTreeSet::from(["GG3-10".to_owned()]));
 }
 
-/// Columns that a line of prose may have.
+/// Largest number of columns of a line of prose.
 const MOST_COLUMNS: usize = 100;
 
-/// Numbers of the lines of prose that are too long: of a Markdown text's all but code, tables and
-/// links, of a source's comments.
+/// Returns the numbers of the lines of prose that are too long. Prose is a Markdown text without
+/// code, tables and links, or a source's comments.
 fn long_lines(text: &str, is_markdown: bool) -> Vec<usize> {
     let mut code = false;
     let mut long = Vec::new();
@@ -185,8 +184,8 @@ fn long_lines_are_found_and_tables_are_not() {
     assert_eq!(long_lines(&format!("let x = 1; {long}\n/// {long}\n    // short\n//! | {long}"), false), [2]);
 }
 
-/// Items whose page begins with another item's: "The same …" means nothing to a reader who came by
-/// a search.
+/// No item's page begins with a reference to another item's, such as "The same …", which a reader
+/// who came by a search does not understand.
 #[test]
 fn pages_of_items_stand_alone() {
     let mut found = Vec::new();
@@ -202,4 +201,51 @@ fn pages_of_items_stand_alone() {
         }
     }
     assert!(found.is_empty(), "items explained by another one:\n{}", found.join("\n"));
+}
+
+/// Crates in which the first word of every item's page is checked.
+const CHECKED: [&str; 3] = ["umbrage", "umbrage-wgpu", "umbrage-shaders"];
+
+/// First words of pages that do not name their subject.
+const NO_SUBJECT: [&str; 9] = ["What", "Whether", "Where", "Which", "How", "Its", "That", "Those", "It"];
+
+/// Numbers of the lines of a source on which an item's page begins without its subject.
+fn pages_without_subject(text: &str) -> Vec<usize> {
+    let opens_so = |page: &str| {
+        let word = page.trim_start().split(|letter: char| !letter.is_alphabetic()).next();
+        word.is_some_and(|word| NO_SUBJECT.contains(&word))
+    };
+    let mut is_in_page = false;
+    let mut found = Vec::new();
+    for (number, line) in (1..).zip(text.lines()) {
+        let page = line.trim_start().strip_prefix("///");
+        if !is_in_page && page.is_some_and(opens_so) {
+            found.push(number);
+        }
+        is_in_page = page.is_some();
+    }
+    found
+}
+
+#[test]
+fn pages_of_items_name_their_subject_first() {
+    let mut found = Vec::new();
+    for name in CHECKED {
+        let mut paths = Vec::new();
+        files(&root().join("crates").join(name).join("src"), &["rs"], &mut paths);
+        for path in paths {
+            let text = fs::read_to_string(&path).expect("sources are text");
+            found.extend(pages_without_subject(&text).iter().map(|line| format!("{}:{line}", path.display())));
+        }
+    }
+    assert!(found.is_empty(), "begin with the noun, as in \"Number of …\" or \"True if …\":\n{}", found.join("\n"));
+}
+
+#[test]
+fn pages_without_subject_are_found() {
+    let good = "/// Number of maps.\n/// What follows is no first line.\nmaps: u32,\n//! What a module does\n";
+    assert!(pages_without_subject(good).is_empty());
+    assert!(pages_without_subject("/// Whatever is left.\n\n/// `It` is a name.\n// What is no page").is_empty());
+    let bad = "/// How many there are.\nmaps: u32,\n    /// It's dark\n    /// there.\n    dark: bool,\n///Which\n";
+    assert_eq!(pages_without_subject(bad), [1, 3, 6]);
 }

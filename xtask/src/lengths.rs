@@ -1,15 +1,15 @@
-//! Sources have at most 500 lines: a longer file has a part that a file of its own would explain.
+//! Check that sources have at most 500 lines.
 
 use crate::{documents::sources, run::root};
 
-/// Lines that a source may have.
+/// Most lines of a source.
 const MOST_LINES: usize = 500;
 
-/// Sources that have more, each with the reason.
+/// Sources with more lines, each with the reason.
 const LONGER: [(&str, &str); 1] =
     [("crates/umbrage/src/config/mod.rs", "ShadowConfig and its checks; to be divided with the settings' next change")];
 
-/// What is wrong with the lengths of sources, each by its path and number of lines.
+/// Messages about sources, given as path and number of lines, that are too long or listed in vain.
 fn wrong_lengths(lengths: &[(String, usize)], longer: &[(&str, &str)]) -> Vec<String> {
     let is_listed = |path: &str| longer.iter().any(|(listed, _)| *listed == path);
     let mut wrong: Vec<String> = lengths

@@ -1,5 +1,4 @@
-//! `cargo xtask COMMAND`: the project's automation, so that a machine that has Rust needs nothing
-//! else.
+//! `cargo xtask COMMAND`: the project's automation, which needs nothing but Rust.
 
 mod adapter;
 mod book;

@@ -1,4 +1,4 @@
-//! What a crate has to have before it is published.
+//! Check that published crates have what a registry and a reader of the package need.
 
 use std::{fs, path::Path};
 
@@ -6,13 +6,13 @@ use serde_json::Value;
 
 use crate::run::{cargo, output, root};
 
-/// Files that lie beside the manifest.
+/// Files beside the manifest.
 const FILES: [&str; 3] = ["README.md", "LICENSE-MIT", "LICENSE-APACHE"];
-/// Keys of the manifest, as `cargo metadata` calls them.
+/// Keys of the manifest, by their names in `cargo metadata`.
 const KEYS: [&str; 5] = ["description", "keywords", "rust_version", "license", "readme"];
 
-/// What a package of `cargo metadata` lacks; nothing if it is not published. `has_file` says
-/// whether a file lies beside its manifest.
+/// Keys and files that a package of `cargo metadata` lacks; none if it is not published. `has_file`
+/// returns true if a file lies beside its manifest.
 fn lacking(package: &Value, has_repository: bool, has_file: impl Fn(&str) -> bool) -> Vec<String> {
     if package["publish"].as_array().is_some_and(Vec::is_empty) {
         return Vec::new();

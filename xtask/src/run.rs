@@ -1,38 +1,42 @@
-//! Running other programs, saying which.
+//! Running other programs, with their command lines printed.
 
 use std::{
     env,
     path::{Path, PathBuf},
     process::{Command, Stdio},
+    time::Instant,
 };
 
 use anyhow::{Context, Result, bail};
 
-/// The repository's root.
+/// Returns the repository's root.
 pub fn root() -> PathBuf {
     let xtask = Path::new(env!("CARGO_MANIFEST_DIR"));
     xtask.parent().unwrap_or(xtask).to_path_buf()
 }
 
-/// The cargo that runs us, in the repository's root.
+/// Returns a command of the cargo that runs this program, in the repository's root.
 pub fn cargo() -> Command {
     let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.current_dir(root());
     command
 }
 
-/// Runs `command` with its output on the terminal.
+/// Runs `command` with its output on the terminal. Says how long it took, so that a check that
+/// became slow is seen.
 pub fn run(command: &mut Command) -> Result<()> {
     let shown = shown(command);
     eprintln!("xtask: {shown}");
+    let start = Instant::now();
     let status = command.status().with_context(|| format!("{shown} did not start"))?;
     if !status.success() {
         bail!("{shown} failed: {status}");
     }
+    eprintln!("xtask: {:.0} s for {shown}", start.elapsed().as_secs_f64());
     Ok(())
 }
 
-/// Runs `command` and returns what it prints, without the white space around it.
+/// Runs `command` and returns its output, without the white space around it.
 pub fn output(command: &mut Command) -> Result<String> {
     let shown = shown(command);
     let output = command.output().with_context(|| format!("{shown} did not start"))?;
@@ -42,7 +46,7 @@ pub fn output(command: &mut Command) -> Result<String> {
     Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }
 
-/// Whether `command` can be run and succeeds; it says nothing.
+/// Returns whether `command` can be run and succeeds. Its output is hidden.
 pub fn succeeds(command: &mut Command) -> bool {
     command
         .stdin(Stdio::null())
@@ -52,20 +56,21 @@ pub fn succeeds(command: &mut Command) -> bool {
         .is_ok_and(|status| status.success())
 }
 
-/// The command line, for messages.
+/// Formats the command line for messages.
 fn shown(command: &Command) -> String {
     let program = Path::new(command.get_program());
     let words = std::iter::once(program.file_name().unwrap_or(program.as_os_str())).chain(command.get_args());
     words.map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
 }
 
-/// Builds the command `umbrage` and returns where it lies.
+/// Builds the command `umbrage` and returns its path.
 pub fn build_umbrage(release: bool) -> Result<PathBuf> {
     let mut build = cargo();
     match release {
         true => build.args(["build", "--release", "--package", "umbrage-cli"]),
-        // With the features that the tests are built with: one build serves both.
-        false => build.args(["build", "--workspace", "--bin", "umbrage"]),
+        // As the tests build it: `cargo build` would choose other features, and build dependencies
+        // once more for them.
+        false => build.args(["test", "--workspace", "--no-run", "--quiet"]),
     };
     run(&mut build)?;
     let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |dir| root().join(dir));
@@ -77,7 +82,8 @@ pub fn build_umbrage(release: bool) -> Result<PathBuf> {
     Ok(binary)
 }
 
-/// Installs Debian's packages, or says how: not every system has them, and not everybody may.
+/// Installs Debian packages, or explains how, because not every system has them and not every user
+/// may.
 pub fn install(packages: &[&str]) -> Result<()> {
     let names = packages.join(" ");
     if !succeeds(Command::new("apt-get").arg("--version")) {

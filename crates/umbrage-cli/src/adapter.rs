@@ -1,4 +1,4 @@
-//! `umbrage adapter`: which graphics adapter would be used.
+//! `umbrage adapter`: prints the graphics adapter that would be used.
 
 use umbrage_lab::failure::Result;
 use umbrage_render::{Gpu, GpuOptions};

@@ -1,7 +1,8 @@
-//! What was typed: the subcommands. The options of each are in its file.
+//! The subcommands of the command line. The options of each are in its file.
 //!
-//! One set of scene, camera, light and time options serves every subcommand; what a subcommand does
-//! not need it accepts and ignores, so one argument list serves `render`, `probe` and `truth`.
+//! One set of scene, camera, light and time options serves every subcommand; a subcommand accepts
+//! and ignores options that it does not need, so one argument list serves `render`, `probe` and
+//! `truth`.
 
 use clap::{Parser, Subcommand};
 
@@ -15,7 +16,7 @@ use crate::{
 #[derive(Debug, Parser)]
 #[command(name = "umbrage", version, max_term_width = 110)]
 pub struct Args {
-    /// What to do.
+    /// The subcommand.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -52,7 +53,7 @@ pub enum Command {
     View(Box<crate::view::ViewArgs>),
     /// The procedural worlds
     Worlds {
-        /// What to do with them.
+        /// The subcommand of `worlds`.
         #[command(subcommand)]
         command: WorldsCommand,
     },

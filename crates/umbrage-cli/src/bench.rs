@@ -1,4 +1,4 @@
-//! `umbrage bench`: what shadows cost.
+//! `umbrage bench`: measures the cost of shadows.
 
 use std::path::PathBuf;
 
@@ -19,8 +19,7 @@ use umbrage_scene::procedural::{World, WorldOptions};
 
 use crate::{switch::Switch, world_args::WorldArgs};
 
-/// The camera of a world that is taken if none is named: shadows near, in the middle and far in one
-/// picture.
+/// Default camera of a world: it shows near, middle and far shadows in one picture.
 const CAMERA: &str = "middle";
 
 /// `umbrage bench`.
@@ -88,10 +87,10 @@ pub struct BenchArgs {
     pub html: Option<PathBuf>,
 }
 
-/// Most objects of GPU Gems' Figure 10-9: they are nodes of a list.
+/// Largest number of objects of GPU Gems' Figure 10-9, which are nodes of a list.
 const MOST_OBJECTS: u32 = 100_000;
 
-/// Maps that can be kept: they stand exactly still.
+/// Technique whose maps can be kept, because they stand exactly still.
 const SCALED: &str = "pssm:4:1024:preset=papers:scheme=log:label=PSSM(4; 1024²), exactly still";
 
 /// Runs the subcommand.
@@ -128,7 +127,7 @@ pub fn run(args: &BenchArgs) -> Result<()> {
     })
 }
 
-/// The job of `--scale`.
+/// Makes the job of `--scale`.
 fn scale_job(args: &BenchArgs) -> Result<ScaleJob> {
     let mut objects =
         if args.objects.is_empty() { vec![100, 1000, 10_000, 100_000, 1_000_000] } else { args.objects.clone() };
@@ -139,7 +138,8 @@ fn scale_job(args: &BenchArgs) -> Result<ScaleJob> {
     Ok(ScaleJob { objects, technique, rounds: args.rounds, size: args.size, json, html })
 }
 
-/// The scene, by the camera that was named, the one in the middle of a world, or its first.
+/// Makes the request of a scene, with the camera that was named, the one in the middle of a world,
+/// or the scene's first.
 fn scene_request(args: &BenchArgs, scene: &str) -> Result<SceneRequest> {
     let of_world = World::from_name(scene).map(|_| CAMERA.to_owned());
     let camera = args.camera.clone().or(of_world);

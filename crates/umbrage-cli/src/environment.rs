@@ -1,12 +1,13 @@
-//! What drivers expect of the process's environment.
+//! Environment variables that graphics drivers expect.
 
-/// Starts the command again, in its place, with an `XDG_RUNTIME_DIR` if it has none.
+/// Restarts the command in place with an `XDG_RUNTIME_DIR`, if it has none.
 ///
 /// Mesa's Vulkan drivers look for a Wayland display when they are loaded. On a machine without a
-/// desktop the library that they ask prints "error: XDG_RUNTIME_DIR is invalid or not set in the
-/// environment", twice, which reads as a failure of a run that is none. A folder that is not there
-/// says that there is no display, and says it quietly. A process's own environment can be changed
-/// safely only before it begins, hence the new beginning: the same process, arguments and streams.
+/// desktop the library for that prints "error: XDG_RUNTIME_DIR is invalid or not set in the
+/// environment", twice, although the run does not fail. If the variable names a missing folder, the
+/// library finds no display and prints nothing. A process's own environment can be changed safely
+/// only before the process begins, hence the restart with the same process id, arguments and
+/// streams.
 #[cfg(target_os = "linux")]
 pub fn restart_with_runtime_folder() {
     use std::os::unix::process::CommandExt as _;
@@ -28,6 +29,6 @@ pub fn restart_with_runtime_folder() {
     drop(command.args(arguments).env(VARIABLE, NOWHERE).exec());
 }
 
-/// Other systems' drivers do not ask.
+/// Does nothing, because drivers of other systems do not need the variable.
 #[cfg(not(target_os = "linux"))]
 pub fn restart_with_runtime_folder() {}

@@ -1,8 +1,8 @@
-//! What a failure means to the shell.
+//! Exit codes of failures.
 
 use umbrage_lab::failure::Failure;
 
-/// The exit code of the process: 2 for bad input, 1 for anything else.
+/// Returns the exit code of the process: 2 for bad input, 1 for any other failure.
 #[must_use]
 pub fn exit_code(failure: &Failure) -> u8 {
     match failure {

@@ -25,7 +25,7 @@ pub struct GalleryArgs {
     pub folder: PathBuf,
 }
 
-/// The scenes of the gallery by name.
+/// Reads the names of the gallery's scenes.
 fn scene_parser() -> impl TypedValueParser<Value = &'static Scene> {
     let names = SCENES.iter().map(|scene| PossibleValue::new(scene.id).help(scene.title));
     PossibleValuesParser::new(names)

@@ -1,7 +1,7 @@
 //! The command `umbrage`, as a library, so that its parts can be tested.
 //!
-//! [`args`] is what was typed; then there is one file per subcommand, with its options and what it
-//! does with them. The work is done by `umbrage-lab`. [`failure`] decides the exit code.
+//! [`args`] parses the command line; every subcommand has a file with its options and its code. The
+//! work is done by `umbrage-lab`. [`failure`] decides the exit code.
 
 mod adapter;
 pub mod args;
@@ -30,7 +30,7 @@ pub mod worlds;
 use args::{Args, Command};
 use umbrage_lab::failure::Result;
 
-/// Does what was asked for.
+/// Runs the subcommand.
 ///
 /// # Errors
 /// [`umbrage_lab::failure::Failure`], which [`failure::exit_code`] turns into an exit code. No

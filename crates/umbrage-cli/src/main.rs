@@ -5,7 +5,7 @@ use std::{panic, process::ExitCode};
 use clap::Parser;
 use umbrage_cli::{args::Args, failure::exit_code};
 
-/// A defect of ours: 1, as for anything that is not the user's fault.
+/// Exit code of a defect of the program: 1, as for any failure that is not the user's.
 const DEFECT: u8 = 1;
 
 fn main() -> ExitCode {

@@ -1,4 +1,4 @@
-//! `umbrage plan`: what the planner answers, as JSON, without a GPU.
+//! `umbrage plan`: prints the planner's result as JSON, without a GPU.
 
 use std::path::{Path, PathBuf};
 
@@ -50,7 +50,7 @@ pub enum DepthConvention {
     MinusOneToOne,
 }
 
-/// The plan of one frame.
+/// Report of the plan of one frame.
 #[derive(Debug, Serialize)]
 struct PlanReport {
     /// Scene, camera and sun.
@@ -59,33 +59,33 @@ struct PlanReport {
     technique: String,
     fit: String,
     stabilize: String,
-    /// Approximately stabilised: in which steps maps change their extent.
+    /// Steps of the extents of approximately stabilised maps; absent for others.
     #[serde(skip_serializing_if = "Option::is_none")]
     extent_steps: Option<ExtentStepsReport>,
-    /// `planar`: all depths of this report are view depths; `radial`: all but `coverage_m` are
-    /// distances to the eye.
+    /// Metric of depths: `planar` if all depths of this report are view depths; `radial` if all but
+    /// `coverage_m` are distances to the eye.
     bands: String,
-    /// The split scheme: `uniform`, `log`, `practical`, `manual` or `optimal`.
+    /// Split scheme: `uniform`, `log`, `practical`, `manual` or `optimal`.
     scheme: String,
-    /// One for all splits, or one for each.
+    /// Warp of all splits, or of each.
     warp: Vec<String>,
-    /// Of the matrices.
+    /// Depth convention of the matrices.
     depth_convention: String,
-    /// `C_0 ..= C_m`: view depths in metres.
+    /// Split planes `C_0 ..= C_m`: view depths in metres.
     planes_m: Vec<f64>,
-    /// View depth of a world point: `xyz · point + w`, metres.
+    /// Plane that gives the view depth of a world point in metres: `xyz · point + w`.
     view_depth_plane: [f64; 4],
     /// View depth at which the fade to lit begins, metres.
     fade_begin_m: f64,
     splits: Vec<SplitPlan>,
-    /// What `splits[].casters` refers to: for each caster its node, and its place among the node's
+    /// Casters that `splits[].casters` refers to: the node of each, and its index among the node's
     /// instances.
     casters: Vec<Caster>,
-    /// Defaults invented, parts of the scene left out.
+    /// Invented defaults, and parts of the scene that were left out.
     notes: Vec<String>,
 }
 
-/// `{"per_doubling": 8}` or `{"levels": 64}`.
+/// Steps as `{"per_doubling": 8}` or `{"levels": 64}`.
 #[derive(Debug, Serialize)]
 #[serde(rename_all = "snake_case")]
 enum ExtentStepsReport {
@@ -93,35 +93,35 @@ enum ExtentStepsReport {
     Levels(u32),
 }
 
-/// One split.
+/// Report of one split.
 #[derive(Debug, Serialize)]
 struct SplitPlan {
     near_m: f64,
     far_m: f64,
     blend_begin_m: f64,
-    /// View depths that may sample the map.
+    /// View depths that may sample the map, in metres.
     coverage_m: [f64; 2],
     /// Edge of the map in texels.
     size: u32,
-    /// Metres per texel along u and v; of a warped map in the middle of its receivers.
+    /// Metres per texel along u and v; for a warped map, in the middle of its receivers.
     texel_m: [f64; 2],
     warped: bool,
-    /// To normalised device coordinates, x right, y up, column after column; divide by w.
+    /// Matrix to normalised device coordinates, x right, y up, column after column. Divide by w.
     shadow_from_world: [[f64; 4]; 4],
-    /// To texture coordinates (u right, v down, in 0..1) and stored depth in 0..1, column after
-    /// column; divide by w.
+    /// Matrix to texture coordinates (u right, v down, in 0..1) and stored depth in 0..1, column
+    /// after column. Divide by w.
     texture_from_world: [[f64; 4]; 4],
-    /// Those that are drawn into the map. Empty: nothing casts a shadow here.
+    /// Casters that are drawn into the map. If empty, nothing casts a shadow here.
     casters: Vec<u32>,
 }
 
-/// Something that casts shadows.
+/// A shadow caster.
 #[derive(Debug, Serialize)]
 struct Caster {
     node: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     instance: Option<u32>,
-    /// First and last split that it is drawn into.
+    /// First and last split that the caster is drawn into.
     #[serde(skip_serializing_if = "Option::is_none")]
     split_range: Option<[u8; 2]>,
 }

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use umbrage_lab::failure::{Failure, Result};
 
-/// To standard output; a reader who has left is no error.
+/// Writes to standard output. A reader of a pipe that has closed it is no error.
 pub fn print(text: &str) -> Result<()> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

@@ -1,4 +1,4 @@
-//! `umbrage probe`: visibility at given points, from the very maps that `render` uses.
+//! `umbrage probe`: visibility at given points, from the maps that `render` uses.
 
 use std::{
     fs,
@@ -42,7 +42,7 @@ pub struct ProbeArgs {
     pub report: Option<PathBuf>,
 }
 
-/// Six little-endian f64: a position and a normal.
+/// Size of a record in bytes: six little-endian f64, a position and a normal.
 const RECORD_BYTES: usize = 6 * size_of::<f64>();
 
 /// Runs the subcommand.

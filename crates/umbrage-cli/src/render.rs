@@ -1,4 +1,4 @@
-//! `umbrage render`: the picture, its mask, its maps, its report.
+//! `umbrage render`: writes the picture, the mask, the maps and the report.
 
 use std::path::{Path, PathBuf};
 
@@ -108,7 +108,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     staged.commit()
 }
 
-/// Refuses what cannot be written of several views, or of splits by distance.
+/// Refuses outputs that are impossible for several views, or for splits by distance.
 fn check_views(args: &RenderArgs, setup: &SceneSetup, shadows: &ShadowRequest) -> Result<()> {
     if args.edge_counts.is_some() && shadows.config.edges != Edges::Exact {
         return Err(Failure::input("--edge-counts shows what exact edges do; give --edges exact"));
@@ -137,7 +137,7 @@ fn outputs(args: &RenderArgs) -> Outputs {
     }
 }
 
-/// Puts pictures, masks and maps of a shot's views among the outputs.
+/// Stages pictures, masks and maps of a shot's views.
 fn stage(args: &RenderArgs, number: Option<u32>, views: &mut [Rendered], staged: &mut Staged) -> Result<()> {
     let pictures: Vec<_> = views.iter_mut().filter_map(|view| view.picture.take()).collect();
     if let (Some(path), false) = (&args.picture, pictures.is_empty()) {
@@ -159,7 +159,7 @@ fn stage(args: &RenderArgs, number: Option<u32>, views: &mut [Rendered], staged:
     Ok(())
 }
 
-/// The report of a shot: of its first view, with the others beside it.
+/// Makes the report of a shot: of its first view, with the others beside it.
 fn report(session: &Session, request: &SceneRequest, setup: &SceneSetup, shot: &Shot, views: &[Rendered]) -> Report {
     let beside = shot.beside.iter().zip(&views[1..]);
     let beside = beside.map(|((camera, view), of)| beside_report(setup, camera, view, &of.stats)).collect();

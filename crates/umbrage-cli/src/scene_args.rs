@@ -1,4 +1,4 @@
-//! The options of scene, picture size, camera, light and time, and what they ask for.
+//! The options of scene, picture size, camera, light and time, and the request that they make.
 
 use std::path::PathBuf;
 
@@ -111,15 +111,15 @@ pub struct SceneArgs {
     #[arg(long, value_name = "SWITCH", value_enum, default_value_t, help_heading = "Picture")]
     pub shadows: Switch,
 
-    /// Of several frames the only one that is wanted.
+    /// Number of the only frame that is shown, of several.
     #[arg(skip)]
     pub only_frame: Option<u32>,
-    /// All this as words of a command line.
+    /// Words of a command line with all these options.
     #[arg(skip)]
     pub options: Vec<String>,
 }
 
-/// The help of SCENE.
+/// Returns the help text of SCENE.
 fn scene_help() -> String {
     let worlds: Vec<&str> = World::ALL.iter().map(|world| world.name()).collect();
     format!(
@@ -144,7 +144,7 @@ pub enum HeightEncoding {
 }
 
 impl HeightEncoding {
-    /// The encoding, if one was named.
+    /// Returns the encoding, if one was named.
     fn named(self) -> Option<umbrage_scene::HeightEncoding> {
         match self {
             Self::Auto => None,
@@ -156,10 +156,10 @@ impl HeightEncoding {
 }
 
 impl SceneArgs {
-    /// The request that the options make.
+    /// Makes the request of the options.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming the options that do not go together.
+    /// [`Failure::Input`] with the options that exclude each other.
     pub fn request(&self) -> Result<SceneRequest> {
         let camera = camera_choice(self)?;
         let request = SceneRequest {
@@ -191,7 +191,7 @@ impl SceneArgs {
     }
 }
 
-/// `--light` and `--sun`.
+/// Makes the choice of the light from `--light` and `--sun`.
 ///
 /// # Errors
 /// [`Failure::Input`] if both are given.

@@ -1,4 +1,5 @@
-//! Scene, camera, light and time as typed, over those of a report: how a picture is drawn again.
+//! The options of scene, camera, light and time as typed, which override those of a report when its
+//! picture is drawn again.
 
 use std::path::{Path, PathBuf};
 
@@ -12,11 +13,11 @@ use umbrage_scene::procedural::World;
 
 use crate::{scene_args::SceneArgs, shadow_args::ShadowArgs, switch::Switch};
 
-/// The key of SCENE, which has no dashes.
+/// Key of SCENE, which has no dashes.
 const SCENE: &str = "scene";
 
-/// What a typed option puts out of force in a report, besides itself: what would choose the same
-/// thing in another way.
+/// Options of a report that a typed option replaces besides itself, because they choose the same
+/// property in another way.
 const REPLACED: [(&str, &[&str]); 6] = [
     ("camera", &["eye", "target", "path"]),
     ("eye", &["camera", "path"]),
@@ -30,27 +31,27 @@ const REPLACED: [(&str, &[&str]); 6] = [
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SceneOptions(Vec<Typed>);
 
-/// An option, or SCENE.
+/// A typed option, or SCENE.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Typed {
     key: String,
     value: Option<String>,
 }
 
-/// What a subcommand is asked for: the scene and its shadows.
+/// Requests of a subcommand: the scene and its shadows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Asked {
-    /// Scene, camera, light and time.
+    /// Request of scene, camera, light and time.
     pub scene: SceneRequest,
-    /// Shadows.
+    /// Request of the technique of shadows.
     pub shadows: ShadowRequest,
 }
 
 impl Asked {
-    /// The options of both kinds over those of `--config`.
+    /// Makes the requests from the options of both kinds, which override those of `--config`.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming the option or the file at fault.
+    /// [`Failure::Input`] with the option or the file at fault.
     pub fn new(scene: &SceneOptions, shadows: &ShadowArgs) -> Result<Self> {
         let args = scene.over(shadows.file())?;
         let request = args.request()?;
@@ -90,13 +91,13 @@ impl FromArgMatches for SceneOptions {
     }
 }
 
-/// Parses these options alone.
+/// Makes a parser of these options alone.
 fn parser() -> Command {
     SceneArgs::augment_args(Command::new("umbrage render").no_binary_name(true).disable_help_flag(true))
 }
 
 impl SceneOptions {
-    /// These options, with a scene where none was typed.
+    /// Returns these options, with a scene if none was typed.
     #[must_use]
     pub fn or_scene(&self, scene: &str) -> Self {
         let mut options = self.clone();
@@ -106,10 +107,10 @@ impl SceneOptions {
         options
     }
 
-    /// The options over those of the report `file`, if that is one.
+    /// Merges the options with those of the report `file`, if the file is a report.
     ///
     /// # Errors
-    /// [`Failure::Input`] if there is no scene in either, or naming what in the report is wrong.
+    /// [`Failure::Input`] if there is no scene in either, or with the fault of the report.
     pub fn over(&self, file: Option<&Path>) -> Result<SceneArgs> {
         let report = file.map(ConfigFile::load).transpose()?.and_then(|file| file.drawn);
         let (merged, only_frame) = match (file, report) {
@@ -135,7 +136,8 @@ impl SceneOptions {
         Ok(SceneArgs { only_frame, options: merged.words(), ..args })
     }
 
-    /// The options over those of a report, and the frame that is still the only one wanted.
+    /// Merges the options with those of a report. Returns them and the only frame that is shown, if
+    /// that still applies.
     fn over_report(&self, file: &Path, drawn: &Drawn) -> Result<(Self, Option<u32>)> {
         let mut kept: Vec<Typed> = drawn.options.iter().map(|option| Typed::parse(option)).collect();
         kept.retain(|old| !self.0.iter().any(|new| new.replaces(&old.key)));
@@ -160,7 +162,7 @@ impl SceneOptions {
         self.0.iter().find(|typed| typed.key == key)?.value.as_deref()
     }
 
-    /// The options as words of a command line, SCENE first.
+    /// Returns the options as words of a command line, SCENE first.
     fn words(&self) -> Vec<String> {
         let (scene, options): (Vec<&Typed>, Vec<&Typed>) = self.0.iter().partition(|typed| typed.key == SCENE);
         scene.into_iter().chain(options).map(Typed::word).collect()
@@ -194,7 +196,7 @@ impl Typed {
     }
 }
 
-/// A file that a report names: seen from the working directory, else from the report's folder.
+/// Finds a file that a report names: from the working directory, else from the report's folder.
 fn found(report: &Path, key: &str, name: &str) -> Result<String> {
     let folder = report.parent().map(Path::to_path_buf).unwrap_or_default();
     let beside: PathBuf = folder.join(name);
@@ -214,16 +216,16 @@ fn found(report: &Path, key: &str, name: &str) -> Result<String> {
 }
 
 impl ShadowArgs {
-    /// The file of `--config`.
+    /// Returns the file of `--config`.
     #[must_use]
     pub fn file(&self) -> Option<&Path> {
         self.0.file.as_deref()
     }
 
-    /// The shadows that the options ask for, in the picture that `scene` asks for.
+    /// Makes the request of the shadows, for the picture of `scene`.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming the option at fault.
+    /// [`Failure::Input`] with the option at fault.
     pub fn request(&self, scene: &SceneArgs) -> Result<ShadowRequest> {
         let mut options = self.0.clone();
         options.tint = scene.tint;

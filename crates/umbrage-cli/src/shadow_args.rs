@@ -1,5 +1,5 @@
 //! The options of shadows: one for each setting of `umbrage::config::SETTINGS`, and the config that
-//! they go over.
+//! they override.
 
 use std::path::PathBuf;
 
@@ -9,13 +9,13 @@ use umbrage::config::{Kind, Preset, SETTINGS, Setting};
 
 use umbrage_lab::technique::ShadowOptions;
 
-/// The heading of these options in the help.
+/// Heading of these options in the help.
 const HEADING: &str = "Shadows";
 
-/// Settings that stand among other options: the sun's angle belongs to the light.
+/// Settings that are listed with other options: the sun's angle belongs to the light.
 const ELSEWHERE: [&str; 1] = ["sun-angle"];
 
-/// How shadows are made, as typed.
+/// The options of shadows, as typed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShadowArgs(pub ShadowOptions);
 
@@ -54,7 +54,7 @@ fn settings() -> impl Iterator<Item = &'static Setting> {
     SETTINGS.iter().filter(|setting| !ELSEWHERE.contains(&setting.key))
 }
 
-/// The option of a setting.
+/// Makes the option of a setting.
 fn option(setting: &'static Setting) -> Arg {
     let default = setting.get(&Preset::Balanced.config()).map(|value| format!(" [default: {value}]"));
     let arg = Arg::new(setting.key)

@@ -1,5 +1,5 @@
-//! The options of views: which cameras of which scenes, under which suns, and how they go on from
-//! frame to frame. What judges views shares them.
+//! The options of views: cameras, scenes, suns, and the motion of cameras from frame to frame. All
+//! subcommands that judge views share them.
 
 use std::path::PathBuf;
 
@@ -99,27 +99,27 @@ pub struct ShotArgs {
     pub least_edges: usize,
 }
 
-/// What holds where nothing was typed.
+/// Defaults of options that were not typed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShotDefaults {
-    /// Near plane in metres.
+    /// Near distance in metres.
     pub near: Option<f64>,
-    /// Far plane in metres.
+    /// Far distance in metres.
     pub far: Option<f64>,
-    /// Cameras by name.
+    /// Names of cameras.
     pub cameras: &'static [&'static str],
-    /// Suns.
+    /// Suns that every camera is seen under.
     pub suns: Option<&'static [&'static str]>,
-    /// How cameras go on.
+    /// Motion of cameras from frame to frame.
     pub stride: Option<Stride>,
 }
 
 impl ShotArgs {
-    /// Which views of each of so many scenes, in pictures of this size: what was typed, then what
-    /// holds otherwise.
+    /// Makes the request for the views of each of so many scenes, in pictures of this size: the
+    /// typed options, then the defaults.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming the option at fault.
+    /// [`Failure::Input`] with the option at fault.
     pub fn request(&self, scenes: usize, size: [u32; 2], defaults: &ShotDefaults) -> Result<ShotRequest> {
         if self.path.is_some() && scenes > 1 {
             return Err(Failure::input("--path goes through one scene; give one scene"));
@@ -158,7 +158,8 @@ impl ShotArgs {
         Ok(ShotRequest { base, cameras: self.cameras(defaults.cameras)?, suns, stride })
     }
 
-    /// Cameras by name, by a point to look at and along a path; none: all that a scene has.
+    /// Returns cameras by name, by eye and target, and along a path; empty for all that a scene
+    /// has.
     fn cameras(&self, usual: &[&str]) -> Result<Vec<CameraChoice>> {
         let typed = !self.camera.is_empty() || self.eye.is_some() || self.path.is_some();
         let mut cameras: Vec<CameraChoice> = if typed {
@@ -179,7 +180,8 @@ impl ShotArgs {
         Ok(cameras)
     }
 
-    /// `--step`, `--turn`, `--zoom` and `--frames`, what is not said taken from the usual.
+    /// Makes the motion of `--step`, `--turn`, `--zoom` and `--frames`, with the usual values for
+    /// missing ones.
     fn stride(&self, usual: Option<Stride>) -> Result<Option<Stride>> {
         let typed = [("--step", self.step), ("--turn", self.turn), ("--zoom", self.zoom)];
         if let Some((option, _)) = typed.iter().find(|(_, value)| value.is_some()) {

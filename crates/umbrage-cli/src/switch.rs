@@ -1,4 +1,4 @@
-//! `on` and `off`.
+//! Options that are `on` or `off`.
 
 /// A switch on the command line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]

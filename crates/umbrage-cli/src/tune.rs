@@ -15,10 +15,10 @@ use crate::{
     switch::Switch,
 };
 
-/// Pixels across and down where nothing says otherwise: many candidates draw every view.
+/// Default width and height in pixels; small, because many candidates draw every view.
 const DEFAULT_SIZE: [u32; 2] = [320, 240];
 
-/// How cameras go on where nothing says otherwise: a walk that turns, so that flicker shows.
+/// Default motion of cameras: a walk that turns, so that flicker shows.
 const STRIDE: Stride = Stride { metres: 0.15, turn: 0.3, zoom: 1.0, frames: 2 };
 
 const TUNE_HELP: &str = "\
@@ -140,10 +140,10 @@ pub fn run(args: &TuneArgs) -> Result<()> {
     tune::run(&job)
 }
 
-/// Settings that decide what is scored.
+/// Settings that decide which pixels are scored.
 const NOT_FOR_ALL: [&str; 2] = ["shadow-range", "sun-angle"];
 
-/// A run leaves something; a shard leaves its results alone.
+/// Checks that a whole run has outputs, and that a shard has only results.
 fn check_outputs(args: &TuneArgs, outputs: &Outputs) -> Result<()> {
     let some = outputs.files().next();
     match (args.shard, some) {
@@ -158,7 +158,7 @@ fn check_outputs(args: &TuneArgs, outputs: &Outputs) -> Result<()> {
     }
 }
 
-/// `--most-flicker` as a share.
+/// Returns `--most-flicker` as a share.
 fn most_flicker(args: &TuneArgs) -> Result<f64> {
     if args.most_flicker >= 0.0 {
         return Ok(0.01 * args.most_flicker);

@@ -11,7 +11,7 @@ use umbrage_viewer::{Error, Options, ShowAtStart};
 
 use crate::{scene_args::SceneArgs, scene_options::SceneOptions, shadow_args::ShadowArgs};
 
-/// What is shown if no scene is given.
+/// Scene that is shown if none is given.
 pub const FIRST_SCENE: &str = "robot-war";
 
 /// `umbrage view`.
@@ -44,7 +44,7 @@ pub struct ViewArgs {
     pub screenshot: Option<PathBuf>,
 }
 
-/// A factor that leaves something to read.
+/// Reads a factor that keeps text readable.
 fn scale(text: &str) -> std::result::Result<f32, String> {
     let factor = parse::positive(text)?;
     if (0.5..=5.0).contains(&factor) { Ok(factor as f32) } else { Err(format!("{factor}; give 0.5 to 5")) }

@@ -1,8 +1,8 @@
-//! How many objects the worlds have.
+//! The options for numbers of objects of the worlds.
 
 use umbrage_scene::procedural::WorldOptions;
 
-/// Numbers of objects of worlds, as typed.
+/// Numbers of objects of the worlds, as typed.
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
 pub struct WorldArgs {
     /// robot-war: so many robots, in ranks and files [default: the paper's 160]

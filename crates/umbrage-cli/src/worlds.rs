@@ -47,7 +47,7 @@ fn names() -> Vec<String> {
     World::ALL.iter().map(|world| world.name().to_string()).collect()
 }
 
-/// One line per world: its name and its cameras, tab between.
+/// Prints one line per world: its name and its cameras, with a tab in between.
 fn list() -> Result<()> {
     let mut text = String::new();
     for world in World::ALL {

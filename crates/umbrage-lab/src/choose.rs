@@ -1,12 +1,12 @@
-//! Things of a scene by name or number: cameras and lights.
+//! Choice of cameras and lights of a scene by name or number.
 
 use crate::failure::{Failure, Result};
 
-/// The indices of one thing called `wanted`, whatever is in its name, or of several between commas;
-/// one at least.
+/// Returns the index of one element called `wanted`, whatever characters its name has, or those of
+/// several between commas; at least one.
 ///
 /// # Errors
-/// [`Failure::Input`] naming the option, what is not there and what is.
+/// [`Failure::Input`] with the option, the missing name and the existing ones.
 pub fn several(option: &str, kind: &str, wanted: &str, names: &[&str]) -> Result<Vec<usize>> {
     if names.contains(&wanted) || !wanted.contains(',') {
         return Ok(vec![select(option, kind, wanted, names)?]);
@@ -22,7 +22,7 @@ pub fn several(option: &str, kind: &str, wanted: &str, names: &[&str]) -> Result
     Ok(indices)
 }
 
-/// The index of the thing called `wanted`, or with that number.
+/// Returns the index of the element called `wanted`, or with that number.
 ///
 /// # Errors
 /// As [`several`].
@@ -41,7 +41,7 @@ pub fn select(option: &str, kind: &str, wanted: &str, names: &[&str]) -> Result<
     })
 }
 
-/// A name for people, for things that may have none.
+/// Returns a name for display, even for elements without one.
 #[must_use]
 pub fn named(name: &str, index: usize) -> String {
     if name.is_empty() { index.to_string() } else { name.to_owned() }

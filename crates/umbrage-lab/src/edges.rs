@@ -1,40 +1,40 @@
-//! What exact edges did, in reports.
+//! Counts of exact edges, for reports.
 
 use serde::{Deserialize, Serialize};
 use umbrage_render::{EdgeCause, EdgeSums};
 
-/// What exact edges did for the pixels of a picture.
+/// Counts of exact edges for the pixels of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct EdgesReport {
-    /// Pixels for which a map was asked.
+    /// Number of pixels for which a map was read.
     pub points: u64,
-    /// Share of these that depth alone did not decide.
+    /// Share of these pixels that depth alone did not decide.
     pub undecided: f64,
-    /// Boxes of runs that were tested for each of those; none where there are none.
+    /// Number of boxes of runs tested per undecided pixel; `None` if there is no such pixel.
     pub boxes_per_undecided: Option<f64>,
-    /// Triangles that were tested for each of those.
+    /// Number of triangles tested per undecided pixel; `None` if there is no such pixel.
     pub triangles_per_undecided: Option<f64>,
-    /// Shares of all of them, by what decided.
+    /// Shares of all these pixels, by the cause of the decision.
     pub by_cause: ByCause,
 }
 
-/// A number for each way to decide a point.
+/// A number for each cause of a decision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct ByCause {
-    /// No texel round it is dark: lit.
+    /// Lit: no texel around the point is dark.
     pub lit: f64,
-    /// All texels that count are dark: dark.
+    /// Dark: all texels that count are dark.
     pub dark: f64,
-    /// Triangles were asked, and none is hit.
+    /// Lit: triangles were tested and none is hit.
     pub missed: f64,
-    /// Triangles were asked, and one is hit.
+    /// Dark: triangles were tested and one is hit.
     pub hit: f64,
-    /// A caster without a name: the filter answered.
+    /// Decided by the filter: a caster has no id.
     pub filter: f64,
 }
 
 impl ByCause {
-    /// From a number of each cause.
+    /// Calls `number` for each cause.
     pub fn of(number: impl Fn(EdgeCause) -> f64) -> Self {
         Self {
             lit: number(EdgeCause::Lit),

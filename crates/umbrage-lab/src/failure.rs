@@ -1,4 +1,4 @@
-//! What went wrong, sorted by whose fault it is: that decides the exit code.
+//! Errors sorted by fault, which decides the exit code.
 
 use std::{io, path::Path};
 
@@ -7,30 +7,30 @@ use umbrage::config::{Kind, SETTINGS};
 /// [`std::result::Result`] with a [`Failure`].
 pub type Result<T, E = Failure> = std::result::Result<T, E>;
 
-/// Why a command ended without its outputs. No output file is left behind in either case.
+/// Reason why a command ended without its outputs. No output file is left behind.
 #[derive(Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
-    /// The user can mend it: an option, a file, a full disk. The message names the culprit and what
-    /// to do.
+    /// An error that the user can fix: an option, a file, a full disk. The message names the
+    /// culprit and says what to do.
     #[error("{0}")]
     Input(String),
-    /// Everything else: no adapter, a lost device, an internal error.
+    /// Any other error: no adapter, a lost device, an internal error.
     #[error("{0}")]
     Other(String),
 }
 
 impl Failure {
-    /// Bad input: exit code 2.
+    /// Makes an error of bad input: exit code 2.
     pub fn input(message: impl Into<String>) -> Self {
         Self::Input(message.into())
     }
 
-    /// Not the user's fault: exit code 1.
+    /// Makes an error that is not the user's fault: exit code 1.
     pub fn other(message: impl Into<String>) -> Self {
         Self::Other(message.into())
     }
 
-    /// Settings that were refused, in the language of the command line.
+    /// Makes the error of refused settings, in the terms of the command line.
     #[must_use]
     pub fn of_settings(error: &umbrage::Error, given: &[(String, String)]) -> Self {
         match error {
@@ -51,7 +51,7 @@ impl Failure {
         }
     }
 
-    /// The operating system refused something about a file that the user named.
+    /// Makes the error of an operation on a file that the user named.
     #[must_use]
     pub fn file(doing: &str, path: &Path, error: &io::Error) -> Self {
         use io::ErrorKind as Kind;
@@ -65,7 +65,7 @@ impl Failure {
     }
 }
 
-/// Names the option behind a field of the planner's, so that the message speaks the language of the
+/// Names the option behind a field of the planner, so that the message is in the terms of the
 /// command line.
 impl From<umbrage::Error> for Failure {
     fn from(error: umbrage::Error) -> Self {
@@ -87,8 +87,8 @@ impl From<umbrage::Error> for Failure {
     }
 }
 
-/// No adapter and a failing device are nobody's bad input; everything else names an option or the
-/// scene.
+/// A missing adapter and a failing device are not bad input. Every other error names an option or
+/// the scene.
 impl From<umbrage_render::Error> for Failure {
     fn from(error: umbrage_render::Error) -> Self {
         use umbrage_render::Error as E;
@@ -106,7 +106,7 @@ impl From<umbrage_render::Error> for Failure {
     }
 }
 
-/// What the loader refuses is a file or an option.
+/// Every error of the loader concerns a file or an option.
 impl From<umbrage_scene::Error> for Failure {
     fn from(error: umbrage_scene::Error) -> Self {
         match error {
@@ -116,15 +116,15 @@ impl From<umbrage_scene::Error> for Failure {
     }
 }
 
-/// What the judge refuses is the scene or an option.
+/// Every error of the judge concerns the scene or an option.
 impl From<umbrage_truth::Error> for Failure {
     fn from(error: umbrage_truth::Error) -> Self {
         Self::input(error.to_string())
     }
 }
 
-/// A message of the library with its settings as options: `selection map` becomes `--selection
-/// map`.
+/// Rewrites a message of the library with its settings as options: `selection map` becomes
+/// `--selection map`.
 #[must_use]
 pub fn in_options(message: &str) -> String {
     let words: Vec<&str> = message.split(' ').collect();
@@ -153,7 +153,7 @@ pub fn in_options(message: &str) -> String {
     options.join(" ")
 }
 
-/// The maps' message in the language of the command line.
+/// Rewrites the message of the maps in the terms of the command line.
 fn of_maps(error: &umbrage_wgpu::Error) -> String {
     match error {
         umbrage_wgpu::Error::MapTooLarge { .. } => format!("--map-size: {error}"),

@@ -1,8 +1,8 @@
-//! What a long run has finished, kept in a file while it goes on: one that is cut off goes on from
-//! there.
+//! Journals: the finished parts of a long run, kept in a file so that a run that is cut off can
+//! continue.
 //!
-//! The first line says of what run, each further one holds something finished. A line counts once
-//! its end is written. [`crate::compare`] keeps the views of a comparison so, [`crate::tune`]
+//! The first line describes the run; each further line holds a finished part. A line counts once
+//! its end is written. [`crate::compare`] keeps the views of a comparison in one, [`crate::tune`]
 //! candidates.
 
 use std::{
@@ -16,17 +16,17 @@ use serde_json::Value;
 
 use crate::failure::{Failure, Result};
 
-/// What is kept, for messages.
+/// Kind of a journal, for messages.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
     /// The option that names the file.
     pub option: &'static str,
-    /// What kind of run it is of.
+    /// Name of the kind of run.
     pub run: &'static str,
 }
 
 impl Kind {
-    /// What is wrong with a file.
+    /// Makes the error about a file: `what` is wrong with it.
     #[must_use]
     pub fn refuse(self, path: &Path, what: impl std::fmt::Display) -> Failure {
         Failure::input(format!("{} {}: {what}", self.option, path.display()))
@@ -37,25 +37,26 @@ impl Kind {
     }
 }
 
-/// What a file holds.
+/// Content of a file.
 #[derive(Clone, Debug)]
 pub struct Kept<T> {
-    /// Of what run; none in a file that is empty or was cut off in its first line.
+    /// Description of the run; `None` in a file that is empty or was cut off in its first line.
     pub of: Option<Value>,
-    /// What was finished.
+    /// Finished parts.
     pub finished: Vec<T>,
-    /// Bytes of a last line that was cut off.
+    /// Number of bytes of a last line that was cut off.
     pub dropped: usize,
-    /// Bytes of whole lines.
+    /// Number of bytes of whole lines.
     whole: usize,
 }
 
-/// Reads a file of this kind; `line` makes something finished of a line, or says in words what is
-/// wrong with it. `expected` is the description without which nothing but the first line is read.
+/// Reads a file of this kind. `line` reads a finished part from a line; its error says what is
+/// wrong with the line. `expected` is the description of the expected run; a file of another run is
+/// refused before its further lines are read.
 ///
 /// # Errors
-/// [`Failure::Input`] naming the file: it cannot be read, is no journal, is of another run than is
-/// expected, or a line of it is damaged.
+/// [`Failure::Input`] with the file: it cannot be read, is no journal, belongs to another run than
+/// expected, or has a damaged line.
 pub fn read<T>(
     path: &Path,
     kind: Kind,
@@ -85,24 +86,24 @@ pub fn read<T>(
     Ok(Kept { of: header, finished, dropped: bytes.len() - whole, whole })
 }
 
-/// The file, open for what is still to come.
+/// A journal whose file is open for further parts.
 #[derive(Debug)]
 pub struct Journal<T> {
     path: PathBuf,
     file: File,
-    /// What was finished before.
+    /// Parts that were finished before.
     pub finished: Vec<T>,
-    /// Bytes of a last line that was cut off, which are dropped.
+    /// Number of bytes of a last line that was cut off, which are dropped.
     pub dropped: usize,
 }
 
 impl<T> Journal<T> {
-    /// Opens the journal at `path` or begins one. `of` says of what; a journal of anything else is
-    /// refused.
+    /// Opens the journal at `path` or begins one. `of` describes the run; a journal of any other
+    /// run is refused.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming the file: it cannot be read or written, is no journal, is one of
-    /// another run, or a line of it is damaged.
+    /// [`Failure::Input`] with the file: it cannot be read or written, is no journal, belongs to
+    /// another run, or has a damaged line.
     pub fn open(
         path: &Path,
         kind: Kind,
@@ -129,7 +130,7 @@ impl<T> Journal<T> {
         Ok(journal)
     }
 
-    /// The file.
+    /// Returns the path of the file.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -144,7 +145,7 @@ impl<T> Journal<T> {
         written.map_err(|error| Failure::file("write", &self.path, &error))
     }
 
-    /// Removes the file: everything that it held is in the outputs.
+    /// Removes the file, whose content is in the outputs.
     ///
     /// # Errors
     /// [`Failure::Input`] if it cannot be removed.
@@ -153,7 +154,7 @@ impl<T> Journal<T> {
     }
 }
 
-/// A line with its end.
+/// Returns a line with its end.
 fn text_of(line: &impl Serialize) -> Result<Vec<u8>> {
     let mut bytes =
         serde_json::to_vec(line).map_err(|error| Failure::other(format!("no JSON of what is finished: {error}")))?;
@@ -161,7 +162,7 @@ fn text_of(line: &impl Serialize) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// What two descriptions of a run do not have in common, by its name.
+/// Returns the name of the first field in which two descriptions of a run differ.
 #[must_use]
 pub fn difference(old: &Value, new: &Value) -> Option<String> {
     let (Some(old), Some(new)) = (old.as_object(), new.as_object()) else { return Some("no description".into()) };

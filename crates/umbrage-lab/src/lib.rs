@@ -1,21 +1,19 @@
-//! umbrage's laboratory: what it takes to judge shadows, draw them side by side, measure their cost
-//! and show the theory behind them.
+//! umbrage's laboratory: judging shadows, drawing them side by side, measuring their cost and
+//! showing the theory behind them.
 //!
-//! * [`technique`]: how shadows are made, as options, as settings and under a name;
-//! * [`scene_request`] and [`scene_setup`]: what is looked at, asked for and opened;
+//! * [`technique`]: techniques of shadows as options, as settings and by name;
+//! * [`scene_request`] and [`scene_setup`]: scene, camera and light as requested, and as opened;
 //! * [`session`]: a device with the scene on it;
-//! * [`compare`] judges techniques by rays, [`tune`] searches the best for a budget, [`mod@bench`]
-//!   measures what they cost, [`theory`] draws what the papers derive, [`gallery`] what the
-//!   defaults draw;
+//! * [`compare`] scores techniques by rays, [`tune`] searches the best config for a budget,
+//!   [`mod@bench`] measures costs, [`theory`] draws the papers' theory, [`gallery`] draws pictures
+//!   with the defaults;
 //! * [`page`]: report pages and their charts;
-//! * [`output`] makes files appear whole or not at all, [`failure`] says whose fault it is that
-//!   there are none.
+//! * [`output`] makes files appear whole or not at all, [`failure`] sorts errors by fault.
 //!
-//! Without the feature `judge`, which is on by default, there are requests, scenes, views and
-//! lights alone.
+//! Without the feature `judge`, which is on by default, only requests, scenes, views and lights are
+//! compiled.
 //!
-//! Messages name the options of the command `umbrage`, which is what a user of the laboratory
-//! types.
+//! Messages name the options of the command `umbrage`, because a user of the laboratory types them.
 
 #[cfg(feature = "judge")]
 pub mod bench;

@@ -1,4 +1,4 @@
-//! The lights of a request: which ones, under which names, and what a report says of them.
+//! Lights of a request: their choice, their names and their reports.
 
 use umbrage::{DirectionalLight, Light};
 use umbrage_render::{Lamp, MOST_LAMPS};
@@ -11,17 +11,17 @@ use crate::{
     scene_request::{LightChoice, SceneRequest},
 };
 
-/// A light under the name that people know it by.
+/// A light with a name for display.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedLight {
-    /// The scene's name for it, its number, or how it was given.
+    /// Name of the light: the scene's, its number, or how it was given.
     pub name: String,
     /// The light.
     pub lamp: Lamp,
 }
 
 impl NamedLight {
-    /// What there is to say of the light itself.
+    /// Returns the part of a report that describes the light itself.
     #[must_use]
     pub fn report(&self) -> LightReport {
         let light = self.lamp.light;
@@ -43,16 +43,16 @@ impl NamedLight {
     }
 }
 
-/// What the maps have to be made for.
+/// Returns the kinds of lights that maps have to be made for.
 #[must_use]
 pub fn kinds(lights: &[NamedLight]) -> Vec<umbrage::config::LightKind> {
     lights.iter().map(|light| light.lamp.light.into()).collect()
 }
 
-/// The lights that a request asks for, one at least.
+/// Returns the lights that a request asks for, at least one.
 ///
 /// # Errors
-/// [`Failure::Input`] naming the option or the light at fault.
+/// [`Failure::Input`] with the option or the light at fault.
 pub fn chosen(
     request: &SceneRequest,
     scene: &Scene,
@@ -92,8 +92,8 @@ pub fn chosen(
     sun("invented", direction)
 }
 
-/// The lights that `--light` names: one by its name, whatever is in it; `all`; or several between
-/// commas.
+/// Returns the lights that `--light` names: one by its name, whatever characters it has; `all`; or
+/// several between commas.
 fn indices(wanted: &str, scene: &Scene) -> Result<Vec<usize>> {
     let names: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
     if wanted != "all" || names.contains(&wanted) {

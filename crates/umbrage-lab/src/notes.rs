@@ -1,5 +1,4 @@
-//! Notes for whoever sits at the terminal: what was left out, taken for something else, or
-//! invented.
+//! Notes for the user at the terminal: parts that were left out, reinterpreted, or invented.
 
 use std::{
     collections::BTreeSet,
@@ -7,7 +6,7 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-/// Writes each note to standard error in one line, once however often it is said.
+/// Writes each note to standard error in one line, once however often it is repeated.
 pub fn say<'n>(notes: impl IntoIterator<Item = &'n String>) {
     static SAID: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
     let mut said = SAID.lock().unwrap_or_else(PoisonError::into_inner);
@@ -19,7 +18,8 @@ pub fn say<'n>(notes: impl IntoIterator<Item = &'n String>) {
     }
 }
 
-/// Names in files may hold anything, even what moves a terminal's cursor.
+/// Makes a note one safe line. Names in files may hold any characters, even those that move a
+/// terminal's cursor.
 fn line(note: &str) -> String {
     let printable = |c: char| if c.is_control() { '\u{fffd}' } else { c };
     format!("umbrage: note: {}", note.chars().map(printable).collect::<String>())

@@ -1,4 +1,4 @@
-//! Opening a scene, with a bar while that takes long.
+//! Opening a scene, with a progress bar for slow ones.
 
 use glam::DVec3;
 use umbrage::{Projection, View};
@@ -11,7 +11,7 @@ use crate::progress;
 /// Opens a scene and moves it.
 ///
 /// # Errors
-/// [`crate::failure::Failure::Input`] naming the file or option at fault.
+/// [`crate::failure::Failure::Input`] with the file or option at fault.
 pub fn open(name: &str, files: &OpenOptions, move_scene: Option<DVec3>) -> Result<Scene> {
     let scene = watched(name, files)?;
     Ok(match move_scene {
@@ -28,14 +28,14 @@ fn watched(name: &str, files: &OpenOptions) -> Result<Scene> {
     Ok(scene?)
 }
 
-/// There is no terminal to show a bar on.
+/// Opens a scene without a bar, because there is no terminal.
 #[cfg(not(feature = "judge"))]
 fn watched(name: &str, files: &OpenOptions) -> Result<Scene> {
     Ok(umbrage_scene::open(name, files)?)
 }
 
-/// The pose in which views see a scene: with the shapes that they can tell apart in pictures of
-/// that size, where meshes have several. `None` where they have not.
+/// Poses a scene for views, with the coarsest levels of detail that pictures of that size cannot
+/// tell from finer ones. `None` if no mesh has several levels.
 ///
 /// # Errors
 /// As [`Scene::pose`].

@@ -1,26 +1,27 @@
-//! Values of single options: from what was typed to a checked number, vector, size, range or list.
+//! Parsers of single options: from typed text to a checked number, vector, size, range or list.
 //!
-//! The messages go into clap's own, which names the option and what was typed.
+//! Their messages become part of clap's, which names the option and the typed text.
 
 use glam::DVec3;
 
-/// More pixels than this are a typing error, and more than a picture's buffers should take.
+/// Largest number of pixels. More are a typing error, and more than a picture's buffers should
+/// take.
 const MAX_PIXELS: u64 = 1 << 26;
-/// The longest edge of a picture.
+/// Longest edge of a picture in pixels.
 const MAX_EDGE: u32 = 16_384;
 
-/// A finite number.
+/// Reads a finite number.
 pub fn number(text: &str) -> Result<f64, String> {
     let value: f64 = text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?;
     if value.is_finite() { Ok(value) } else { Err(format!("{value} is not a finite number")) }
 }
 
-/// A finite number greater than 0.
+/// Reads a finite number greater than 0.
 pub fn positive(text: &str) -> Result<f64, String> {
     number(text).and_then(|v| if v > 0.0 { Ok(v) } else { Err(format!("{v} is not greater than 0")) })
 }
 
-/// A number greater than 0; `inf` is allowed.
+/// Reads a number greater than 0; `inf` is allowed.
 pub fn positive_or_infinite(text: &str) -> Result<f64, String> {
     match text.trim().to_ascii_lowercase().as_str() {
         "inf" | "infinity" | "+inf" => Ok(f64::INFINITY),
@@ -28,13 +29,13 @@ pub fn positive_or_infinite(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A number in 0..=1.
+/// Reads a number in 0..=1.
 pub fn share(text: &str) -> Result<f64, String> {
     number(text)
         .and_then(|v| if (0.0..=1.0).contains(&v) { Ok(v) } else { Err(format!("{v} is out of range; give 0 to 1")) })
 }
 
-/// An angle in degrees between 0 and 180, both excluded.
+/// Reads an angle in degrees between 0 and 180, both excluded.
 pub fn field_of_view(text: &str) -> Result<f64, String> {
     let angle = number(text)?;
     if angle > 0.0 && angle < 180.0 {
@@ -44,13 +45,13 @@ pub fn field_of_view(text: &str) -> Result<f64, String> {
     }
 }
 
-/// The sun's angle in degrees, 0 to 90.
+/// Reads the sun's angle in degrees, 0 to 90.
 pub fn sun_angle(text: &str) -> Result<f64, String> {
     let angle = number(text)?;
     if (0.0..=90.0).contains(&angle) { Ok(angle) } else { Err(format!("{angle} degrees; give an angle from 0 to 90")) }
 }
 
-/// `x,y,z`, three finite numbers.
+/// Reads `x,y,z`, three finite numbers.
 pub fn vector(text: &str) -> Result<DVec3, String> {
     match numbers(text)?[..] {
         [x, y, z] => Ok(DVec3::new(x, y, z)),
@@ -58,26 +59,26 @@ pub fn vector(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// `x,y,z`, not all zero.
+/// Reads `x,y,z`, not all zero.
 pub fn direction(text: &str) -> Result<DVec3, String> {
     let v = vector(text)?;
     let length = v.length();
     if length > 0.0 && length.is_finite() { Ok(v) } else { Err("a vector of that length has no direction".into()) }
 }
 
-/// `r,g,b`, each from 0 to 1.
+/// Reads `r,g,b`, each from 0 to 1.
 pub fn colour(text: &str) -> Result<DVec3, String> {
     let colour = vector(text)?;
     let inside = colour.cmpge(DVec3::ZERO).all() && colour.cmple(DVec3::ONE).all();
     if inside { Ok(colour) } else { Err(format!("{colour} is not a colour; give red, green and blue from 0 to 1")) }
 }
 
-/// `a,b,…`, one finite number at least.
+/// Reads `a,b,…`, at least one finite number.
 pub fn numbers(text: &str) -> Result<Vec<f64>, String> {
     text.split(',').map(number).collect()
 }
 
-/// Rising planes `a,b,…`: finite view depths greater than 0.
+/// Reads rising planes `a,b,…`: finite view depths greater than 0.
 pub fn planes(text: &str) -> Result<Vec<f64>, String> {
     let planes: Vec<f64> = text.split(',').map(positive).collect::<Result<_, _>>()?;
     match planes.windows(2).find(|pair| pair[0] >= pair[1]) {
@@ -86,7 +87,7 @@ pub fn planes(text: &str) -> Result<Vec<f64>, String> {
     }
 }
 
-/// Edges of maps in texels: one, or one per split.
+/// Reads edges of maps in texels: one, or one per split.
 pub fn map_sizes(text: &str) -> Result<Vec<u32>, String> {
     text.split(',')
         .map(|edge| match edge.trim().parse::<u32>() {
@@ -97,14 +98,14 @@ pub fn map_sizes(text: &str) -> Result<Vec<u32>, String> {
         .collect()
 }
 
-/// A number between 0 and 1, both excluded.
+/// Reads a number between 0 and 1, both excluded.
 pub fn focus(text: &str) -> Result<f64, String> {
     number(text).and_then(|v| {
         if v > 0.0 && v < 1.0 { Ok(v) } else { Err(format!("{v} is not between 0 and 1, both excluded")) }
     })
 }
 
-/// `WIDTHxHEIGHT` in pixels.
+/// Reads `WIDTHxHEIGHT` in pixels.
 pub fn size(text: &str) -> Result<[u32; 2], String> {
     let form = || format!("{text:?} is not a size; give WIDTHxHEIGHT in pixels, such as 800x600");
     let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(form)?;
@@ -119,7 +120,7 @@ pub fn size(text: &str) -> Result<[u32; 2], String> {
     Ok([width, height])
 }
 
-/// `N..F`: view depths in metres, 0 < N < F.
+/// Reads `N..F`: view depths in metres, 0 < N < F.
 pub fn range(text: &str) -> Result<(f64, f64), String> {
     let (near, far) =
         text.split_once("..").ok_or_else(|| format!("{text:?} is not a range; give N..F in metres, such as 1..800"))?;

@@ -6,7 +6,7 @@ use image::{DynamicImage, ImageBuffer, ImageFormat, Pixel};
 
 use crate::failure::{Failure, Result};
 
-/// Pictures of one height beside each other; there is one at least.
+/// Puts pictures of one height side by side; at least one is given.
 #[must_use]
 pub fn side_by_side<P: Pixel>(mut pictures: Vec<ImageBuffer<P, Vec<P::Subpixel>>>) -> ImageBuffer<P, Vec<P::Subpixel>> {
     if pictures.len() == 1 {
@@ -23,7 +23,7 @@ pub fn side_by_side<P: Pixel>(mut pictures: Vec<ImageBuffer<P, Vec<P::Subpixel>>
     all
 }
 
-/// A picture as the bytes of a PNG.
+/// Encodes a picture as PNG.
 ///
 /// # Errors
 /// [`Failure::Other`] if the encoder refuses.

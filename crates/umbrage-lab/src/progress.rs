@@ -1,12 +1,12 @@
-//! A bar on a terminal, nothing in a pipe.
+//! Progress bars on a terminal; none in a pipe.
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Steps of [`fraction`]'s bar; fine enough that it never seems to stand still.
+/// Number of steps of [`fraction`]'s bar, fine enough that it never seems to stand still.
 const FRACTION_STEPS: u64 = 1000;
 
-/// A bar on standard error that counts to `total`, hidden where standard error is no terminal or
-/// there is one step only.
+/// Makes a bar on standard error that counts to `total`. It is hidden if standard error is no
+/// terminal or there is only one step.
 #[must_use]
 pub fn steps(total: u64, what: &'static str) -> ProgressBar {
     if total <= 1 {
@@ -15,8 +15,8 @@ pub fn steps(total: u64, what: &'static str) -> ProgressBar {
     styled(ProgressBar::new(total), "{msg} {wide_bar} {pos}/{len} {eta}").with_message(what)
 }
 
-/// A bar on standard error for a share of work in 0..=1, hidden where standard error is no
-/// terminal; see [`set_fraction`].
+/// Makes a bar on standard error for a share of work in 0..=1; see [`set_fraction`]. It is hidden
+/// if standard error is no terminal.
 #[must_use]
 pub fn fraction(what: &'static str) -> ProgressBar {
     styled(ProgressBar::new(FRACTION_STEPS), "{msg} {wide_bar} {percent:>3} % {eta}").with_message(what)

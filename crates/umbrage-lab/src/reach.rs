@@ -1,5 +1,5 @@
-//! Exact visibility of scenes of many objects: rays need only what views may see, and what may
-//! stand between that and the light.
+//! Exact visibility of scenes of many objects. Rays need only objects that the views may see, and
+//! objects between those and the light.
 
 use glam::{DQuat, DVec3};
 use umbrage::{Aabb, Light, View};
@@ -8,13 +8,13 @@ use umbrage_truth::Truth;
 
 use crate::failure::Result;
 
-/// Up to so many objects all are kept.
+/// Number of objects up to which all are kept.
 const MANY: usize = 4096;
 
-/// Metres by which what is seen is widened: more than any rounding of boxes.
+/// Metres by which the visible box is enlarged: more than any rounding of boxes.
 const ROOM_M: f64 = 1.0;
 
-/// [`Truth::build`] for views of one scene, each under its light.
+/// Builds the ground truth ([`Truth::build`]) for views of one scene, each under its light.
 ///
 /// # Errors
 /// Those of [`Truth::build`].
@@ -30,10 +30,11 @@ pub fn truth_for(scene: &Scene, pose: &Pose, views: &[(&View, Light)]) -> Result
     Ok(Truth::build(scene, &kept, near)?)
 }
 
-/// What may be seen in a view, or shade what is seen: a box along the light's own axes, endless
-/// towards the light. A local light has no such box: everything may matter.
+/// Region of the objects that may be visible in a view, or may shade visible ones: a box along the
+/// light's own axes, endless towards the light. A local light has no such box: every object may
+/// matter.
 struct Reach {
-    /// Turns the light's way to −Z; with the box around what is seen.
+    /// Rotation of the light's direction to −Z, and the box around the visible part of the world.
     of_sun: Option<(DQuat, Aabb)>,
 }
 
@@ -57,7 +58,7 @@ impl Reach {
     }
 }
 
-/// The corners of the view's pyramid, as far as the world goes.
+/// Returns the corners of the view's frustum, cut at the end of the world's box.
 fn seen_corners(view: &View, world: Aabb) -> Vec<DVec3> {
     let frustum = view.frustum();
     let deepest = world.corners().map(|corner| view.view_depth(corner)).into_iter().fold(0.0, f64::max);

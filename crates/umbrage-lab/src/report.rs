@@ -1,241 +1,243 @@
-//! The report: what was drawn, with what, and what it cost. Field names are the contract of the
+//! Reports of pictures: the scene, the settings, and the cost. Field names are the contract of the
 //! command line.
 
 use serde::{Deserialize, Serialize};
 
-/// The report of one frame of `render` or `probe`.
+/// Report of one frame of `render` or `probe`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
     /// Scene, camera and sun.
     #[serde(flatten)]
     pub shot: ShotReport,
-    /// The graphics adapter.
+    /// Name of the graphics adapter.
     pub adapter: String,
-    /// `pssm`, or a single map: `ssm`, `psm`, `lispsm` or `tsm`.
+    /// Technique: `pssm`, or a single map: `ssm`, `psm`, `lispsm` or `tsm`.
     pub technique: String,
-    /// How the maps were drawn: `multipass`, `per-split`, `layered`, `instanced` or `mixed`.
+    /// Way in which the maps were drawn: `multipass`, `per-split`, `layered`, `instanced` or
+    /// `mixed`.
     pub generation: String,
-    /// How the maps are kept: `array`, `atlas`, `separate`, `cube` or `reused`.
+    /// Storage of the maps: `array`, `atlas`, `separate`, `cube` or `reused`.
     pub storage: String,
-    /// As `--filter` names it.
+    /// Filter, as `--filter` names it.
     pub filter: String,
-    /// Metres that the filter is wide in every split; none where its width is in texels.
+    /// Width of the filter in metres in every split; `None` if its width is in texels.
     pub filter_width: Option<f64>,
-    /// Angular diameter of the sun in degrees, of a filter that uses it.
+    /// Angular diameter of the sun in degrees, for a filter that uses it.
     pub sun_angle: Option<f64>,
-    /// `blend`, `dither` or `hard`: how neighbouring splits are joined.
+    /// Transition between neighbouring splits: `blend`, `dither` or `hard`.
     pub transition: String,
-    /// `plane` or `slope`: how surfaces are kept from shading themselves.
+    /// Bias that keeps surfaces from shading themselves: `plane` or `slope`.
     pub bias: String,
-    /// `none` or `dithered`: whether translucent surfaces cast shadows.
+    /// Shadows of translucent surfaces: `none` or `dithered`.
     pub translucent: String,
-    /// Whether contact shadows were asked for; a note says where there can be none.
+    /// True if contact shadows were asked for. A note says if there can be none.
     pub contact_shadows: bool,
-    /// How dark shadows are, 0 to 1.
+    /// Darkness of shadows, 0 to 1.
     pub shadow_strength: f64,
-    /// What the sun's light is multiplied by in full shadow, linear red, green and blue.
+    /// Factor of the sun's light in full shadow, in linear red, green and blue.
     pub shadow_colour: [f64; 3],
-    /// `dependent` or `independent`.
+    /// Fit of the maps: `dependent` or `independent`.
     pub fit: String,
-    /// `none`, `exact` or `approximate`.
+    /// Stabilisation of the maps: `none`, `exact` or `approximate`.
     pub stabilize: String,
-    /// `planar` or `radial`: what `planes_m` and the splits' ends measure, view depth or distance
+    /// Metric of `planes_m` and of the splits' ends: `planar` for view depth, `radial` for distance
     /// to the eye.
     pub bands: String,
-    /// Where planes stand: `uniform`, `log`, `practical`, `manual` or `fitted`.
+    /// Split scheme: `uniform`, `log`, `practical`, `manual` or `optimal`.
     pub scheme: String,
-    /// `none`, `psm`, `lispsm` or `tsm`: one for all splits, or one for each.
+    /// Warp of all splits or of each: `none`, `psm`, `lispsm` or `tsm`.
     pub warp: Vec<String>,
-    /// Every setting, under its key: what `--config` reads back, beside the options.
+    /// All settings by key. `--config` reads them back, together with the options.
     pub config: umbrage::ShadowConfig,
-    /// `C_0 ..= C_m`: view depths in metres.
+    /// Split planes `C_0 ..= C_m`: view depths in metres.
     pub planes_m: Vec<f64>,
-    /// How long it took.
+    /// Times of the frame.
     pub times_ms: TimesMs,
     /// Bytes of all shadow maps.
     pub bytes: u64,
-    /// Draw calls into all maps; a call may draw into several.
+    /// Number of draw calls into all maps. A call may draw into several maps.
     pub draws: u64,
-    /// Triangles submitted to all maps, every instance counted once.
+    /// Number of triangles submitted to all maps, counting every instance.
     pub triangles: u64,
-    /// Of the first light, for each split: how many casters its list leaves out because their
-    /// shadows are small (`--drop-small-casters`).
+    /// Number of casters that each split's list of the first light leaves out because their shadows
+    /// are small (`--drop-small-casters`).
     pub dropped_casters: Vec<u32>,
-    /// The splits of the first light, nearest first; the others' are in `lights`.
+    /// Splits of the first light, nearest first. Those of other lights are in `lights`.
     pub splits: Vec<SplitReport>,
-    /// What exact edges did for the picture of the first light; none where edges are sampled.
+    /// Counts of exact edges for the picture of the first light; `None` with sampled edges.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub edges: Option<crate::edges::EdgesReport>,
-    /// The views beside the first one, from left to right.
+    /// Views beside the first one, from left to right.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub beside: Vec<BesideReport>,
-    /// The answers of `probe`.
+    /// Answers of `probe`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub probe: Option<ProbeReport>,
-    /// Fallbacks taken, defaults invented.
+    /// Fallbacks in use, and invented defaults.
     pub notes: Vec<String>,
 }
 
-/// A view beside the first one.
+/// Report of a view beside the first one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BesideReport {
-    /// The eye.
+    /// Camera of the view.
     pub camera: CameraReport,
-    /// `C_0 ..= C_m` of the first light: view depths in metres.
+    /// Split planes `C_0 ..= C_m` of the first light: view depths in metres.
     pub planes_m: Vec<f64>,
-    /// How long it took.
+    /// Times of the view.
     pub times_ms: TimesMs,
     /// All lights with their splits.
     pub lights: Vec<LightReport>,
 }
 
-/// The report of one frame of `truth`.
+/// Report of one frame of `truth`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TruthReport {
     /// Scene, camera and sun.
     #[serde(flatten)]
     pub shot: ShotReport,
-    /// How long it took.
+    /// Times of the frame.
     pub times_ms: TruthTimesMs,
-    /// Defaults invented, parts of the scene left out.
+    /// Invented defaults, and parts of the scene that were left out.
     pub notes: Vec<String>,
 }
 
-/// What was looked at, from where, under which sun.
+/// Scene, camera and sun of a picture.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ShotReport {
-    /// As typed.
+    /// Scene as it was typed.
     pub scene: String,
-    /// Scene, camera, light and time as options of `umbrage render`: what `--config` draws again.
+    /// Scene, camera, light and time as options of `umbrage render`, from which `--config` draws
+    /// the picture again.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub options: Vec<String>,
-    /// Seconds into the animations.
+    /// Time of the animations in seconds.
     pub time_s: f64,
-    /// Along a path: which frame.
+    /// Number of the frame along a path.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame: Option<u32>,
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// The eye.
+    /// Camera of the picture.
     pub camera: CameraReport,
-    /// The way the first light travels, a unit vector, if it is a sun.
+    /// Direction in which the first light travels, as a unit vector, if it is a sun.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sun: Option<[f64; 3]>,
-    /// All lights, the first one first, with the splits of each where maps were made.
+    /// All lights, the first one first, with the splits of each for which maps were made.
     pub lights: Vec<LightReport>,
-    /// With --sun-to: the suns whose shadows are shown.
+    /// Suns whose shadows are shown, with `--sun-to`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sun_shown: Option<SunShown>,
 }
 
-/// The suns whose shadows are shown, unit vectors along the light, and the share of the second.
+/// Suns whose shadows are shown, as unit vectors along the light, and the share of the second.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SunShown {
-    /// The sun that is left.
+    /// Sun that is faded from.
     pub from: [f64; 3],
-    /// The sun that is faded to.
+    /// Sun that is faded to.
     pub to: [f64; 3],
-    /// Its share, 0 to 1.
+    /// Share of the sun that is faded to, 0 to 1.
     pub weight: f64,
 }
 
-/// The eye: metres and degrees.
+/// Camera of a picture; lengths in metres, angles in degrees.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct CameraReport {
-    /// Where the camera comes from: its name, or how it was chosen.
+    /// Name of the camera, or how it was chosen.
     pub name: String,
-    /// Position.
+    /// Position of the eye.
     pub eye: [f64; 3],
-    /// The way it looks, a unit vector.
+    /// Viewing direction, a unit vector.
     pub forward: [f64; 3],
-    /// Its up, a unit vector.
+    /// Up direction, a unit vector.
     pub up: [f64; 3],
-    /// Vertical field of view; none for an orthographic camera.
+    /// Vertical field of view; `None` for an orthographic camera.
     pub fov: Option<f64>,
-    /// Near plane.
+    /// Near distance.
     pub near: f64,
-    /// Far plane; none if there is none.
+    /// Far distance; `None` if it is infinite.
     pub far: Option<f64>,
 }
 
-/// Milliseconds.
+/// Times in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct TimesMs {
-    /// The planner.
+    /// Time of the planner.
     pub plan: f64,
-    /// Drawing the maps.
+    /// Time of drawing the maps.
     pub shadow: f64,
-    /// The whole frame.
+    /// Time of the whole frame.
     pub frame: f64,
 }
 
-/// Milliseconds.
+/// Times of the ground truth in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct TruthTimesMs {
-    /// Building the acceleration structure.
+    /// Time of building the acceleration structure.
     pub build: f64,
-    /// Casting the rays.
+    /// Time of tracing the rays.
     pub rays: f64,
 }
 
-/// One split.
+/// Report of one split.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SplitReport {
-    /// View depth where it begins, metres.
+    /// View depth in metres at which the split begins.
     pub near: f64,
-    /// View depth where it ends, metres.
+    /// View depth in metres at which the split ends.
     pub far: f64,
-    /// The larger edge of a texel on the light's plane, metres; of a warped map in the middle of
+    /// Larger edge of a texel on the light's plane, in metres; for a warped map, in the middle of
     /// its receivers.
     pub texel_m: f64,
-    /// Whether its map is warped; a warp that has nothing to gain leaves it plain.
+    /// True if the map is warped. A warp without a gain leaves the map unwarped.
     pub warped: bool,
-    /// glTF mesh nodes, or instances of them, in the split's list.
+    /// Number of casters in the split's list: glTF mesh nodes, or instances of them.
     pub casters: u64,
-    /// Draw calls that draw into its map.
+    /// Number of draw calls that draw into the map.
     pub draws: u64,
-    /// Triangles of its casters.
+    /// Number of triangles of the casters.
     pub triangles: u64,
-    /// Bytes of its map.
+    /// Bytes of the map.
     pub bytes: u64,
 }
 
-/// One light of a frame.
+/// Report of one light of a frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LightReport {
-    /// The scene's name for it, its number, or how it was given.
+    /// Name of the light: the scene's, its number, or how it was given.
     pub name: String,
-    /// `directional`, `spot` or `point`.
+    /// Kind of the light: `directional`, `spot` or `point`.
     pub kind: &'static str,
-    /// The way a sun's light travels, or a spot light's axis: a unit vector.
+    /// Direction in which a sun's light travels, or a spot light's axis: a unit vector.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub direction: Option<[f64; 3]>,
-    /// Where a spot or point light stands, metres.
+    /// Position of a spot or point light in metres.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub position: Option<[f64; 3]>,
-    /// How far a spot or point light shines, metres.
+    /// Range of a spot or point light in metres.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub range_m: Option<f64>,
-    /// Degrees between a spot light's axis and its rim.
+    /// Angle in degrees between a spot light's axis and its rim.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outer_angle: Option<f64>,
-    /// `C_0 ..= C_m` of its plan: view depths in metres.
+    /// Split planes `C_0 ..= C_m` of the light's plan: view depths in metres.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub planes_m: Vec<f64>,
-    /// Its splits, nearest first; of a point light those of its face +X, then those of −X, +Y, −Y,
-    /// +Z and −Z.
+    /// Splits of the light, nearest first. A point light has those of its face +X, then those of
+    /// −X, +Y, −Y, +Z and −Z.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub splits: Vec<SplitReport>,
 }
 
-/// What `probe` adds.
+/// Part of a report that `probe` adds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeReport {
-    /// For each point the split that answered, −1 if none did.
+    /// Split that answered for each point; −1 if none did.
     pub split: Vec<i32>,
 }
 
-/// JSON, indented, with a newline at its end.
+/// Writes a report as JSON, indented, with a newline at its end.
 ///
 /// # Errors
 /// [`crate::failure::Failure::Other`] if a value cannot be written as JSON, which would be a

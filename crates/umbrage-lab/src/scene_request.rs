@@ -1,4 +1,4 @@
-//! What is looked at, from where, under which light: plain data, checked before a file is read.
+//! Requests of a scene, a camera and a light: plain data, checked before a file is read.
 //!
 //! [`crate::scene_setup`] opens it.
 
@@ -10,98 +10,99 @@ use umbrage_scene::OpenOptions;
 
 use crate::failure::{Failure, Result};
 
-/// `--fov` where nothing else says one, degrees.
+/// Default of `--fov`, in degrees.
 pub const DEFAULT_FOV: f64 = 60.0;
-/// `--near` where nothing else says one, metres.
+/// Default of `--near`, in metres.
 pub const DEFAULT_NEAR: f64 = 1.0;
-/// `--far` where nothing else says one, metres.
+/// Default of `--far`, in metres.
 pub const DEFAULT_FAR: f64 = 800.0;
-/// `--sun-fade` where nothing else says one, frames.
+/// Default of `--sun-fade`, in frames.
 pub const DEFAULT_SUN_FADE: u32 = 8;
 
-/// What is looked at, from where, under which light.
+/// Request of a scene, a camera and a light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneRequest {
-    /// A world's name or a file.
+    /// Name of a world, or a file.
     pub scene: String,
-    /// How its file is read.
+    /// Options of reading the file.
     pub files: OpenOptions,
-    /// The scene is moved by so many metres.
+    /// Translation of the scene in metres.
     pub move_scene: Option<DVec3>,
-    /// Seconds into the animations.
+    /// Time of the animations in seconds.
     pub time_s: f64,
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// The eye.
+    /// Choice of the camera.
     pub camera: CameraChoice,
-    /// Vertical field of view, degrees; none: the camera's own, or [`DEFAULT_FOV`].
+    /// Vertical field of view in degrees; `None` uses the camera's own, or [`DEFAULT_FOV`].
     pub fov: Option<f64>,
-    /// Near plane, metres; none: the camera's own.
+    /// Near distance in metres; `None` uses the camera's own.
     pub near: Option<f64>,
-    /// Far plane, metres; none: the camera's own.
+    /// Far distance in metres; `None` uses the camera's own.
     pub far: Option<f64>,
-    /// The light.
+    /// Choice of the light.
     pub light: LightChoice,
-    /// A sun that moves over the frames.
+    /// Motion of the sun over the frames.
     pub sun_travel: Option<SunTravel>,
-    /// Degrees across the sun; none where nothing was said.
+    /// Angular diameter of the sun in degrees; `None` if it was not given.
     pub sun_angle: Option<f64>,
-    /// Of several frames this one alone is wanted; those before it are drawn, for what maps keep
-    /// from frame to frame, and not shown.
+    /// Number of the only frame that is shown, of several. Frames before it are drawn, for state
+    /// that maps keep from frame to frame, but are not shown.
     pub only_frame: Option<u32>,
-    /// All this as options of `umbrage render`, for reports; empty where nobody typed any.
+    /// The request as options of `umbrage render`, for reports; empty if the request was not typed.
     pub options: Vec<String>,
 }
 
-/// How the eye was chosen.
+/// Choice of the camera.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CameraChoice {
-    /// Not at all: the scene's first camera, or an invented one.
+    /// No choice: the scene's first camera, or an invented one.
     Default,
-    /// `--camera`.
+    /// A camera by name: `--camera`.
     Named(String),
-    /// `--eye` and `--target`.
+    /// An eye and a target: `--eye` and `--target`.
     LookAt {
-        /// Position.
+        /// Position of the eye, in metres.
         eye: DVec3,
-        /// Another point.
+        /// Position of the target, different from the eye.
         target: DVec3,
     },
-    /// `--path`.
+    /// A camera path: `--path`.
     Path {
-        /// The path's file.
+        /// File of the path.
         file: PathBuf,
-        /// `--frames`; without it the path's first point is one frame without a number.
+        /// Number of frames: `--frames`. Without it the path's first point is one frame without a
+        /// number.
         frames: Option<u32>,
-        /// Metres from the path up to the eye.
+        /// Height of the eye over the path in metres.
         eye_height: f64,
     },
 }
 
-/// How the light was chosen.
+/// Choice of the light.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LightChoice {
-    /// Not at all: the path's, else the scene's first directional light, else an invented one.
+    /// No choice: the path's sun, else the scene's first directional light, else an invented one.
     Default,
-    /// `--light`.
+    /// A light by name: `--light`.
     Named(String),
-    /// `--sun`: the way light travels.
+    /// A sun by the direction in which its light travels: `--sun`.
     Given(DVec3),
 }
 
-/// How the sun moves over the frames.
+/// Motion of the sun over the frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SunTravel {
-    /// The way light travels in the last frame.
+    /// Direction in which light travels in the last frame.
     pub to: DVec3,
-    /// How many frames there are.
+    /// Number of frames.
     pub frames: u32,
-    /// Shadows follow in steps; every frame without.
+    /// Steps in which shadows follow the sun; without it they follow in every frame.
     pub steps: Option<SteppedSun>,
 }
 
 impl SceneRequest {
-    /// A scene at its first moment, by its own camera and light.
+    /// Makes a request of a scene at its first moment, with its own camera and light.
     pub fn new(scene: impl Into<String>, size: [u32; 2]) -> Self {
         Self {
             scene: scene.into(),
@@ -121,8 +122,8 @@ impl SceneRequest {
         }
     }
 
-    /// Chooses the camera. One of the scene keeps its own near and far where the request has none;
-    /// any other gets [`DEFAULT_NEAR`] and [`DEFAULT_FAR`].
+    /// Chooses the camera. A camera of the scene keeps its own near and far where the request has
+    /// none; any other gets [`DEFAULT_NEAR`] and [`DEFAULT_FAR`].
     ///
     /// # Errors
     /// [`Failure::Input`] if near is not less than far.
@@ -140,13 +141,13 @@ impl SceneRequest {
         Ok(Self { camera, near, far, ..self })
     }
 
-    /// Width over height.
+    /// Returns width over height.
     #[must_use]
     pub fn aspect(&self) -> f64 {
         f64::from(self.size[0]) / f64::from(self.size[1])
     }
 
-    /// The files that the request reads by name, so that no output replaces one.
+    /// Returns the files that the request reads by name, so that no output replaces one.
     #[must_use]
     pub fn inputs(&self) -> Vec<&Path> {
         let scene = Path::new(&self.scene);

@@ -1,5 +1,5 @@
-//! The scene of a request, opened and posed, with its views and its lights: what `render`, `probe`
-//! and `truth` have in common.
+//! The scene of a request, opened and posed, with its views and its lights, for `render`, `probe`
+//! and `truth`.
 
 use glam::DQuat;
 use umbrage::{DirectionalLight, Frustum, Light, Projection, SunFade, View};
@@ -15,64 +15,64 @@ use crate::{
     scene_request::{CameraChoice, DEFAULT_FAR, DEFAULT_FOV, DEFAULT_NEAR, SceneRequest},
 };
 
-/// A scene at one moment, with everything that is to be looked at.
+/// A scene at one moment, with its views and lights.
 #[derive(Debug)]
 pub struct SceneSetup {
     /// The scene.
     pub scene: Scene,
-    /// Posed at `--time`.
+    /// Pose of the scene at `--time`.
     pub pose: Pose,
-    /// The lights, one at least; masks and probes are of the first.
+    /// Lights, at least one. Masks and probes are computed for the first.
     pub lights: Vec<NamedLight>,
-    /// All but the first, as the renderer takes them.
+    /// All lights but the first, for the renderer.
     pub more_lights: Vec<Lamp>,
-    /// One, or one per frame.
+    /// Shots: one, or one per frame.
     pub shots: Vec<Shot>,
-    /// What the loader left out, and which defaults were invented.
+    /// Notes of the loader, and on invented defaults.
     pub notes: Vec<String>,
-    /// The frame that alone is wanted; the last one of `shots`.
+    /// Number of the only frame that is shown, which is the last one of `shots`.
     only_frame: Option<u32>,
 }
 
 /// The camera of a frame, before its light is known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameView {
-    /// The number that its files get.
+    /// Number that the frame's files get.
     pub frame: Option<u32>,
-    /// Where the view comes from.
+    /// Name of the view's camera.
     pub camera: String,
     /// The view.
     pub view: View,
-    /// Views beside it, with their cameras.
+    /// Views beside the view, with the names of their cameras.
     pub beside: Vec<(String, View)>,
 }
 
 /// One view of the scene under its lights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shot {
-    /// The number that its files get.
+    /// Number that the shot's files get.
     pub frame: Option<u32>,
-    /// Where the view comes from.
+    /// Name of the view's camera.
     pub camera: String,
     /// The view.
     pub view: View,
-    /// Views beside it, of the same moment: the cameras that they come from, and they.
+    /// Views beside the view, of the same moment, with the names of their cameras.
     pub beside: Vec<(String, View)>,
     /// The first light in this frame.
     pub light: Light,
-    /// If it is a sun, the suns whose shadows are shown: the same, or one or two that follow it in
-    /// steps.
+    /// Suns whose shadows are shown, if the light is a sun: that sun, or one or two that follow it
+    /// in steps.
     pub shown: Option<SunFade>,
 }
 
 impl Shot {
-    /// The view and those beside it, from left to right.
+    /// Returns the view and those beside it, from left to right.
     pub fn views(&self) -> impl Iterator<Item = (&str, &View)> {
         let beside = self.beside.iter().map(|(camera, view)| (camera.as_str(), view));
         [(self.camera.as_str(), &self.view)].into_iter().chain(beside)
     }
 
-    /// The light whose maps are made.
+    /// Returns the light whose maps are made.
     #[must_use]
     pub fn shown_light(&self) -> Light {
         self.shown.map_or(self.light, |fade| fade.to.into())
@@ -80,10 +80,10 @@ impl Shot {
 }
 
 impl SceneSetup {
-    /// Reads the files that the request names, for subcommands that look through one camera.
+    /// Opens the scene of a request, for subcommands that look through one camera.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming the file or option at fault.
+    /// [`Failure::Input`] with the file or option at fault.
     pub fn open(request: &SceneRequest) -> Result<Self> {
         let setup = Self::open_views(request)?;
         if let Some(shot) = setup.shots.iter().find(|shot| !shot.beside.is_empty()) {
@@ -96,11 +96,10 @@ impl SceneSetup {
         Ok(setup)
     }
 
-    /// Reads the files that the request names, for subcommands that show several cameras side by
-    /// side.
+    /// Opens the scene of a request, for subcommands that show several cameras side by side.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming the file or option at fault.
+    /// [`Failure::Input`] with the file or option at fault.
     pub fn open_views(request: &SceneRequest) -> Result<Self> {
         let path = match &request.camera {
             CameraChoice::Path { file, .. } => Some(CameraPath::load(file)?),
@@ -130,33 +129,33 @@ impl SceneSetup {
         Ok(Self { only_frame: request.only_frame, ..Self::new(scene, pose, lights, shots, notes) })
     }
 
-    /// A setup from its parts; `lights` has one at least.
+    /// Makes a setup from its parts; `lights` has at least one.
     #[must_use]
     pub fn new(scene: Scene, pose: Pose, lights: Vec<NamedLight>, shots: Vec<Shot>, notes: Vec<String>) -> Self {
         let more_lights = lights.iter().skip(1).map(|light| light.lamp).collect();
         Self { scene, pose, lights, more_lights, shots, notes, only_frame: None }
     }
 
-    /// Whether a shot is to be shown, and not drawn for the frames after it alone.
+    /// Returns whether a shot is shown, and not drawn only for the frames after it.
     #[must_use]
     pub fn is_wanted(&self, shot: &Shot) -> bool {
         self.only_frame.is_none_or(|only| shot.frame == Some(only))
     }
 
-    /// The number that the files of a shot get, if several are shown.
+    /// Returns the number that the files of a shot get, if several are shown.
     #[must_use]
     pub fn file_number(&self, shot: &Shot) -> Option<u32> {
         shot.frame.filter(|_| self.only_frame.is_none())
     }
 
-    /// What the renderer is told about one view of a shot.
+    /// Makes a renderer's frame of one view of a shot.
     #[must_use]
     pub fn frame<'s>(&'s self, shot: &Shot, view: &'s View, shadows_on: bool, tint: bool) -> Frame<'s> {
         let light = Lamp { light: shot.light, ..self.lights[0].lamp };
         Frame { pose: &self.pose, moved: Some(&[]), view, light, more_lights: &self.more_lights, shadows_on, tint }
     }
 
-    /// The part of a report that says what was looked at.
+    /// Makes the part of a report about scene, camera and sun.
     #[must_use]
     pub fn report(&self, request: &SceneRequest, shot: &Shot) -> ShotReport {
         ShotReport {
@@ -180,7 +179,7 @@ impl SceneSetup {
     }
 }
 
-/// Every frame's views with their light. A moving sun takes a single view along over all frames.
+/// Makes every frame's views with their light. A moving sun keeps a single view over all frames.
 fn under_the_light(
     request: &SceneRequest,
     mut frame_views: Vec<FrameView>,
@@ -223,7 +222,7 @@ fn under_the_light(
     shots.collect()
 }
 
-/// The eye, for a report.
+/// Makes the report of a camera.
 #[must_use]
 pub fn camera_report(name: &str, view: &View) -> CameraReport {
     let frustum = view.frustum();
@@ -239,10 +238,10 @@ pub fn camera_report(name: &str, view: &View) -> CameraReport {
     }
 }
 
-/// The views that a request asks for.
+/// Returns the views that a request asks for.
 ///
 /// # Errors
-/// [`Failure::Input`] naming the option or camera at fault.
+/// [`Failure::Input`] with the option or camera at fault.
 pub fn frame_views(
     request: &SceneRequest,
     scene: &Scene,
@@ -293,7 +292,7 @@ pub fn frame_views(
     }
 }
 
-/// What the options alone say about the lens.
+/// Makes a projection from the options alone.
 fn frustum(request: &SceneRequest) -> Result<Frustum> {
     let fov = request.fov.unwrap_or(DEFAULT_FOV).to_radians();
     Ok(Frustum::perspective(
@@ -304,7 +303,7 @@ fn frustum(request: &SceneRequest) -> Result<Frustum> {
     )?)
 }
 
-/// A camera of the scene, with what the options change about its lens.
+/// Returns the view of a camera of the scene, with the projection as changed by the options.
 fn scene_camera(request: &SceneRequest, scene: &Scene, pose: &Pose, index: usize) -> Result<View> {
     let view = umbrage_scene::camera_view(scene, pose, index, request.aspect(), request.near, request.far)?;
     let (frustum, Some(fov)) = (view.frustum(), request.fov) else { return Ok(view) };

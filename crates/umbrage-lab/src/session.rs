@@ -1,5 +1,4 @@
-//! A device with a scene loaded onto it: what `render` and `probe` draw with, and what their
-//! reports say of it.
+//! A device with a scene loaded onto it, for `render` and `probe`, and the reports of its frames.
 
 use umbrage::config::Filter;
 use umbrage::{ShadowConfig, ShadowPlan, View};
@@ -14,9 +13,9 @@ use crate::{
     technique::ShadowRequest,
 };
 
-/// A renderer set up as the options say; `render` and `probe` share it.
+/// A renderer set up by the options, for `render` and `probe`.
 pub struct Session {
-    /// Draws and probes.
+    /// Renderer of the scene.
     pub renderer: Renderer,
     shadows: ShadowRequest,
     adapter: String,
@@ -32,12 +31,12 @@ impl Session {
         Ok(Self { renderer, shadows, adapter: gpu.description() })
     }
 
-    /// What the renderer is told about one view of a shot.
+    /// Makes a renderer's frame of one view of a shot.
     pub fn frame<'s>(&self, setup: &'s SceneSetup, shot: &Shot, view: &'s View) -> Frame<'s> {
         setup.frame(shot, view, !self.shadows.options.shadows_off, self.shadows.options.tint)
     }
 
-    /// What was done and what it cost.
+    /// Makes the report of a frame.
     pub fn report(&self, request: &SceneRequest, setup: &SceneSetup, shot: &Shot, stats: &FrameStats) -> Report {
         let mut shot = setup.report(request, shot);
         shot.lights = light_reports(setup, stats);
@@ -81,7 +80,7 @@ impl Session {
     }
 }
 
-/// The warp of all maps, or of each.
+/// Returns the warp of all maps, or of each.
 #[must_use]
 pub fn warps(config: &ShadowConfig) -> Vec<String> {
     let warps: Vec<String> = (0..config.splits()).map(|split| config.warp(split).word().to_owned()).collect();
@@ -91,7 +90,7 @@ pub fn warps(config: &ShadowConfig) -> Vec<String> {
     }
 }
 
-/// All lights with their splits.
+/// Makes the reports of all lights with their splits.
 fn light_reports(setup: &SceneSetup, stats: &FrameStats) -> Vec<LightReport> {
     let others = stats.more_lights.iter().map(|light| (&*light.plan, &light.splits));
     let all = [(&*stats.plan, &stats.splits)].into_iter().chain(others);
@@ -103,7 +102,7 @@ fn light_reports(setup: &SceneSetup, stats: &FrameStats) -> Vec<LightReport> {
     setup.lights.iter().zip(all).map(report).collect()
 }
 
-/// One of the views beside the first.
+/// Makes the report of one of the views beside the first.
 #[must_use]
 pub fn beside_report(setup: &SceneSetup, camera: &str, view: &View, stats: &FrameStats) -> BesideReport {
     BesideReport {

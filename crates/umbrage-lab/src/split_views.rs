@@ -1,8 +1,8 @@
 //! `--split-views`: the scene as each split's slice of the camera sees it, and as the light sees it
 //! through each split's map.
 //!
-//! An OpenGL implementation of the GPU Gems chapter (\[PSSM-GL\]) shows the same of each of its
-//! splits.
+//! An OpenGL implementation of the GPU Gems chapter (\[PSSM-GL\]) shows the same pictures for each
+//! of its splits.
 
 use glam::{DMat4, DVec2};
 use umbrage::{Frustum, Projection, Split, View};
@@ -13,16 +13,15 @@ use crate::{
     picture::png,
 };
 
-/// How far before a map's near plane the light's eye stands, metres: a camera's near plane lies
-/// before it.
+/// Distance in metres of the light's eye in front of a map's near plane. A camera's near plane lies
+/// in front of its eye.
 const STEP_BACK_M: f64 = 1.0;
 
-/// The pictures of one frame by name. `renderer` should draw nothing else: each slice is planned as
-/// a view of its own.
+/// Draws the pictures of one frame by name. Use a `renderer` that draws nothing else, because each
+/// slice is planned as a view of its own.
 ///
 /// # Errors
-/// [`Failure::Input`] for a local light, whose maps lie in its perspective; what the renderer
-/// refuses.
+/// [`Failure::Input`] for a local light, whose maps lie in its perspective; errors of the renderer.
 pub fn pictures(renderer: &mut Renderer, frame: &Frame<'_>, splits: &[Split]) -> Result<Vec<(String, Vec<u8>)>> {
     let wanted = Outputs { picture: true, ..Outputs::default() };
     let mut files = Vec::new();
@@ -47,15 +46,15 @@ pub fn pictures(renderer: &mut Renderer, frame: &Frame<'_>, splits: &[Split]) ->
     Ok(files)
 }
 
-/// The camera between a split's planes.
+/// Returns the camera between a split's planes.
 fn slice(view: &View, split: &Split) -> Result<View> {
     let lens = *view.frustum();
     let (near, far) = (split.near.max(lens.near), split.far.min(lens.far));
     Ok(view.with_frustum(Frustum { near, far: if far > near { far } else { near * 1.001 }, ..lens })?)
 }
 
-/// What the light sees of a plain map (of a warped one: of the plain map that it replaces), as much
-/// wider or higher as a picture of this aspect is.
+/// Returns the light's view of an unwarped map (for a warped one: of the map without the warp),
+/// widened or heightened to this aspect.
 fn from_light(split: &Split, aspect: f64) -> Result<View> {
     let size = DVec2::splat(f64::from(split.size)) * split.texel_m;
     let middle = (split.min_texel + 0.5 * f64::from(split.size)) * split.texel_m;

@@ -1,8 +1,8 @@
-//! Textures back from the GPU.
+//! Reading textures back from the GPU.
 
 use crate::{Error, Gpu, Result, waiting};
 
-/// A texture on its way back: the copy is recorded, its bytes can be read once the commands have
+/// A texture being read back. The copy is recorded; its bytes can be read once the commands have
 /// run.
 pub(crate) struct Capture {
     buffer: wgpu::Buffer,
@@ -64,7 +64,7 @@ impl Capture {
 }
 
 impl Gpu {
-    /// The pixels of a texture, row after row, once all that was submitted has run.
+    /// Reads the pixels of a texture, row after row, once all submitted commands have run.
     ///
     /// # Errors
     /// [`Error::BufferSize`] or [`Error::Device`] if they cannot be read back.

@@ -79,8 +79,8 @@ impl Casters {
         }
     }
 
-    /// Draws into a map that was begun. Translucent primitives cast a shadow only if they are
-    /// dithered.
+    /// Draws casters into a map whose pass has begun. Translucent primitives cast a shadow only if
+    /// they are dithered.
     pub fn draw(
         &self,
         pass: &mut wgpu::RenderPass<'_>,

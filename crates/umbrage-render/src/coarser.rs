@@ -1,10 +1,10 @@
-//! Coarser shapes of meshes, by what a split of a shadow map can show.
+//! Coarser levels of detail of meshes, chosen by the detail that a split of a shadow map can show.
 
 use std::collections::BTreeMap;
 
 use umbrage_scene::{DetailLevel, Object, Scene};
 
-/// For each mesh that has coarser shapes, and for each of these, what is coarser still.
+/// Levels of detail, by mesh and level: for each, the levels that are coarser.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Coarser(BTreeMap<usize, Vec<DetailLevel>>);
 
@@ -20,8 +20,8 @@ impl Coarser {
         Self(coarser)
     }
 
-    /// The coarsest shape of an object whose details are no larger than `detail_m` metres of the
-    /// world.
+    /// Returns the coarsest mesh of an object whose smallest detail is no larger than `detail_m`
+    /// metres in the world.
     pub fn shape(&self, object: &Object, detail_m: f64) -> usize {
         let Some(levels) = self.0.get(&object.mesh).filter(|_| object.skinned.is_none()) else { return object.mesh };
         let m = object.world_from_local.matrix3;

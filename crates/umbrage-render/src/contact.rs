@@ -1,4 +1,4 @@
-//! Contact shadows: the picture's depth, drawn before everything that asks about it.
+//! Contact shadows: the picture's depth is drawn before every pass that looks them up.
 
 use glam::DVec3;
 use umbrage::{ShadowConfig, View};
@@ -7,11 +7,11 @@ use umbrage_wgpu::{ContactFrame, ContactOptions, ContactShadows};
 use crate::formats::DEPTH_FORMAT;
 use crate::{Gpu, Result};
 
-/// What contact shadows need of the GPU.
+/// GPU objects of contact shadows.
 pub(crate) struct Contact {
-    /// Their uniform and layout.
+    /// Uniform buffer and layout of the contact shadows.
     pub shadows: ContactShadows,
-    /// The group to bind where they are asked for.
+    /// Bind group for the passes that look up contact shadows.
     pub bind_group: wgpu::BindGroup,
     options: ContactOptions,
     depth: wgpu::TextureView,
@@ -19,12 +19,12 @@ pub(crate) struct Contact {
 }
 
 impl Contact {
-    /// Where a config asks for them and the device can.
+    /// Makes the contact shadows if the config asks for them and the device can load depth texels.
     pub fn wanted(gpu: &Gpu, config: &ShadowConfig, size: [u32; 2]) -> Option<Self> {
         (config.look.contact && gpu.depth_loads()).then(|| Self::new(gpu, size, ContactOptions::default()))
     }
 
-    /// For pictures of this size.
+    /// Makes the contact shadows of pictures of `size` pixels.
     pub fn new(gpu: &Gpu, size: [u32; 2], options: ContactOptions) -> Self {
         let shadows = ContactShadows::new(&gpu.device);
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -42,7 +42,7 @@ impl Contact {
         Self { shadows, bind_group, options, depth, height: size[1] }
     }
 
-    /// Hands the frame over.
+    /// Uploads the view and the origin of a frame.
     pub fn prepare(&self, gpu: &Gpu, view: &View, origin: DVec3) -> Result<()> {
         let frame = ContactFrame {
             clip_from_eye: view.clip_from_relative(view.eye()),

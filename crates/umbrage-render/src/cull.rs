@@ -1,10 +1,10 @@
-//! Which objects the view may show.
+//! Frustum culling of objects for the view.
 
 use glam::DVec3;
 use umbrage::{Aabb, View};
 
-/// Whether any part of a box may be inside the view: false only if all its corners are outside of
-/// one and the same side.
+/// Returns whether any part of a box may be inside the view: false only if all its corners are
+/// outside of one and the same side.
 pub(crate) fn may_be_seen(view: &View, bounds: &Aabb) -> bool {
     let frustum = view.frustum();
     // How far outside a corner is, for each of the six sides; positive is outside.

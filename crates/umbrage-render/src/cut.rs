@@ -1,9 +1,9 @@
 //! Huge triangles are cut before they are uploaded.
 //!
-//! A device places the vertices of a triangle in `f32`, and what lies between them by their
-//! places: in the middle of a ground of two triangles of 1,000 km, a fragment is off by 3 cm,
-//! several texels of a map (`docs/notes/coordinates.md`). Vertices of smaller triangles are placed
-//! as exactly as they are near the eye.
+//! A device places the vertices of a triangle in `f32`, and interpolates the fragments between
+//! them: in the middle of a ground of two triangles of 1,000 km, a fragment is off by 3 cm, several
+//! texels of a map (`docs/notes/coordinates.md`). Vertices of smaller triangles are placed as
+//! exactly as they are near the eye.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -11,18 +11,19 @@ use std::collections::HashMap;
 use glam::{Vec3, Vec4};
 use umbrage_scene::{Node, Primitive, Scene};
 
-/// The longest edge that is left, metres: vertices 16 km away are placed to a millimetre.
+/// Longest edge that is left, in metres. Vertices 16 km away are placed to a millimetre.
 const LONGEST: f64 = 16_384.0;
 
-/// Pieces along the longest edge of a primitive, at most: what spans a planet is left coarser.
+/// Most pieces along the longest edge of a primitive. A primitive that spans a planet is left
+/// coarser.
 const MOST_PIECES: f64 = 64.0;
 
-/// Triangles with a long edge that a primitive may have to be cut: one that has more is as fine as
-/// it is.
+/// Most triangles with a long edge that a primitive may have to be cut. One that has more is fine
+/// enough already.
 const MOST_LONG: usize = 64;
 
-/// The meshes of a scene, with huge triangles cut. Meshes that move by skins and morph targets are
-/// left as they are.
+/// Returns the meshes of a scene, with huge triangles cut. Meshes that skins or morph targets move
+/// stay unchanged.
 pub(crate) fn meshes(scene: &Scene) -> Vec<Cow<'_, [Primitive]>> {
     let scales = scales(scene);
     let cut = |(index, mesh): (usize, &'_ umbrage_scene::Mesh)| -> Option<Vec<Primitive>> {
@@ -40,7 +41,8 @@ pub(crate) fn meshes(scene: &Scene) -> Vec<Cow<'_, [Primitive]>> {
     scene.meshes.iter().enumerate().map(mesh).collect()
 }
 
-/// By how much nodes enlarge each mesh, at most; `None` for one that skins or morph targets move.
+/// Largest factor by which nodes enlarge each mesh; `None` for a mesh that skins or morph targets
+/// move.
 fn scales(scene: &Scene) -> Vec<Option<f64>> {
     let mut of_meshes: Vec<Option<f64>> = scene.meshes.iter().map(|mesh| (!mesh.is_morphed()).then_some(0.0)).collect();
     let mut of_nodes: Vec<f64> = Vec::with_capacity(scene.nodes.len());
@@ -55,7 +57,8 @@ fn scales(scene: &Scene) -> Vec<Option<f64>> {
     of_meshes
 }
 
-/// A primitive whose edges are no longer than they may be; `None` if they are not.
+/// Cuts a primitive until no edge is too long; `None` if none is, or if more than [`MOST_LONG`]
+/// triangles have one.
 fn cut(primitive: &Primitive, scale: f64) -> Option<Primitive> {
     let length = |a: u32, b: u32| {
         let [a, b] = [a, b].map(|index| Vec3::from(primitive.positions[index as usize]).as_dvec3());
@@ -84,7 +87,7 @@ fn cut(primitive: &Primitive, scale: f64) -> Option<Primitive> {
 /// cut in the same places in both, so that no gap opens.
 struct Cutter {
     primitive: Primitive,
-    /// In the primitive's own units.
+    /// Longest edge that is left, in the primitive's own units.
     longest: f64,
     middles: HashMap<(u32, u32), u32>,
 }
@@ -114,7 +117,7 @@ impl Cutter {
         self.at(a).as_dvec3().distance(self.at(b).as_dvec3())
     }
 
-    /// The vertex in the middle of an edge.
+    /// Returns the vertex in the middle of an edge.
     fn middle(&mut self, a: u32, b: u32) -> u32 {
         let edge = (a.min(b), a.max(b));
         if let Some(&middle) = self.middles.get(&edge) {

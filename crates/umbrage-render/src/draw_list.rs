@@ -1,5 +1,5 @@
-//! Which objects a pass draws, where they stand relative to the origin, and the calls that draw
-//! them.
+//! Lists of the objects that a pass draws, their transforms relative to the origin, and the draw
+//! calls.
 
 use std::ops::Range;
 
@@ -15,22 +15,23 @@ use crate::{Gpu, Result};
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct Instance {
     rows: [[f32; 4]; 3],
-    /// Which copy of a caster, for passes that draw several splits.
+    /// Code of the copy of a caster, for passes that draw several splits.
     code: u32,
-    /// The first id of a caster whose triangles maps name; 0 without.
+    /// First id of a caster whose triangles the maps name; 0 for other casters.
     first_id: u32,
 }
 
-/// An object and the codes of its copies, one instance each.
+/// An object and the range of codes of its copies, one instance each.
 pub(crate) type Copies = (usize, Range<u32>);
 
-/// An object that is drawn once, in any pass that knows no copies.
+/// Returns the copies of an object that is drawn once, for passes without copies.
 pub(crate) fn once(object: usize) -> Copies {
     (object, 0..1)
 }
 
 impl Instance {
-    /// The subtraction happens in `f64`; what is left is small near the eye and fits `f32`.
+    /// Makes the instance of a transform. The origin is subtracted in `f64`; the difference is
+    /// small near the eye and fits `f32`.
     fn new(world_from_local: &DAffine3, origin: DVec3, code: u32, first_id: u32) -> Self {
         let m = world_from_local.matrix3;
         let t = world_from_local.translation - origin;
@@ -39,7 +40,7 @@ impl Instance {
     }
 }
 
-/// Where a run's vertices come from.
+/// Source of a run's vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Source {
     /// A mesh of the scene.
@@ -48,29 +49,29 @@ pub(crate) enum Source {
     Skinned(usize),
 }
 
-/// For each primitive of a mesh the ranges of its shadow indices that are drawn.
+/// Ranges of shadow indices that are drawn, for each primitive of a mesh.
 pub(crate) type Parts = Vec<Vec<Range<u32>>>;
 
-/// Which of a primitive's indices are drawn.
+/// Choice of the indices of a primitive that are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Show {
-    /// Those of its surface.
+    /// Indices of the surface, in order.
     Surfaces,
-    /// Those of its surface, where depth is there already: the last primitive of a run first, so
+    /// Indices of the surface in a pass after a depth pass: the last primitive of a run first, so
     /// that the first one stays.
     Visible,
-    /// Those for shadow passes, or what a run has of them.
+    /// Shadow indices, or the ranges of them in [`Run::parts`].
     Shadows,
 }
 
-/// Objects that share a source and an orientation: drawn together, once per primitive.
+/// Objects that share a source and an orientation, and are drawn together, once per primitive.
 #[derive(Clone, Debug)]
 pub(crate) struct Run {
     pub source: Source,
-    /// The transform mirrors: front faces are clockwise.
+    /// True if the transform mirrors: front faces are then clockwise.
     pub mirrored: bool,
     pub instances: Range<u32>,
-    /// What is drawn of its object, as ranges of shadow indices; `None`: all of it.
+    /// Ranges of shadow indices of the object that are drawn; `None` draws all of it.
     pub parts: Option<Parts>,
 }
 
@@ -84,12 +85,12 @@ pub(crate) struct Piece {
     pub indices: Range<u32>,
 }
 
-/// The instances of all passes of a frame, and the buffer they are uploaded into.
+/// Instances of all passes of a frame, and the buffer that they are uploaded to.
 pub(crate) struct Instances {
     data: Vec<Instance>,
-    /// Per instance the object that it shows.
+    /// Object of each instance.
     objects: Vec<usize>,
-    /// Per object its first id, with exact edges.
+    /// First id of each object, with exact edges.
     first_ids: Vec<u32>,
     buffer: wgpu::Buffer,
 }
@@ -101,22 +102,22 @@ impl Instances {
         Self { data: Vec::new(), objects: Vec::new(), first_ids: Vec::new(), buffer: instance_buffer(gpu, 64) }
     }
 
-    /// Forgets the last frame; `first_ids` are those of this frame's objects, none without exact
-    /// edges.
+    /// Clears the lists of the last frame. `first_ids` are the first ids of this frame's objects;
+    /// empty without exact edges.
     pub fn clear(&mut self, first_ids: Vec<u32>) {
         self.data.clear();
         self.objects.clear();
         self.first_ids = first_ids;
     }
 
-    /// The object that an instance shows.
+    /// Returns the object of an instance.
     pub fn object(&self, instance: u32) -> usize {
         self.objects[instance as usize]
     }
 
-    /// Objects that share a source drawn together, those given first as early as that allows. Where
-    /// every draw has to begin with an instance that draws nothing, each object's codes begin with
-    /// one; `leads` keeps the first of a run and drops the others.
+    /// Lists objects that share a source as one run, the objects given first as early as that
+    /// allows. Where every draw has to begin with an instance that draws nothing, each object's
+    /// codes begin with one; `leads` keeps the first of a run and drops the others.
     pub fn grouped(
         &mut self,
         pose: &Pose,
@@ -127,7 +128,7 @@ impl Instances {
         self.grouped_as(pose, origin, leads, objects, |object| object.mesh)
     }
 
-    /// [`Instances::grouped`] with the meshes that `shape` says.
+    /// Lists objects as [`Instances::grouped`] does, with the mesh that `shape` returns for each.
     pub fn grouped_as(
         &mut self,
         pose: &Pose,
@@ -154,7 +155,7 @@ impl Instances {
         ranked.into_iter().map(|(_, run)| run).collect()
     }
 
-    /// Objects drawn one after the other in the order given.
+    /// Lists objects one after the other, in the order given.
     pub fn ordered(&mut self, pose: &Pose, origin: DVec3, objects: impl Iterator<Item = usize>) -> Vec<Run> {
         self.list(pose, origin, false, objects.map(|index| (run_key(&pose.objects[index]), once(index))))
     }
@@ -187,7 +188,7 @@ impl Instances {
         runs
     }
 
-    /// Sends all lists of this frame to the GPU.
+    /// Uploads all instances of this frame.
     pub fn upload(&mut self, gpu: &Gpu) -> Result<()> {
         let needed = self.data.len() as u64 * Self::STRIDE;
         if needed > self.buffer.size() {
@@ -217,8 +218,8 @@ fn run_key_as(object: &Object, mesh: usize) -> (Source, bool) {
     (source, object.world_from_local.matrix3.determinant() < 0.0)
 }
 
-/// How vertex buffers are laid out: slot 0 positions, 1 instances, 2 surfaces, 3 normals, 4 runs. A
-/// pipeline uses the first few; one that names casters 0, 1 and 4.
+/// Layouts of the vertex buffers: slot 0 positions, 1 instances, 2 surfaces, 3 normals, 4 runs. A
+/// pipeline uses the first few; a pipeline of casters with names uses 0, 1 and 4.
 pub(crate) fn vertex_layouts() -> [Option<wgpu::VertexBufferLayout<'static>>; 5] {
     const POSITION: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x3];
     const INSTANCE: [wgpu::VertexAttribute; 5] =
@@ -238,7 +239,7 @@ pub(crate) fn vertex_layouts() -> [Option<wgpu::VertexBufferLayout<'static>>; 5]
     ]
 }
 
-/// Everything that draws may refer to.
+/// Buffers and materials that draw calls refer to.
 pub(crate) struct Drawable<'a> {
     pub scene: &'a Geometry,
     pub skinned: &'a Geometry,
@@ -246,12 +247,12 @@ pub(crate) struct Drawable<'a> {
     pub instances: &'a Instances,
 }
 
-/// What a pass has drawn.
+/// Numbers of draw calls and triangles of a pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Drawn {
-    /// Draw calls.
+    /// Number of draw calls.
     pub draws: u32,
-    /// Triangles, counting every instance, before any clipping.
+    /// Number of triangles, counting every instance, before any clipping.
     pub triangles: u64,
 }
 
@@ -263,7 +264,7 @@ impl std::ops::AddAssign for Drawn {
 }
 
 impl Drawable<'_> {
-    /// The primitives of a run.
+    /// Returns the geometry and the primitives of a source.
     pub fn primitives(&self, source: Source) -> (&Geometry, &[GpuPrimitive]) {
         match source {
             Source::Mesh(mesh) => (self.scene, &self.scene.meshes[mesh]),
@@ -271,21 +272,21 @@ impl Drawable<'_> {
         }
     }
 
-    /// Whether any primitive of an object has a material that `choose` likes.
+    /// Returns whether any primitive of an object has a material for which `choose` is true.
     pub fn has(&self, object: &Object, choose: impl Fn(&GpuMaterial) -> bool) -> bool {
         let (_, primitives) = self.primitives(run_key(object).0);
         primitives.iter().any(|primitive| choose(&self.materials.list[primitive.material]))
     }
 
-    /// Triangles of an object's primitives whose material `choose` likes.
+    /// Returns the number of triangles of an object's primitives whose material `choose` accepts.
     pub fn triangles(&self, object: &Object, choose: impl Fn(&GpuMaterial) -> bool) -> u64 {
         let (_, primitives) = self.primitives(run_key(object).0);
         let chosen = primitives.iter().filter(|primitive| choose(&self.materials.list[primitive.material]));
         chosen.map(GpuPrimitive::triangles).sum()
     }
 
-    /// Draws `what` of the primitives for which `pipeline_for` has a pipeline. Bind group 1 is the
-    /// material.
+    /// Draws the indices `what` of the primitives for which `pipeline_for` has a pipeline. Bind
+    /// group 1 is the material.
     pub fn draw<'p, 'r>(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
@@ -344,7 +345,8 @@ impl Drawable<'_> {
         bound.drawn
     }
 
-    /// Draws ranges of indices of one primitive, and binds what is not bound yet.
+    /// Draws ranges of indices of one primitive, and binds buffers and groups that are not bound
+    /// yet.
     fn draw_ranges<'p>(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
@@ -389,13 +391,13 @@ impl Drawable<'_> {
     }
 }
 
-/// What a pass has bound already, and what it has drawn.
+/// Buffers and groups that a pass has bound, and numbers of what it has drawn.
 #[derive(Default)]
 struct Bound<'p> {
     pipeline: Option<&'p wgpu::RenderPipeline>,
     material: Option<usize>,
     skinned: Option<bool>,
-    /// The first instance.
+    /// First instance of the bound instance buffer.
     instances: Option<u32>,
     drawn: Drawn,
 }

@@ -1,25 +1,25 @@
-//! What exact edges did for a picture: which pixels were decided by what, and how many triangles
-//! were asked.
+//! Counts of exact edges in a picture: the cause of each pixel's decision and the number of
+//! triangles tested.
 
 use image::{Rgba, RgbaImage};
 
-/// Four numbers of a pixel, as `shaders/edge_counts.wgsl` writes them.
+/// Format of the four numbers of a pixel that `shaders/edge_counts.wgsl` writes.
 pub(crate) const COUNTS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Uint;
 
-/// What decided a point.
+/// Cause of the decision at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum EdgeCause {
-    /// It is turned away from the light, or no map covers it.
+    /// No map was read: the surface is turned away from the light, or no map covers it.
     NotAsked,
-    /// No texel round it is dark: lit.
+    /// Lit: no texel around the point is dark.
     Lit,
-    /// All texels that count are dark: dark.
+    /// Dark: all texels that count are dark.
     Dark,
-    /// Triangles were asked, and none is hit: lit.
+    /// Lit: triangles were tested and none is hit.
     Missed,
-    /// Triangles were asked, and one is hit: dark, or with several positions in part.
+    /// Dark, or partly dark with several positions: triangles were tested and one is hit.
     Hit,
-    /// A caster without a name: the filter answered.
+    /// Decided by the filter: a caster has no id.
     Filter,
 }
 
@@ -27,55 +27,55 @@ impl EdgeCause {
     /// All causes, in the order of their numbers in the shader.
     pub const ALL: [Self; 6] = [Self::NotAsked, Self::Lit, Self::Dark, Self::Missed, Self::Hit, Self::Filter];
 
-    /// Whether depth alone did not decide.
+    /// Returns whether depth alone did not decide.
     #[must_use]
     pub const fn is_tested(self) -> bool {
         matches!(self, Self::Missed | Self::Hit | Self::Filter)
     }
 }
 
-/// What was done for a pixel.
+/// Counts of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EdgeCount {
-    /// What decided; of two maps that blend the later one in [`EdgeCause::ALL`].
+    /// Cause of the decision. Of two maps that blend, the later cause in [`EdgeCause::ALL`].
     pub cause: EdgeCause,
-    /// Maps that were asked.
+    /// Number of maps that were read.
     pub maps: u16,
-    /// Runs whose boxes were tested.
+    /// Number of runs whose boxes were tested.
     pub runs: u16,
-    /// Triangles that were tested.
+    /// Number of triangles that were tested.
     pub triangles: u16,
 }
 
-/// What was done for the pixels of a picture.
+/// Counts of all pixels of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EdgeCounts {
     size: [u32; 2],
-    /// Row by row; none where no surface is.
+    /// Counts row by row; `None` for a pixel without a surface.
     pixels: Vec<Option<EdgeCount>>,
 }
 
-/// What was done for a picture.
+/// Sums of the counts of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EdgeSums {
-    /// Pixels for which a map was asked.
+    /// Number of pixels for which a map was read.
     pub points: u64,
-    /// Of these, by [`EdgeCause`] from [`EdgeCause::Lit`] on.
+    /// Number of these pixels by [`EdgeCause`], from [`EdgeCause::Lit`] on.
     pub by_cause: [u64; 5],
-    /// Runs whose boxes were tested.
+    /// Number of runs whose boxes were tested.
     pub runs: u64,
-    /// Triangles that were tested.
+    /// Number of triangles that were tested.
     pub triangles: u64,
 }
 
 impl EdgeSums {
-    /// Points that depth alone did not decide.
+    /// Returns the number of points that depth alone did not decide.
     #[must_use]
     pub fn tested(&self) -> u64 {
         self.by_cause[2..].iter().sum()
     }
 
-    /// Points of one cause.
+    /// Returns the number of points with one cause.
     #[must_use]
     pub fn of(&self, cause: EdgeCause) -> u64 {
         let number = EdgeCause::ALL.iter().position(|other| *other == cause).unwrap_or(0);
@@ -93,7 +93,7 @@ impl std::ops::AddAssign for EdgeSums {
 }
 
 impl EdgeCounts {
-    /// From what the shader wrote.
+    /// Reads the counts from the numbers that the shader wrote.
     pub(crate) fn read(size: [u32; 2], numbers: &[[u16; 4]]) -> Self {
         let pixel = |&[cause, maps, runs, triangles]: &[u16; 4]| {
             let cause = *EdgeCause::ALL.get(usize::from(cause.checked_sub(1)?))?;
@@ -102,19 +102,19 @@ impl EdgeCounts {
         Self { size, pixels: numbers.iter().map(pixel).collect() }
     }
 
-    /// Pixels across and down.
+    /// Returns the picture's width and height in pixels.
     #[must_use]
     pub const fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// Row by row; none where no surface is.
+    /// Returns the counts row by row; `None` for a pixel without a surface.
     #[must_use]
     pub fn pixels(&self) -> &[Option<EdgeCount>] {
         &self.pixels
     }
 
-    /// All pixels together.
+    /// Sums the counts of all pixels.
     #[must_use]
     pub fn sums(&self) -> EdgeSums {
         let mut sums = EdgeSums::default();
@@ -127,8 +127,8 @@ impl EdgeCounts {
         sums
     }
 
-    /// To be laid over the picture: nothing where depth decided, else the cause's
-    /// [`EdgeCounts::COLOURS`], the stronger the more triangles were tested.
+    /// Draws an overlay for the picture: transparent where depth decided, else the cause's colour
+    /// of [`EdgeCounts::COLOURS`], more opaque the more triangles were tested.
     #[must_use]
     pub fn picture(&self) -> RgbaImage {
         RgbaImage::from_fn(self.size[0], self.size[1], |x, y| {
@@ -141,8 +141,8 @@ impl EdgeCounts {
         })
     }
 
-    /// Colours of what depth did not decide: lit as no triangle is hit, dark as one is, and left to
-    /// the filter.
+    /// Colours of points that depth did not decide: lit because no triangle is hit, dark because
+    /// one is hit, and left to the filter.
     pub const COLOURS: [[u8; 3]; 3] = [[250, 225, 90], [40, 120, 255], [235, 40, 30]];
 }
 

@@ -1,9 +1,9 @@
-//! What can go wrong between a scene and its picture.
+//! Errors between a scene and its picture.
 
 /// [`std::result::Result`] with this crate's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Why there is no picture. Every message names the culprit and says what to do.
+/// Reason why there is no picture. Every message names the culprit and says what to do.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -13,53 +13,54 @@ pub enum Error {
          (Debian, Ubuntu: apt-get install mesa-vulkan-drivers), or check WGPU_BACKEND and WGPU_ADAPTER_NAME"
     )]
     NoAdapter {
-        /// What the driver loader or the search by name said.
+        /// Message of the driver loader, or of the search by name.
         reason: String,
     },
-    /// The adapter would not open a device.
+    /// The adapter could not open a device.
     #[error("graphics adapter {adapter:?} opens no device: {reason}; try another with WGPU_ADAPTER_NAME")]
     NoDevice {
-        /// The adapter's name.
+        /// Name of the adapter.
         adapter: String,
-        /// What it said.
+        /// Message of the adapter.
         reason: String,
     },
-    /// The picture has no pixels or more than the device can draw.
+    /// The picture has no pixels, or more than the device can draw.
     #[error("size {width}x{height}: give 1 to {limit} pixels in each direction")]
     ImageSize {
-        /// Pixels across.
+        /// Width in pixels.
         width: u32,
-        /// Pixels down.
+        /// Height in pixels.
         height: u32,
-        /// The device's largest texture.
+        /// Edge of the device's largest texture, in pixels.
         limit: u32,
     },
-    /// Maps of several samples per texel have no picture.
+    /// Maps with several samples per texel cannot be shown as pictures.
     #[error("maps have {samples} samples per texel and cannot be written; use one sample, or do not write maps")]
     MapsOfSamples {
-        /// Samples of depth in a texel.
+        /// Samples of depth per texel.
         samples: u32,
     },
-    /// A map that is used for one slice after the other is planned for the view that is sliced.
+    /// A map that is used for one slice after the other has to be planned for the view that is
+    /// sliced.
     #[error(
         "the maps are planned for another view than the one that is drawn, which one map that is used for slice after \
          slice of the view cannot be; use another storage, or plan for the view itself"
     )]
     SlicesOfAnotherView,
-    /// More lights than a picture is shaded by.
+    /// The frame has more lights than the shader of the picture takes.
     #[error("{count} lights; a frame has at most {most}")]
     LampCount {
-        /// How many there were.
+        /// Number of lights in the frame.
         count: usize,
-        /// How many there may be.
+        /// Largest number of lights.
         most: usize,
     },
-    /// The frame's lights are not those that the renderer was made for.
+    /// The frame's lights do not match those that the renderer was made for.
     #[error(
         "the frame has {frame} lights, but the renderer was made for {renderer}; make it with one slot for each light"
     )]
     LampSlots {
-        /// Lights of the frame.
+        /// Number of lights in the frame.
         frame: usize,
         /// Length of `RenderSettings::lights`.
         renderer: usize,
@@ -69,53 +70,53 @@ pub enum Error {
     TextureSize {
         /// Index into the scene's textures.
         index: usize,
-        /// Pixels across.
+        /// Width in pixels.
         width: u32,
-        /// Pixels down.
+        /// Height in pixels.
         height: u32,
-        /// The device's largest texture.
+        /// Edge of the device's largest texture, in pixels.
         limit: u32,
     },
-    /// The data of one buffer exceed what the device can hold in one.
+    /// The data of one buffer exceed the device's largest buffer.
     #[error("{what} need {needed} bytes, but this device holds at most {limit} in one buffer; use a smaller scene")]
     BufferSize {
-        /// Which data.
+        /// Kind of data.
         what: &'static str,
-        /// Their size.
+        /// Size of the data in bytes.
         needed: u64,
-        /// The device's largest buffer.
+        /// Size of the device's largest buffer in bytes.
         limit: u64,
     },
     /// The scene contradicts itself. Loaders make no such scene.
     #[error("scene: {what} {index}: {reason}")]
     Scene {
-        /// The kind of thing at fault.
+        /// Kind of the part at fault.
         what: &'static str,
-        /// Its index.
+        /// Index of the part at fault.
         index: usize,
-        /// What was wrong and what to do.
+        /// Fault and remedy.
         reason: String,
     },
-    /// A probe point or its normal cannot be used.
+    /// A probe point or its normal is unusable.
     #[error("probe point {index}: {reason}")]
     Probe {
         /// Index into the points given.
         index: usize,
-        /// What was wrong and what to do.
+        /// Fault and remedy.
         reason: &'static str,
     },
     /// The device ran out of memory.
     #[error("the graphics device ran out of memory while {during}; use smaller maps, a smaller picture or scene")]
     OutOfMemory {
-        /// What was being done.
+        /// Operation that failed.
         during: &'static str,
     },
     /// The device refused a command, which is a defect of this program or of the driver.
     #[error("the graphics device failed while {during}: {message}")]
     Device {
-        /// What was being done.
+        /// Operation that failed.
         during: &'static str,
-        /// What the device said.
+        /// Message of the device.
         message: String,
     },
     /// The planner refused the camera, the settings or the bounds.

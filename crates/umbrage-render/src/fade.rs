@@ -1,7 +1,8 @@
-//! A sun that moves in steps: while one is faded, a frame is drawn under both suns and mixed.
+//! A sun that moves in steps. During a fade between two suns, a frame is drawn under both and
+//! mixed.
 //!
-//! An app that draws its own shading needs no second frame: it gives both suns to one set of maps
-//! and mixes what `umbrage_shadow` says of each by the fade's weight.
+//! An application that draws its own shading needs no second frame: it gives both suns to one set
+//! of maps and mixes the visibilities that `umbrage_shadow` returns for them by the fade's weight.
 
 use image::{GrayAlphaImage, RgbaImage};
 use umbrage::{DirectionalLight, SunFade};
@@ -9,11 +10,12 @@ use umbrage::{DirectionalLight, SunFade};
 use crate::{Frame, Lamp, Outputs, ProbeAnswer, ProbePoint, Rendered, Renderer, Result};
 
 impl Renderer {
-    /// As [`Renderer::render`], under the suns of `fade` in place of the frame's. While two suns
-    /// are shown, pictures are mixed in linear display light and masks as they are; maps, counts
-    /// of edges and numbers are those of the sun that is faded to, times those of both together.
+    /// Draws a frame as [`Renderer::render`] does, under the suns of `fade` in place of the frame's
+    /// sun. While two suns are shown, pictures are mixed in linear display light and masks by their
+    /// values. Maps, counts of edges and numbers are those of the sun that is faded to; times are
+    /// the sum of both.
     ///
-    /// Maps of each sun are held apart, so that what stabilisation holds goes on through a fade.
+    /// Each sun has maps and stabilisation state of its own, which last through the fade.
     ///
     /// # Errors
     /// Those of [`Renderer::render`].
@@ -38,8 +40,8 @@ impl Renderer {
         })
     }
 
-    /// As [`Renderer::probe`], under the suns of `fade` in place of the frame's. The splits are
-    /// those of the sun that is faded to.
+    /// Probes points as [`Renderer::probe`] does, under the suns of `fade` in place of the frame's
+    /// sun. The splits are those of the sun that is faded to.
     ///
     /// # Errors
     /// Those of [`Renderer::probe`].
@@ -61,7 +63,7 @@ impl Renderer {
         Ok(answers)
     }
 
-    /// Runs `body` with what is held for the sun that is faded to.
+    /// Runs `body` with the state of the sun that is faded to.
     fn as_faded_to<T>(&mut self, body: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
         self.view_slot += 1;
         let result = body(self);
@@ -69,13 +71,13 @@ impl Renderer {
         result
     }
 
-    /// The sun that was faded to is the only one now.
+    /// Ends a fade: the sun that was faded to is the only one from now on.
     fn end_fade(&mut self) {
         self.shadows.move_view(self.view_slot + 1, self.view_slot);
     }
 }
 
-/// The frame with another sun for its first light.
+/// Returns the frame with another sun as its first light.
 fn under<'a>(frame: &Frame<'a>, sun: DirectionalLight) -> Frame<'a> {
     Frame { light: Lamp { light: sun.into(), ..frame.light }, ..*frame }
 }
@@ -96,7 +98,7 @@ fn mixed_pictures(mut from: RgbaImage, to: &RgbaImage, fade: &SunFade) -> RgbaIm
     from
 }
 
-/// IEC 61966-2-1.
+/// Converts an sRGB value to linear light (IEC 61966-2-1).
 fn linear_from_srgb(value: u8) -> f64 {
     let value = f64::from(value) / 255.0;
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }

@@ -1,12 +1,16 @@
-//! Formats of what a frame is drawn to, and of what a probe asks and answers in.
+//! Formats of the textures that a frame is drawn to, and of a probe's.
 
-/// What the picture is drawn in before it is resolved; the samples of a pixel share one shading.
+/// Format of the picture before it is resolved. The samples of a pixel share one shading.
 pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-/// Red is visibility, green says that a surface was hit.
+/// Format of masks: red is visibility, green is 1 where a surface was hit.
 pub(crate) const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Unorm;
-/// What the eye's depth is drawn in: reversed, 0 infinitely far away.
+/// Format of unit normals for a mask. Sixteen bits would turn planes by a millimetre within a texel.
+pub(crate) const NORMALS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+/// Format of the mask that a picture takes its shadows from: red is visibility.
+pub(crate) const LIT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
+/// Format of the eye's depth: reversed, 0 infinitely far away.
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// Points that a probe asks about, with what answers for them.
+/// Format of a probe's points and their responders.
 pub(crate) const POINTS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
-/// What comes back for each point of a probe.
+/// Format of a probe's answers.
 pub(crate) const ANSWERS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;

@@ -23,9 +23,9 @@ use crate::{Gpu, Result, shaders};
 /// Samples per pixel of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Samples {
-    /// The pixel's centre alone: the cheapest, for measurements.
+    /// One sample at the pixel's centre: the cheapest choice, for measurements.
     One,
-    /// Smooth edges; every WebGPU device has 4 for the picture's formats.
+    /// Four samples, for smooth edges. Every WebGPU device has four for the picture's formats.
     #[default]
     Four,
 }
@@ -38,9 +38,9 @@ impl Samples {
         }
     }
 
-    /// Least coverage at which an alpha-tested pixel is drawn: with several samples its coverage
-    /// decides how many.
-    fn least_coverage(self) -> f64 {
+    /// Least coverage at which an alpha-tested pixel is drawn. With several samples the pixel's
+    /// coverage decides how many are drawn.
+    pub(crate) fn least_coverage(self) -> f64 {
         match self {
             Self::One => 0.5,
             Self::Four => 0.0,
@@ -48,7 +48,7 @@ impl Samples {
     }
 }
 
-/// A `vec3f` of a uniform buffer: it takes the room of four numbers
+/// A `vec3f` of a uniform buffer, which takes the room of four numbers
 /// (<https://www.w3.org/TR/WGSL/#alignment-and-size>).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
@@ -79,15 +79,23 @@ pub(crate) struct FrameUniform {
     pub ray_right: [f32; 3],
     pub far: f32,
     pub ray_up: PaddedVec3,
+    pub shadow_colour: PaddedVec3,
     pub lamps: [LampUniform; MOST_LAMPS],
 }
 
-/// How bright the sky is without a sun: enough to tell corners apart where no lamp shines.
+/// Brightness of the sky without a sun: enough to distinguish corners that no lamp lights.
 const NIGHT: f32 = 0.2;
 
 impl FrameUniform {
-    /// `slice` is the part of the view that is drawn, if not all of it is.
-    pub fn new(view: &View, lamps: &[Lamp], origin: DVec3, slice: Option<&Slice>) -> Result<Self> {
+    /// Makes the uniform of a frame. `slice` is the part of the view that is drawn; `None` draws
+    /// all of it.
+    pub fn new(
+        view: &View,
+        lamps: &[Lamp],
+        shadow_colour: DVec3,
+        origin: DVec3,
+        slice: Option<&Slice>,
+    ) -> Result<Self> {
         let clip = view.clip_from_relative(view.eye());
         let sun = lamps.iter().find_map(|lamp| match lamp.light {
             Light::Directional(sun) => Some(sun.direction()),
@@ -117,27 +125,28 @@ impl FrameUniform {
             ray_right: (axes.x_axis * half[0]).as_vec3().to_array(),
             far: frustum.far as f32,
             ray_up: (axes.y_axis * half[1]).into(),
+            shadow_colour: shadow_colour.into(),
             lamps: LampUniform::all(lamps, origin)?,
         })
     }
 }
 
-/// What a pass over the scene is bound to.
+/// Bind groups of a pass over the scene.
 #[derive(Clone, Copy)]
 pub(crate) struct Bindings<'a> {
-    /// The frame, or a slice of it.
+    /// Bind group of the frame, or of a slice of it.
     pub frame: &'a wgpu::BindGroup,
-    /// The shadow maps that it may ask.
+    /// Bind group of the shadow maps.
     pub maps: &'a wgpu::BindGroup,
-    /// The picture's depth, for contact shadows.
+    /// Bind group of the picture's depth, for contact shadows.
     pub contact: Option<&'a wgpu::BindGroup>,
 }
 
-/// Whether the picture's text asks what is lit.
+/// Choice between a picture with shadows and one without.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shading {
     WithShadows,
-    /// No word about shadows is in it.
+    /// Shaders that contain no shadow code.
     WithoutShadows,
 }
 
@@ -146,22 +155,25 @@ pub(crate) struct Forward {
     uniform: wgpu::Buffer,
     stride: u64,
     frame_layout: wgpu::BindGroupLayout,
-    /// The whole frame, then its slices where the picture is drawn slice by slice.
+    /// Bind groups of the whole frame and then of its slices, where the picture is drawn slice by
+    /// slice.
     bind_groups: Vec<wgpu::BindGroup>,
     picture: SurfacePipelines,
-    /// Depth before anything is shaded, but where the view is drawn slice by slice.
+    /// Pipelines of the depth pass before shading; `None` where the view is drawn slice by slice.
     picture_depth: Option<SurfacePipelines>,
     mask: SurfacePipelines,
     mask_depth: Option<SurfacePipelines>,
     sky: Sky,
-    /// Depth alone, for contact shadows.
+    /// Pipelines of depth alone, for contact shadows.
     depth: SurfacePipelines,
-    /// What exact edges do, for who asks: WGSL, what makes its pipelines, and these.
+    /// Counts of exact edges: the WGSL, the recipe of the pipelines, and the pipelines once they
+    /// are asked for.
     counts: Option<(String, Recipe, OnceLock<SurfacePipelines>)>,
 }
 
 impl Forward {
-    /// `named` are the buffers of [`Names::entries`]; none without exact edges.
+    /// Makes the pipelines. `named` are the buffers of [`Names::entries`]; empty without exact
+    /// edges.
     pub fn new(
         gpu: &Gpu,
         maps: &ShadowMaps,
@@ -292,7 +304,7 @@ impl Forward {
         }
     }
 
-    /// Binds other buffers of casters beside the frames.
+    /// Binds other buffers of caster ids beside the frames.
     pub fn bind(&mut self, gpu: &Gpu, named: &[wgpu::BindGroupEntry<'_>]) {
         let uniform = (&self.uniform, self.stride);
         self.bind_groups = bind_groups(&gpu.device, &self.frame_layout, uniform, named);
@@ -303,18 +315,23 @@ impl Forward {
         gpu.queue.write_buffer(&self.uniform, index as u64 * self.stride, bytemuck::bytes_of(frame));
     }
 
-    /// The bind group of what [`Forward::prepare`] wrote.
+    /// Returns the bind group of the uniform that [`Forward::prepare`] wrote at `index`.
     pub fn bind_group(&self, index: usize) -> &wgpu::BindGroup {
         &self.bind_groups[index]
     }
 
-    /// Draws the depth of everything solid for contact shadows.
+    /// Layout of [`Forward::bind_group`].
+    pub fn frame_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.frame_layout
+    }
+
+    /// Draws the depth of all solid surfaces, for contact shadows.
     pub fn draw_depth(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &Drawable<'_>, solid: &ViewList) -> Drawn {
         pass.set_bind_group(0, self.bind_group(0), &[]);
         pick_pieces(pass, drawable, solid, &self.depth)
     }
 
-    /// Draws everything solid.
+    /// Draws all solid surfaces.
     pub fn draw_solid(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
@@ -325,14 +342,14 @@ impl Forward {
         draw_visible(pass, bindings, drawable, solid, (self.picture_depth.as_ref(), &self.picture))
     }
 
-    /// Draws the sky where nothing else is.
+    /// Draws the sky behind all surfaces.
     pub fn draw_sky(&self, pass: &mut wgpu::RenderPass<'_>, bindings: Bindings<'_>) {
         bind(pass, bindings);
         pass.set_pipeline(self.sky.pipeline());
         pass.draw(0..3, 0..1);
     }
 
-    /// Draws what is translucent, in the order given: from back to front.
+    /// Draws translucent surfaces in the order given, which is back to front.
     pub fn draw_translucent(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
@@ -346,7 +363,7 @@ impl Forward {
         })
     }
 
-    /// Draws everything solid as bare visibility.
+    /// Draws the visibility of all solid surfaces.
     pub fn draw_mask(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
@@ -357,7 +374,7 @@ impl Forward {
         draw_visible(pass, bindings, drawable, solid, (self.mask_depth.as_ref(), &self.mask))
     }
 
-    /// Draws what exact edges do for everything solid; nothing where edges are sampled.
+    /// Draws the counts of exact edges of all solid surfaces; nothing with sampled edges.
     pub fn draw_counts(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
@@ -379,7 +396,7 @@ impl Forward {
     }
 }
 
-/// Layout of group 0: the frame, and with exact edges the casters' buffers.
+/// Layout of group 0: the frame and, with exact edges, the buffers of caster ids.
 fn frame_layout(device: &wgpu::Device, edges: Edges) -> wgpu::BindGroupLayout {
     let mut entries = vec![wgpu::BindGroupLayoutEntry {
         binding: 0,
@@ -400,7 +417,8 @@ fn frame_layout(device: &wgpu::Device, edges: Edges) -> wgpu::BindGroupLayout {
     })
 }
 
-/// A group for each frame of a uniform buffer, and how far they stand apart in it.
+/// Makes a bind group for each frame of a uniform buffer, and returns them with their distance in
+/// the buffer.
 fn bind_groups(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
@@ -424,7 +442,7 @@ fn bind_groups(
     (0..uniform.size() / stride).map(group).collect()
 }
 
-/// Draws depth, where there are pipelines for it, and then what is seen.
+/// Draws depth, if there are pipelines for it, and then the visible surfaces.
 fn draw_visible(
     pass: &mut wgpu::RenderPass<'_>,
     bindings: Bindings<'_>,
@@ -444,7 +462,8 @@ fn draw_visible(
     drawn
 }
 
-fn pick_pieces(
+/// Draws what has a depth: materials that are not translucent.
+pub(crate) fn pick_pieces(
     pass: &mut wgpu::RenderPass<'_>,
     drawable: &Drawable<'_>,
     solid: &ViewList,
@@ -455,7 +474,7 @@ fn pick_pieces(
     })
 }
 
-fn bind(pass: &mut wgpu::RenderPass<'_>, bindings: Bindings<'_>) {
+pub(crate) fn bind(pass: &mut wgpu::RenderPass<'_>, bindings: Bindings<'_>) {
     pass.set_bind_group(0, bindings.frame, &[]);
     pass.set_bind_group(2, bindings.maps, &[]);
     if let Some(contact) = bindings.contact {

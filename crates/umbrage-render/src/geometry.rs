@@ -1,11 +1,9 @@
-//! Vertices and indices on the GPU: what stands still is uploaded once, what is skinned every
-//! frame.
+//! Vertices and indices on the GPU. Rigid geometry is uploaded once, skinned geometry every frame.
 //!
 //! Vertices lie in three streams, so that a shadow pass reads positions only: positions, normals,
-//! and the *surface* (texture coordinates and colour). What is opaque has indices of its own for
-//! shadow passes where that spares vertices, and more of them where maps name triangles. Indices
-//! count from the start of the whole buffer,
-//! which spares base vertices.
+//! and the *surface* (texture coordinates and colour). Opaque primitives have separate indices for
+//! shadow passes where that spares vertices, and a further set where maps name triangles. Indices
+//! count from the start of the whole buffer, which spares base vertices.
 
 use std::ops::Range;
 
@@ -32,11 +30,13 @@ pub(crate) struct Surface {
 pub(crate) struct GpuPrimitive {
     pub indices: Range<u32>,
     pub material: usize,
-    /// Indices of the mesh's triangles for passes that ask for positions alone.
+    /// Indices of the mesh's triangles for passes that read positions alone.
     pub shadow_indices: Range<u32>,
-    /// Indices of these triangles for shadow passes: with exact edges first corners tell their run.
+    /// Indices of these triangles for shadow passes. With exact edges the first corner of a
+    /// triangle tells its run.
     pub caster_indices: Range<u32>,
-    /// Those as a tree of parts; one node if they are few, none if their vertices move.
+    /// Tree of parts of the shadow indices: one node if the triangles are few, empty if their
+    /// vertices move.
     pub clusters: Vec<Cluster>,
 }
 
@@ -46,25 +46,25 @@ impl GpuPrimitive {
     }
 }
 
-/// What shadow passes have to know of a primitive.
+/// Properties of a primitive that matter to shadow passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Matter {
-    /// Nothing but where it is.
+    /// Opaque and rigid: only positions matter.
     Solid,
-    /// Its surface too: some of it lets light through.
+    /// Not opaque everywhere: the alpha of the surface matters too.
     Textured,
-    /// Its vertices are others every frame.
+    /// Skinned: its vertices change every frame.
     Moving,
 }
 
-/// Streams, indices and, per mesh, where its primitives lie.
+/// Vertex streams, indices and, for each mesh, the ranges of its primitives.
 pub(crate) struct Geometry {
     pub positions: wgpu::Buffer,
     pub normals: wgpu::Buffer,
     pub surfaces: wgpu::Buffer,
     pub indices: wgpu::Buffer,
     pub meshes: Vec<Vec<GpuPrimitive>>,
-    /// With exact edges, what texels of maps name.
+    /// Runs that texels of maps name, with exact edges.
     pub named: Option<NamedRuns>,
     pub bytes: u64,
 }
@@ -173,8 +173,9 @@ impl Geometry {
     }
 }
 
-/// Appends positions and indices of what `is_named`, with the runs that first corners belong to.
-/// Answers each mesh's runs; all primitives of a mesh count on.
+/// Appends positions and indices of the primitives for which `is_named` is true, with the runs that
+/// first corners belong to. Returns each mesh's runs; runs are numbered through all primitives of a
+/// mesh.
 fn name(
     meshes: &[&[Primitive]],
     uploaded: &mut [Vec<GpuPrimitive>],
@@ -201,19 +202,19 @@ fn name(
 /// Geometry that changes every frame: one "mesh" per entry of [`Pose::skinned`].
 pub(crate) struct SkinnedGeometry {
     pub geometry: Geometry,
-    /// Per entry of [`Pose::skinned`] the mesh that it poses; rebuilt when that changes.
+    /// Mesh of each entry of [`Pose::skinned`]; rebuilt when it changes.
     posed_meshes: Vec<usize>,
     edges: Edges,
 }
 
 impl SkinnedGeometry {
-    /// Nothing skinned yet; with exact edges it has no names, as its vertices move.
+    /// Makes empty skinned geometry. With exact edges it has no ids, because its vertices move.
     pub fn of(gpu: &Gpu, edges: Edges) -> Result<Self> {
         let geometry = Geometry::of_primitives(gpu, &[], edges, |_| Matter::Moving)?;
         Ok(Self { geometry, posed_meshes: Vec::new(), edges })
     }
 
-    /// Writes this pose's vertices.
+    /// Uploads the vertices of this pose.
     pub fn update(&mut self, gpu: &Gpu, scene: &SceneMeshes, pose: &Pose) -> Result<()> {
         let posed_meshes = posed_meshes(scene, pose)?;
         if posed_meshes != self.posed_meshes {
@@ -233,12 +234,12 @@ impl SkinnedGeometry {
     }
 }
 
-/// The primitives of those meshes whose vertices a pose moves (others are empty): kept to lay out
-/// their vertices.
+/// Primitives of the meshes whose vertices a pose moves, kept to lay out their vertices. Other
+/// meshes are empty.
 pub(crate) struct SceneMeshes(Vec<Vec<Primitive>>);
 
 impl SceneMeshes {
-    /// Keeps what [`SkinnedGeometry::update`] needs of a scene.
+    /// Keeps the primitives that [`SkinnedGeometry::update`] needs.
     pub fn of_scene(scene: &Scene) -> Self {
         let mut kept = vec![Vec::new(); scene.meshes.len()];
         for node in &scene.nodes {
@@ -256,7 +257,8 @@ impl SceneMeshes {
     }
 }
 
-/// Which mesh each entry of [`Pose::skinned`] poses, after checking that their vertices fit.
+/// Returns the mesh that each entry of [`Pose::skinned`] poses, after checking that their vertices
+/// fit.
 fn posed_meshes(scene: &SceneMeshes, pose: &Pose) -> Result<Vec<usize>> {
     let mut meshes = vec![None; pose.skinned.len()];
     for (index, object) in pose.objects.iter().enumerate() {
@@ -318,7 +320,7 @@ fn surface(primitive: &Primitive, vertex: usize) -> Surface {
     Surface { uv, color: color.map(|channel| (channel.clamp(0.0, 1.0) * 65535.0).round() as u16) }
 }
 
-/// Whether an object of a pose belongs to the uploaded scene.
+/// Checks that an object of a pose belongs to the uploaded scene.
 pub(crate) fn check_object(index: usize, object: &Object, meshes: usize) -> Result<()> {
     if object.mesh < meshes && object.world_from_local.is_finite() {
         return Ok(());

@@ -1,4 +1,4 @@
-//! The device that everything runs on, opened without a window.
+//! The graphics device of this crate, opened without a window.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -8,27 +8,27 @@ use crate::formats::{ANSWERS_FORMAT, DEPTH_FORMAT, MASK_FORMAT, PICTURE_FORMAT, 
 use crate::waiting::Scopes;
 use crate::{Error, Result};
 
-/// What the device is asked for.
+/// Options of opening a device.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GpuOptions {
-    /// Features that are not requested though the adapter has them: to try the fallbacks, or to
-    /// compare them.
+    /// Features that are not requested although the adapter has them, to test or compare the
+    /// fallbacks.
     pub withhold: wgpu::Features,
 }
 
 /// An open device and its queue. Cheap to clone; clones share the device.
 #[derive(Clone, Debug)]
 pub struct Gpu {
-    /// The adapter's name, driver and kind, for reports.
+    /// Name, driver and kind of the adapter, for reports.
     pub adapter_info: wgpu::AdapterInfo,
     /// The device.
     pub device: wgpu::Device,
-    /// Its queue.
+    /// The device's queue.
     pub queue: wgpu::Queue,
     faults: Faults,
 }
 
-/// The first error that no scope caught, kept until somebody asks. Later ones are mostly its
+/// The first error that no scope caught, kept until it is asked for. Later errors are mostly its
 /// consequences.
 #[derive(Clone, Debug, Default)]
 struct Faults(Arc<Mutex<Option<Fault>>>);
@@ -60,7 +60,7 @@ impl Fault {
 }
 
 impl Gpu {
-    /// The adapter for reports: its name, its interface and its driver.
+    /// Describes the adapter for reports: its name, its interface and its driver.
     #[must_use]
     pub fn description(&self) -> String {
         let info = &self.adapter_info;
@@ -75,8 +75,8 @@ impl Gpu {
         }
     }
 
-    /// Whether shaders can load from depth textures: not on GL, where every depth texture is for
-    /// comparisons only.
+    /// Returns whether shaders can load from depth textures. On GL they cannot: every depth texture
+    /// is for comparisons only there.
     pub(crate) fn depth_loads(&self) -> bool {
         self.adapter_info.backend != wgpu::Backend::Gl
     }
@@ -92,7 +92,8 @@ impl Gpu {
         pollster::block_on(Self::open(options))
     }
 
-    /// [`Gpu::new`] for callers that may not block, such as a page in a browser.
+    /// Opens an adapter as [`Gpu::new`] does, for callers that may not block, such as a page in a
+    /// browser.
     ///
     /// # Errors
     /// [`Error::NoAdapter`] or [`Error::NoDevice`].
@@ -119,22 +120,22 @@ impl Gpu {
         Self { adapter_info, device, queue, faults }
     }
 
-    /// The first error of the device that no call of this crate has told of yet.
+    /// Returns the device's first error that no call of this crate has reported yet.
     ///
     /// # Errors
-    /// That error, said to have come during `during`.
+    /// That error, with `during` as the operation that failed.
     pub fn check(&self, during: &'static str) -> Result<()> {
         self.faults.check(during)
     }
 
-    /// Runs `work` and turns whatever the device had to complain about into an error. In a browser,
-    /// where complaints come later, they surface in a later call instead.
+    /// Runs `work` and turns the device's errors into this crate's. In a browser errors come later
+    /// and surface in a later call instead.
     pub(crate) fn guarded<T>(&self, during: &'static str, work: impl FnOnce() -> Result<T>) -> Result<T> {
         // Nothing is awaited, so that it is done when it is polled first.
         pollster::block_on(self.guarded_async(during, async || work()))
     }
 
-    /// [`Gpu::guarded`] for work that waits for the device.
+    /// Runs `work` as [`Gpu::guarded`] does, for work that waits for the device.
     pub(crate) async fn guarded_async<T>(
         &self,
         during: &'static str,
@@ -149,13 +150,14 @@ impl Gpu {
         result
     }
 
-    /// [`Error::BufferSize`] unless `bytes` fit into one buffer of this device.
+    /// Returns [`Error::BufferSize`] unless `bytes` fit into one buffer of this device.
     pub(crate) fn check_buffer(&self, what: &'static str, bytes: u64) -> Result<()> {
         let limit = self.device.limits().max_buffer_size;
         if bytes > limit { Err(Error::BufferSize { what, needed: bytes, limit }) } else { Ok(()) }
     }
 
-    /// [`Error::BufferSize`] unless `bytes` fit into one buffer that shaders of this device read.
+    /// Returns [`Error::BufferSize`] unless `bytes` fit into one buffer that shaders of this device
+    /// can read.
     pub(crate) fn check_storage(&self, what: &'static str, bytes: u64) -> Result<()> {
         let limit = self.device.limits().max_storage_buffer_binding_size;
         if bytes > limit {
@@ -165,7 +167,7 @@ impl Gpu {
         }
     }
 
-    /// A buffer with these bytes, or a few zeroes where there are none.
+    /// Makes a buffer with these bytes, or with a few zeroes if there are none.
     pub(crate) fn filled_buffer(&self, label: &str, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
         self.device.create_buffer_init(&BufferInitDescriptor {
             label: Some(label),
@@ -174,7 +176,7 @@ impl Gpu {
         })
     }
 
-    /// The largest edge of a texture.
+    /// Returns the largest edge of a texture in pixels.
     pub(crate) fn max_texture_edge(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
     }
@@ -191,8 +193,8 @@ impl Faults {
     }
 }
 
-/// What a device is asked for: the adapter's own limits, and all features that shadows or timing
-/// can use. For [`Gpu::from_parts`].
+/// Describes the device of an adapter, for [`Gpu::from_parts`]: the adapter's own limits, and all
+/// features that shadows or timing can use.
 #[must_use]
 pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     wgpu::DeviceDescriptor {
@@ -203,7 +205,7 @@ pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'sta
     }
 }
 
-/// What a device is asked for where the adapter has it.
+/// Features that are requested where the adapter has them.
 fn wanted_features() -> wgpu::Features {
     umbrage_wgpu::optional_features()
         | wgpu::Features::TIMESTAMP_QUERY
@@ -211,7 +213,7 @@ fn wanted_features() -> wgpu::Features {
         | wgpu::Features::FLOAT32_FILTERABLE
 }
 
-/// What an adapter that is not told by name has to be able to do.
+/// Texture formats and usages that an adapter must support to be chosen without a name.
 const TEXTURES: [(wgpu::TextureFormat, wgpu::TextureUsages); 6] = [
     (PICTURE_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
     (MASK_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
@@ -221,7 +223,7 @@ const TEXTURES: [(wgpu::TextureFormat, wgpu::TextureUsages); 6] = [
     (ANSWERS_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
 ];
 
-/// What an adapter lacks that every renderer needs; `None` if nothing.
+/// Describes the first required texture usage that an adapter lacks; `None` if it lacks none.
 fn lacking(usages: impl Fn(wgpu::TextureFormat) -> wgpu::TextureUsages) -> Option<String> {
     let missing = TEXTURES.into_iter().find(|(format, usage)| !usages(*format).contains(*usage));
     missing.map(|(format, usage)| match usage {
@@ -230,9 +232,9 @@ fn lacking(usages: impl Fn(wgpu::TextureFormat) -> wgpu::TextureUsages) -> Optio
     })
 }
 
-/// The adapter that is asked for by name, or else the best one that can draw everything. An adapter
-/// that cannot is passed over: a system without a Vulkan driver often has one for OpenGL that draws
-/// into too few formats.
+/// Chooses the adapter that is asked for by name, or else the best one that can draw everything. An
+/// adapter that cannot is passed over: a system without a Vulkan driver often has one for OpenGL
+/// that draws into too few formats.
 async fn choose_adapter(instance: &wgpu::Instance) -> Result<wgpu::Adapter> {
     #[cfg(not(target_arch = "wasm32"))]
     if let Ok(wanted) = std::env::var("WGPU_ADAPTER_NAME")
@@ -270,8 +272,8 @@ async fn choose_adapter(instance: &wgpu::Instance) -> Result<wgpu::Adapter> {
     Err(Error::NoAdapter { reason: format!("{} ({}) {reason}", info.name, info.backend) })
 }
 
-/// The device of unit tests, or `None` (said loudly) where there is no adapter.
-/// `UMBRAGE_REQUIRE_GPU=1` turns that into a failure.
+/// Returns the device of unit tests, or `None` with a warning where there is no adapter.
+/// `UMBRAGE_REQUIRE_GPU=1` turns the lack of an adapter into a failure.
 #[cfg(test)]
 pub(crate) fn of_tests() -> Option<Gpu> {
     use std::io::Write;

@@ -10,7 +10,7 @@ use umbrage::{DirectionalLight, Light};
 
 use crate::{Error, Result};
 
-/// The most lights of one frame.
+/// Largest number of lights in one frame.
 pub const MOST_LAMPS: usize = 8;
 
 /// A light as the picture shows it.
@@ -18,15 +18,15 @@ pub const MOST_LAMPS: usize = 8;
 pub struct Lamp {
     /// The light that casts shadows.
     pub light: Light,
-    /// Linear RGB, 1 at most.
+    /// Colour in linear RGB, 1 at most.
     pub color: Vec3,
-    /// Radians from a spot light's axis up to which it is as bright as on the axis; other lights
-    /// ignore it.
+    /// Angle in radians around a spot light's axis within which it is as bright as on the axis;
+    /// ignored for other lights.
     pub inner_angle: f64,
 }
 
 impl From<Light> for Lamp {
-    /// A white light; a spot light softens over its outer half.
+    /// Makes a white light. A spot light softens over its outer half.
     fn from(light: Light) -> Self {
         let inner_angle = if let Light::Spot(spot) = light { 0.5 * spot.outer_angle() } else { 0.0 };
         Self { light, color: Vec3::ONE, inner_angle }
@@ -43,13 +43,13 @@ impl From<DirectionalLight> for Lamp {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct LampUniform {
-    /// Relative to the origin.
+    /// Position relative to the origin, in metres.
     pub position: [f32; 3],
-    /// Metres; 0 for a sun.
+    /// Range in metres; 0 for a sun.
     pub range: f32,
-    /// Towards a sun; against a spot light's axis.
+    /// Unit vector towards a sun, or against a spot light's axis.
     pub to_light: [f32; 3],
-    /// −2 without a cone.
+    /// Cosine of the outer angle of a spot light's cone; −2 without a cone.
     pub outer_cosine: f32,
     pub color: [f32; 3],
     pub inner_cosine: f32,
@@ -85,7 +85,7 @@ impl LampUniform {
         Self { color: lamp.color.to_array(), ..shape }
     }
 
-    /// Of all lights of a frame.
+    /// Makes the uniforms of all lights of a frame.
     pub fn all(lamps: &[Lamp], origin: DVec3) -> Result<[Self; MOST_LAMPS]> {
         if lamps.len() > MOST_LAMPS {
             return Err(Error::LampCount { count: lamps.len(), most: MOST_LAMPS });

@@ -1,5 +1,5 @@
-//! umbrage's demonstration renderer: what an application around `umbrage-wgpu` looks like, and what
-//! the command and the viewer draw with. Forward shading, a few lights, no window.
+//! umbrage's demonstration renderer: an example of an application around `umbrage-wgpu`, which the
+//! command and the viewer draw with. It has forward shading and a few lights, and needs no window.
 //!
 //! [`Gpu`] opens a device, [`Renderer`] uploads a [`umbrage_scene::Scene`] once and then draws
 //! [`Frame`]s of it: pictures, visibility masks, depth maps and answers at given points, with
@@ -33,6 +33,7 @@ mod shadow_mesh;
 mod stats;
 mod surfaces;
 mod targets;
+mod through_mask;
 mod timing;
 mod view_list;
 mod waiting;

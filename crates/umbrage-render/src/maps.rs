@@ -3,9 +3,9 @@
 use image::{GrayImage, Luma};
 use umbrage::config::DepthFormat;
 
-/// Stretches the stored depths to 0 (nearest to the light) to 230 (farthest); where nothing is
-/// stored it is white. The map is a square of `size` texels at `corner` of a layer with rows of
-/// `row` texels.
+/// Draws depths stretched from 0 (nearest to the light) to 230 (farthest); texels without a caster
+/// are white. The map is a square of `size` texels at `corner` of a layer with rows of `row`
+/// texels.
 pub(crate) fn picture_of(depths: &[f32], row: u32, corner: [u32; 2], size: u32) -> GrayImage {
     const FARTHEST: f32 = 230.0;
     let at = |x: u32, y: u32| depths[((corner[1] + y) * row + corner[0] + x) as usize];
@@ -23,7 +23,7 @@ pub(crate) fn picture_of(depths: &[f32], row: u32, corner: [u32; 2], size: u32) 
     })
 }
 
-/// Depths in \[0,1\] from a map's bytes.
+/// Reads depths in \[0,1\] from a map's bytes.
 pub(crate) fn depths_of(bytes: &[u8], format: DepthFormat) -> Vec<f32> {
     match format {
         DepthFormat::D32Float | DepthFormat::R32Float => bytemuck::pod_collect_to_vec(bytes),

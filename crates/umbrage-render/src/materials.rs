@@ -18,7 +18,7 @@ pub(crate) struct MaterialUniform {
     pub base_color: [f32; 4],
     /// Linear RGB.
     pub emissive: [f32; 3],
-    /// Least alpha that counts; 0 where alpha is not tested.
+    /// Least alpha that is drawn; 0 where alpha is not tested.
     pub alpha_cutoff: f32,
 }
 
@@ -34,7 +34,7 @@ pub(crate) struct GpuMaterial {
 pub(crate) struct Materials {
     pub layout: wgpu::BindGroupLayout,
     pub list: Vec<GpuMaterial>,
-    /// Bytes of all textures with their levels.
+    /// Bytes of all textures with their mip levels.
     pub bytes: u64,
 }
 
@@ -117,7 +117,7 @@ fn layout_entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEnt
     wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None }
 }
 
-/// Refuses a texture without pixels, with too few or too many of them, or larger than the device
+/// Refuses a texture without pixels, with the wrong number of bytes, or larger than the device
 /// takes.
 fn check_texture(gpu: &Gpu, index: usize, texture: &Texture) -> Result<()> {
     let (width, height) = (texture.width, texture.height);
@@ -156,14 +156,14 @@ fn upload_texture(gpu: &Gpu, texture: &Texture, alpha: Alpha) -> (wgpu::TextureV
     (on_gpu.create_view(&wgpu::TextureViewDescriptor::default()), data.len() as u64)
 }
 
-/// What tells two materials apart: the bits of their uniform, how alpha is used, the texture, and
+/// Key by which materials are told apart: the bits of the uniform, the alpha mode, the texture, and
 /// the sides.
 type Look = ([u32; 8], Discriminant<AlphaMode>, Option<usize>, bool);
 
-/// What tells the samplers of two textures apart.
+/// Key by which samplers are told apart.
 type Sampling = ([Wrap; 2], TextureFilter, u16);
 
-/// What equal materials share: files have as many as their authors' tools liked to write.
+/// Bind groups and samplers shared by equal materials. A file may have many equal materials.
 #[derive(Default)]
 struct Shared {
     materials: HashMap<Look, GpuMaterial>,
@@ -196,7 +196,7 @@ impl Shared {
     }
 }
 
-/// Taps of a sample along a texture that is seen aslant.
+/// Anisotropy of a texture's sampler: the most samples along the direction of foreshortening.
 fn anisotropy(material: &Material, texture: &Texture) -> u16 {
     let is_plain = texture.width.max(texture.height) == 1;
     // WebGPU has no anisotropy with a nearest filter. One texel needs none. Leaves have none:
@@ -208,8 +208,8 @@ fn anisotropy(material: &Material, texture: &Texture) -> u16 {
     }
 }
 
-/// How a texture is sampled: for colour, for the decision of a mask, for how much of a pixel is
-/// covered.
+/// Samplers of a texture: for colour, for the alpha test of a mask, and for the coverage of a
+/// pixel.
 struct Samplers {
     smooth: wgpu::Sampler,
     exact: wgpu::Sampler,

@@ -5,23 +5,23 @@ use std::sync::LazyLock;
 
 use umbrage_scene::Texture;
 
-/// Levels down to 1×1.
+/// Returns the number of mip levels down to 1×1.
 pub(crate) fn level_count(width: u32, height: u32) -> u32 {
     width.max(height).max(1).ilog2() + 1
 }
 
-/// What a material makes of a texture's alpha.
+/// Use of a texture's alpha in a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Alpha {
-    /// Nothing: every texel is seen.
+    /// Alpha is ignored: every texel is visible.
     Ignored,
-    /// Texels are seen as much as it says.
+    /// Alpha is the opacity of a texel.
     Used,
 }
 
-/// All levels of a texture, level 0 first, each as tightly packed sRGB bytes. Where alpha is used,
-/// texels that nobody sees get the colour of what is seen around them, so that a sample between
-/// both keeps its colour. Alpha is never changed in level 0.
+/// Computes all levels of a texture, level 0 first, each as tightly packed sRGB bytes. Where alpha
+/// is used, invisible texels get the colour of the visible ones around them, so that a sample
+/// between both keeps its colour. Alpha is never changed in level 0.
 pub(crate) fn all_levels(texture: &Texture, alpha: Alpha) -> Vec<Vec<u8>> {
     let (mut width, mut height) = (texture.width as usize, texture.height as usize);
     let mut levels = vec![texture.rgba.clone()];
@@ -37,7 +37,7 @@ pub(crate) fn all_levels(texture: &Texture, alpha: Alpha) -> Vec<Vec<u8>> {
     levels
 }
 
-/// Gives every texel of alpha 0 the colour of its place in the next smaller level, from the
+/// Gives every texel of alpha 0 the colour at its place in the next smaller level, from the
 /// smallest level up.
 fn fill_unseen(levels: &mut [Vec<u8>], width: usize, height: usize) {
     let size = |level: usize| [(width >> level).max(1), (height >> level).max(1)];
@@ -51,9 +51,9 @@ fn fill_unseen(levels: &mut [Vec<u8>], width: usize, height: usize) {
     }
 }
 
-/// One level from the one before. Every texel is the mean of the area it covers, so odd sizes do
-/// not shift the image. Where alpha is used, colours count as much as their alpha: what nobody sees
-/// does not bleed into what is left.
+/// Computes one level from the one before. Every texel is the mean of the area that it covers, so
+/// odd sizes do not shift the image. Where alpha is used, colours are weighted by it, so that the
+/// colour of invisible texels does not bleed into visible ones.
 fn halved(source: &[u8], from: [usize; 2], to: [usize; 2], use_of_alpha: Alpha) -> Vec<u8> {
     let (columns, rows) = (footprints(from[0], to[0]), footprints(from[1], to[1]));
     let mut target = Vec::with_capacity(to[0] * to[1] * 4);
@@ -81,7 +81,7 @@ fn halved(source: &[u8], from: [usize; 2], to: [usize; 2], use_of_alpha: Alpha) 
     target
 }
 
-/// For each target texel the source texels under it with their shares, which add up to 1.
+/// Lists, for each target texel, the source texels under it with their shares, which add up to 1.
 fn footprints(from: usize, to: usize) -> Vec<Vec<(usize, f32)>> {
     let scale = from as f32 / to as f32;
     (0..to)

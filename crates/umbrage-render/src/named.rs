@@ -1,5 +1,5 @@
-//! Meshes whose triangles maps can name, for exact edges: every triangle's first corner tells which
-//! run of eight it belongs to, and buffers say where a run's corners are.
+//! Meshes whose triangles maps can name, for exact edges. Every triangle's first corner tells its
+//! run of eight triangles, and buffers hold the corners of the runs.
 
 use std::collections::HashMap;
 
@@ -7,23 +7,24 @@ use umbrage_wgpu::StoredRun;
 
 use crate::{Gpu, Result};
 
-/// Triangles of a run, as [`umbrage_wgpu::stored_runs`] has them.
+/// Number of triangles in a run, as in [`umbrage_wgpu::stored_runs`].
 const RUN: usize = 8;
 
-/// Triangles whose first corners belong to one run each.
+/// Triangles each of whose first corners belongs to one run.
 pub(crate) struct Named {
-    /// Told apart by their bits, and by their run where they are first corners of two.
+    /// Positions. Positions with different bits are different, and so are copies of one that is the
+    /// first corner in two runs.
     pub positions: Vec<[f32; 3]>,
-    /// The run of each position that is a first corner.
+    /// Run of each position that is a first corner.
     pub runs: Vec<u32>,
-    /// The triangles in the order given, their corners turned around.
+    /// Indices of the triangles in the order given, with their corners rotated.
     pub indices: Vec<u32>,
 }
 
 impl Named {
-    /// Triangles as runs `first_run` and so on. A flat output of a vertex shader is that of a
-    /// triangle's first corner (<https://www.w3.org/TR/webgpu/#primitive-vertex>); a corner that is
-    /// no other run's becomes the first, and where there is none a copy does.
+    /// Divides triangles into runs, numbered from `first_run` on. A flat output of a vertex shader
+    /// is that of a triangle's first corner (<https://www.w3.org/TR/webgpu/#primitive-vertex>). A
+    /// corner that is no other run's becomes the first; where there is none, a copy does.
     pub fn of(positions: &[[f32; 3]], indices: &[u32], first_run: u32) -> Self {
         const NOBODY: u32 = u32::MAX;
         let mut numbers = HashMap::with_capacity(positions.len());
@@ -62,16 +63,16 @@ impl Named {
 
 /// Runs of all meshes on the GPU.
 pub(crate) struct NamedRuns {
-    /// The run of each position, a vertex buffer beside the positions.
+    /// Run of each position: a vertex buffer beside the positions.
     pub of_vertices: wgpu::Buffer,
-    /// Every [`StoredRun`].
+    /// Buffer of all [`StoredRun`]s.
     pub stored: wgpu::Buffer,
-    /// Of each mesh the first of its runs and how many it has.
+    /// First run and number of runs of each mesh.
     pub of_meshes: Vec<[u32; 2]>,
 }
 
 impl NamedRuns {
-    /// `of_vertices` has a run for each position, `of_meshes` each mesh's own runs.
+    /// Uploads runs. `of_vertices` has a run for each position, `of_meshes` the runs of each mesh.
     pub fn new(gpu: &Gpu, of_vertices: &[u32], of_meshes: &[Vec<StoredRun>]) -> Result<Self> {
         let all: Vec<StoredRun> = of_meshes.concat();
         gpu.check_storage("the runs of triangles", size_of_val(all.as_slice()) as u64)?;
@@ -103,7 +104,7 @@ impl NamedRuns {
 mod tests {
     use super::*;
 
-    /// A grid of quads whose vertices are shared, `across` wide.
+    /// A grid of quads that share vertices, `across` wide.
     fn grid(across: u32, down: u32) -> (Vec<[f32; 3]>, Vec<u32>) {
         let wide = across + 1;
         let positions = (0..wide * (down + 1)).map(|i| [(i % wide) as f32, 0.0, (i / wide) as f32]).collect();
@@ -140,7 +141,7 @@ mod tests {
         check(&positions, &[], 0);
     }
 
-    /// Even where all triangles share their few vertices.
+    /// Every triangle tells its run, even if all triangles share a few vertices.
     #[test]
     fn any_triangles_tell_their_run() {
         // Numbers from a linear congruential generator (Knuth's constants).

@@ -1,4 +1,4 @@
-//! Ids of the objects of a frame, for exact edges: who has which, and where they stand.
+//! Ids of the objects of a frame, for exact edges, with the objects' transforms.
 
 use glam::DVec3;
 use umbrage_scene::Pose;
@@ -7,31 +7,31 @@ use umbrage_wgpu::{Occluder, Occluders, StoredSlot, stored_runs_layout};
 use crate::geometry::Geometry;
 use crate::{Gpu, Result};
 
-/// Bytes of a row of the transform and what follows it.
+/// Bytes of one object's slot in the buffer: its transform and the numbers after it.
 const SLOT_BYTES: u64 = size_of::<StoredSlot>() as u64;
 
-/// Who has which ids, and where they stand in this frame.
+/// Ids and transforms of the objects of a frame.
 pub(crate) struct Names {
-    /// Per object of the pose its mesh and its ids; none for what cannot be asked.
+    /// Mesh and ids of each object of the pose; `None` for an object without ids.
     of_objects: Vec<Option<(usize, Occluder)>>,
     slots: Vec<StoredSlot>,
     buffer: wgpu::Buffer,
 }
 
 impl Names {
-    /// The binding from which the four buffers follow, in the frame's group.
+    /// Binding of the first of the four buffers in the frame's group.
     pub const BINDING: u32 = 1;
 
     pub fn new(gpu: &Gpu) -> Self {
         Self { of_objects: Vec::new(), slots: Vec::new(), buffer: slot_buffer(gpu, 64) }
     }
 
-    /// Layout of the four buffers.
+    /// Returns the layout of the four buffers.
     pub fn layout(binding: u32) -> [wgpu::BindGroupLayoutEntry; 4] {
         stored_runs_layout(binding, wgpu::ShaderStages::FRAGMENT)
     }
 
-    /// The four buffers.
+    /// Returns the bindings of the four buffers.
     pub fn entries<'a>(&'a self, geometry: &'a Geometry, binding: u32) -> Vec<wgpu::BindGroupEntry<'a>> {
         let Some(runs) = &geometry.named else { return Vec::new() };
         let buffers = [&self.buffer, &runs.stored, &geometry.indices, &geometry.positions];
@@ -42,7 +42,7 @@ impl Names {
         buffers.into_iter().zip(binding..).map(entry).collect()
     }
 
-    /// Layout of the four buffers alone, for masks.
+    /// Returns the layout of a group of the four buffers alone, for masks.
     pub fn layout_of_mask(gpu: &Gpu) -> wgpu::BindGroupLayout {
         gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("Names::layout"),
@@ -50,7 +50,7 @@ impl Names {
         })
     }
 
-    /// The four buffers alone, where there are names.
+    /// Makes a group of the four buffers alone; `None` without exact edges.
     pub fn group_of_mask(&self, gpu: &Gpu, geometry: &Geometry) -> Option<wgpu::BindGroup> {
         let entries = self.entries(geometry, 0);
         (!entries.is_empty()).then(|| {
@@ -62,9 +62,9 @@ impl Names {
         })
     }
 
-    /// Gives ids to what has come, takes those of what has gone, and uploads where all of them
-    /// stand. The first value has each object's first id, 0 without one; the second says whether
-    /// the buffer is another one.
+    /// Assigns ids to new objects, frees those of removed objects and uploads the table of
+    /// transforms. Returns each object's first id (0 without one), and whether the buffer was
+    /// replaced.
     pub fn update(
         &mut self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! Visibility at given points, from the very maps and functions that shade the scene.
+//! Visibility at given world points, from the maps and functions that shade the scene.
 
 use std::borrow::Cow;
 
@@ -17,53 +17,52 @@ use crate::{Error, Gpu, Result, shaders};
 pub struct ProbePoint {
     /// World position in metres.
     pub position: DVec3,
-    /// The surface's geometric normal on the side that is asked about; it need not be normalised.
+    /// The surface's geometric normal on the side that is probed. It need not be normalised.
     pub normal: DVec3,
 }
 
-/// What the maps say of a point.
+/// Result of probing one world point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ProbeAnswer {
-    /// 1 lit to 0 in shadow; 0 where the surface is turned away from the light.
+    /// Visibility from 1 (lit) to 0 (in shadow); 0 where the surface is turned away from the light.
     pub visibility: f32,
-    /// The split that answered, −1 if no map covers the point.
+    /// Index of the split whose map was read; −1 if no map covers the point.
     pub split: i32,
 }
 
-/// Who answers for a point.
+/// Choice of the split that answers for a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Responder {
     /// The split that the view chooses.
     View,
-    /// This split, though the view does not show the point.
+    /// A given split, for a point that the view does not show.
     Split(usize),
-    /// No map covers it: lit, unless turned away from the light.
+    /// No split: no map covers the point. It is lit unless turned away from the light.
     Nobody,
 }
 
-/// The most points of one pass; more are asked in several. A texture row that every device can
-/// draw.
+/// Most points in one texture row, which every device can draw.
 const ROW: u32 = 2048;
-/// See [`ROW`].
+/// Most rows of points in one pass.
 const MOST_ROWS: u32 = 512;
 /// The most points that [`Probe::record`] takes at once.
 pub(crate) const BATCH: usize = (ROW * MOST_ROWS) as usize;
 
-/// The pass that asks.
+/// Pass that probes points.
 pub(crate) struct Probe {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
 }
 
-/// Answers on their way back.
+/// Answers that are being read back.
 pub(crate) struct PendingAnswers {
     capture: Capture,
     count: usize,
 }
 
 impl Probe {
-    /// The binding from which buffers of casters follow, with exact edges.
+    /// Binding of the first buffer of caster ids, with exact edges.
     pub const NAMES: u32 = 2;
 
     pub fn new(gpu: &Gpu, maps: &ShadowMaps) -> Self {
@@ -121,8 +120,8 @@ impl Probe {
         Self { layout, pipeline }
     }
 
-    /// Records the question for at most [`BATCH`] points; those that nobody answers for are asked
-    /// of split 0 and corrected by the caller. `named` are the buffers of [`Names::entries`].
+    /// Records the pass for at most [`BATCH`] points. Points without a responder are looked up in
+    /// split 0 and corrected by the caller. `named` are the buffers of [`Names::entries`].
     pub fn record(
         &self,
         gpu: &Gpu,

@@ -1,36 +1,42 @@
-//! The WGSL of every pass: the library's text, what all passes share, and the pass's own.
+//! WGSL of every pass: the library's text, the code that all passes share, and the pass's own.
 
 use umbrage::config::Coordinates;
 
-/// Bind group 0 is what [`umbrage_wgpu::ShadowMaps::caster_wgsl`] declares, 1 the material.
+const SCENE: &str = include_str!("shaders/scene.wgsl");
+const VIEW: &str = include_str!("shaders/view.wgsl");
+const NORMALS: &str = include_str!("shaders/normals.wgsl");
+
+/// WGSL of casters. Bind group 0 is what [`umbrage_wgpu::ShadowMaps::caster_wgsl`] declares, 1 the
+/// material.
 pub(crate) fn casters(library: &str) -> String {
-    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster.wgsl")].join("\n")
+    [library, SCENE, include_str!("shaders/caster.wgsl")].join("\n")
 }
 
 /// WGSL of casters whose triangles maps name.
 pub(crate) fn named_casters(library: &str) -> String {
-    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster_named.wgsl")].join("\n")
+    [library, SCENE, include_str!("shaders/caster_named.wgsl")].join("\n")
 }
 
 /// WGSL of casters with holes; the library's text has [`MASKED_MEMBERS`].
 pub(crate) fn masked_casters(library: &str) -> String {
-    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster_masked.wgsl")].join("\n")
+    [library, SCENE, include_str!("shaders/caster_masked.wgsl")].join("\n")
 }
 
-/// What a caster with holes hands to its fragments.
+/// Members that a caster with holes passes to its fragment shader.
 pub(crate) const MASKED_MEMBERS: &str = "@location(0) uv: vec2f, @location(1) alpha: f32,";
 
 /// WGSL of casters that let some light through; the library's text has [`DITHERED_MEMBERS`].
 pub(crate) fn dithered_casters(library: &str) -> String {
-    [library, include_str!("shaders/scene.wgsl"), include_str!("shaders/caster_dithered.wgsl")].join("\n")
+    [library, SCENE, include_str!("shaders/caster_dithered.wgsl")].join("\n")
 }
 
-/// What such a caster hands to its fragments.
+/// Members that a caster that lets some light through passes to its fragment shader.
 pub(crate) const DITHERED_MEMBERS: &str =
     "@location(0) uv: vec2f, @location(1) alpha: f32, @location(2) @interpolate(flat) offset: vec2f,";
 
-/// Bind group 0 is the frame, 1 the material, 2 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`]
-/// declares, 3 with contact shadows what [`umbrage_wgpu::contact_wgsl`] declares.
+/// WGSL of the view. Bind group 0 is the frame, 1 the material, 2 what
+/// [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares, 3 with contact shadows what
+/// [`umbrage_wgpu::contact_wgsl`] declares.
 pub(crate) fn forward(library: &str, coordinates: Coordinates, contact: bool) -> String {
     const WITHOUT: &str =
         "fn with_contact(visibility: f32, position: vec3f, normal: vec3f) -> f32 { return min(visibility, 1.0); }";
@@ -42,25 +48,33 @@ pub(crate) fn forward(library: &str, coordinates: Coordinates, contact: bool) ->
         Coordinates::World | Coordinates::Deferred => include_str!("shaders/surface.wgsl"),
         Coordinates::Vertex => include_str!("shaders/surface_with_coordinates.wgsl"),
     };
-    let [scene, view] = [include_str!("shaders/scene.wgsl"), include_str!("shaders/view.wgsl")];
-    [library, &contact, scene, view, include_str!("shaders/forward.wgsl"), surface].join("\n")
+    [library, &contact, SCENE, VIEW, NORMALS, include_str!("shaders/forward.wgsl"), surface].join("\n")
 }
 
-/// [`forward`] with counts of what exact edges do; the library's text is one that counts.
+/// WGSL of the view with counts of exact edges. The library's text is one that counts.
 pub(crate) fn edge_counts(library: &str, coordinates: Coordinates) -> String {
     forward(library, coordinates, false) + include_str!("shaders/edge_counts.wgsl")
 }
 
-/// Instead of the library's text: a picture without a word about shadows.
+/// Text in place of the library's for pictures without shadow code.
 pub(crate) const WITHOUT_SHADOWS: &str = include_str!("shaders/without_shadows.wgsl");
 
-/// Bind group 0 is the frame, 1 the material. No shadow is asked about.
+/// Text in place of the library's for pictures that take the first light's shadows from a mask, the
+/// texture of bind group 2.
+pub(crate) const LIT: &str = include_str!("shaders/lit.wgsl");
+
+/// WGSL of depth passes. Bind group 0 is the frame, 1 the material. No shadow is looked up.
 pub(crate) fn depth() -> String {
-    [include_str!("shaders/scene.wgsl"), include_str!("shaders/view.wgsl"), include_str!("shaders/depth.wgsl")]
-        .join("\n")
+    [SCENE, VIEW, include_str!("shaders/depth.wgsl")].join("\n")
 }
 
-/// Bind group 0 is the points, 1 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`] declares.
+/// WGSL of passes that draw depth and normals for a mask. Bind group 0 is the frame, 1 the material.
+pub(crate) fn facing() -> String {
+    [SCENE, VIEW, NORMALS, include_str!("shaders/facing.wgsl")].join("\n")
+}
+
+/// WGSL of probes. Bind group 0 is the points, 1 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`]
+/// declares.
 pub(crate) fn probe(library: &str) -> String {
     [library, include_str!("shaders/probe.wgsl")].join("\n")
 }
@@ -88,7 +102,7 @@ mod tests {
         module
     }
 
-    /// Members of a struct with their offsets, and its size.
+    /// Returns the members of a struct with their offsets, and its size.
     fn layout(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
         let (_, ty) =
             module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).expect("the struct is there");
@@ -126,7 +140,9 @@ mod tests {
                 forward(&receiver(2, maps), Coordinates::World, true),
                 forward(&with_coordinates, Coordinates::Vertex, true),
                 forward(WITHOUT_SHADOWS, Coordinates::World, false),
+                forward(LIT, Coordinates::World, false),
                 depth(),
+                facing(),
                 probe(&receiver(1, maps)),
                 probe(&receiver(1, Maps { coordinates: true, ..maps })),
             ] {
@@ -140,7 +156,7 @@ mod tests {
         let module = parsed(&forward(&receiver(2, Maps::default()), Coordinates::World, true));
         let frame = offsets!(
             FrameUniform: clip_from_eye, eye, is_orthographic, forward, lamp_count, to_sun, daylight, ray_center, near,
-            ray_right, far, ray_up, lamps
+            ray_right, far, ray_up, shadow_colour, lamps
         );
         assert_eq!(layout(&module, "Frame"), frame);
         let lamp = offsets!(LampUniform: position, range, to_light, outer_cosine, color, inner_cosine);

@@ -1,6 +1,6 @@
-//! Large meshes for the shadow passes, which ask for positions only: vertices that differ in
-//! nothing but their surface are one, and runs of triangles have boxes of their own, so that a map
-//! draws those parts of a mesh that can shade what it serves.
+//! Large meshes for the shadow passes, which read positions only. Vertices that differ in nothing
+//! but their surface are one vertex. Runs of triangles have boxes of their own, so that a map draws
+//! only the parts of a mesh that can shade its receivers.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -8,42 +8,41 @@ use std::ops::Range;
 use glam::Vec3;
 use umbrage::Aabb;
 
-/// Triangles of the smallest clusters.
+/// Number of triangles in the smallest clusters.
 const LEAF: usize = 8;
 
-/// Triangles that a primitive has at least, or it stays whole.
+/// Fewest triangles of a primitive that is divided.
 const LEAST_TRIANGLES: usize = 128;
 
-/// What merging has to save, as a share of the vertices, to be worth indices of its own.
+/// Least saving of merging, as a share of the vertices, that is worth separate indices.
 const LEAST_SAVED: f64 = 0.05;
 
-/// Consecutive triangles, in a tree of such runs: a node is followed by the nodes that it consists
-/// of.
+/// Consecutive triangles: a node in a tree of such runs. Its child nodes follow it in the list.
 #[derive(Clone, Debug)]
 pub(crate) struct Cluster {
-    /// Where they lie in the index buffer.
+    /// Range of the triangles in the index buffer.
     pub indices: Range<u32>,
-    /// How many of the nodes that follow it consists of; 0 for a leaf.
+    /// Number of the following nodes that lie below this one; 0 for a leaf.
     pub below: u32,
-    /// Around their vertices, in the mesh's own space.
+    /// Least corner of the box around the vertices, in the mesh's own space.
     min: Vec3,
     max: Vec3,
 }
 
 impl Cluster {
-    /// Around their vertices, in the mesh's own space.
+    /// Returns the box around the vertices, in the mesh's own space.
     pub fn bounds(&self) -> Aabb {
         Aabb::new(self.min.as_dvec3(), self.max.as_dvec3())
     }
 
-    /// How many they are.
+    /// Returns the number of triangles.
     pub fn triangles(&self) -> u32 {
         (self.indices.end - self.indices.start) / 3
     }
 }
 
-/// Calls `each` with nodes of a tree and where they stand in it, from the root on; what a node
-/// consists of follows if the answer is `true`.
+/// Calls `each` with nodes of a tree and their indices, from the root on. The nodes below a node
+/// follow if `each` returns `true`.
 pub(crate) fn descend(tree: &[Cluster], mut each: impl FnMut(usize, &Cluster) -> bool) {
     let mut at = 0;
     while let Some(node) = tree.get(at) {
@@ -51,17 +50,17 @@ pub(crate) fn descend(tree: &[Cluster], mut each: impl FnMut(usize, &Cluster) ->
     }
 }
 
-/// Vertices told apart by their positions alone.
+/// Vertices that are told apart by their positions alone.
 pub(crate) struct Merged {
-    /// In the order in which triangles use them, as vertex caches like it.
+    /// Positions in the order in which triangles use them, which suits vertex caches.
     pub positions: Vec<[f32; 3]>,
-    /// Triangles in the order given.
+    /// Indices of the triangles in the order given.
     pub indices: Vec<u32>,
 }
 
 impl Merged {
-    /// `None` if that spares too little. Positions count as the same if their bits are, so what is
-    /// drawn stays the same to the bit.
+    /// Merges vertices; `None` if that saves too little. Positions are equal if their bits are, so
+    /// the drawn result stays the same to the bit.
     pub fn of(positions: &[[f32; 3]], indices: &[u32]) -> Option<Self> {
         let mut numbers = HashMap::with_capacity(positions.len());
         let mut merged = Self { positions: Vec::new(), indices: Vec::with_capacity(indices.len()) };
@@ -78,9 +77,10 @@ impl Merged {
     }
 }
 
-/// Halves triangles (three indices each, which lie at `first` in the index buffer) in the order in
-/// which they stand, down to runs of a few: what is modelled or optimised for a vertex cache lies
-/// together, and a whole mesh is drawn as it was. A small mesh is one node.
+/// Divides triangles (three indices each, at `first` in the index buffer) by halving their list
+/// down to runs of a few. The order stays as modelled or as optimised for a vertex cache:
+/// neighbours in the list lie together, and a whole mesh is drawn unchanged. A small mesh is one
+/// node.
 pub(crate) fn clusters(positions: &[[f32; 3]], indices: &[u32], first: u32) -> Vec<Cluster> {
     let mut tree = Vec::new();
     if !indices.is_empty() {
@@ -90,7 +90,7 @@ pub(crate) fn clusters(positions: &[[f32; 3]], indices: &[u32], first: u32) -> V
     tree
 }
 
-/// Appends the tree of a run of triangles; `leaf` is how many indices the smallest runs have.
+/// Appends the tree of a run of triangles. `leaf` is the number of indices in the smallest runs.
 fn halve(positions: &[[f32; 3]], indices: &[u32], first: u32, leaf: usize, tree: &mut Vec<Cluster>) {
     let at = tree.len();
     tree.push(Cluster {

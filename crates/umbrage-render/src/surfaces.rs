@@ -1,5 +1,5 @@
-//! Pipelines that draw surfaces, made when they are first needed: a scene needs few of the many
-//! that there could be.
+//! Pipelines that draw surfaces, made when they are first needed. A scene needs only a few of the
+//! possible ones.
 
 use std::sync::OnceLock;
 
@@ -10,14 +10,16 @@ use crate::draw_list::vertex_layouts;
 use crate::formats::{DEPTH_FORMAT, PICTURE_FORMAT};
 use crate::materials::GpuMaterial;
 
-/// What is read of a vertex.
+/// Vertex attributes that a pipeline reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Vertices {
-    /// Where it is.
+    /// Position alone.
     Positions,
-    /// That, texture coordinates and alpha.
+    /// Position, texture coordinates and alpha.
     Outlines,
-    /// Everything.
+    /// All attributes but colour, for the normals of a mask.
+    Facing,
+    /// All attributes.
     #[default]
     Whole,
 }
@@ -27,36 +29,37 @@ impl Vertices {
         match self {
             Self::Positions => "vs_solid",
             Self::Outlines => "vs_outline",
+            Self::Facing => "vs_facing",
             Self::Whole => "vs_main",
         }
     }
 
-    /// Buffers of [`vertex_layouts`] that are read.
+    /// Returns the number of buffers of [`vertex_layouts`] that are read.
     const fn buffers(self) -> usize {
         match self {
             Self::Positions => 2,
             Self::Outlines => 3,
-            Self::Whole => 4,
+            Self::Facing | Self::Whole => 4,
         }
     }
 }
 
-/// What depth is to a pass over solid surfaces.
+/// Use of depth in a pass over solid surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Depth {
-    /// Drawn by the pass: the nearest surface stays.
+    /// The pass draws depth: the nearest surface stays.
     Drawn,
-    /// There already: what lies at that very depth is shaded.
+    /// Depth was drawn before: surfaces at exactly that depth are shaded.
     Found,
 }
 
-/// What makes one surface pipeline differ from another.
+/// Properties by which one surface pipeline differs from another.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
     pub vertex: Vertices,
     pub fragment_entry: Option<&'static str>,
     pub format: Option<wgpu::TextureFormat>,
-    /// Whether the colour is written.
+    /// True if the colour is written.
     pub writes: bool,
     pub samples: u32,
     pub alpha_to_coverage: bool,
@@ -77,7 +80,7 @@ impl Default for Surface {
     }
 }
 
-/// What the pipelines of a pass have in common.
+/// Properties that the pipelines of a pass share.
 #[derive(Clone)]
 pub(crate) struct Recipe {
     pub gpu: Gpu,
@@ -88,7 +91,7 @@ pub(crate) struct Recipe {
     pub depth: Depth,
 }
 
-/// Pipelines of one target, by what the material and the transform ask for.
+/// Pipelines of one target, by material and transform.
 pub(crate) struct SurfacePipelines {
     label: &'static str,
     recipe: Recipe,
@@ -122,7 +125,7 @@ impl SurfacePipelines {
     }
 }
 
-/// What is drawn where no surface is.
+/// Sky behind all surfaces.
 pub(crate) struct Sky {
     recipe: Recipe,
     samples: u32,

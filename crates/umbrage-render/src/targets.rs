@@ -4,18 +4,22 @@ use crate::Gpu;
 use crate::formats::{DEPTH_FORMAT, PICTURE_FORMAT};
 use crate::forward::Samples;
 
-/// Where a pass stands among the passes that draw one target together.
+/// Place of a pass among the passes that draw one target together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Turn {
-    /// Clears what was there.
+    /// True if the pass clears the target.
     pub first: bool,
-    /// Resolves samples; nothing is kept for a later pass.
+    /// True if the pass resolves samples. Nothing is kept for a later pass.
     pub last: bool,
+    /// True if depth is there already and stays as it is.
+    pub has_depth: bool,
 }
 
 impl Turn {
-    /// The only pass.
-    pub const ONLY: Self = Self { first: true, last: true };
+    /// Turn of a pass that is the only one.
+    pub const ONLY: Self = Self { first: true, last: true, has_depth: false };
+    /// Turn of the only pass after one that drew depth.
+    pub const OVER_DEPTH: Self = Self { has_depth: true, ..Self::ONLY };
 }
 
 /// The textures that a picture is drawn into.
@@ -23,10 +27,10 @@ pub(crate) struct PictureTarget {
     /// The resolved picture.
     pub texture: wgpu::Texture,
     resolved: wgpu::TextureView,
-    /// Several samples per pixel, to be resolved.
+    /// Texture with several samples per pixel, which is resolved.
     samples: Option<wgpu::TextureView>,
     pub depth: wgpu::TextureView,
-    /// Whether depth is kept for passes that come after.
+    /// True if depth is kept for later passes.
     pub keeps_depth: bool,
 }
 
@@ -65,14 +69,14 @@ impl PictureTarget {
 pub(crate) struct MaskTarget {
     /// The mask.
     pub texture: wgpu::Texture,
-    /// What draws it.
+    /// View of the mask that passes draw into.
     pub color: wgpu::TextureView,
-    /// Kept, for passes that come after.
+    /// Depth, which is kept for later passes.
     pub depth: wgpu::TextureView,
 }
 
 impl MaskTarget {
-    /// `format` is that of masks, or that of other numbers of pixels.
+    /// Makes the textures. `format` is that of masks, or of other numbers of pixels.
     pub fn new(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) -> Self {
         let texture = target_texture(gpu, "MaskTarget::pixels", size, format, 1);
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
@@ -117,12 +121,12 @@ fn target_texture(
     })
 }
 
-/// The colours that a pass draws.
+/// Colour attachment of a pass.
 struct Target<'a> {
     label: &'static str,
     color: &'a wgpu::TextureView,
     resolve_target: Option<&'a wgpu::TextureView>,
-    /// What is there before anything is drawn.
+    /// Colour that the attachment is cleared to.
     clear: wgpu::Color,
 }
 
@@ -148,7 +152,7 @@ fn begin<'e>(
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: depth,
             depth_ops: Some(wgpu::Operations {
-                load: if turn.first { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load },
+                load: if turn.first && !turn.has_depth { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load },
                 store: keep_depth,
             }),
             stencil_ops: None,

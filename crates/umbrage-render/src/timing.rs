@@ -1,30 +1,31 @@
-//! How long passes take and how much work they are, asked of the GPU itself where it can answer.
+//! Times and workloads of passes, measured by the GPU itself where it can.
 
 use crate::capture::read_buffer;
 use crate::{Gpu, Result};
 
-/// Passes of a frame beside those of its maps: the mask and the picture.
-const VIEW_PASSES: u32 = 2;
-/// Passes for each map at most: drawn slice by slice, a map goes with the mask and the picture, and
-/// once more with the picture for what is translucent.
+/// Number of passes of a frame beside those of its maps: the depth for contact shadows, the mask, and
+/// the picture, which may be three: its normals, a mask of them and itself.
+const VIEW_PASSES: u32 = 5;
+/// Most passes for each map. Drawn slice by slice, a map's pass is followed by those of the mask
+/// and the picture; for translucent surfaces the map and the picture are drawn once more.
 const PASSES_OF_A_MAP: u32 = 5;
-/// Bytes between the answers of two passes: where a resolved query may be put.
+/// Bytes between the answers of two passes: the alignment of resolved queries.
 const STRIDE: u64 = wgpu::QUERY_RESOLVE_BUFFER_ALIGNMENT;
 
 const STATISTICS: wgpu::PipelineStatisticsTypes = wgpu::PipelineStatisticsTypes::VERTEX_SHADER_INVOCATIONS
     .union(wgpu::PipelineStatisticsTypes::CLIPPER_PRIMITIVES_OUT)
     .union(wgpu::PipelineStatisticsTypes::FRAGMENT_SHADER_INVOCATIONS);
 
-/// What a pass has cost, in counts that depend little on the machine.
+/// Workload of a pass, in counts that depend little on the machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PassCounts {
-    /// Runs of a vertex shader.
+    /// Number of vertex shader invocations.
     pub vertices: u64,
-    /// Triangles left after clipping.
+    /// Number of triangles left after clipping.
     pub primitives: u64,
-    /// Runs of a fragment shader. Opaque casters have none, but some drivers count their pixels all
-    /// the same.
+    /// Number of fragment shader invocations. Opaque casters have no fragment shader, but some
+    /// drivers count their pixels all the same.
     pub fragments: u64,
 }
 
@@ -36,13 +37,14 @@ impl std::ops::AddAssign for PassCounts {
     }
 }
 
-/// When each pass of a frame began and ended, and what it counted; passes in the order in which
-/// they were recorded.
+/// Begin and end of each pass of a frame, and its counts. Passes are in the order in which they are
+/// recorded.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Measured {
-    /// Milliseconds since the first pass began; `None` without timestamp queries.
+    /// Begin and end of each pass, in milliseconds since the first pass began; `None` without
+    /// timestamp queries.
     pub spans_ms: Option<Vec<[f64; 2]>>,
-    /// `None` without pipeline statistics.
+    /// Counts of each pass; `None` without pipeline statistics.
     pub counts: Option<Vec<PassCounts>>,
 }
 
@@ -63,14 +65,14 @@ struct Queries {
 /// A pass that is being measured.
 #[derive(Clone, Copy)]
 pub(crate) struct Slot {
-    /// Which pass of the frame.
+    /// Index of the pass in the frame.
     pub pass: u32,
-    /// Its first query of pipeline statistics.
+    /// Index of the pass's first query of pipeline statistics.
     query: u32,
 }
 
 impl Timer {
-    /// For frames of up to `maps` maps.
+    /// Makes the queries for frames of up to `maps` maps.
     pub fn new(gpu: &Gpu, maps: usize) -> Self {
         let most = PASSES_OF_A_MAP * maps as u32 + VIEW_PASSES;
         let has = |feature| gpu.device.features().contains(feature);
@@ -85,18 +87,18 @@ impl Timer {
         }
     }
 
-    /// Whether passes are timed by the GPU.
+    /// Returns whether the GPU times passes.
     pub fn has_timestamps(&self) -> bool {
         self.timestamps.is_some()
     }
 
-    /// Forgets the last frame.
+    /// Clears the measurements of the last frame.
     pub fn restart(&mut self) {
         self.used = 0;
         self.slots.clear();
     }
 
-    /// The next pass; `views` layers are drawn at once.
+    /// Takes the slot of the next pass, which draws `views` layers at once.
     pub fn next(&mut self, views: usize) -> Slot {
         // A query in a multiview pass uses as many as there are views.
         let slot = Slot { pass: self.slots.len() as u32, query: self.used };
@@ -105,7 +107,7 @@ impl Timer {
         slot
     }
 
-    /// For the pass's descriptor.
+    /// Returns the timestamp writes for the pass's descriptor.
     pub fn timestamp_writes(&self, slot: Slot) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
         self.timestamps.as_ref().map(|queries| wgpu::RenderPassTimestampWrites {
             query_set: &queries.set,
@@ -114,7 +116,7 @@ impl Timer {
         })
     }
 
-    /// Runs `draw` and counts what it does.
+    /// Runs `draw` and counts its work.
     pub fn counted<T>(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
@@ -131,7 +133,7 @@ impl Timer {
         result
     }
 
-    /// Records the answers' way to a readable buffer, after all passes.
+    /// Records the copy of the answers to a readable buffer, after all passes.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         if self.slots.is_empty() {
             return;
@@ -193,7 +195,7 @@ impl Queries {
         }
     }
 
-    /// Ranges of queries, each resolved [`STRIDE`] after the last.
+    /// Resolves ranges of queries, each [`STRIDE`] after the last.
     fn record(&self, encoder: &mut wgpu::CommandEncoder, ranges: impl Iterator<Item = std::ops::Range<u32>>) {
         for (range, offset) in ranges.zip((0..).step_by(STRIDE as usize)) {
             encoder.resolve_query_set(&self.set, range, &self.resolved, offset);

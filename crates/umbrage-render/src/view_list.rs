@@ -1,10 +1,9 @@
-//! What the view draws: whole objects, and of large meshes the parts that it may show, near ones
-//! first.
+//! Objects and parts of large meshes that the view draws, near ones first.
 //!
 //! Depth is drawn before anything is shaded, so that a pixel is shaded once. Near parts go first
-//! there: they spare the alpha tests of what they hide. In the passes that shade, the order of
-//! draws is that of [`Instances::grouped`], turned around: what was drawn first wins where surfaces
-//! lie in each other exactly, as it would without a depth pass.
+//! there: they spare the alpha tests of parts that they hide. In the passes that shade, the order
+//! of draws is that of [`Instances::grouped`], reversed: where surfaces coincide exactly, the one
+//! that was drawn first wins, as it would without a depth pass.
 
 use std::ops::Range;
 
@@ -16,32 +15,33 @@ use crate::draw_list::{Drawable, Piece, Run, Source};
 use crate::geometry::GpuPrimitive;
 use crate::shadow_mesh::descend;
 
-/// Triangles that a mesh has at least, or it is drawn whole and together with others like it.
+/// Fewest triangles of a mesh that is divided. Smaller ones are drawn whole, together with others
+/// of the same mesh.
 const LEAST_TRIANGLES: u64 = 2048;
 
-/// Triangles of the parts that are left out or drawn by themselves, at most. Lower: more draws.
-/// Higher: more that nobody sees.
+/// Most triangles of a part that is left out or drawn by itself. Lower values mean more draws,
+/// higher ones more hidden triangles.
 const PART: u32 = 1024;
 
-/// What is solid in a view.
+/// Solid surfaces in a view.
 #[derive(Default)]
 pub(crate) struct ViewList {
-    /// For the depth pass: near ones first, as far as their boxes tell.
+    /// Pieces for the depth pass: near ones first, as far as their boxes tell.
     pub pieces: Vec<Piece>,
-    /// For passes that shade: the last one first.
+    /// Runs for passes that shade: the last one first.
     pub runs: Vec<Run>,
 }
 
 /// A part of an object that the view may show.
 struct Part {
-    /// How far its box is from the eye, along the line of sight.
+    /// View depth of the part's box: its distance from the eye along the line of sight, in metres.
     depth: f64,
     primitive: usize,
     indices: Range<u32>,
 }
 
 impl ViewList {
-    /// Divides `grouped` runs.
+    /// Divides `grouped` runs into parts.
     pub fn new(drawable: &Drawable<'_>, pose: &Pose, view: &View, grouped: &[Run]) -> Self {
         let mut list = Self::default();
         let mut pieces: Vec<(f64, Piece)> = Vec::new();
@@ -82,14 +82,14 @@ impl ViewList {
     }
 }
 
-/// Whether a mesh is divided.
+/// Returns whether a mesh is divided.
 fn has_parts(source: Source, primitives: &[GpuPrimitive]) -> bool {
     matches!(source, Source::Mesh(_))
         && primitives.iter().any(|primitive| primitive.clusters.len() > 1)
         && primitives.iter().map(GpuPrimitive::triangles).sum::<u64>() >= LEAST_TRIANGLES
 }
 
-/// The parts of an object that the view may show.
+/// Returns the parts of an object that the view may show.
 fn parts_in(view: &View, pose: &Pose, object: usize, primitives: &[GpuPrimitive]) -> Vec<Part> {
     let object = &pose.objects[object];
     let mut parts = Vec::new();
@@ -114,12 +114,12 @@ fn parts_in(view: &View, pose: &Pose, object: usize, primitives: &[GpuPrimitive]
     parts
 }
 
-/// The view depth of the nearest corner of a box.
+/// Returns the view depth of the nearest corner of a box, in metres.
 fn nearest(view: &View, bounds: &umbrage::Aabb) -> f64 {
     bounds.corners().into_iter().map(|corner| view.view_depth(corner)).fold(f64::INFINITY, f64::min)
 }
 
-/// Adds a range behind others, or to the last one if it follows on it.
+/// Adds a range to a list, or extends the last range if the new one follows it.
 fn add(ranges: &mut Vec<Range<u32>>, range: Range<u32>) {
     match ranges.last_mut() {
         Some(last) if last.end == range.start => last.end = range.end,

@@ -8,13 +8,14 @@ use serde::{Deserialize, Serialize};
 use crate::error::read_file;
 use crate::{Error, Result};
 
-/// How far ahead a walker looks, in metres along the path. Given by the command's contract.
+/// Distance in metres along the path from the eye to the target of a walker. Given by the command's
+/// contract.
 const LOOK_AHEAD_M: f64 = 20.0;
 
 /// A polyline in the world, and the sun that its author gave the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraPath {
-    /// Direction towards the sun, as the file has it (not normalised), if it has one.
+    /// Direction towards the sun, as the file has it (not normalised); `None` if the file has none.
     pub sun_direction_to_light: Option<DVec3>,
     file: String,
     points: Vec<DVec3>,
@@ -22,11 +23,11 @@ pub struct CameraPath {
     /// path is closed.
     reached: Vec<f64>,
     closed: bool,
-    /// What is looked at from each point; empty: the path ahead.
+    /// Target for each point; empty if the path looks ahead.
     targets: Vec<DVec3>,
 }
 
-/// The JSON of a path. Keys that are not listed are ignored.
+/// JSON of a path. Other keys are ignored.
 #[derive(Deserialize, Serialize)]
 struct PathFile {
     points: Vec<[f64; 3]>,
@@ -59,9 +60,9 @@ impl CameraPath {
         path.with_targets(json.targets.into_iter().map(DVec3::from).collect())
     }
 
-    /// This path, looking from each point at a target of its own and in between at a point in
-    /// between, instead of ahead. Targets are as far above or below the path's points as the eye
-    /// would be above or below what it looks at.
+    /// Gives each point a target of its own. Between points, the path looks at a point in between
+    /// instead of ahead. Targets are as far above or below the path's points as the eye would be
+    /// above or below its target.
     ///
     /// # Errors
     /// [`Error::CameraPath`] unless there is one finite target for each point.
@@ -77,10 +78,10 @@ impl CameraPath {
         Ok(Self { targets, ..self })
     }
 
-    /// The path as JSON that [`CameraPath::load`] reads.
+    /// Writes the path as JSON that [`CameraPath::load`] reads.
     ///
     /// # Errors
-    /// [`Error::CameraPath`] if the writer fails, which it does for no path that exists.
+    /// [`Error::CameraPath`] if the writer fails, which no valid path causes.
     pub fn to_json(&self) -> Result<String> {
         let file = PathFile {
             points: self.points.iter().map(DVec3::to_array).collect(),
@@ -96,8 +97,8 @@ impl CameraPath {
         serde_json::to_string(&file).map_err(failed)
     }
 
-    /// A path through `points`, back to the first if it is `closed`; `name` stands for the file in
-    /// messages.
+    /// Makes a path through `points`, back to the first if it is `closed`. `name` stands for the
+    /// file in messages.
     ///
     /// # Errors
     /// [`Error::CameraPath`] if there are fewer than two different points, or numbers are not
@@ -132,32 +133,32 @@ impl CameraPath {
         Ok(path)
     }
 
-    /// Metres along the whole path.
+    /// Returns the length of the whole path in metres.
     #[must_use]
     pub fn length(&self) -> f64 {
         self.reached[self.reached.len() - 1]
     }
 
-    /// Whether the path leads back to its first point.
+    /// Returns whether the path leads back to its first point.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.closed
     }
 
-    /// The points of the path, in metres.
+    /// Returns the points of the path, in metres.
     #[must_use]
     pub fn points(&self) -> &[DVec3] {
         &self.points
     }
 
-    /// The point `distance` metres along the path. A closed path goes round and round; an open one
-    /// goes straight on behind its last point and before its first.
+    /// Returns the point `distance` metres along the path. A closed path goes round and round. An
+    /// open one goes straight on behind its last point and before its first.
     #[must_use]
     pub fn point_at(&self, distance: f64) -> DVec3 {
         self.between(&self.points, distance)
     }
 
-    /// What lies `distance` metres along the path, of values that belong to its points.
+    /// Interpolates values that belong to the path's points at `distance` metres along the path.
     fn between(&self, values: &[DVec3], distance: f64) -> DVec3 {
         let distance = if self.closed { distance.rem_euclid(self.length()) } else { distance };
         // The last segment that starts at or before the distance; segments of no length never
@@ -175,10 +176,11 @@ impl CameraPath {
         from.lerp(to, share)
     }
 
-    /// Eye and target of frame `frame` of `frames`, `eye_height` metres above the path. The frames
-    /// are spread evenly over its length: from the first point to the last, or once round without
-    /// coming back to the first. The target is the point 20 m further on, at the same height above
-    /// the path, or the path's own ([`CameraPath::with_targets`]), raised likewise.
+    /// Returns eye and target of frame `frame` of `frames`, `eye_height` metres above the path. The
+    /// frames are spread evenly over its length: from the first point to the last, or once round
+    /// without coming back to the first. The target is the point 20 m further on, at the same
+    /// height above the path, or the path's own target ([`CameraPath::with_targets`]), raised
+    /// likewise.
     ///
     /// # Errors
     /// [`Error::NoSuchElement`] if the frame is not below `frames`; [`Error::CameraPath`] if

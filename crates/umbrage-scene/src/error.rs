@@ -1,4 +1,4 @@
-//! What can be wrong with a scene and the files it comes from.
+//! Errors of scenes and of the files that they come from.
 
 use std::fs::FileType;
 use std::path::{Path, PathBuf};
@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 /// [`std::result::Result`] with this crate's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Why a scene could not be read, posed, framed or written. Every message names the file and the
-/// element at fault.
+/// Reason why a scene could not be read, posed, framed or written. Every message names the file and
+/// the element at fault.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -16,51 +16,51 @@ pub enum Error {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Message of the operating system.
         source: std::io::Error,
     },
-    /// Something that has a name like a file, but may never end or never begin.
+    /// The path names something that is not a regular file and may never end or never begin.
     #[error("{}: is {kind}, not a regular file; give a file", path.display())]
     NotAFile {
-        /// Its name.
+        /// Path of the thing.
         path: PathBuf,
-        /// What it is, as `a pipe`.
+        /// Kind of the thing, as `a pipe`.
         kind: &'static str,
     },
     /// A file that another file needs is missing or cannot be read.
     #[error("{file}: {element}: its file {} cannot be read: {reason}", path.display())]
     External {
-        /// The file that needs it.
+        /// Name of the file that refers to another.
         file: String,
-        /// The buffer or image that names it.
+        /// Buffer or image that names the other file.
         element: String,
-        /// The file that is needed.
+        /// Path of the file that is needed.
         path: PathBuf,
-        /// What the system said.
+        /// Message of the operating system.
         reason: String,
     },
-    /// Neither the name of a world nor a file of a known kind.
+    /// The scene is neither the name of a world nor a file of a known kind.
     #[error("{spec} is not a scene; give a {}, or one of the worlds {worlds}", crate::EXTENSIONS)]
     UnknownScene {
-        /// What was asked for.
+        /// Scene that was asked for.
         spec: String,
-        /// The worlds there are.
+        /// Names of all worlds.
         worlds: String,
     },
-    /// A number of objects that a world cannot have.
+    /// A world cannot have this number of objects.
     #[error("{option}: {reason}")]
     WorldOption {
-        /// The option of [`crate::procedural::WorldOptions`].
+        /// Name of the option of [`crate::procedural::WorldOptions`].
         option: &'static str,
-        /// What is wrong with it, and what to do.
+        /// Fault and remedy.
         reason: String,
     },
-    /// The file as a whole is not what it claims to be, or it is cut short.
+    /// The file as a whole is malformed or cut short.
     #[error("{file}: {reason}")]
     Malformed {
         /// The file.
         file: String,
-        /// What is wrong with it.
+        /// Fault of the file.
         reason: String,
     },
     /// A part of a file contradicts the format or the rest of the file.
@@ -70,10 +70,10 @@ pub enum Error {
         file: String,
         /// The part at fault, as `accessors[3]` or `points[7]`.
         element: String,
-        /// What is wrong with it and what it has to be.
+        /// Fault of the part, and what it has to be.
         reason: String,
     },
-    /// The file says that it cannot be shown without an extension which is not supported here.
+    /// The file requires an extension that is not supported here.
     #[error(
         "{file}: extensionsRequired: the glTF extension {extension} is not supported and may change shapes; export the \
          file without it"
@@ -81,11 +81,10 @@ pub enum Error {
     UnsupportedExtension {
         /// The file.
         file: String,
-        /// The extension's name.
+        /// Name of the extension.
         extension: String,
     },
-    /// A URI that may not be followed: absolute, with a scheme, or leading out of the file's
-    /// folder.
+    /// A URI may not be followed: it is absolute, has a scheme, or leads out of the file's folder.
     #[error("{file}: {element}: the URI \"{uri}\" {reason}; external files have to lie in the folder of the glTF file")]
     UnsafeUri {
         /// The file.
@@ -94,25 +93,25 @@ pub enum Error {
         element: String,
         /// The URI.
         uri: String,
-        /// Why it is not followed.
+        /// Reason why the URI is not followed.
         reason: &'static str,
     },
-    /// A picture cannot be decoded, or is larger than is reasonable.
+    /// A picture cannot be decoded, or is unreasonably large.
     #[error("{file}: {element}: {reason}")]
     Image {
         /// The file.
         file: String,
-        /// Which picture.
+        /// Element that holds the picture.
         element: String,
-        /// What is wrong with it.
+        /// Fault of the picture.
         reason: String,
     },
-    /// A height map or its side file is not usable.
+    /// A height map or its side file is unusable.
     #[error("{}: height map: {reason}", path.display())]
     HeightMap {
-        /// The picture or the side file.
+        /// Path of the picture or the side file.
         path: PathBuf,
-        /// What is wrong and what to give.
+        /// Fault and remedy.
         reason: String,
     },
     /// A [`crate::Scene`] contradicts itself: an index points nowhere, or lengths differ.
@@ -122,7 +121,7 @@ pub enum Error {
         scene: String,
         /// The part at fault, as `nodes[3] (wheel)`.
         element: String,
-        /// What is wrong with it.
+        /// Fault of the part.
         reason: String,
     },
     /// A node cannot be placed at the given time.
@@ -132,47 +131,47 @@ pub enum Error {
         scene: String,
         /// The node or the time at fault.
         element: String,
-        /// What is wrong.
+        /// Fault of the node or the time.
         reason: String,
     },
-    /// A camera or light, or a frame of a path, that is not there.
+    /// The scene or path has no camera, light or frame with this index.
     #[error("there is no {kind} {index}; there are {count}, counted from 0")]
     NoSuchElement {
-        /// `camera`, `light` or `frame`.
+        /// Kind of the element: `camera`, `light` or `frame`.
         kind: &'static str,
-        /// What was asked for.
+        /// Index that was asked for.
         index: usize,
-        /// How many there are.
+        /// Number of elements.
         count: usize,
     },
-    /// A light that has no direction was asked for one.
+    /// A light without a direction was asked for one.
     #[error("scene {scene}: {light}: {reason}")]
     Light {
         /// The scene's name.
         scene: String,
         /// Index and name of the light.
         light: String,
-        /// What is wrong and what to do.
+        /// Fault and remedy.
         reason: String,
     },
-    /// A camera path is not usable.
+    /// A camera path is unusable.
     #[error("{file}: camera path: {element}: {reason}")]
     CameraPath {
         /// The file.
         file: String,
         /// The part at fault.
         element: String,
-        /// What is wrong with it.
+        /// Fault of the part.
         reason: String,
     },
-    /// The node of a camera places it in a way that no view can have.
+    /// The node of a camera places it in a way that no view allows.
     #[error("scene {scene}: {camera}: {reason}")]
     Camera {
         /// The scene's name.
         scene: String,
         /// Index and name of the camera.
         camera: String,
-        /// What is wrong and what to do.
+        /// Fault and remedy.
         reason: String,
     },
     /// A view cannot be made of a camera.
@@ -183,12 +182,12 @@ pub enum Error {
     Export {
         /// The part at fault.
         element: String,
-        /// What is wrong with it.
+        /// Fault of the part.
         reason: String,
     },
 }
 
-/// Reads a whole regular file, naming it if that fails.
+/// Reads a whole regular file. The error names it.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>> {
     let failed = |source| Error::Read { path: path.to_owned(), source };
     match irregular(&std::fs::metadata(path).map_err(failed)?.file_type()) {
@@ -197,7 +196,7 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>> {
     }
 }
 
-/// What a thing is that is not a regular file.
+/// Returns the kind of a thing that is not a regular file.
 fn irregular(kind: &FileType) -> Option<&'static str> {
     #[cfg(unix)]
     {
@@ -219,7 +218,7 @@ fn irregular(kind: &FileType) -> Option<&'static str> {
     }
 }
 
-/// `kind[index]`, with the name behind it if there is one.
+/// Formats `kind[index]`, followed by the name if there is one.
 pub(crate) fn element(kind: &str, index: usize, name: &str) -> String {
     if name.is_empty() { format!("{kind}[{index}]") } else { format!("{kind}[{index}] ({name})") }
 }

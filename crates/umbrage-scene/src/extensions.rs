@@ -1,14 +1,14 @@
-//! Extensions of files that are scenes.
+//! Extensions of scene files. An error lists them, so this file needs none.
 
 use std::fmt;
 
-/// Extensions of the files that [`crate::open`] reads, in small letters and without the dot.
-/// Displayed, they are a list for messages.
+/// Extensions of the files that [`crate::open`] reads, in lower case and without the dot. `Display` writes
+/// them as a list for messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extensions {
-    /// Of glTF files.
+    /// Extensions of glTF files.
     pub gltf: &'static [&'static str],
-    /// Of height maps.
+    /// Extensions of height maps.
     pub height_map: &'static [&'static str],
 }
 

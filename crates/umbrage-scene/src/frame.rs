@@ -1,4 +1,4 @@
-//! From where and by which sun a scene is seen: its own cameras and lights, or invented ones.
+//! Cameras and suns of a scene: its own, or invented ones.
 
 use glam::DVec3;
 use umbrage::{DirectionalLight, Frustum, Light, PointLight, SpotLight, View};
@@ -6,14 +6,14 @@ use umbrage::{DirectionalLight, Frustum, Light, PointLight, SpotLight, View};
 use crate::error::element;
 use crate::{Error, Lens, LightKind, Pose, Result, Scene};
 
-/// How much larger than the scene an invented view is. Ours: a border of a few pixels.
+/// Size of an invented view relative to the scene. Ours: it leaves a border of a few pixels.
 const FRAMING_MARGIN: f64 = 1.04;
 
 /// Least near distance of an invented view, as a share of its far distance. Ours: a ten-thousandth
-/// leaves a logarithmic split room and a 32-bit depth buffer precision.
+/// leaves room for a logarithmic split and precision for a 32-bit depth buffer.
 const LEAST_NEAR_SHARE: f64 = 1e-4;
 
-/// The view of a camera of the scene, for a picture of `aspect` (width over height).
+/// Makes the view of a camera of the scene, for a picture of `aspect` (width over height).
 ///
 /// The vertical angle (or height) of the lens is kept and the width follows the picture. `near` and
 /// `far` in metres take precedence over the camera's own; without either, far is infinite for a
@@ -52,7 +52,8 @@ pub fn camera_view(
     })
 }
 
-/// The way the light of a light of the scene travels along its axis, a unit vector in the world.
+/// Returns the direction in which a light of the scene travels along its axis, as a unit vector in
+/// the world.
 ///
 /// # Errors
 /// [`Error::NoSuchElement`], or [`Error::Light`] if it shines from a point to all sides or its node
@@ -73,14 +74,14 @@ pub fn light_direction(scene: &Scene, pose: &Pose, index: usize) -> Result<DVec3
         .ok_or_else(|| unusable("stands on a node without a direction (its scale is 0)"))
 }
 
-/// A light of the scene as the planner knows it, in the world, at the moment of the pose: a
+/// Returns a light of the scene for the planner, in the world and at the moment of the pose: a
 /// directional light along its node's −Z, a spot light with its outer cone, or a point light.
-/// glTF's lights keep their range whatever their node's scale is. One of unlimited range gets the
-/// distance to the farthest corner of what the pose shows.
+/// glTF's lights keep their range whatever their node's scale is. A light of unlimited range gets
+/// the distance to the farthest corner of the posed objects.
 ///
 /// # Errors
-/// [`Error::NoSuchElement`]; [`Error::Light`] if its node has no direction, or naming what makes it
-/// none that can cast shadows (a cone wider than the planner takes).
+/// [`Error::NoSuchElement`]; [`Error::Light`] if its node has no direction, or if the light cannot
+/// cast shadows (a cone wider than the planner takes).
 pub fn scene_light(scene: &Scene, pose: &Pose, index: usize) -> Result<Light> {
     let count = scene.lights.len();
     let missing = || Error::NoSuchElement { kind: "light", index, count };
@@ -106,8 +107,8 @@ fn light_error(scene: &Scene, index: usize, reason: impl Into<String>) -> Error 
     Error::Light { scene: scene.name.clone(), light: element("lights", index, name), reason: reason.into() }
 }
 
-/// A sun for scenes without one: from the south-west, 45° up. The way its light travels, a unit
-/// vector.
+/// Returns the direction in which the light of an invented sun travels, as a unit vector: from the
+/// south-west, 45° up.
 ///
 /// An invented view looks from the south-east, so shadows fall to the right, away from the eye.
 #[must_use]
@@ -116,8 +117,8 @@ pub fn invented_sun() -> DVec3 {
     DVec3::new(across * turn.sin(), -across, -across * turn.cos())
 }
 
-/// A view for scenes without a camera: from the south-east, a bit above, the whole scene in the
-/// picture.
+/// Invents a view for scenes without a camera: from the south-east and a bit above, with the whole
+/// scene in the picture.
 ///
 /// `fov_y` is the full vertical angle in radians. `near` and `far` in metres follow from the scene
 /// where they are `None`. A scene without triangles is looked at from 10 m away.

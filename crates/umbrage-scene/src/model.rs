@@ -1,26 +1,26 @@
-//! The scene as all other crates see it: meshes, materials, nodes, cameras, lights; no file format,
-//! no GPU.
+//! The scene that all other crates use: meshes, materials, nodes, cameras and lights, without any
+//! file format or GPU.
 
 use std::collections::BTreeMap;
 
 use glam::{DAffine3, DQuat, DVec3, Mat4};
 use umbrage::Aabb;
 
-/// A scene: geometry that is stored once and nodes that place it. Right-handed, +Y up, metres.
+/// A scene: geometry that is stored once, and nodes that place it. Right-handed, +Y up, metres.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// For messages: the file's or world's name.
+    /// Name of the file or world, for messages.
     pub name: String,
-    /// Stored geometry.
+    /// Stored geometry, which nodes place.
     pub meshes: Vec<Mesh>,
-    /// By mesh, coarser shapes of what it shows, the finest of them first.
+    /// Coarser levels of detail of each mesh that has some, the finest of them first.
     pub levels: BTreeMap<usize, Vec<DetailLevel>>,
-    /// Never empty once loaded if there is a primitive: primitives without a material point at a
-    /// default one.
+    /// Materials. If there is a primitive, a loaded scene has at least one: primitives without a
+    /// material refer to a default one.
     pub materials: Vec<Material>,
     /// Pictures that materials refer to.
     pub textures: Vec<Texture>,
-    /// The hierarchy; a parent comes before its children.
+    /// Nodes of the hierarchy. A parent comes before its children.
     pub nodes: Vec<Node>,
     /// Cameras, placed by their nodes.
     pub cameras: Vec<SceneCamera>,
@@ -28,44 +28,44 @@ pub struct Scene {
     pub lights: Vec<SceneLight>,
     /// Skeletons.
     pub skins: Vec<Skin>,
-    /// Clips. A pose plays clip 0 and every later clip whose nodes no earlier clip moves, each in a
-    /// loop.
+    /// Animation clips. A pose plays clip 0, and every later clip whose nodes no earlier clip
+    /// moves, each in a loop.
     pub animations: Vec<Animation>,
-    /// What was left out or invented while loading, for the report.
+    /// Remarks on parts that were left out or invented while loading, for the report.
     pub notes: Vec<String>,
 }
 
 /// Geometry that nodes place.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    /// For messages.
+    /// Name, for messages.
     pub name: String,
-    /// One draw each.
+    /// Primitives, drawn with one draw call each.
     pub primitives: Vec<Primitive>,
-    /// How far each morph target of the primitives is applied where no node says otherwise; 0 where
-    /// it is shorter.
+    /// Default weight of each morph target of the primitives; 0 for targets beyond the list.
     pub weights: Vec<f32>,
 }
 
 impl Mesh {
-    /// Whether some primitive has morph targets, so that its vertices are posed.
+    /// Returns whether some primitive has morph targets, so that its vertices are posed.
     #[must_use]
     pub fn is_morphed(&self) -> bool {
         self.primitives.iter().any(|primitive| !primitive.targets.is_empty())
     }
 }
 
-/// A coarser shape of a mesh.
+/// A coarser level of detail of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DetailLevel {
     /// Index into [`Scene::meshes`]; neither skinned nor morphed.
     pub mesh: usize,
-    /// Metres, in the mesh's own space, of the smallest detail that it shows.
+    /// Size of the smallest detail that the level shows, in metres of the mesh's own space.
     pub detail_m: f64,
 }
 
 impl Scene {
-    /// The coarsest shape of a mesh that shows details of so many metres of the mesh's own space.
+    /// Returns the coarsest mesh that still shows details of `detail_m` metres in the mesh's own
+    /// space.
     #[must_use]
     pub fn shape_of(&self, mesh: usize, detail_m: f64) -> usize {
         let coarser = self.levels.get(&mesh).map_or(&[][..], Vec::as_slice);
@@ -78,66 +78,67 @@ impl Scene {
 pub struct Primitive {
     /// Local positions in metres.
     pub positions: Vec<[f32; 3]>,
-    /// Unit normals, one per position; a loader computes flat ones (splitting vertices) where the
-    /// file has none.
+    /// Unit normals, one per position. Where the file has none, a loader computes flat ones and
+    /// splits vertices.
     pub normals: Vec<[f32; 3]>,
-    /// Texture coordinates of the base colour (KHR_texture_transform already applied); empty if
-    /// there are none.
+    /// Texture coordinates of the base colour (with KHR_texture_transform applied); empty if there
+    /// are none.
     pub uvs: Vec<[f32; 2]>,
     /// Linear RGB(A) vertex colours, multiplied into the base colour; empty if there are none.
     pub colors: Vec<[f32; 4]>,
-    /// Three per triangle.
+    /// Indices into the vertices, three per triangle.
     pub indices: Vec<u32>,
     /// Index into [`Scene::materials`].
     pub material: usize,
     /// Four joints per vertex as indices into the skin; empty if not skinned.
     pub joints: Vec<[u16; 4]>,
-    /// Their weights; sum 1.
+    /// Weights of the joints; their sum is 1.
     pub weights: Vec<[f32; 4]>,
-    /// Shapes that a weight each blends into the base shape; the primitives of a mesh share the
-    /// weights.
+    /// Morph targets: shapes that are blended into the base shape by a weight each. The primitives
+    /// of a mesh share the weights.
     pub targets: Vec<MorphTarget>,
-    /// Whether a posed shape takes its normals from its triangles, because the file has none. No
-    /// two triangles then share a vertex if there are morph targets.
+    /// True if a posed shape takes its normals from its triangles, because the file has none. If
+    /// there are morph targets, no two triangles then share a vertex.
     pub flat: bool,
 }
 
-/// Differences to the base shape: vertex + weight · difference (glTF 2.0 specification, section
+/// Differences from the base shape: vertex + weight · difference (glTF 2.0 specification, section
 /// 3.7.2.2).
 #[derive(Clone, Debug, Default)]
 pub struct MorphTarget {
-    /// Metres, one per vertex; empty if no vertex moves.
+    /// Differences of positions in metres, one per vertex; empty if no vertex moves.
     pub positions: Vec<[f32; 3]>,
     /// Differences of normals, one per vertex; empty if no normal turns.
     pub normals: Vec<[f32; 3]>,
 }
 
-/// How alpha is used.
+/// Use of alpha.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AlphaMode {
     /// Alpha is ignored.
     Opaque,
-    /// A surface where alpha ≥ cutoff, nothing elsewhere, for the eye and for shadows.
+    /// Alpha test, for the eye and for shadows: there is a surface where alpha ≥ cutoff, and
+    /// nothing elsewhere.
     Mask {
-        /// Least alpha that counts.
+        /// Least alpha of the surface.
         cutoff: f32,
     },
-    /// Translucent: drawn over the rest, casts no shadow, hides nothing.
+    /// Translucent: drawn over the other surfaces. It casts no shadow and hides nothing.
     Blend,
 }
 
-/// A surface.
+/// Properties of a surface.
 #[derive(Clone, Debug)]
 pub struct Material {
-    /// For messages.
+    /// Name, for messages.
     pub name: String,
-    /// Linear RGBA, multiplied with the texture.
+    /// Linear RGBA, multiplied by the texture.
     pub base_color: [f32; 4],
     /// Index into [`Scene::textures`].
     pub base_color_texture: Option<usize>,
-    /// How alpha is used.
+    /// Use of alpha.
     pub alpha: AlphaMode,
-    /// Seen from behind too. Shadows are cast by both sides always.
+    /// True if the surface is visible from behind too. Both sides always cast shadows.
     pub double_sided: bool,
     /// Linear RGB that the surface emits.
     pub emissive: [f32; 3],
@@ -156,63 +157,63 @@ impl Default for Material {
     }
 }
 
-/// What happens outside `\[0,1\]`.
+/// Texture addressing outside `\[0,1\]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Wrap {
-    /// Starts again.
+    /// The texture repeats.
     #[default]
     Repeat,
-    /// Stays at the border.
+    /// The border texel continues.
     Clamp,
-    /// Runs back.
+    /// The texture repeats, mirrored every other time.
     Mirror,
 }
 
-/// What lies between texels.
+/// Filter between texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TextureFilter {
-    /// A bilinear mix of the four nearest.
+    /// Bilinear mix of the four nearest texels.
     #[default]
     Linear,
     /// The nearest texel.
     Nearest,
 }
 
-/// A picture, 8-bit sRGB colour and linear alpha, row 0 on top.
+/// A picture with 8-bit sRGB colour and linear alpha, row 0 on top.
 #[derive(Clone, Debug)]
 pub struct Texture {
-    /// Pixels across.
+    /// Width in pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Height in pixels.
     pub height: u32,
-    /// Four bytes per pixel.
+    /// Pixels, four bytes each.
     pub rgba: Vec<u8>,
-    /// Addressing of u and v.
+    /// Addressing along u and v.
     pub wrap: [Wrap; 2],
-    /// What magnified texels look like, for colour and for alpha masks.
+    /// Filter of magnified texels, for colour and for alpha masks.
     pub filter: TextureFilter,
 }
 
-/// A place in the hierarchy.
+/// A node of the hierarchy.
 #[derive(Clone, Debug)]
 pub struct Node {
-    /// For messages, and to choose cameras and lights by.
+    /// Name, for messages, and to choose cameras and lights by.
     pub name: String,
-    /// Index of a node before this one.
+    /// Index of the parent, a node before this one.
     pub parent: Option<usize>,
-    /// Where it stands relative to its parent, when nothing moves it.
+    /// Transform relative to the parent, when no animation moves the node.
     pub local: Trs,
-    /// What it shows.
+    /// Index of the mesh that the node shows, in [`Scene::meshes`].
     pub mesh: Option<usize>,
     /// Index into [`Scene::skins`]; the mesh is then placed by the joints alone.
     pub skin: Option<usize>,
-    /// EXT_mesh_gpu_instancing: the mesh once per entry, relative to the node. Empty: once, at the
-    /// node.
+    /// Instances (EXT_mesh_gpu_instancing): the mesh is shown once per entry, relative to the node.
+    /// If empty, it is shown once, at the node.
     pub instances: Vec<Trs>,
-    /// How far each morph target of the mesh is applied, instead of [`Mesh::weights`]; empty: as
-    /// the mesh says.
+    /// Weight of each morph target of the mesh, instead of [`Mesh::weights`]; empty to use the
+    /// mesh's weights.
     pub weights: Vec<f32>,
-    /// Whether the mesh casts shadows (`extras.castShadow`, true unless it says false).
+    /// True if the mesh casts shadows (`extras.castShadow`, which is true by default).
     pub cast_shadow: bool,
 }
 
@@ -231,7 +232,7 @@ impl Default for Node {
     }
 }
 
-/// Translation, rotation, scale: parent_from_local = T R S.
+/// Translation T, rotation R and scale S: parent_from_local = T R S.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(missing_docs, reason = "the fields are what the name says")]
 pub struct Trs {
@@ -241,10 +242,10 @@ pub struct Trs {
 }
 
 impl Trs {
-    /// Stays where it is.
+    /// The transform that changes nothing.
     pub const IDENTITY: Self = Self { translation: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: DVec3::ONE };
 
-    /// As a transform.
+    /// Returns the affine transform.
     #[must_use]
     pub fn to_affine(self) -> DAffine3 {
         DAffine3::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
@@ -254,15 +255,15 @@ impl Trs {
 /// A camera of the scene. It looks along its node's −Z.
 #[derive(Clone, Debug)]
 pub struct SceneCamera {
-    /// The camera's name, or its node's.
+    /// Name of the camera, or of its node.
     pub name: String,
     /// Index into [`Scene::nodes`].
     pub node: usize,
-    /// What it sees.
+    /// Projection of the camera.
     pub lens: Lens,
 }
 
-/// glTF's two projections; lengths in metres, angles in radians.
+/// Projection of a camera, as in glTF; lengths in metres, angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(missing_docs, reason = "glTF's own names")]
 pub enum Lens {
@@ -272,7 +273,7 @@ pub enum Lens {
         znear: f64,
         zfar: Option<f64>,
     },
-    /// `xmag` and `ymag` are half widths.
+    /// Orthographic projection; `xmag` and `ymag` are half widths.
     Orthographic {
         xmag: f64,
         ymag: f64,
@@ -284,21 +285,21 @@ pub enum Lens {
 /// A light of the scene (KHR_lights_punctual). It shines along its node's −Z.
 #[derive(Clone, Debug)]
 pub struct SceneLight {
-    /// The light's name, or its node's.
+    /// Name of the light, or of its node.
     pub name: String,
     /// Index into [`Scene::nodes`].
     pub node: usize,
-    /// What sort.
+    /// Kind of the light.
     pub kind: LightKind,
-    /// Linear RGB.
+    /// Colour in linear RGB.
     pub color: [f32; 3],
-    /// Lux or candela, as glTF has it.
+    /// Intensity in lux or candela, as in glTF.
     pub intensity: f32,
-    /// Metres; `None` is unlimited.
+    /// Range in metres; `None` is unlimited.
     pub range: Option<f64>,
 }
 
-/// The three kinds of KHR_lights_punctual; angles in radians from the axis.
+/// Kind of a light, as in KHR_lights_punctual; angles in radians from the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(missing_docs, reason = "glTF's own names")]
 pub enum LightKind {
@@ -307,23 +308,23 @@ pub enum LightKind {
     Spot { inner: f64, outer: f64 },
 }
 
-/// A skeleton.
+/// A skeleton for skinning.
 #[derive(Clone, Debug, Default)]
 pub struct Skin {
-    /// Indices into [`Scene::nodes`].
+    /// Indices of the joints in [`Scene::nodes`].
     pub joints: Vec<usize>,
-    /// bind space from mesh space, one per joint.
+    /// Inverse bind matrix of each joint: bind space from mesh space.
     pub inverse_bind: Vec<Mat4>,
 }
 
-/// A clip.
+/// An animation clip.
 #[derive(Clone, Debug, Default)]
 pub struct Animation {
-    /// For messages.
+    /// Name, for messages.
     pub name: String,
-    /// What it moves.
+    /// Animated properties of nodes.
     pub channels: Vec<Channel>,
-    /// Seconds until it starts again: the last key of all channels.
+    /// Seconds until the clip starts again: the time of the last key of all channels.
     pub duration: f64,
 }
 
@@ -336,11 +337,11 @@ pub struct Channel {
     pub times: Vec<f32>,
     /// Key values.
     pub values: Keys,
-    /// Between keys.
+    /// Interpolation between keys.
     pub interpolation: Interpolation,
 }
 
-/// The keys of a channel; cubic splines hold in-tangent, value, out-tangent per key.
+/// Values of the keys of a channel. Cubic splines hold in-tangent, value and out-tangent per key.
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "the properties of a node")]
 pub enum Keys {
@@ -355,7 +356,7 @@ pub enum Keys {
 }
 
 impl Keys {
-    /// How many values there are: one per key, three for cubic splines.
+    /// Returns the number of values: one per key, three for cubic splines.
     #[must_use]
     pub fn count(&self) -> usize {
         match self {
@@ -366,7 +367,7 @@ impl Keys {
     }
 }
 
-/// Between keys.
+/// Interpolation between keys.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(missing_docs, reason = "glTF's own names")]
 pub enum Interpolation {
@@ -376,21 +377,21 @@ pub enum Interpolation {
     CubicSpline,
 }
 
-/// The scene at one moment: what a renderer draws and a ray meets.
+/// The scene at one moment, for renderers and rays.
 #[derive(Clone, Debug, Default)]
 pub struct Pose {
-    /// One per mesh node, or per instance of one, in node order then instance order; nodes without
-    /// triangles are left out.
+    /// Objects: one per mesh node, or per instance of one, in node order and then instance order.
+    /// Nodes without triangles are left out.
     pub objects: Vec<Object>,
     /// World transform of every node.
     pub world_from_node: Vec<DAffine3>,
-    /// Vertices of skinned and morphed objects, see [`Object::skinned`].
+    /// Vertices of skinned and morphed objects; see [`Object::skinned`].
     pub skinned: Vec<SkinnedMesh>,
-    /// Around all objects; `None` if there are none.
+    /// Bounding box of all objects; `None` if there are none.
     pub bounds: Option<Aabb>,
 }
 
-/// A placed mesh: the unit of casting, receiving and culling.
+/// A placed mesh, which is the unit of casting, receiving and culling.
 #[derive(Clone, Debug)]
 pub struct Object {
     /// Index into [`Scene::nodes`].
@@ -399,22 +400,22 @@ pub struct Object {
     pub instance: Option<u32>,
     /// Index into [`Scene::meshes`].
     pub mesh: usize,
-    /// Places the vertices: those of the mesh, or those of [`Object::skinned`].
+    /// World transform of the vertices: those of the mesh, or those of [`Object::skinned`].
     pub world_from_local: DAffine3,
-    /// Index into [`Pose::skinned`], whose vertices take the place of the mesh's; instances share
-    /// an entry.
+    /// Index into [`Pose::skinned`], whose vertices replace the mesh's. Instances share an entry.
     pub skinned: Option<usize>,
-    /// Exact world bounds of the vertices.
+    /// Exact bounding box of the vertices in the world.
     pub bounds: Aabb,
-    /// Whether it casts shadows: the node says so and some primitive is not [`AlphaMode::Blend`].
+    /// True if the object casts shadows: the node does, and some primitive is not
+    /// [`AlphaMode::Blend`].
     pub casts: bool,
 }
 
-/// Vertices of a skinned or morphed mesh at one moment, one entry per primitive of the mesh.
+/// Vertices of a skinned or morphed mesh at one moment, with one entry per primitive of the mesh.
 #[derive(Clone, Debug, Default)]
 pub struct SkinnedMesh {
-    /// The world point that skinned positions are relative to; zero where a node places what is
-    /// only morphed.
+    /// World point that skinned positions are relative to; zero for a mesh that is only morphed,
+    /// which its node places.
     pub origin: DVec3,
     /// Positions in metres, per primitive, in the space that [`Object::world_from_local`] places.
     pub positions: Vec<Vec<[f32; 3]>>,

@@ -5,8 +5,8 @@ use glam::DVec3;
 
 use crate::{Mesh, Primitive, SkinnedMesh};
 
-/// The vertices of a mesh under weights of its morph targets, in the mesh's own space. Weights
-/// beyond the targets count for nothing, targets beyond the weights have weight 0.
+/// Returns the vertices of a mesh under weights of its morph targets, in the mesh's own space.
+/// Weights beyond the targets are ignored; targets beyond the weights have weight 0.
 pub(crate) fn morphed(mesh: &Mesh, weights: &[f64]) -> SkinnedMesh {
     let (positions, normals) = mesh.primitives.iter().map(|primitive| morphed_primitive(primitive, weights)).unzip();
     SkinnedMesh { origin: DVec3::ZERO, positions, normals }
@@ -33,7 +33,7 @@ fn morphed_primitive(primitive: &Primitive, weights: &[f64]) -> (Vec<[f32; 3]>, 
     (positions, normals)
 }
 
-/// `base` + Σ weight · difference, summed in `f64`.
+/// Computes `base` + Σ weight · difference, summed in `f64`.
 fn blended(base: &[[f32; 3]], differences: Vec<(&[[f32; 3]], f64)>) -> Vec<[f32; 3]> {
     if differences.is_empty() {
         return base.to_vec();
@@ -46,7 +46,7 @@ fn blended(base: &[[f32; 3]], differences: Vec<(&[[f32; 3]], f64)>) -> Vec<[f32;
     base.iter().enumerate().map(vertex).collect()
 }
 
-/// Normals of triangles that share no vertices; a triangle without area keeps its own.
+/// Returns the normals of triangles that share no vertices. A triangle without area keeps its own.
 fn flat_normals(positions: &[[f32; 3]], primitive: &Primitive) -> Vec<[f32; 3]> {
     let mut normals = primitive.normals.clone();
     for triangle in primitive.indices.chunks_exact(3) {

@@ -1,12 +1,12 @@
-//! A scene somewhere else in the world.
+//! Translation of a whole scene in the world.
 
 use glam::DVec3;
 
 use crate::{Node, Scene, Trs};
 
 impl Scene {
-    /// This scene, `by` metres from where it stood, with its cameras and lights: everything hangs
-    /// from a new first node, so that what moves goes on as before and nothing stored loses digits.
+    /// Moves the scene by `by` metres, with its cameras and lights. All nodes become children of a
+    /// new first node, so that animations go on as before and no stored number loses digits.
     #[must_use]
     pub fn moved(mut self, by: DVec3) -> Self {
         let root = Node { name: "moved".into(), local: Trs { translation: by, ..Trs::IDENTITY }, ..Node::default() };

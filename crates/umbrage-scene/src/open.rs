@@ -1,4 +1,4 @@
-//! Scenes by name: a world, or a file whose loader its extension or content chooses.
+//! Opening scenes by name: a world, or a file whose loader its extension or content chooses.
 
 use std::fs::File;
 use std::io::Read as _;
@@ -10,29 +10,28 @@ use crate::{
     load_height_map_slice,
 };
 
-/// How files are read.
+/// Options of reading files and building worlds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OpenOptions {
-    /// What a height map means in metres.
+    /// Scale and encoding of height maps.
     pub height_map: HeightMapOptions,
-    /// How glTF files are read.
+    /// Options of glTF files.
     pub gltf: GltfOptions,
-    /// How many objects worlds have.
+    /// Numbers of objects of worlds.
     pub world: WorldOptions,
 }
 
-/// Opens a world by its name; a file that is a .glb whatever it is called; or a file by its
-/// extension, one of [`EXTENSIONS`].
+/// Opens a world by its name, a .glb file under any name, or a file by its extension, one of
+/// [`EXTENSIONS`].
 ///
 /// # Errors
 /// [`Error::UnknownScene`] if it is none of these, [`Error::WorldOption`] for a number of objects
-/// that the scene does not have; otherwise as [`load_gltf`] and
-/// [`load_height_map`].
+/// that the scene cannot have; otherwise as [`load_gltf`] and [`load_height_map`].
 pub fn open(spec: &str, options: &OpenOptions) -> Result<Scene> {
     open_watched(spec, options, &|_| ())
 }
 
-/// [`open`] that says how far it is, where that takes long.
+/// Opens a scene as [`open`] does, and reports progress where that takes long.
 ///
 /// # Errors
 /// As [`open`].
@@ -48,8 +47,8 @@ pub fn open_watched(spec: &str, options: &OpenOptions, watch: Watch<'_>) -> Resu
     }
 }
 
-/// Opens a file whose content is in memory, as one that is dropped on a page: a .glb whatever it is
-/// called, or a file by its extension, one of [`EXTENSIONS`]. `name` stands for the file.
+/// Opens a file whose content is in memory, such as one dropped on a page: a .glb under any name,
+/// or a file by its extension, one of [`EXTENSIONS`]. `name` stands for the file.
 ///
 /// # Errors
 /// As [`open`], [`load_gltf_slice`] and [`load_height_map_slice`].
@@ -60,7 +59,7 @@ pub fn open_slice(name: &str, bytes: &[u8], options: &OpenOptions) -> Result<Sce
     }
 }
 
-/// What a file is.
+/// Kind of a file.
 enum Kind {
     Gltf,
     HeightMap,
@@ -79,10 +78,10 @@ fn kind(spec: &str, is_glb: impl Fn() -> bool) -> Result<Kind> {
     }
 }
 
-/// How a .glb begins.
+/// First bytes of a .glb.
 const GLB: &[u8; 4] = b"glTF";
 
-/// Whether a regular file begins as a .glb does; avatars (.vrm) are such files.
+/// Returns whether a regular file begins as a .glb does. Avatars (.vrm) are such files.
 fn is_glb(path: &Path) -> bool {
     let mut start = [0; 4];
     path.is_file() && File::open(path).is_ok_and(|mut file| file.read_exact(&mut start).is_ok()) && start == *GLB

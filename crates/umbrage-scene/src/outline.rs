@@ -1,11 +1,11 @@
-//! What is needed of a mesh to bound it wherever it stands upright.
+//! Outlines of meshes, to bound upright instances exactly and quickly.
 
 use glam::{DAffine3, DVec2, DVec3};
 use umbrage::Aabb;
 
 use crate::Mesh;
 
-/// The convex hull of a mesh seen from above, and how high it reaches: exact bounds of an instance
+/// The convex hull of a mesh seen from above, and its heights. With it, exact bounds of an instance
 /// that is turned about Y take some twenty points instead of all vertices.
 #[derive(Clone, Debug)]
 pub(crate) struct Outline {
@@ -15,7 +15,7 @@ pub(crate) struct Outline {
 }
 
 impl Outline {
-    /// Of the vertices of primitives with triangles; of none it is `None`.
+    /// Makes the outline of the vertices of primitives with triangles; `None` if there are none.
     pub fn of(mesh: &Mesh) -> Option<Self> {
         let drawn = mesh.primitives.iter().filter(|primitive| !primitive.indices.is_empty());
         let points: Vec<DVec3> =
@@ -28,7 +28,8 @@ impl Outline {
         })
     }
 
-    /// World bounds under a transform that keeps Y upright; `None` for any other.
+    /// Returns the world bounds under a transform that keeps Y upright; `None` for any other
+    /// transform.
     pub fn bounds(&self, world_from_local: &DAffine3) -> Option<Aabb> {
         let m = world_from_local.matrix3;
         let is_upright = [m.y_axis.x, m.y_axis.z, m.x_axis.y, m.z_axis.y].iter().all(|&part| part == 0.0);
@@ -40,7 +41,7 @@ impl Outline {
     }
 }
 
-/// The convex hull of points of the plane (Andrew's monotone chain, 1979).
+/// Returns the convex hull of points of the plane (Andrew's monotone chain, 1979).
 fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup();

@@ -1,14 +1,14 @@
-//! Pictures: decoded within limits, so that a small file cannot fill the memory.
+//! Decoding of pictures within limits, so that a small file cannot fill the memory.
 
 use std::io::Cursor;
 
 use image::{DynamicImage, ImageFormat, ImageReader, Limits, RgbaImage};
 
-/// Longest edge of a picture in pixels: what the largest GPUs take. Larger ones are an error, not a
-/// surprise.
+/// Longest edge of a picture in pixels, which is the limit of the largest GPUs. Larger pictures are
+/// an error.
 pub(crate) const MOST_PIXELS_AN_EDGE: u32 = 16_384;
 
-/// The format of a picture, one of `formats`.
+/// Returns the format of a picture, which must be one of `formats`.
 pub(crate) fn format(bytes: &[u8], formats: &[ImageFormat]) -> Result<ImageFormat, String> {
     let format =
         image::guess_format(bytes).map_err(|_| format!("is not a picture of a known format; {formats:?} is read"))?;
@@ -19,7 +19,7 @@ pub(crate) fn format(bytes: &[u8], formats: &[ImageFormat]) -> Result<ImageForma
     }
 }
 
-/// Width and height, from the header.
+/// Reads width and height from the header.
 pub(crate) fn size(bytes: &[u8], format: ImageFormat) -> Result<[u32; 2], String> {
     let reader = ImageReader::with_format(Cursor::new(bytes), format);
     let (width, height) = reader.into_dimensions().map_err(|error| format!("its header cannot be read: {error}"))?;
@@ -32,7 +32,7 @@ pub(crate) fn size(bytes: &[u8], format: ImageFormat) -> Result<[u32; 2], String
     Ok([width, height])
 }
 
-/// Decodes a picture; `most_bytes` bounds the memory for its pixels as the file has them. The error
+/// Decodes a picture. `most_bytes` bounds the memory of its pixels as the file has them. The error
 /// says what is wrong.
 pub(crate) fn decode(bytes: &[u8], format: ImageFormat, most_bytes: u64) -> Result<DynamicImage, String> {
     let [width, height] = size(bytes, format)?;
@@ -54,8 +54,9 @@ pub(crate) fn decode(bytes: &[u8], format: ImageFormat, most_bytes: u64) -> Resu
     })
 }
 
-/// A picture with each edge halved so many times, rounded up, by means of squares of pixels:
-/// colours in linear light and weighted by alpha, so that a hidden colour does not show.
+/// Halves each edge of a picture `halvings` times, rounding up, by averaging squares of pixels.
+/// Colours are averaged in linear light and weighted by alpha, so that a hidden colour does not
+/// show.
 pub(crate) fn halved(picture: DynamicImage, halvings: u32) -> RgbaImage {
     if halvings == 0 {
         return picture.into_rgba8();
@@ -107,10 +108,10 @@ fn shrunk<const N: usize>(
     })
 }
 
-/// sRGB by tables: 8 bits to 16 linear ones and back (IEC 61966-2-1).
+/// Tables of sRGB: 8 bits to 16 linear bits and back (IEC 61966-2-1).
 struct Tables {
     linear: [u16; 256],
-    /// For each of 8 bits the greatest linear value that rounds to it.
+    /// Greatest linear value that rounds to each 8-bit value.
     last: [u16; 256],
 }
 

@@ -1,4 +1,4 @@
-//! A scene at one moment: animation, hierarchy, morph targets, skinning, bounds.
+//! Posing a scene at one moment: animation, hierarchy, morph targets, skinning, bounds.
 
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use umbrage::Aabb;
@@ -7,38 +7,38 @@ use crate::morph::morphed;
 use crate::outline::Outline;
 use crate::{AlphaMode, Error, Mesh, Object, Pose, Result, Scene, SkinnedMesh, Trs};
 
-/// Poses one scene again and again. What stands still is worked out once.
+/// Poses one scene many times. Values that never change are computed once.
 #[derive(Debug)]
 pub struct Poser<'s> {
     scene: &'s Scene,
-    /// Box of each mesh in its own space; empty for meshes without triangles.
+    /// Bounding box of each mesh in its own space; empty for meshes without triangles.
     local_bounds: Vec<Aabb>,
-    /// Whether some primitive of each mesh casts shadows.
+    /// True for each mesh of which some primitive casts shadows.
     mesh_casts: Vec<bool>,
-    /// Whether each mesh has morph targets.
+    /// True for each mesh with morph targets.
     mesh_morphs: Vec<bool>,
-    /// Which clips play: no earlier one that plays moves a node of theirs.
+    /// True for each clip that plays: no earlier one that plays moves a node of the clip.
     plays: Vec<bool>,
-    /// Transform and bounds of each object whose vertices are the mesh's and that is no instance,
-    /// from the last pose; in the order of objects.
+    /// Transform and bounds in the last pose of each object that has the mesh's own vertices and is
+    /// no instance, in the order of objects.
     known_bounds: Vec<(DAffine3, Aabb)>,
     /// Outlines of the meshes that instances show.
     outlines: Vec<Option<Outline>>,
     detail: Option<Detail>,
 }
 
-/// From where and how finely a scene is looked at: instances that are far away show coarser shapes
-/// ([`Scene::levels`]), in the picture and to rays alike.
+/// Eyes and resolution of the views of a scene. Instances that are far away show coarser levels of
+/// detail ([`Scene::levels`]), in the picture and to rays alike.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Detail {
-    /// The eyes; the nearest one counts.
+    /// World positions of the eyes. The nearest one counts.
     pub eyes: Vec<DVec3>,
-    /// The angle of the smallest detail to be seen, radians: a pixel's.
+    /// Angle in radians of the smallest visible detail, such as that of a pixel.
     pub angle: f64,
 }
 
 impl Detail {
-    /// Metres of the smallest detail to be seen at a point.
+    /// Returns the size in metres of the smallest visible detail at a point.
     fn at(&self, point: DVec3) -> f64 {
         let away = self.eyes.iter().map(|eye| eye.distance(point)).fold(f64::INFINITY, f64::min);
         self.angle * away
@@ -46,7 +46,7 @@ impl Detail {
 }
 
 impl Scene {
-    /// The scene `time_s` seconds after its clips began. To pose a scene many times use a
+    /// Poses the scene `time_s` seconds after its clips began. To pose a scene many times use a
     /// [`Poser`].
     ///
     /// # Errors
@@ -55,7 +55,8 @@ impl Scene {
         Poser::new(self)?.pose(time_s)
     }
 
-    /// [`Scene::pose`] with the shapes that can be told apart.
+    /// Poses the scene as [`Scene::pose`] does, with the coarsest levels of detail that look like
+    /// the finest at the resolution of `detail`.
     ///
     /// # Errors
     /// As [`Scene::pose`].
@@ -63,13 +64,13 @@ impl Scene {
         Poser { detail: Some(detail), ..Poser::new(self)? }.pose(time_s)
     }
 
-    /// Triangles that are stored.
+    /// Returns the number of triangles that are stored.
     #[must_use]
     pub fn stored_triangles(&self) -> usize {
         self.meshes.iter().map(Mesh::triangles).sum()
     }
 
-    /// Triangles that are drawn: each placed mesh counts.
+    /// Returns the number of triangles that are drawn: each placed mesh counts.
     #[must_use]
     pub fn placed_triangles(&self) -> usize {
         let placed = |node: &crate::Node| {
@@ -81,7 +82,7 @@ impl Scene {
 }
 
 impl Pose {
-    /// This pose without any object.
+    /// Returns this pose without any object.
     #[must_use]
     pub fn clone_without_objects(&self) -> Self {
         let (world_from_node, skinned) = (self.world_from_node.clone(), self.skinned.clone());
@@ -90,7 +91,7 @@ impl Pose {
 }
 
 impl Mesh {
-    /// Triangles of all primitives.
+    /// Returns the number of triangles of all primitives.
     #[must_use]
     pub fn triangles(&self) -> usize {
         self.primitives.iter().map(|primitive| primitive.indices.len() / 3).sum()
@@ -126,11 +127,11 @@ impl<'s> Poser<'s> {
         Ok(Self { scene, local_bounds, mesh_casts, mesh_morphs, plays, known_bounds, outlines, detail })
     }
 
-    /// The scene `time_s` seconds after its clips began; each clip that plays is looped on its own.
+    /// Poses the scene `time_s` seconds after its clips began. Each clip that plays is looped on
+    /// its own.
     ///
     /// # Errors
-    /// [`Error::Pose`] if the time is not finite, or naming the node whose transform or mesh is
-    /// not.
+    /// [`Error::Pose`] if the time is not finite, or with the node whose transform or mesh is not.
     pub fn pose(&mut self, time_s: f64) -> Result<Pose> {
         if !time_s.is_finite() {
             return Err(self.error("time", format!("{time_s} s is not a finite number of seconds")));
@@ -202,7 +203,7 @@ impl<'s> Poser<'s> {
         Ok(pose)
     }
 
-    /// The shape of a mesh that an instance shows.
+    /// Returns the level of detail of a mesh that an instance shows.
     fn shown(&self, mesh: usize, world_from_local: &DAffine3) -> usize {
         let Some(detail) = &self.detail else { return mesh };
         let m = world_from_local.matrix3;
@@ -219,7 +220,8 @@ impl<'s> Poser<'s> {
         Error::Pose { scene: self.scene.name.clone(), element: element.into(), reason: reason.into() }
     }
 
-    /// World transform of every node, and the weights of the morph targets of those that have some.
+    /// Returns the world transform of every node, and the weights of morph targets of the nodes
+    /// that have some.
     fn nodes_at(&self, time_s: f64) -> Result<(Vec<DAffine3>, Vec<Vec<f64>>)> {
         let scene = self.scene;
         let mut local: Vec<Trs> = scene.nodes.iter().map(|node| node.local).collect();
@@ -253,8 +255,8 @@ impl<'s> Poser<'s> {
         Ok((world_from_node, weights))
     }
 
-    /// Linear blend skinning in `f64`. Source: glTF 2.0 specification, section 3.7.3.3: the node's
-    /// own transform counts for nothing, each joint takes the vertex from mesh space through its
+    /// Applies linear blend skinning in `f64`. Source: glTF 2.0 specification, section 3.7.3.3: the
+    /// node's own transform is ignored; each joint takes the vertex from mesh space through its
     /// bind pose into the world. Morph targets come before: `shape` is the mesh with them, if it
     /// has some.
     fn skin(
@@ -309,7 +311,7 @@ impl<'s> Poser<'s> {
     }
 }
 
-/// Outlines of the meshes that instances may show, in all their shapes.
+/// Returns the outlines of the meshes that instances may show, at all levels of detail.
 fn outlines(scene: &Scene) -> Vec<Option<Outline>> {
     let mut outlines = vec![None; scene.meshes.len()];
     for mesh in scene.nodes.iter().filter(|node| !node.instances.is_empty()).filter_map(|node| node.mesh) {
@@ -323,8 +325,8 @@ fn outlines(scene: &Scene) -> Vec<Option<Outline>> {
     outlines
 }
 
-/// A normal under a linear map: by its cofactor matrix, which is the inverse transpose up to scale
-/// and exists for flat maps too. The normal stays as it was where the map leaves nothing of it.
+/// Transforms a normal by a linear map's cofactor matrix, which is the inverse transpose up to
+/// scale and exists for flat maps too. If the result has no length, the normal stays as it was.
 fn posed_normal(linear: &DMat3, normal: [f32; 3]) -> [f32; 3] {
     let m = linear;
     let cofactor = DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
@@ -333,14 +335,15 @@ fn posed_normal(linear: &DMat3, normal: [f32; 3]) -> [f32; 3] {
     turned.try_normalize().map_or(normal, |n| n.as_vec3().to_array())
 }
 
-/// The box of all vertices under a transform, exactly.
+/// Returns the exact box of all vertices under a transform.
 fn vertex_bounds(mesh: &Mesh, world_from_local: &DAffine3) -> Aabb {
     let drawn = mesh.primitives.iter().filter(|primitive| !primitive.indices.is_empty());
     let positions = drawn.flat_map(|primitive| &primitive.positions);
     Aabb::from_points(positions.map(|p| world_from_local.transform_point3(DVec3::from(p.map(f64::from)))))
 }
 
-/// The box of all vertices of a morphed mesh under a transform; invalid if one is not finite.
+/// Returns the box of all vertices of a morphed mesh under a transform; invalid if one is not
+/// finite.
 fn shape_bounds(mesh: &Mesh, shape: &SkinnedMesh, world_from_local: &DAffine3) -> Aabb {
     let drawn = mesh.primitives.iter().zip(&shape.positions).filter(|(primitive, _)| !primitive.indices.is_empty());
     let points = || drawn.clone().flat_map(|(_, positions)| positions).map(|p| DVec3::from(p.map(f64::from)));
@@ -350,8 +353,8 @@ fn shape_bounds(mesh: &Mesh, shape: &SkinnedMesh, world_from_local: &DAffine3) -
     Aabb::from_points(points().map(|point| world_from_local.transform_point3(point)))
 }
 
-/// World bounds of a mesh, by way of its local box where that gives the exact answer: when no axis
-/// turns into another.
+/// Returns the world bounds of a mesh. The mesh's local box is used if it gives the exact answer,
+/// which it does when no axis turns into another.
 fn world_bounds(mesh: &Mesh, local: Aabb, world_from_local: &DAffine3) -> Aabb {
     let m = world_from_local.matrix3;
     if DMat3::from_diagonal(DVec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z)) == m {

@@ -7,11 +7,11 @@ use crate::{Channel, Interpolation, Keys, Trs};
 
 /// A point between two keys.
 struct Between {
-    /// The key before.
+    /// Index of the key before.
     from: usize,
-    /// The key behind; the same as `from` outside the keys.
+    /// Index of the key after; equal to `from` outside the keys.
     to: usize,
-    /// Share of the way, 0 to 1.
+    /// Share of the way between the keys, 0 to 1.
     share: f64,
     /// Seconds between the keys.
     seconds: f64,
@@ -29,7 +29,8 @@ impl Between {
         Self { from: after - 1, to: after, share: (time - start) / seconds, seconds }
     }
 
-    /// Cubic Hermite spline over values with in-tangent, value and out-tangent per key.
+    /// Interpolates by a cubic Hermite spline over values with in-tangent, value and out-tangent
+    /// per key.
     fn spline(&self, value: impl Fn(usize) -> DVec4) -> DVec4 {
         if self.from == self.to {
             return value(3 * self.from + 1);
@@ -45,8 +46,8 @@ impl Between {
 }
 
 impl Channel {
-    /// Puts the channel's value at `time` (seconds, within the clip) into `local` or `weights`.
-    /// Before the first key it is the first, behind the last the last.
+    /// Writes the channel's value at `time` (seconds, within the clip) into `local` or `weights`.
+    /// Before the first key the value is that of the first key, behind the last that of the last.
     pub(crate) fn apply(&self, time: f64, local: &mut Trs, weights: &mut Vec<f64>) {
         match &self.values {
             Keys::Translation(keys) => local.translation = self.vector(keys, time),
@@ -78,7 +79,8 @@ impl Channel {
         }
     }
 
-    /// Unit quaternions; NaN where the keys have no length, which [`crate::Poser::pose`] reports.
+    /// Interpolates unit quaternions. The result is NaN where the keys have no length, which
+    /// [`crate::Poser::pose`] reports.
     fn rotation(&self, keys: &[[f32; 4]], time: f64) -> DQuat {
         let between = Between::at(&self.times, time);
         let key = |i: usize| DVec4::from(keys[i].map(f64::from));

@@ -1,16 +1,16 @@
-//! Whether a scene is consistent in itself, whoever made it.
+//! Consistency checks of a scene, whoever made it.
 
 use crate::error::element;
 use crate::{Error, Interpolation, Keys, Mesh, Primitive, Result, Scene};
 
 impl Scene {
-    /// Checks every index, length and number, so that whatever walks the scene afterwards cannot go
-    /// astray.
+    /// Checks every index, length and number of the scene, so that later code can rely on them.
     ///
-    /// The loaders call it; call it yourself on scenes made by hand. It looks at every vertex once.
+    /// The loaders call this function; call it yourself on scenes made by hand. It reads every
+    /// vertex once.
     ///
     /// # Errors
-    /// [`Error::InvalidScene`] naming the first element that is wrong.
+    /// [`Error::InvalidScene`] with the first element that is wrong.
     pub fn validate(&self) -> Result<()> {
         for (i, mesh) in self.meshes.iter().enumerate() {
             self.validate_mesh(i, mesh)?;
@@ -53,7 +53,7 @@ impl Scene {
         self.validate_animations()
     }
 
-    /// Where a node stands and what it is called, for messages.
+    /// Returns the index and the name of a node, for messages.
     pub(crate) fn node_element(&self, index: usize) -> String {
         element("nodes", index, self.nodes.get(index).map_or("", |node| node.name.as_str()))
     }
@@ -167,7 +167,7 @@ fn are_finite(keys: &Keys) -> bool {
     }
 }
 
-/// What is wrong with a primitive, if anything is.
+/// Returns the fault of a primitive, if there is one.
 fn fault(primitive: &Primitive, materials: usize) -> Option<String> {
     let vertices = primitive.positions.len();
     if primitive.material >= materials {

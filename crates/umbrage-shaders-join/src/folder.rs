@@ -1,4 +1,4 @@
-//! The folder of the texts that are checked in.
+//! The folder of the joined texts that are checked in.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,8 +10,8 @@ use crate::Text;
 
 const ENDING: &str = "wgsl";
 
-/// What in `folder` is not as `texts` say, a line each: a file that is missing, that differs, or
-/// that is of no text.
+/// Compares the files of `folder` with `texts`. Returns a line for each file that is missing,
+/// differs, or belongs to no text.
 ///
 /// # Errors
 /// If the folder cannot be read.
@@ -29,7 +29,7 @@ pub fn differences(folder: &Path, texts: &[Text]) -> Result<Vec<String>> {
     Ok(found)
 }
 
-/// Makes `folder` what `texts` say.
+/// Writes `texts` into `folder`, and removes files that belong to none.
 ///
 /// # Errors
 /// If the folder cannot be written.
@@ -53,7 +53,7 @@ fn file_name(text: &Text) -> String {
     format!("{}.{ENDING}", text.name)
 }
 
-/// Files of WGSL that are of no text.
+/// Lists the WGSL files that belong to no text.
 fn strangers(folder: &Path, texts: &[Text]) -> Result<Vec<String>> {
     let known: BTreeSet<String> = texts.iter().map(file_name).collect();
     let entries = fs::read_dir(folder).with_context(|| format!("{} cannot be read", folder.display()))?;

@@ -1,9 +1,9 @@
 //! Joins the modules of `umbrage-shaders/shaders` into one plain WGSL text per root, with names
-//! that an application can live beside.
+//! that do not collide with an application's.
 //!
-//! The texts are checked in, in `umbrage-shaders/src/wgsl`, so that who builds `umbrage-shaders`
-//! needs no compiler of WESL. `cargo xtask shaders` writes them; a test of this crate fails where
-//! they are not what the modules join to.
+//! The texts are checked in, in `umbrage-shaders/src/wgsl`, so that a build of `umbrage-shaders`
+//! needs no WESL compiler. `cargo xtask shaders` writes them; a test of this crate fails if they
+//! differ from the joined modules.
 
 mod folder;
 
@@ -17,19 +17,20 @@ use wgsl_parse::SyntaxNode as _;
 
 pub use folder::{differences, write};
 
-/// The root in `shaders` of a text, the features that it is built with, and its name.
+/// Root module in `shaders` of a text, the features that it is built with, and the name of the
+/// text.
 type Root = (&'static str, Vec<String>, String);
 
-/// A text and its name: that of its file without the ending.
+/// A joined text and its name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Text {
-    /// The name.
+    /// Name of the text: that of its file without the extension.
     pub name: String,
-    /// Plain WGSL, and the conditions of a receiver's choices.
+    /// Source of the text: plain WGSL, with the conditions of a receiver's choices.
     pub wgsl: String,
 }
 
-/// The most maps that are textures of their own: `layout::MAX_SPLITS`.
+/// Largest number of maps that are separate textures: `layout::MAX_SPLITS`.
 const MOST_MAPS: usize = 8;
 
 fn roots() -> Vec<Root> {
@@ -77,12 +78,12 @@ fn roots() -> Vec<Root> {
     texts
 }
 
-/// `depth_loads`: depth textures can be loaded from. `r32f`: maps are colours. `views`, `tiles`:
-/// casters are drawn into several layers or tiles. `moments`: maps hold moments of depth.
-/// `multisampled`: depth has four samples per texel. `own_taps`: the shader takes an anisotropic
-/// sample's taps. `by_hand`: and no sampler filters moments. `normals`: a mask has a buffer of
-/// normals. `coordinates`: receivers take shadow coordinates that vertex shaders made. `maps_1` to
-/// `maps_8` come beside these.
+/// Features of the modules. `depth_loads`: depth textures can be loaded from. `r32f`: maps are
+/// colour textures. `views`, `tiles`: casters are drawn into several layers or tiles. `moments`:
+/// maps hold moments of depth. `multisampled`: depth has four samples per texel. `own_taps`: the
+/// shader takes the taps of an anisotropic sample itself. `by_hand`: with `own_taps`, no sampler
+/// filters moments. `normals`: a mask has a buffer of normals. `coordinates`: receivers take shadow
+/// coordinates from vertex shaders. `maps_1` to `maps_8` are further features.
 const FEATURES: [&str; 10] = [
     "depth_loads",
     "r32f",
@@ -96,13 +97,13 @@ const FEATURES: [&str; 10] = [
     "coordinates",
 ];
 
-/// The folder of the modules.
+/// Returns the folder of the modules.
 #[must_use]
 pub fn sources() -> PathBuf {
     shaders_crate().join("shaders")
 }
 
-/// The folder of the texts that are checked in.
+/// Returns the folder of the texts that are checked in.
 #[must_use]
 pub fn checked_in() -> PathBuf {
     shaders_crate().join("src/wgsl")
@@ -112,7 +113,7 @@ fn shaders_crate() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../umbrage-shaders")
 }
 
-/// Every text that the modules in the folder `sources` join to, by name.
+/// Joins the modules in the folder `sources` into all texts, by name.
 ///
 /// # Errors
 /// If a module is missing or wrong; the message shows the place.
@@ -163,14 +164,14 @@ fn joined(sources: &Path, (root, features, name): &Root) -> Result<Text> {
 /// already, keep their names. The default of `wesl` counts underscores (`package_lib_filter_tent`,
 /// `__1` …), which reads worse in an error message of the app's shader.
 ///
-/// It remembers which module a name came from.
+/// It remembers the module of each name.
 #[derive(Clone, Default)]
 struct HouseNames {
     modules: Arc<Mutex<BTreeMap<String, Vec<String>>>>,
 }
 
 impl HouseNames {
-    /// The module of a name that was made; none of a root's own.
+    /// Returns the module of a name that was made; `None` for a name of a root.
     fn module_of(&self, name: &str) -> Option<Vec<String>> {
         self.modules.lock().ok()?.get(name).cloned()
     }

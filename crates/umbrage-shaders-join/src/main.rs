@@ -1,5 +1,5 @@
-//! Writes the texts of `umbrage-shaders` again and prints which ones changed: `cargo xtask
-//! shaders`.
+//! Writes the texts of `umbrage-shaders` again and prints the names of those that changed: `cargo
+//! xtask shaders`.
 
 use std::process::ExitCode;
 

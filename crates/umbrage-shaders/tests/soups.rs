@@ -4,7 +4,7 @@
 
 use umbrage_shaders::layout::{RUN_TRIANGLES, Split};
 use umbrage_shaders::twin::bias::{self, Receiver};
-use umbrage_shaders::twin::edges::{Around, Decision, LEAST_M, LOST, ROUND, Ray, Run, decided};
+use umbrage_shaders::twin::edges::{Around, Decision, LEAST_M, LOST, PARALLEL, ROUND, Ray, Run, decided};
 
 type Triangle = [[f64; 3]; 3];
 
@@ -174,18 +174,30 @@ fn height_at([a, b, c]: &Triangle, x: f64, z: f64) -> Option<f64> {
 
 /// Whether something stands over a point, by all triangles: for sure, or for what rounding of the
 /// numbers involved may make of an edge.
-fn is_dark(triangles: &[Triangle], [x, y, z]: [f64; 3]) -> [bool; 2] {
-    let beyond = y + f64::from(LEAST_M) - UNSURE_M;
-    let hit = |triangle: &Triangle| height_at(triangle, x, z).is_some_and(|height| height > beyond);
+fn is_dark(triangles: &[Triangle], point: [f64; 3], normal: [f64; 3]) -> [bool; 2] {
+    let [x, y, z] = point;
+    let beyond = |triangle: &Triangle| y + least(triangle, point, normal) - UNSURE_M;
+    let hit = |triangle: &Triangle| height_at(triangle, x, z).is_some_and(|height| height > beyond(triangle));
     let grazed = |triangle: &Triangle| {
         let size = triangle.iter().flatten().chain(&[x, y, z]).fold(0.0f64, |most, part| most.max(part.abs()));
         let graze = 4.0 * f64::from(LOST) * (size + 1.0);
-        let above = triangle.iter().any(|corner| corner[1] > beyond);
+        let above = triangle.iter().any(|corner| corner[1] > beyond(triangle));
         let ends = [[0, 1], [1, 2], [2, 0]].map(|ends| ends.map(|i| [triangle[i][0], triangle[i][2]]));
         above && ends.iter().any(|[from, to]| to_segment([x, z], *from, *to) <= graze)
     };
     let sure = triangles.iter().any(hit);
     [sure, sure || triangles.iter().any(grazed)]
+}
+
+/// Metres over a point from which on a triangle shades it: those that rise from its surface do so
+/// however near they are, and so may those whose angle to it rounding decides.
+fn least(triangle: &Triangle, point: [f64; 3], normal: [f64; 3]) -> f64 {
+    let [a, b, c] = triangle.map(|corner| std::array::from_fn(|axis| corner[axis] - point[axis]));
+    let minus = |p: [f64; 3], q: [f64; 3]| std::array::from_fn(|axis| p[axis] - q[axis]);
+    let across = cross(minus(b, a), minus(c, a));
+    let rises = [a, b, c].into_iter().any(|corner| dot(normal, corner) > 0.0);
+    let is_parallel = dot(across, normal).abs() > (f64::from(PARALLEL) + 1e-3) * dot(across, across).sqrt();
+    if rises && !is_parallel { 0.0 } else { f64::from(LEAST_M) }
 }
 
 /// How far a place is from a segment.
@@ -244,9 +256,9 @@ fn ask(numbers: &mut Numbers, moved: f64, counts: &mut Counts) {
         let Some((point, normal)) = point_of(triangle, numbers) else { continue };
         let (point, normal) = (point.map(|x| x as f32), normal.map(|x| x as f32));
         let at = bias::receiver(&soup.split, point, normal, [0.0, 1.0, 0.0]);
-        let ray = Ray::to_sun(point, [0.0, 1.0, 0.0]);
+        let ray = Ray::to_sun(point, normal, [0.0, 1.0, 0.0]);
         let found = decided(&at, &soup.around(&at), ray, |id| &soup.runs[id as usize - 1]);
-        let [sure, unsure] = is_dark(&truth, point.map(f64::from));
+        let [sure, unsure] = is_dark(&truth, point.map(f64::from), normal.map(f64::from));
         match found {
             Decision::Lit | Decision::Undecided => {
                 counts.lit += 1;

@@ -1,9 +1,10 @@
 //! Counts the light that leaks into closed rooms, under suns from every side.
-//! `cargo run -p umbrage-tests --example closed_rooms -- EDGE STEP FOLDER`: the maps' edge, degrees
-//! from sun to sun, and where masks with light are written.
+//! `cargo run -p umbrage-tests --example closed_rooms -- EDGE STEP EDGES FOLDER`: the maps' edge,
+//! degrees from sun to sun, `sampled` or `exact` edges, and where masks with light are written.
 #![expect(clippy::print_stdout, reason = "an example that prints what it counted")]
 
 use umbrage::ShadowConfig;
+use umbrage::config::Edges;
 use umbrage_tests::closed::{Light, Rooms, VIEWS, Walls, closed_room, sun};
 use umbrage_tests::stage::gpu;
 
@@ -14,7 +15,8 @@ fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let edge = arguments.first().and_then(|edge| edge.parse().ok()).unwrap_or(1024);
     let step: usize = arguments.get(1).and_then(|step| step.parse().ok()).unwrap_or(36);
-    let config = ShadowConfig { map_sizes: vec![edge; 4], ..ShadowConfig::default() };
+    let edges = arguments.get(2).and_then(|edges| edges.parse().ok()).unwrap_or(Edges::Sampled);
+    let config = ShadowConfig { map_sizes: vec![edge; 4], edges, ..ShadowConfig::default() };
     let thick = [0.01, 0.02, 0.05, 0.2].into_iter().flat_map(|by| [Walls::Shell(by), Walls::Slabs(by)]);
     for walls in [Walls::Thin].into_iter().chain(thick) {
         let scene = closed_room(walls);
@@ -31,7 +33,7 @@ fn main() {
                 sum.brightest = sum.brightest.max(light.brightest);
                 if light.more_than_2_percent > 0 {
                     println!("  {walls:?}, sun {height} up at {bearing}, view {number}: {light:?}");
-                    if let Some(folder) = arguments.get(2) {
+                    if let Some(folder) = arguments.get(3) {
                         let name =
                             format!("{folder}/{walls:?}-{height}-{bearing}-{number}.png").replace(['(', ')'], "-");
                         mask.save(name).expect("the folder can be written to");

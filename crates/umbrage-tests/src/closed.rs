@@ -1,4 +1,4 @@
-//! Closed rooms: whatever the sun, nothing inside of them is lit.
+//! Closed rooms: no sun may light anything inside.
 
 use glam::DVec3;
 use umbrage::{DirectionalLight, Frustum, ShadowConfig, View};
@@ -7,22 +7,23 @@ use umbrage_scene::{Material, Primitive, Scene};
 
 use crate::room::{cuboid, place};
 
-/// Inside, metres.
+/// Least corner of the room's inside, in metres.
 const MIN: [f32; 3] = [-4.0, 0.0, -3.0];
 const MAX: [f32; 3] = [4.0, 3.0, 3.0];
 
-/// How walls are made.
+/// Construction of the walls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Walls {
     /// One box, seen from both sides.
     Thin,
-    /// A box within a box, so many metres apart.
+    /// A box within a box, with this distance between them in metres.
     Shell(f32),
-    /// A box for each wall, so many metres thick; floor and ceiling reach over the others.
+    /// A box for each wall, with this thickness in metres. Floor and ceiling reach over the other
+    /// walls.
     Slabs(f32),
 }
 
-/// A room of 8 × 3 × 6 m on a ground of 80 m.
+/// Makes a room of 8 × 3 × 6 m on a ground of 80 m.
 #[must_use]
 pub fn closed_room(walls: Walls) -> Scene {
     let mut scene = Scene { name: "closed room".to_owned(), ..Scene::default() };
@@ -55,7 +56,8 @@ pub fn closed_room(walls: Walls) -> Scene {
     scene
 }
 
-/// Pairs of eye and target inside: over the room, along its creases, and close to four of them.
+/// Pairs of eye and target inside the room: across it, along its creases, and close to four of
+/// them.
 pub const VIEWS: [([f64; 3], [f64; 3]); 8] = [
     ([3.4, 1.6, 2.4], [-1.0, 1.2, -1.0]),
     ([-3.7, 2.8, -2.7], [2.0, 0.0, 2.0]),
@@ -67,27 +69,27 @@ pub const VIEWS: [([f64; 3], [f64; 3]); 8] = [
     ([3.5, 2.6, 2.5], [4.0, 3.0, 3.0]),
 ];
 
-/// Suns from a height in degrees and a bearing in degrees from east.
+/// Makes a sun at a height in degrees and a bearing in degrees from east.
 #[must_use]
 pub fn sun(height: f64, bearing: f64) -> DVec3 {
     let ((sine, cosine), (z, x)) = (height.to_radians().sin_cos(), bearing.to_radians().sin_cos());
     -DVec3::new(cosine * x, sine, cosine * z)
 }
 
-/// Pixels of a picture of a room.
+/// Numbers of lit pixels in a mask of a room.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Light {
-    /// All of them.
+    /// Number of all pixels.
     pub pixels: usize,
-    /// Those more than 2 % lit.
+    /// Number of pixels that are more than 2 % lit.
     pub more_than_2_percent: usize,
-    /// Those more than half lit.
+    /// Number of pixels that are more than half lit.
     pub more_than_half: usize,
-    /// Of the brightest.
+    /// Value of the brightest pixel, 0 to 255.
     pub brightest: u8,
 }
 
-/// Draws rooms and counts light.
+/// Draws rooms and counts lit pixels.
 pub struct Rooms<'a> {
     scene: &'a Scene,
     renderer: Renderer,
@@ -103,7 +105,7 @@ impl<'a> Rooms<'a> {
         Self { scene, renderer: Renderer::new(gpu, scene, &settings).expect("a renderer"), size }
     }
 
-    /// The light in one view, with the mask.
+    /// Counts the lit pixels of one view, and returns them with the mask.
     ///
     /// # Panics
     /// If it cannot be drawn.
@@ -122,7 +124,7 @@ impl<'a> Rooms<'a> {
     }
 }
 
-/// Counts the light of a mask. Pixels without an answer count as lit.
+/// Counts the lit pixels of a mask. Pixels without an answer count as lit.
 #[must_use]
 pub fn light_of(mask: &image::GrayAlphaImage) -> Light {
     let shares = mask.pixels().map(|pixel| if pixel.0[1] == 0 { 255 } else { pixel.0[0] });

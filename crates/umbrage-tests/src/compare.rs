@@ -1,60 +1,61 @@
-//! Whether two images are the same, and by how much they are not.
+//! Comparison of two images, with tolerances.
 //!
 //! The references are drawn by Mesa's software Vulkan. Another driver, or another version of it,
-//! rounds elsewhere: a pixel whose centre lies within a rounding error of a shadow's or an object's
-//! edge may fall to the other side. That, and nothing more, is what the tolerances leave room for.
+//! rounds differently: a pixel whose centre lies within a rounding error of a shadow's or an
+//! object's edge may fall to the other side. The tolerances leave room for this and for nothing
+//! more.
 
 use std::fmt;
 
 use image::{GrayAlphaImage, Rgb, RgbImage};
 
-/// The share of a mask's pixels that may decide otherwise (lit, dark, or nothing there).
+/// Largest share of a mask's pixels with another decision (lit, dark, or no surface).
 ///
 /// 160 × 120 pixels are 19,200, so 0.002 lets 38 of them flip. The masks kept here have 1,100 to
 /// 2,000 pixels beside an edge: one in forty of those may fall to the other side, while a mask that
 /// moves by one pixel flips half of them.
 pub const MASK_DECISIONS: f64 = 0.002;
 
-/// The mean of `|visibility - reference|` over the pixels that show a surface in either mask,
-/// visibility from 0 to 1.
+/// Largest mean of `|visibility - reference|` over the pixels that show a surface in either mask,
+/// with visibility from 0 to 1.
 ///
 /// 0.002 is one pixel of 500 wholly wrong, or every pixel wrong by half a step of the mask's 255.
-/// It sees what decisions do not: a penumbra that became wider or softer keeps its middle where it
-/// was.
+/// This limit detects changes that decisions miss: a penumbra that became wider or softer keeps its
+/// middle where it was.
 pub const MASK_VISIBILITY: f64 = 0.002;
 
-/// The mean of `|value - reference|` over a picture's pixels and channels, in linear light from 0
-/// to 1.
+/// Largest mean of `|value - reference|` over a picture's pixels and channels, in linear light from
+/// 0 to 1.
 ///
 /// Around sRGB 128 one step is 0.0036 of linear light, so 0.002 is a mid-grey picture of which a
 /// little more than half is one step off; or one pixel of 50 that lost a light of 0.1, as sand does
 /// that falls into shadow.
 pub const PICTURE_MEAN: f64 = 0.002;
 
-/// A pixel of a picture is an outlier if a channel differs by more than this, in linear light from
-/// 0 to 1.
+/// Least difference of a channel, in linear light from 0 to 1, that makes a pixel of a picture an
+/// outlier.
 ///
-/// 0.02 is six steps of sRGB around 128: less than shadows change anything that is lit, more than
-/// rounding does.
+/// 0.02 is six steps of sRGB around 128: less than the change from lit to shadowed, more than
+/// rounding.
 pub const PICTURE_OUTLIER: f64 = 0.02;
 
-/// The share of a picture's pixels that may be outliers.
+/// Largest share of a picture's pixels that may be outliers.
 ///
 /// 96 × 72 pixels are 6,912, so 0.01 lets 69 of them differ, as along a silhouette of 280 pixels at
 /// every fourth of which one of the four samples falls to the other side.
 pub const PICTURE_OUTLIERS: f64 = 0.01;
 
-/// What a reference image is.
+/// A reference image, or an image to compare with one.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Golden {
-    /// Bare visibility: grey 255 lit to 0 dark; alpha 0 where nothing is.
+    /// A visibility mask: grey from 255 (lit) to 0 (dark); alpha 0 where no surface is.
     Mask(GrayAlphaImage),
     /// A shaded picture, sRGB.
     Picture(RgbImage),
 }
 
 impl Golden {
-    /// Pixels across and down.
+    /// Returns width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         match self {
@@ -71,29 +72,29 @@ impl Golden {
     }
 }
 
-/// One number and what it may be.
+/// A measured difference and its limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// For messages.
+    /// Name of the difference, for messages.
     pub what: &'static str,
-    /// 0 for equal images.
+    /// Measured value; 0 for equal images.
     pub value: f64,
-    /// The largest value that counts as the same.
+    /// Largest value that counts as the same.
     pub limit: f64,
 }
 
-/// What a comparison found. It decides nothing by itself: ask [`Verdict::is_same`].
+/// Result of a comparison. [`Verdict::is_same`] decides by it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Verdict {
-    /// How many pixels were compared.
+    /// Number of pixels compared.
     pub pixels: usize,
-    /// Everything that was measured.
+    /// Measured differences.
     pub measured: [Measured; 2],
 }
 
 impl Verdict {
-    /// Whether something was compared and no number is beyond its limit.
+    /// Returns whether pixels were compared and no difference is beyond its limit.
     #[must_use]
     pub fn is_same(&self) -> bool {
         self.pixels > 0 && self.measured.iter().all(|measured| measured.value <= measured.limit)
@@ -111,24 +112,24 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// Why two images cannot even be compared.
+/// Reason why two images cannot be compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Incomparable {
-    /// One is larger.
+    /// The sizes differ.
     #[error("the reference is {expected:?} pixels and the image {actual:?}")]
     Size {
-        /// Of the reference.
+        /// Width and height of the reference.
         expected: [u32; 2],
-        /// Of the image.
+        /// Width and height of the image.
         actual: [u32; 2],
     },
-    /// A mask is no picture.
+    /// One is a mask, the other a picture.
     #[error("the reference is a {expected} and the image a {actual}")]
     Kind {
-        /// Of the reference.
+        /// Kind of the reference.
         expected: &'static str,
-        /// Of the image.
+        /// Kind of the image.
         actual: &'static str,
     },
 }
@@ -151,7 +152,7 @@ pub fn compare(expected: &Golden, actual: &Golden) -> Result<Verdict, Incomparab
     })
 }
 
-/// What a mask says of a pixel.
+/// Decision of a mask at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Decision {
     Nothing,
@@ -207,17 +208,17 @@ fn compare_pictures(expected: &RgbImage, actual: &RgbImage) -> Verdict {
     }
 }
 
-/// Linear light of an sRGB value (IEC 61966-2-1).
+/// Converts an sRGB value to linear light (IEC 61966-2-1).
 #[must_use]
 pub fn linear(srgb: u8) -> f64 {
     let value = f64::from(srgb) / 255.0;
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
-/// Where two images of one size and kind differ. Masks: the reference in dim grey, red where the
-/// image is brighter, blue where it is darker, yellow where one has a surface and the other
-/// nothing. Pictures: four times the difference of each channel. `None` where [`compare`] has no
-/// verdict either.
+/// Draws the differences of two images of one size and kind; `None` if [`compare`] cannot compare
+/// them. Masks: the reference in dim grey, red where the image is brighter, blue where it is
+/// darker, yellow where only one has a surface. Pictures: four times the difference of each
+/// channel.
 #[must_use]
 pub fn difference(expected: &Golden, actual: &Golden) -> Option<RgbImage> {
     if expected.size() != actual.size() {

@@ -1,5 +1,5 @@
-//! Reference images: small PNG files beside the tests, compared, shown where they differ, and
-//! replaced only on demand.
+//! Reference images: small PNG files beside the tests. Tests compare images with them, show
+//! differences, and replace them only on demand.
 
 use std::{
     env, fs, io,
@@ -13,24 +13,24 @@ use image::{
 
 use crate::compare::{Golden, Incomparable, Verdict, compare, difference};
 
-/// The most bytes of one reference. They are in everybody's clone for ever.
+/// Largest size of one reference in bytes. References stay in every clone for ever.
 pub const LARGEST: u64 = 8 * 1024;
-/// The most bytes of all of them.
+/// Largest size of all references in bytes.
 pub const LARGEST_TOTAL: u64 = 96 * 1024;
-/// References are replaced where this environment variable is 1; `cargo xtask bless` sets it.
+/// Environment variable that replaces references if it is 1; `cargo xtask bless` sets it.
 pub const BLESS: &str = "UMBRAGE_BLESS";
 
-/// What to do with an image that differs from its reference.
+/// Treatment of an image that differs from its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// Say no.
+    /// Fails.
     Check,
-    /// Replace the reference.
+    /// Replaces the reference.
     Bless,
 }
 
 impl Mode {
-    /// As [`BLESS`] has it.
+    /// Reads the mode from the environment variable [`BLESS`].
     #[must_use]
     pub fn from_env() -> Self {
         if env::var(BLESS).is_ok_and(|value| value == "1") { Self::Bless } else { Self::Check }
@@ -40,84 +40,84 @@ impl Mode {
 /// A folder of references, `NAME.png`.
 #[derive(Clone, Debug)]
 pub struct Goldens {
-    /// Where they lie.
+    /// Folder of the references.
     pub references: PathBuf,
-    /// Where `NAME.expected.png`, `NAME.actual.png` and `NAME.difference.png` of a failure go.
+    /// Folder of `NAME.expected.png`, `NAME.actual.png` and `NAME.difference.png` of a failure.
     pub failures: PathBuf,
-    /// What to do.
+    /// Treatment of differing images.
     pub mode: Mode,
 }
 
-/// Why an image is not its reference.
+/// Reason why an image does not match its reference.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Failure {
-    /// Nothing to compare with.
+    /// There is no reference.
     #[error("{name}: there is no reference image; look at {}, then run `cargo xtask bless`", actual.display())]
     Missing {
-        /// The reference's.
+        /// Name of the reference.
         name: String,
-        /// What would become the reference.
+        /// Path of the image, which could become the reference.
         actual: PathBuf,
     },
-    /// It looks otherwise.
+    /// The image differs from the reference.
     #[error("{name}: {verdict}; look at {name}.*.png in {}", folder.display())]
     Differs {
-        /// The reference's.
+        /// Name of the reference.
         name: String,
-        /// By how much.
+        /// Measured differences.
         verdict: Verdict,
-        /// Where expected, actual and difference lie.
+        /// Folder of the expected image, the actual one and their difference.
         folder: PathBuf,
     },
-    /// It is something else.
+    /// The image has another size or kind.
     #[error("{name}: {reason}; look at {name}.*.png in {}", folder.display())]
     Incomparable {
-        /// The reference's.
+        /// Name of the reference.
         name: String,
-        /// What differs.
+        /// Difference of size or kind.
         reason: Incomparable,
-        /// Where expected and actual lie.
+        /// Folder of the expected and the actual image.
         folder: PathBuf,
     },
-    /// It would weigh too much to keep.
+    /// The image is too large to be kept as a reference.
     #[error("{name}: {bytes} bytes of PNG, more than the {LARGEST} that a reference may have; draw it smaller")]
     TooLarge {
-        /// The reference's.
+        /// Name of the reference.
         name: String,
-        /// What it has.
+        /// Size of the image's file in bytes.
         bytes: u64,
     },
-    /// The reference is no 8-bit PNG of the two kinds.
+    /// The reference is not an 8-bit PNG of the two kinds.
     #[error("{}: neither a mask (8-bit grey and alpha) nor a picture (8-bit RGB) but {found}", path.display())]
     Format {
-        /// The reference.
+        /// Path of the reference.
         path: PathBuf,
-        /// What it is.
+        /// Format that was found.
         found: String,
     },
-    /// A file.
+    /// A file cannot be read or written.
     #[error("{}: {source}", path.display())]
     Io {
-        /// Which.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// A PNG.
+    /// A PNG cannot be read or written.
     #[error("{}: {source}", path.display())]
     Image {
-        /// Which.
+        /// Path of the PNG.
         path: PathBuf,
-        /// Why.
+        /// Error of the decoder or encoder.
         source: ImageError,
     },
 }
 
 impl Goldens {
-    /// Compares an image with the reference of that name. What differs is shown in
-    /// [`Goldens::failures`], or becomes the reference in [`Mode::Bless`]; a reference that has the
-    /// very same pixels is left alone.
+    /// Compares an image with the reference of that name. An image that differs is written to
+    /// [`Goldens::failures`], or becomes the reference in [`Mode::Bless`]. A reference with the
+    /// same pixels is left alone.
     ///
     /// # Errors
     /// [`Failure`], whose message says where to look.
@@ -152,8 +152,8 @@ impl Goldens {
         })
     }
 
-    /// What is wrong with the folder as a whole: files that no image of `names` is compared with,
-    /// files that weigh too much.
+    /// Checks the folder as a whole. Returns complaints about files that no image of `names` is
+    /// compared with, and about files that are too large.
     ///
     /// # Errors
     /// [`Failure::Io`] if the folder cannot be read.
@@ -179,10 +179,10 @@ impl Goldens {
         Ok(complaints)
     }
 
-    /// The reference of that name, as it was accepted.
+    /// Reads the reference of that name.
     ///
     /// # Errors
-    /// [`Failure`] if it is missing or no PNG of ours.
+    /// [`Failure`] if it is missing or not a PNG of the two kinds.
     pub fn read(&self, name: &str) -> Result<Golden, Failure> {
         read(&self.reference(name))
     }
@@ -202,7 +202,7 @@ impl Goldens {
         write(&path, &png)
     }
 
-    /// Deletes what an earlier failure has left.
+    /// Deletes the files that an earlier failure has left.
     fn forget(&self, name: &str) -> Result<(), Failure> {
         for part in ["expected", "actual", "difference"] {
             let path = self.failures.join(format!("{name}.{part}.png"));
@@ -239,7 +239,7 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     fs::write(path, bytes).map_err(at_path)
 }
 
-/// As small as it gets.
+/// Encodes an image as the smallest PNG.
 fn encode(path: &Path, image: &Golden) -> Result<Vec<u8>, Failure> {
     let (bytes, color): (&[u8], _) = match image {
         Golden::Mask(mask) => (mask.as_raw(), image::ExtendedColorType::La8),

@@ -1,4 +1,4 @@
-//! How wrong techniques are in the worlds, against exact visibility by rays.
+//! Scores of techniques in the worlds, against exact visibility by rays.
 
 use std::fmt;
 
@@ -9,14 +9,14 @@ use umbrage_truth::{Hit, Truth, TruthMask};
 
 use crate::stage::Stage;
 
-/// A view and the truth about it.
+/// A view and its ground truth.
 #[derive(Debug)]
 pub struct Judged {
     /// The camera.
     pub view: View,
-    /// What it sees.
+    /// Ground truth of the view.
     pub truth: TruthMask,
-    /// What is scored.
+    /// Pixels that are scored.
     pub domain: Domain,
 }
 
@@ -38,7 +38,7 @@ impl Judged {
         views.into_iter().map(judged).collect()
     }
 
-    /// E of a mask.
+    /// Returns the score of a mask, whose rate is E.
     ///
     /// # Panics
     /// If the mask has another size or nothing faces the light.
@@ -48,7 +48,7 @@ impl Judged {
     }
 }
 
-/// All decisions of several views as one.
+/// Adds up the decisions of several views.
 #[must_use]
 pub fn pooled(scores: impl IntoIterator<Item = MisShadowed>) -> MisShadowed {
     scores.into_iter().fold(MisShadowed::default(), |sum, score| MisShadowed {
@@ -62,34 +62,34 @@ pub fn pooled(scores: impl IntoIterator<Item = MisShadowed>) -> MisShadowed {
 /// A score that must not rise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ceiling {
-    /// What was measured when the ceiling was set, a share in 0..=1.
+    /// Score measured when the ceiling was set, a share in 0..=1.
     pub measured: f64,
-    /// What fails if it is exceeded.
+    /// Largest score that passes.
     pub ceiling: f64,
 }
 
-/// A score that rose.
+/// A score above its ceiling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exceeded {
-    /// What is measured now.
+    /// Score that is measured now.
     pub now: f64,
-    /// What it should be under.
+    /// Ceiling that it exceeds.
     pub ceiling: Ceiling,
 }
 
 impl Ceiling {
-    /// How far above the measurement a ceiling is: room for drivers that round otherwise. On one
-    /// driver scores do not move at all, and masks of PSSM(4;512²) that lie a pixel aside have four
-    /// to twelve times its error.
+    /// Ratio of a ceiling to the measurement: room for drivers that round differently. On one
+    /// driver scores do not change at all, and masks of PSSM(4;512²) that are shifted by a pixel
+    /// have four to twelve times its error.
     pub const ROOM: f64 = 1.15;
 
-    /// A ceiling above what was measured.
+    /// Makes a ceiling above a measured score.
     #[must_use]
     pub const fn above(measured: f64) -> Self {
         Self { measured, ceiling: measured * Self::ROOM }
     }
 
-    /// Whether a score is still under it. A score of nothing, or NaN, is not.
+    /// Checks that a score is not above the ceiling. A score without pixels, or NaN, fails.
     ///
     /// # Errors
     /// [`Exceeded`].
@@ -106,9 +106,9 @@ impl fmt::Display for Exceeded {
     }
 }
 
-/// The mean of `|mask - truth|` and the number of pixels over the pixels whose hit `counts`. A
-/// pixel that the mask leaves transparent is wholly wrong. `None` if no pixel counts or the mask
-/// has another size.
+/// Returns the mean of `|mask - truth|` over the pixels whose hit `counts`, and their number. A
+/// pixel that the mask leaves transparent differs by 1. `None` if no pixel counts or the mask has
+/// another size.
 #[must_use]
 pub fn mean_difference(
     truth: &TruthMask,

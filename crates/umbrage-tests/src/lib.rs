@@ -1,11 +1,10 @@
-//! Regressions of pictures and scores, for development only: this crate is never published and
-//! nothing depends on it.
+//! Regression tests of pictures and scores, for development only: this crate is never published,
+//! and nothing depends on it.
 //!
-//! [`compare`] says whether two images are the same, within named tolerances; [`golden`] keeps the
-//! reference images and shows what differs; [`stage`] has the worlds, a device and the techniques;
-//! [`judge`] measures techniques against the exact truth; [`room`] is a scene with lamps,
-//! [`closed`] are rooms without any.
-//! `tests/comparators.rs` proves that every comparison can say no; `tests/regressions` holds the
+//! [`compare`] compares two images within named tolerances; [`golden`] keeps the reference images
+//! and shows differences; [`stage`] has the worlds, a device and the techniques; [`judge`] measures
+//! techniques against the exact truth; [`room`] is a scene with lamps, [`closed`] are rooms without
+//! any. `tests/comparators.rs` proves that every comparison can fail; `tests/regressions` holds the
 //! references and the ceilings.
 
 pub mod boxes;

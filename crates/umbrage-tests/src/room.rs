@@ -1,4 +1,4 @@
-//! A room with lamps: for lights that stand somewhere.
+//! A room with lamps, for tests of local lights.
 //!
 //! Walls, floor and ceiling are boxes of 20 cm around 9 × 3 × 7 m. A pendant lamp hangs over a
 //! table with stools; a spot light looks from under a shelf across a slatted screen, with boxes
@@ -6,18 +6,18 @@
 
 use umbrage_scene::{Lens, LightKind, Material, Mesh, Node, Primitive, Scene, SceneCamera, SceneLight, Trs};
 
-/// A corner of a box, metres.
+/// Corner of a box, in metres.
 pub(crate) type Corner = [f32; 3];
 
-/// Colours, linear RGB.
+/// Colours in linear RGB.
 const PLASTER: [f32; 3] = [0.75, 0.72, 0.66];
 const FLOOR: [f32; 3] = [0.36, 0.24, 0.15];
 const WOOD: [f32; 3] = [0.48, 0.30, 0.16];
 const BLUE: [f32; 3] = [0.16, 0.28, 0.48];
 const RED: [f32; 3] = [0.55, 0.14, 0.10];
 
-/// The room. Cameras: `door`, `table`, `wall`. Lights: `pendant` (point), `reading` and `washer`
-/// (spot).
+/// Makes the room. Cameras: `door`, `table`, `wall`. Lights: `pendant` (point), `reading` and
+/// `washer` (spot).
 #[must_use]
 pub fn room() -> Scene {
     let mut scene = Scene { name: "room".to_owned(), ..Scene::default() };
@@ -108,7 +108,7 @@ pub(crate) fn cuboid(primitive: &mut Primitive, min: Corner, max: Corner) {
     }
 }
 
-/// Where something stands that looks along its −Z.
+/// Makes the transform of an object at `translation` whose −Z points along `along`.
 fn looking(translation: Corner, along: Corner) -> Trs {
     let [x, y, z] = along.map(f64::from);
     // Turned about Y, then raised: the rotation of a tripod's head.

@@ -1,4 +1,4 @@
-//! What is drawn and with what: a device, the four worlds and techniques by name.
+//! Set-up of the tests: a device, the four worlds, and techniques by name.
 
 use std::io::Write;
 use std::sync::OnceLock;
@@ -10,10 +10,11 @@ use umbrage_render::{Frame, Gpu, GpuOptions, Outputs, RenderSettings, Rendered, 
 use umbrage_scene::procedural::World;
 use umbrage_scene::{Pose, Scene, camera_view, light_direction};
 
-/// The device that all tests of a binary share, or `None`, said loudly, where there is no adapter.
+/// Returns the device that all tests of a binary share, or `None` with a warning if there is no
+/// adapter.
 ///
 /// # Panics
-/// Without an adapter where the environment variable `UMBRAGE_REQUIRE_GPU` is 1.
+/// If there is no adapter and the environment variable `UMBRAGE_REQUIRE_GPU` is 1.
 pub fn gpu() -> Option<&'static Gpu> {
     static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
     GPU.get_or_init(|| match Gpu::new(&GpuOptions::default()) {
@@ -33,18 +34,18 @@ pub fn gpu() -> Option<&'static Gpu> {
 /// A world at time 0 under its own sun.
 #[derive(Debug)]
 pub struct Stage {
-    /// Which.
+    /// Name of the world.
     pub world: World,
-    /// Its geometry.
+    /// Scene of the world.
     pub scene: Scene,
-    /// At time 0.
+    /// Pose of the scene at time 0.
     pub pose: Pose,
-    /// Its sun then.
+    /// Sun of the world at time 0.
     pub sun: DirectionalLight,
 }
 
 impl Stage {
-    /// A world, built when it is first asked for.
+    /// Returns a world, which is built when it is first asked for.
     ///
     /// # Panics
     /// If the world has no pose or no sun, which would be a mistake in the world.
@@ -59,7 +60,7 @@ impl Stage {
         })
     }
 
-    /// The view of one of the world's cameras.
+    /// Returns the view of one of the world's cameras.
     ///
     /// # Panics
     /// If the world has no camera of that name.
@@ -71,20 +72,20 @@ impl Stage {
         camera_view(&self.scene, &self.pose, index, aspect, None, None).expect("a world's camera is usable")
     }
 
-    /// A view as a renderer takes it.
+    /// Makes a renderer's frame of a view.
     #[must_use]
     pub fn frame<'a>(&'a self, view: &'a View, tint: bool) -> Frame<'a> {
         Frame { pose: &self.pose, moved: None, view, light: self.sun.into(), more_lights: &[], shadows_on: true, tint }
     }
 
-    /// The view depths that the world's cameras show.
+    /// Returns the view depths that the world's cameras show, in metres.
     #[must_use]
     pub fn range(&self) -> Range {
         let (near, far) = self.world.near_far();
         Range::Metres { near, far }
     }
 
-    /// A technique, ready to draw this world at a size.
+    /// Makes a renderer of this world by a technique, at a size in pixels.
     ///
     /// # Panics
     /// If the device cannot hold it.
@@ -98,16 +99,16 @@ impl Stage {
     }
 }
 
-/// A technique that draws a world.
+/// A renderer of a world by one technique.
 pub struct Drawer<'a> {
     /// The world.
     pub stage: &'a Stage,
-    /// The technique.
+    /// Renderer that uses the technique.
     pub renderer: Renderer,
 }
 
 impl Drawer<'_> {
-    /// Draws a view as if it were the first.
+    /// Draws a view without any state of earlier frames.
     ///
     /// # Panics
     /// If it cannot be drawn.
@@ -116,7 +117,7 @@ impl Drawer<'_> {
         self.renderer.render(&self.stage.frame(view, tint), outputs).expect("a frame")
     }
 
-    /// The mask of a view.
+    /// Draws the mask of a view.
     ///
     /// # Panics
     /// If it cannot be drawn.
@@ -126,26 +127,26 @@ impl Drawer<'_> {
     }
 }
 
-/// Shadow settings with a name.
+/// Render settings with a name.
 #[derive(Clone, Debug)]
 pub struct Technique {
-    /// As it stands in tables and file names.
+    /// Name for tables and file names.
     pub name: String,
-    /// What it means.
+    /// Settings of the renderer.
     pub settings: RenderSettings,
 }
 
 impl Default for Technique {
-    /// What a user gets who chooses nothing.
+    /// Makes the technique of a user who chooses nothing.
     fn default() -> Self {
         Self::configured("default", ShadowConfig::default())
     }
 }
 
 impl Technique {
-    /// PSSM with maps of one size: practical scheme with λ = 0.5, fitted to the scene, not
-    /// stabilised, one nearest texel, no blend, no fade, 32-bit depth: the tightest, hardest and
-    /// most exact that there is, so that nothing hides an error.
+    /// Makes PSSM with maps of one size: practical scheme with λ = 0.5, fitted to the scene, not
+    /// stabilised, one nearest texel, no blend, no fade, 32-bit depth. It is the tightest, hardest
+    /// and most exact technique, so that nothing hides an error.
     #[must_use]
     pub fn pssm(splits: usize, map_size: u32) -> Self {
         let config = ShadowConfig {
@@ -161,13 +162,13 @@ impl Technique {
         Self { name: format!("pssm{splits}"), settings }
     }
 
-    /// One map over the whole range, otherwise as [`Technique::pssm`].
+    /// Makes one map over the whole range, otherwise as [`Technique::pssm`].
     #[must_use]
     pub fn ssm(map_size: u32) -> Self {
         Self { name: "ssm".to_owned(), ..Self::pssm(1, map_size) }
     }
 
-    /// The preset `papers`: four maps, exact stillness, 3 × 3 filter, blend and fade.
+    /// Makes the preset `papers`: four maps, exact stillness, 3 × 3 filter, blend and fade.
     #[must_use]
     pub fn papers() -> Self {
         Self::configured("papers", Preset::Papers.config())
@@ -177,14 +178,14 @@ impl Technique {
         Self { name: name.to_owned(), settings: RenderSettings { config, ..Self::pssm(4, 1024).settings } }
     }
 
-    /// With another filter.
+    /// Replaces the filter.
     #[must_use]
     pub fn filter(mut self, filter: Filter) -> Self {
         self.settings.config.filter = filter;
         self.named(filter.word())
     }
 
-    /// With all maps warped.
+    /// Warps all maps.
     #[must_use]
     pub fn warped(mut self, warp: Warp) -> Self {
         self.settings.config.stability = Stability::Tight { warps: vec![warp] };
@@ -196,28 +197,28 @@ impl Technique {
         })
     }
 
-    /// Stabilised.
+    /// Stabilises the maps exactly.
     #[must_use]
     pub fn exact(mut self) -> Self {
         self.settings.config.stability = Stability::Exact;
         self.named("exact")
     }
 
-    /// Fitted to the slices alone.
+    /// Fits maps to the slices alone.
     #[must_use]
     pub fn independent(mut self) -> Self {
         self.settings.config.crop = Crop::SceneIndependent;
         self.named("independent")
     }
 
-    /// With 16-bit maps.
+    /// Stores depth in 16 bits.
     #[must_use]
     pub fn d16(mut self) -> Self {
         self.settings.config.depth_format = DepthFormat::D16Unorm;
         self.named("d16")
     }
 
-    /// With splits that blend into each other and shadows that fade at the far end.
+    /// Blends splits into each other and fades shadows at the far end.
     #[must_use]
     pub fn blended(mut self, blend: f64, far_fade: f64) -> Self {
         self.settings.config.transition = Transition::Blend { share: blend };

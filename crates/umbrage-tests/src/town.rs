@@ -1,11 +1,11 @@
-//! Boxes on a plain: something to walk through, as small as it may be.
+//! A minimal town: boxes on a plain.
 
 use umbrage_scene::Scene;
 
 use crate::room::{cuboid, material, place};
 
-/// 60 boxes, 1 to 10 m high, on 240 × 240 m of flat ground around the origin. No cameras, no
-/// lights.
+/// Makes 60 boxes, 1 to 10 m high, on 240 × 240 m of flat ground around the origin, without cameras
+/// and lights.
 #[must_use]
 pub fn town() -> Scene {
     let mut scene = Scene { name: "town".to_owned(), ..Scene::default() };

@@ -11,9 +11,9 @@ pub(crate) struct AlphaTest {
     /// Index into the list of pictures that [`AlphaTest::passes`] is given.
     picture: Option<usize>,
     indices: Vec<u32>,
-    /// Empty: (0, 0) everywhere.
+    /// Texture coordinates of the vertices; empty means (0, 0) everywhere.
     uvs: Vec<[f32; 2]>,
-    /// Empty: 1 everywhere.
+    /// Alpha of the vertices; empty means 1 everywhere.
     vertex_alpha: Vec<f32>,
 }
 
@@ -27,8 +27,8 @@ pub(crate) struct AlphaPicture {
 }
 
 impl AlphaTest {
-    /// The test that a primitive needs; `None` if its material has none. `picture` tells where the
-    /// texture's alpha is kept.
+    /// Makes the alpha test of a primitive; `None` if its material has none. `picture` is the index
+    /// of the texture's alpha.
     pub(crate) fn new(primitive: &Primitive, material: &Material, picture: Option<usize>) -> Option<Self> {
         let AlphaMode::Mask { cutoff } = material.alpha else { return None };
         Some(Self {
@@ -41,8 +41,8 @@ impl AlphaTest {
         })
     }
 
-    /// Whether the surface is there, `weights` being the barycentric coordinates of the point in
-    /// triangle `triangle`.
+    /// Returns whether the surface is there: its alpha reaches the cutoff. `weights` are the
+    /// barycentric coordinates of the point in triangle `triangle`.
     pub(crate) fn passes(&self, pictures: &[AlphaPicture], triangle: usize, weights: [f64; 3]) -> bool {
         let corners: [usize; 3] = std::array::from_fn(|i| self.indices[3 * triangle + i] as usize);
         let mut alpha = self.base;
@@ -64,7 +64,7 @@ impl AlphaTest {
 }
 
 impl AlphaPicture {
-    /// The alpha channel of one of the scene's textures.
+    /// Copies the alpha channel of one of the scene's textures.
     pub(crate) fn new(scene: &Scene, texture: usize) -> Self {
         let texture = &scene.textures[texture];
         Self {
@@ -75,7 +75,8 @@ impl AlphaPicture {
         }
     }
 
-    /// Alpha in `[0, 1]`, bilinear or of the nearest texel; texel centres at half-integers, v down.
+    /// Samples alpha in `[0, 1]`, bilinearly or from the nearest texel. Texel centres lie at
+    /// half-integers; v points down.
     fn sample(&self, uv: [f64; 2]) -> f64 {
         if self.filter == TextureFilter::Nearest {
             let axis =

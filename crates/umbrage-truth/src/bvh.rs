@@ -1,4 +1,4 @@
-//! The tree of boxes: built by `obvhs`, walked here so that no rounding can lose a hit.
+//! The bounding volume hierarchy: built by `obvhs`, walked here so that no rounding can lose a hit.
 //!
 //! `obvhs` builds the binary tree (PLOC, Meister and Bittner 2018, with parallel reinsertion,
 //! 2017). Its own traversal compares `f32` boxes without an error margin, which is right for
@@ -21,7 +21,8 @@ use crate::triangles::{EDGE_ERROR, round_down, round_up};
 /// product, half an ulp each, doubled for safety.
 const SLAB_ERROR: f32 = 4.0 * f32::EPSILON;
 
-/// Direction components closer to 0 than this are taken as this, so that the inverse stays finite.
+/// Smallest magnitude of a direction component. Smaller ones are replaced by it, so that the
+/// inverse stays finite.
 const LEAST_DIRECTION: f64 = 1e-25;
 
 /// Metres by which a ray's origin is blurred to either side, beyond its rounding and one ulp more.
@@ -29,7 +30,7 @@ const LEAST_DIRECTION: f64 = 1e-25;
 /// axis-parallel ray is then met, and the error of [`LEAST_DIRECTION`] is covered up to 1e16 m.
 const ORIGIN_BLUR: f64 = 1e-9;
 
-/// A binary tree of boxes; leaves are ranges of the order that [`Tree::build`] answers.
+/// A binary tree of boxes. Leaves are ranges of the order that [`Tree::build`] returns.
 pub(crate) struct Tree {
     nodes: Vec<Bvh2Node>,
 }
@@ -60,7 +61,8 @@ impl BoxRay {
         }
     }
 
-    /// Where the ray enters a box, or infinity if it certainly misses it before `t_max`.
+    /// Returns the `t` at which the ray enters a box, or infinity if it certainly misses the box
+    /// before `t_max`.
     #[inline(always)]
     fn enters(&self, bounds: &Aabb, t_max: f32) -> f32 {
         let a = (bounds.min - self.origin_high) * self.inverse;
@@ -74,7 +76,7 @@ impl BoxRay {
 }
 
 impl Tree {
-    /// Builds the tree and answers it with the order of the boxes in its leaves.
+    /// Builds the tree and returns it with the order of the boxes in its leaves.
     pub(crate) fn build(boxes: &[Aabb]) -> (Self, Vec<u32>) {
         if boxes.is_empty() {
             return (Self { nodes: Vec::new() }, Vec::new());
@@ -90,7 +92,7 @@ impl Tree {
     }
 
     /// Visits every leaf that the ray may meet between its own `t_min` and `t_max`, roughly from
-    /// near to far. `visit` may lower `t_max`, and ends the walk by answering `false`.
+    /// near to far. `visit` may lower `t_max`, and ends the walk by returning `false`.
     #[inline(always)]
     pub(crate) fn walk(
         &self,

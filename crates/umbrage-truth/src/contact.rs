@@ -1,4 +1,5 @@
-//! When two surfaces lie on each other, as far as the scene's own numbers can tell.
+//! Contact of surfaces: whether two surfaces lie on each other, within the rounding of the scene's
+//! numbers.
 //!
 //! Vertices are stored in `f32`, relative to their object. Two surfaces that were meant to
 //! coincide, the faces of a leaf or a decal on a wall, therefore lie apart by the rounding of their
@@ -11,28 +12,28 @@ use umbrage_scene::{Pose, Scene};
 
 use crate::triangles::Surface;
 
-/// Share of a coordinate in `f32` by which it may be off: four roundings, one of the file and three
-/// of the tools before it.
+/// Relative error of a coordinate in `f32`: four roundings, one of the file and three of the tools
+/// before it.
 const F32_ERROR: f64 = 4.0 / (1_u64 << 24) as f64;
 
-/// Share of a coordinate in `f64` by which it may be off after all the arithmetic here.
+/// Relative error of a coordinate in `f64` after all the arithmetic here.
 pub(crate) const F64_ERROR: f64 = 8.0 / (1_u64 << 53) as f64;
 
-/// Share of the smaller object's radius that the rounding of two objects' translations may make of
-/// the tolerance. A translation may be exact, be it ever so large: whoever moves a scene in `f64`
-/// moves it by one. Its rounding is therefore believed only while it is too small to take a shadow
-/// away from an object.
+/// Largest part of the tolerance that the rounding of two objects' translations may make, as a
+/// share of the smaller object's radius. A translation may be exact however large it is, because a
+/// scene moved in `f64` moves by an exact one. Its rounding is therefore counted only while it is
+/// too small to take a shadow away from an object.
 const MOST_TRANSLATION_ERROR: f64 = 1.0 / 4096.0;
 
-/// An entry of a matrix that is smaller than this share of its row is 0, rounded.
+/// Entries of a matrix below this share of their row count as 0 that was rounded.
 const NO_ENTRY: f64 = 1e-12;
 
-/// What is known of a scene's precision.
+/// Precision of a scene's objects.
 #[derive(Debug)]
 pub(crate) struct Contact {
-    /// Per object.
+    /// Precision of each object.
     placed: Vec<Placed>,
-    /// Per node: its parent, which has a lower index.
+    /// Parent of each node, which has a lower index.
     parents: Vec<Option<usize>>,
     world_from_node: Vec<DAffine3>,
 }
@@ -40,13 +41,13 @@ pub(crate) struct Contact {
 #[derive(Debug)]
 struct Placed {
     node: usize,
-    /// The vertices are blended from several joints.
+    /// True if the vertices are blended from several joints.
     is_skinned: bool,
     world_from_local: DMat3,
     local_from_world: Option<DMat3>,
-    /// Where the local origin is.
+    /// World position of the local origin.
     pivot: DVec3,
-    /// The farthest that a vertex is from the pivot.
+    /// Largest distance of a vertex from the pivot, in metres.
     radius: f64,
 }
 
@@ -71,7 +72,7 @@ impl Contact {
         }
     }
 
-    /// At least what a surface adds to [`Contact::tolerance`], in metres, cheaply.
+    /// Returns, cheaply, an upper bound in metres on what a surface adds to [`Contact::tolerance`].
     pub(crate) fn most(&self, surface: &Surface) -> f64 {
         let placed = &self.placed[surface.object as usize];
         // Vertices, at most √3 times a corner's distance, and transforms, at most √3 times it
@@ -79,10 +80,10 @@ impl Contact {
         (4.0 * F32_ERROR + MOST_TRANSLATION_ERROR) * placed.radius + F64_ERROR * (placed.radius + placed.pivot.length())
     }
 
-    /// How far a point of one surface may be from the plane of another's triangle, in metres,
-    /// though they were meant to coincide: `there` is the triangle's surface with its corners,
-    /// `here` the point's surface, if that is known, and the point. Both are relative to the world
-    /// point `origin`; `normal` is the triangle's unit normal.
+    /// Returns the largest distance in metres, due to rounding, of a point of one surface from the
+    /// plane of another's triangle where both were meant to coincide. `there` is the triangle's
+    /// surface with its corners, `here` the point's surface, if known, and the point. Both are
+    /// relative to the world point `origin`; `normal` is the triangle's unit normal.
     pub(crate) fn tolerance(
         &self,
         there: (&Surface, &[DVec3; 3]),
@@ -113,7 +114,7 @@ impl Contact {
         translations + theirs_off + ours.map_or(theirs_off, |ours| off(ours, here.1))
     }
 
-    /// The node that both objects hang from; what is above it is the same for both.
+    /// Returns the lowest node above both objects. The transforms above it are the same for both.
     fn common_node(&self, a: &Placed, b: &Placed) -> Option<usize> {
         let own = |of: &Placed| if of.is_skinned { None } else { Some(of.node) };
         let (mut a, mut b) = (own(a)?, own(b)?);
@@ -126,8 +127,8 @@ impl Contact {
     }
 }
 
-/// Bound on how far a point is off along `normal` because its coordinates were rounded, relative to
-/// their rounding.
+/// Returns a bound on the error of a point along `normal` that comes from rounding its coordinates,
+/// relative to that rounding.
 fn vertex_error(of: &Placed, from_pivot: DVec3, normal: DVec3) -> f64 {
     let longest = 3_f64.sqrt() * from_pivot.length();
     match of.local_from_world {
@@ -140,8 +141,8 @@ fn vertex_error(of: &Placed, from_pivot: DVec3, normal: DVec3) -> f64 {
     }
 }
 
-/// Metres by which a point may be off because the rotation and the scale between the object and the
-/// node with the linear part `common` were rounded.
+/// Returns a bound in metres on the error of a point that comes from rounding the rotation and the
+/// scale between the object and the node with the linear part `common`.
 fn transform_error(of: &Placed, common: DMat3, from_pivot: DVec3, normal: DVec3) -> f64 {
     let longest = 3_f64.sqrt() * from_pivot.length();
     let Some(common_from_world) = inverse(common) else { return longest };
@@ -157,7 +158,7 @@ fn transform_error(of: &Placed, common: DMat3, from_pivot: DVec3, normal: DVec3)
     (common.transpose() * normal).abs().dot(off).min(longest)
 }
 
-/// The inverse of a matrix that has one.
+/// Returns the inverse of an invertible matrix.
 fn inverse(matrix: DMat3) -> Option<DMat3> {
     let inverse = matrix.inverse();
     (matrix.determinant() != 0.0 && inverse.is_finite()).then_some(inverse)

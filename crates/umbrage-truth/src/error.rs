@@ -1,11 +1,11 @@
-//! What can be wrong with a scene, a sun, or a pair of images that are to be compared.
+//! Errors of the judge: unusable scenes, suns, or pairs of images.
 
 use std::path::PathBuf;
 
 /// [`std::result::Result`] with this crate's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Why the judge refused its input. Every message names what was wrong and what to do.
+/// Reason why the judge refused its input. Every message names what was wrong and what to do.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -14,21 +14,21 @@ pub enum Error {
     InvalidGeometry {
         /// The scene's name.
         scene: String,
-        /// The node that shows it, as `nodes[3] (wheel)`.
+        /// Name of the node that shows the object, as `nodes[3] (wheel)`.
         node: String,
         /// Index into the pose's objects.
         object: usize,
         /// Index into the mesh's primitives.
         primitive: usize,
-        /// What was wrong and what to do.
+        /// Fault and remedy.
         reason: String,
     },
-    /// More triangles than a 32-bit number counts.
+    /// The scene has more triangles than a 32-bit number counts.
     #[error("the scene has {triangles} triangles once its instances are spread out; the judge counts to {most}")]
     TooManyTriangles {
-        /// How many there would be.
+        /// Number of triangles in the scene.
         triangles: u64,
-        /// How many there may be.
+        /// Largest number of triangles.
         most: u64,
     },
     /// A setting is out of range.
@@ -36,27 +36,27 @@ pub enum Error {
     InvalidSetting {
         /// The parameter at fault.
         field: &'static str,
-        /// What was wrong and what to do.
+        /// Fault and remedy.
         reason: String,
     },
-    /// Two things that are compared pixel by pixel have different sizes.
+    /// Two images or lists that are compared element by element have different sizes.
     #[error("{what} is {got:?}, but the truth it is compared with is {expected:?}; render both at one size")]
     SizeMismatch {
-        /// What has the wrong size.
+        /// Name of the input with the wrong size.
         what: &'static str,
-        /// Its width and height (or its length and 1).
+        /// Width and height of the input (or its length and 1).
         got: [usize; 2],
-        /// What the truth has.
+        /// Width and height of the ground truth.
         expected: [usize; 2],
     },
     /// An answer is not a visibility.
     #[error("{what} {index} is {value}; a visibility lies in [0,1]")]
     NotAVisibility {
-        /// Which list.
+        /// Name of the list.
         what: &'static str,
-        /// Index into it.
+        /// Index of the answer in the list.
         index: usize,
-        /// What it holds.
+        /// Value of the answer.
         value: f32,
     },
     /// There is nothing to score.
@@ -67,15 +67,15 @@ pub enum Error {
     Image {
         /// The file.
         path: PathBuf,
-        /// Why not.
+        /// Reason given by the image decoder.
         source: image::ImageError,
     },
     /// An image metric from another crate failed.
     #[error("image metric {metric}: {reason}")]
     Metric {
-        /// Which.
+        /// Name of the metric.
         metric: &'static str,
-        /// What it said.
+        /// Message of the metric.
         reason: String,
     },
 }

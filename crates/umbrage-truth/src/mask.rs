@@ -11,25 +11,27 @@ use umbrage::{Light, View};
 use crate::truth::{Seen, sun};
 use crate::{Error, Hit, Result, Truth};
 
-/// Pixels of a block that is traced together, along each side, so that neighbouring rays find the
-/// tree in the cache.
+/// Edge in pixels of the blocks that are traced together, so that neighbouring rays find the tree
+/// in the cache.
 const BLOCK: usize = 8;
 
-/// What every pixel centre of a view sees, and whether the light reaches it.
+/// Ground truth of hard shadows for a view: the first hit of each pixel centre, and whether the
+/// light reaches it.
 #[derive(Clone, Debug)]
 pub struct TruthMask {
     size: [usize; 2],
     light: Light,
-    /// `None` where hits are not from rays.
+    /// View of the rays; `None` if the hits do not come from rays.
     view: Option<View>,
     hits: Vec<Option<Hit>>,
 }
 
 impl Truth {
     /// Traces one ray through each pixel centre and one from there to the light. `light_travel` is
-    /// the way the light travels and need not be normalised; `size` is width and height in pixels.
-    /// `progress` hears the share that is done, in `[0, 1]`, from several threads, not always in
-    /// order. The result does not depend on the number of threads.
+    /// the direction in which the light travels and need not be normalised. `size` is width and
+    /// height in pixels. `progress` is called with the share that is done, in `[0, 1]`, from
+    /// several threads and not always in order. The result does not depend on the number of
+    /// threads.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] if the image has no pixels or the light no direction.
@@ -43,8 +45,8 @@ impl Truth {
         self.mask_under(view, &sun(light_travel)?, size, progress)
     }
 
-    /// The mask under any light. Rays to a local light end there; what its range and cone do not
-    /// reach is not shadowed (and not scored: see [`crate::scores::Domain`]).
+    /// Traces the mask under any light. Rays to a local light end there. Points outside its range
+    /// and cone are not shadowed (and not scored: see [`crate::scores::Domain`]).
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] if the image has no pixels.
@@ -67,7 +69,7 @@ impl Truth {
     }
 
     /// Begins the mask of [`Truth::mask_under`], to be traced a few rows at a time on the caller's
-    /// own thread, where that has other things to do between.
+    /// own thread, if that has other work to do in between.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] if the image has no pixels.
@@ -75,7 +77,7 @@ impl Truth {
         Ok(Tracing { truth: self, view: *view, mask: empty(view, light, size)?, bands: 0, stack: Vec::new() })
     }
 
-    /// Looks at some rows of an image of a size, from row `band` · [`BLOCK`] on.
+    /// Traces some rows of an image, from row `band` · [`BLOCK`] on.
     fn look_at_band(
         &self,
         view: &View,
@@ -90,7 +92,7 @@ impl Truth {
         }
     }
 
-    /// What the view sees through the centre of one pixel of an image of a size.
+    /// Traces the centre of one pixel of an image.
     fn look(
         &self,
         view: &View,
@@ -106,7 +108,7 @@ impl Truth {
     }
 }
 
-/// A mask of which nothing is traced yet.
+/// Returns a mask of which nothing is traced yet.
 fn empty(view: &View, light: &Light, size: [u32; 2]) -> Result<TruthMask> {
     if size.contains(&0) {
         return Err(Error::setting("size", format!("{} x {} pixels; give 1 or more each", size[0], size[1])));
@@ -115,19 +117,19 @@ fn empty(view: &View, light: &Light, size: [u32; 2]) -> Result<TruthMask> {
     Ok(TruthMask { size, light: *light, view: Some(*view), hits: vec![None; size[0] * size[1]] })
 }
 
-/// A mask that is traced a few rows at a time: see [`Truth::begin_mask`].
+/// A mask that is being traced a few rows at a time: see [`Truth::begin_mask`].
 #[derive(Debug)]
 pub struct Tracing<'t> {
     truth: &'t Truth,
     view: View,
     mask: TruthMask,
-    /// Bands of [`BLOCK`] rows that are traced.
+    /// Number of bands of [`BLOCK`] rows that are traced.
     bands: usize,
     stack: Vec<u32>,
 }
 
 impl Tracing<'_> {
-    /// Traces the next rows. The share of all that is done then, in `[0, 1]`.
+    /// Traces the next rows and returns the share of all rows that is done, in `[0, 1]`.
     pub fn advance(&mut self) -> f32 {
         let Self { truth, view, mask, bands, stack } = self;
         let (size, light) = (mask.size, mask.light);
@@ -138,20 +140,20 @@ impl Tracing<'_> {
         (*bands * BLOCK).min(size[1]) as f32 / size[1] as f32
     }
 
-    /// The mask, or `None` while rows are missing.
+    /// Returns the mask, or `None` while rows are missing.
     #[must_use]
     pub fn finish(self) -> Option<TruthMask> {
         (self.bands * BLOCK >= self.mask.size[1]).then_some(self.mask)
     }
 }
 
-/// The ray through a pixel's centre: origin in the world, and direction.
+/// Returns the ray through a pixel's centre: its origin in the world, and its direction.
 fn ray_of(view: &View, pixel: [usize; 2], size: [usize; 2]) -> (DVec3, DVec3) {
     view.ray_through((pixel[0] as f64 + 0.5) / size[0] as f64, (pixel[1] as f64 + 0.5) / size[1] as f64)
 }
 
 impl TruthMask {
-    /// What is known otherwise than by rays, by a closed form for example: one entry for each
+    /// Makes a mask from hits that do not come from rays, such as a closed form: one entry for each
     /// pixel, row after row.
     ///
     /// # Errors
@@ -168,40 +170,42 @@ impl TruthMask {
         Ok(Self { size, light: sun(-to_light)?, view: None, hits })
     }
 
-    /// Width and height in pixels.
+    /// Returns width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
         self.size
     }
 
-    /// The light.
+    /// Returns the light.
     #[must_use]
     pub fn light(&self) -> &Light {
         &self.light
     }
 
-    /// One entry per pixel, row by row from the upper left; `None` where the ray meets nothing.
+    /// Returns one hit per pixel, row by row from the upper left; `None` where the ray meets
+    /// nothing.
     #[must_use]
     pub fn hits(&self) -> &[Option<Hit>] {
         &self.hits
     }
 
-    /// What was hit at a pixel as a point to ask light from, by the truth that the mask is of.
+    /// Returns the hit of a pixel as the origin of shadow rays, in the truth that the mask was
+    /// traced in.
     pub(crate) fn seen(&self, truth: &Truth, pixel: usize, hit: &Hit) -> Seen {
         let Some(view) = &self.view else { return truth.probed(hit.position, hit.normal) };
         let (origin, direction) = ray_of(view, [pixel % self.size[0], pixel / self.size[0]], self.size);
         truth.seen(origin, direction, hit)
     }
 
-    /// As a mask image: 255 lit, 0 shadowed or turned away from the light; alpha 255, or 0 where
-    /// nothing was hit.
+    /// Draws the mask as an image: 255 lit, 0 shadowed or turned away from the light; alpha 255, or
+    /// 0 where nothing was hit.
     #[must_use]
     pub fn to_image(&self) -> GrayAlphaImage {
         mask_image(self.size, self.hits.iter().map(|hit| hit.map(|hit| f32::from(u8::from(hit.lit)))))
     }
 }
 
-/// A mask image of visibilities in `[0, 1]`; `None` is transparent.
+/// Draws visibilities in `[0, 1]` as a mask image; `None` is transparent.
 pub(crate) fn mask_image(size: [usize; 2], values: impl Iterator<Item = Option<f32>>) -> GrayAlphaImage {
     let mut image = GrayAlphaImage::new(size[0] as u32, size[1] as u32);
     for (pixel, value) in image.pixels_mut().zip(values) {
@@ -220,7 +224,7 @@ pub fn read_mask(path: &Path) -> Result<GrayAlphaImage> {
     Ok(image.into_luma_alpha8())
 }
 
-/// The pixels of a band, block after block.
+/// Iterates over the pixels of a band, block after block.
 pub(crate) fn in_blocks(width: usize, height: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..width)
         .step_by(BLOCK)

@@ -14,37 +14,37 @@ use crate::{Error, Result, Truth, TruthMask};
 /// Fewest and most directions of a set.
 const SAMPLES: std::ops::RangeInclusive<u32> = 1..=1 << 20;
 
-/// A sun of a given size, and the directions by which it is looked at. They are the same for every
-/// point.
+/// A sun of a given size, and the directions towards it that are sampled. They are the same for
+/// every point.
 ///
 /// The directions are Vogel's spiral (H. Vogel, "A better way to construct the sunflower head",
 /// Mathematical Biosciences 44, 1979): direction i of N stands at radius √((i + ½)/N) and angle
-/// i·π(3 − √5) on the disc, so that every one serves the same area.
+/// i·π(3 − √5) on the disc, so that every direction stands for the same area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunDisc {
-    /// Angle across the disc in radians; the real sun has 0.0093 (0.53°). More than 0, at most π/2.
+    /// Angle across the disc in radians; more than 0, at most π/2. The real sun has 0.0093 (0.53°).
     pub angular_diameter: f64,
-    /// How many directions: 256 for quick tests, 1,024 for tables.
+    /// Number of directions: 256 for quick tests, 1,024 for tables.
     pub samples: u32,
-    /// Turns the spiral by this angle in radians. Sets with different turns are different sets, and
-    /// how far their results lie apart is the noise floor.
+    /// Rotation of the spiral in radians. Sets with different rotations are different sets. The
+    /// difference of their results is the noise floor.
     pub turn: f64,
 }
 
 impl SunDisc {
-    /// A disc with the spiral unturned.
+    /// Makes a disc with an unturned spiral.
     #[must_use]
     pub const fn new(angular_diameter: f64, samples: u32) -> Self {
         Self { angular_diameter, samples, turn: 0.0 }
     }
 
-    /// This disc seen by another set of directions, for the noise floor.
+    /// Returns the disc with another set of directions, to measure the noise floor.
     #[must_use]
     pub const fn other_set(self) -> Self {
         Self { turn: self.turn + 1.0, ..self }
     }
 
-    /// Unit vectors towards the disc around `to_light`.
+    /// Returns unit vectors towards the disc around `to_light`.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] naming the field that is out of range.
@@ -76,7 +76,7 @@ impl SunDisc {
     }
 }
 
-/// V*_A, the share of the sun's disc that each pixel sees.
+/// Ground truth of soft shadows, V*_A: the share of the sun's disc that each pixel sees.
 #[derive(Clone, Debug)]
 pub struct SoftTruth {
     size: [usize; 2],
@@ -84,8 +84,8 @@ pub struct SoftTruth {
 }
 
 impl Truth {
-    /// Looks from every hit of a hard mask into all directions of the disc. Directions below the
-    /// surface's own horizon (n·l' ≤ 0) count as shadow. `progress` as in [`Truth::mask`].
+    /// Traces rays from every hit of a hard mask in all directions of the disc. Directions below
+    /// the surface's own horizon (n·l' ≤ 0) count as shadow. `progress` as in [`Truth::mask`].
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] naming the field of the disc that is out of range, or that the
@@ -110,7 +110,7 @@ impl Truth {
         Ok(SoftTruth { size: [width, height], visibility })
     }
 
-    /// V*_A of world points with their normals, no triangle being known as the point's own; see
+    /// Returns V*_A of world points with their normals. No triangle is known as a point's own; see
     /// [`Truth::visibility_at`].
     ///
     /// # Errors
@@ -144,27 +144,28 @@ impl Truth {
 }
 
 impl SoftTruth {
-    /// A soft truth made by hand.
+    /// Makes a soft truth from given values, for tests.
     #[cfg(test)]
     pub(crate) fn from_values(size: [usize; 2], visibility: Vec<Option<f32>>) -> Self {
         assert_eq!(visibility.len(), size[0] * size[1]);
         Self { size, visibility }
     }
 
-    /// Width and height in pixels.
+    /// Returns width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
         self.size
     }
 
-    /// One entry per pixel, row by row from the upper left, in `[0, 1]`; `None` where the ray meets
-    /// nothing.
+    /// Returns one share per pixel, row by row from the upper left, in `[0, 1]`; `None` where the
+    /// ray meets nothing.
     #[must_use]
     pub fn visibility(&self) -> &[Option<f32>] {
         &self.visibility
     }
 
-    /// As a mask image: 255 sees the whole sun, 0 none of it; alpha 0 where nothing was hit.
+    /// Draws a mask image: 255 where the whole sun is visible, 0 where none of it is; alpha 0 where
+    /// nothing was hit.
     #[must_use]
     pub fn to_image(&self) -> GrayAlphaImage {
         mask_image(self.size, self.visibility.iter().copied())

@@ -1,4 +1,4 @@
-//! Rays against triangles in `f64`.
+//! Intersection of rays with triangles in `f64`.
 //!
 //! The test is the watertight one of Woop, Benthin and Wald (JCGT 2013): a ray through an edge or a
 //! corner that two triangles share meets at least one of them, because both compute the very same
@@ -12,30 +12,30 @@ use glam::DVec3;
 use crate::bvh::BoxRay;
 use crate::triangles::EDGE_ERROR;
 
-/// A ray with everything that its tests share. `t` is in units of the direction's length.
+/// A ray with the values that its tests share. `t` is in units of the direction's length.
 pub(crate) struct Ray {
-    /// For the boxes.
+    /// The ray as the tests of boxes use it.
     pub boxes: BoxRay,
     pub t_min: f64,
     pub t_max: f64,
     origin: DVec3,
-    /// Axes x, y, z of the sheared space; z is where the direction is longest.
+    /// Axes x, y, z of the sheared space. z is the axis along which the direction is longest.
     axes: [usize; 3],
     shear: [f64; 3],
-    /// The largest coordinate of the origin.
+    /// Largest coordinate of the origin.
     reach: f64,
 }
 
-/// Where a ray meets a triangle.
+/// Intersection of a ray with a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing {
     pub t: f64,
-    /// Barycentric coordinates of the three corners; they sum to 1.
+    /// Barycentric coordinates of the intersection; they sum to 1.
     pub weights: [f64; 3],
 }
 
 impl Ray {
-    /// A ray from `origin` for `t` in `[t_min, t_max]`. `direction` is finite and not zero.
+    /// Makes a ray from `origin` for `t` in `[t_min, t_max]`. `direction` is finite and not zero.
     pub(crate) fn new(origin: DVec3, direction: DVec3, t_min: f64, t_max: f64) -> Self {
         let size = direction.abs();
         let z = if size.x >= size.y && size.x >= size.z {
@@ -58,8 +58,8 @@ impl Ray {
         }
     }
 
-    /// Where the ray meets a triangle with `t_min <= t <= t_max`, from either side. A triangle seen
-    /// exactly edge-on is not met.
+    /// Intersects the ray with a triangle for `t_min <= t <= t_max`, from either side. A triangle
+    /// seen exactly edge-on is not met.
     #[inline(always)]
     pub(crate) fn meets(&self, corners: &[DVec3; 3], t_max: f64) -> Option<Crossing> {
         let [x, y, z] = self.axes;
@@ -95,9 +95,9 @@ impl Ray {
         (t >= self.t_min && t <= t_max).then_some(Crossing { t, weights })
     }
 
-    /// Where the ray first passes an edge of a triangle within `tolerance`; corners are sheared,
-    /// the ray being their third axis. Which edge that is does not depend on `t_max`: a tree asks
-    /// with what it has found already.
+    /// Returns the first crossing of the ray with an edge of a triangle, within `tolerance`.
+    /// Corners are sheared, so that the ray is their third axis. The edge does not depend on
+    /// `t_max`, which a tree lowers to the nearest hit so far.
     #[cold]
     fn meets_edge(&self, corners: [(f64, f64, f64); 3], tolerance: f64, t_max: f64) -> Option<Crossing> {
         let passed = |first: usize| {

@@ -10,12 +10,11 @@ use umbrage_scene::{AlphaMode, Pose, Primitive, Scene};
 use crate::alpha::{AlphaPicture, AlphaTest};
 use crate::{Error, Result};
 
-/// How far from an edge a ray may pass and still meet it, as a share of the coordinates of both: a
-/// corner that was placed, moved and sheared is rounded so often.
+/// Largest distance of a ray from an edge that it meets, as a share of the coordinates of both: the
+/// rounding of a corner that was placed, moved and sheared.
 pub(crate) const EDGE_ERROR: f64 = 16.0 * f64::EPSILON;
 
-/// Farther than this from the origin, in metres, `f32` boxes and their inverse directions would
-/// overflow.
+/// Largest coordinate in metres. Beyond it `f32` boxes and inverse directions would overflow.
 const FARTHEST: f64 = 1e12;
 
 /// One primitive of one object, as rays see it. Its triangles are numbered from `first` on.
@@ -25,13 +24,13 @@ pub(crate) struct Surface {
     pub object: u32,
     mesh: u32,
     primitive: u32,
-    /// Number of its first triangle.
+    /// Number of the primitive's first triangle.
     pub first: u32,
-    /// Whether shadow rays meet it.
+    /// True if shadow rays meet the surface.
     pub casts: bool,
-    /// Whether primary rays pass through its back faces.
+    /// True if primary rays pass through the surface's back faces.
     pub single_sided: bool,
-    /// Whether the transform mirrors, which swaps front and back.
+    /// True if the transform mirrors, which swaps front and back.
     pub mirrored: bool,
     /// Index into [`Triangles::alpha_tests`].
     pub alpha: Option<u32>,
@@ -42,7 +41,7 @@ pub(crate) struct Surface {
 pub(crate) struct Triangle {
     /// Corners in the primitive's order, in metres.
     pub corners: [DVec3; 3],
-    /// Counts through all surfaces; what "skip by id" means.
+    /// Number of the triangle, counted through all surfaces.
     pub number: u32,
     /// Index into [`Triangles::surfaces`].
     pub surface: u32,
@@ -60,7 +59,7 @@ pub(crate) struct Triangles {
 }
 
 impl Triangles {
-    /// Lists the surfaces and checks every index and number that a ray would rely on.
+    /// Lists the surfaces and checks every index and number that rays rely on.
     pub(crate) fn gather(scene: &Scene, pose: &Pose, origin: DVec3) -> Result<Self> {
         let mut all = Self { origin, surfaces: Vec::new(), alpha_tests: Vec::new(), pictures: Vec::new(), count: 0 };
         let mut count = 0_u64;
@@ -115,7 +114,7 @@ impl Triangles {
         Ok(all)
     }
 
-    /// Boxes around all triangles in number order, rounded outwards.
+    /// Computes boxes around all triangles in number order, rounded outwards.
     pub(crate) fn boxes(&self, scene: &Scene, pose: &Pose) -> Result<Vec<Aabb>> {
         let mut boxes = vec![Aabb::empty(); self.count as usize];
         let mut rest = boxes.as_mut_slice();
@@ -148,7 +147,7 @@ impl Triangles {
         Ok(boxes)
     }
 
-    /// The triangles with the numbers in `order`, in that order.
+    /// Returns the triangles with the numbers in `order`, in that order.
     pub(crate) fn in_order(&self, scene: &Scene, pose: &Pose, order: &[u32]) -> Vec<Triangle> {
         let placed: Vec<Placed> = self.surfaces.iter().map(|surface| self.placed(scene, pose, surface)).collect();
         order
@@ -162,7 +161,7 @@ impl Triangles {
             .collect()
     }
 
-    /// Index of the surface that a triangle number belongs to.
+    /// Returns the index of the surface that a triangle number belongs to.
     pub(crate) fn surface_of(&self, number: u32) -> usize {
         self.surfaces.partition_point(|surface| surface.first <= number) - 1
     }
@@ -184,7 +183,7 @@ impl Triangles {
     }
 }
 
-/// A primitive with the transform that places it. Equal positions become equal corners, bit for
+/// A primitive with its transform into the world. Equal positions become equal corners, bit for
 /// bit.
 struct Placed<'a> {
     primitive: &'a Primitive,
@@ -201,7 +200,7 @@ impl Placed<'_> {
     }
 }
 
-/// The error about a primitive of an object, with the node that shows it.
+/// Makes the error about a primitive of an object, with the node that shows it.
 fn invalid(scene: &Scene, pose: &Pose, object: usize, primitive: usize, reason: String) -> Error {
     let node = pose.objects.get(object).map(|object| object.node);
     let named = |index: usize| match scene.nodes.get(index) {
@@ -212,7 +211,7 @@ fn invalid(scene: &Scene, pose: &Pose, object: usize, primitive: usize, reason: 
     Error::InvalidGeometry { scene: scene.name.clone(), node, object, primitive, reason }
 }
 
-/// What is wrong with a primitive, if anything.
+/// Checks a primitive. The error says what is wrong with it.
 fn check_primitive(scene: &Scene, pose: &Pose, object: usize, k: usize, primitive: &Primitive) -> Result<(), String> {
     let vertices = primitive.positions.len();
     if !primitive.indices.len().is_multiple_of(3) {
@@ -249,13 +248,13 @@ fn rounded(point: DVec3, round: impl Fn(f64) -> f32) -> Vec3A {
     Vec3A::new(round(point.x), round(point.y), round(point.z))
 }
 
-/// The greatest `f32` that is not above `x`.
+/// Returns the greatest `f32` that is not above `x`.
 pub(crate) fn round_down(x: f64) -> f32 {
     let nearest = x as f32;
     if f64::from(nearest) > x { nearest.next_down() } else { nearest }
 }
 
-/// The least `f32` that is not below `x`.
+/// Returns the least `f32` that is not below `x`.
 pub(crate) fn round_up(x: f64) -> f32 {
     -round_down(-x)
 }

@@ -1,4 +1,4 @@
-//! The scene at one moment, ready to be asked by rays.
+//! The scene at one moment, with a tree of triangles for rays.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -11,19 +11,19 @@ use crate::trace::{Crossing, Ray};
 use crate::triangles::{Surface, Triangle, Triangles};
 use crate::{Error, Result};
 
-/// How far a shadow ray's start is lifted off its surface, towards where the surface is seen from,
-/// as a share of the numbers that the point is made of. The start then lies in the eye's own part
-/// of space, whatever edge or crease the point is on: 2^-40 is some thousand times what `f64`
-/// rounds a point by, and a ten-thousandth of what a vertex in `f32` is rounded by.
+/// Distance by which a shadow ray's start is lifted off its surface, towards the eye, as a share of
+/// the numbers that the point is made of. The start then lies in the eye's own part of space,
+/// whatever edge or crease the point is on. 2^-40 is some thousand times the rounding of a point in
+/// `f64`, and a ten-thousandth of the rounding of a vertex in `f32`.
 const LIFT: f64 = 1.0 / (1_u64 << 40) as f64;
 
-/// The exact geometry of a posed scene. It borrows nothing; build it once per pose and ask as often
-/// as needed.
+/// Ground truth: the exact geometry of a posed scene. It borrows nothing; build it once per pose
+/// and query it as often as needed.
 ///
 /// Around 110 bytes per triangle.
 pub struct Truth {
     triangles: Triangles,
-    /// In the order of the tree's leaves.
+    /// Triangles in the order of the tree's leaves.
     leaves: Vec<Triangle>,
     tree: Tree,
     contact: Contact,
@@ -33,30 +33,29 @@ pub struct Truth {
 /// rounding turns all but the smallest triangles.
 const PARALLEL: f64 = 0.999_95;
 
-/// How far behind its start a shadow ray begins, in lifts: as much as rounding moves crossings with
-/// planes that light meets at a millionth.
+/// Distance in lifts behind its start at which a shadow ray begins. Rounding moves crossings by as
+/// much where light meets a plane at an angle of a millionth.
 const BEHIND: f64 = 1e6;
 
-/// A point that is looked at, from which the light is asked for.
+/// A point on a surface from which shadow rays start.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
-    /// The point, relative to [`Triangles::origin`].
+    /// Position relative to [`Triangles::origin`], in metres.
     point: DVec3,
     /// Geometric unit normal, turned towards the eye.
     normal: DVec3,
-    /// Unit vector from the point to where it is seen from.
+    /// Unit vector from the point to the eye.
     to_eye: DVec3,
-    /// Bound on how far the numbers that the point is made of reach, in metres: its rounding
-    /// follows from it.
+    /// Bound in metres on the numbers that the point is made of. Its rounding follows from it.
     reach: f64,
-    /// The number of the triangle that it lies on, if that is known.
+    /// Number of the triangle that the point lies on, if known.
     own: Option<u32>,
 }
 
-/// The first thing that a primary ray meets.
+/// First hit of a primary ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Where, in the world.
+    /// World position of the hit, in metres.
     pub position: DVec3,
     /// The triangle's geometric unit normal in the world, turned towards the eye.
     pub normal: DVec3,
@@ -64,17 +63,17 @@ pub struct Hit {
     pub depth: f64,
     /// Index into the pose's objects.
     pub object: u32,
-    /// The triangle's number, counted through all objects and primitives without the translucent
+    /// Number of the triangle, counted through all objects and primitives without the translucent
     /// ones.
     pub triangle: u32,
-    /// V*: the surface faces the light and nothing stands between.
+    /// True if V* is 1: the surface faces the light and nothing stands between.
     pub lit: bool,
 }
 
 impl Truth {
-    /// Spreads out the pose's triangles and builds the tree over them. `near_point` is a world
-    /// point near the cameras that will be asked for: boxes are most exact around it. Hits are
-    /// `f64` wherever it lies.
+    /// Transforms the pose's triangles and builds the tree over them. `near_point` is a world point
+    /// near the cameras that will be used: boxes are most exact around it. Hits are in `f64`
+    /// wherever it lies.
     ///
     /// # Errors
     /// [`Error::InvalidGeometry`] and [`Error::TooManyTriangles`] for a scene that no ray can meet,
@@ -90,23 +89,23 @@ impl Truth {
         Ok(Self { triangles, leaves, tree, contact })
     }
 
-    /// How many triangles rays can meet.
+    /// Returns the number of triangles that rays can meet.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.leaves.len()
     }
 
-    /// Bytes held by triangles and tree.
+    /// Returns the bytes of triangles and tree.
     #[must_use]
     pub fn bytes(&self) -> usize {
         size_of_val(self.leaves.as_slice()) + self.tree.bytes()
     }
 
-    /// Hard visibility of world points: 1 if nothing stands between the point and the light, else
-    /// 0; 0 where the normal is turned away from the light. `light_travel` is the way the light
-    /// travels. No triangle is known to be the point's own, and no eye looks at it: it is taken as
-    /// seen along its normal, and what it lies on within τ (see [the crate's page](crate)) is its
-    /// own surface.
+    /// Returns the hard visibility of world points with their normals: 1 if nothing stands between
+    /// the point and the light, else 0; 0 where the normal is turned away from the light.
+    /// `light_travel` is the direction in which the light travels. No triangle is known as the
+    /// point's own and no eye is given: the point is taken as seen along its normal, and surfaces
+    /// that it lies on within τ (see [the crate's page](crate)) are its own.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] if the light has no direction or a point is not finite.
@@ -114,8 +113,9 @@ impl Truth {
         self.visibility_under(points, &sun(light_travel)?)
     }
 
-    /// What the eye sees under any light. Occluders of a local light count up to the light itself;
-    /// what its range and cone do not reach is not shadowed.
+    /// Returns the hard visibility of world points with their normals under any light, as
+    /// [`Truth::visibility_at`] does for a sun. Occluders of a local light count up to the light
+    /// itself. Points outside its range and cone are not shadowed.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] if a point is not finite.
@@ -132,8 +132,8 @@ impl Truth {
             .collect())
     }
 
-    /// The first triangle that a primary ray meets with `t` in `[t_min, t_max]`, `origin` in the
-    /// world. Of two at the same distance the one with the lower number.
+    /// Returns the first triangle that a primary ray meets with `t` in `[t_min, t_max]`; `origin`
+    /// is in the world. Of two at the same distance the one with the lower number is returned.
     pub(crate) fn first_hit(
         &self,
         origin: DVec3,
@@ -147,11 +147,13 @@ impl Truth {
         Some(self.hit(origin, direction, &crossing, triangle))
     }
 
-    /// The first thing that stops light on its way from a world point: either side of any caster's
-    /// triangle, where its alpha counts. `direction` need not be normalised; nothing beyond `most`
-    /// metres is asked for. [`Hit::depth`] is metres from the point, and [`Hit::lit`] says nothing.
+    /// Returns the first surface that stops light on its way from a world point: either side of any
+    /// caster's triangle, where its alpha counts. `direction` need not be normalised. Surfaces
+    /// farther than `most` metres are ignored. [`Hit::depth`] is metres from the point;
+    /// [`Hit::lit`] has no meaning.
     ///
-    /// A map's texel stores what a ray from its centre along the light meets first.
+    /// A map's texel stores the depth of the first caster that a ray from its centre along the
+    /// light meets.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] if the point is not finite or the direction has none.
@@ -170,7 +172,7 @@ impl Truth {
         Ok(first.map(|(crossing, triangle)| self.hit(origin, direction, &crossing, triangle)))
     }
 
-    /// The nearest crossing that counts; of two at one distance that of the lower number.
+    /// Returns the nearest crossing that counts; of two at one distance, that of the lower number.
     fn first_of(
         &self,
         ray: &Ray,
@@ -192,7 +194,7 @@ impl Truth {
         best
     }
 
-    /// A world point with its normal that nobody is known to look at.
+    /// Makes the origin of shadow rays from a world point and its normal, without an eye.
     pub(crate) fn probed(&self, point: DVec3, normal: DVec3) -> Seen {
         let relative = point - self.triangles.origin;
         // The point was rounded in the world, its caller's arithmetic included.
@@ -200,7 +202,7 @@ impl Truth {
         Seen { point: relative, normal, to_eye: normal.normalize_or_zero(), reach, own: None }
     }
 
-    /// What a primary ray met, `origin` in the world.
+    /// Makes the origin of shadow rays from the hit of a primary ray; `origin` is in the world.
     pub(crate) fn seen(&self, origin: DVec3, direction: DVec3, hit: &Hit) -> Seen {
         // As exact as the ray itself, where the hit's own position is rounded in the world.
         let eye = origin - self.triangles.origin;
@@ -209,16 +211,16 @@ impl Truth {
         Seen { point: eye + way, normal: hit.normal, to_eye: -direction.normalize(), reach, own: Some(hit.triangle) }
     }
 
-    /// Whether a surface faces the light and nothing stands between; `point` is the seen point in
-    /// the world.
+    /// Returns whether a surface faces the light and nothing stands between; `point` is the seen
+    /// point in the world.
     pub(crate) fn is_lit(&self, seen: &Seen, point: DVec3, light: &Light, stack: &mut Vec<u32>) -> bool {
         let to_light = light.to_light(point);
         let distance = light.position().map_or(f64::INFINITY, |position| position.distance(point));
         seen.normal.dot(to_light) > 0.0 && (!light.reaches(point) || self.sees_light(seen, to_light, distance, stack))
     }
 
-    /// Whether nothing stands between a point and a light `distance` metres away. `to_light` is a
-    /// unit vector.
+    /// Returns whether nothing stands between a point and a light `distance` metres away.
+    /// `to_light` is a unit vector.
     pub(crate) fn sees_light(&self, seen: &Seen, to_light: DVec3, distance: f64, stack: &mut Vec<u32>) -> bool {
         let ray = seen.shadow_ray(to_light, distance);
         let mut free = true;
@@ -229,7 +231,7 @@ impl Truth {
         free
     }
 
-    /// Whether a triangle stops the light on its way to a point.
+    /// Returns whether a triangle stops the light on its way to a point.
     fn is_between(&self, triangle: &Triangle, ray: &Ray, seen: &Seen, to_light: DVec3) -> bool {
         if Some(triangle.number) == seen.own {
             return false;
@@ -238,14 +240,14 @@ impl Truth {
         self.blocks(triangle, &crossing) && !self.is_own_surface(triangle, &crossing, seen, to_light)
     }
 
-    /// Whether a triangle that the shadow ray meets is one with the surface that the ray starts
-    /// from.
+    /// Returns whether a triangle that the shadow ray meets belongs to the surface that the ray
+    /// starts from.
     ///
-    /// A parallel one is if the point lies in its plane, as far as the scene's data can tell: a
-    /// decal, the other face of a leaf, the neighbour across a seam. Any other is none: the wall
-    /// beside a crease stops light however near the crease the point is. Only where rounding hides
-    /// on which side of the wall the point is, light counts as stopped if the wall parts it from
-    /// the eye.
+    /// A parallel triangle does if the point lies in its plane, within the precision of the scene's
+    /// data: a decal, the other face of a leaf, the neighbour across a seam. Any other does not:
+    /// the wall beside a crease stops light however near the crease the point is. Only where
+    /// rounding hides on which side of the wall the point lies, light counts as stopped if the wall
+    /// lies between light and eye.
     fn is_own_surface(&self, triangle: &Triangle, crossing: &Crossing, seen: &Seen, to_light: DVec3) -> bool {
         let Some(normal) = area_normal(triangle).try_normalize() else { return true };
         let from_plane = (crossing.t * normal.dot(to_light)).abs();
@@ -282,8 +284,8 @@ impl Truth {
         &self.triangles.surfaces[triangle.surface as usize]
     }
 
-    /// Whether the eye sees this point of a triangle: not the back of a single-sided one, not where
-    /// alpha is too low.
+    /// Returns whether the eye sees this point of a triangle: not the back of a single-sided one,
+    /// and not where alpha is too low.
     fn is_seen(&self, triangle: &Triangle, crossing: &Crossing, direction: DVec3) -> bool {
         let surface = self.surface(triangle);
         let normal = area_normal(triangle);
@@ -294,7 +296,7 @@ impl Truth {
         !(surface.single_sided && from_behind) && self.is_there(surface, triangle, crossing)
     }
 
-    /// Whether this point of a triangle stops light.
+    /// Returns whether this point of a triangle stops light.
     fn blocks(&self, triangle: &Triangle, crossing: &Crossing) -> bool {
         let surface = self.surface(triangle);
         surface.casts && self.is_there(surface, triangle, crossing)
@@ -307,7 +309,8 @@ impl Truth {
         })
     }
 
-    /// The first hit of a ray without the tree: what the tree is tested against.
+    /// Returns the first hit of a ray by testing every triangle: the reference for tests of the
+    /// tree.
     #[cfg(test)]
     pub(crate) fn first_hit_by_brute_force(
         &self,
@@ -324,7 +327,8 @@ impl Truth {
             .map(|(crossing, triangle)| self.hit(origin, direction, &crossing, triangle))
     }
 
-    /// Whether a seen point sees the light, without the tree: what the tree is tested against.
+    /// Returns whether a seen point sees the light by testing every triangle: the reference for
+    /// tests of the tree.
     #[cfg(test)]
     pub(crate) fn sees_light_by_brute_force(&self, seen: &Seen, to_light: DVec3, distance: f64) -> bool {
         let ray = seen.shadow_ray(to_light, distance);
@@ -348,13 +352,13 @@ impl std::fmt::Debug for Truth {
     }
 }
 
-/// Twice the triangle's area along its normal, by the right-hand rule.
+/// Returns twice the triangle's area along its normal, by the right-hand rule.
 fn area_normal(triangle: &Triangle) -> DVec3 {
     let [a, b, c] = triangle.corners;
     (b - a).cross(c - a)
 }
 
-/// A sun whose light travels along `light_travel`.
+/// Makes a sun whose light travels along `light_travel`.
 pub(crate) fn sun(light_travel: DVec3) -> Result<Light> {
     DirectionalLight::new(light_travel).map(Light::from).map_err(|_| {
         Error::setting(

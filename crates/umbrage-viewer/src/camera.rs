@@ -1,70 +1,70 @@
-//! The camera: flies like a bird or goes around a point.
+//! The camera: it flies freely or orbits a point.
 
 use glam::{DQuat, DVec2, DVec3};
 use umbrage::{Aabb, Frustum, Projection, View};
 
-/// The steepest a camera looks up or down, radians: next to straight up there is no upright.
+/// Largest angle in radians at which a camera looks up or down. Straight up has no upright.
 const STEEPEST: f64 = 89.5 * std::f64::consts::PI / 180.0;
-/// Radians of turn while the pointer crosses the picture's height.
+/// Rotation in radians while the pointer crosses the picture's height.
 const TURN_PER_HEIGHT: f64 = 1.6;
-/// Share of the way to the pivot that one notch of a wheel goes.
+/// Share of the distance to the pivot that one notch of a wheel covers.
 const ZOOM_PER_NOTCH: f64 = 0.12;
-/// Least distance to the pivot, metres.
+/// Least distance to the pivot in metres.
 const LEAST_DISTANCE_M: f64 = 0.05;
-/// Seconds to cross a scene at a new scene's speed.
+/// Seconds to cross a new scene at its default speed.
 const CROSSING_S: f64 = 25.0;
-/// Speeds that can be chosen, metres per second.
+/// Range of speeds in metres per second.
 pub const SPEEDS_M_S: std::ops::RangeInclusive<f64> = 0.1..=2000.0;
 
-/// What dragging the picture does.
+/// Effect of dragging the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
-    /// Turns the head.
+    /// Turns the camera.
     #[default]
     Fly,
-    /// Goes around the point that is looked at.
+    /// Moves the camera around the pivot.
     Orbit,
 }
 
-/// What moves the camera in one frame.
+/// Motion of the camera in one frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// Drag in picture heights: right and down.
+    /// Rotation by dragging, in picture heights: right and down.
     pub turn: DVec2,
-    /// Drag in picture heights that moves the picture along: right and down.
+    /// Translation by dragging, in picture heights: right and down. The picture moves along.
     pub pan: DVec2,
-    /// Notches towards what is looked at.
+    /// Wheel notches towards the pivot.
     pub zoom: f64,
-    /// Steps right, up and forwards, −1 to 1 each.
+    /// Walking direction: right, up and forwards, −1 to 1 each.
     pub walk: DVec3,
-    /// Seconds that the steps take.
+    /// Duration of the walk in seconds.
     pub seconds: f64,
-    /// Factor of the speed.
+    /// Factor of the walking speed.
     pub haste: f64,
 }
 
 impl Motion {
-    /// Whether anything moves.
+    /// Returns whether the motion is empty.
     #[must_use]
     pub fn is_still(&self) -> bool {
         (self.turn, self.pan, self.zoom, self.walk) == (DVec2::ZERO, DVec2::ZERO, 0.0, DVec3::ZERO)
     }
 }
 
-/// A view that is moved by hand.
+/// A view that the user moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
     view: View,
-    /// Metres to the point that is gone around.
+    /// Distance to the pivot in metres.
     distance: f64,
-    /// What dragging does.
+    /// Effect of dragging.
     pub mode: Mode,
-    /// Metres a second.
+    /// Speed in metres per second.
     pub speed: f64,
 }
 
 impl Camera {
-    /// A camera at a view of a scene with these bounds.
+    /// Makes a camera at a view of a scene with these bounds.
     #[must_use]
     pub fn new(view: View, bounds: Option<Aabb>) -> Self {
         let across = bounds.map_or(100.0, |bounds| (bounds.max - bounds.min).length());
@@ -79,24 +79,24 @@ impl Camera {
         camera
     }
 
-    /// What is seen.
+    /// Returns the view.
     #[must_use]
     pub fn view(&self) -> &View {
         &self.view
     }
 
-    /// Looks from elsewhere; the speed and the mode stay.
+    /// Moves the camera to a view. Speed and mode stay.
     pub fn jump(&mut self, view: View) {
         self.view = view;
     }
 
-    /// The point that is gone around.
+    /// Returns the pivot: the point that the camera orbits.
     #[must_use]
     pub fn pivot(&self) -> DVec3 {
         self.view.eye() + self.view.forward() * self.distance
     }
 
-    /// Goes around this point from now on, if it lies before the eye.
+    /// Sets the pivot, if the point lies in front of the eye.
     pub fn set_pivot(&mut self, point: DVec3) {
         let depth = self.view.view_depth(point);
         if depth > LEAST_DISTANCE_M {
@@ -104,7 +104,7 @@ impl Camera {
         }
     }
 
-    /// Moves; a motion that leads nowhere leaves the camera where it is.
+    /// Moves the camera. A motion that leads to no valid view has no effect.
     pub fn apply(&mut self, motion: &Motion) {
         if motion.is_still() {
             return;
@@ -146,7 +146,7 @@ impl Camera {
         }
     }
 
-    /// Widens an orthographic lens by a factor.
+    /// Widens an orthographic projection by a factor.
     fn zoom_lens(&mut self, by: f64) {
         let lens = *self.view.frustum();
         let wider = Frustum {
@@ -161,7 +161,7 @@ impl Camera {
         }
     }
 
-    /// Fits the lens to a picture of this width over height: what is seen from top to bottom stays.
+    /// Adapts the projection to a picture of this width over height. The vertical extent stays.
     pub fn set_aspect(&mut self, aspect: f64) {
         let lens = *self.view.frustum();
         let (middle, half) = (0.5 * (lens.left + lens.right), 0.5 * (lens.top - lens.bottom) * aspect);
@@ -172,7 +172,7 @@ impl Camera {
         }
     }
 
-    /// The full vertical angle in degrees, of a perspective lens.
+    /// Returns the full vertical angle in degrees of a perspective projection.
     #[must_use]
     pub fn fov_degrees(&self) -> Option<f64> {
         let lens = self.view.frustum();
@@ -190,7 +190,7 @@ impl Camera {
     }
 }
 
-/// A direction turned right and down by angles in radians, but never over the top.
+/// Rotates a direction right and down by angles in radians, but never over the top.
 fn turned(forward: DVec3, by: DVec2) -> DVec3 {
     let pitch = forward.y.clamp(-1.0, 1.0).asin();
     let level = DVec3::new(forward.x, 0.0, forward.z).try_normalize().unwrap_or(DVec3::NEG_Z);

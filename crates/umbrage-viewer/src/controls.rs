@@ -1,22 +1,22 @@
-//! The settings of shadows as rows of controls, made from [`SETTINGS`]: a new setting shows up by
+//! The settings of shadows as rows of controls, made from [`SETTINGS`]. A new setting appears by
 //! itself.
 
 use umbrage::ShadowConfig;
 use umbrage::config::{Kind, LightKind, Preset, Rebuilds, SETTINGS, Setting, Value};
 
-/// One setting as it stands.
+/// A setting with its current value.
 #[derive(Clone, Debug)]
 pub struct Row {
     /// The setting.
     pub setting: &'static Setting,
-    /// Its value; `None` where the config's other choices leave no room for it.
+    /// Current value; `None` if the config's other choices exclude the setting.
     pub value: Option<Value>,
-    /// Its value in the default config.
+    /// Value in the default config.
     pub default: Option<Value>,
 }
 
 impl Row {
-    /// What its numbers measure; empty for words and shares.
+    /// Returns the unit of the setting's numbers; empty for words and shares.
     #[must_use]
     pub fn unit(&self) -> &'static str {
         match self.setting.kind {
@@ -33,7 +33,7 @@ impl Row {
         }
     }
 
-    /// What a change costs, for people.
+    /// Describes the cost of a change for users.
     #[must_use]
     pub fn cost(&self) -> &'static str {
         match self.setting.rebuilds {
@@ -43,7 +43,7 @@ impl Row {
         }
     }
 
-    /// A value that can stand for the setting where it has none: the default's, some preset's, or
+    /// Returns a value for a setting that has none: that of the default config, of some preset, or
     /// the least.
     #[must_use]
     pub fn stand_in(&self) -> String {
@@ -65,7 +65,7 @@ impl Row {
     }
 }
 
-/// All settings of a config.
+/// Returns all settings of a config.
 #[must_use]
 pub fn rows(config: &ShadowConfig) -> Vec<Row> {
     let usual = ShadowConfig::default();
@@ -73,21 +73,21 @@ pub fn rows(config: &ShadowConfig) -> Vec<Row> {
     SETTINGS.iter().map(row).collect()
 }
 
-/// What a choice would do.
+/// Effect of a choice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// It is made already.
+    /// The value is chosen already.
     Chosen,
-    /// Nothing else changes.
+    /// The choice changes no other setting.
     Free,
-    /// It goes with something that is chosen only if that gives way: why, in the words of the
+    /// The choice conflicts with others, which would be changed: the reasons, in the words of the
     /// rules.
     Excluded(Vec<String>),
-    /// It cannot be made: why, and what to do.
+    /// The choice is impossible: the reason and the remedy.
     Impossible(String),
 }
 
-/// What the choice of a value would do.
+/// Returns the effect of choosing a value.
 #[must_use]
 pub fn verdict(config: &ShadowConfig, lights: &[LightKind], setting: &Setting, value: &str) -> Verdict {
     if setting.get(config).is_some_and(|chosen| chosen.to_string() == value) {
@@ -100,10 +100,11 @@ pub fn verdict(config: &ShadowConfig, lights: &[LightKind], setting: &Setting, v
     }
 }
 
-/// The config with another value of a setting, and what gave way to it.
+/// Returns the config with another value of a setting, and the settings that were changed to make
+/// room for it.
 ///
 /// # Errors
-/// Why the value cannot be chosen, for people.
+/// The reason why the value cannot be chosen, for users.
 pub fn choose(
     config: &ShadowConfig,
     lights: &[LightKind],
@@ -122,7 +123,8 @@ pub fn choose(
     Ok((chosen, notes))
 }
 
-/// Settings that change with one that has no room now: what to say before it is chosen.
+/// Lists the settings that differ between two configs, for display before an excluded setting is
+/// chosen.
 #[must_use]
 pub fn changes(before: &ShadowConfig, after: &ShadowConfig) -> Vec<String> {
     let changed = SETTINGS.iter().filter(|setting| setting.get(before) != setting.get(after));
@@ -133,8 +135,7 @@ pub fn changes(before: &ShadowConfig, after: &ShadowConfig) -> Vec<String> {
     changed.map(say).collect()
 }
 
-/// Headings of the panel and the keys below them. What stands under none of them goes under
-/// [`OTHERS`].
+/// Headings of the panel, each with its keys. Keys under no heading go under [`OTHERS`].
 pub const SECTIONS: &[(&str, &[&str])] = &[
     (
         "Splits",
@@ -175,10 +176,10 @@ pub const SECTIONS: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Heading of settings that no section names.
+/// Heading of settings that are in no section.
 pub const OTHERS: &str = "Others";
 
-/// The heading of a setting.
+/// Returns the heading of a setting.
 #[must_use]
 pub fn section(key: &str) -> &'static str {
     SECTIONS.iter().find(|(_, keys)| keys.contains(&key)).map_or(OTHERS, |(heading, _)| heading)

@@ -1,27 +1,27 @@
-//! Why there is no window, or no more.
+//! Errors that prevent or close the window.
 
 use std::path::PathBuf;
 
 /// [`std::result::Result`] with this crate's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Why the viewer ended without doing what it was asked for.
+/// Reason why the viewer ended before it did what it was asked for.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// There is no screen.
     #[error("there is no window system ({0}); start it on a desktop, or under Xvfb as `xvfb-run umbrage view …`")]
     NoScreen(String),
-    /// The window system opens no window.
+    /// The window system cannot open a window.
     #[error("the window does not open: {0}")]
     NoWindow(String),
-    /// No graphics adapter draws into the window.
+    /// No graphics adapter can draw into the window.
     #[error(
         "no graphics adapter draws into the window ({0}); install a Vulkan driver, for example Mesa's software one \
          (Debian, Ubuntu: apt-get install mesa-vulkan-drivers), or check WGPU_BACKEND"
     )]
     NoAdapter(String),
-    /// The page is in a browser without either interface to graphics.
+    /// The browser has neither WebGPU nor WebGL2.
     #[error(
         "This page draws with WebGPU or WebGL2, and this browser offers neither ({0}). Try a current Chrome, Edge, \
          Firefox or Safari, and switch hardware acceleration on in its settings."
@@ -30,7 +30,7 @@ pub enum Error {
     /// The program has a defect.
     #[error("The viewer has stopped because of a defect. Please report it: {0}")]
     Defect(String),
-    /// The window's device was lost, and another one does not open.
+    /// The window's device was lost, and no other one can be opened.
     #[error("the window's graphics device was lost and does not come back ({0}); start again, or reload the page")]
     Lost(String),
     /// The scene of a screenshot could not be shown.
@@ -39,9 +39,9 @@ pub enum Error {
     /// A screenshot could not be written.
     #[error("--screenshot {}: {reason}; choose a place you have the right to use", path.display())]
     Screenshot {
-        /// Where it was to be.
+        /// Path of the file.
         path: PathBuf,
-        /// Why it is not.
+        /// Reason why it could not be written.
         reason: String,
     },
 }

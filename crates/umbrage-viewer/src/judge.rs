@@ -1,5 +1,5 @@
-//! What traces rays beside the window: what shadows should be, how coarse maps are, and what was
-//! clicked on.
+//! The task that traces rays beside the window: true shadows, texel density, and the point that was
+//! clicked.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -17,122 +17,124 @@ use umbrage_truth::{Hit, Truth, TruthMask};
 use crate::platform;
 use crate::studio::{Drawn, Shot};
 
-/// What is laid over the picture.
+/// Overlay over the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overlay {
-    /// How many texels of its map a pixel has.
+    /// Texel density: the number of texels of its map per pixel.
     Density,
-    /// Where the shadow is wrong.
+    /// Errors of the shadows.
     Errors,
-    /// Where exact edges test triangles.
+    /// Triangle tests of exact edges.
     Tests,
 }
 
-/// What is asked.
+/// Question for the judge.
 #[derive(Clone, Debug)]
 pub enum Question {
-    /// An overlay for the first picture.
+    /// Request for an overlay of the first picture.
     Overlay(Arc<Drawn>, Overlay),
-    /// What lies under a point of the picture: shares of its width and height.
+    /// Request for the surface at a point of the picture, in shares of its width and height.
     Pick(Arc<Drawn>, DVec2),
 }
 
 /// An overlay with its numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Laid {
-    /// What it is of.
+    /// Shot that the overlay belongs to.
     pub shot: Shot,
-    /// Which one.
+    /// Kind of the overlay.
     pub overlay: Overlay,
-    /// As large as the picture, transparent where there is nothing to say.
+    /// Image of the picture's size, transparent where the overlay has no value.
     pub picture: RgbaImage,
-    /// What it amounts to.
+    /// Numbers of the overlay.
     pub sums: Sums,
 }
 
-/// What an overlay amounts to.
+/// Numbers of an overlay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sums {
-    /// Texels per pixel: the median, and what a hundredth of the pixels is below.
+    /// Texels per pixel: the median and the lowest hundredth.
     Density {
-        /// Half of the pixels have fewer.
+        /// Median of texels per pixel.
         median: f64,
-        /// One in a hundred has fewer.
+        /// First percentile of texels per pixel.
         lowest: f64,
     },
-    /// What exact edges did.
+    /// Counts of exact edges.
     Tests(EdgeSums),
     /// Shares of the pixels that face the light within the shadowed range.
     Errors {
-        /// Dark though nothing stands before the light, and no edge is near.
+        /// Share of pixels that are dark though nothing blocks the light and no edge is near.
         acne: f64,
-        /// Lit though something stands before the light, and no edge is near.
+        /// Share of pixels that are lit though something blocks the light and no edge is near.
         leak: f64,
-        /// Wrong so near to a true edge that the map's resolution explains it.
+        /// Share of pixels that are wrong so near to a true edge that the map's resolution explains
+        /// it.
         at_edges: f64,
-        /// How many pixels are judged.
+        /// Number of pixels that are judged.
         pixels: usize,
     },
 }
 
-/// What lies under a point of the picture.
+/// Surface at a clicked point of the picture.
 #[derive(Clone, Debug)]
 pub struct Picked {
-    /// The picture.
+    /// Picture that was clicked.
     pub drawn: Arc<Drawn>,
-    /// Where, in shares of the picture.
+    /// Position of the click, in shares of the picture.
     pub at: DVec2,
-    /// The surface there; `None` in the sky.
+    /// Surface at the point; `None` in the sky.
     pub surface: Option<Surface>,
 }
 
-/// A surface that was clicked on.
+/// A surface that was clicked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
-    /// The world point, metres.
+    /// World position in metres.
     pub position: DVec3,
-    /// The geometric normal, turned towards the eye.
+    /// Geometric normal, turned towards the eye.
     pub normal: DVec3,
-    /// View depth, metres.
+    /// View depth in metres.
     pub depth: f64,
     /// Index into the pose's objects.
     pub object: usize,
-    /// Whether the first light truly reaches it.
+    /// True if the first light truly reaches the point.
     pub lit: bool,
-    /// The object that truly stands before the light first, and how far away in metres.
+    /// First object that truly blocks the light, and its distance in metres.
     pub blocker: Option<(usize, f64)>,
-    /// What each map of the first light that contains the point says there.
+    /// Lookup of the point in each map of the first light that contains it.
     pub maps: Vec<MapLook>,
 }
 
-/// A point as one map sees it.
+/// Lookup of a point in one map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapLook {
-    /// The split.
+    /// Index of the split.
     pub split: usize,
-    /// Where in the map, texels from the upper left.
+    /// Position in the map, in texels from the upper left.
     pub texel: DVec2,
-    /// The texel's edges at the point, metres.
+    /// Edges of the texel at the point, in metres.
     pub texel_m: DVec2,
-    /// How much nearer to the light the texel's surface may be, metres.
+    /// Bias at the point: the distance towards the light, in metres, within which a stored surface
+    /// does not shade it.
     pub bias: Bias,
-    /// What the texel's centre sees of the scene: the object, and how far before the receiver's
-    /// plane at that texel, metres.
+    /// First object on the ray through the texel's centre, and its distance in metres in front of
+    /// the receiver's plane at that texel.
     pub stored: Option<(usize, f64)>,
 }
 
-/// What it says.
+/// Answer of the judge.
 #[derive(Debug)]
 pub enum Finding {
     /// An overlay.
     Laid(Box<Laid>),
-    /// What was clicked on.
+    /// The surface that was clicked.
     Picked(Box<Picked>),
-    /// Why there is no answer.
+    /// Reason why there is no answer.
     Failed(String),
 }
 
-/// What traces rays.
+/// Handle of the task that traces rays.
 #[derive(Debug)]
 pub struct Judge {
     questions: UnboundedSender<Question>,
@@ -140,11 +142,11 @@ pub struct Judge {
     progress: Arc<AtomicU32>,
 }
 
-/// Steps of the progress to a whole.
+/// Steps of the progress that make up the whole.
 const WHOLE: u32 = 1000;
 
 impl Judge {
-    /// Starts it; `wake` is called when there is something new to show.
+    /// Starts the task. `wake` is called when there is a new finding.
     ///
     /// # Errors
     /// If the system has no thread left.
@@ -168,25 +170,25 @@ impl Judge {
         Ok(Self { questions, findings, progress })
     }
 
-    /// Asks. False if it has ended.
+    /// Asks a question. Returns false if the task has ended.
     #[must_use]
     pub fn ask(&self, question: Question) -> bool {
         self.questions.unbounded_send(question).is_ok()
     }
 
-    /// What is new.
+    /// Returns the new findings.
     pub fn findings(&self) -> impl Iterator<Item = Finding> + '_ {
         self.findings.try_iter()
     }
 
-    /// Share of the question that is done, 0 to 1.
+    /// Returns the share of the question that is done, 0 to 1.
     #[must_use]
     pub fn progress(&self) -> f32 {
         self.progress.load(Ordering::Relaxed) as f32 / WHOLE as f32
     }
 }
 
-/// The last question that waits; a click is not dropped for an overlay.
+/// Returns the last waiting question. A click is not dropped for an overlay.
 async fn latest(inbox: &mut UnboundedReceiver<Question>) -> Option<Question> {
     let mut question = inbox.recv().await.ok()?;
     while let Ok(next) = inbox.try_recv() {
@@ -199,7 +201,7 @@ async fn latest(inbox: &mut UnboundedReceiver<Question>) -> Option<Question> {
 }
 
 struct Court {
-    /// The tree of a scene at a time.
+    /// Truth of a scene at a time, with the scene's id and the time.
     truth: Option<(u64, f64, Truth)>,
     progress: Arc<AtomicU32>,
     wake: Box<dyn Fn() + Send + Sync>,
@@ -297,7 +299,7 @@ impl Court {
     }
 }
 
-/// The view that one pixel is a picture of.
+/// Returns the view through one pixel.
 fn pixel_view(view: &View, size: [u32; 2], at: DVec2) -> Result<View, String> {
     let lens = *view.frustum();
     let [width, height] = size.map(f64::from);
@@ -310,7 +312,7 @@ fn pixel_view(view: &View, size: [u32; 2], at: DVec2) -> Result<View, String> {
     view.with_frustum(pixel).map_err(|error| error.to_string())
 }
 
-/// A point as one map sees it.
+/// Looks up a point in one map.
 fn map_look(truth: &Truth, index: usize, split: &Split, hit: &Hit) -> Result<MapLook, String> {
     let at = split.map_from_world(hit.position);
     let texel = DVec2::new(at.x, at.y);
@@ -339,7 +341,7 @@ fn map_look(truth: &Truth, index: usize, split: &Split, hit: &Hit) -> Result<Map
     })
 }
 
-/// The split whose map answers for a point that is seen.
+/// Returns the split whose map is read for a visible point.
 #[must_use]
 pub fn answering(plan: &ShadowPlan, point: DVec3) -> Option<&Split> {
     match plan.selection {
@@ -360,7 +362,7 @@ fn gradient(plan: &ShadowPlan, point: DVec3) -> Option<TexelGradient> {
     Some(TexelGradient { u, v, width: split.texel_edges(point).max_element() })
 }
 
-/// Colours of texels per pixel, from too few to plenty: doublings below and above 1.
+/// Colour of a number of texels per pixel, on a scale of doublings below and above 1.
 #[must_use]
 pub fn density_colour(texels_per_pixel: f64) -> [u8; 3] {
     // Blue is enough, yellow is just enough, red is coarse: told apart by the colour-blind too.
@@ -400,7 +402,7 @@ fn density(view: &View, traced: &TruthMask, plan: &ShadowPlan, size: [u32; 2]) -
     (picture, Sums::Density { median: at(50), lowest: at(1) })
 }
 
-/// Colours of errors: acne, leaks, and what an edge explains.
+/// Colours of errors: acne, leaks, and errors that an edge explains.
 pub const ERROR_COLOURS: [[u8; 3]; 3] = [[40, 120, 255], [235, 40, 30], [245, 190, 60]];
 
 fn errors(view: &View, traced: &TruthMask, plan: &ShadowPlan, answers: &Answers) -> Result<(RgbaImage, Sums), String> {

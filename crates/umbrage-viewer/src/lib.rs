@@ -1,18 +1,20 @@
 //! umbrage's viewer: fly through a scene, drag the sun, change a number while looking, and see why
 //! a shadow looks as it does.
 //!
-//! [`run`] opens the window. Behind it there are parts that know of no window:
+//! [`run`] opens the window. The modules behind it do not depend on a window:
 //!
 //! * [`session`] decides what is opened, drawn, judged and shown next;
 //! * [`studio`] draws and [`judge`] traces rays beside the window, so that no frame of it waits for
 //!   either;
-//! * [`stage`] opens scenes beside the one that is shown;
-//! * [`controls`] makes a row for each setting of [`umbrage::config::SETTINGS`], [`share`] carries
-//!   configs away and back, [`link`] all that is shown;
-//! * [`camera`], [`path`], [`sun`] and [`lines`] are what their names say;
-//! * [`app`] and [`panel`] are the controls, by `egui`, and [`window`] is the window, by `winit`
-//!   and `wgpu`;
-//! * `platform` is what differs between a desktop and a browser, where `page` opens the viewer.
+//! * [`stage`] opens scenes in the background;
+//! * [`controls`] makes a row for each setting of [`umbrage::config::SETTINGS`], [`share`] converts
+//!   configs to text and back, [`link`] the scene and the view too;
+//! * [`camera`] moves the eye, [`path`] records and follows camera paths, [`sun`] places the sun,
+//!   [`lines`] makes the lines of frusta and boxes;
+//! * [`app`] and [`panel`] are the controls, made with `egui`, and [`window`] is the window, made
+//!   with `winit` and `wgpu`;
+//! * `platform` holds the differences between a desktop and a browser, where `page` opens the
+//!   viewer.
 
 pub mod app;
 pub mod camera;

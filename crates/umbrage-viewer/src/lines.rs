@@ -1,10 +1,10 @@
-//! Lines in the world: frusta of splits, boxes of their maps, boxes of casters, as a camera sees
-//! them.
+//! Lines in the world for a camera: frusta of splits, boxes of their maps, boxes of casters.
 
 use glam::{DVec2, DVec3};
+use umbrage::config::SplitMetric;
 use umbrage::{Aabb, ShadowPlan, Split, View};
 
-/// A line between two world points.
+/// A line between two world points, in metres.
 pub type Segment = [DVec3; 2];
 
 /// Edges of a box whose corners are numbered as a slice's: four near ones (bottom left, bottom
@@ -12,10 +12,10 @@ pub type Segment = [DVec3; 2];
 const EDGES: [[usize; 2]; 12] =
     [[0, 1], [1, 3], [3, 2], [2, 0], [4, 5], [5, 7], [7, 6], [6, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
 
-/// Farther than this nobody sees where an infinite view ends, metres.
+/// Distance in metres at which an infinite view is cut off, beyond what is visible.
 const FARTHEST_M: f64 = 1e7;
 
-/// Colours of splits: those of the picture's tints, a little deeper.
+/// Returns the colour of a split: that of the picture's tints, a little deeper.
 #[must_use]
 pub fn split_colour(split: usize) -> [u8; 3] {
     const COLOURS: [[u8; 3]; 8] = [
@@ -31,14 +31,15 @@ pub fn split_colour(split: usize) -> [u8; 3] {
     COLOURS[split % COLOURS.len()]
 }
 
-/// The part of a view between two view depths.
+/// Returns the edges of the part of a view between two view depths.
 #[must_use]
 pub fn slice(view: &View, near: f64, far: f64) -> [Segment; 12] {
     let corners = view.slice_corners(near, far.min(FARTHEST_M));
     EDGES.map(|edge| edge.map(|corner| corners[corner]))
 }
 
-/// What a map holds, from the light's near plane to its far plane; `None` if it has no volume.
+/// Returns the edges of a map's volume, from the light's near plane to its far plane; `None` if it
+/// has no volume.
 #[must_use]
 pub fn map_box(split: &Split) -> Option<[Segment; 12]> {
     let world_from_shadow = split.shadow_from_world().inverse();
@@ -50,7 +51,7 @@ pub fn map_box(split: &Split) -> Option<[Segment; 12]> {
     corners.iter().all(|corner| corner.is_finite()).then(|| EDGES.map(|edge| edge.map(|corner| corners[corner])))
 }
 
-/// The edges of a box.
+/// Returns the edges of a box.
 #[must_use]
 pub fn edges(bounds: &Aabb) -> [Segment; 12] {
     let corner = |i: usize| {
@@ -60,24 +61,23 @@ pub fn edges(bounds: &Aabb) -> [Segment; 12] {
     EDGES.map(|edge| edge.map(corner))
 }
 
-/// A split's lines.
+/// Lines of a split.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SplitLines {
-    /// The split, counted from 0 in each face.
+    /// Index of the split, from 0 in each face.
     pub split: usize,
-    /// Its slice of the view that was planned for; nothing for bands of distance, which have no
-    /// planes.
+    /// Slice of the planned view; empty for bands of distance, which have no planes.
     pub slice: Vec<Segment>,
-    /// What its map holds.
+    /// Volume of the map.
     pub map: Vec<Segment>,
 }
 
-/// The lines of a plan's splits, but for those that nothing casts a shadow into.
+/// Returns the lines of a plan's splits, without those that nothing casts a shadow into.
 #[must_use]
 pub fn frusta(plan: &ShadowPlan, planned: &View) -> Vec<SplitLines> {
     let per_face = (plan.splits.len() / plan.faces().max(1)).max(1);
     let of = |(index, split): (usize, &Split)| {
-        let slice = plan.radial_eye.is_none().then(|| slice(planned, split.near, split.far));
+        let slice = (plan.metric() == SplitMetric::ViewDepth).then(|| slice(planned, split.near, split.far));
         SplitLines {
             split: index % per_face,
             slice: slice.into_iter().flatten().collect(),
@@ -87,8 +87,8 @@ pub fn frusta(plan: &ShadowPlan, planned: &View) -> Vec<SplitLines> {
     plan.splits.iter().enumerate().filter(|(_, split)| !split.casters.is_empty()).map(of).collect()
 }
 
-/// A line as a camera sees it, in shares of the picture from the upper left; `None` if it sees
-/// nothing of it.
+/// Projects a line to the picture, in shares from the upper left; `None` if no part of it is
+/// visible.
 #[must_use]
 pub fn on_screen(view: &View, segment: Segment) -> Option<[DVec2; 2]> {
     let lens = view.frustum();
@@ -110,7 +110,8 @@ pub fn on_screen(view: &View, segment: Segment) -> Option<[DVec2; 2]> {
     clip(project(a), project(b))
 }
 
-/// Cuts a line to a rectangle a little larger than the picture: painters do not like endless ones.
+/// Clips a line to a rectangle a little larger than the picture, because painters handle endless
+/// lines badly.
 fn clip(a: DVec2, b: DVec2) -> Option<[DVec2; 2]> {
     const LEAST: f64 = -0.05;
     const MOST: f64 = 1.05;

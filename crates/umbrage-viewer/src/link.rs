@@ -1,4 +1,5 @@
-//! What is shown, as words: the command that shows the same, and the end of an address that does.
+//! Links: the command, and the fragment of an address, that show the current scene, view and
+//! settings.
 //!
 //! `umbrage view chessboard --time=2 --preset=fast --filter=pcf7` is
 //! `#chessboard&time=2&preset=fast&filter=pcf7` in a browser.
@@ -13,12 +14,13 @@ use umbrage_lab::scene_request::{CameraChoice, LightChoice, SceneRequest};
 use crate::session::Session;
 use crate::share::Spelled;
 
-/// What may not stand in a fragment as it is, or would end a part of ours.
+/// Characters that are escaped in a fragment because it may not contain them, or because they would
+/// end a part.
 const RESERVED: &AsciiSet = &CONTROLS.add(b' ').add(b'"').add(b'#').add(b'%').add(b'&').add(b'<').add(b'>').add(b'`');
-/// What may not stand in the scene, which is no option whatever its name.
+/// Characters that are escaped in the scene, so that no name looks like an option.
 const IN_NAMES: &AsciiSet = &RESERVED.add(b'=');
 
-/// The command that shows what is shown.
+/// Returns the command that shows the current scene, view and settings.
 #[must_use]
 pub fn command_line(session: &Session) -> String {
     let quoted = |word: String| if word.contains(char::is_whitespace) { format!("'{word}'") } else { word };
@@ -26,7 +28,8 @@ pub fn command_line(session: &Session) -> String {
     words.join(" ")
 }
 
-/// The end of an address that shows what is shown, without its `#`.
+/// Returns the fragment of an address that shows the current scene, view and settings, without its
+/// `#`.
 #[must_use]
 pub fn fragment(session: &Session) -> String {
     let part = |word: String| match word.strip_prefix("--") {
@@ -36,7 +39,7 @@ pub fn fragment(session: &Session) -> String {
     words(session).map(part).collect::<Vec<_>>().join("&")
 }
 
-/// The scene, and options.
+/// Returns the scene and the options.
 fn words(session: &Session) -> impl Iterator<Item = String> {
     let vector = |v: DVec3| format!("{},{},{}", v.x, v.y, v.z);
     let mut words = Vec::new();
@@ -67,27 +70,27 @@ fn words(session: &Session) -> impl Iterator<Item = String> {
     words.into_iter()
 }
 
-/// What a link shows.
+/// Content of a link.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linked {
     /// The scene, its camera, light and time.
     pub request: SceneRequest,
-    /// Shadows.
+    /// Technique of the shadows.
     pub config: ShadowConfig,
-    /// Whether splits are coloured: `tint`.
+    /// True if splits are coloured: `tint`.
     pub tint: bool,
-    /// Whether the panels are hidden: `bare`.
+    /// True if the panels are hidden: `bare`.
     pub bare: bool,
-    /// Whether time runs: `run`.
+    /// True if time runs: `run`.
     pub runs: bool,
-    /// What gave way.
+    /// Settings that were changed to make room for others.
     pub notes: Vec<String>,
 }
 
-/// Reads the end of an address. `scene` is shown if it names none.
+/// Reads the fragment of an address. `scene` is shown if it names none.
 ///
 /// # Errors
-/// The part that is wrong, and what to give instead, for people.
+/// The part that is wrong, and the remedy, for users.
 pub fn read(fragment: &str, scene: &str, size: [u32; 2]) -> Result<Linked, String> {
     let mut view = Look::default();
     let mut request = SceneRequest::new(scene, size);
@@ -122,7 +125,7 @@ pub fn read(fragment: &str, scene: &str, size: [u32; 2]) -> Result<Linked, Strin
     Ok(Linked { request, config, tint, bare, runs, notes })
 }
 
-/// The camera of a link.
+/// Camera of a link.
 #[derive(Default)]
 struct Look {
     named: Option<String>,

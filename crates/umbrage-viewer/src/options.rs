@@ -1,4 +1,4 @@
-//! What the viewer starts with.
+//! Options that the viewer starts with.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -10,35 +10,35 @@ use crate::judge::Overlay;
 use crate::link::Linked;
 use crate::session::{Show, Tab};
 
-/// What the viewer starts with.
+/// Options that the viewer starts with.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The scene, camera, light and time; the size is the window's, in pixels.
+    /// Scene, camera, light and time. The size is the window's, in pixels.
     pub request: SceneRequest,
-    /// Shadows.
+    /// Technique of the shadows.
     pub config: ShadowConfig,
-    /// What gave way to what was asked for.
+    /// Settings that were changed to make room for others.
     pub notes: Vec<String>,
-    /// What is shown at once.
+    /// Display options.
     pub show: Show,
-    /// Whether maps are held for the first view.
+    /// True if maps are held for the first view.
     pub held: bool,
-    /// Shadows to compare with.
+    /// Technique to compare with.
     pub other: Option<ShadowConfig>,
-    /// Whether the panels are hidden.
+    /// True if the panels are hidden.
     pub bare: bool,
-    /// Whether time runs at once.
+    /// True if time runs at once.
     pub runs: bool,
-    /// Size of text and controls: 1 is the screen's own.
+    /// Scale of text and controls; 1 is the screen's own.
     pub scale: f32,
-    /// Writes a picture of the window here (PNG) and ends.
+    /// File (PNG) of a screenshot, after which the viewer ends.
     pub screenshot: Option<PathBuf>,
-    /// Pictures of the scene before the screenshot.
+    /// Number of pictures of the scene before the screenshot.
     pub frames: u64,
 }
 
 impl Options {
-    /// Shows what a link shows; `wrong` is what could not be read of it.
+    /// Makes the options of a link. `wrong` is the error of its unreadable part.
     #[must_use]
     pub fn of_link(linked: Linked, wrong: Option<String>) -> Self {
         Self {
@@ -57,7 +57,7 @@ impl Options {
     }
 }
 
-/// Something to show at once, by its word.
+/// A display option, by its word on the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShowAtStart {
     /// Splits in colours.
@@ -68,16 +68,16 @@ pub enum ShowAtStart {
     Held,
     /// Texels per pixel.
     Density,
-    /// Where shadows are wrong.
+    /// Errors of the shadows.
     Errors,
-    /// Where exact edges test triangles.
+    /// Triangle tests of exact edges.
     Tests,
-    /// A tab.
+    /// A tab below the picture.
     Tab(Tab),
 }
 
 impl ShowAtStart {
-    /// All of them, by their words.
+    /// All display options, by their words.
     pub const ALL: [(&'static str, Self); 10] = [
         ("tint", Self::Tint),
         ("frusta", Self::Frusta),
@@ -91,7 +91,7 @@ impl ShowAtStart {
         ("casters", Self::Tab(Tab::Casters)),
     ];
 
-    /// Shows it.
+    /// Applies the choice to options.
     pub fn apply(self, options: &mut Options) {
         let show = &mut options.show;
         match self {

@@ -1,13 +1,13 @@
-//! The viewer as a page: what its address asks for.
+//! The viewer as a page, opened by the page's address.
 
 use umbrage_lab::scene_request::SceneRequest;
 
 use crate::link::{self, Linked};
 use crate::{Options, platform};
 
-/// What is shown if the address names no scene: the smallest world.
+/// Scene that is shown if the address names none: the smallest world.
 const FIRST_SCENE: &str = "chessboard";
-/// Pixels until the canvas has said how many it has.
+/// Size in pixels until the canvas reports its own.
 const FIRST_SIZE: [u32; 2] = [800, 600];
 
 /// Opens the viewer on the page's canvas.

@@ -1,17 +1,16 @@
-//! Camera paths: recorded while one flies, followed again here and by `umbrage render --path`.
+//! Camera paths: recorded in flight, followed again here and by `umbrage render --path`.
 
 use glam::DVec3;
 use umbrage::{Frustum, View};
 use umbrage_scene::CameraPath;
 
-/// Metres from a path's points up to the eye, unless the command is told otherwise
-/// (`--eye-height`).
+/// Height of the eye over a path's points in metres, the default of the command's `--eye-height`.
 pub const EYE_HEIGHT_M: f64 = 2.0;
-/// Metres from the eye to its target.
+/// Distance in metres from the eye to its target.
 const TARGET_M: f64 = 20.0;
-/// Least step between two points, metres.
+/// Least distance between two points in metres.
 const LEAST_STEP_M: f64 = 0.05;
-/// Steps over the whole of a path that is followed.
+/// Number of steps over the whole of a path that is followed.
 const STEPS: usize = 1 << 20;
 
 /// A path that is being recorded.
@@ -22,7 +21,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Takes down where the eye is, if it has moved.
+    /// Records the position of the eye, if it has moved.
     pub fn pass(&mut self, view: &View) {
         let below = DVec3::Y * EYE_HEIGHT_M;
         let point = view.eye() - below;
@@ -37,19 +36,19 @@ impl Recording {
         }
     }
 
-    /// How many points there are.
+    /// Returns the number of points.
     #[must_use]
     pub fn len(&self) -> usize {
         self.points.len()
     }
 
-    /// Whether there is none.
+    /// Returns whether there is no point.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
-    /// The path, under a sun that light travels from this way.
+    /// Returns the path, with the sun whose light travels along `sun_travel`.
     ///
     /// # Errors
     /// If the camera has not moved.
@@ -67,18 +66,19 @@ impl Recording {
 pub struct Following {
     path: CameraPath,
     eye_height: f64,
-    /// Share of the path that is behind, 0 to 1.
+    /// Share of the path that is behind the eye, 0 to 1.
     pub share: f64,
 }
 
 impl Following {
-    /// From its beginning, so many metres above its points.
+    /// Starts at the beginning of a path, `eye_height` metres above its points.
     #[must_use]
     pub fn new(path: CameraPath, eye_height: f64) -> Self {
         Self { path, eye_height, share: 0.0 }
     }
 
-    /// Goes on; an open path ends, a closed one begins again. False at the end.
+    /// Advances along the path. An open path ends, a closed one begins again. Returns false at the
+    /// end.
     pub fn advance(&mut self, metres: f64) -> bool {
         let next = self.share + metres.max(0.0) / self.path.length();
         let goes_on = self.path.is_closed() || next < 1.0;
@@ -86,7 +86,8 @@ impl Following {
         goes_on
     }
 
-    /// The view there through a lens; `None` where the path has nowhere to look.
+    /// Returns the view at the current position through a projection; `None` where the path gives
+    /// no direction.
     #[must_use]
     pub fn view(&self, lens: Frustum) -> Option<View> {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of the steps")]

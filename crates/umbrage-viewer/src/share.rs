@@ -1,4 +1,4 @@
-//! A config as text to carry away, and back: Rust, TOML, the command line.
+//! Conversion of configs to text and back: Rust, TOML, the command line.
 
 use toml::Value as Toml;
 use umbrage::ShadowConfig;
@@ -8,14 +8,14 @@ use umbrage_lab::failure::Failure;
 /// A config as a preset and the settings that differ from it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spelled {
-    /// The preset.
+    /// Preset that the config starts from.
     pub preset: Preset,
-    /// What is put over it.
+    /// Settings that differ from the preset's.
     pub given: Vec<(&'static str, Value)>,
 }
 
 impl Spelled {
-    /// The shortest spelling of a config that reads back as that config.
+    /// Returns the shortest spelling of a config that reads back as that config.
     #[must_use]
     pub fn of(config: &ShadowConfig) -> Self {
         let all = config.settings();
@@ -34,10 +34,10 @@ impl Spelled {
         right.into_iter().next().unwrap_or_else(whole)
     }
 
-    /// The config that is spelled.
+    /// Returns the config of the spelling.
     ///
     /// # Errors
-    /// What the settings are refused for.
+    /// The reason why the settings are refused.
     pub fn config(&self) -> Result<ShadowConfig, umbrage::Error> {
         let mut config = self.preset.config();
         let given: Vec<(String, String)> =
@@ -45,7 +45,7 @@ impl Spelled {
         config.apply(&given).map(|_| config)
     }
 
-    /// As Rust.
+    /// Writes the config as Rust.
     #[must_use]
     pub fn rust(&self) -> String {
         let preset = format!("{:?}", self.preset);
@@ -61,20 +61,20 @@ impl Spelled {
         )
     }
 
-    /// As a file for `--config`.
+    /// Writes the config as a file for `--config`.
     #[must_use]
     pub fn toml(&self) -> String {
         let lines = self.given.iter().map(|(key, value)| format!("{key} = {}\n", toml_of(value)));
         format!("preset = \"{}\"\n{}", self.preset, lines.collect::<String>())
     }
 
-    /// As options of `umbrage render` and `umbrage view`.
+    /// Writes the config as options of `umbrage render` and `umbrage view`.
     #[must_use]
     pub fn command_line(&self) -> String {
         self.options().collect::<Vec<_>>().join(" ")
     }
 
-    /// Each option of [`Spelled::command_line`].
+    /// Iterates over the options of [`Spelled::command_line`].
     pub fn options(&self) -> impl Iterator<Item = String> {
         let given = self.given.iter().map(|(key, value)| format!("--{key}={value}"));
         std::iter::once(format!("--preset={}", self.preset)).chain(given)
@@ -92,19 +92,20 @@ fn toml_of(value: &Value) -> Toml {
     }
 }
 
-/// What was pasted.
+/// Config read from pasted text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pasted {
     /// The config.
     pub config: ShadowConfig,
-    /// What gave way, and what was no setting of shadows.
+    /// Settings that were changed to make room for others, and parts that are not settings of
+    /// shadows.
     pub notes: Vec<String>,
 }
 
 /// Reads a config that was copied as Rust, TOML, JSON or a command line.
 ///
 /// # Errors
-/// What is wrong with the text, for people.
+/// The fault of the text, for users.
 pub fn read(text: &str) -> Result<Pasted, String> {
     let text = text.trim();
     if text.is_empty() {
@@ -206,7 +207,7 @@ mod tests {
         }
     }
 
-    /// A text for a setting of some kind, good more often than not.
+    /// Makes a text for a setting of some kind, which is valid more often than not.
     fn value(kind: Kind, number: f64, pick: usize) -> String {
         match kind {
             Kind::Words(words) => words[pick % words.len()].word.to_owned(),
@@ -223,7 +224,7 @@ mod tests {
         }
     }
 
-    /// Numbers of which each follows from the one before (Knuth's MMIX).
+    /// Random generator in which each number follows from the one before (Knuth's MMIX).
     struct Random(u64);
 
     impl Random {

@@ -1,4 +1,4 @@
-//! Scenes, opened beside the window: what is shown stays until the next one is there.
+//! Opening scenes in the background. The current scene stays until the next one is there.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -18,44 +18,44 @@ use web_time::Instant;
 use crate::path::Following;
 use crate::platform::{self, Movable};
 
-/// The view of a gallery that a scene of the menu begins with.
+/// Name of the gallery view that a scene of the menu begins with.
 const FIRST_SHOT: &str = "middle";
 
 /// A scene that was opened, with its first view and its lights.
 #[derive(Debug)]
 pub struct Stage {
-    /// Tells one opened scene from another.
+    /// Number that tells one opened scene from another.
     pub id: u64,
-    /// What was asked for.
+    /// Request that opened the scene.
     pub request: SceneRequest,
     /// The scene.
     pub scene: Scene,
-    /// The scene at the request's time.
+    /// Pose of the scene at the request's time.
     pub pose: Arc<Pose>,
-    /// The first view.
+    /// First view.
     pub view: View,
-    /// The lights at the request's time.
+    /// Lights at the request's time.
     pub lights: Vec<NamedLight>,
-    /// The path, where the request has one.
+    /// Camera path, if the request has one.
     pub path: Option<CameraPath>,
-    /// What the loader left out.
+    /// Remarks of the loader on parts that it left out.
     pub notes: Vec<String>,
 }
 
 impl Stage {
-    /// Whether anything moves by itself.
+    /// Returns whether the scene has animations.
     #[must_use]
     pub fn is_animated(&self) -> bool {
         !self.scene.animations.is_empty()
     }
 
-    /// Seconds until the longest clip starts again.
+    /// Returns the seconds until the longest clip starts again.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.scene.animations.iter().map(|clip| clip.duration).fold(0.0, f64::max)
     }
 
-    /// The path of the request, to be followed from its beginning.
+    /// Returns the path of the request, to be followed from its beginning.
     #[must_use]
     pub fn following(&self) -> Option<Following> {
         match (&self.request.camera, &self.path) {
@@ -64,31 +64,31 @@ impl Stage {
         }
     }
 
-    /// The view of a camera of the scene.
+    /// Returns the view of a camera of the scene.
     ///
     /// # Errors
-    /// Why it has none.
+    /// The reason why there is none.
     pub fn camera_view(&self, index: usize, aspect: f64) -> Result<View, String> {
         umbrage_scene::camera_view(&self.scene, &self.pose, index, aspect, self.request.near, self.request.far)
             .map_err(|error| error.to_string())
     }
 }
 
-/// How far an opening has come.
+/// Progress of opening a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// The file is read, or the world built.
+    /// The file is being read, or the world built.
     Reading,
-    /// The scene is posed, its cameras and lights are looked up.
+    /// The scene is being posed, and its cameras and lights are looked up.
     Posing,
-    /// It is there.
+    /// The scene is open.
     Done,
 }
 
 impl Step {
     const ALL: [Self; 3] = [Self::Reading, Self::Posing, Self::Done];
 
-    /// For people.
+    /// Describes the step for users.
     #[must_use]
     pub fn text(self) -> &'static str {
         match self {
@@ -98,7 +98,7 @@ impl Step {
         }
     }
 
-    /// Share of the steps that are behind.
+    /// Returns the share of the steps that are done.
     #[must_use]
     pub fn share(self) -> f32 {
         match self {
@@ -109,10 +109,10 @@ impl Step {
     }
 }
 
-/// A scene on its way.
+/// A scene that is being opened.
 #[derive(Debug)]
 pub struct Opening {
-    /// What was asked for.
+    /// Name of the scene.
     pub spec: String,
     begun: Instant,
     step: Arc<AtomicU8>,
@@ -120,8 +120,7 @@ pub struct Opening {
 }
 
 impl Opening {
-    /// Opens a scene beside all else, from `bytes` if they are there; `wake` is called when
-    /// something is new.
+    /// Starts to open a scene, from `bytes` if given. `wake` is called when there is progress.
     pub fn start(request: SceneRequest, bytes: Option<Arc<[u8]>>, wake: impl Fn() + Movable + 'static) -> Self {
         let (sender, result) = channel();
         let step = Arc::new(AtomicU8::new(0));
@@ -141,19 +140,19 @@ impl Opening {
         Self { spec, begun: Instant::now(), step, result }
     }
 
-    /// The step that is done now.
+    /// Returns the current step.
     #[must_use]
     pub fn step(&self) -> Step {
         Step::ALL[usize::from(self.step.load(Ordering::Relaxed)).min(2)]
     }
 
-    /// How long it has taken.
+    /// Returns the time since the start.
     #[must_use]
     pub fn elapsed(&self) -> Duration {
         self.begun.elapsed()
     }
 
-    /// The scene, once it is there.
+    /// Returns the result, once there is one.
     pub fn poll(&self) -> Option<Result<Stage, String>> {
         match self.result.try_recv() {
             Ok(result) => Some(result),
@@ -165,10 +164,10 @@ impl Opening {
     }
 }
 
-/// Opens what a request names, from `bytes` if they are there.
+/// Opens the scene of a request, from `bytes` if given.
 ///
 /// # Errors
-/// [`Failure::Input`] naming the file or option at fault.
+/// [`Failure::Input`] with the file or option at fault.
 pub async fn open(request: SceneRequest, bytes: Option<Arc<[u8]>>, enter: impl Fn(Step)) -> Result<Stage, Failure> {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     enter(Step::Reading);
@@ -200,34 +199,34 @@ pub async fn open(request: SceneRequest, bytes: Option<Arc<[u8]>>, enter: impl F
 #[derive(Clone, Copy, Debug)]
 pub struct Shipped(&'static Exhibit);
 
-/// The worlds, and the city.
+/// Iterates over the scenes of the menu: the worlds, and the city.
 pub fn shipped() -> impl Iterator<Item = Shipped> {
     SCENES.iter().map(Shipped)
 }
 
 impl Shipped {
-    /// Its name.
+    /// Returns the title of the scene.
     #[must_use]
     pub fn title(&self) -> &'static str {
         self.0.title
     }
 
-    /// A sentence about it.
+    /// Returns a sentence about the scene.
     #[must_use]
     pub fn about(&self) -> &'static str {
         self.0.about
     }
 
-    /// Whether this is what a request opened.
+    /// Returns whether a request opened this scene.
     #[must_use]
     pub fn is_shown_by(&self, request: &SceneRequest) -> bool {
         Path::new(&request.scene).ends_with(self.0.scene)
     }
 
-    /// What opens it.
+    /// Returns the request that opens the scene.
     ///
     /// # Errors
-    /// Where it was looked for, if it is a file and not there.
+    /// The folders that were searched, if the scene is a file that is missing.
     pub fn request(&self, size: [u32; 2]) -> Result<SceneRequest, String> {
         let shots = self.0.shots;
         let shot =

@@ -1,6 +1,6 @@
-//! What draws, beside the window. On a desktop it is a thread with a graphics device of its own, so
-//! that the window goes on however long a picture takes; it opens another device if that one is
-//! lost. In a browser it is a task that draws with the window's device.
+//! The studio: the task that draws, beside the window. On a desktop it is a thread with a graphics
+//! device of its own, so that the window goes on however long a picture takes. It opens another
+//! device if that one is lost. In a browser it is a task that draws with the window's device.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -19,129 +19,130 @@ use web_time::Instant;
 use crate::platform::{self, Movable};
 use crate::stage::Stage;
 
-/// Everything that a picture depends on.
+/// All inputs that a picture depends on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shot {
-    /// [`Stage::id`].
+    /// Id of the scene: [`Stage::id`].
     pub stage: u64,
-    /// Seconds into the animations.
+    /// Time of the animations in seconds.
     pub time_s: f64,
-    /// The eye.
+    /// View of the eye.
     pub view: View,
-    /// The view that maps are planned for, if they are held while the eye moves on.
+    /// View that maps are planned for, if they are held while the eye moves on.
     pub planned_for: Option<View>,
-    /// The sun, if it is not the scene's own light.
+    /// Sun that replaces the scene's own light; `None` keeps that light.
     pub sun: Option<DirectionalLight>,
     /// One config, or two that are compared.
     pub configs: Vec<ShadowConfig>,
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Whether splits are coloured.
+    /// True if splits are coloured.
     pub tint: bool,
-    /// Whether anything casts shadows.
+    /// True if objects cast shadows.
     pub shadows_on: bool,
 }
 
-/// What is wanted beside the picture; it takes time, and is asked for while nothing moves.
+/// Outputs that are wanted beside the picture. They take time, and are asked for while nothing
+/// moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wants {
-    /// The maps as pictures.
+    /// True if the maps are wanted as pictures.
     pub maps: bool,
-    /// The visibility of each pixel.
+    /// True if the visibility of each pixel is wanted.
     pub mask: bool,
-    /// What exact edges do for each pixel.
+    /// True if counts of exact edges are wanted for each pixel.
     pub edges: bool,
-    /// What the maps say of a point.
+    /// Point at which the maps are probed.
     pub probe: Option<ProbePoint>,
 }
 
 impl Wants {
-    /// Whether what was given holds all that is wanted.
+    /// Returns whether the outputs `given` hold all that is wanted.
     #[must_use]
     pub fn are_met_by(&self, given: &Self) -> bool {
         let probe = self.probe.is_none() || self.probe == given.probe;
         (given.maps || !self.maps) && (given.mask || !self.mask) && (given.edges || !self.edges) && probe
     }
 
-    /// Whether nothing is wanted.
+    /// Returns whether no output is wanted.
     #[must_use]
     pub fn is_nothing(&self) -> bool {
         *self == Self::default()
     }
 }
 
-/// A picture that is asked for.
+/// An order for a picture.
 #[derive(Clone, Debug)]
 pub struct Order {
     /// The scene.
     pub stage: Arc<Stage>,
-    /// What is drawn.
+    /// Shot to draw.
     pub shot: Shot,
-    /// What is wanted beside it.
+    /// Outputs that are wanted beside the picture.
     pub wants: Wants,
-    /// What draws it, where that is not a device of the studio's own.
+    /// Device to draw with, where the studio has none of its own.
     pub gpu: Option<Gpu>,
 }
 
-/// A picture by one config.
+/// A picture drawn with one config.
 #[derive(Debug)]
 pub struct Taken {
     /// The picture.
     pub picture: RgbaImage,
-    /// The visibility mask, if it was wanted.
+    /// Visibility mask, if it was wanted.
     pub mask: Option<GrayAlphaImage>,
-    /// What exact edges did, if it was wanted and edges are exact.
+    /// Counts of exact edges, if they were wanted and edges are exact.
     pub edges: Option<EdgeCounts>,
-    /// The maps, if they were wanted.
+    /// Pictures of the maps, if they were wanted.
     pub maps: Vec<GrayImage>,
-    /// Numbers and plans.
+    /// Statistics and plans.
     pub stats: FrameStats,
-    /// Objects of the pose that plans speak of as casters.
+    /// Objects of the pose that the casters of plans refer to.
     pub casters: Vec<usize>,
-    /// What the maps say of the point.
+    /// Answer of the maps at the probed point.
     pub answer: Option<ProbeAnswer>,
-    /// Fallbacks, and what gave way to the lights.
+    /// Fallbacks, and settings that were changed to suit the lights.
     pub notes: Vec<String>,
 }
 
-/// What came of an order.
+/// Result of an order.
 #[derive(Debug)]
 pub struct Drawn {
     /// The scene.
     pub stage: Arc<Stage>,
-    /// What was drawn.
+    /// Shot that was drawn.
     pub shot: Shot,
-    /// What was wanted beside it.
+    /// Outputs that were wanted.
     pub wants: Wants,
-    /// The scene at that time.
+    /// Pose of the scene at the shot's time.
     pub pose: Arc<Pose>,
-    /// The lights at that time.
+    /// Lights at the shot's time.
     pub lights: Vec<NamedLight>,
-    /// A picture for each config.
+    /// Pictures, one for each config.
     pub taken: Vec<Taken>,
     /// Milliseconds from the order to the pictures.
     pub wall_ms: f64,
 }
 
-/// What it says.
+/// News from the studio.
 #[derive(Debug)]
 pub enum News {
     /// The adapter that draws.
     Adapter(String),
-    /// What takes a moment.
+    /// Name of a task that takes a moment.
     Busy(&'static str),
-    /// Pictures.
+    /// Pictures that were drawn.
     Drawn(Box<Drawn>),
-    /// Why there are none; it goes on.
+    /// Failure of an order. The studio goes on.
     Failed {
-        /// What was to be drawn.
+        /// Shot that was to be drawn.
         shot: Box<Shot>,
-        /// Why it was not.
+        /// Reason of the failure.
         why: String,
     },
 }
 
-/// What draws.
+/// Handle of the task that draws.
 #[derive(Debug)]
 pub struct Studio {
     orders: UnboundedSender<Order>,
@@ -149,7 +150,7 @@ pub struct Studio {
 }
 
 impl Studio {
-    /// Starts it; `wake` is called when there is news.
+    /// Starts the task. `wake` is called when there is news.
     ///
     /// # Errors
     /// If the system has no thread left.
@@ -160,13 +161,13 @@ impl Studio {
         Ok(Self { orders, news })
     }
 
-    /// Asks for a picture. False if it has ended.
+    /// Orders a picture. Returns false if the task has ended.
     #[must_use]
     pub fn order(&self, order: Order) -> bool {
         self.orders.unbounded_send(order).is_ok()
     }
 
-    /// What is new.
+    /// Returns the news.
     pub fn news(&self) -> impl Iterator<Item = News> + '_ {
         self.news.try_iter()
     }
@@ -184,7 +185,7 @@ impl<W: Fn()> Tell<W> {
         (self.wake)();
     }
 
-    /// Says what takes a moment, and lets it be shown where one thread does all.
+    /// Reports a task that takes a moment, and lets the report be shown where one thread does all.
     async fn busy(&self, with: &'static str) {
         self.say(News::Busy(with));
         platform::pause().await;
@@ -199,7 +200,7 @@ async fn work(mut inbox: UnboundedReceiver<Order>, tell: Tell<impl Fn()>) {
     }
 }
 
-/// The last order that waits, or the next that comes; `None` once nobody can order.
+/// Returns the last waiting order, or the next one; `None` once nobody can order.
 async fn latest(inbox: &mut UnboundedReceiver<Order>) -> Option<Order> {
     let mut order = inbox.recv().await.ok()?;
     while let Ok(later) = inbox.try_recv() {
@@ -208,7 +209,7 @@ async fn latest(inbox: &mut UnboundedReceiver<Order>) -> Option<Order> {
     Some(order)
 }
 
-/// Draws one scene, until another is ordered.
+/// Draws one scene until another is ordered.
 async fn with_scene(
     first: Order,
     inbox: &mut UnboundedReceiver<Order>,
@@ -258,7 +259,7 @@ impl From<umbrage_render::Error> for Failure {
     }
 }
 
-/// A scene with what draws it.
+/// A scene with its renderers.
 struct Set<'s> {
     stage: &'s Arc<Stage>,
     poser: Poser<'s>,
@@ -266,7 +267,7 @@ struct Set<'s> {
     booths: Vec<Booth>,
 }
 
-/// A renderer of one config.
+/// A renderer with one config.
 struct Booth {
     renderer: Renderer,
     lights: Vec<umbrage::config::LightKind>,
@@ -323,8 +324,13 @@ impl Set<'_> {
         if self.booths.len() == slot {
             tell.busy("uploading the scene and building its pipelines").await;
             let slots = kinds.iter().copied().map(Into::into).collect();
-            let settings =
-                RenderSettings { size: shot.size, samples: Samples::default(), config: config.clone(), lights: slots };
+            let settings = RenderSettings {
+                size: shot.size,
+                samples: Samples::default(),
+                config: config.clone(),
+                lights: slots,
+                ..RenderSettings::default()
+            };
             self.booths.push(Booth { renderer: Renderer::new(gpu, scene, &settings)?, lights: kinds });
         }
         let renderer = &mut self.booths[slot].renderer;
@@ -370,13 +376,15 @@ impl Set<'_> {
         })
     }
 
-    /// Whether the renderer of a slot, if there is one, has maps for lights of these kinds.
+    /// Returns whether the renderer of a slot has maps for lights of these kinds, or there is no
+    /// renderer yet.
     fn is_made_for(&self, slot: usize, kinds: &[umbrage::config::LightKind]) -> bool {
         self.booths.get(slot).is_none_or(|booth| booth.lights == kinds)
     }
 }
 
-/// The device: the one that is shared, or one that is opened, if there is none.
+/// Returns the device: the shared one if given, else the studio's own, which is opened if there is
+/// none.
 async fn open<'g>(gpu: &'g mut Option<Gpu>, shared: Option<Gpu>, tell: &Tell<impl Fn()>) -> Result<&'g Gpu, Failure> {
     match gpu {
         Some(gpu) => Ok(gpu),

@@ -1,4 +1,4 @@
-//! Where the sun stands: as the scene has it, by hand, or at a date, an hour and a place.
+//! Position of the sun: the scene's own, one set by hand, or that of a date, an hour and a place.
 //!
 //! North is −Z and east is +X.
 
@@ -9,17 +9,17 @@ use umbrage::DirectionalLight;
 /// Degrees that the sun moves while the pointer crosses the picture's height.
 const DEGREES_PER_HEIGHT: f64 = 120.0;
 
-/// Where the sun stands in the sky, degrees.
+/// Position of the sun in the sky, in degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SkyPoint {
-    /// From north over east.
+    /// Bearing from north over east.
     pub bearing: f64,
-    /// Above the horizon.
+    /// Elevation above the horizon.
     pub elevation: f64,
 }
 
 impl SkyPoint {
-    /// Where light that travels this way comes from.
+    /// Returns the position of a sun whose light travels in direction `travel`.
     #[must_use]
     pub fn of_travel(travel: DVec3) -> Self {
         let to_sun = -travel.normalize_or_zero();
@@ -27,7 +27,7 @@ impl SkyPoint {
         Self { bearing, elevation: to_sun.y.clamp(-1.0, 1.0).asin().to_degrees() }
     }
 
-    /// The way light travels from here, a unit vector.
+    /// Returns the unit vector along which light travels from here.
     #[must_use]
     pub fn travel(&self) -> DVec3 {
         let (up, across) = self.elevation.to_radians().sin_cos();
@@ -35,7 +35,7 @@ impl SkyPoint {
         -DVec3::new(east * across, up, -north * across)
     }
 
-    /// The point after a drag of so many picture heights to the right and down.
+    /// Returns the position after a drag of so many picture heights to the right and down.
     #[must_use]
     pub fn dragged(&self, by: DVec2) -> Self {
         Self {
@@ -48,28 +48,28 @@ impl SkyPoint {
 /// A date, an hour and a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Almanac {
-    /// Year, month from 1, day from 1.
+    /// Year, month from 1, and day from 1.
     pub date: (i32, u32, u32),
     /// Hours of Universal Time since midnight, 0 to 24.
     pub hour: f64,
-    /// Degrees north.
+    /// Latitude in degrees north.
     pub latitude: f64,
-    /// Degrees east.
+    /// Longitude in degrees east.
     pub longitude: f64,
 }
 
 impl Default for Almanac {
-    /// A summer afternoon in Vienna.
+    /// Returns a summer afternoon in Vienna.
     fn default() -> Self {
         Self { date: (2026, 6, 21), hour: 14.0, latitude: 48.21, longitude: 16.37 }
     }
 }
 
 impl Almanac {
-    /// Where the sun stands, refraction by the air left out.
+    /// Computes the position of the sun, without the refraction of the air.
     ///
     /// # Errors
-    /// What is wrong with the date or the place, for people.
+    /// The fault of the date or the place, for users.
     pub fn sky_point(&self) -> Result<SkyPoint, String> {
         let (year, month, day) = self.date;
         let minutes = (self.hour.clamp(0.0, 23.999_9) * 60.0).floor();
@@ -86,23 +86,23 @@ impl Almanac {
     }
 }
 
-/// How the sun is chosen.
+/// Choice of the sun.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Sun {
-    /// As the scene, or the command line, has it.
+    /// The sun of the scene, or of the command line.
     #[default]
     OfScene,
-    /// By hand.
+    /// A sun set by hand.
     ByHand(SkyPoint),
-    /// By date, hour and place.
+    /// The sun of a date, an hour and a place.
     ByDate(Almanac),
 }
 
 impl Sun {
-    /// The sun, if it is not the scene's.
+    /// Returns the sun, if it is not the scene's.
     ///
     /// # Errors
-    /// Why there is none: it is night, or the date is none.
+    /// The reason why there is none: it is night, or the date is invalid.
     pub fn light(&self) -> Result<Option<DirectionalLight>, String> {
         let point = match self {
             Self::OfScene => return Ok(None),

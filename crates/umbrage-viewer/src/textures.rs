@@ -1,4 +1,4 @@
-//! Pictures on their way to the controls.
+//! Upload of pictures to the controls.
 
 use std::sync::Arc;
 
@@ -9,10 +9,10 @@ use image::{GrayImage, RgbaImage};
 use crate::judge::Laid;
 use crate::studio::Drawn;
 
-/// Edge of a map's picture in the panel, pixels.
+/// Edge in pixels of a map's picture in the panel.
 const MAP_EDGE: u32 = 384;
 
-/// What was passed to the controls, so that it is passed once.
+/// Textures of the controls, each uploaded once.
 #[derive(Default)]
 pub(crate) struct Textures {
     drawn: Option<Arc<Drawn>>,
@@ -25,23 +25,23 @@ pub(crate) struct Textures {
 pub(crate) struct Map {
     /// The picture, no larger than the panel shows it.
     pub texture: TextureHandle,
-    /// Share of its texels in which something is stored.
+    /// Share of the map's texels in which a depth is stored.
     pub filled: f64,
 }
 
 impl Textures {
-    /// Whether the pictures of what was drawn are there.
+    /// Returns whether the pictures of `drawn` are uploaded.
     pub fn has(&self, drawn: &Arc<Drawn>) -> bool {
         self.drawn.as_ref().is_some_and(|known| Arc::ptr_eq(known, drawn))
     }
 
-    /// The pictures of what was drawn.
+    /// Returns the pictures of `drawn`.
     pub fn pictures(&mut self, ctx: &Context, drawn: &Arc<Drawn>) -> &[TextureHandle] {
         self.take(ctx, drawn);
         &self.pictures
     }
 
-    /// The maps of what was drawn.
+    /// Returns the maps of `drawn`.
     pub fn maps(&mut self, ctx: &Context, drawn: &Arc<Drawn>) -> &[Map] {
         self.take(ctx, drawn);
         &self.maps
@@ -69,7 +69,7 @@ impl Textures {
         }
     }
 
-    /// The picture of an overlay.
+    /// Returns the picture of an overlay.
     pub fn overlay(&mut self, ctx: &Context, laid: &Laid) -> egui::TextureId {
         let known = self.laid.as_ref().filter(|(known, _)| known == laid);
         if let Some((_, texture)) = known {

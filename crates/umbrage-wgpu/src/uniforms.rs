@@ -1,4 +1,4 @@
-//! From a plan in `f64` world metres to the uniforms in `f32` relative to the frame's origin.
+//! Conversion of a plan in `f64` world metres to uniforms in `f32` relative to the frame's origin.
 
 use std::f32::consts::TAU;
 
@@ -12,8 +12,8 @@ use crate::maps::slot::Slot;
 use crate::options::{bias_kind, depth_step, filter_kind, reach_within, transition_kind};
 use crate::{Error, FrameOptions, LightMaps, Result, local};
 
-/// The uniform that receivers read: the frames of each light's slot. Their splits are what casters
-/// read. `places` are those of all maps.
+/// The uniform that receivers read: the frames of each light's slot. Their splits are the uniforms
+/// of casters. `places` are those of all maps.
 pub(crate) fn frames(
     plans: &[&ShadowPlan],
     config: &ShadowConfig,
@@ -43,7 +43,8 @@ pub(crate) fn frames(
     Ok(frames)
 }
 
-/// A sun's plan is made by the choices that receivers' text was made for: the text does not look.
+/// Checks that a sun's plan is made by the choices for which the receivers' text was made, because
+/// the text does not check.
 fn check_choices(plan: &ShadowPlan, config: &ShadowConfig) -> Result<()> {
     if plan.light.is_some_and(|light| light.position().is_some()) {
         return Ok(());
@@ -56,10 +57,9 @@ fn check_choices(plan: &ShadowPlan, config: &ShadowConfig) -> Result<()> {
         let word = |by_map| if by_map { "map" } else { "depth" };
         return mismatch("selection", word(by_map), word(!by_map));
     }
-    let radial = config.selection == Selection::Interval(SplitMetric::Distance);
-    if radial != plan.radial_eye.is_some() {
-        let word = |radial| if radial { "radial" } else { "planar" };
-        return mismatch("bands", word(radial), word(!radial));
+    let [made_for, given] = [config.selection.metric(), plan.metric()];
+    if made_for != given {
+        return mismatch("bands", &made_for.to_string(), &given.to_string());
     }
     let has_warp = plan.splits.iter().any(|split| split.light_position.is_none() && split.warp.is_some());
     if has_warp && config.first_warp().is_none() {
@@ -68,7 +68,7 @@ fn check_choices(plan: &ShadowPlan, config: &ShadowConfig) -> Result<()> {
     Ok(())
 }
 
-/// One face of one light. `places` are those of its splits.
+/// The uniform of one face of one light. `places` are those of its splits.
 fn frame(
     plan: &ShadowPlan,
     face: usize,
@@ -112,8 +112,8 @@ fn frame(
         map_blend: plan.blend as f32,
         bias_kind: bias_kind(look.bias) as u32,
         shadow_colour: look.colour.map(|part| part as f32),
-        eye: plan.radial_eye.map_or([0.0; 3], |eye| (eye - options.origin).as_vec3().to_array()),
-        is_radial: plan.radial_eye.is_some().into(),
+        eye: (plan.eye - options.origin).as_vec3().to_array(),
+        is_radial: (plan.metric() == SplitMetric::Distance).into(),
         ..layout::Frame::default()
     };
     local::place_light(&mut frame, plan, options.origin);
@@ -127,7 +127,7 @@ fn frame(
     Ok(frame)
 }
 
-/// Checks what of a plan belongs to no split.
+/// Checks the values of a plan that belong to no split.
 fn check_plan(plan: &ShadowPlan, slot: &Slot) -> Result<()> {
     let all_faces = (0..plan.faces()).flat_map(|_| &slot.sizes);
     if !plan.splits.iter().map(|split| &split.size).eq(all_faces) {
@@ -143,8 +143,8 @@ fn check_plan(plan: &ShadowPlan, slot: &Slot) -> Result<()> {
     if let Some(plane) = plan.planes.iter().find(|plane| !plane.is_finite()) {
         return bad("planes", *plane, "finite view depths");
     }
-    if plan.radial_eye.is_some_and(|eye| !eye.is_finite()) {
-        return bad("radial_eye", f64::NAN, "three finite numbers");
+    if !plan.eye.is_finite() {
+        return bad("eye", f64::NAN, "three finite numbers");
     }
     if !is_unit(plan.light_direction) {
         return bad("light_direction", plan.light_direction.length(), "a vector of length 1");
@@ -158,7 +158,7 @@ fn check_plan(plan: &ShadowPlan, slot: &Slot) -> Result<()> {
     Ok(())
 }
 
-/// One split. `depth_step` is the format's step as a share of the depth range.
+/// The uniform of one split. `depth_step` is the format's step as a share of the depth range.
 pub(crate) fn split(
     index: usize,
     split: &umbrage::Split,
@@ -200,7 +200,7 @@ pub(crate) fn split(
     Ok(uniform)
 }
 
-/// One split whose map is warped.
+/// The uniform of one split whose map is warped.
 fn warped(
     index: usize,
     split: &umbrage::Split,
@@ -241,7 +241,7 @@ fn warped(
     })
 }
 
-/// What the arithmetic above needs: every number finite and nothing divided by zero.
+/// Checks that every number of the computations above is finite and nothing is divided by zero.
 fn check(index: usize, split: &umbrage::Split) -> Result<()> {
     let bad = |field, value, expected| Err(Error::InvalidSplit { split: index, field, value, expected });
     for (field, axis) in [("u_axis", split.u_axis), ("v_axis", split.v_axis), ("depth_axis", split.depth_axis)] {
@@ -274,7 +274,7 @@ fn check(index: usize, split: &umbrage::Split) -> Result<()> {
     Ok(())
 }
 
-/// False for NaN too.
+/// Returns whether a vector has length 1; false for NaN.
 fn is_unit(axis: DVec3) -> bool {
     (axis.length() - 1.0).abs() < 1e-6
 }
@@ -302,7 +302,7 @@ mod tests {
         Place { tile, viewport: Viewport::around(size, 8192) }
     }
 
-    /// A stabilised split of a light and a point near which its map lies.
+    /// A stabilised split of a light, whose map lies near a point.
     pub(super) fn split_near(direction: DVec3, center: DVec3, texel: f64, size: u32) -> umbrage::Split {
         let light = DirectionalLight::new(direction).expect("not zero");
         let (u_axis, v_axis) = light.map_axes();
@@ -334,7 +334,7 @@ mod tests {
         prop_oneof![4 => random.prop_filter("has a direction", |v| v.length() > 0.1), 1 => Just(DVec3::NEG_Y), 1 => Just(DVec3::X)]
     }
 
-    /// Up to 100 km from the world's origin.
+    /// Points up to 100 km from the world's origin.
     fn far_away() -> impl Strategy<Value = DVec3> {
         (prop_oneof![Just(0.0), Just(1e4), Just(1e5)], unit()).prop_map(|(distance, v)| distance * v.normalize())
     }
@@ -426,10 +426,10 @@ mod tests {
         }
     }
 
-    /// Source 003, Listings 4.1.4 and 4.1.5: map coordinates that a vertex shader passes on, and
-    /// those that a fragment makes of an interpolated position. The source calls the second wrong;
-    /// perspective-correct interpolation is exact for both, as both are affine in the position, and
-    /// in `f32` they differ by rounding alone.
+    /// \[PCSM\], Listings 4.1.4 and 4.1.5: map coordinates that a vertex shader passes on, and
+    /// those that a fragment shader computes from an interpolated position. The source calls the
+    /// second wrong; perspective-correct interpolation is exact for both, as both are affine in the
+    /// position, and in `f32` they differ by rounding alone.
     #[test]
     fn coordinates_of_vertices_and_of_fragments_agree_to_rounding() {
         let planned = split_near(DVec3::new(0.3, -1.0, 0.4), DVec3::new(20.0, 0.0, -30.0), 0.1, 1024);

@@ -90,7 +90,7 @@ fn plans_and_frames_that_make_no_sense() {
     type Spoil = fn(&mut ShadowPlan);
     let spoiled: [(&str, Spoil); 18] = [
         ("view_depth_plane", |p| p.view_depth_plane.w = f64::NAN),
-        ("radial_eye", |p| p.radial_eye = Some(DVec3::NAN)),
+        ("eye", |p| p.eye = DVec3::NAN),
         ("light_direction", |p| p.light_direction = DVec3::ZERO),
         ("fade_begin", |p| p.fade_begin = f64::INFINITY),
         ("u_axis", |p| p.splits[1].u_axis *= 2.0),

@@ -250,7 +250,9 @@ fn umbrage_run(id: u32) -> UmbrageRun {
 fn umbrage_corner(run: UmbrageRun, corner: u32) -> vec3f { return asks[run.first].corners[corner].xyz; }
 @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= arrayLength(&asks) { return; }
-    let ray = UmbrageRay(asks[id.x].origin.xyz, asks[id.x].to_light.xyz, 3.0e38, vec3f(0.0), vec3f(0.0));
+    let to_light = asks[id.x].to_light.xyz;
+    let origin = asks[id.x].origin.xyz;
+    let ray = UmbrageRay(origin, to_light.zxy, to_light.yzx, to_light, 3.0e38, vec3f(0.0), vec3f(0.0));
     found[id.x] = u32(umbrage_edges_lit_past(id.x, ray, 1u) == 0u);
 }";
 
@@ -292,7 +294,8 @@ fn triangles_are_tested_as_by_the_twin() {
     let twin = |ask: &RunAsk, origin: [f32; 3]| {
         let triangles: Vec<[[f32; 3]; 3]> = ask.corners.chunks(3).map(|t| [xyz(t[0]), xyz(t[1]), xyz(t[2])]).collect();
         let run = Run { rows: ask.rows, min: xyz(ask.min), max: xyz(ask.max), triangles };
-        shades(&run, Ray::to_sun(origin, xyz(ask.to_light)))
+        let [x, y, z, _] = ask.to_light;
+        shades(&run, Ray { to_eye: [y, z, x], ..Ray::to_sun(origin, [z, x, y], [x, y, z]) })
     };
     let disagree = |twin: &dyn Fn(&RunAsk, [f32; 3]) -> bool| {
         let differs = |(ask, found): &(&RunAsk, &u32)| twin(ask, xyz(ask.origin)) != (**found == 1);

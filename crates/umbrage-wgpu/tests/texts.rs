@@ -22,7 +22,7 @@ fn planned(selection: Selection) -> ShadowPlan {
     plan.view_depth_plane = DVec4::new(1.0, 0.0, 0.2, 25.0);
     plan.blend = 0.2;
     plan.selection = selection;
-    plan.radial_eye = (selection == RADIAL).then_some(DVec3::new(-25.0, 2.0, 0.0));
+    plan.eye = DVec3::new(-25.0, 2.0, 0.0);
     plan
 }
 

@@ -77,7 +77,7 @@ fn a_radial_slice_is_widened_to_its_farthest_corner() {
     let options = PlannerOptions { image_size: [1_000_000; 2], ..PlannerOptions::default() };
     let mut planner = Planner::with_options(&settings, options).expect("settings");
     let plan = planner.plan(&turned(0.3, 0.0, off_axis), &sun(), &world(), &world()).expect("a plan");
-    assert_eq!(plan.radial_eye, Some(EYE));
+    assert_eq!((plan.metric(), plan.eye), (SplitMetric::Distance, EYE));
     for split in &plan.splits[1..] {
         let expected = split.near / 6.0_f64.sqrt();
         assert!((split.coverage.0 - expected).abs() < 1e-3 * expected, "{:?} of {}", split.coverage, split.near);

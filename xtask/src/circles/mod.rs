@@ -1,7 +1,7 @@
-//! Files of one target that use each other in a circle. A module may use its parents.
+//! Check for files of one target (a library, a program, a test) that use each other in a circle. A
+//! module may use its parents.
 //!
-//! A path counts as a use of the file that defines what it names, however many re-exports lie
-//! between.
+//! A path is a use of the file that defines the item, however many re-exports lie between.
 
 mod modules;
 mod names;
@@ -14,17 +14,17 @@ use std::{
 
 use modules::Modules;
 
-/// Which files each file uses, and by which paths.
+/// Pairs of files of which the first uses the second, each with the paths that do so.
 type Uses = BTreeMap<(PathBuf, PathBuf), BTreeSet<String>>;
 
-/// The uses among a target's files, but for those of a module's parents.
+/// Uses among a target's files, without a module's uses of its parents.
 fn uses_of(modules: &Modules) -> Uses {
     let files = modules.files();
     let is_parent = |from: &Path, to: &Path| files[from].starts_with(files[to]);
     modules.uses().into_iter().filter(|((from, to), _)| !is_parent(from, to)).collect()
 }
 
-/// The files that can be reached from `start`.
+/// Files that can be reached from `start`.
 fn reached<'a>(start: &'a Path, uses: &'a Uses) -> BTreeSet<&'a Path> {
     let mut seen = BTreeSet::new();
     let mut next = vec![start];
@@ -38,7 +38,7 @@ fn reached<'a>(start: &'a Path, uses: &'a Uses) -> BTreeSet<&'a Path> {
     seen
 }
 
-/// The uses that are part of a circle: `user -> used: paths`.
+/// Uses that are part of a circle, as `user -> used: paths`.
 fn in_circles(uses: &Uses) -> Vec<String> {
     let mut lines = Vec::new();
     for ((from, to), paths) in uses {

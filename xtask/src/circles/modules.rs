@@ -1,5 +1,4 @@
-//! The modules of a target (a library, a program, a test), read from its root file, and what each
-//! path in them names.
+//! Modules of a target, read from its root file, and resolution of the paths in them.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -8,13 +7,13 @@ use std::{
 
 use super::names::{Module, Names, read_names};
 
-/// A module: its file, and the names in it.
+/// A module's file, and the names in the module.
 pub struct Scope {
     pub file: PathBuf,
     pub names: Names,
 }
 
-/// What a path names.
+/// Target of a path.
 enum Named {
     Module(Module),
     /// A type or trait, which has variants and associated items, and the file that defines it.
@@ -26,7 +25,8 @@ enum Named {
 /// All modules of a target.
 pub struct Modules(BTreeMap<Module, Scope>);
 
-/// Where a file's modules lie: beside a root and a `mod.rs`, else in a folder of the file's name.
+/// Folder of a file's child modules: the folder of a root or a `mod.rs`, otherwise a folder of the
+/// file's name.
 fn folder_of(file: &Path, is_root: bool) -> PathBuf {
     if is_root || file.file_stem().is_some_and(|stem| stem == "mod") {
         file.parent().unwrap_or(Path::new("")).to_owned()
@@ -36,8 +36,8 @@ fn folder_of(file: &Path, is_root: bool) -> PathBuf {
 }
 
 impl Modules {
-    /// The modules of the target whose root is `root`. `read` gives a file's text, if there is such
-    /// a file.
+    /// Reads the target whose root is `root`. `read` returns a file's text; `None` if there is no
+    /// such file.
     pub fn read(root: &Path, read: &dyn Fn(&Path) -> Option<String>) -> Self {
         let mut found = BTreeMap::new();
         let mut next = vec![(Module::new(), root.to_owned())];
@@ -62,17 +62,17 @@ impl Modules {
         Self(found)
     }
 
-    /// The files of the modules, each with the module that it is.
+    /// Files of the target, each with its module.
     pub fn files(&self) -> BTreeMap<&Path, &Module> {
         let mut files = BTreeMap::new();
         for (module, scope) in &self.0 {
-            // Modules written out in a file come after the file's own.
+            // Inline modules come after the module that their file is.
             files.entry(scope.file.as_path()).or_insert(module);
         }
         files
     }
 
-    /// Which files each file names, and by which paths.
+    /// Pairs of files of which the first names an item of the second, each with the paths.
     pub fn uses(&self) -> BTreeMap<(PathBuf, PathBuf), BTreeSet<String>> {
         let mut uses: BTreeMap<_, BTreeSet<String>> = BTreeMap::new();
         for (module, scope) in &self.0 {
@@ -91,15 +91,15 @@ impl Modules {
     }
 }
 
-/// The search for what one path names.
+/// Search for the targets of one path.
 struct Search<'a> {
     modules: &'a Modules,
-    /// Names that have been looked up: imports may name each other.
+    /// Names that have been looked up, because imports may name each other.
     seen: BTreeSet<(Module, String)>,
 }
 
 impl Search<'_> {
-    /// What a path in `from` names; nothing if that is in another crate.
+    /// Targets of a path in `from`; none if they are in another crate.
     fn follow(&mut self, path: &[String], from: &Module) -> Vec<Named> {
         let Some((first, mut rest)) = path.split_first() else { return vec![Named::Module(from.clone())] };
         let parent = |module: &Module| module[..module.len().saturating_sub(1)].to_vec();
@@ -122,7 +122,7 @@ impl Search<'_> {
                 match named {
                     Named::Module(module) => {
                         let inner = self.look_up(name, &module);
-                        // A name that a macro defines is taken for an item of the macro's caller.
+                        // An unknown name counts as defined here by a macro's call.
                         let unknown = Named::Type(self.modules.0[&module].file.clone());
                         next.extend(if inner.is_empty() { vec![unknown] } else { inner });
                     }
@@ -135,7 +135,7 @@ impl Search<'_> {
         found
     }
 
-    /// What a name means in a module.
+    /// Meanings of a name in a module.
     fn look_up(&mut self, name: &str, module: &Module) -> Vec<Named> {
         if !self.seen.insert((module.clone(), name.to_owned())) {
             return Vec::new();

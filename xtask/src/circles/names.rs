@@ -1,5 +1,4 @@
-//! The names in a file, but for its tests: what it defines, what it imports, and the paths that it
-//! names.
+//! Names in a file, without its tests: items that it defines, imports, and paths.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,28 +8,27 @@ use syn::{
     visit::{Visit, visit_item, visit_path},
 };
 
-/// A module's path in its target, empty for the root.
+/// Path of a module in its target; empty for the root.
 pub type Module = Vec<String>;
 
-/// The names in one module.
+/// Names in one module.
 #[derive(Default)]
 pub struct Names {
     /// Types and traits defined here.
     pub types: BTreeSet<String>,
     /// Functions, constants and macros defined here.
     pub values: BTreeSet<String>,
-    /// Names imported by `use`, each with the paths that it stands for.
+    /// Names imported by `use`, each with its paths.
     pub imports: BTreeMap<String, Vec<Vec<String>>>,
-    /// Modules and enums that `use` imports everything of.
+    /// Modules and enums of which `use` imports everything.
     pub globs: Vec<Vec<String>>,
-    /// Modules that are files of their own, and the path that an attribute gives them.
+    /// Child modules with files of their own, each with the path from its attribute.
     pub files: Vec<(String, Option<String>)>,
     /// All paths in `use` and in code.
     pub paths: BTreeSet<Vec<String>>,
 }
 
-/// The names in a file: of the file's own module, which has an empty path, and of those written out
-/// in it.
+/// Reads the names in a file's own module, which has an empty path here, and in its inline modules.
 pub fn read_names(text: &str) -> BTreeMap<Module, Names> {
     let mut reader = Reader { at: Vec::new(), found: BTreeMap::from([(Vec::new(), Names::default())]) };
     reader.visit_file(&syn::parse_file(text).expect("a source that compiles"));
@@ -84,7 +82,7 @@ impl Reader {
         self.names().paths.insert(path);
     }
 
-    /// The paths that begin with `crate`, `self` or `super` in what a macro is given.
+    /// Adds the paths in a macro's tokens that begin with `crate`, `self` or `super`.
     fn scan(&mut self, tokens: TokenStream) {
         let mut path: Vec<String> = Vec::new();
         let mut colons = 0;
@@ -132,7 +130,7 @@ fn attributes(item: &Item) -> &[Attribute] {
     }
 }
 
-/// Whether an item exists in tests only.
+/// True if an item exists in tests only.
 fn is_test(item: &Item) -> bool {
     let says_test = |attribute: &Attribute| {
         attribute.path().is_ident("test")
@@ -142,7 +140,7 @@ fn is_test(item: &Item) -> bool {
     attributes(item).iter().any(says_test)
 }
 
-/// The file that `#[path = "…"]` gives a module.
+/// Value of a module's attribute `#[path = "…"]`.
 fn given_path(item: &syn::ItemMod) -> Option<String> {
     let mut values = item.attrs.iter().filter(|attribute| attribute.path().is_ident("path"));
     match &values.next()?.meta.require_name_value().ok()?.value {

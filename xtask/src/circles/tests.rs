@@ -1,4 +1,4 @@
-//! The check of this repository, and what it finds in small crates.
+//! The check of this repository, and tests of the check on small crates.
 
 use std::{
     collections::BTreeSet,
@@ -9,7 +9,7 @@ use std::{
 use super::{in_circles, modules::Modules, uses_of};
 use crate::run::root;
 
-/// The roots of a package's targets.
+/// Root files of a package's targets.
 fn targets(package: &Path) -> Vec<PathBuf> {
     let is_root = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "rs") && path.is_file();
     let mut found: Vec<PathBuf> = ["src/lib.rs", "src/main.rs", "build.rs"].map(|file| package.join(file)).into();
@@ -62,7 +62,7 @@ fn files_use_each_other_in_no_circle() {
     assert!(circles.is_empty(), "uses in circles:\n{}", circles.join("\n").replace(&root, ""));
 }
 
-/// The circles of a library with these files.
+/// Circles in a library of these files.
 fn circles(files: &[(&str, &str)]) -> Vec<String> {
     let text = |path: &Path| files.iter().find(|(name, _)| path == Path::new(name)).map(|(_, text)| (*text).to_owned());
     in_circles(&uses_of(&Modules::read(Path::new("lib.rs"), &text)))
@@ -81,7 +81,7 @@ fn a_circle_is_found_and_a_chain_is_not() {
     assert_eq!(chain, Vec::<String>::new());
 }
 
-/// Every way of naming A that is no path to its file.
+/// Names A in every way that is not a path to its file.
 #[test]
 fn circles_through_re_exports_are_found() {
     let is_circle = |root: &str, b: &str| {
@@ -120,7 +120,7 @@ fn a_function_is_not_taken_for_the_module_of_its_name() {
     assert_eq!(circles(&[root, planner, ("plan.rs", "pub struct Most; use crate::plan as it;")]).len(), 2);
 }
 
-/// A part may use the whole that it belongs to, but not by way of a third file.
+/// A module may use its parent, but not through a third file.
 #[test]
 fn parents_may_be_used() {
     let root = ("lib.rs", "mod a; mod c;");

@@ -1,6 +1,6 @@
-//! The list of jobs: what is run, what it may cost, and in which file its figures are kept.
+//! The list of jobs: the command of each, its limit of time, and the file of its results.
 
-/// The program that measures, as a subcommand of `umbrage`.
+/// Subcommand of `umbrage` that measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// `umbrage compare … --json FILE`.
@@ -9,36 +9,36 @@ pub enum Kind {
     Bench,
 }
 
-/// How much of a job is run.
+/// Size of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// Everything that docs/results.md shows.
+    /// All measurements of docs/results.md.
     Full,
-    /// The least that has every key: it proves that the jobs and the page fit each other, and its
-    /// figures mean nothing.
+    /// The smallest job with every key. It proves that the jobs and the page fit each other; its
+    /// results mean nothing.
     Tiny,
 }
 
 /// One run of `umbrage`.
 #[derive(Clone, Copy, Debug)]
 pub struct Job {
-    /// Names the kept file, `docs/results/NAME.json`.
+    /// Name of the kept file, `docs/results/NAME.json`.
     pub name: &'static str,
-    /// The subcommand.
+    /// Subcommand of the job.
     pub kind: Kind,
-    /// What is typed at either scale.
+    /// Options at either scale.
     options: &'static str,
-    /// What is typed beside it for docs/results.md.
+    /// Further options for docs/results.md.
     full: &'static str,
-    /// What is typed instead of that to prove the job.
+    /// Options in place of `full`, to prove the job.
     tiny: &'static str,
-    /// Minutes that the full job may take on two cores and Mesa's software driver; the sum is
-    /// bounded by a test.
+    /// Minutes that the full job may take on two cores and Mesa's software driver. A test bounds
+    /// the sum.
     pub minutes: u32,
 }
 
 impl Job {
-    /// The words after `umbrage`, without the file that the figures go to.
+    /// Returns the words after `umbrage`, without the file of the results.
     pub fn words(&self, scale: Scale) -> Vec<&'static str> {
         let kind = match self.kind {
             Kind::Compare => "compare --image-metrics off",
@@ -51,18 +51,18 @@ impl Job {
         [kind, self.options, by_scale].into_iter().flat_map(str::split_whitespace).collect()
     }
 
-    /// The command line, as docs/results.md shows it.
+    /// Returns the command line, as docs/results.md shows it.
     pub fn shown(&self, scale: Scale) -> String {
         format!("umbrage {}", self.words(scale).join(" "))
     }
 }
 
-/// Minutes that all jobs may take together.
+/// Minutes that all jobs together may take.
 #[cfg(test)]
 const MOST_MINUTES: u32 = 25;
 
-/// Half the size that the view rule was made for, and half its edges: a quarter of the time, and
-/// means that agree.
+/// Options for half the size that the view rule was made for, and half its edges: a quarter of the
+/// time, and means that agree.
 const HALF_SIZE: &str = "--size 400x300 --least-edges 1000";
 
 const ONE_VIEW: &str = "chessboard --camera middle --size 96x72 --least-edges 1";

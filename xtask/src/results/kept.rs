@@ -1,62 +1,63 @@
-//! What is kept of a run: the figures that docs/results.md shows and the build that they are of.
+//! Kept results of a run: the numbers that docs/results.md shows, with the build that they were
+//! measured on.
 //!
-//! The structs read the report of `umbrage compare` or `umbrage bench`, leaving out what they do
-//! not name, and write the kept file. A key that they name and do not find is an error: a page
-//! without a figure would look as if there were none.
+//! The structs read the report of `umbrage compare` or `umbrage bench`, leaving out unnamed keys,
+//! and write the kept file. A named key that is missing is an error, because a page without a
+//! number would look as if there were none.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned};
 
-/// A kept file: one job's figures and where they come from.
+/// A kept file: the results of one job, with their origin.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Kept<T> {
-    /// The build.
+    /// Build that was measured.
     pub build: Build,
     /// The command line.
     pub command: String,
     /// Seconds that the job took.
     pub seconds: u64,
-    /// The figures.
+    /// Results of the job.
     pub figures: T,
 }
 
-/// A build, as all kept files of one page have it.
+/// A build, which is the same for all kept files of one page.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Build {
-    /// Git's name of the commit, with `+` where tracked files differed from it.
+    /// Git's name of the commit, with `+` if tracked files differed from it.
     pub commit: String,
-    /// The commit's day, YYYY-MM-DD.
+    /// Day of the commit, YYYY-MM-DD.
     pub day: String,
-    /// The graphics adapter and its driver.
+    /// Graphics adapter and its driver.
     pub adapter: String,
 }
 
-/// Of `umbrage compare`.
+/// Results of `umbrage compare`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// The rows.
+    /// Results of each technique.
     pub techniques: Vec<Technique>,
-    /// The shots.
+    /// Results of each shot.
     pub views: Vec<View>,
-    /// Cameras that went on.
+    /// Results of cameras that moved.
     pub walks: Vec<Walk>,
 }
 
-/// A technique and its means over the views that count.
+/// Mean results of a technique over the views that count.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Technique {
-    /// As in tables.
+    /// Label of the technique in tables.
     pub label: String,
     /// Bytes of all maps.
     pub bytes: u64,
-    /// The means.
+    /// Means over the views that count.
     pub mean: Means,
 }
 
-/// Means over the views that count; nothing where none does.
+/// Means over the views that count; `None` if none does.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Means {
     pub views: usize,
@@ -74,32 +75,32 @@ pub struct Means {
     pub flicker_per_edge: Option<f64>,
     #[serde(deserialize_with = "present", serialize_with = "rounded")]
     pub kept_flicker_per_edge: Option<f64>,
-    /// With `--sun-angle` alone.
+    /// E_soft, with `--sun-angle` only.
     #[serde(default, skip_serializing_if = "Option::is_none", serialize_with = "rounded")]
     pub e_soft: Option<f64>,
-    /// With `--sun-angle` alone.
+    /// E_pen, with `--sun-angle` only.
     #[serde(default, skip_serializing_if = "Option::is_none", serialize_with = "rounded")]
     pub e_pen: Option<f64>,
 }
 
-/// A shot.
+/// Results of a shot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct View {
     pub scene: String,
     pub camera: Camera,
     pub sun_name: String,
     pub counts: bool,
-    /// One per technique, in their order.
+    /// Scores of each technique, in order.
     pub scores: Vec<Scores>,
 }
 
-/// An eye.
+/// Camera of a shot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
     pub name: String,
 }
 
-/// What one technique scores in one shot; nothing where nothing could be counted.
+/// Scores of one technique in one shot; `None` where nothing could be counted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scores {
     #[serde(deserialize_with = "present", serialize_with = "rounded")]
@@ -112,13 +113,13 @@ pub struct Scores {
     pub beyond_edges: Option<f64>,
 }
 
-/// A camera that went on.
+/// Results of a camera that moved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Walk {
     pub scene: String,
     pub frames: usize,
     pub counts: bool,
-    /// One per technique, in their order.
+    /// Flicker of each technique, in order.
     pub flicker: Vec<Flicker>,
 }
 
@@ -128,27 +129,27 @@ pub struct Flicker {
     pub steps: usize,
 }
 
-/// Of `umbrage bench`.
+/// Results of `umbrage bench`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bench {
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Rounds that count.
+    /// Number of rounds that count.
     pub rounds: u32,
-    /// One per scene.
+    /// Results of each scene.
     pub scenes: Vec<Scene>,
 }
 
-/// A scene's table.
+/// Results of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
-    /// Its name or file.
+    /// Name or file of the scene.
     pub scene: String,
-    /// One per technique; the first is the baseline.
+    /// Results of each technique; the first is the baseline.
     pub rows: Vec<Row>,
 }
 
-/// A technique on a scene.
+/// Results of a technique on a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     pub technique: String,
@@ -163,7 +164,7 @@ pub struct Row {
     pub shadow_counts: Option<Counts>,
 }
 
-/// Many measurements of one thing.
+/// Statistics of repeated measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     #[serde(serialize_with = "rounded_number")]
@@ -178,13 +179,13 @@ pub struct Counts {
     pub vertices: u64,
 }
 
-/// Reads `null` as nothing and refuses a key that is not there, which serde's own reading of an
-/// [`Option`] does not.
+/// Reads `null` as `None` and refuses a missing key, which serde's own reading of an [`Option`]
+/// does not.
 fn present<'de, D: Deserializer<'de>, T: DeserializeOwned>(deserializer: D) -> Result<Option<T>, D::Error> {
     Option::deserialize(deserializer)
 }
 
-/// Writes four significant digits: what a table shows and one to spare.
+/// Writes four significant digits: one more than a table shows.
 fn rounded<S: Serializer>(value: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
     value.map(significant).serialize(serializer)
 }
@@ -193,7 +194,7 @@ fn rounded_number<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S:
     significant(*value).serialize(serializer)
 }
 
-/// Four significant digits.
+/// Rounds to four significant digits.
 fn significant(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }

@@ -1,8 +1,8 @@
-//! `cargo xtask results`: docs/results.md from figures of one build.
+//! `cargo xtask results`: writes docs/results.md from results of one build.
 //!
-//! The jobs run one after the other; each leaves its figures, with the build that they are of, in
+//! The jobs run one after the other. Each leaves its results, with the build that was measured, in
 //! `docs/results/NAME.json`. The page is rendered from these files alone, and only if all of them
-//! are of one build.
+//! belong to one build.
 
 mod jobs;
 mod kept;
@@ -28,22 +28,22 @@ use crate::{
     run::{build_umbrage, output, root, run},
 };
 
-/// What `cargo xtask results` is asked for.
+/// Task of `cargo xtask results`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ask {
     /// Run all jobs, then render.
     All,
-    /// Run the jobs whose kept figures are of another build, then render: goes on where a run was
-    /// broken off.
+    /// Run the jobs whose kept results belong to another build, then render. This continues an
+    /// interrupted run.
     Resume,
-    /// Render from the kept figures.
+    /// Render from the kept results.
     Render,
-    /// Run all jobs as small as they can be into out/results, and render there: proves that jobs
+    /// Run all jobs at the smallest size into out/results, and render there. This proves that jobs
     /// and page fit each other.
     Tiny,
 }
 
-/// Runs what is asked for.
+/// Runs a task.
 pub fn results(ask: Ask) -> Result<()> {
     let (folder, page, scale) = match ask {
         Ask::Tiny => (root().join("out/results"), root().join("out/results/results.md"), Scale::Tiny),
@@ -59,18 +59,18 @@ pub fn results(ask: Ask) -> Result<()> {
     Ok(())
 }
 
-/// Where figures are kept.
+/// Returns the folder of the kept results.
 fn kept_folder() -> PathBuf {
     root().join("docs/results")
 }
 
-/// The page.
+/// Returns the path of the page.
 fn page_file() -> PathBuf {
     root().join("docs/results.md")
 }
 
-/// Runs the jobs. A page for the documents needs a commit that says what was measured, so tracked
-/// files may not differ from it.
+/// Runs the jobs. A page for the documents needs a commit that identifies the measured build, so
+/// tracked files may not differ from it.
 fn measure(folder: &Path, scale: Scale, resume: bool) -> Result<()> {
     let umbrage = build_umbrage(scale == Scale::Full)?;
     let build = build(&umbrage)?;
@@ -92,7 +92,7 @@ fn measure(folder: &Path, scale: Scale, resume: bool) -> Result<()> {
     Ok(())
 }
 
-/// Runs one job and writes what is kept of it.
+/// Runs one job and writes its kept results.
 fn keep<T: Serialize + DeserializeOwned>(
     umbrage: &Path,
     job: &Job,
@@ -113,23 +113,23 @@ fn keep<T: Serialize + DeserializeOwned>(
     Ok(())
 }
 
-/// The file that a job's figures are kept in.
+/// Returns the path of a job's kept results.
 fn file_of(folder: &Path, job: &Job) -> PathBuf {
     folder.join(job.name).with_extension("json")
 }
 
-/// Whether there are figures of this build.
+/// Returns whether there are results of this build.
 fn is_of(file: &Path, build: &Build) -> bool {
     read::<Kept<serde_json::Value>>(file).is_ok_and(|kept| kept.build == *build)
 }
 
-/// Reads JSON; errors name the file, the line and the key.
+/// Reads JSON. Errors name the file, the line and the key.
 fn read<T: DeserializeOwned>(file: &Path) -> Result<T> {
     let text = fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
     serde_json::from_str(&text).with_context(|| format!("{} is not what is kept of a job", file.display()))
 }
 
-/// The build that is about to be measured.
+/// Returns the build that is about to be measured.
 fn build(umbrage: &Path) -> Result<Build> {
     let git = |arguments: &[&str]| output(Command::new("git").current_dir(root()).args(arguments));
     // What the jobs write themselves is no difference.
@@ -143,8 +143,8 @@ fn build(umbrage: &Path) -> Result<Build> {
     })
 }
 
-/// JSON with one line for each value that holds no object with arrays: short, and a changed figure
-/// is a changed line.
+/// Writes JSON with one line for each value that holds no object with arrays, so that the file is
+/// short and a changed number is a changed line.
 fn compact(value: &serde_json::Value) -> String {
     let mut text = String::new();
     write(&mut text, value, 0);

@@ -1,4 +1,4 @@
-//! docs/results.md from the kept figures.
+//! Renders docs/results.md from the kept results.
 
 use std::{collections::HashMap, fmt::Write, path::Path};
 
@@ -13,24 +13,24 @@ use super::{
     table::{Table, count, mean, mebibytes, number, percent},
 };
 
-/// Lines that the page may have: what a reader takes in at one sitting.
+/// Largest number of lines of the page, as much as a reader takes in at one sitting.
 const MOST_LINES: usize = 200;
 
-/// What the tables' words mean.
+/// Explanation of the terms in the tables.
 const TERMS: &str = "\
 E is the share of wrong decisions over all scored points against exact visibility from rays, in per cent (`umbrage-truth`, \
 module `scores`); D is the mean distance between the true shadow edges and those of the technique; E_log weighs all depths alike. A view counts \
 if its true shadow has enough edges. Decisions and what was tried: [notes](notes/README.md). Papers by key: \
 [papers.md](papers.md).";
 
-/// All kept figures of one build.
+/// All kept results of one build.
 struct Figures {
     build: Build,
     comparisons: HashMap<&'static str, Kept<Comparison>>,
     benches: HashMap<&'static str, Kept<Bench>>,
 }
 
-/// The page, rendered from the files in `folder`.
+/// Renders the page from the files in `folder`.
 pub fn page(folder: &Path, scale: Scale) -> Result<String> {
     let figures = Figures::read(folder)?;
     let mut page = figures.head(scale);
@@ -46,7 +46,7 @@ pub fn page(folder: &Path, scale: Scale) -> Result<String> {
 }
 
 impl Figures {
-    /// Reads all files. They have to be of one build.
+    /// Reads all files, which must belong to one build.
     fn read(folder: &Path) -> Result<Self> {
         let mut comparisons = HashMap::new();
         let mut benches = HashMap::new();
@@ -111,7 +111,7 @@ where
     build
 }
 
-/// What an application gets: the presets.
+/// Makes the table of the presets, which applications use.
 fn presets(figures: &Figures) -> Result<String> {
     let [still, walking, turning] = [
         figures.comparison("presets")?,
@@ -147,7 +147,7 @@ fn presets(figures: &Figures) -> Result<String> {
     )
 }
 
-/// E of every world, and the means.
+/// Makes the table of E in every world, and of the means.
 fn error(figures: &Figures) -> Result<String> {
     let of = figures.comparison("table")?;
     let mut table = by_scene(figures, "table")?;
@@ -177,7 +177,7 @@ fn error(figures: &Figures) -> Result<String> {
     )
 }
 
-/// Warped single maps beside splits.
+/// Makes the table of warped single maps beside splits.
 fn figure8(figures: &Figures) -> Result<String> {
     section(
         figures,
@@ -189,7 +189,7 @@ fn figure8(figures: &Figures) -> Result<String> {
     )
 }
 
-/// The light opposite to the view: means over the scenes.
+/// Makes the table for light opposite to the view: means over the scenes.
 fn dueling(figures: &Figures) -> Result<String> {
     let (slices, dependent) = (figures.comparison("dueling")?, figures.comparison("dueling-dependent")?);
     let mut table = Table::new(heads("E, %, mean of four worlds", &slices.techniques));
@@ -205,7 +205,7 @@ fn dueling(figures: &Figures) -> Result<String> {
     )
 }
 
-/// Mean E of each scene.
+/// Makes a table of the mean E of each scene.
 fn by_scene(figures: &Figures, name: &str) -> Result<Table> {
     let of = figures.comparison(name)?;
     let mut table = Table::new(heads("E, %", &of.techniques));
@@ -222,7 +222,7 @@ fn by_scene(figures: &Figures, name: &str) -> Result<Table> {
     Ok(table)
 }
 
-/// The ladder of techniques on a real scene.
+/// Makes the table of a series of techniques on a real scene.
 fn ladder(figures: &Figures) -> Result<String> {
     let of = figures.comparison("ladder-city")?;
     let mut table = Table::new(["technique", "MiB", "E, %", "E_log, %", "D, px"]);
@@ -248,7 +248,7 @@ fn ladder(figures: &Figures) -> Result<String> {
     )
 }
 
-/// Acne and leak of the defaults by scene and sun.
+/// Makes the table of acne and leaks of the defaults by scene and sun.
 fn acne_and_leaks(figures: &Figures) -> Result<String> {
     let jobs = ["suns", "suns-city"];
     let mut suns: Vec<&str> = Vec::new();
@@ -283,7 +283,7 @@ fn acne_and_leaks(figures: &Figures) -> Result<String> {
     )
 }
 
-/// Mean E, the worst acne and the worst leak of some views.
+/// Formats the mean E, the worst acne and the worst leak of some views.
 fn acne_and_leak(scores: &[&Scores]) -> String {
     if scores.is_empty() {
         return "–".into();
@@ -297,7 +297,7 @@ fn acne_and_leak(scores: &[&Scores]) -> String {
     format!("{e} / {} / {}", worst(|s| s.acne), worst(|s| s.leak))
 }
 
-/// Flicker along walks.
+/// Makes the table of flicker along walks.
 fn stillness(figures: &Figures) -> Result<String> {
     let of = figures.comparison("stillness")?;
     let frames = of.walks.iter().map(|walk| walk.frames).max().unwrap_or(0);
@@ -328,7 +328,7 @@ fn stillness(figures: &Figures) -> Result<String> {
     )
 }
 
-/// What filters err under a sun with a size, and what they cost.
+/// Makes the table of filters under a sun with a size: their errors and their costs.
 fn filters(figures: &Figures) -> Result<String> {
     let of = figures.comparison("filters-soft")?;
     let bench = figures.bench("bench-filters")?;
@@ -361,7 +361,7 @@ fn filters(figures: &Figures) -> Result<String> {
     )
 }
 
-/// Table 1.
+/// Makes the table that corresponds to the paper's Table 1.
 fn cost(figures: &Figures) -> Result<String> {
     let of = figures.bench("bench")?;
     let worlds = of.scenes.iter().map(|scene| short(&scene.scene));
@@ -390,7 +390,7 @@ fn cost(figures: &Figures) -> Result<String> {
     )
 }
 
-/// Time, draws and vertices of a technique beside those of the first.
+/// Formats time, draws and vertices of a technique relative to those of the first.
 fn cost_of(row: &Row, first: &Row) -> String {
     let vertices = |row: &Row| row.shadow_counts.map(|counts| counts.vertices as f64);
     let paper = row.paper_ratio.map(|ratio| format!(" ({ratio:.2})")).unwrap_or_default();
@@ -398,7 +398,7 @@ fn cost_of(row: &Row, first: &Row) -> String {
     format!("{}{paper}, {}, {}", ratio(row), count(row.draws), number(share, 2))
 }
 
-/// Pictures that commands draw beside the figures.
+/// Commands that draw pictures for the results.
 const PICTURES: &str = "\
 ## Pictures
 
@@ -450,24 +450,24 @@ fn scores<'a>(view: &'a View, of: &Comparison) -> Result<&'a [Scores]> {
     Ok(&view.scores)
 }
 
-/// `sun 43° up` as `43° up`; other names as they are.
+/// Formats `sun 43° up` as `43° up`, and other names unchanged.
 fn elevation(sun: &str) -> &str {
     sun.strip_prefix("sun ").unwrap_or(sun)
 }
 
-/// The scenes in their order.
+/// Returns the scenes in order.
 fn scenes(of: &Comparison) -> Vec<&str> {
     let mut scenes: Vec<&str> = of.views.iter().map(|view| view.scene.as_str()).collect();
     scenes.dedup();
     scenes
 }
 
-/// A file by its stem.
+/// Returns a file's name without folder and extension.
 fn short(scene: &str) -> &str {
     Path::new(scene).file_stem().and_then(|stem| stem.to_str()).unwrap_or(scene)
 }
 
-/// Text in lines of at most 100 columns.
+/// Breaks text into lines of at most 100 columns.
 fn wrapped(text: &str) -> String {
     let mut lines = vec![String::new()];
     for word in text.split_whitespace() {

@@ -1,23 +1,23 @@
-//! Tables in Markdown.
+//! Markdown tables.
 
-/// A table: first its head, then its rows.
+/// A table: the headings, then the rows.
 #[derive(Clone, Debug, Default)]
 pub struct Table(Vec<Vec<String>>);
 
 impl Table {
-    /// With these headings.
+    /// Makes a table with these headings.
     pub fn new<T: Into<String>>(head: impl IntoIterator<Item = T>) -> Self {
         Self(vec![head.into_iter().map(Into::into).collect()])
     }
 
-    /// Adds a row, as many cells as there are headings.
+    /// Adds a row with as many cells as there are headings.
     pub fn row<T: Into<String>>(&mut self, cells: impl IntoIterator<Item = T>) {
         let cells: Vec<String> = cells.into_iter().map(Into::into).collect();
         debug_assert_eq!(cells.len(), self.0[0].len(), "a row of another length");
         self.0.push(cells);
     }
 
-    /// The Markdown, one line for each row, and an empty one.
+    /// Writes the Markdown, one line for each row, and an empty line.
     pub fn markdown(&self) -> String {
         let line = |cells: &[String]| {
             format!("| {} |\n", cells.iter().map(|c| c.replace('|', "\\|")).collect::<Vec<_>>().join(" | "))
@@ -30,7 +30,7 @@ impl Table {
     }
 }
 
-/// A share in per cent, so that small ones keep two digits; a dash for none.
+/// Formats a share in per cent, with two digits even for small ones; `None` is a dash.
 pub fn percent(share: Option<f64>) -> String {
     match share.map(|share| 100.0 * share) {
         None => "–".into(),
@@ -39,12 +39,12 @@ pub fn percent(share: Option<f64>) -> String {
     }
 }
 
-/// A number with so many digits behind the point; a dash for none.
+/// Formats a number with so many decimals; `None` is a dash.
 pub fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "–".into(), |value| format!("{value:.digits$}"))
 }
 
-/// 12345 as 12,345.
+/// Formats 12345 as 12,345.
 pub fn count(value: u64) -> String {
     let digits = value.to_string();
     let mut grouped = String::new();
@@ -57,12 +57,12 @@ pub fn count(value: u64) -> String {
     grouped
 }
 
-/// Bytes as MiB.
+/// Formats bytes as MiB.
 pub fn mebibytes(bytes: u64) -> String {
     format!("{:.1}", bytes as f64 / f64::from(1 << 20))
 }
 
-/// The mean; none of nothing.
+/// Returns the mean; `None` without values.
 pub fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let (count, sum) = values.into_iter().fold((0_u32, 0.0), |(count, sum), value| (count + 1, sum + value));
     (count > 0).then(|| sum / f64::from(count))

@@ -1,5 +1,5 @@
-//! A browser that is driven as a person drives it: Chromium without a window, over the pipe of its
-//! DevTools protocol.
+//! Chromium without a window, driven over the pipe of its DevTools protocol as a person would use
+//! it.
 
 use std::{
     io::{BufRead as _, BufReader, Write as _},
@@ -17,14 +17,14 @@ use tempfile::TempDir;
 
 use crate::run::succeeds;
 
-/// Names that Chromium has on one system or another.
+/// Names of Chromium on various systems.
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
-/// How long an answer may take: software draws slowly, and a busy page answers late.
+/// Longest wait for an answer. Software rendering is slow, and a busy page answers late.
 const PATIENCE: Duration = Duration::from_secs(120);
-/// Between two looks at the page.
+/// Time between two polls of the page.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// The program, if it is there.
+/// Returns the path of the program, if it is installed.
 pub fn find() -> Option<PathBuf> {
     NAMES.iter().map(PathBuf::from).find(|name| succeeds(Command::new(name).arg("--version")))
 }
@@ -36,7 +36,7 @@ pub struct Browser {
     answers: Receiver<Value>,
     session: Value,
     next: u64,
-    /// What the page complained of.
+    /// Errors and warnings that the page has reported.
     pub complaints: Vec<String>,
     _profile: TempDir,
 }
@@ -86,13 +86,13 @@ impl Browser {
         self.resize(size)
     }
 
-    /// Makes the window as large as this, in pixels.
+    /// Sets the size of the window in pixels.
     pub fn resize(&mut self, [width, height]: [u32; 2]) -> Result<()> {
         let screen = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
         self.call("Emulation.setDeviceMetricsOverride", screen).map(drop)
     }
 
-    /// Gives an order and waits for what comes of it.
+    /// Sends a command and waits for its result.
     pub fn call(&mut self, method: &str, params: Value) -> Result<Value> {
         self.next += 1;
         let id = self.next;
@@ -118,7 +118,7 @@ impl Browser {
         }
     }
 
-    /// Takes down what the page complains of.
+    /// Records the page's errors and warnings.
     fn hear(&mut self, event: &Value) {
         let params = &event["params"];
         match event["method"].as_str() {
@@ -135,13 +135,13 @@ impl Browser {
         }
     }
 
-    /// Opens an address, from nothing.
+    /// Opens an address afresh.
     pub fn open(&mut self, address: &str) -> Result<()> {
         self.call("Page.navigate", json!({ "url": "about:blank" }))?;
         self.call("Page.navigate", json!({ "url": address })).map(drop)
     }
 
-    /// What an expression of JavaScript is, as text.
+    /// Evaluates a JavaScript expression and returns the result as text.
     pub fn text(&mut self, expression: &str) -> Result<String> {
         let asked = json!({ "expression": format!("String({expression})"), "awaitPromise": true });
         let answer = self.call("Runtime.evaluate", asked)?;
@@ -151,12 +151,12 @@ impl Browser {
         Ok(answer["result"]["value"].as_str().unwrap_or_default().to_owned())
     }
 
-    /// What the page says of itself under a key.
+    /// Returns the state that the page writes under a key.
     pub fn data(&mut self, key: &str) -> Result<String> {
         self.text(&format!("document.documentElement?.dataset.{key} ?? ''"))
     }
 
-    /// Waits until the page says what is wanted; complaints and a missing viewer end the wait.
+    /// Waits until the page's state is as wanted. Errors and a missing viewer end the wait.
     pub fn wait(
         &mut self,
         what: &str,
@@ -197,7 +197,7 @@ impl Browser {
         Ok(())
     }
 
-    /// What is to be seen, as PNG.
+    /// Takes a screenshot as PNG.
     pub fn picture(&mut self) -> Result<Vec<u8>> {
         let taken = self.call("Page.captureScreenshot", json!({ "format": "png" }))?;
         BASE64_STANDARD.decode(taken["data"].as_str().unwrap_or_default()).context("the screenshot is no picture")

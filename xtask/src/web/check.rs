@@ -1,4 +1,4 @@
-//! The page, tried as a person tries it: in a browser, on WebGPU and on WebGL2.
+//! Test of the page in a browser, used as a person would use it, on WebGPU and on WebGL2.
 
 use std::{
     fs,
@@ -18,25 +18,26 @@ use crate::{
     run::{build_umbrage, install, root, run},
 };
 
-/// Pixels of the browser's window: software draws every one.
+/// Size of the browser's window in pixels, small because software draws every pixel.
 const SIZE: [u32; 2] = [960, 600];
 /// Largest share of pixels in which the browser's picture may differ from the native one.
 const MOST_DIFFERENT: f64 = 0.005;
-/// How long a picture may take until all is shown.
+/// Longest wait until a picture is complete.
 const PATIENCE: Duration = Duration::from_secs(300);
-/// Frames of the search for memory that grows; `UMBRAGE_WEB_FRAMES` chooses others.
+/// Number of frames of the search for growing memory; `UMBRAGE_WEB_FRAMES` chooses another.
 const FRAMES: u64 = 200;
-/// Pixels of the window for them: memory does not depend on how many there are.
+/// Size of the window for these frames, in pixels. Memory does not depend on it.
 const SMALL: [u32; 2] = [160, 120];
-/// Bytes that a page may hold more after them: a page of WebAssembly's memory is 64 KiB, and
-/// allocators take some at once.
+/// Bytes by which a page's memory may grow in these frames. A page of WebAssembly's memory is 64
+/// KiB, and allocators take several at once.
 const MOST_GROWTH: u64 = 1 << 20;
 
-/// An interface, and the switches that give it to a browser without a window or a graphics card.
+/// A graphics interface, and the switches that enable it in a browser without a window or a
+/// graphics card.
 struct Api {
     name: &'static str,
     switches: &'static [&'static str],
-    /// What the adapter's description contains.
+    /// Part of the adapter's description.
     adapter: &'static str,
 }
 
@@ -49,15 +50,16 @@ const APIS: [Api; 2] = [
     Api { name: "webgl2", switches: &["--use-angle=gl-egl", "--ignore-gpu-blocklist"], adapter: "(gl" },
 ];
 
-/// Where a hand finds things at [`SIZE`]: what happens shows whether they are still there.
+/// Positions of controls at [`SIZE`]. The effects of clicks show whether the controls are still
+/// there.
 mod places {
-    /// A world in the menu.
+    /// Position of a world in the menu.
     pub const ROBOT_WAR: [f64; 2] = [46.0, 37.0];
-    /// From the handle of the number of splits, 4, to the left.
+    /// Drag from the handle of the number of splits, 4, to the left.
     pub const SPLITS: [[f64; 2]; 4] = [[749.0, 205.0], [745.0, 205.0], [740.0, 205.0], [733.0, 205.0]];
 }
 
-/// Opens the page in a browser, uses it and compares what it shows with the native picture.
+/// Opens the page in a browser, uses it and compares its picture with the native one.
 pub fn check_in_browser() -> Result<()> {
     let way = toolchain::find()?.context("there is no way to compile for a browser here")?;
     let program = match browser::find() {
@@ -85,7 +87,7 @@ pub fn check_in_browser() -> Result<()> {
     without_an_interface(&program, &address)
 }
 
-/// A browser that looks at the page.
+/// A browser that shows the page.
 struct Visit<'a> {
     browser: Browser,
     api: &'a Api,
@@ -102,7 +104,7 @@ impl Visit<'_> {
         self.browser.open(&format!("{}index.html#{fragment}", self.address))
     }
 
-    /// Waits until all is shown.
+    /// Waits until the page is complete.
     fn wait(&mut self, what: &str) -> Result<()> {
         self.browser.wait(what, PATIENCE, |browser| Ok(browser.data("shown")? == "all"))
     }
@@ -113,7 +115,7 @@ impl Visit<'_> {
         Ok(path)
     }
 
-    /// The page opens with the chessboard, on the right interface.
+    /// Checks that the page opens with the chessboard, on the right interface.
     fn first_picture(&mut self) -> Result<()> {
         self.open("chessboard")?;
         self.wait("the chessboard")?;
@@ -124,7 +126,7 @@ impl Visit<'_> {
         self.keep("panels").map(drop)
     }
 
-    /// A world is picked in the menu, and a slider is dragged.
+    /// Picks a world in the menu, and drags a slider.
     fn use_controls(&mut self) -> Result<()> {
         let begun = Instant::now();
         self.browser.drag(&[places::ROBOT_WAR])?;
@@ -141,7 +143,7 @@ impl Visit<'_> {
         self.keep("used").map(drop)
     }
 
-    /// What the page's address shows is what the command draws.
+    /// Checks that the page and the command draw the same picture for one address.
     fn compare(&mut self, umbrage: &Path) -> Result<()> {
         let link = self.browser.text("location.hash.slice(1)")?;
         self.open(&format!("{link}&bare"))?;
@@ -164,7 +166,7 @@ impl Visit<'_> {
         Ok(())
     }
 
-    /// Time runs on, and memory does not grow.
+    /// Lets time run, and checks that memory does not grow.
     fn run_on(&mut self) -> Result<()> {
         let frames: u64 = std::env::var("UMBRAGE_WEB_FRAMES").ok().and_then(|n| n.parse().ok()).unwrap_or(FRAMES);
         self.browser.resize(SMALL)?;
@@ -182,7 +184,7 @@ impl Visit<'_> {
     }
 }
 
-/// A browser that has neither interface says so.
+/// Checks that a browser without either interface reports this.
 fn without_an_interface(program: &PathBuf, address: &str) -> Result<()> {
     let mut browser = Browser::start(program, SIZE, &["--disable-gpu", "--disable-3d-apis", "--disable-webgpu"])?;
     browser.open(&format!("{address}index.html"))?;

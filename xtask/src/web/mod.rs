@@ -20,17 +20,17 @@ pub use self::check::check_in_browser;
 use self::toolchain::Way;
 use crate::run::{cargo, output, root, run, succeeds};
 
-/// The page's crate, and the crates that applications build for browsers.
+/// Crate of the page; `CRATES` adds the crates that applications build for browsers.
 const PAGE: &str = "umbrage-web";
 const CRATES: [&str; 5] = [PAGE, "umbrage", "umbrage-shaders", "umbrage-wgpu", "umbrage-render"];
-/// Bytes that a visitor has to load before the page runs, at most.
+/// Largest number of bytes that a visitor has to load before the page runs.
 const MOST_BYTES: usize = 3_500_000;
-/// Files that the page's menu opens, with what their licences ask for.
+/// Files that the page's menu opens, with the files that their licences require.
 const ASSETS: [&str; 3] = ["assets/city_candela.glb", "assets/README.md", "assets/ATTRIBUTION-stk.txt"];
-/// Where the server listens if nobody says where.
+/// Default port of the server.
 const PORT: u16 = 8080;
 
-/// What `cargo xtask web` is told.
+/// Options of `cargo xtask web`.
 pub struct Ask {
     out: PathBuf,
     serves: bool,
@@ -70,7 +70,7 @@ pub fn web(ask: &Ask) -> Result<()> {
     Ok(())
 }
 
-/// Checks the crates that a browser runs, where there is a way to compile them.
+/// Checks the crates that a browser runs, if this machine can compile them.
 pub fn check_crates() -> Result<()> {
     let way = match toolchain::find() {
         Ok(Some(way)) => way,
@@ -114,7 +114,7 @@ fn copy(from: &Path, to: &Path) -> Result<()> {
     fs::copy(from, to).map(drop).with_context(|| format!("{} cannot be copied to {}", from.display(), to.display()))
 }
 
-/// Says how large the page is. Larger than [`MOST_BYTES`] is an error.
+/// Prints the size of the page. More than [`MOST_BYTES`] is an error.
 fn report(out: &Path) -> Result<()> {
     let mut sum = 0;
     for name in ["index.html", "umbrage-web.js", "umbrage-web_bg.wasm"] {
@@ -132,7 +132,8 @@ fn report(out: &Path) -> Result<()> {
     Ok(())
 }
 
-/// `wasm-bindgen` of the version that the page is linked with; built once, in some minutes.
+/// Returns `wasm-bindgen` of the version that the page is linked with. It is built once, which
+/// takes some minutes.
 fn bindgen() -> Result<PathBuf> {
     let lock = fs::read_to_string(root().join("Cargo.lock")).context("Cargo.lock cannot be read")?;
     let version = locked(&lock, "wasm-bindgen").context("Cargo.lock has no wasm-bindgen")?;
@@ -149,7 +150,7 @@ fn bindgen() -> Result<PathBuf> {
     Ok(built)
 }
 
-/// The version of a package in a lock file.
+/// Returns the version of a package in a lock file.
 fn locked<'l>(lock: &'l str, package: &str) -> Option<&'l str> {
     let (_, behind) = lock.split_once(&format!("name = \"{package}\"\nversion = \""))?;
     behind.split('"').next()

@@ -1,11 +1,11 @@
-//! Pictures pixel by pixel.
+//! Comparison of pictures pixel by pixel.
 
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use image::RgbaImage;
 
-/// The most by which a channel of a pixel may differ that counts as the same.
+/// Largest difference of a channel between pixels that count as the same.
 const MOST_DIFFERENCE: u8 = 8;
 
 /// Reads a picture.
@@ -13,7 +13,7 @@ pub fn read(path: &Path) -> Result<RgbaImage> {
     Ok(image::open(path).with_context(|| format!("{} cannot be read", path.display()))?.into_rgba8())
 }
 
-/// The share of pixels in which two pictures of one size differ.
+/// Returns the share of pixels in which two pictures of one size differ.
 pub fn difference(a: &RgbaImage, b: &RgbaImage) -> Result<f64> {
     if a.dimensions() != b.dimensions() {
         bail!("the pictures are {:?} and {:?} pixels large", a.dimensions(), b.dimensions());

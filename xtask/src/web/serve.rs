@@ -1,4 +1,4 @@
-//! A server of static files, for this machine alone.
+//! A server of static files, for this machine only.
 
 use std::{
     fs::File,
@@ -10,7 +10,7 @@ use std::{
 use anyhow::{Context, Result, anyhow};
 use tiny_http::{Header, Request, Response};
 
-/// Requests that are answered at once: a browser asks for few files.
+/// Number of requests that are answered at once. A browser asks for few files.
 const THREADS: usize = 4;
 
 /// A folder that is served.
@@ -20,7 +20,7 @@ pub struct Server {
 }
 
 impl Server {
-    /// Listens on the loopback interface; port 0 is any that is free.
+    /// Listens on the loopback interface. Port 0 is any free port.
     pub fn open(folder: &Path, port: u16) -> Result<Self> {
         let http = tiny_http::Server::http(("127.0.0.1", port))
             .map_err(|error| anyhow!("port {port}: {error}; give another with --port"))?;
@@ -28,12 +28,12 @@ impl Server {
         Ok(Self { http: Arc::new(http), folder })
     }
 
-    /// Where it is.
+    /// Returns the address of the server.
     pub fn address(&self) -> String {
         format!("http://{}/", self.http.server_addr())
     }
 
-    /// Answers for ever.
+    /// Answers requests for ever.
     pub fn run(&self) {
         thread::scope(|scope| {
             for _ in 0..THREADS {
@@ -42,7 +42,7 @@ impl Server {
         });
     }
 
-    /// Answers beside all else, until the program ends.
+    /// Answers requests in the background until the program ends, and returns the address.
     pub fn start(self) -> String {
         let address = self.address();
         thread::spawn(move || self.run());
@@ -59,7 +59,7 @@ fn answer(folder: &Path, request: Request) {
     });
 }
 
-/// The file that an address means; nothing outside of the folder.
+/// Returns the file of an address; `None` outside of the folder.
 fn file_of(folder: &Path, address: &str) -> Option<PathBuf> {
     let path = address.split(['?', '#']).next()?.trim_start_matches('/');
     let path = Path::new(if path.is_empty() { "index.html" } else { path });
@@ -68,7 +68,7 @@ fn file_of(folder: &Path, address: &str) -> Option<PathBuf> {
     (is_plain && file.is_file()).then_some(file)
 }
 
-/// Browsers compile while they load only what is said to be WebAssembly.
+/// Returns the content type. Browsers compile during loading only what is marked as WebAssembly.
 fn kind(path: &Path) -> Header {
     let kind = match path.extension().and_then(|extension| extension.to_str()) {
         Some("html") => "text/html; charset=utf-8",

@@ -1,6 +1,5 @@
-//! How crates are compiled for a browser: with rustup's target where the compiler has it; else with
-//! Debian's compiler and the source of its standard library, unpacked below `target` and installed
-//! nowhere.
+//! Compilation for a browser: with rustup's target if the compiler has it; else with Debian's
+//! compiler and the source of its standard library, unpacked below `target` and installed nowhere.
 
 use std::{
     fs,
@@ -12,29 +11,30 @@ use anyhow::{Context, Result, bail};
 
 use crate::run::{cargo, output, root, run, succeeds};
 
-/// What a browser runs.
+/// Target of browsers.
 const TARGET: &str = "wasm32-unknown-unknown";
-/// The profile of the page: see `Cargo.toml`.
+/// Cargo profile of the page: see `Cargo.toml`.
 pub const PROFILE: &str = "web";
-/// Debian's compiler, which it keeps new for its browsers. 131 MB with what they need.
+/// Packages of Debian's compiler, which Debian keeps up to date for its browsers; 131 MB with the
+/// packages that they need.
 const PACKAGES: [&str; 3] = ["rustc-web", "libstd-rust-web-dev", "rust-web-src"];
-/// How the names of packages begin without which these do not run.
+/// Prefixes of the names of packages that these need to run.
 const NEEDED: [&str; 2] = ["libstd-rust-web-", "libllvm"];
 
 /// A way to compile for a browser.
 pub enum Way {
     /// The compiler has the target.
     Target,
-    /// Debian's compiler, which builds the standard library first.
+    /// Debian's compiler, with which the standard library is built first.
     Source {
-        /// Where its packages are unpacked: `usr` lies below.
+        /// Folder in which the packages are unpacked, as `usr`.
         root: PathBuf,
-        /// What links.
+        /// Path of the linker.
         linker: PathBuf,
     },
 }
 
-/// The way that this machine has; `None`, after saying why, if it has none.
+/// Finds the way that this machine has; `None` if it has none, after printing the reason.
 pub fn find() -> Result<Option<Way>> {
     if has_target() {
         return Ok(Some(Way::Target));
@@ -54,13 +54,13 @@ pub fn find() -> Result<Option<Way>> {
     Ok(Some(way))
 }
 
-/// What is kept for compiling.
+/// Returns the folder of the unpacked compiler.
 pub fn folder() -> PathBuf {
     root().join("target/wasm-toolchain")
 }
 
 impl Way {
-    /// `cargo VERB`, for the browser.
+    /// Makes the command `cargo VERB` for the browser.
     pub fn cargo(&self, verb: &str) -> Command {
         let mut command = cargo();
         command.args([verb, "--profile", PROFILE, "--target", TARGET]).env("CARGO_TARGET_DIR", target());
@@ -76,12 +76,12 @@ impl Way {
         command
     }
 
-    /// The program that [`Way::cargo`] built.
+    /// Returns the path of a program that [`Way::cargo`] built.
     pub fn program(name: &str) -> PathBuf {
         target().join(TARGET).join(PROFILE).join(format!("{name}.wasm"))
     }
 
-    /// Debian's compiler must not be older than the workspace demands.
+    /// Checks that Debian's compiler is not older than the workspace demands.
     fn check_version(&self) -> Result<()> {
         let Self::Source { root: unpacked, .. } = self else { return Ok(()) };
         let said =
@@ -100,7 +100,8 @@ impl Way {
     }
 }
 
-/// Where all for the browser is built, apart from the rest: another compiler builds it.
+/// Returns the target folder of the browser's build, separate from the rest because another
+/// compiler builds it.
 fn target() -> PathBuf {
     root().join("target/wasm")
 }
@@ -120,7 +121,7 @@ fn has_target() -> bool {
     said.is_ok_and(|folder| Path::new(&folder).is_dir())
 }
 
-/// `rust-lld` of the compiler that builds all else.
+/// Returns `rust-lld` of the compiler that builds the other crates.
 fn linker() -> Option<PathBuf> {
     let sysroot = output(Command::new("rustc").args(["--print", "sysroot"])).ok()?;
     let about = output(Command::new("rustc").arg("-vV")).ok()?;
@@ -158,7 +159,7 @@ fn unpack(root: &Path) -> Result<()> {
     fs::remove_dir_all(&parts).with_context(|| format!("{} cannot be removed", parts.display()))
 }
 
-/// `1.96.0` as numbers.
+/// Reads a version such as `1.96.0` as numbers.
 fn numbers(version: &str) -> Vec<u32> {
     version.split('.').map(|part| part.parse().unwrap_or(0)).collect()
 }

@@ -92,7 +92,7 @@ pub struct CompareArgs {
     pub image_metrics: Switch,
 }
 
-/// The names of the laboratory's presets.
+/// Reads the names of the laboratory's presets.
 fn preset_parser() -> impl TypedValueParser<Value = &'static Preset> {
     let names = preset::ALL.map(|preset| PossibleValue::new(preset.name).help(preset.about));
     PossibleValuesParser::new(names).try_map(|name| preset::named(&name).ok_or("there is no such preset"))

@@ -1,5 +1,5 @@
-//! What `umbrage compare` is to do: options and preset taken together, everything checked that can
-//! be before a frame is drawn.
+//! The job of `umbrage compare`: options and preset combined. Everything that can be is checked
+//! before a frame is drawn.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ use umbrage_lab::{
 use super::args::CompareArgs;
 use crate::{shot_args::ShotDefaults, switch::Switch};
 
-/// Pixels across and down where neither the options nor the preset say any.
+/// Default width and height in pixels, where neither the options nor the preset give any.
 const DEFAULT_SIZE: [u32; 2] = [800, 600];
 
 /// # Errors
@@ -91,7 +91,7 @@ fn scenes_of(args: &CompareArgs) -> Result<Vec<String>> {
     }
 }
 
-/// What the preset says of views.
+/// Returns the preset's defaults for views.
 fn shot_defaults(preset: Option<&Preset>) -> ShotDefaults {
     preset.map_or_else(ShotDefaults::default, |preset| ShotDefaults {
         near: preset.near,
@@ -102,7 +102,7 @@ fn shot_defaults(preset: Option<&Preset>) -> ShotDefaults {
     })
 }
 
-/// Which views of each scene.
+/// Makes the request for the views of each scene.
 fn shot_request(args: &CompareArgs, scenes: usize) -> Result<ShotRequest> {
     args.shots.request(scenes, size(args), &shot_defaults(args.preset))
 }

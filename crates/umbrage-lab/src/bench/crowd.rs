@@ -5,10 +5,10 @@ use umbrage_scene::{Mesh, Node, Scene, Trs, procedural::World};
 
 use crate::failure::{Failure, Result};
 
-/// Metres of ground per object: the density of Robot War.
+/// Square metres of ground per object: the density of Robot War.
 const GROUND_PER_OBJECT: f64 = 9000.0;
 
-/// `count` robots on a plane of Robot War's density, seen from its edge.
+/// Makes `count` robots on a plane of Robot War's density, seen from its edge.
 ///
 /// # Errors
 /// [`Failure::Other`] if Robot War has no robots.

@@ -1,4 +1,4 @@
-//! What is to be measured.
+//! The job of a benchmark.
 
 use std::path::PathBuf;
 
@@ -7,34 +7,34 @@ use umbrage_render::Samples;
 
 use crate::{scene_request::SceneRequest, technique::Technique};
 
-/// Techniques on scenes, and where the figures go.
+/// Techniques and scenes to measure, and the outputs.
 #[derive(Debug)]
 pub struct Job {
-    /// The scenes, each with its camera and light.
+    /// Scenes, each with its camera and light.
     pub scenes: Vec<SceneRequest>,
-    /// The techniques; the first is what the others are divided by.
+    /// Techniques. The results of the others are divided by those of the first.
     pub techniques: Vec<Technique>,
-    /// Settings of all techniques that do not say otherwise, for the report.
+    /// Settings of all techniques that do not override them, for the report.
     pub with: String,
-    /// Rounds that are measured, after one that is not.
+    /// Number of measured rounds, after one that is not measured.
     pub rounds: u32,
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub size: [u32; 2],
     /// Samples per pixel of the picture.
     pub samples: Samples,
     /// Numbers of objects for GPU Gems' Figure 10-9.
     pub objects: Vec<u32>,
-    /// Whether every pair of generation and storage is measured too.
+    /// True if every pair of generation and storage is measured too.
     pub paths: bool,
-    /// Settings of those pairs.
+    /// Settings of these pairs.
     pub paths_with: String,
-    /// The figures (JSON).
+    /// File of the results (JSON).
     pub json: Option<PathBuf>,
-    /// The page.
+    /// File of the page.
     pub html: Option<PathBuf>,
 }
 
-/// Four maps of 1024² under every filter, PCF 2×2 first, as text.
+/// Returns four maps of 1024² under every filter, PCF 2×2 first, as text.
 #[must_use]
 pub fn filter_techniques() -> Vec<String> {
     let rest = Filter::ALL.into_iter().filter(|filter| *filter != Filter::Pcf2);

@@ -1,5 +1,5 @@
-//! Rounds of one scene: every technique in turn, and after each a renderer whose shaders never
-//! heard of shadows.
+//! Rounds of one scene: every technique in turn, each followed by a renderer whose shaders contain
+//! no shadow code.
 
 use std::time::Instant;
 
@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{failure::Result, lights, scene_setup::SceneSetup, technique::Technique};
 
-/// One technique's measurements, round by round, in milliseconds.
+/// Measurements of one technique, round by round, in milliseconds.
 #[derive(Default)]
 struct Rounds {
     plan: Vec<f64>,
@@ -25,11 +25,11 @@ struct Rounds {
     frame_without: Vec<f64>,
     wall_without: Vec<f64>,
     cpu_without: Vec<f64>,
-    /// From nothing to the first picture.
+    /// Time from nothing to the first picture.
     first: Spent,
 }
 
-/// Milliseconds on the wall's clock, and of all of this process's threads.
+/// Milliseconds of wall-clock time, and of CPU time of all of this process's threads.
 #[derive(Clone, Copy, Default)]
 struct Spent {
     wall: f64,
@@ -37,7 +37,7 @@ struct Spent {
 }
 
 impl Spent {
-    /// Runs `work`.
+    /// Runs `work` and measures its time.
     fn by<T>(work: impl FnOnce() -> T) -> (Self, T) {
         let (wall, cpu) = (Instant::now(), ProcessTime::now());
         let result = work();
@@ -46,7 +46,7 @@ impl Spent {
     }
 }
 
-/// Measures `techniques` on the first shot of the setup; the first technique is the baseline of all
+/// Measures `techniques` on the first shot of the setup. The first technique is the baseline of all
 /// ratios.
 pub fn measure(
     gpu: &Gpu,

@@ -1,10 +1,10 @@
-//! What shadows cost, the papers' Table 1, Figure 7 and Figure 10-9 for all techniques, measured in
-//! turn.
+//! Costs of shadows for all techniques, measured in turn, as in the papers' Table 1, Figure 7 and
+//! Figure 10-9.
 //!
-//! Every round draws each technique once, and after it the picture without shadows by shaders that
-//! never heard of them, so that what slows the machine down slows all of them; a ratio is taken
-//! within its round, and the median of those is reported. Counts beside the times do not depend on
-//! the machine.
+//! Every round draws each technique once, and after it the picture without shadows, by shaders that
+//! contain no shadow code. A load on the machine then slows all of them alike. A ratio is taken
+//! within its round, and the median of these ratios is reported. Counts beside the times do not
+//! depend on the machine.
 
 mod crowd;
 mod job;

@@ -1,4 +1,4 @@
-//! The page: tables and plots of what was measured, and the theory.
+//! The page of a benchmark: tables and plots of the measurements, and the theory.
 
 use super::report::{CrowdReport, Report, Row, SceneReport};
 use super::summary::Summary;
@@ -9,7 +9,7 @@ use crate::{
     theory,
 };
 
-/// The whole page.
+/// Makes the whole page.
 pub fn page(report: &Report) -> Result<String> {
     let mut sections = Vec::new();
     if !report.scenes.is_empty() {
@@ -55,7 +55,7 @@ fn spread(summary: Option<Summary>, decimals: usize) -> Cell {
     }
 }
 
-/// Figure 7 as ratios: frame time over the baseline's, per scene.
+/// Makes Figure 7 as ratios: frame time over the baseline's, per scene.
 fn overview(scenes: &[SceneReport]) -> Result<Section> {
     let names = scenes.iter().map(|scene| scene.scene.clone()).collect();
     let baseline = scenes[0].rows.first().map_or("", |row| row.technique.as_str());
@@ -135,7 +135,7 @@ fn table(caption: String, rows: &[Row]) -> Table {
     })
 }
 
-/// GPU Gems' Figure 10-9: time and counts over the number of objects.
+/// Makes GPU Gems' Figure 10-9: time and counts over the number of objects.
 fn crowds(crowds: &[CrowdReport]) -> Result<Section> {
     let lines = |title: &str, label: &str, value: &dyn Fn(&Row) -> f64| -> Result<Figure> {
         let mut chart = Chart::new(title, Axis::log("objects"), Axis::log(label));

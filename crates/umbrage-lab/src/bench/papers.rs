@@ -1,8 +1,8 @@
-//! What the papers measured, to stand beside our ratios.
+//! Measurements of the papers, to compare with our ratios.
 
-/// *Parallel-Split Shadow Maps for Large-scale Virtual Environments*, Table 1: frames per second on
-/// a GeForce 6800 Ultra of no concern to us; their ratios are. PSSM(4)'s 29.93 in Robot War beside
-/// PSSM(3)'s 28.40 is as printed and suspect.
+/// Frames per second on a GeForce 6800 Ultra, from *Parallel-Split Shadow Maps for Large-scale
+/// Virtual Environments*, Table 1. Only their ratios matter here. PSSM(4)'s 29.93 in Robot War
+/// beside PSSM(3)'s 28.40 is as printed and suspect.
 const TABLE_1: [(&str, [f64; 4]); 4] = [
     ("robot-war", [46.40, 32.84, 28.40, 29.93]),
     ("chessboard", [67.29, 58.00, 50.08, 47.22]),
@@ -10,8 +10,8 @@ const TABLE_1: [(&str, [f64; 4]); 4] = [
     ("mining-terrain", [22.00, 15.60, 14.00, 13.20]),
 ];
 
-/// Frame time of `PSSM(splits; 512²)` over that of `SSM(1024²)` in the paper's Table 1, for 2 to 4
-/// splits.
+/// Returns the frame time of `PSSM(splits; 512²)` over that of `SSM(1024²)` in the paper's Table 1,
+/// for 2 to 4 splits.
 #[must_use]
 pub fn table_1(world: &str, splits: usize) -> Option<f64> {
     let (_, fps) = TABLE_1.iter().find(|(name, _)| *name == world)?;

@@ -1,105 +1,105 @@
-//! The figures, as they go into JSON.
+//! Results of a benchmark, as they are written to JSON.
 
 use serde::Serialize;
 
 use super::summary::Summary;
 
-/// Everything that was measured.
+/// All results.
 #[derive(Debug, Serialize)]
 pub struct Report {
-    /// The device.
+    /// Name of the device.
     pub adapter: String,
-    /// Pixels.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Samples per pixel.
+    /// Samples per pixel of the picture.
     pub samples: String,
-    /// Rounds that count.
+    /// Number of rounds that count.
     pub rounds: u32,
-    /// Settings of all techniques that do not say otherwise.
+    /// Settings of all techniques that do not override them.
     pub with: String,
-    /// One per scene.
+    /// Results of each scene.
     pub scenes: Vec<SceneReport>,
-    /// GPU Gems' Figure 10-9: one per number of objects.
+    /// Results of each number of objects, for GPU Gems' Figure 10-9.
     pub crowds: Vec<CrowdReport>,
 }
 
-/// One scene's table.
+/// Results of one scene.
 #[derive(Debug, Serialize)]
 pub struct SceneReport {
-    /// Its name or file.
+    /// Name or file of the scene.
     pub scene: String,
-    /// The camera.
+    /// Name of the camera.
     pub camera: String,
-    /// Triangles in the scene, instances counted.
+    /// Number of triangles in the scene, counting instances.
     pub triangles: usize,
-    /// One per technique; the first is the baseline.
+    /// Results of each technique; the first is the baseline.
     pub rows: Vec<Row>,
-    /// One per pair of generation and storage; the first is the baseline.
+    /// Results of each pair of generation and storage; the first is the baseline.
     pub paths: Vec<Row>,
 }
 
-/// A number of objects.
+/// Results of one number of objects.
 #[derive(Debug, Serialize)]
 pub struct CrowdReport {
-    /// How many.
+    /// Number of objects.
     pub objects: u32,
-    /// One per path.
+    /// Results of each path.
     pub rows: Vec<Row>,
 }
 
-/// One technique on one scene.
+/// Results of one technique on one scene.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// As it is called.
+    /// Label of the technique.
     pub technique: String,
-    /// As it is typed.
+    /// Technique as it is typed.
     pub spec: String,
-    /// How many maps.
+    /// Number of maps.
     pub splits: usize,
-    /// How they are drawn.
+    /// Name of the way in which the maps are drawn.
     pub generation: String,
-    /// How they are stored.
+    /// Name of the way in which the maps are stored.
     pub storage: String,
-    /// The planner, microseconds on the CPU.
+    /// Time of the planner on the CPU, in microseconds.
     pub plan_us: Option<Summary>,
-    /// All maps, GPU timestamps.
+    /// Time of all maps in milliseconds, by GPU timestamps.
     pub shadow_ms: Option<Summary>,
-    /// The whole frame, GPU timestamps.
+    /// Time of the whole frame in milliseconds, by GPU timestamps.
     pub frame_ms: Option<Summary>,
-    /// The whole frame with everything the CPU does, wall clock.
+    /// Time of the whole frame in milliseconds of wall-clock time, with all work of the CPU.
     pub wall_ms: Option<Summary>,
-    /// The frame by shaders without shadows, GPU timestamps.
+    /// Time in milliseconds of the frame by shaders without shadows, by GPU timestamps.
     pub frame_without_ms: Option<Summary>,
-    /// The frame by shaders without shadows, wall clock.
+    /// Time in milliseconds of the frame by shaders without shadows, by the wall clock.
     pub wall_without_ms: Option<Summary>,
-    /// CPU time of all threads for the whole frame.
+    /// CPU time of all threads for the whole frame, in milliseconds.
     pub cpu_ms: Option<Summary>,
-    /// CPU time of all threads for the frame by shaders without shadows.
+    /// CPU time of all threads for the frame by shaders without shadows, in milliseconds.
     pub cpu_without_ms: Option<Summary>,
-    /// From an open device and a loaded scene to the first picture, wall clock, milliseconds.
+    /// Wall-clock time in milliseconds from an open device and a loaded scene to the first picture.
     pub first_picture_ms: f64,
-    /// CPU time of all threads until the first picture, milliseconds.
+    /// CPU time of all threads until the first picture, in milliseconds.
     pub first_picture_cpu_ms: f64,
-    /// Frame with shadows minus the frame by shaders without.
+    /// Time of the frame with shadows minus that by shaders without, in milliseconds.
     pub cost_ms: Option<Summary>,
-    /// Frame over the baseline's frame of the same round.
+    /// Time of the frame over the baseline's frame of the same round.
     pub frame_ratio: Option<Summary>,
-    /// Maps over the baseline's maps of the same round.
+    /// Time of the maps over the baseline's maps of the same round.
     pub shadow_ratio: Option<Summary>,
-    /// Frame over frame in the paper's Table 1.
+    /// Ratio of frame times in the paper's Table 1.
     pub paper_ratio: Option<f64>,
-    /// What a fragment of the picture reads of a map: texels, or filtered samples of filters that
+    /// Number of map reads per fragment of the picture: texels, or filtered samples of filters that
     /// blur first.
     pub samples: u32,
-    /// Caster-split pairs.
+    /// Number of caster-split pairs.
     pub pairs: u64,
-    /// Draws into the maps.
+    /// Number of draw calls into the maps.
     pub draws: u64,
-    /// Triangles sent into the maps.
+    /// Number of triangles submitted to the maps.
     pub triangles: u64,
     /// Bytes of the maps.
     pub map_bytes: u64,
-    /// What exact edges did for a picture; none where edges are sampled.
+    /// Counts of exact edges for a picture; `None` with sampled edges.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub edges: Option<crate::edges::EdgesReport>,
     /// Pipeline statistics of the maps.
@@ -111,10 +111,10 @@ pub struct Row {
 /// Pipeline statistics.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Counts {
-    /// Runs of the vertex shader.
+    /// Number of vertex shader invocations.
     pub vertices: u64,
-    /// Triangles after clipping.
+    /// Number of triangles after clipping.
     pub primitives: u64,
-    /// Runs of the fragment shader.
+    /// Number of fragment shader invocations.
     pub fragments: u64,
 }

@@ -1,4 +1,4 @@
-//! Opens, measures, writes.
+//! Running a benchmark: opens scenes, measures, writes the outputs.
 
 use std::path::Path;
 
@@ -22,8 +22,9 @@ use crate::{
     technique::text,
 };
 
-/// Figure 10-9's paths, four splits: filtered in the shader from one nearest texel's comparison,
-/// and compared and filtered in hardware; multipass, and everything in a single submission.
+/// Paths of Figure 10-9 with four splits: filtered in the shader from one nearest texel's
+/// comparison, and compared and filtered in hardware; multipass, and everything in a single
+/// submission.
 const CROWD: [&str; 5] = [
     "pssm:4:1024:filter=hard:label=per split, one texel",
     "pssm:4:1024:filter=pcf2:label=per split, hardware comparison",
@@ -32,7 +33,7 @@ const CROWD: [&str; 5] = [
     "pssm:4:1024:filter=pcf2:generation=instanced:label=instanced",
 ];
 
-/// Every pair of generation and storage.
+/// All pairs of generation and storage.
 const PAIRS: [&str; 9] = [
     "per-split:storage=array",
     "per-split:storage=atlas",
@@ -45,10 +46,10 @@ const PAIRS: [&str; 9] = [
     "mixed:storage=array",
 ];
 
-/// Measures and writes everything.
+/// Measures everything and writes the outputs.
 ///
 /// # Errors
-/// [`Failure`] naming the scene or technique at fault, or the file that cannot be written.
+/// [`Failure`] with the scene or technique at fault, or the file that cannot be written.
 pub fn run(job: &Job) -> Result<()> {
     let files: Vec<&Path> = [&job.json, &job.html].into_iter().flatten().map(AsRef::as_ref).collect();
     if files.is_empty() {

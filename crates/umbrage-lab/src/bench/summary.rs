@@ -1,20 +1,20 @@
-//! Many measurements of one thing, in three numbers.
+//! Summary of repeated measurements in three numbers.
 
 use serde::Serialize;
 
 /// Median, mean and standard deviation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Summary {
-    /// The middle one, or the mean of the two in the middle.
+    /// Middle value, or the mean of the two in the middle.
     pub median: f64,
-    /// Sum over count.
+    /// Mean of the values.
     pub mean: f64,
-    /// Of the sample, with n − 1; 0 for one measurement.
+    /// Sample standard deviation, with n − 1; 0 for one measurement.
     pub deviation: f64,
 }
 
 impl Summary {
-    /// Of any measurements; `None` of none.
+    /// Summarises measurements; `None` without values.
     #[must_use]
     pub fn of(values: &[f64]) -> Option<Self> {
         if values.is_empty() {

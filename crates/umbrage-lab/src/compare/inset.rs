@@ -1,31 +1,31 @@
-//! Where to look closer: the part of a view in which techniques differ most.
+//! Insets: the part of a view in which techniques differ most.
 
 use super::judge::ViewTruth;
 
-/// An inset shows one part in this many of the picture's width and height.
+/// Ratio of the picture's width and height to those of the enlarged part.
 const PARTS: usize = 8;
 
-/// Steps of brightness by which errors are weighed: a wrong decision is seen the better the more
-/// light the surface would get.
+/// Number of steps of brightness by which errors are weighted. A wrong decision is the more visible
+/// the more light the surface would get.
 const BRIGHTNESS: f64 = 16.0;
 
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rect {
-    /// Its left edge.
+    /// Left edge in pixels.
     pub x: u32,
-    /// Its upper edge.
+    /// Upper edge in pixels.
     pub y: u32,
-    /// Pixels across.
+    /// Width in pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Height in pixels.
     pub height: u32,
 }
 
-/// The window in which `wrong` (one picture of wrong decisions per technique) differ most: where k
-/// of n techniques are wrong, a pixel counts k (n − k), which is greatest where half of them are,
-/// times the sun's light on its surface. Where all techniques are wrong alike, the window with the
-/// most errors; without errors, the one with the most true edges; without edges, none.
+/// Returns the window in which `wrong` (one picture of wrong decisions per technique) differ most.
+/// Where k of n techniques are wrong, a pixel counts k (n − k), which is greatest where half of
+/// them are, times the sun's light on its surface. Where all techniques are wrong alike, the window
+/// with the most errors; without errors, the one with the most true edges; without edges, none.
 #[must_use]
 pub fn find(judged: &ViewTruth, wrong: &[Vec<bool>]) -> Option<Rect> {
     let [width, height] = judged.domain.size();
@@ -47,8 +47,8 @@ pub fn find(judged: &ViewTruth, wrong: &[Vec<bool>]) -> Option<Rect> {
         .or_else(|| best_window([width, height], window, |pixel| u64::from(is_edge[pixel])))
 }
 
-/// The window with the greatest sum of weights, the upper left of equals; `None` if all weights are
-/// 0.
+/// Returns the window with the greatest sum of weights, the upper left one of equals; `None` if all
+/// weights are 0.
 fn best_window([width, height]: [usize; 2], window: [usize; 2], weight: impl Fn(usize) -> u64) -> Option<Rect> {
     // Sums over everything above and to the left.
     let stride = width + 1;

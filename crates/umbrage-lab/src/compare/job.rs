@@ -1,4 +1,4 @@
-//! What is to be compared: techniques, scenes with their views, and where the results go.
+//! The job of a comparison: techniques, scenes with their views, and outputs.
 
 use std::path::{Path, PathBuf};
 
@@ -12,55 +12,56 @@ use crate::{
 /// Names of the files in `-o DIR`.
 const IN_FOLDER: [&str; 4] = ["sheet.png", "errors.png", "scores.json", "compare.html"];
 
-/// What is to be compared, everything checked that can be before a frame is drawn.
+/// A comparison. Everything that can be is checked before a frame is drawn.
 #[derive(Debug)]
 pub struct Job {
-    /// The rows.
+    /// Techniques: the rows of tables and sheets.
     pub techniques: Vec<Technique>,
     /// Scenes, opened, with their views.
     pub scenes: Vec<SceneShots>,
-    /// What holds for all of them.
+    /// Settings of all techniques and views.
     pub settings: Settings,
-    /// Where things go.
+    /// Output files.
     pub outputs: Outputs,
-    /// What was left out.
+    /// Notes on parts that were left out.
     pub notes: Vec<String>,
-    /// Where finished views are kept while the run goes on, and are taken from if one was cut off.
+    /// File in which finished views are kept while the run goes on. A run that was cut off
+    /// continues from it.
     pub resume: Option<PathBuf>,
-    /// What was typed, for the report.
+    /// Command as it was typed, for the report.
     pub command: Vec<String>,
 }
 
-/// What holds for all techniques and views.
+/// Settings of all techniques and views.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// View depths in metres that are scored; none: the camera's near and far.
+    /// View depths in metres that are scored; `None` uses the camera's near and far.
     pub shadow_range: Option<(f64, f64)>,
-    /// Degrees across the sun; none: no soft scores.
+    /// Angular diameter of the sun in degrees; `None` computes no soft scores.
     pub sun_angle: Option<f64>,
-    /// Edge pixels of the true shadow that a view needs to count.
+    /// Fewest edge pixels of the true shadow in a view that counts.
     pub least_edges: usize,
     /// Most columns of a sheet.
     pub columns: usize,
-    /// Whether pictures show each split in its own colour.
+    /// True if pictures show each split in its own colour.
     pub tint: bool,
-    /// Whether FLIP and SSIM are worked out for the shots on the sheets.
+    /// True if FLIP and SSIM are computed for the shots on the sheets.
     pub image_metrics: bool,
 }
 
-/// Where things go.
+/// Output files of a comparison.
 #[derive(Clone, Debug, Default)]
 pub struct Outputs {
-    /// The folder for everything.
+    /// Folder for all files.
     pub folder: Option<PathBuf>,
-    /// Sheet, errors, JSON and page.
+    /// Paths of sheet, errors, JSON and page.
     pub files: [Option<PathBuf>; 4],
 }
 
 impl Outputs {
-    /// The folder for everything, and the paths of sheet, errors, JSON and page.
+    /// Combines the folder for all files with the paths of sheet, errors, JSON and page.
     ///
     /// # Errors
     /// [`Failure::Input`] if nothing is to be written.
@@ -74,7 +75,7 @@ impl Outputs {
         Ok(outputs)
     }
 
-    /// Refuses what cannot be written, before any work is done.
+    /// Refuses outputs that cannot be written, before any work is done.
     ///
     /// # Errors
     /// As [`output::check`].
@@ -92,7 +93,7 @@ impl Outputs {
         output::check(&files, &folders, inputs)
     }
 
-    /// Stages the four files, in the order of [`Self::files`], wherever they were asked for.
+    /// Stages the four files, in the order of [`Self::files`], for every place that was asked for.
     ///
     /// # Errors
     /// As [`output::Staged::file`].

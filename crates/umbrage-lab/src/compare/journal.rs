@@ -1,4 +1,4 @@
-//! The finished series of a comparison, as lines of a [`crate::journal`]: views' scores, flicker
+//! The finished series of a comparison, as lines of a [`crate::journal`]: scores of views, flicker,
 //! and shots of the sheets.
 
 use std::path::Path;
@@ -19,21 +19,21 @@ use crate::{
 
 const KIND: Kind = Kind { option: "--resume", run: "comparison" };
 
-/// A series that is finished.
+/// A finished series.
 #[derive(Clone, Debug)]
 pub struct Finished {
-    /// Scene and series.
+    /// Index of the scene, and of the series in it.
     pub series: [usize; 2],
-    /// Its views.
+    /// Scores of the series' views.
     pub views: Vec<ViewReport>,
-    /// Its flicker, of two frames or more.
+    /// Flicker of the series, if it has two frames or more.
     pub walk: Option<WalkReport>,
-    /// Its shots on the sheet of pictures and on that of errors.
+    /// Shots of the series on the sheet of pictures and on that of errors.
     pub sheets: [Vec<SheetShot>; 2],
 }
 
-/// Opens the journal at `path` or begins one. `of` says what is compared; a journal of anything
-/// else is refused.
+/// Opens the journal at `path` or begins one. `of` describes the comparison; a journal of any other
+/// is refused.
 ///
 /// # Errors
 /// As [`Journal::open`].
@@ -42,7 +42,7 @@ pub fn open(path: &Path, of: &impl Serialize) -> Result<Journal<Finished>> {
 }
 
 impl Journal<Finished> {
-    /// What an earlier run left, in words.
+    /// Describes the content left by an earlier run.
     #[must_use]
     pub fn note(&self) -> String {
         let cut = if self.dropped > 0 { "; another was cut off and is drawn again" } else { "" };
@@ -53,13 +53,13 @@ impl Journal<Finished> {
         )
     }
 
-    /// A series, if it was finished before.
+    /// Takes a series out, if it was finished before.
     pub fn take(&mut self, series: [usize; 2]) -> Option<Finished> {
         let at = self.finished.iter().position(|finished| finished.series == series)?;
         Some(self.finished.swap_remove(at))
     }
 
-    /// Keeps a series.
+    /// Writes a finished series.
     ///
     /// # Errors
     /// As [`Journal::append`].
@@ -68,13 +68,13 @@ impl Journal<Finished> {
     }
 }
 
-/// A finished series as it is in the file.
+/// Line of the file for a finished series.
 #[derive(Serialize, Deserialize)]
 struct Line {
     series: [usize; 2],
     views: Vec<ViewReport>,
-    /// Of each view and technique: pixels, falsely dark and falsely lit ones and missing answers of
-    /// the seam and its two sides. The report has their rates alone.
+    /// Counts of each view and technique: pixels, falsely dark and falsely lit ones and missing
+    /// answers of the seam and its two sides. The report has only their rates.
     seams: Vec<Vec<[[usize; 4]; 3]>>,
     walk: Option<WalkReport>,
     sheets: [Vec<ShotLine>; 2],
@@ -115,7 +115,7 @@ impl Line {
     }
 }
 
-/// A line of the file; what is wrong with it in words.
+/// Reads a line of the file. The error says what is wrong with it.
 fn read(line: &str) -> std::result::Result<Finished, String> {
     let line: Line = serde_json::from_str(line).map_err(|error| error.to_string())?;
     let mut views = line.views;

@@ -1,4 +1,4 @@
-//! What one technique scores in one view.
+//! Scores of one technique in one view.
 
 use glam::{DMat2, DVec2, DVec3};
 use image::{GrayAlphaImage, Rgb, RgbImage};
@@ -17,29 +17,30 @@ use umbrage_truth::{
 use crate::edges::{ByCause, EdgesReport};
 use crate::{failure::Result, sun_disc::sun_disc};
 
-/// Neighbouring pixels whose depths differ by this share, or whose normals' cosine is less than
-/// [`SAME_NORMAL`], do not lie on one surface.
+/// Relative difference of depths from which neighbouring pixels count as different surfaces. So do
+/// pixels whose normals' cosine is below [`SAME_NORMAL`].
 const SAME_DEPTH: f64 = 0.05;
-/// See [`SAME_DEPTH`].
+/// Cosine of normals below which neighbouring pixels lie on different surfaces; see [`SAME_DEPTH`].
 const SAME_NORMAL: f64 = 0.95;
-/// Pixels at which predicted and measured densities are compared; more tell no more.
+/// Most pixels at which predicted and measured densities are compared. More would not change the
+/// result.
 const SAMPLES: usize = 20_000;
 
-/// The truth about a view.
+/// Ground truth of a view.
 #[derive(Debug)]
 pub struct ViewTruth {
-    /// The camera.
+    /// Camera of the view.
     pub view: View,
-    /// The truth.
+    /// Ground truth of hard shadows.
     pub truth: TruthMask,
-    /// What is scored.
+    /// Pixels that are scored.
     pub domain: Domain,
-    /// The truth under a sun with a size.
+    /// Ground truth under a sun with an angular size.
     pub soft: Option<SoftTruth>,
 }
 
 impl ViewTruth {
-    /// Traces a view. `range` is the shadowed range; without one it is the camera's, its far plane
+    /// Traces a view. `range` is the shadowed range; `None` uses the camera's, with the far plane
     /// capped by the scene.
     ///
     /// # Errors
@@ -57,7 +58,7 @@ impl ViewTruth {
         Ok(Self { view: *view, truth: mask, domain, soft: None })
     }
 
-    /// Adds the truth under a sun that is so many degrees across; nothing for none and for 0.
+    /// Adds the truth under a sun with this angular diameter in degrees; `None` and 0 add nothing.
     ///
     /// # Errors
     /// [`crate::failure::Failure::Input`] for an angle out of range.
@@ -74,7 +75,7 @@ impl ViewTruth {
     }
 }
 
-/// The camera's near and far, far capped by the scene's box.
+/// Returns the camera's near and far distance, far capped by the scene's box.
 fn range_of(view: &View, pose: &Pose) -> (f64, f64) {
     let frustum = view.frustum();
     let deepest = pose.bounds.map_or(f64::NEG_INFINITY, |bounds| {
@@ -84,79 +85,81 @@ fn range_of(view: &View, pose: &Pose) -> (f64, f64) {
     (frustum.near, frustum.far.min(deepest))
 }
 
-/// What a technique scores in a view. Rates are shares in 0..=1; nothing is there where nothing
+/// Scores of a technique in a view. Rates are shares in 0..=1; a score is `None` where nothing
 /// could be counted.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct Scores {
-    /// E, the share of wrong decisions.
+    /// Share of wrong decisions, E.
     pub e: Option<f64>,
-    /// E_fs: dark where light should be (acne).
+    /// Share of pixels that are dark where light should be (acne), E_fs.
     pub e_false_shadow: Option<f64>,
-    /// E_fl: lit where shadow should be (leaks).
+    /// Share of pixels that are lit where shadow should be (leaks), E_fl.
     pub e_false_light: Option<f64>,
-    /// Falsely dark farther than 2 + 1.5 m pixels from true edges, of all scored pixels.
+    /// Share of all scored pixels that are falsely dark and farther than 2 + 1.5 m pixels from true
+    /// edges.
     pub acne: Option<f64>,
-    /// Falsely lit farther than that, of all scored pixels.
+    /// Share of all scored pixels that are falsely lit and farther than 2 + 1.5 m pixels from true
+    /// edges.
     pub leak: Option<f64>,
-    /// Share of the scored pixels that lies as far from true edges.
+    /// Share of the scored pixels farther than 2 + 1.5 m pixels from true edges.
     pub beyond_edges: Option<f64>,
-    /// Pixels without an answer, wrong all of them.
+    /// Number of pixels without an answer, all of which count as wrong.
     pub missing_pixels: usize,
-    /// E_log, fair to every depth.
+    /// Mean of E over bins of depth, E_log.
     pub e_log: Option<f64>,
-    /// D, mean distance between true and answered edges.
+    /// Mean distance between true and answered edges in pixels, D.
     pub edge_distance_px: Option<f64>,
-    /// Its 95th percentile.
+    /// 95th percentile of the edge distance, in pixels.
     pub edge_distance_p95_px: Option<f64>,
-    /// Pixels that a texel covers on the screen.
+    /// Number of pixels that a texel covers on the screen.
     pub texel_px: Option<TexelPixels>,
     /// E and texel densities by depth.
     pub by_depth: Vec<DepthScores>,
-    /// FLIP against the truth's mask; beside, never gating.
+    /// FLIP against the truth's mask, for information only.
     pub flip: Option<f64>,
-    /// SSIM against the truth's mask; beside, never gating.
+    /// SSIM against the truth's mask, for information only.
     pub ssim: Option<f64>,
-    /// E_soft, with --sun-angle: mean difference from the share of the sun that is seen.
+    /// Mean difference from the visible share of the sun, E_soft, with `--sun-angle`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub e_soft: Option<f64>,
-    /// E_pen: the same over penumbrae.
+    /// Mean difference from the visible share of the sun over penumbrae, E_pen.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub e_pen: Option<f64>,
-    /// What exact edges did, and which of it was wrong; none where edges are sampled.
+    /// Counts of exact edges with their wrong decisions; `None` with sampled edges.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub edges: Option<EdgeScores>,
     /// Decisions on and beside the borders of splits.
     pub seams: SeamScores,
-    /// What it cost.
+    /// Cost of the frame.
     pub cost: Cost,
-    /// View depths of the planes (with radial bands distances), metres.
+    /// View depths of the split planes in metres; distances with radial bands.
     pub planes_m: Vec<f64>,
 }
 
-/// What exact edges did in a view, and which of it was wrong.
+/// Counts of exact edges in a view, with their wrong decisions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct EdgeScores {
-    /// What they did.
+    /// Counts of exact edges.
     #[serde(flatten)]
     pub did: EdgesReport,
-    /// Falsely dark pixels, as shares of the scored ones, by what decided them.
+    /// Falsely dark pixels as shares of the scored ones, by the cause of the decision.
     pub false_shadow: ByCause,
-    /// Falsely lit ones.
+    /// Falsely lit pixels as shares of the scored ones, by the cause of the decision.
     pub false_light: ByCause,
 }
 
 /// Counts of [`Seams`], to be pooled over views.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct SeamScores {
-    /// Within 2 px of a border.
+    /// Number of pixels within 2 px of a border.
     pub pixels: usize,
-    /// E there.
+    /// E within 2 px of a border.
     pub e: f64,
     /// E at 3 to 12 px on the near side.
     pub e_nearer: f64,
     /// E at 3 to 12 px on the far side.
     pub e_farther: f64,
-    /// What the numbers were made of.
+    /// Counts behind the rates.
     #[serde(skip)]
     pub counts: Seams,
 }
@@ -176,56 +179,56 @@ impl From<Seams> for SeamScores {
 /// Pixels per texel over a view.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct TexelPixels {
-    /// Median of m, the whole footprint.
+    /// Median of m, the whole footprint, in pixels per texel.
     pub m_p50: f64,
-    /// 99th percentile of m.
+    /// 99th percentile of m, in pixels per texel.
     pub m_p99: f64,
-    /// Median of m_p, its perspective part.
+    /// Median of m_p, the perspective part of m, in pixels per texel.
     pub perspective_p50: f64,
-    /// 99th percentile of m_p.
+    /// 99th percentile of m_p, in pixels per texel.
     pub perspective_p99: f64,
 }
 
-/// One of eight equal bins of ln z.
+/// Scores of one of eight equal bins of ln z.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct DepthScores {
-    /// Where it begins, metres.
+    /// View depth at which the bin begins, in metres.
     pub near_m: f64,
-    /// Where it ends, metres.
+    /// View depth at which the bin ends, in metres.
     pub far_m: f64,
-    /// Scored pixels in it.
+    /// Number of scored pixels in the bin.
     pub pixels: usize,
-    /// E in it.
+    /// E in the bin.
     pub e: Option<f64>,
-    /// Median of texels per pixel (along the worse axis) as the planner predicts it at the points
-    /// that are seen.
+    /// Median of texels per pixel (along the worse axis) as the planner predicts it at the visible
+    /// points.
     pub predicted_texels_per_px: Option<f64>,
-    /// Median of texels per pixel as measured: from where neighbouring pixels' points fall in the
-    /// map.
+    /// Median of texels per pixel as measured from the map positions of neighbouring pixels'
+    /// points.
     pub measured_texels_per_px: Option<f64>,
 }
 
-/// What a frame cost, in counts that do not depend on the machine.
+/// Cost of a frame, in counts that do not depend on the machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct Cost {
     /// Bytes of all maps.
     pub bytes: u64,
-    /// Casters, summed over splits.
+    /// Number of casters, summed over splits.
     pub caster_split_pairs: u64,
-    /// Draw calls into maps.
+    /// Number of draw calls into maps.
     pub draws: u64,
-    /// Triangles drawn into maps.
+    /// Number of triangles drawn into maps.
     pub triangles: u64,
-    /// Triangles drawn for the view, before any clipping.
+    /// Number of triangles drawn for the view, before any clipping.
     pub view_triangles: u64,
-    /// Vertices shaded for maps; none where the device does not count.
+    /// Number of vertices shaded for maps; `None` where the device does not count.
     pub vertices: Option<u64>,
-    /// Pixels of maps touched; none where the device does not count.
+    /// Number of pixels of maps touched; `None` where the device does not count.
     pub fragments: Option<u64>,
 }
 
-/// Scores a mask against the truth. Image metrics cost more than all the rest and are left out on
-/// demand.
+/// Scores a mask against the truth. Image metrics cost more than all other scores together and are
+/// computed only on demand.
 ///
 /// # Errors
 /// [`crate::failure::Failure`] if the mask has another size.
@@ -261,7 +264,7 @@ pub fn score(judged: &ViewTruth, mask: &GrayAlphaImage, stats: &FrameStats, imag
     Ok(scores)
 }
 
-/// What exact edges did in a view, and which of it was wrong.
+/// Counts the decisions of exact edges in a view, and those of them that are wrong.
 #[must_use]
 pub fn edge_scores(judged: &ViewTruth, mask: &GrayAlphaImage, edges: &EdgeCounts) -> EdgeScores {
     let (answers, domain) = (Answers::from_mask(mask), &judged.domain);
@@ -278,7 +281,7 @@ pub fn edge_scores(judged: &ViewTruth, mask: &GrayAlphaImage, edges: &EdgeCounts
     EdgeScores { did: edges.sums().into(), false_shadow: wrong(true), false_light: wrong(false) }
 }
 
-/// The seam score of one view; nothing where there is nothing to score or no border.
+/// Computes the seam score of one view; `None` where no pixel is scored or there is no border.
 fn seam_scores(judged: &ViewTruth, answers: &Answers, plan: &ShadowPlan) -> Result<SeamScores> {
     let domain = &judged.domain;
     let inner = plan.planes.get(1..plan.planes.len().saturating_sub(1)).unwrap_or_default();
@@ -289,7 +292,7 @@ fn seam_scores(judged: &ViewTruth, answers: &Answers, plan: &ShadowPlan) -> Resu
     Ok(seams(domain, answers, inner, depth)?.into())
 }
 
-/// What the decisions alone say.
+/// Computes the scores that depend on decisions alone.
 pub fn decisions(judged: &ViewTruth, answers: &Answers) -> Result<Scores> {
     let domain = &judged.domain;
     if domain.pixels().is_empty() {
@@ -314,7 +317,7 @@ pub fn decisions(judged: &ViewTruth, answers: &Answers) -> Result<Scores> {
     })
 }
 
-/// Which pixels a mask decides wrongly.
+/// Returns, for each pixel, whether a mask decides it wrongly.
 #[must_use]
 pub fn wrong_pixels(judged: &ViewTruth, answers: &Answers) -> Vec<bool> {
     let mut wrong = vec![false; answers.visibility().len()];
@@ -337,14 +340,14 @@ fn depth_scores(depths: &ByDepth) -> Vec<DepthScores> {
     depths.bins.iter().map(of).collect()
 }
 
-/// The split whose map serves a point.
+/// Returns the split whose map covers a point.
 fn split_at(plan: &ShadowPlan, point: DVec3) -> Option<&Split> {
     let depth = plan.depth_at(point);
     let split = plan.splits.iter().find(|split| depth <= split.far)?;
     (!split.casters.is_empty()).then_some(split)
 }
 
-/// How the map that serves a point lies there.
+/// Returns the texel gradient at a point of the map that covers it.
 fn texel_gradient(plan: &ShadowPlan, point: DVec3) -> Option<TexelGradient> {
     let split = split_at(plan, point)?;
     let [u, v] = split.texel_gradients(point);
@@ -362,8 +365,8 @@ fn footprint(judged: &ViewTruth, plan: &ShadowPlan) -> Result<Option<TexelPixels
     }))
 }
 
-/// For each bin of depth the medians of texels per pixel, predicted and measured, over the same
-/// pixels.
+/// Returns, for each bin of depth, the medians of texels per pixel, predicted and measured, over
+/// the same pixels.
 fn densities(judged: &ViewTruth, plan: &ShadowPlan) -> Vec<(Option<f64>, Option<f64>)> {
     const BINS: usize = 8;
     let domain = &judged.domain;
@@ -380,8 +383,8 @@ fn densities(judged: &ViewTruth, plan: &ShadowPlan) -> Vec<(Option<f64>, Option<
     bins.into_iter().map(|(predicted, measured)| (median(predicted), median(measured))).collect()
 }
 
-/// Texels per pixel along the worse axis: predicted, and measured between this pixel's point and
-/// those to its right and below.
+/// Returns texels per pixel along the worse axis: predicted, and measured between this pixel's
+/// point and those to its right and below.
 fn density_at(judged: &ViewTruth, plan: &ShadowPlan, pixel: usize, depth: f64) -> Option<(f64, f64)> {
     let [width, height] = judged.domain.size();
     let here = judged.hit(pixel)?;
@@ -403,20 +406,20 @@ fn density_at(judged: &ViewTruth, plan: &ShadowPlan, pixel: usize, depth: f64) -
     (predicted.is_finite() && measured.is_finite()).then_some((predicted, measured))
 }
 
-/// σ_min of the matrix with these columns: |det| / σ_max.
+/// Returns σ_min of the matrix with these columns: |det| / σ_max.
 fn least_singular_value(a: DVec2, b: DVec2) -> f64 {
     let (square, det) = (a.length_squared() + b.length_squared(), DMat2::from_cols(a, b).determinant());
     let largest = (0.5 * (square + (square * square - 4.0 * det * det).max(0.0).sqrt())).sqrt();
     if largest > 0.0 { det.abs() / largest } else { 0.0 }
 }
 
-/// The middle value, the lower of two.
+/// Returns the middle value, or the lower of the two in the middle.
 pub fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len().saturating_sub(1) / 2).copied()
 }
 
-/// A mask as an image metric sees it: black where nothing is.
+/// Converts a mask for image metrics: black where no surface is.
 fn grey(mask: &GrayAlphaImage) -> RgbImage {
     RgbImage::from_fn(mask.width(), mask.height(), |x, y| {
         let [value, alpha] = mask.get_pixel(x, y).0;

@@ -1,9 +1,9 @@
 //! Any techniques on any shots, judged by rays.
 //!
-//! [`job`] says what is compared, [`shots`] which views; [`run()`] draws every mask by the same
-//! path as `umbrage render --visibility`, scores it ([`judge`], and along walks [`stillness`]) and
-//! keeps the numbers ([`report`]) and the pictures (`sheet_shots`, [`sheet`]); `page` makes one
-//! HTML page of both. All results are files; standard error gets progress and notes.
+//! [`job`] describes a comparison, [`shots`] its views; [`run()`] draws every mask by the same path
+//! as `umbrage render --visibility`, scores it ([`judge`], and along walks [`stillness`]) and keeps
+//! the numbers ([`report`]) and the pictures (`sheet_shots`, [`sheet`]); `page` makes one HTML page
+//! of both. All results are files; standard error gets progress and notes.
 
 mod inset;
 pub mod job;
@@ -32,7 +32,7 @@ mod tests {
 
     use super::judge::ViewTruth;
 
-    /// The first camera of the Huge Chessboard under its own sun.
+    /// Makes the first camera of the Huge Chessboard under its own sun.
     pub fn chessboard_shot(size: [u32; 2]) -> ViewTruth {
         let scene = World::Chessboard.build();
         let pose = scene.pose(0.0).expect("a pose");

@@ -1,4 +1,4 @@
-//! Everything on one page: sheets, tables, plots.
+//! The page of a comparison: sheets, tables, plots.
 
 use super::{
     report::{Comparison, DepthMeans, LIMIT, TechniqueReport, ViewReport},
@@ -11,10 +11,10 @@ use crate::{
     picture::png,
 };
 
-/// Series with colours of their own; further ones are dashed.
+/// Number of series with colours of their own; further ones are dashed.
 const COLOURS: usize = 8;
 
-/// The page's text. `labels` and `sheets` are those of the contact sheet and of the sheet of
+/// Makes the page's text. `labels` and `sheets` are those of the contact sheet and of the sheet of
 /// errors.
 ///
 /// # Errors
@@ -94,10 +94,10 @@ fn number(value: Option<f64>, decimals: usize) -> Cell {
     value.map_or(Cell::Missing, |value| Cell::Number(value, decimals))
 }
 
-/// A column of the table of scores: its head, and what it shows of a technique.
+/// A column of the table of scores: its heading, and its cell for a technique.
 type Figures = (Column, fn(&TechniqueReport) -> Cell);
 
-/// The columns of the table of scores, whatever was measured.
+/// Returns the columns of the table of scores that every comparison has.
 fn figures() -> Vec<Figures> {
     let least = |title: &str, of: fn(&TechniqueReport) -> Cell| (Column::best(title, Best::Lowest), of);
     let plain = |column: Column, of: fn(&TechniqueReport) -> Cell| (column, of);
@@ -123,12 +123,12 @@ fn figures() -> Vec<Figures> {
     ]
 }
 
-/// The columns of image metrics.
+/// Returns the columns of image metrics.
 fn metric_figures() -> [Figures; 2] {
     [(Column::number("FLIP"), |t| number(t.mean.flip, 4)), (Column::number("SSIM"), |t| number(t.mean.ssim, 4))]
 }
 
-/// The columns of soft shadows, with `--sun-angle`.
+/// Returns the columns of soft shadows, with `--sun-angle`.
 fn soft_figures() -> [Figures; 2] {
     [
         (Column::best("E_soft %", Best::Lowest), |t| percent(t.mean.e_soft, 2)),
@@ -136,7 +136,7 @@ fn soft_figures() -> [Figures; 2] {
     ]
 }
 
-/// The columns of exact edges.
+/// Returns the columns of exact edges.
 fn edge_figures() -> [Figures; 2] {
     [
         (Column::best("undecided %", Best::Lowest), |t| percent(t.mean.undecided, 2)),
@@ -220,7 +220,7 @@ fn plots(comparison: &Comparison) -> Result<Vec<Section>> {
     Ok(if figures.is_empty() { Vec::new() } else { vec![Section::new("Plots").figures(&figures)] })
 }
 
-/// One series for each family, over texels.
+/// Returns one series for each family of techniques, over texels.
 fn by_family(techniques: &[TechniqueReport]) -> Vec<Series> {
     let mut series = Vec::new();
     for (number, first) in techniques.iter().enumerate() {
@@ -245,7 +245,7 @@ fn by_family(techniques: &[TechniqueReport]) -> Vec<Series> {
     series
 }
 
-/// A chart as a figure; none if there is nothing to draw.
+/// Makes a figure of a chart; `None` if there is nothing to draw.
 fn drawn(chart: &Chart, caption: &str) -> Result<Option<Figure>> {
     match chart.to_svg() {
         Ok(svg) => Ok(Some(Figure::svg(svg, caption))),

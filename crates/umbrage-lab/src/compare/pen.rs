@@ -1,9 +1,9 @@
-//! Words on pictures.
+//! Text on pictures.
 
 use ab_glyph::{Font as _, FontRef, PxScale, ScaleFont as _, point};
 use image::{Rgb, RgbImage};
 
-/// One face in one size, in pixels.
+/// A font at one size in pixels.
 #[derive(Debug)]
 pub struct Pen {
     font: FontRef<'static>,
@@ -11,28 +11,28 @@ pub struct Pen {
 }
 
 impl Pen {
-    /// Hack, a face for small sizes.
+    /// Loads Hack, a font for small sizes.
     #[must_use]
     pub fn new(size: f32) -> Self {
         let font = FontRef::try_from_slice(epaint_default_fonts::HACK_REGULAR).expect("the embedded font is a font");
         Self { font, size }
     }
 
-    /// Pixels from one line to the next.
+    /// Returns the pixels from one line to the next.
     #[must_use]
     pub fn line_height(&self) -> u32 {
         let font = self.font.as_scaled(PxScale::from(self.size));
         (font.height() + font.line_gap()).ceil() as u32 + 1
     }
 
-    /// Pixels across a line.
+    /// Returns the width of a line in pixels.
     #[must_use]
     pub fn width(&self, text: &str) -> u32 {
         let font = self.font.as_scaled(PxScale::from(self.size));
         text.chars().map(|c| font.h_advance(font.glyph_id(c))).sum::<f32>().ceil() as u32
     }
 
-    /// The line, or as much of its beginning as fits, with an ellipsis.
+    /// Returns the line, or as much of its beginning as fits, with an ellipsis.
     #[must_use]
     pub fn fitted(&self, text: &str, width: u32) -> String {
         if self.width(text) <= width {
@@ -48,7 +48,7 @@ impl Pen {
         String::new()
     }
 
-    /// Draws a line whose upper left corner is `at`; what lies outside the picture is cut off.
+    /// Draws a line whose upper left corner is `at`. Parts outside the picture are cut off.
     pub fn draw(&self, picture: &mut RgbImage, at: [u32; 2], colour: Rgb<u8>, text: &str) {
         let scale = PxScale::from(self.size);
         let font = self.font.as_scaled(scale);

@@ -2,42 +2,42 @@
 
 use super::shots::Stride;
 
-/// A known comparison: what holds where nothing else is said.
+/// A known comparison: the defaults of a request.
 #[derive(Debug)]
 pub struct Preset {
-    /// As it is typed.
+    /// Name of the preset, as it is typed.
     pub name: &'static str,
-    /// What it is, in a few words.
+    /// Description in a few words.
     pub about: &'static str,
-    /// Techniques, in the grammar of [`crate::technique::text`]; kinds that do not exist yet are
+    /// Techniques, in the grammar of [`crate::technique::text`]. Kinds that do not exist yet are
     /// left out with a note.
     pub techniques: &'static [&'static str],
-    /// Settings of all of them.
+    /// Settings of all techniques.
     pub with: &'static str,
-    /// Scenes.
+    /// Names of the scenes.
     pub scenes: &'static [&'static str],
-    /// Cameras; none: all.
+    /// Names of the cameras; empty for all.
     pub cameras: &'static [&'static str],
-    /// Suns, as `--suns` takes them.
+    /// Suns, in the grammar of `--suns`.
     pub suns: &'static [&'static str],
     /// Near plane in metres.
     pub near: Option<f64>,
     /// Far plane in metres.
     pub far: Option<f64>,
-    /// How cameras go on, for flicker.
+    /// Motion of cameras from frame to frame, for flicker.
     pub stride: Option<Stride>,
-    /// Pixels, where not those of all commands.
+    /// Width and height in pixels, if not the default of all commands.
     pub size: Option<[u32; 2]>,
-    /// Whether pictures show each split in its own colour.
+    /// True if pictures show each split in its own colour.
     pub tint: bool,
 }
 
 /// One map or slice, one nearest texel, one comparison, no blend, no fade, fitted to the slice
-/// alone: what the papers measured, and what the project's ladder was measured with.
+/// alone: the setting of the papers' measurements and of the project's series of techniques.
 const PLAIN: &str = "preset=papers:filter=hard:blend=0:far-fade=0:fit=independent:stabilize=none";
 
-/// [`PLAIN`] over the depths that are visible, for all techniques alike. Splits stand where the
-/// boxes in view promise the least error, and maps are chosen by what they contain.
+/// [`PLAIN`] over the visible depths, for all techniques alike. Split planes lie where the boxes in
+/// view promise the least error, and maps are selected by the area that they cover.
 const VISIBLE: &str = "preset=papers:filter=hard:blend=0:far-fade=0:fit=independent:stabilize=none:range-fit=visible";
 
 const LADDER: Preset = Preset {
@@ -203,8 +203,8 @@ const GEMS_RESULTS: Preset = Preset {
     ..GEMS_FIGURE
 };
 
-/// *Practical Cascaded Shadow Maps*, Figures 4.1.2 to 4.1.6: what flickers when the observer goes
-/// on. A frame is 0.15 m and 0.003 rad.
+/// *Practical Cascaded Shadow Maps*, Figures 4.1.2 to 4.1.6: flicker while the observer moves. A
+/// frame is 0.15 m and 0.003 rad.
 const STILLNESS: Preset = Preset {
     name: "stillness",
     about: "The kinds of stabilisation along a walk",
@@ -238,7 +238,7 @@ const PSVSM: Preset = Preset {
     ..FIGURE_8
 };
 
-/// Every filter on the same maps, under a sun of three degrees where the command says so.
+/// Every filter on the same maps, under a sun of three degrees if the command asks for it.
 const FILTERS: Preset = Preset {
     name: "filters",
     about: "Every filter on the same maps",
@@ -264,7 +264,7 @@ pub const ALL: [&Preset; 12] = [
     &GEMS_RESULTS,
 ];
 
-/// The preset of this name.
+/// Returns the preset of this name.
 #[must_use]
 pub fn named(name: &str) -> Option<&'static Preset> {
     ALL.into_iter().find(|preset| preset.name == name)

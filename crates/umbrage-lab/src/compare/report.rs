@@ -1,4 +1,4 @@
-//! Everything that was measured, as the JSON has it.
+//! Results of a comparison, as they are written to JSON.
 
 use serde::{Deserialize, Serialize};
 use umbrage_truth::scores::{MemoryAt, Seams, memory_at, paired};
@@ -6,49 +6,49 @@ use umbrage_truth::scores::{MemoryAt, Seams, memory_at, paired};
 use super::judge::{Cost, Scores, TexelPixels};
 use crate::{failure::Result, report::CameraReport};
 
-/// The error at which techniques are compared by their memory.
+/// Error rate E at which techniques are compared by their memory.
 pub const LIMIT: f64 = 0.005;
 
-/// A comparison.
+/// Results of a comparison.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
-    /// What was typed.
+    /// Command as it was typed.
     pub command: Vec<String>,
-    /// How one mask is drawn again.
+    /// Instructions to draw one mask again.
     pub reproduce: &'static str,
-    /// The graphics adapter.
+    /// Name of the graphics adapter.
     pub adapter: String,
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// |B*| of a view that counts.
+    /// Least |B*| of a view that counts.
     pub least_edges: usize,
-    /// The rows.
+    /// Results of each technique.
     pub techniques: Vec<TechniqueReport>,
-    /// Every view, whether it counts or not.
+    /// Results of every view, whether it counts or not.
     pub views: Vec<ViewReport>,
     /// Flicker along walks of two frames or more.
     pub walks: Vec<WalkReport>,
-    /// Every technique against every later one, by E over the views that count.
+    /// Comparison of every technique with every later one, by E over the views that count.
     pub pairs: Vec<PairReport>,
-    /// Memory at which a technique comes down to E = 0.5 %, for those that were measured at two
-    /// sizes or more.
+    /// Memory at which a technique comes down to E = 0.5 %, for techniques measured at two sizes or
+    /// more.
     pub memory_at_half_percent: Vec<FamilyReport>,
-    /// What was left out, invented or does not count.
+    /// Notes on parts that were left out, invented, or do not count.
     pub notes: Vec<String>,
 }
 
-/// A technique and how it does on average.
+/// Mean results of a technique.
 #[derive(Clone, Debug, Serialize)]
 pub struct TechniqueReport {
-    /// As in tables.
+    /// Label of the technique in tables.
     pub label: String,
-    /// The short form, with all settings.
+    /// Short form of the technique, with all settings.
     pub spec: String,
-    /// What it shares with itself at other sizes.
+    /// Part of the short form that is the same for the technique at other sizes.
     pub family: String,
-    /// As options of `umbrage render`.
+    /// Technique as options of `umbrage render`.
     pub options: Vec<String>,
-    /// Texels of all maps.
+    /// Number of texels of all maps.
     pub texels: u64,
     /// Bytes of all maps.
     pub bytes: u64,
@@ -59,40 +59,42 @@ pub struct TechniqueReport {
 /// Means over the views that count.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Means {
-    /// How many they are.
+    /// Number of views that count.
     pub views: usize,
-    /// E, the share of wrong decisions.
+    /// Share of wrong decisions, E.
     pub e: Option<f64>,
-    /// E_fs: dark where light should be.
+    /// Share of pixels that are dark where light should be, E_fs.
     pub e_false_shadow: Option<f64>,
-    /// E_fl: lit where shadow should be.
+    /// Share of pixels that are lit where shadow should be, E_fl.
     pub e_false_light: Option<f64>,
-    /// Falsely dark farther than 2 + 1.5 m pixels from true edges, of all scored pixels.
+    /// Share of all scored pixels that are falsely dark and farther than 2 + 1.5 m pixels from true
+    /// edges.
     pub acne: Option<f64>,
-    /// Falsely lit farther than that, of all scored pixels.
+    /// Share of all scored pixels that are falsely lit and farther than 2 + 1.5 m pixels from true
+    /// edges.
     pub leak: Option<f64>,
-    /// Share of the scored pixels that lies as far from true edges.
+    /// Share of the scored pixels farther than 2 + 1.5 m pixels from true edges.
     pub beyond_edges: Option<f64>,
-    /// E_log, the mean of E over bins of depth.
+    /// Mean of E over bins of depth, E_log.
     pub e_log: Option<f64>,
-    /// E_soft, with `--sun-angle`: mean difference from the share of the sun that is visible.
+    /// Mean difference from the visible share of the sun, E_soft, with `--sun-angle`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub e_soft: Option<f64>,
-    /// E_pen: the same over penumbrae.
+    /// Mean difference from the visible share of the sun over penumbrae, E_pen.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub e_pen: Option<f64>,
-    /// D, mean distance between true edges and those of the technique, pixels.
+    /// Mean distance between true edges and those of the technique in pixels, D.
     pub edge_distance_px: Option<f64>,
-    /// Its 95th percentile, pixels.
+    /// 95th percentile of the edge distance, in pixels.
     pub edge_distance_p95_px: Option<f64>,
-    /// Pixels that a texel covers on the screen.
+    /// Number of pixels that a texel covers on the screen.
     pub texel_px: Option<TexelPixels>,
-    /// The seam score: E on the borders of splits over the larger E of their sides, pooled over all
-    /// views; none on fewer than 2,000 pixels.
+    /// Seam score: E on the borders of splits over the larger E of their sides, pooled over all
+    /// views; `None` below 2,000 pixels.
     pub seam_ratio: Option<f64>,
-    /// F, over the walks that count.
+    /// Share of decisions that flip, F, over the walks that count.
     pub flicker: Option<f64>,
-    /// F_edge, over the walks that count.
+    /// Flips relative to the edges, F_edge, over the walks that count.
     pub flicker_per_edge: Option<f64>,
     /// F_edge over points that keep their split.
     pub kept_flicker_per_edge: Option<f64>,
@@ -102,26 +104,26 @@ pub struct Means {
     pub flip: Option<f64>,
     /// SSIM against the mask of the truth.
     pub ssim: Option<f64>,
-    /// With exact edges, the share of the points that depth alone does not decide.
+    /// Share of the points that depth alone does not decide, with exact edges.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub undecided: Option<f64>,
-    /// With exact edges, triangles that are tested for each of these.
+    /// Number of triangles tested per undecided point, with exact edges.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub triangles_per_undecided: Option<f64>,
-    /// Casters, summed over splits.
+    /// Number of casters, summed over splits.
     pub caster_split_pairs: Option<f64>,
-    /// Draw calls into maps.
+    /// Number of draw calls into maps.
     pub draws: Option<f64>,
-    /// Triangles drawn into maps.
+    /// Number of triangles drawn into maps.
     pub triangles: Option<f64>,
-    /// By bins of depth.
+    /// Means by bins of depth.
     pub by_depth: Vec<DepthMeans>,
 }
 
-/// A bin of depth, over the views that count.
+/// Means of a bin of depth, over the views that count.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct DepthMeans {
-    /// Geometric mean of the bin's middles, metres.
+    /// Geometric mean of the bin's middles, in metres.
     pub depth_m: f64,
     /// E in the bin.
     pub e: Option<f64>,
@@ -131,103 +133,103 @@ pub struct DepthMeans {
     pub measured_texels_per_px: Option<f64>,
 }
 
-/// A view.
+/// Results of a view.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct ViewReport {
-    /// The scene as it was named.
+    /// Scene as it was named.
     pub scene: String,
-    /// The eye.
+    /// Camera of the view.
     pub camera: CameraReport,
     /// Number of the frame in its walk.
     pub frame: Option<u32>,
-    /// The sun in words.
+    /// Sun in words.
     pub sun_name: String,
-    /// The way light travels, if it is a sun's.
+    /// Direction in which the sun's light travels; `None` for other lights.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sun: Option<[f64; 3]>,
-    /// The options of `umbrage render` that show it; along a path they show all its frames.
+    /// Options of `umbrage render` that show the view. Along a path they show all its frames.
     pub options: Vec<String>,
-    /// View depths that are scored, metres.
+    /// View depths that are scored, in metres.
     pub range_m: [f64; 2],
-    /// |Ω_f|.
+    /// Number of scored pixels, |Ω_f|.
     pub scored_pixels: usize,
-    /// |B*|.
+    /// Number of pixels on true edges, |B*|.
     pub true_edges: usize,
-    /// The view rule: whether it counts in means and comparisons.
+    /// True if the view has enough edges to count in means and comparisons.
     pub counts: bool,
-    /// One per technique, in their order.
+    /// Scores of each technique, in order.
     pub scores: Vec<Scores>,
 }
 
-/// A walk: one camera's frames under one sun.
+/// Results of a walk: one camera's frames under one sun.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct WalkReport {
-    /// The scene as it was named.
+    /// Scene as it was named.
     pub scene: String,
-    /// The camera.
+    /// Name of the camera.
     pub camera: String,
-    /// The sun in words.
+    /// Sun in words.
     pub sun_name: String,
-    /// How many frames.
+    /// Number of frames.
     pub frames: usize,
-    /// Whether each of its views counts.
+    /// True if each view of the walk counts.
     pub counts: bool,
-    /// One per technique, in their order.
+    /// Flicker of each technique, in order.
     pub flicker: Vec<FlickerReport>,
 }
 
 /// Flicker of one technique along one walk.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct FlickerReport {
-    /// F.
+    /// Share of decisions that flip, F.
     pub rate: Option<f64>,
-    /// F_edge; may exceed 1.
+    /// Flips relative to the edges, F_edge, which may exceed 1.
     pub per_edge: Option<f64>,
-    /// F_edge over points that the same split decides on in both frames, without another's share
-    /// and without a fade.
+    /// F_edge over points that the same split decides in both frames, without a blend and without a
+    /// fade.
     pub kept_per_edge: Option<f64>,
-    /// Those of them whose map took no step, over all pairs of frames.
+    /// Number of these points whose map took no step, over all pairs of frames.
     pub standing_points: usize,
-    /// F_edge over them.
+    /// F_edge over the points whose map took no step.
     pub standing_per_edge: Option<f64>,
-    /// How often a map took a step: changed its texel, axes or depth range instead of moving by
-    /// whole texels. Of a map that is not stabilised, how often it moved.
+    /// Number of steps of maps: changes of a map's texel size, axes or depth range, other than
+    /// moves by whole texels. A map that is not stabilised takes a step whenever it moves.
     pub steps: usize,
 }
 
-/// Two techniques over the same views.
+/// Comparison of two techniques over the same views.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PairReport {
-    /// The first.
+    /// Label of the first technique.
     pub first: String,
-    /// The second.
+    /// Label of the second technique.
     pub second: String,
-    /// Views.
+    /// Number of views.
     pub views: usize,
-    /// Mean of E of the first less E of the second: below 0 the first is better.
+    /// Mean of E of the first less E of the second technique; below 0 the first is better.
     pub mean_difference: f64,
-    /// Its standard error; none for a single view.
+    /// Standard error of the mean difference; `None` for a single view.
     pub standard_error: Option<f64>,
-    /// Views in which the first is better.
+    /// Number of views in which the first is better.
     pub first_better: usize,
-    /// Views in which the second is better.
+    /// Number of views in which the second is better.
     pub second_better: usize,
-    /// Views in which they are equal.
+    /// Number of views in which they are equal.
     pub ties: usize,
 }
 
-/// Memory for an error, of one technique at several sizes.
+/// Memory at an error rate, for one technique at several sizes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FamilyReport {
-    /// The technique without its sizes.
+    /// Technique without its sizes.
     pub family: String,
-    /// `at most`, `about` or `more than`.
+    /// Kind of the bound: `at most`, `about` or `more than`.
     pub bound: &'static str,
-    /// Texels.
+    /// Number of texels.
     pub texels: f64,
 }
 
-/// Means of one technique; `number` is its place among the scores of each view.
+/// Computes the means of one technique. `number` is its index in the scores of each view.
 #[must_use]
 pub fn means(number: usize, views: &[ViewReport], walks: &[WalkReport]) -> Means {
     let scores: Vec<&Scores> = views.iter().filter(|view| view.counts).map(|view| &view.scores[number]).collect();
@@ -284,14 +286,15 @@ pub fn means(number: usize, views: &[ViewReport], walks: &[WalkReport]) -> Means
     }
 }
 
-/// A seam needs pixels, not edges: every view is pooled.
+/// Computes the seam score from all views. A seam needs pixels, not edges, so views that do not
+/// count are included.
 fn seam_ratio(number: usize, views: &[ViewReport]) -> Option<f64> {
     let mut sum = Seams::default();
     views.iter().for_each(|view| sum += view.scores[number].seams.counts);
     sum.ratio().filter(|ratio| sum.counts() && ratio.is_finite())
 }
 
-/// Every technique against every later one, over the views that count.
+/// Compares every technique with every later one, over the views that count.
 pub fn pairs(labels: &[String], views: &[ViewReport]) -> Result<Vec<PairReport>> {
     let counting: Vec<&ViewReport> = views.iter().filter(|view| view.counts).collect();
     let mut pairs = Vec::new();
@@ -318,7 +321,7 @@ pub fn pairs(labels: &[String], views: &[ViewReport]) -> Result<Vec<PairReport>>
     Ok(pairs)
 }
 
-/// Memory at [`LIMIT`] of every technique that was measured at two sizes or more.
+/// Computes the memory at [`LIMIT`] of every technique that was measured at two sizes or more.
 pub fn families(techniques: &[TechniqueReport]) -> Result<Vec<FamilyReport>> {
     let mut families = Vec::new();
     for (number, technique) in techniques.iter().enumerate() {
@@ -341,7 +344,7 @@ pub fn families(techniques: &[TechniqueReport]) -> Result<Vec<FamilyReport>> {
     Ok(families)
 }
 
-/// The mean; `None` of nothing.
+/// Returns the mean; `None` without values.
 pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (count, sum) = values.fold((0_u32, 0.0), |(count, sum), value| (count + 1, sum + value));
     (count > 0).then(|| sum / f64::from(count))

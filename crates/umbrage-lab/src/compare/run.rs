@@ -1,4 +1,4 @@
-//! Draws, asks, scores, writes.
+//! Running a comparison: draws, probes, scores, writes the outputs.
 
 use indicatif::ProgressBar;
 use serde_json::{Value, json};
@@ -32,10 +32,10 @@ use crate::{
 
 const REPRODUCE: &str = "umbrage render OPTIONS-OF-THE-VIEW OPTIONS-OF-THE-TECHNIQUE --visibility MASK.png; truth: umbrage truth OPTIONS-OF-THE-VIEW -o TRUTH.png";
 
-/// Draws, scores and writes everything.
+/// Draws and scores everything and writes the outputs.
 ///
 /// # Errors
-/// [`Failure`] naming the technique that cannot be drawn, or the file that cannot be written.
+/// [`Failure`] with the technique that cannot be drawn, or the file that cannot be written.
 pub fn run(job: Job) -> Result<()> {
     let Job { techniques, scenes, settings, outputs, notes, resume, command } = job;
     let gpu = Gpu::new(&GpuOptions::default())?;
@@ -92,7 +92,7 @@ pub fn run(job: Job) -> Result<()> {
     journal.map_or(Ok(()), Journal::remove)
 }
 
-/// What grows while scenes are gone through.
+/// Results that grow while scenes are processed.
 struct Run<'a> {
     settings: &'a Settings,
     command: Vec<String>,
@@ -107,10 +107,10 @@ struct Run<'a> {
     journal: Option<Journal<Finished>>,
 }
 
-/// A frame whose points the next one is asked about again.
+/// A frame whose points are probed again in the next one.
 struct Before {
     judged: ViewTruth,
-    /// P_k.
+    /// Points that both frames share, P_k.
     points: Vec<ProbePoint>,
 }
 
@@ -157,7 +157,7 @@ impl Run<'_> {
         }
     }
 
-    /// Keeps the series that begins at these numbers of views, walks and shots on the sheets.
+    /// Writes the series that begins at these numbers of views, walks and shots of the sheets.
     fn keep(&mut self, series: [usize; 2], [views, walks, shots]: [usize; 3]) -> Result<()> {
         let Some(journal) = &mut self.journal else { return Ok(()) };
         journal.keep(&Finished {
@@ -340,7 +340,7 @@ impl Run<'_> {
     }
 }
 
-/// Everything that decides what a series comes to, for the journal.
+/// Describes all inputs that the results of a series depend on, for the journal.
 fn description(techniques: &[Technique], scenes: &[SceneShots], settings: &Settings, adapter: &str) -> Value {
     let series = |scene: &SceneShots| {
         let of = |series: &Series| json!([series.camera, series.sun_name, series.options]);
@@ -362,7 +362,7 @@ fn description(techniques: &[Technique], scenes: &[SceneShots], settings: &Setti
     })
 }
 
-/// Where a point is in the picture.
+/// Returns the pixel of a world point.
 fn pixel_of(view: &umbrage::View, size: [u32; 2], point: glam::DVec3) -> Option<[u32; 2]> {
     let (at, lens) = (view.view_from_world_point(point), view.frustum());
     let scale = lens.scale_at(-at.z);
@@ -373,7 +373,7 @@ fn pixel_of(view: &umbrage::View, size: [u32; 2], point: glam::DVec3) -> Option<
     inside.then_some(pixel.map(|at| at as u32))
 }
 
-/// P_k, as the renderer is asked about it.
+/// Returns P_k, as points for the renderer's probe.
 pub(crate) fn points_shared_with(judged: &ViewTruth, next: &umbrage::View) -> Vec<ProbePoint> {
     let shared = shared_points(&judged.truth, &judged.domain, next, judged.domain.range());
     let point =
@@ -381,7 +381,7 @@ pub(crate) fn points_shared_with(judged: &ViewTruth, next: &umbrage::View) -> Ve
     shared.into_iter().filter_map(point).collect()
 }
 
-/// Says which technique it was.
+/// Adds the technique to an error.
 fn in_technique(technique: &Technique, error: umbrage_render::Error) -> Failure {
     match Failure::from(error) {
         Failure::Input(message) => Failure::Input(format!("technique {}: {message}", technique.spec)),
@@ -389,12 +389,12 @@ fn in_technique(technique: &Technique, error: umbrage_render::Error) -> Failure 
     }
 }
 
-/// A scene's name without its folders.
+/// Returns a scene's name without its folders.
 fn short(scene: &str) -> String {
     std::path::Path::new(scene).file_name().map_or(scene.into(), |name| name.to_string_lossy().into_owned())
 }
 
-/// What stands beside the rows: techniques, then the truth.
+/// Returns the labels of the rows: techniques, then the truth.
 fn labels(comparison: &Comparison, techniques: &[Technique]) -> Vec<Label> {
     let of = |(report, technique): (&TechniqueReport, &Technique)| {
         let [texels, bytes] = [report.texels, report.bytes].map(|count| count as f64 / f64::from(1 << 20));

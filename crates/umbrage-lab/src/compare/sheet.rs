@@ -1,17 +1,17 @@
-//! The contact sheet: rows techniques, columns shots, insets where errors differ most, the truth as
-//! last row.
+//! The contact sheet: a row for each technique, a column for each shot, insets where errors differ
+//! most, and the truth as last row.
 
 use image::{GenericImage as _, Rgb, RgbImage, imageops};
 
 use super::{inset::Rect, pen::Pen};
 
-/// A sheet of many columns is not much wider than this.
+/// Approximate largest width in pixels of a sheet of many columns.
 const WIDTH: u32 = 2600;
-/// Edges of a cell.
+/// Range of the widths of a cell in pixels.
 const CELL_WIDTHS: std::ops::RangeInclusive<u32> = 180..=420;
-/// Widest label, beyond which it is cut off.
+/// Largest width of a label in pixels, beyond which it is cut off.
 const LABEL_WIDTH: u32 = 330;
-/// An inset is this much of its cell's width.
+/// Width of an inset as a share of its cell's width.
 const INSET_SHARE: f64 = 0.46;
 const GAP: u32 = 8;
 const TEXT: f32 = 14.0;
@@ -24,7 +24,7 @@ const BEST: Rgb<u8> = Rgb([0, 120, 60]);
 const WARNING: Rgb<u8> = Rgb([180, 60, 0]);
 const FRAME: Rgb<u8> = Rgb([255, 205, 0]);
 
-/// A row's name.
+/// Label of a row.
 #[derive(Clone, Debug)]
 pub struct Label {
     /// First line.
@@ -36,28 +36,29 @@ pub struct Label {
 /// A shot: a column of the sheet.
 #[derive(Clone, Debug)]
 pub struct SheetShot {
-    /// What is seen.
+    /// Name of the view.
     pub title: String,
     /// Smaller lines below.
     pub lines: Vec<String>,
-    /// What is wrong with the shot, if anything.
+    /// Warning about the shot, if there is one.
     pub warning: Option<String>,
-    /// One for each row.
+    /// Cell of each row.
     pub cells: Vec<Cell>,
 }
 
 /// A picture and its score.
 #[derive(Clone, Debug)]
 pub struct Cell {
-    /// As [`framed`] makes it.
+    /// Picture, as [`framed`] makes it.
     pub picture: RgbImage,
-    /// Below the picture.
+    /// Caption below the picture.
     pub caption: String,
-    /// Whether no other row is better.
+    /// True if no other row is better.
     pub is_best: bool,
 }
 
-/// Width and height of the cells of a sheet of so many shots, for pictures of this size.
+/// Returns width and height of the cells in pixels, for a sheet of so many shots and pictures of
+/// this size.
 #[must_use]
 pub fn cell_size(shots: usize, picture: [u32; 2]) -> [u32; 2] {
     let shots = u32::try_from(shots.max(1)).unwrap_or(u32::MAX);
@@ -67,7 +68,7 @@ pub fn cell_size(shots: usize, picture: [u32; 2]) -> [u32; 2] {
     [width, height.round().clamp(f64::from(width) / 4.0, f64::from(width) * 3.0) as u32]
 }
 
-/// A picture at a cell's size; the part of it in `inset` is marked and enlarged in the corner
+/// Scales a picture to a cell's size. The part in `inset` is marked, and enlarged in the corner
 /// farthest from it.
 #[must_use]
 pub fn framed(picture: &RgbImage, cell: [u32; 2], inset: Option<Rect>) -> RgbImage {
@@ -92,7 +93,7 @@ pub fn framed(picture: &RgbImage, cell: [u32; 2], inset: Option<Rect>) -> RgbIma
     framed
 }
 
-/// A frame of two pixels, inside the rectangle.
+/// Draws a frame of two pixels inside the rectangle.
 fn outline(picture: &mut RgbImage, rect: Rect, colour: Rgb<u8>) {
     let (right, below) = ((rect.x + rect.width).min(picture.width()), (rect.y + rect.height).min(picture.height()));
     for y in rect.y..below {
@@ -104,7 +105,7 @@ fn outline(picture: &mut RgbImage, rect: Rect, colour: Rgb<u8>) {
     }
 }
 
-/// The whole sheet. Every shot has a cell for every label.
+/// Draws the whole sheet. Every shot has a cell for every label.
 #[must_use]
 pub fn assemble(title: &str, labels: &[Label], shots: &[SheetShot], cell: [u32; 2]) -> RgbImage {
     let (pen, small) = (Pen::new(TEXT), Pen::new(SMALL));

@@ -1,4 +1,4 @@
-//! Which shots stand on the sheets, and their pictures.
+//! Choice of the shots on the sheets, and their pictures.
 
 use image::{DynamicImage, GrayAlphaImage, Rgb, RgbImage, RgbaImage};
 use umbrage_truth::scores::{Answers, Domain, LEAST_FACING, false_colour};
@@ -11,11 +11,11 @@ use super::{
 };
 use crate::failure::Result;
 
-/// Where a view stands: scene, series, frame.
+/// Indices of a view: scene, series, frame.
 pub type Place = [usize; 3];
 
-/// The views that the sheets show: one from each series, its middle one, or the frames of the only
-/// series; of too many, evenly chosen ones.
+/// Chooses the views of the sheets: the middle one of each series, or the frames of the only
+/// series; of too many, evenly spaced ones.
 #[must_use]
 pub fn chosen(sets: &[SceneShots], most: usize) -> Vec<Place> {
     let series = |set: usize| sets[set].series.len();
@@ -28,37 +28,37 @@ pub fn chosen(sets: &[SceneShots], most: usize) -> Vec<Place> {
     evenly(candidates.len(), most).map(|index| candidates[index]).collect()
 }
 
-/// At most `most` of the numbers below `count`, the first and the last among them.
+/// Returns at most `most` of the numbers below `count`, with the first and the last among them.
 fn evenly(count: usize, most: usize) -> impl Iterator<Item = usize> {
     let shown = count.min(most);
     (0..shown).map(move |i| if shown > 1 { (2 * i * (count - 1) + shown - 1) / (2 * (shown - 1)) } else { 0 })
 }
 
-/// What one technique made of a view.
+/// Result of one technique in a view.
 pub struct Answer {
-    /// Its mask.
+    /// Mask of the view.
     pub mask: GrayAlphaImage,
-    /// Its picture.
+    /// Picture of the view.
     pub picture: RgbaImage,
-    /// Its scores.
+    /// Scores of the view.
     pub scores: Scores,
-    /// Pixels of the points that it decided otherwise one frame ago.
+    /// Pixels of the points whose decision differs from that of one frame ago.
     pub flipped: Vec<[u32; 2]>,
 }
 
-/// How pixels are marked that a technique decided otherwise one frame ago.
+/// Colour of pixels whose decision differs from that of one frame ago.
 const FLIPPED: Rgb<u8> = Rgb([255, 216, 0]);
 
-/// What the truth's picture is put together from, beside the techniques' pictures: all that faces
-/// the sun lit, and nothing lit.
+/// Pictures that the truth's picture is made of, beside the techniques' pictures: all surfaces that
+/// face the sun lit, and none lit.
 pub struct Plain {
-    /// Without shadows.
+    /// Picture without shadows.
     pub lit: RgbaImage,
-    /// Without sun; about right where a surface faces the sun.
+    /// Picture without sun, which is about right where a surface faces the sun.
     pub dark: RgbaImage,
 }
 
-/// The shot of a view on the sheet of pictures and on that of errors, without headings.
+/// Makes the shot of a view for the sheet of pictures and for that of errors, without headings.
 pub fn sheet_shots(judged: &ViewTruth, answers: &[Answer], plain: &Plain, cell: [u32; 2]) -> Result<[SheetShot; 2]> {
     let decided: Vec<Answers> = answers.iter().map(|answer| Answers::from_mask(&answer.mask)).collect();
     let wrong: Vec<Vec<bool>> = decided.iter().map(|answers| wrong_pixels(judged, answers)).collect();
@@ -90,10 +90,10 @@ pub fn sheet_shots(judged: &ViewTruth, answers: &[Answer], plain: &Plain, cell: 
     Ok([pictures, errors].map(|cells| SheetShot { title: String::new(), lines: Vec::new(), warning: None, cells }))
 }
 
-/// The picture with true shadows: without shadows where the sun shines; elsewhere as a technique
-/// has it that rightly finds shadow there, and if none does, without sun. Surfaces that hardly face
-/// the sun or turn away are as the best technique has them: how they are shaded is no matter of
-/// shadows.
+/// Makes the picture with true shadows. Where the sun shines it is the picture without shadows.
+/// Elsewhere it is that of a technique that rightly finds shadow there, and if none does, the
+/// picture without sun. Surfaces that hardly face the sun or turn away are those of the best
+/// technique, because their shading does not depend on shadows.
 fn true_picture(judged: &ViewTruth, answers: &[Answer], plain: &Plain) -> RgbImage {
     let light = judged.truth.light();
     let errors = answers.iter().map(|answer| answer.scores.e.unwrap_or(1.0));
@@ -127,7 +127,7 @@ fn caption(scores: &Scores) -> String {
     }
 }
 
-/// Why a view does not count, if it does not.
+/// Returns the reason why a view does not count, if it does not.
 #[must_use]
 pub fn warning(domain: &Domain, least_edges: usize) -> Option<String> {
     let edges = domain.edges().len();

@@ -1,4 +1,4 @@
-//! Which views are compared: cameras × suns, along paths or a few steps, scene by scene.
+//! Views of a comparison: cameras × suns, along paths or a few steps, scene by scene.
 
 use std::path::Path;
 
@@ -15,31 +15,31 @@ use crate::{
     scene_setup,
 };
 
-/// Elevation of `into` where it says none, degrees.
+/// Default elevation of `into` in degrees.
 const INTO_ELEVATION: f64 = 11.0;
 
-/// The suns of `metrics`: degrees up.
+/// Elevations of the suns of `metrics` in degrees.
 const METRICS_ELEVATIONS: [f64; 2] = [43.0, 11.0];
 
-/// One entry of `--suns`.
+/// One value of `--suns`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SunSpec {
-    /// The scene's own, or the one that `--sun` or `--light` chooses.
+    /// The scene's own sun, or the one that `--sun` or `--light` chooses.
     Own,
-    /// At this elevation, at a bearing from north by east or at the own sun's, in degrees.
+    /// A sun at this elevation, at a bearing from north by east or at the own sun's, in degrees.
     At {
-        /// Above the horizon.
+        /// Elevation above the horizon in degrees.
         elevation: f64,
-        /// North is −Z, east is +X.
+        /// Bearing in degrees; north is −Z, east is +X.
         bearing: Option<f64>,
     },
-    /// Ahead of the camera at this elevation, so that light and eye nearly meet.
+    /// A sun ahead of the camera at this elevation in degrees, so that light and eye nearly meet.
     Into(f64),
-    /// Two suns for every camera and one view into the light for each scene.
+    /// Two suns for every camera, and one view into the light for each scene.
     Metrics,
 }
 
-/// `--suns`: `own`, `43`, `43@120`, `into`, `into@30`, `metrics`.
+/// Reads a value of `--suns`: `own`, `43`, `43@120`, `into`, `into@30`, `metrics`.
 pub fn sun_spec(text: &str) -> Result<SunSpec, String> {
     let text = text.trim();
     let number = |text: &str, what: &str, range: std::ops::RangeInclusive<f64>| match text.trim().parse::<f64>() {
@@ -60,23 +60,23 @@ pub fn sun_spec(text: &str) -> Result<SunSpec, String> {
     }
 }
 
-/// A scene with everything that is looked at in it.
+/// A scene with all its views.
 #[derive(Debug)]
 pub struct SceneShots {
-    /// As it was named.
+    /// Scene as it was named.
     pub name: String,
     /// The scene.
     pub scene: Scene,
-    /// At `--time`.
+    /// Pose of the scene at `--time`.
     pub pose: Pose,
     /// Cameras under suns.
     pub series: Vec<Series>,
-    /// What the loader left out and what was invented.
+    /// Notes of the loader, and on invented defaults.
     pub notes: Vec<String>,
 }
 
 impl SceneShots {
-    /// All views, each under its light.
+    /// Returns all views, each under its light.
     #[must_use]
     pub fn views(&self) -> Vec<(&View, Light)> {
         self.series.iter().flat_map(|series| series.views.iter().map(|view| (view, series.light.light))).collect()
@@ -86,15 +86,16 @@ impl SceneShots {
 /// One camera under one sun: a single view, or the frames of a walk.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// The camera.
+    /// Name of the camera.
     pub camera: String,
-    /// The sun in words: `own sun, 31° up`; the name of another light.
+    /// Sun in words, such as `own sun, 31° up`; the name of another light.
     pub sun_name: String,
     /// The light.
     pub light: Lamp,
-    /// Frames in order; one for a single view.
+    /// Views of the frames in order; one for a single view.
     pub views: Vec<View>,
-    /// Options of `umbrage render` that show the same; of a walk along a path, all frames at once.
+    /// Options of `umbrage render` that show the views. For a walk along a path they show all
+    /// frames at once.
     pub options: Vec<Vec<String>>,
 }
 
@@ -105,21 +106,21 @@ struct Walk {
     options: Vec<Vec<String>>,
 }
 
-/// How a camera without a path goes on from frame to frame.
+/// Motion from frame to frame of a camera without a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stride {
-    /// Metres forward.
+    /// Metres forward per frame.
     pub metres: f64,
-    /// Degrees to the left, about the world's vertical.
+    /// Rotation per frame in degrees to the left, about the world's vertical.
     pub turn: f64,
-    /// Factor by which it magnifies.
+    /// Factor of magnification per frame.
     pub zoom: f64,
-    /// How many frames there are.
+    /// Number of frames.
     pub frames: u32,
 }
 
 impl Stride {
-    /// Frame `k`, of which `before` is the one before.
+    /// Returns the view of frame `k`; `before` is the frame before.
     fn onwards(&self, before: &View) -> Result<View> {
         let eye = before.eye() + before.forward() * self.metres;
         let turn = DQuat::from_rotation_y(self.turn.to_radians());
@@ -132,16 +133,16 @@ impl Stride {
     }
 }
 
-/// Which views of each scene are compared, a preset's defaults filled in.
+/// Request for the views of each scene, with a preset's defaults filled in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShotRequest {
-    /// What all views have in common. The scene and its camera are filled in one after the other.
+    /// Part that all views share. The scene and its camera are filled in one after the other.
     pub base: SceneRequest,
-    /// The cameras; none: all that the scene has.
+    /// Cameras; empty for all that the scene has.
     pub cameras: Vec<CameraChoice>,
-    /// Suns that every camera is seen under; none were asked for: the scene's own.
+    /// Suns that every camera is seen under; `None` for the scene's own.
     pub suns: Option<Vec<SunSpec>>,
-    /// How cameras without a path go on.
+    /// Motion of cameras without a path.
     pub stride: Option<Stride>,
 }
 
@@ -150,7 +151,7 @@ impl ShotRequest {
         SceneRequest { scene: scene.to_owned(), ..self.base.clone() }.with_camera(camera.clone())
     }
 
-    /// The path that a camera moves along.
+    /// Returns the path that a camera moves along.
     #[must_use]
     pub fn path(&self) -> Option<&Path> {
         self.cameras.iter().find_map(|camera| match camera {
@@ -162,7 +163,7 @@ impl ShotRequest {
     /// Opens a scene and finds its views.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming the file or option at fault.
+    /// [`Failure::Input`] with the file or option at fault.
     pub fn open(&self, name: &str) -> Result<SceneShots> {
         let path = self.path().map(CameraPath::load).transpose()?;
         let scene = open::open(name, &self.base.files, self.base.move_scene)?;
@@ -208,7 +209,7 @@ impl ShotRequest {
         Ok(SceneShots { name: name.to_owned(), scene, pose, series, notes })
     }
 
-    /// The one light that techniques are judged under.
+    /// Returns the one light that techniques are judged under.
     fn own_light(&self, lights: &[NamedLight]) -> Result<NamedLight> {
         let [own] = lights else {
             let names: Vec<&str> = lights.iter().map(|light| light.name.as_str()).collect();
@@ -314,7 +315,7 @@ impl ShotRequest {
         Ok(Walk { camera, views, options })
     }
 
-    /// Names and ways of travel of the suns that a camera is seen under.
+    /// Returns names and light directions of the suns that a camera is seen under.
     fn suns_of(&self, own_travel: DVec3, walk: &Walk, first: bool) -> Vec<(String, DVec3)> {
         let to_own = -own_travel;
         let ahead = walk.views[0].forward();
@@ -346,7 +347,8 @@ impl ShotRequest {
     }
 }
 
-/// The unit vector to a sun at an elevation in degrees, in the horizontal direction of `towards`.
+/// Returns the unit vector to a sun at an elevation in degrees, in the horizontal direction of
+/// `towards`.
 fn sun_at(elevation: f64, towards: DVec3) -> DVec3 {
     let across = DVec3::new(towards.x, 0.0, towards.z).try_normalize().unwrap_or_else(|| {
         // Straight above or below: as the invented sun stands.

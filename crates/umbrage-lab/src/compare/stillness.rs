@@ -1,5 +1,5 @@
 //! Flicker of one technique along a walk: over all points, over those that keep their split, and
-//! over those of them whose map takes no step.
+//! over those of the latter whose map takes no step.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use umbrage_truth::scores::{Domain, Flicker, FramePair};
 use super::report::FlickerReport;
 use crate::failure::Result;
 
-/// The sums of one technique, frame after frame.
+/// Sums of one technique, frame after frame.
 #[derive(Debug)]
 pub struct Stillness {
     transition: Transition,
@@ -27,31 +27,31 @@ pub struct Stillness {
 #[derive(Debug)]
 struct Before {
     plan: Arc<ShadowPlan>,
-    /// At the points that this frame and the next have in common.
+    /// Answers at the points that this frame and the next share.
     answers: Vec<f32>,
 }
 
-/// What a technique answered in one frame.
+/// Answers of a technique in one frame.
 #[derive(Debug)]
 pub struct Answered<'a> {
-    /// How it planned the frame.
+    /// Plan of the frame.
     pub plan: Arc<ShadowPlan>,
-    /// At the points that the frame before shares with this one.
+    /// Answers at the points that the frame before shares with this one.
     pub shared: &'a [f32],
-    /// At those that this frame shares with the next.
+    /// Answers at the points that this frame shares with the next.
     pub next: &'a [f32],
 }
 
 impl Stillness {
-    /// Nothing yet.
+    /// Starts with empty sums.
     #[must_use]
     pub fn new(transition: Transition) -> Self {
         let (all, kept, standing) = Default::default();
         Self { transition, all, kept, standing, standing_points: 0, steps: 0, before: None }
     }
 
-    /// One more frame. `shared` are the domain of the frame before and the points that it shares
-    /// with this one; answers which of those are decided otherwise now.
+    /// Adds one more frame. `shared` are the domain of the frame before and the points that it
+    /// shares with this one. Returns the points among them whose decision has changed.
     ///
     /// # Errors
     /// [`crate::failure::Failure`] if answers are missing or none at all.
@@ -91,7 +91,7 @@ impl Stillness {
         Ok(flipped)
     }
 
-    /// What it came to.
+    /// Returns the flicker so far.
     #[must_use]
     pub fn report(&self) -> FlickerReport {
         FlickerReport {
@@ -105,20 +105,20 @@ impl Stillness {
     }
 }
 
-/// Who decides on a point.
+/// Split that decides on a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Decides {
-    /// One split alone.
+    /// A single split.
     Split(usize),
-    /// Two splits that are mixed, or one that fades out: their shares change as the eye moves, and
-    /// soft edges with them.
+    /// Two splits that are blended, or one that fades out. Their shares change as the eye moves,
+    /// and soft edges with them.
     Several,
-    /// It lies beyond the range.
+    /// No split, because the point lies beyond the range.
     Nobody,
 }
 
-/// Who decides on a point, by its view depth or its distance. A dithered border lies in the middle
-/// of its band for points that are no pixels.
+/// Returns the split that decides on a point, by its view depth or its distance. A dithered border
+/// counts as lying in the middle of its band, because the points are not pixels.
 fn decides(plan: &ShadowPlan, point: &ProbePoint, transition: Transition) -> Decides {
     let depth = plan.depth_at(point.position);
     let Some(index) = plan.splits.iter().position(|split| depth < split.far) else { return Decides::Nobody };

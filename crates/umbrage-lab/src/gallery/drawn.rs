@@ -1,19 +1,19 @@
-//! A shot with all that is shown of it.
+//! A drawn shot with all its pictures.
 
 use image::{DynamicImage, GrayAlphaImage, RgbaImage};
 
 use super::scenes::Shot;
 use crate::report::Report;
 
-/// A shot that was drawn.
+/// A drawn shot.
 pub(super) struct Drawn {
     pub shot: &'static Shot,
     pub command: String,
     pub picture: RgbaImage,
-    /// The picture coloured by split.
+    /// Picture with each split in its own colour.
     pub tint: RgbaImage,
     pub mask: GrayAlphaImage,
-    /// Each split's map, nearest first.
+    /// Map of each split, nearest first.
     pub maps: Vec<DynamicImage>,
     pub report: Report,
 }

@@ -11,14 +11,15 @@ use crate::{
     report::{Report, to_json},
 };
 
-/// Good enough to see shadow edges, small enough for a page with forty pictures.
+/// Quality of JPEG pictures: good enough to show shadow edges, small enough for a page with forty
+/// pictures.
 const JPEG_QUALITY: u8 = 90;
-/// Longest edge of a mask or shadow map on the page, pixels.
+/// Longest edge of a mask or shadow map on the page, in pixels.
 const SMALL_EDGE: u32 = 320;
-/// Where a mask hits nothing.
+/// Colour of pixels where a mask has no surface.
 const SKY: [u8; 3] = [186, 207, 232];
 
-/// The whole page.
+/// Makes the whole page.
 pub(super) fn page(adapter: &str, sections: Vec<Section>) -> String {
     let page = Page {
         title: "umbrage: what it draws".into(),
@@ -34,7 +35,7 @@ pub(super) fn page(adapter: &str, sections: Vec<Section>) -> String {
     page.html()
 }
 
-/// One scene with its shots.
+/// Makes the section of one scene with its shots.
 pub(super) fn section(scene: &Scene, shots: &[Drawn]) -> Result<Section> {
     let mut section = Section::new(scene.title).note(scene.about);
     for drawn in shots {
@@ -100,7 +101,7 @@ fn costs(report: &Report) -> String {
     )
 }
 
-/// A mask or map, made smaller. What is transparent becomes the colour of the sky.
+/// Scales a mask or map down. Transparent pixels get the colour of the sky.
 fn small(picture: &DynamicImage) -> DynamicImage {
     let picture = picture.thumbnail(SMALL_EDGE, SMALL_EDGE);
     if !picture.color().has_alpha() {
@@ -127,7 +128,7 @@ fn jpeg(picture: &DynamicImage) -> Result<Vec<u8>> {
     Ok(file.into_inner())
 }
 
-/// Bytes in KiB or MiB.
+/// Formats bytes in KiB or MiB.
 fn bytes(count: u64) -> String {
     if count >= 1 << 20 {
         format!("{:.2} MiB", count as f64 / f64::from(1 << 20))

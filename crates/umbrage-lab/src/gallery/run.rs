@@ -1,4 +1,4 @@
-//! Draws the gallery.
+//! Drawing the gallery: pictures, reports, and the page.
 
 use std::{
     fs,
@@ -24,25 +24,25 @@ use crate::{
     technique::text,
 };
 
-/// What the gallery is drawn with: all defaults.
+/// Technique of the gallery: all defaults.
 const TECHNIQUE: &str = "pssm:4:1024";
 
-/// What is to be drawn.
+/// Job of drawing a gallery.
 #[derive(Debug)]
 pub struct Job {
     /// The scenes.
     pub scenes: Vec<&'static Scene>,
-    /// Pixels of each picture.
+    /// Width and height of each picture in pixels.
     pub size: [u32; 2],
-    /// Where everything goes: `index.html` and the folder `shots`.
+    /// Folder of the outputs: `index.html` and the folder `shots`.
     pub folder: PathBuf,
 }
 
 /// Draws every shot, then writes the page and, below it, full-size pictures, masks, maps and
-/// reports. Answers where the page is.
+/// reports. Returns the path of the page.
 ///
 /// # Errors
-/// [`Failure`] naming the scene that cannot be drawn or the file that cannot be written.
+/// [`Failure`] with the scene that cannot be drawn or the file that cannot be written.
 pub fn run(job: &Job) -> Result<PathBuf> {
     let shots_folder = job.folder.join("shots");
     fs::create_dir_all(&shots_folder).map_err(|error| Failure::file("make", &shots_folder, &error))?;
@@ -106,7 +106,7 @@ fn draw(
     })
 }
 
-/// A folder for each shot, in place of what an earlier run left there.
+/// Writes a folder for each shot, in place of that of an earlier run.
 fn write(staged: &mut Staged, home: &Path, drawn: &Drawn) -> Result<()> {
     if home.exists() {
         fs::remove_dir_all(home).map_err(|error| Failure::file("replace", home, &error))?;

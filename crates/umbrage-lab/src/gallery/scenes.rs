@@ -1,4 +1,4 @@
-//! What the gallery shows.
+//! Scenes and shots of the gallery.
 
 use glam::DVec3;
 
@@ -10,32 +10,32 @@ use crate::{
 /// A scene and its shots.
 #[derive(Debug)]
 pub struct Scene {
-    /// For file names and the command line.
+    /// Id for file names and the command line.
     pub id: &'static str,
     /// Heading.
     pub title: &'static str,
-    /// A sentence about the scene.
+    /// Sentence about the scene.
     pub about: &'static str,
-    /// A world's name or a file, from the repository's root.
+    /// Name of a world, or a file from the repository's root.
     pub scene: &'static str,
-    /// The way its sun travels, where the scene has none of its own.
+    /// Direction in which the sun's light travels, for scenes without a sun of their own.
     pub sun: Option<DVec3>,
-    /// What to look at.
+    /// Shots of the scene.
     pub shots: &'static [Shot],
 }
 
 /// A view of a scene.
 #[derive(Debug)]
 pub struct Shot {
-    /// For file names.
+    /// Name for file names.
     pub name: &'static str,
-    /// What to look for.
+    /// Caption that says what to look for.
     pub caption: &'static str,
-    /// Where from.
+    /// Camera of the shot.
     pub camera: Camera,
 }
 
-/// A camera of the scene, or an eye and the point that it looks at, metres.
+/// A camera of the scene, or an eye and its target in metres.
 #[derive(Clone, Copy, Debug)]
 #[expect(missing_docs, reason = "the two ways")]
 pub enum Camera {
@@ -44,7 +44,7 @@ pub enum Camera {
 }
 
 impl Scene {
-    /// What a shot looks at.
+    /// Returns the request of a shot.
     ///
     /// # Errors
     /// Never for the shots of [`SCENES`]: their lenses are sound.
@@ -57,7 +57,7 @@ impl Scene {
         })
     }
 
-    /// The command that draws a shot.
+    /// Returns the command that draws a shot.
     #[must_use]
     pub fn command(&self, shot: &Shot, size: [u32; 2]) -> String {
         let vector = |v: DVec3| format!("{},{},{}", v.x, v.y, v.z);
@@ -71,7 +71,7 @@ impl Scene {
     }
 }
 
-/// Every world has these four cameras.
+/// Shots of the four cameras that every world has.
 const WORLD_SHOTS: &[Shot] = &[
     Shot { name: "near", caption: "Shadows at arm's length: the first splits.", camera: Camera::Named("near") },
     Shot {
@@ -114,7 +114,7 @@ const fn world(id: &'static str, title: &'static str, about: &'static str) -> Sc
     Scene { id, title, about, scene: id, sun: None, shots: WORLD_SHOTS }
 }
 
-/// The worlds of the PSSM paper, then the city.
+/// All scenes: the worlds of the PSSM paper, then the city.
 pub const SCENES: &[Scene] = &[
     world("robot-war", "Robot War", "160 robots, 240,000 triangles, on a plain of 1.44 km²."),
     world("chessboard", "Huge Chessboard", "32 chessmen, 51,000 triangles, on 0.49 km²."),

@@ -1,9 +1,9 @@
 //! Files appear whole or not at all.
 //!
 //! Every output is first written in full into a hidden folder of the run, in its target's own
-//! folder; only when all of them are there are they renamed into place. Whatever goes wrong before
-//! that (a full disk, a lost device, a bad frame) leaves nothing. An interrupted run leaves its
-//! finished frames ([`clean_up_on_signals`]), and what a killed one leaves goes with the next.
+//! folder; only when all of them are there are they renamed into place. An error before that (a
+//! full disk, a lost device, a bad frame) leaves nothing. An interrupted run leaves its finished
+//! frames ([`clean_up_on_signals`]). The remains of a killed run are removed by the next.
 
 use std::{
     collections::{HashMap, HashSet},
@@ -21,11 +21,11 @@ mod signals;
 use run_folder::RunFolder;
 pub use signals::clean_up_on_signals;
 
-/// Links that are followed, one to the next; systems give up at as many.
+/// Most links that are followed, one to the next. Operating systems have the same limit.
 const MOST_LINKS: usize = 40;
 
-/// `NAME.png` of frame 7 is `NAME.0007.png`; a name without extension gets the number at its end.
-/// Without a frame the name stays.
+/// Returns `NAME.0007.png` for `NAME.png` and frame 7. A name without extension gets the number at
+/// its end. Without a frame the name stays.
 #[must_use]
 pub fn numbered_file(path: &Path, frame: Option<u32>) -> PathBuf {
     match (frame, path.file_stem(), path.extension()) {
@@ -42,7 +42,7 @@ pub fn numbered_file(path: &Path, frame: Option<u32>) -> PathBuf {
     }
 }
 
-/// `DIR` of frame 7 is `DIR.0007`.
+/// Returns `DIR.0007` for `DIR` and frame 7.
 #[must_use]
 pub fn numbered_folder(path: &Path, frame: Option<u32>) -> PathBuf {
     match (frame, path.file_name()) {
@@ -59,7 +59,7 @@ pub fn numbered_folder(path: &Path, frame: Option<u32>) -> PathBuf {
 /// would replace an input, a folder that does not exist or may not be written to.
 ///
 /// # Errors
-/// [`Failure::Input`] naming the path.
+/// [`Failure::Input`] with the path.
 pub fn check(files: &[&Path], folders: &[&Path], inputs: &[&Path]) -> Result<()> {
     if let Some(path) = files.iter().find(|path| path.is_dir()) {
         return Err(is_a_folder(path));
@@ -88,18 +88,19 @@ pub fn check(files: &[&Path], folders: &[&Path], inputs: &[&Path]) -> Result<()>
     Ok(())
 }
 
-/// Outputs that are written but not yet in place. Dropped without [`Staged::commit`], they vanish.
+/// Outputs that are written but not yet in place. If dropped without [`Staged::commit`], they
+/// vanish.
 #[derive(Debug)]
 pub struct Staged(Arc<Mutex<Pending>>);
 
-/// Shared with whoever waits for signals.
+/// State that is shared with the signal handler.
 #[derive(Debug, Default)]
 struct Pending {
     entries: Vec<Entry>,
-    /// As many of them, from the first on, belong to frames that are finished.
+    /// Number of entries, from the first on, that belong to finished frames.
     finished: usize,
     targets: HashSet<PathBuf>,
-    /// This run's hidden folder in each place that something is to appear in.
+    /// Hidden folder of this run in each place of an output.
     folders: HashMap<PathBuf, RunFolder>,
 }
 
@@ -107,8 +108,8 @@ struct Pending {
 enum Entry {
     /// A file, written and closed, or a folder of such files.
     Written { path: PathBuf, target: PathBuf },
-    /// A pipe, a terminal, a device: nothing to rename, so it is written when everything else is
-    /// ready.
+    /// A pipe, a terminal, or a device, which cannot be renamed. It is written when all other
+    /// outputs are ready.
     Special { bytes: Vec<u8>, target: PathBuf },
 }
 
@@ -121,11 +122,11 @@ impl Default for Staged {
 }
 
 impl Staged {
-    /// Writes a file that is to appear at `target`, in place of what may be there.
+    /// Writes a file that is to appear at `target`, in place of an existing file.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming the target: it is a folder, its folder is missing, the disk is
-    /// full, …
+    /// [`Failure::Input`] with the target: it is a folder, its folder is missing, the disk is full,
+    /// …
     pub fn file(&mut self, target: &Path, bytes: Vec<u8>) -> Result<()> {
         self.pending().file(target, bytes)
     }
@@ -139,18 +140,17 @@ impl Staged {
         self.pending().folder(target, files)
     }
 
-    /// Says that what was written so far is whole frames, which are worth keeping if the run is
-    /// interrupted.
+    /// Marks all files so far as whole frames, which are kept if the run is interrupted.
     pub fn finish_frame(&mut self) {
         let mut pending = self.pending();
         pending.finished = pending.entries.len();
     }
 
-    /// Puts everything in place. A reader of a pipe who has left is no error.
+    /// Puts everything in place. A reader of a pipe that has closed it is no error.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming the target that refused; those that came before it are taken back,
-    /// except that a file that was replaced stays replaced.
+    /// [`Failure::Input`] with the target that failed. Earlier targets are removed again, except
+    /// that a replaced file stays replaced.
     pub fn commit(self) -> Result<()> {
         // Locked to the end: a signal waits until everything is in place.
         self.pending().commit()
@@ -209,8 +209,8 @@ impl Pending {
         })
     }
 
-    /// Puts finished frames in place, forgets everything else, and answers how many files or
-    /// folders that were.
+    /// Puts finished frames in place, forgets everything else, and returns the number of files or
+    /// folders.
     #[cfg(unix)]
     fn keep_finished(&mut self) -> usize {
         let entries = std::mem::take(&mut self.entries);
@@ -222,7 +222,7 @@ impl Pending {
         kept
     }
 
-    /// This run's hidden folder beside a target.
+    /// Returns this run's hidden folder beside a target.
     fn run_folder(&mut self, target: &Path) -> io::Result<&mut RunFolder> {
         let place = folder_of(target);
         if !self.folders.contains_key(place) {
@@ -250,7 +250,7 @@ fn is_no_folder(path: &Path) -> Failure {
     Failure::input(format!("{} is not a folder; give the name of one", path.display()))
 }
 
-/// Puts one entry in place and notes it in `created` if nothing was there before.
+/// Puts one entry in place, and adds it to `created` if nothing was there before.
 fn place(entry: Entry, created: &mut Vec<PathBuf>) -> Result<()> {
     match entry {
         Entry::Special { bytes, target } => {
@@ -274,13 +274,13 @@ fn place(entry: Entry, created: &mut Vec<PathBuf>) -> Result<()> {
     }
 }
 
-/// Whether the path leads to something that is neither a file nor a folder.
+/// Returns whether the path leads to something that is neither a file nor a folder.
 fn is_special(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|meta| !meta.is_file() && !meta.is_dir())
 }
 
-/// The path with links followed and `.` and `..` gone; its last part need not exist, nor what a
-/// link at its end leads to.
+/// Resolves links, `.` and `..` in a path. Its last part need not exist, nor the target of a link
+/// at its end.
 fn resolve(path: &Path) -> Result<PathBuf> {
     let failed = |error: io::Error| Failure::file("write", path, &error);
     let mut target = path.to_path_buf();

@@ -1,8 +1,8 @@
-//! The hidden folder in which a run keeps what is not finished, beside where it is to appear.
+//! The hidden folder in which a run keeps unfinished outputs, beside their final place.
 //!
-//! A run holds a lock on a file in its folder for as long as it lives. The system takes the lock
-//! from a run that was killed, so the next run that writes to the same place knows whose folders
-//! nobody will come back to.
+//! A run holds a lock on a file in its folder for as long as it lives. The system releases the lock
+//! of a run that was killed, so the next run that writes to the same place recognises abandoned
+//! folders.
 
 use std::{
     fs,
@@ -12,22 +12,22 @@ use std::{
 
 use tempfile::TempDir;
 
-/// What the names of such folders begin with.
+/// Prefix of the names of such folders.
 const PREFIX: &str = ".umbrage-run-";
 const LOCK: &str = "lock";
 
-/// One run's folder in one place. Dropped, it vanishes with what is still in it.
+/// One run's folder in one place. If dropped, it vanishes with its content.
 #[derive(Debug)]
 pub(super) struct RunFolder {
     folder: TempDir,
-    /// Locked while this run lives.
+    /// File that is locked while this run lives.
     _lock: fs::File,
-    /// How many names were given.
+    /// Number of names that were given.
     given: usize,
 }
 
 impl RunFolder {
-    /// A folder of this run in `place`, from which what killed runs left goes first.
+    /// Makes a folder of this run in `place`, after removing folders of killed runs.
     pub fn new(place: &Path) -> io::Result<Self> {
         remove_abandoned(place);
         let folder = tempfile::Builder::new().prefix(PREFIX).tempdir_in(place)?;
@@ -40,14 +40,14 @@ impl RunFolder {
         Ok(Self { folder, _lock: lock, given: 0 })
     }
 
-    /// Writes a file in full and answers where it is.
+    /// Writes a file in full and returns its path.
     pub fn write(&mut self, bytes: &[u8]) -> io::Result<PathBuf> {
         let path = self.next();
         write_whole(&path, bytes)?;
         Ok(path)
     }
 
-    /// Writes a folder of files in full and answers where it is.
+    /// Writes a folder of files in full and returns its path.
     pub fn write_folder(&mut self, files: &[(String, Vec<u8>)]) -> io::Result<PathBuf> {
         let path = self.next();
         fs::create_dir(&path)?;
@@ -68,8 +68,7 @@ fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.sync_all()
 }
 
-/// Removes folders whose runs are gone. Best effort: a folder that cannot be removed is nobody's
-/// failure.
+/// Removes folders whose runs have ended. A folder that cannot be removed is ignored.
 fn remove_abandoned(place: &Path) {
     let Ok(entries) = fs::read_dir(place) else { return };
     for entry in entries.flatten() {

@@ -1,22 +1,21 @@
-//! What a run leaves when it is interrupted: its finished frames, and nothing hidden.
+//! Clean-up after an interrupted run: its finished frames stay, and no hidden folder is left.
 
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use super::Pending;
 
-/// The outputs of this process that are not in place yet.
+/// Outputs of this process that are not in place yet.
 static PENDING: Mutex<Vec<Weak<Mutex<Pending>>>> = Mutex::new(Vec::new());
 
-/// Has the outputs looked after when a signal comes.
+/// Registers outputs for clean-up on a signal.
 pub(super) fn watch(pending: &Arc<Mutex<Pending>>) {
     let mut all = PENDING.lock().unwrap_or_else(PoisonError::into_inner);
     all.retain(|other| other.strong_count() > 0);
     all.push(Arc::downgrade(pending));
 }
 
-/// From now on SIGINT (Ctrl-C), SIGTERM and SIGHUP put finished frames in place and remove
-/// everything hidden, before they end the process as they would have. Other systems than Unix end
-/// it at once.
+/// Makes SIGINT (Ctrl-C), SIGTERM and SIGHUP put finished frames in place and remove hidden folders
+/// before they end the process. Systems other than Unix end it at once.
 pub fn clean_up_on_signals() {
     #[cfg(unix)]
     {

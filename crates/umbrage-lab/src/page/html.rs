@@ -1,10 +1,11 @@
-//! Report pages: one HTML file with everything inside, no script, nothing fetched.
+//! Report pages: one HTML file with all its content, without scripts and without external files.
 //!
 //! A [`Page`] holds [`Section`]s, a section holds blocks in order: [text](Section::text),
 //! [figures](Section::figure), [tables](Section::table), [sheets of pictures](Section::sheet).
-//! Every text that comes in is plain and is escaped; in running text and captions `` `backticks` ``
-//! set code. Pictures go in as PNG or JPEG bytes, charts as the `<svg>` of [`super::plot`].
-//! Readable on a phone and on a desktop, light or dark as the reader's system is.
+//! Every text that is passed in is plain and is escaped; in running text and captions ``
+//! `backticks` `` set code. Pictures go in as PNG or JPEG bytes, charts as the `<svg>` of
+//! [`super::plot`]. Pages are readable on a phone and on a desktop, and light or dark as the
+//! reader's system is.
 
 use base64::{Engine, engine::general_purpose::STANDARD};
 use maud::{Markup, PreEscaped, html};
@@ -13,7 +14,7 @@ use super::plot::dark_style;
 
 const STYLE: &str = include_str!("html.css");
 
-/// Plain text with `` `code` `` set as code. A backtick without its partner stays.
+/// Escapes plain text and sets `` `code` `` in it as code. A backtick without its partner stays.
 fn running(text: &str) -> Markup {
     let parts: Vec<&str> = text.split('`').collect();
     let last = parts.len() - 1;
@@ -24,7 +25,7 @@ fn running(text: &str) -> Markup {
     }
 }
 
-/// A name as an anchor: lower case letters, digits and hyphens.
+/// Converts a name to an anchor: lower case letters, digits and hyphens.
 fn anchor(name: &str) -> String {
     let words: Vec<String> = name
         .split(|c: char| !c.is_ascii_alphanumeric())
@@ -34,21 +35,21 @@ fn anchor(name: &str) -> String {
     words.join("-")
 }
 
-/// A whole report.
+/// A report.
 #[derive(Clone, Debug, Default)]
 pub struct Page {
-    /// The browser's title and the first heading.
+    /// Title of the browser's window, and first heading.
     pub title: String,
-    /// What it is about, one paragraph each.
+    /// Introduction, one paragraph each.
     pub lead: Vec<String>,
-    /// In order; each is in the navigation.
+    /// Sections in order; each is in the navigation.
     pub sections: Vec<Section>,
-    /// How the page came to be.
+    /// Footer that says how the page was made.
     pub footer: String,
 }
 
 impl Page {
-    /// The file's text.
+    /// Writes the text of the file.
     #[must_use]
     pub fn html(&self) -> String {
         let dark = dark_style("svg.plot");
@@ -93,13 +94,13 @@ pub struct Section {
 }
 
 impl Section {
-    /// An empty section.
+    /// Makes an empty section.
     #[must_use]
     pub fn new(title: impl Into<String>) -> Self {
         Self { title: title.into(), blocks: Vec::new() }
     }
 
-    /// Its heading.
+    /// Returns the heading.
     #[must_use]
     pub fn title(&self) -> &str {
         &self.title
@@ -114,61 +115,61 @@ impl Section {
         self
     }
 
-    /// A smaller heading.
+    /// Adds a smaller heading.
     #[must_use]
     pub fn heading(self, text: &str) -> Self {
         self.with(html! { h3 { (text) } })
     }
 
-    /// A paragraph.
+    /// Adds a paragraph.
     #[must_use]
     pub fn text(self, text: &str) -> Self {
         self.with(html! { p { (running(text)) } })
     }
 
-    /// A paragraph of the second rank: conditions, sources.
+    /// Adds a secondary paragraph: conditions, sources.
     #[must_use]
     pub fn note(self, text: &str) -> Self {
         self.with(html! { p.quiet { (running(text)) } })
     }
 
-    /// A list of remarks.
+    /// Adds a list of remarks.
     #[must_use]
     pub fn list(self, items: &[String]) -> Self {
         self.with(html! { ul { @for item in items { li { (running(item)) } } } })
     }
 
-    /// One figure over the whole width.
+    /// Adds one figure over the whole width.
     #[must_use]
     pub fn figure(self, figure: &Figure) -> Self {
         self.with(figure.html())
     }
 
-    /// Figures side by side, as many in a row as there is room for.
+    /// Adds figures side by side, as many in a row as there is room for.
     #[must_use]
     pub fn figures(self, figures: &[Figure]) -> Self {
         self.with(html! { div.beside { @for figure in figures { (figure.html()) } } })
     }
 
-    /// Small figures side by side: maps, masks.
+    /// Adds small figures side by side: maps, masks.
     #[must_use]
     pub fn small_figures(self, figures: &[Figure]) -> Self {
         self.with(html! { div.beside.small { @for figure in figures { (figure.html()) } } })
     }
 
-    /// A table.
+    /// Adds a table.
     #[must_use]
     pub fn table(self, table: &Table) -> Self {
         self.with(table.html())
     }
 
-    /// Pictures in rows and columns under headings.
+    /// Adds pictures in rows and columns under headings.
     #[must_use]
     pub fn sheet(self, sheet: &Sheet) -> Self {
         self.with(sheet.html())
     }
 
-    /// A long plain text to unfold, such as a report in JSON.
+    /// Adds a long plain text that can be unfolded, such as a report in JSON.
     #[must_use]
     pub fn folded(self, summary: &str, text: &str) -> Self {
         self.with(html! { details { summary { (summary) } pre { (text) } } })
@@ -180,12 +181,13 @@ impl Section {
 pub struct Figure {
     content: Markup,
     caption: String,
-    /// Pixels across at which a chart is drawn; pictures fill their column.
+    /// Width in pixels at which a chart is drawn; pictures fill their column.
     width: Option<u32>,
 }
 
 impl Figure {
-    /// A chart or diagram of [`super::plot`]: an `<svg>` element, taken as it is.
+    /// Makes a figure of a chart or diagram of [`super::plot`]: an `<svg>` element, which is
+    /// inserted unchanged.
     #[must_use]
     pub fn svg(svg: String, caption: impl Into<String>) -> Self {
         let width =
@@ -193,13 +195,13 @@ impl Figure {
         Self { content: PreEscaped(svg), caption: caption.into(), width }
     }
 
-    /// A picture (PNG or JPEG); `alt` is what is said where it cannot be seen.
+    /// Makes a figure of a picture (PNG or JPEG). `alt` is the text for readers who cannot see it.
     #[must_use]
     pub fn picture(file: &[u8], alt: &str, caption: impl Into<String>) -> Self {
         Self { content: picture(file, alt, false), caption: caption.into(), width: None }
     }
 
-    /// A picture whose pixels stay squares when it is enlarged: masks, insets.
+    /// Makes a figure of a picture whose pixels stay squares when it is enlarged: masks, insets.
     #[must_use]
     pub fn pixels(file: &[u8], alt: &str, caption: impl Into<String>) -> Self {
         Self { content: picture(file, alt, true), caption: caption.into(), width: None }
@@ -218,8 +220,8 @@ impl Figure {
     }
 }
 
-/// An `<img>` with the picture inside. Its size is read from the file, so that the page does not
-/// jump.
+/// Writes an `<img>` with the picture inside. The size is read from the file, so that the page does
+/// not jump.
 fn picture(file: &[u8], alt: &str, pixelated: bool) -> Markup {
     let reader = image::ImageReader::new(std::io::Cursor::new(file)).with_guessed_format().ok();
     let kind = reader.as_ref().and_then(|reader| reader.format()).map_or("image/png", |format| format.to_mime_type());
@@ -228,12 +230,12 @@ fn picture(file: &[u8], alt: &str, pixelated: bool) -> Markup {
     html! { img.pixels[pixelated] loading="lazy" width=[size.map(|size| size.0)] height=[size.map(|size| size.1)] alt=(alt) src=(source); }
 }
 
-/// Pictures in a grid, as a contact sheet: rows and columns have names.
+/// Pictures in a grid, as a contact sheet. Rows and columns have names.
 #[derive(Clone, Debug, Default)]
 pub struct Sheet {
-    /// Above the columns.
+    /// Headings of the columns.
     pub columns: Vec<String>,
-    /// Each row's name, and its pictures from left to right.
+    /// Name of each row, and its pictures from left to right.
     pub rows: Vec<(String, Vec<Figure>)>,
 }
 
@@ -254,12 +256,12 @@ impl Sheet {
     }
 }
 
-/// Which value of a column stands out.
+/// Choice of the value that stands out in a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Best {
-    /// Errors, times, bytes.
+    /// The lowest value, for errors, times, bytes.
     Lowest,
-    /// Qualities.
+    /// The highest value, for qualities.
     Highest,
 }
 
@@ -272,33 +274,33 @@ pub struct Column {
 }
 
 impl Column {
-    /// Words, to the left.
+    /// Makes a column of words, aligned to the left.
     #[must_use]
     pub fn text(title: impl Into<String>) -> Self {
         Self { title: title.into(), numeric: false, best: None }
     }
 
-    /// Numbers, to the right. The title says their unit.
+    /// Makes a column of numbers, aligned to the right. The title includes their unit.
     #[must_use]
     pub fn number(title: impl Into<String>) -> Self {
         Self { title: title.into(), numeric: true, best: None }
     }
 
-    /// Numbers, of which the best one (as it is shown) stands out.
+    /// Makes a column of numbers of which the best one (as it is shown) stands out.
     #[must_use]
     pub fn best(title: impl Into<String>, best: Best) -> Self {
         Self { best: Some(best), ..Self::number(title) }
     }
 }
 
-/// What a table's cell holds.
+/// Content of a table's cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
     /// Words.
     Text(String),
-    /// A number shown with so many decimals. NaN and infinity are shown as missing.
+    /// A number shown with this many decimals. NaN and infinity are shown as missing.
     Number(f64, usize),
-    /// Nothing was measured.
+    /// A value that was not measured.
     Missing,
 }
 
@@ -328,7 +330,7 @@ impl Cell {
         }
     }
 
-    /// The number as it is shown, so that what looks equal is equally good.
+    /// Returns the number as it is shown, so that equal-looking numbers are equally good.
     fn value(&self) -> Option<f64> {
         match self {
             Self::Number(value, decimals) if value.is_finite() => format!("{value:.decimals$}").parse().ok(),
@@ -337,19 +339,19 @@ impl Cell {
     }
 }
 
-/// A table; columns with a [`Best`] emphasise their best values.
+/// A table. Columns with a [`Best`] emphasise their best values.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
-    /// Above it.
+    /// Caption above the table.
     pub caption: String,
-    /// Left to right.
+    /// Columns from left to right.
     pub columns: Vec<Column>,
-    /// Top to bottom; a short row ends in missing cells, what is too long is not shown.
+    /// Rows from top to bottom. A short row ends in missing cells; surplus cells are not shown.
     pub rows: Vec<Vec<Cell>>,
 }
 
 impl Table {
-    /// A table without rows.
+    /// Makes a table without rows.
     #[must_use]
     pub fn new(caption: impl Into<String>, columns: Vec<Column>) -> Self {
         Self { caption: caption.into(), columns, rows: Vec::new() }
@@ -362,7 +364,8 @@ impl Table {
         self
     }
 
-    /// The best value of a column; none where all are equally good, as nothing stands out then.
+    /// Returns the best value of a column; `None` if all are equally good, as nothing stands out
+    /// then.
     fn best_of(&self, index: usize) -> Option<f64> {
         let best = self.columns[index].best?;
         let values: Vec<f64> = self.rows.iter().filter_map(|row| row.get(index)?.value()).collect();

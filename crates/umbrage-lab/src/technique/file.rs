@@ -1,5 +1,5 @@
-//! The file of `--config`: a config as TOML or JSON, or a report, which also holds what its picture
-//! was asked for with.
+//! The file of `--config`: a config as TOML or JSON, or a report, which also holds the request of
+//! its picture.
 
 use std::path::Path;
 
@@ -8,21 +8,21 @@ use umbrage::ShadowConfig;
 
 use crate::failure::{Failure, Result};
 
-/// What a file holds.
+/// Content of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConfigFile {
-    /// The settings of shadows.
+    /// Config of the shadows.
     pub config: ShadowConfig,
-    /// How its picture was asked for, if it is a report.
+    /// Request of the picture, if the file is a report.
     pub drawn: Option<Drawn>,
 }
 
-/// How a picture was asked for.
+/// Request of a picture.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Drawn {
     /// Scene, camera, light and time as options of `umbrage render`.
     pub options: Vec<String>,
-    /// The picture's number among several frames.
+    /// Number of the picture among several frames.
     pub frame: Option<u32>,
 }
 
@@ -30,7 +30,7 @@ impl ConfigFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming the file and what in it is wrong.
+    /// [`Failure::Input`] with the file and its fault.
     pub fn load(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|error| Failure::file("read", path, &error))?;
         Self::parse(&text).map_err(|why| Failure::input(format!("--config {}: {why}", path.display())))
@@ -65,7 +65,7 @@ impl ConfigFile {
     }
 }
 
-/// What a report says of its picture.
+/// Reads the request of a report's picture.
 fn drawn(json: &Value) -> std::result::Result<Option<Drawn>, String> {
     let Some(options) = json.get("options") else { return Ok(None) };
     let options = serde_json::from_value(options.clone()).map_err(|error| format!("its options: {error}"))?;

@@ -1,5 +1,5 @@
-//! Techniques: how shadows are made ([`request`]), what a file says of them ([`mod@file`]), and
-//! under a name ([`text`]).
+//! Techniques of shadows: as requests ([`request`]), in files ([`mod@file`]), and by name
+//! ([`text`]).
 
 pub mod file;
 pub mod request;

@@ -1,4 +1,4 @@
-//! How shadows are made: a config, and what was asked for to make it.
+//! Requests of a technique: a config, and the options that it was made from.
 
 use std::path::PathBuf;
 
@@ -12,29 +12,29 @@ use crate::{
     lights::{self, NamedLight},
 };
 
-/// What was asked for: settings over a preset or a file.
+/// Options of a technique: settings over a preset or a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShadowOptions {
-    /// A preset by name.
+    /// Preset that the settings override.
     pub preset: Option<Preset>,
-    /// A file with a config (TOML or JSON), or a report.
+    /// File with a config (TOML or JSON), or a report.
     pub file: Option<PathBuf>,
     /// Settings by key.
     pub given: Vec<(String, String)>,
-    /// Whether the picture is coloured by split.
+    /// True if the picture is coloured by split.
     pub tint: bool,
-    /// Whether anything casts shadows.
+    /// True if nothing casts shadows.
     pub shadows_off: bool,
 }
 
-/// Shadows as they will be made.
+/// A technique of shadows with the options that it was made from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShadowRequest {
-    /// Everything that can be chosen.
+    /// Config of the technique.
     pub config: ShadowConfig,
-    /// What was asked for.
+    /// Options that the config was made from.
     pub options: ShadowOptions,
-    /// What gave way to what was asked for.
+    /// Settings that were changed to make room for others.
     pub notes: Vec<String>,
 }
 
@@ -42,7 +42,7 @@ impl ShadowRequest {
     /// Puts the settings over the preset or the file.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming the setting or the file at fault.
+    /// [`Failure::Input`] with the setting or the file at fault.
     pub fn new(options: ShadowOptions) -> Result<Self> {
         for (key, value) in &options.given {
             let setting = SETTINGS.iter().find(|setting| setting.key == key);
@@ -64,7 +64,7 @@ impl ShadowRequest {
         Ok(Self { config, options, notes })
     }
 
-    /// These shadows under a sun of this angular diameter in degrees, which pcss uses.
+    /// Sets the angular diameter of the sun in degrees, which the filter pcss uses.
     #[must_use]
     pub fn under_sun(mut self, sun_angle: Option<f64>) -> Self {
         if let (Filter::Pcss { sun_degrees, .. }, Some(angle)) = (&mut self.config.filter, sun_angle) {
@@ -73,10 +73,11 @@ impl ShadowRequest {
         self
     }
 
-    /// These shadows for some lights. What the lights exclude gives way, unless it was asked for.
+    /// Adapts the technique to the kinds of lights. Settings that the lights exclude are changed,
+    /// unless they were asked for.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming the setting and the light that exclude each other.
+    /// [`Failure::Input`] with the setting and the light that exclude each other.
     pub fn for_lights(&self, lights: &[NamedLight]) -> Result<Self> {
         let kinds = lights::kinds(lights);
         let mut request = self.clone();
@@ -101,21 +102,21 @@ impl ShadowRequest {
         Ok(request)
     }
 
-    /// What a renderer is made with.
+    /// Makes the settings of a renderer.
     #[must_use]
     pub fn render_settings(&self, size: [u32; 2], samples: Samples, lights: Vec<LightKind>) -> RenderSettings {
         let lights = lights.into_iter().map(LightMaps::from).collect();
-        RenderSettings { size, samples, config: self.config.clone(), lights }
+        RenderSettings { size, samples, config: self.config.clone(), lights, ..RenderSettings::default() }
     }
 
-    /// A setting's value as text; empty where the config has no such setting.
+    /// Returns a setting's value as text; empty if the config has no such setting.
     #[must_use]
     pub fn word(&self, key: &str) -> String {
         word(&self.config, key)
     }
 }
 
-/// A setting's value as text; empty where the config has no such setting.
+/// Returns a setting's value as text; empty if the config has no such setting.
 #[must_use]
 pub fn word(config: &ShadowConfig, key: &str) -> String {
     let setting = SETTINGS.iter().find(|setting| setting.key == key);

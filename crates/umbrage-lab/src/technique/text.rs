@@ -10,7 +10,7 @@
 //! ```
 //!
 //! The settings are those of `umbrage render`, over the default or over the preset that
-//! `preset=NAME` names, so everything that command can do can be compared, with the same defaults
+//! `preset=NAME` names, so every technique of that command can be compared, with the same defaults
 //! and the same messages, and each row of a comparison can be drawn alone.
 
 use std::path::Path;
@@ -21,13 +21,13 @@ use umbrage::config::{Filter, SETTINGS};
 use super::request::{ShadowOptions, ShadowRequest};
 use crate::failure::{Failure, Result};
 
-/// Techniques by their words.
+/// Words of the kinds of techniques.
 const KINDS: [&str; 5] = ["pssm", "ssm", "psm", "lispsm", "tsm"];
 
-/// Kinds that are spoken of and do not exist yet.
+/// Words of kinds that are planned and do not exist yet.
 const PLANNED: [&str; 1] = ["sdsm"];
 
-/// Options that say what is looked at rather than how shadows are made: they hold for the whole
+/// Options of scene and view rather than of shadows, each with a remedy. They hold for the whole
 /// comparison, or not at all.
 const NOT_SETTINGS: [(&str, &str); 3] = [
     (
@@ -41,42 +41,42 @@ const NOT_SETTINGS: [(&str, &str); 3] = [
     ),
 ];
 
-/// The key that names the preset which the settings of a technique override.
+/// Key of the preset that the settings of a technique override.
 const PRESET: &str = "preset";
 
-/// The key that colours a technique's pictures by split.
+/// Key that colours a technique's pictures by split.
 const TINT: &str = "tint";
 
-/// The options that the short form has places for.
+/// Options that have a place in the short form.
 const SHAPE: [&str; 3] = ["technique", "splits", "map-size"];
 
 /// A technique with all its settings, checked.
 #[derive(Debug, PartialEq)]
 pub struct Technique {
-    /// Its name in tables and on sheets.
+    /// Name in tables and on sheets.
     pub label: String,
-    /// The short form, settings for all included.
+    /// Short form, including the settings of all techniques.
     pub spec: String,
-    /// What the technique shares with itself at other map sizes.
+    /// Part of the short form that is the same for the technique at other map sizes.
     pub family: String,
-    /// The options of `umbrage render` that draw it.
+    /// Options of `umbrage render` that draw the technique.
     pub options: Vec<String>,
-    /// What they mean.
+    /// Request that the options stand for.
     pub shadows: ShadowRequest,
 }
 
 impl Technique {
-    /// Texels of all maps.
+    /// Returns the number of texels of all maps.
     #[must_use]
     pub fn texels(&self) -> u64 {
         self.shadows.config.texels()
     }
 }
 
-/// A technique as it was written down, not yet checked.
+/// A technique as it was written, not yet checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TechniqueSource {
-    /// For messages.
+    /// Text of the technique, for messages.
     source: String,
     label: Option<String>,
     settings: Settings,
@@ -85,12 +85,12 @@ pub struct TechniqueSource {
 /// Options of `umbrage render` and their values, in the order they were written.
 pub type Settings = Vec<(String, String)>;
 
-/// Why a source cannot be a technique.
+/// Reason why a source is not a technique.
 #[derive(Debug, PartialEq)]
 pub enum Rejected {
-    /// A kind that does not exist yet: presets leave it out.
+    /// The kind does not exist yet. Presets leave it out.
     NotBuilt(Failure),
-    /// A mistake.
+    /// The source has an error.
     Wrong(Failure),
 }
 
@@ -102,8 +102,8 @@ impl From<Rejected> for Failure {
     }
 }
 
-/// The short forms that a text stands for: of a technique with `filter=each` one for every filter,
-/// labelled by it where no label is given; of any other the text alone.
+/// Returns the short forms that a text stands for. With `filter=each` there is one for every
+/// filter, labelled by it if no label is given; otherwise the text alone.
 #[must_use]
 pub fn each(text: &str) -> Vec<String> {
     let parts: Vec<&str> = text.split(':').collect();
@@ -121,7 +121,7 @@ pub fn each(text: &str) -> Vec<String> {
 /// Reads the short form of one technique.
 ///
 /// # Errors
-/// [`Failure::Input`] naming the technique and what is wrong with it.
+/// [`Failure::Input`] with the technique and its fault.
 pub fn parse(text: &str) -> Result<TechniqueSource> {
     let source = text.trim();
     let wrong = |what: String| Failure::input(format!("technique {source:?}: {what}"));
@@ -159,7 +159,7 @@ pub fn parse(text: &str) -> Result<TechniqueSource> {
 /// Reads settings for all techniques, `filter=hard:blend=0`.
 ///
 /// # Errors
-/// [`Failure::Input`] naming the setting.
+/// [`Failure::Input`] with the setting.
 pub fn parse_with(text: &str) -> Result<Settings> {
     let wrong = |what: String| Failure::input(format!("--with {text:?}: {what}"));
     if text.trim().is_empty() {
@@ -179,7 +179,7 @@ pub fn parse_with(text: &str) -> Result<Settings> {
 /// Reads a file of techniques: `[[technique]]` tables, and one `[with]` for all of them.
 ///
 /// # Errors
-/// [`Failure::Input`] naming the file, the technique and what is wrong with it.
+/// [`Failure::Input`] with the file, the technique and its fault.
 pub fn load(path: &Path) -> Result<(Settings, Vec<TechniqueSource>)> {
     let text = std::fs::read_to_string(path).map_err(|error| Failure::file("read", path, &error))?;
     parse_file(&path.display().to_string(), &text)
@@ -217,20 +217,20 @@ fn parse_file(file: &str, text: &str) -> Result<(Settings, Vec<TechniqueSource>)
     Ok((with, sources))
 }
 
-/// Reads techniques in the short form, `with` holding for all that do not say otherwise.
+/// Reads techniques in the short form. `with` are settings of all that do not override them.
 ///
 /// # Errors
-/// [`Failure::Input`] naming the technique or setting.
+/// [`Failure::Input`] with the technique or setting.
 pub fn parse_all(texts: &[String], with: &str) -> Result<Vec<Technique>> {
     let sources = texts.iter().flat_map(|text| each(text)).map(|text| parse(&text)).collect::<Result<Vec<_>>>()?;
     Ok(finish(&sources, &parse_with(with)?, None)?)
 }
 
-/// Checks sources and makes techniques of them. `with` holds for all that do not say otherwise, the
-/// last entry of a key wins. Techniques of one name are numbered.
+/// Checks sources and makes techniques of them. `with` are settings of all that do not override
+/// them; the last entry of a key wins. Techniques with the same name are numbered.
 ///
 /// # Errors
-/// What [`TechniqueSource::finish`] refuses.
+/// As [`TechniqueSource::finish`].
 pub fn finish(
     sources: &[TechniqueSource],
     with: &Settings,
@@ -253,7 +253,7 @@ impl TechniqueSource {
     /// Checks all settings.
     ///
     /// # Errors
-    /// [`Rejected::NotBuilt`] for a kind that is planned, else [`Rejected::Wrong`], both naming the
+    /// [`Rejected::NotBuilt`] for a kind that is planned, else [`Rejected::Wrong`], both with the
     /// technique and the setting.
     pub fn finish(&self, with: &Settings, range: Option<(f64, f64)>) -> Result<Technique, Rejected> {
         let wrong = |what: String| Rejected::Wrong(Failure::input(format!("technique {:?}: {what}", self.source)));
@@ -320,7 +320,8 @@ impl TechniqueSource {
         })
     }
 
-    /// `PSSM(4; 512²) λ 0.9`: the shape, then what the technique itself says beyond it.
+    /// Makes the default label, such as `PSSM(4; 512²) λ 0.9`: the shape, then the technique's own
+    /// further settings.
     fn default_label(&self, shadows: &ShadowRequest) -> String {
         let sizes = &shadows.config.map_sizes;
         let size = match &sizes[..] {
@@ -350,7 +351,7 @@ impl TechniqueSource {
     }
 }
 
-/// The short form of settings that begin with the shape.
+/// Writes the short form of settings that begin with the shape.
 fn spec(settings: &Settings) -> String {
     let part = |(key, value): &(String, String)| {
         let value = value.replace(',', "/");
@@ -361,14 +362,14 @@ fn spec(settings: &Settings) -> String {
     in_order.chain(rest).map(part).collect::<Vec<_>>().join(":")
 }
 
-/// The parts before the first setting, and the settings.
+/// Splits a text into the parts before the first setting, and the settings.
 fn split_settings(text: &str) -> (Vec<&str>, Vec<&str>) {
     let parts: Vec<&str> = text.split(':').collect();
     let first = parts.iter().position(|part| part.contains('=')).unwrap_or(parts.len());
     (parts[..first].to_vec(), parts[first..].to_vec())
 }
 
-/// Label and settings of `KEY=VALUE` parts.
+/// Reads label and settings from `KEY=VALUE` parts.
 fn read_settings(parts: &[&str]) -> Result<(Option<String>, Settings), String> {
     let (mut label, mut settings) = (None, Settings::new());
     for part in parts {
@@ -392,12 +393,12 @@ fn read_settings(parts: &[&str]) -> Result<(Option<String>, Settings), String> {
     Ok((label, settings))
 }
 
-/// A list as `umbrage render` wants it.
+/// Writes a list as `umbrage render` reads it.
 fn list(text: &str) -> String {
     text.trim().replace('/', ",")
 }
 
-/// The options that a table's entries stand for.
+/// Reads the options of a table's entries.
 fn options_of(table: Table) -> Result<Settings, String> {
     fn scalar(key: &str, value: Value) -> Result<String, String> {
         match value {

@@ -1,4 +1,4 @@
-//! Techniques by name: good ones, bad ones, files.
+//! Tests of techniques by name: valid ones, invalid ones, files.
 
 use umbrage::Warp;
 use umbrage::config::{Crop, Filter, Preset, Range, SplitScheme, Stability};

@@ -11,12 +11,12 @@ use crate::{
     page::plot::{Anchor, Axis, Chart, Colour, Diagram, Mark, Series, Shape, Style},
 };
 
-/// Splits in these plots, as in the papers.
+/// Number of splits in these plots, as in the papers.
 const SPLITS: usize = 4;
-/// Samples of a curve over depth.
+/// Number of samples of a curve over depth.
 const SAMPLES: usize = 480;
 
-/// The three schemes of the papers, with λ = 0.5 for the practical one.
+/// Returns the three schemes of the papers, with λ = 0.5 for the practical one.
 pub(super) fn schemes() -> [(&'static str, SplitScheme); 3] {
     [
         ("uniform", SplitScheme::Uniform),
@@ -25,41 +25,41 @@ pub(super) fn schemes() -> [(&'static str, SplitScheme); 3] {
     ]
 }
 
-/// `C_0 ..= C_m`.
+/// Returns the split planes `C_0 ..= C_m`.
 pub(super) fn planes(scheme: &SplitScheme, near: f64, far: f64, splits: usize) -> Result<Vec<f64>> {
     let mut planes = Vec::with_capacity(splits + 1);
     split_planes(scheme, near, far, splits, &mut planes)?;
     Ok(planes)
 }
 
-/// Which split a view depth inside the range belongs to; a plane belongs to the split that it ends.
+/// Returns the split of a view depth inside the range. A plane belongs to the split that it ends.
 fn split_of(planes: &[f64], z: f64) -> usize {
     planes[1..planes.len() - 1].partition_point(|&plane| plane < z)
 }
 
-/// Place in shadow-map space, 0 to 1 over the whole range, when every split gets 1/m of the
-/// resolution and is spread evenly over its own share: `s = (i + (z − C_i)/(C_{i+1} − C_i)) / m`.
+/// Returns the place in shadow-map space, 0 to 1 over the whole range, when every split gets 1/m of
+/// the resolution, spread evenly over its own share: `s = (i + (z − C_i)/(C_{i+1} − C_i)) / m`.
 pub(super) fn s_of(planes: &[f64], z: f64) -> f64 {
     let i = split_of(planes, z);
     let m = (planes.len() - 1) as f64;
     (i as f64 + (z - planes[i]) / (planes[i + 1] - planes[i])) / m
 }
 
-/// Perspective aliasing at view depth `z` in split `i`: \[PSSM06\] eq. (1) without its angles,
-/// `dp/ds = n/z · dz/ds`, with `dz/ds = m (C_{i+1} − C_i)`. (The source says that a split gets i/m
+/// Returns the perspective aliasing at view depth `z` in split `i`: \[PSSM06\] eq. (1) without its
+/// angles, `dp/ds = n/z · dz/ds`, with `dz/ds = m (C_{i+1} − C_i)`. (The source gives a split i/m
 /// of the resolution; 1/m is meant.)
 pub(super) fn dp_ds(planes: &[f64], i: usize, z: f64) -> f64 {
     let m = (planes.len() - 1) as f64;
     planes[0] / z * m * (planes[i + 1] - planes[i])
 }
 
-/// What no scheme can go below over the whole range: \[PSSM06\] eq. (2), `dp/ds = n ln(f/n)` at
-/// every depth.
+/// Returns the lower bound of every scheme over the whole range: \[PSSM06\] eq. (2), `dp/ds = n
+/// ln(f/n)` at every depth.
 pub(super) fn optimum(near: f64, far: f64) -> f64 {
     near * (far / near).ln()
 }
 
-/// A curve over each split, with a gap between splits.
+/// Samples a curve over each split, with a gap between splits.
 fn over_splits(planes: &[f64], value: impl Fn(usize, f64) -> f64) -> Vec<(f64, f64)> {
     let mut points = Vec::new();
     for (i, pair) in planes.windows(2).enumerate() {
@@ -75,7 +75,7 @@ fn over_splits(planes: &[f64], value: impl Fn(usize, f64) -> f64) -> Vec<(f64, f
     points
 }
 
-/// The plan for a sun at right angles to the view, as in the papers' figures: a camera that looks
+/// Plans for a sun at right angles to the view, as in the papers' figures: a camera that looks
 /// level over a plain at noon.
 pub(super) fn plan_at_noon(
     setting: &Setting,
@@ -101,13 +101,13 @@ pub(super) fn plan_at_noon(
     Ok((view, plan))
 }
 
-/// Pixels that one texel spans on a surface that faces the camera, over depth, from the planned
-/// matrices.
+/// Returns the pixels that one texel spans on a surface that faces the camera, over depth, from the
+/// planned matrices.
 pub(super) fn predicted(setting: &Setting, view: &View, plan: &ShadowPlan) -> Vec<(f64, f64)> {
     over_splits(&plan.planes, |i, z| plan.splits[i].pixels_per_texel(view, setting.image_size[1], z))
 }
 
-/// The section of the page.
+/// Makes the section of the page.
 pub(super) fn section(setting: &Setting) -> Result<Section> {
     let Setting { near, far, .. } = *setting;
     let bound = optimum(near, far);
@@ -220,7 +220,7 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
         )))
 }
 
-/// Figure 4 as it is drawn: one strip per scheme, cut at its planes.
+/// Draws Figure 4: one strip per scheme, cut at its planes.
 fn strips(setting: &Setting, all: &[(&str, SplitScheme, Vec<f64>)]) -> Result<String> {
     let mut diagram = Diagram::new("Where the schemes cut the view");
     diagram.unit = Some("m".into());
@@ -304,7 +304,7 @@ mod tests {
         assert!(dp_ds(&uniform, 0, 1.0) > 40.0 * dp_ds(&logarithmic, 0, 1.0));
     }
 
-    /// No scheme makes resolution, it only moves it: `∫ ds = ∫ n / (z dp/ds) dz = 1`.
+    /// No scheme creates resolution; it only distributes it: `∫ ds = ∫ n / (z dp/ds) dz = 1`.
     #[test]
     fn every_scheme_spends_the_same_resolution() {
         for (name, scheme) in schemes() {

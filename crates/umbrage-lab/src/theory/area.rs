@@ -1,5 +1,5 @@
-//! Σ Area(B_i)/Area(B) over the light's direction: \[PSSM06\] Figure 5 and section 3.4, which says
-//! that the sum is never more than the whole. It can be.
+//! Σ Area(B_i)/Area(B) over the light's direction: \[PSSM06\] Figure 5 and section 3.4, which
+//! claims that the sum is never more than the whole. It can be more.
 
 use glam::{DVec2, DVec3};
 use umbrage::config::{Crop, Preset, Range, SplitScheme, Stability, Transition};
@@ -17,21 +17,21 @@ use crate::{
 
 /// Degrees between plotted directions.
 const STEP: f64 = 1.0;
-/// Splits where one number has to do.
+/// Number of splits where one number is needed.
 const SPLITS: usize = 4;
-/// Texels across a map that is only measured: so many that its margin does not show.
+/// Texels across a map that is only measured: so many that its margin is negligible.
 const FINE: u32 = 1 << 16;
 
-/// In which plane the light turns away from the view.
+/// Plane in which the light turns away from the view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Turn {
-    /// From above: 0° shines along the view, 90° straight down.
+    /// Vertical plane: at 0° the light travels along the view, at 90° straight down.
     Down,
-    /// From the side: 90° shines from left to right.
+    /// Horizontal plane: at 90° the light travels from left to right.
     Sideways,
 }
 
-/// What encloses a slice in the light's plane.
+/// Enclosure of a slice in the light's plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Enclosure {
     /// The axis-aligned box in a light space whose u follows the view, as \[PSSM06\] Figure 5 draws
@@ -44,7 +44,7 @@ pub(super) enum Enclosure {
     Sphere,
 }
 
-/// The light that shines `degrees` away from the view's direction.
+/// Returns the light whose direction is `degrees` away from the view's.
 pub(super) fn light(view: &View, turn: Turn, degrees: f64) -> Result<DirectionalLight> {
     let (sin, cos) = degrees.to_radians().sin_cos();
     let axes = view.world_from_view_rotation();
@@ -55,8 +55,8 @@ pub(super) fn light(view: &View, turn: Turn, degrees: f64) -> Result<Directional
     Ok(DirectionalLight::new(cos * view.forward() + sin * aside)?)
 }
 
-/// Area of the box around the slice [a, b] in square metres, in the light's plane, its u axis along
-/// the view.
+/// Returns the area in square metres of the box around the slice [a, b], in the light's plane, with
+/// its u axis along the view.
 fn box_area(view: &View, light: &DirectionalLight, a: f64, b: f64) -> f64 {
     let direction = light.direction();
     let along = view.forward() - view.forward().dot(direction) * direction;
@@ -72,7 +72,7 @@ fn box_area(view: &View, light: &DirectionalLight, a: f64, b: f64) -> f64 {
     (hi - lo).element_product()
 }
 
-/// Area of the rectangle that the planner lays around each slice, in square metres.
+/// Returns the area in square metres of the rectangle that the planner lays around each slice.
 fn least_areas(setting: &Setting, view: &View, light: &DirectionalLight, planes: &[f64]) -> Result<Vec<f64>> {
     let settings = ShadowConfig {
         map_sizes: vec![FINE; planes.len() - 1],
@@ -91,7 +91,7 @@ fn least_areas(setting: &Setting, view: &View, light: &DirectionalLight, planes:
     Ok(plan.splits.iter().map(|split| (split.texel_m * f64::from(split.size)).element_product()).collect())
 }
 
-/// `Σ Area(B_i) / Area(B)` for the slices between `planes`.
+/// Returns `Σ Area(B_i) / Area(B)` for the slices between `planes`.
 pub(super) fn ratio(
     setting: &Setting,
     view: &View,
@@ -112,8 +112,8 @@ pub(super) fn ratio(
     })
 }
 
-/// A ratio over the angle from 0° to 90°. It is symmetric about 90°, as a shadow map seen from
-/// behind has the same area.
+/// Returns a ratio over the angle from 0° to 90°. It is symmetric about 90°, because a shadow map
+/// seen from behind has the same area.
 fn curve(setting: &Setting, view: &View, turn: Turn, planes: &[f64], enclosure: Enclosure) -> Result<Vec<(f64, f64)>> {
     (0..=(90.0 / STEP) as u32)
         .map(|k| {
@@ -123,7 +123,7 @@ fn curve(setting: &Setting, view: &View, turn: Turn, planes: &[f64], enclosure: 
         .collect()
 }
 
-/// The smallest angle from which on the curve stays at or below 1; `None` if it never does.
+/// Returns the smallest angle from which on the curve stays at or below 1; `None` if it never does.
 fn angle_below_one(curve: &[(f64, f64)]) -> Option<f64> {
     let last_above = curve.iter().rposition(|&(_, ratio)| ratio > 1.0);
     match last_above {
@@ -135,7 +135,7 @@ fn angle_below_one(curve: &[(f64, f64)]) -> Option<f64> {
     }
 }
 
-/// The section of the page.
+/// Makes the section of the page.
 pub(super) fn section(setting: &Setting) -> Result<Section> {
     let Setting { near, far, .. } = *setting;
     let view = setting.view()?;

@@ -1,4 +1,4 @@
-//! The scene of the diagrams: a street of boxes under a slanting sun, with everything that makes
+//! The scene of the diagrams: a street of boxes under a slanting sun, with all cases in which
 //! casters and receivers differ. A tower behind the eye and a balloon out of sight cast their
 //! shadows into the view.
 
@@ -9,7 +9,7 @@ use umbrage::{Aabb, DirectionalLight, Frustum, Planner, PlannerOptions, ShadowCo
 use super::Result;
 use crate::page::plot::convex_hull;
 
-/// Splits in the diagrams.
+/// Number of splits in the diagrams.
 pub(super) const SPLITS: usize = 3;
 
 /// The scene, its view and its sun.
@@ -17,9 +17,9 @@ pub(super) const SPLITS: usize = 3;
 pub(super) struct Example {
     pub view: View,
     pub sun: DirectionalLight,
-    /// Receives only, as a terrain does.
+    /// Ground, which only receives shadows, as a terrain does.
     pub ground: Aabb,
-    /// Cast and receive.
+    /// Boxes that cast and receive shadows.
     pub boxes: Vec<Aabb>,
 }
 
@@ -46,7 +46,7 @@ impl Example {
         })
     }
 
-    /// The plan with hard borders, so that slices are what the papers draw.
+    /// Plans with hard borders, so that slices are those that the papers draw.
     pub fn plan(&self, crop: Crop) -> Result<ShadowPlan> {
         let settings = ShadowConfig {
             map_sizes: vec![1024; SPLITS],
@@ -63,8 +63,8 @@ impl Example {
     }
 }
 
-/// The eight corners of what a split's map sees, in the world; bit 0 of the index is u, bit 1 v,
-/// bit 2 depth.
+/// Returns the eight corners of a map's volume in the world. Bit 0 of the index is u, bit 1 v, bit
+/// 2 depth.
 pub(super) fn map_corners(split: &Split) -> [DVec3; 8] {
     let lo = split.min_texel * split.texel_m;
     let hi = lo + split.texel_m * f64::from(split.size);
@@ -76,11 +76,11 @@ pub(super) fn map_corners(split: &Split) -> [DVec3; 8] {
     })
 }
 
-/// Which corners of a box (or map) an edge joins.
+/// Pairs of corners of a box (or map) that an edge joins.
 pub(super) const BOX_EDGES: [(usize, usize); 12] =
     [(0, 1), (2, 3), (4, 5), (6, 7), (0, 2), (1, 3), (4, 6), (5, 7), (0, 4), (1, 5), (2, 6), (3, 7)];
 
-/// A picture plane: world axes to the right and up in it.
+/// A picture plane: the world axes to its right and up.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plane {
     pub right: DVec3,
@@ -96,7 +96,7 @@ impl Plane {
         points.into_iter().map(|p| self.point(p)).collect()
     }
 
-    /// The outline of a convex body.
+    /// Returns the outline of a convex body.
     pub fn outline(&self, corners: impl IntoIterator<Item = DVec3>) -> Vec<(f64, f64)> {
         convex_hull(&self.points(corners))
     }

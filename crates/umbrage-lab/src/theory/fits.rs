@@ -1,4 +1,5 @@
-//! The scene-independent against the scene-dependent fit: \[GG3-10\] Figures 10-5 and 10-6.
+//! Comparison of the scene-independent with the scene-dependent fit: \[GG3-10\] Figures 10-5 and
+//! 10-6.
 
 use glam::DVec3;
 use umbrage::config::{Crop, Preset, Range, Stability};
@@ -15,23 +16,23 @@ use crate::{
     page::plot::{Anchor, Axis, BarChart, BarSeries, Colour, Diagram, Mark, Shape, Stroke},
 };
 
-/// The split that the diagrams show.
+/// Index of the split that the diagrams show.
 const SHOWN: usize = 1;
-/// Splits on the worlds.
+/// Number of splits on the worlds.
 const SPLITS: usize = 4;
-/// The camera of the worlds.
+/// Name of the camera of the worlds.
 const CAMERA: &str = "middle";
-/// Cells across a drawn map: groups of texels, to be seen.
+/// Number of cells across a drawn map: groups of texels, large enough to be visible.
 const CELLS: u32 = 16;
 
-/// How large a texel is in each split with either fit, in square metres.
+/// Area of a texel in each split with either fit, in square metres.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct TexelAreas {
     pub independent: Vec<f64>,
     pub dependent: Vec<f64>,
 }
 
-/// What both fits make of a world as its camera sees it.
+/// Measures both fits of a world for its camera.
 pub(super) fn texel_areas(world: World, setting: &Setting) -> Result<TexelAreas> {
     let scene = world.build();
     let pose = scene.pose(0.0)?;
@@ -68,7 +69,7 @@ pub(super) fn texel_areas(world: World, setting: &Setting) -> Result<TexelAreas>
     Ok(TexelAreas { independent: areas(Crop::SceneIndependent)?, dependent: areas(Crop::SceneDependent)? })
 }
 
-/// The section of the page.
+/// Makes the section of the page.
 pub(super) fn section(setting: &Setting) -> Result<Section> {
     let example = Example::new()?;
     let plans = [Crop::SceneIndependent, Crop::SceneDependent].map(|crop| example.plan(crop));
@@ -150,7 +151,7 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
         .table(&table))
 }
 
-/// The part of the world that both fits' drawings show.
+/// Returns the part of the world that the drawings of both fits show.
 fn frame(example: &Example, reference: &ShadowPlan, plane: Plane) -> ((f64, f64), (f64, f64)) {
     let map = map_corners(&reference.splits[SHOWN]);
     let boxes = example.boxes.iter().flat_map(|b| b.corners());

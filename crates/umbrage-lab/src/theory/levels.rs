@@ -1,4 +1,4 @@
-//! Which mip level a pixel reads where splits meet: \[PCSM\] Figures 4.1.10 to 4.1.14, on a plane.
+//! Mip levels at the borders of splits: \[PCSM\] Figures 4.1.10 to 4.1.14, on a plane.
 
 use glam::{DVec2, DVec3};
 use image::{Rgb, RgbImage};
@@ -11,31 +11,31 @@ use crate::{
     page::plot::{Axis, Chart, Series, Style},
 };
 
-/// Pixels of the pictures; few, to be seen one by one.
+/// Width and height of the pictures in pixels, few enough to be seen one by one.
 const SIZE: [u32; 2] = [96, 72];
-/// The plane lies this far below the eye, metres.
+/// Distance of the plane below the eye in metres.
 const DOWN: f64 = 3.0;
-/// The end of the last split, metres.
+/// End of the last split in metres.
 const FAR: f64 = 60.0;
-/// Splits.
+/// Number of splits.
 const SPLITS: usize = 4;
-/// The last level of a map of 512 texels that umbrage makes.
+/// Last mip level of a map of 512 texels that umbrage makes.
 const LAST_LEVEL: f64 = 7.0;
-/// The way the light travels.
+/// Direction in which the light travels.
 const LIGHT: DVec3 = DVec3::new(0.6, -1.0, -0.35);
 
-/// Whose split a pixel's differences are taken in.
+/// Choice of the split in which a pixel's differences are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Way {
-    /// Each pixel of a quad its own: what the hardware does unasked.
+    /// Each pixel's own split, as the hardware does by default.
     Naive,
-    /// The last one of the quad: \[PSVSM07\]'s way.
+    /// Last split of the quad, as in \[PSVSM07\].
     Quad,
-    /// The pixel's own for all of its neighbours: \[PCSM\]'s analytic way.
+    /// The pixel's own split for all of its neighbours, as in the analytic way of \[PCSM\].
     Analytic,
 }
 
-/// A plane seen in pixels, each of which knows its place and its split.
+/// A plane in pixels, each with its place and its split.
 pub(super) struct Ground {
     plan: ShadowPlan,
     pixels: Vec<Option<(DVec3, usize)>>,
@@ -78,8 +78,8 @@ impl Ground {
         split.map_from_world(place).truncate()
     }
 
-    /// The level of a pixel; `None` above the horizon, beyond the last split, and in quads that
-    /// are.
+    /// Returns the mip level of a pixel; `None` above the horizon, beyond the last split, and in
+    /// quads with such pixels.
     pub fn level(&self, way: Way, [x, y]: [u32; 2]) -> Option<f64> {
         let [left, top] = [x & !1, y & !1];
         let quad = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| self.at(left + i, top + j));
@@ -99,7 +99,7 @@ impl Ground {
         Some(dx.length().max(dy.length()).log2().clamp(0.0, LAST_LEVEL))
     }
 
-    /// Whether a pixel's quad has pixels of several splits.
+    /// Returns whether a pixel's quad has pixels of several splits.
     #[cfg(test)]
     fn is_mixed(&self, [x, y]: [u32; 2]) -> bool {
         let splits: Vec<_> = (0..4).filter_map(|i| Some(self.at((x & !1) + i % 2, (y & !1) + i / 2)?.1)).collect();
@@ -107,7 +107,7 @@ impl Ground {
     }
 }
 
-/// The place of the plane that a pixel's middle shows.
+/// Returns the point of the plane at a pixel's centre.
 fn place(view: &View, [x, y]: [u32; 2]) -> Option<DVec3> {
     let frustum = view.frustum();
     let across = |i: u32, of: u32| (f64::from(i) + 0.5) / f64::from(of);
@@ -117,7 +117,7 @@ fn place(view: &View, [x, y]: [u32; 2]) -> Option<DVec3> {
     (ray.y < 0.0).then(|| view.eye() + ray * (DOWN / -ray.y))
 }
 
-/// A colour for a level, from blue by green to red.
+/// Returns a colour for a level, from blue by green to red.
 fn colour(level: f64) -> Rgb<u8> {
     let share = level / LAST_LEVEL;
     let part = |middle: f64| (255.0 * (1.5 - 4.0 * (share - middle).abs()).clamp(0.0, 1.0)) as u8;

@@ -1,5 +1,5 @@
-//! `umbrage theory`: the papers' theory as data and plots, computed by the crate `umbrage`; nothing
-//! is typed in.
+//! `umbrage theory`: the papers' theory as data and plots, computed by the crate `umbrage`; no
+//! number is typed in.
 //!
 //! * `aliasing`: the three split schemes over depth and dp/ds (\[PSSM06\] Figure 4, \[GG3-10\]
 //!   Figure 10-4);
@@ -32,11 +32,11 @@ use crate::{
 /// [`std::result::Result`] with this module's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Why the theory could not be drawn. With the default [`Setting`] none of it happens.
+/// Reason why the theory could not be drawn. None occurs with the default [`Setting`].
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The planner refused.
+    /// The planner refused its input.
     #[error(transparent)]
     Plan(#[from] umbrage::Error),
     /// A world could not be posed.
@@ -48,20 +48,20 @@ pub enum Error {
     /// A picture could not be written as PNG.
     #[error("{reason}")]
     Picture {
-        /// What the encoder said.
+        /// Message of the encoder.
         reason: String,
     },
-    /// A world has not the camera that the plots look through.
+    /// A world lacks the camera that the plots look through.
     #[error("the world {world} has no camera {camera}, through which the fits are compared")]
     NoCamera {
-        /// The world.
+        /// Name of the world.
         world: &'static str,
-        /// The camera.
+        /// Name of the camera.
         camera: &'static str,
     },
 }
 
-/// All sections, for a page of one's own.
+/// Makes all sections, for a page of the caller's own.
 ///
 /// # Errors
 /// [`Error`] if the setting's lens or range is out of range.
@@ -76,7 +76,7 @@ pub fn sections(setting: &Setting) -> Result<Vec<Section>> {
     ])
 }
 
-/// The whole page with the default setting.
+/// Makes the whole page with the default setting.
 ///
 /// # Errors
 /// As [`sections`].
@@ -97,7 +97,7 @@ pub fn page() -> Result<Page> {
     })
 }
 
-/// The setting is ours, so whatever goes wrong is too.
+/// The setting is ours, so every error is too.
 impl From<Error> for Failure {
     fn from(error: Error) -> Self {
         Self::other(format!("cannot draw the theory: {error}"))

@@ -1,4 +1,4 @@
-//! The view that all plots of the theory have in common: the defaults of the command line.
+//! The view that all plots of the theory share: the defaults of the command line.
 
 use glam::DVec3;
 use umbrage::{Aabb, Frustum, View};
@@ -8,15 +8,15 @@ use super::Result;
 /// A view and the sizes of its picture and maps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
-    /// `C_0`, metres.
+    /// Near distance in metres, `C_0`.
     pub near: f64,
-    /// `C_m`, metres.
+    /// Far distance in metres, `C_m`.
     pub far: f64,
-    /// Full vertical angle, degrees.
+    /// Full vertical angle in degrees.
     pub fov: f64,
-    /// Pixels across and down.
+    /// Width and height of the picture in pixels.
     pub image_size: [u32; 2],
-    /// Edge of each split's map, texels.
+    /// Edge of each split's map in texels.
     pub map_size: u32,
 }
 
@@ -27,7 +27,7 @@ impl Default for Setting {
 }
 
 impl Setting {
-    /// A level view from the origin along −Z.
+    /// Makes a level view from the origin along −Z.
     ///
     /// # Errors
     /// If near, far or fov make no frustum.
@@ -37,14 +37,14 @@ impl Setting {
         Ok(View::look_at_upright(DVec3::ZERO, DVec3::NEG_Z, frustum)?)
     }
 
-    /// A box that holds everything in sight, to cast and to receive.
+    /// Returns a box around everything in sight, as caster and receiver.
     #[must_use]
     pub fn surroundings(&self) -> Aabb {
         let reach = DVec3::splat(4.0 * self.far);
         Aabb::new(-reach, reach)
     }
 
-    /// In words.
+    /// Describes the setting in words.
     #[must_use]
     pub fn describe(&self) -> String {
         let [width, height] = self.image_size;

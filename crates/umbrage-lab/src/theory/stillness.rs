@@ -1,4 +1,4 @@
-//! Why shadows flicker and what keeps them still: \[PCSM\] Figures 4.1.3, 4.1.4 and 4.1.6.
+//! Flicker of shadows and its prevention: \[PCSM\] Figures 4.1.3, 4.1.4 and 4.1.6.
 
 use glam::{DQuat, DVec2, DVec3};
 use umbrage::config::{Crop, ExtentSteps, Preset, Range, Stability};
@@ -14,18 +14,18 @@ use crate::{
     page::plot::{Anchor, Axis, Chart, Colour, Diagram, Series, Shape, Stroke, Style},
 };
 
-/// Frames of the walk.
+/// Number of frames of the walk.
 const FRAMES: u32 = 600;
-/// Metres that it goes on in a frame, and radians that it turns.
+/// Metres and radians by which the camera moves and turns in a frame.
 const STRIDE: (f64, f64) = (0.15, 0.003);
-/// The split that the drawings show.
+/// Index of the split that the drawings show.
 const SHOWN: usize = 1;
-/// Splits.
+/// Number of splits.
 const SPLITS: usize = 4;
 /// Texels around the point of interest that a drawing shows.
 const REACH: f64 = 3.0;
 
-/// The ways to stabilise, the colours that they have in every drawing.
+/// Kinds of stabilisation, with their colours in every drawing.
 const KINDS: [(&str, Stability, Colour); 4] = [
     ("unstabilised", Stability::tight(), Colour::Series(1)),
     ("exact", Stability::Exact, Colour::Series(0)),
@@ -37,7 +37,7 @@ const KINDS: [(&str, Stability, Colour); 4] = [
     ("approximate, 64 levels", Stability::Approximate { steps: ExtentSteps::Levels(64) }, Colour::Series(3)),
 ];
 
-/// The view of a frame: it walks and turns.
+/// Returns the view of a frame: it moves and turns.
 fn view(setting: &Setting, frame: u32) -> Result<View> {
     let first = setting.view()?;
     let ahead = DQuat::from_rotation_y(STRIDE.1 * f64::from(frame)) * DVec3::NEG_Z;
@@ -45,7 +45,7 @@ fn view(setting: &Setting, frame: u32) -> Result<View> {
     Ok(View::look_at_upright(eye, eye + ahead, *first.frustum())?)
 }
 
-/// The plans of a walk.
+/// Plans all frames of a walk.
 pub(super) fn plans(setting: &Setting, stability: Stability, frames: u32) -> Result<Vec<ShadowPlan>> {
     let config = ShadowConfig {
         map_sizes: vec![setting.map_size; SPLITS],
@@ -62,7 +62,7 @@ pub(super) fn plans(setting: &Setting, stability: Stability, frames: u32) -> Res
     (0..frames).map(plan).collect()
 }
 
-/// How often a map changes its texels from one plan to the next.
+/// Returns the number of times that a map changes its texels from one plan to the next.
 fn steps(plans: &[ShadowPlan]) -> usize {
     let pairs = plans.windows(2).flat_map(|pair| pair[0].splits.iter().zip(&pair[1].splits));
     pairs.filter(|(before, now)| now.texels_moved_since(before).is_none()).count()
@@ -72,7 +72,7 @@ fn mean_edge(split: &Split) -> f64 {
     split.texel_m.element_product().sqrt()
 }
 
-/// The section of the page.
+/// Makes the section of the page.
 pub(super) fn section(setting: &Setting) -> Result<Section> {
     let walks: Vec<Vec<ShadowPlan>> =
         KINDS.iter().map(|(_, kind, _)| plans(setting, kind.clone(), FRAMES)).collect::<Result<_>>()?;
@@ -139,7 +139,7 @@ pub(super) fn section(setting: &Setting) -> Result<Section> {
         .table(&table))
 }
 
-/// The grid lines of one map's texels near a point, and the texel that holds it.
+/// Draws the grid lines of one map's texels near a point, and the texel that holds the point.
 fn texels_around(title: &str, first: &ShadowPlan, second: &ShadowPlan, colour: Colour) -> Result<String> {
     let (first, second) = (&first.splits[SHOWN], &second.splits[SHOWN]);
     let plane = Plane { right: first.u_axis, up: -first.v_axis };
@@ -188,7 +188,7 @@ fn texels_around(title: &str, first: &ShadowPlan, second: &ShadowPlan, colour: C
     Ok(diagram.to_svg()?)
 }
 
-/// A slice and the maps of all kinds around it, seen from the light.
+/// Draws a slice and the maps of all kinds around it, seen from the light.
 fn fits(walks: &[Vec<ShadowPlan>]) -> Result<String> {
     let plan = &walks[1][0];
     let split = &plan.splits[SHOWN];

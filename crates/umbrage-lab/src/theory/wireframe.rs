@@ -1,4 +1,4 @@
-//! The splits of the view and the frusta of the light, in space.
+//! Wireframes of the view's splits and the light's frusta.
 
 use glam::DVec3;
 use umbrage::config::Crop;
@@ -13,7 +13,7 @@ use crate::{
     page::plot::{Anchor, Colour, Diagram, Shape, Stroke},
 };
 
-/// Where the observer of the drawing looks.
+/// Viewing direction of the drawing's observer.
 const GAZE: DVec3 = DVec3::new(-0.42, -0.42, -0.80);
 
 fn observer() -> Plane {
@@ -22,7 +22,7 @@ fn observer() -> Plane {
     Plane { right, up: right.cross(forward) }
 }
 
-/// The section of the page.
+/// Makes the section of the page.
 pub(super) fn section() -> Result<Section> {
     let example = Example::new()?;
     let plan = example.plan(Crop::SceneDependent)?;
@@ -89,7 +89,7 @@ fn one_split(example: &Example, plan: &ShadowPlan, split: usize) -> Result<Strin
     Ok(diagram.to_svg()?)
 }
 
-/// Ground and whole view, in a frame that all drawings share.
+/// Draws the ground and the whole view, in a frame that all drawings share.
 fn base(title: &str, example: &Example, plan: &ShadowPlan, plane: Plane) -> Diagram {
     let mut diagram = Diagram::new(title);
     diagram.width = 560.0;
@@ -112,7 +112,7 @@ fn base(title: &str, example: &Example, plan: &ShadowPlan, plane: Plane) -> Diag
     diagram
 }
 
-/// The boxes, far ones first, three faces each; `colour_of` singles some out.
+/// Draws the boxes, far ones first, three faces each. `colour_of` singles some out.
 fn boxes(diagram: &mut Diagram, example: &Example, plane: Plane, colour_of: impl Fn(usize) -> Option<Colour>) {
     let mut order: Vec<usize> = (0..example.boxes.len()).collect();
     let distance = |index: &usize| GAZE.dot(example.boxes[*index].center());
@@ -136,8 +136,8 @@ fn boxes(diagram: &mut Diagram, example: &Example, plane: Plane, colour_of: impl
     }
 }
 
-/// The three faces that the observer sees, with how dark each is: the top, the one towards +x and
-/// the one towards +z.
+/// Returns the three faces that the observer sees, with the darkness of each: the top, the one
+/// towards +x and the one towards +z.
 fn faces(bounds: &Aabb) -> [([DVec3; 4], f64); 3] {
     let c = bounds.corners();
     let face = |corners: [usize; 4]| corners.map(|i| c[i]);

@@ -1,5 +1,5 @@
-//! What is tried: every combination of some settings' values, at map sizes that the budget pays
-//! for.
+//! Candidates of a search: every combination of some settings' values, with maps as large as the
+//! budget allows.
 
 use std::collections::BTreeMap;
 
@@ -13,31 +13,31 @@ use crate::{
     technique::text::Settings,
 };
 
-/// The key of a share of the budget.
+/// Key of a share of the budget.
 const SHARE: &str = "share";
-/// The key of a preset, which other settings override.
+/// Key of a preset, which other settings override.
 const PRESET: &str = "preset";
 
-/// What cannot be an axis, and why.
+/// Keys that cannot be an axis, each with the reason.
 const NOT_TRIED: [(&str, &str); 3] = [
     ("map-size", "it follows from the budget; give share=1/0.5/0.25 for smaller maps"),
     ("shadow-range", "it decides which pixels are scored and is one for all; give --shadow-range beside"),
     ("sun-angle", "it must be the same for all candidates; give --sun-angle as an option of its own"),
 ];
 
-/// A setting and the values of it that are tried.
+/// A setting with the values that are tried.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Axis {
-    /// Its key; `share` is a share of the budget, `preset` what all others override.
+    /// Key of the setting; `share` is a share of the budget, `preset` is overridden by all others.
     pub key: String,
-    /// Its values.
+    /// Values of the setting.
     pub values: Vec<String>,
 }
 
-/// `--try`: `splits=2/3/4/6`.
+/// Reads an axis of `--try`: `splits=2/3/4/6`.
 ///
 /// # Errors
-/// [`Error::Axis`] naming what cannot be tried.
+/// [`Error::Axis`] with the key or value that cannot be tried.
 pub fn axis(text: &str) -> std::result::Result<Axis, Error> {
     let wrong = |reason: String| Error::Axis { axis: text.to_owned(), reason };
     let Some((key, values)) = text.split_once('=') else {
@@ -71,8 +71,8 @@ pub fn axis(text: &str) -> std::result::Result<Axis, Error> {
     Ok(Axis { key: key.to_owned(), values })
 }
 
-/// What is tried where nothing says otherwise: numbers of splits and filters, with the whole budget
-/// and a quarter of it.
+/// Returns the default axes: numbers of splits and filters, with the whole budget and a quarter of
+/// it.
 #[must_use]
 pub fn usual_axes() -> Vec<Axis> {
     let axis = |key: &str, values: &[&str]| Axis {
@@ -85,54 +85,54 @@ pub fn usual_axes() -> Vec<Axis> {
 /// A config that is tried.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Candidate {
-    /// What it is called in tables: what it tries.
+    /// Label in tables: the values that are tried.
     pub label: String,
-    /// Everything that can be chosen.
+    /// Config of the candidate.
     pub config: ShadowConfig,
-    /// The preset, if it is one with maps of another size.
+    /// Name of the preset, if the candidate is one with maps of another size.
     pub preset: Option<String>,
 }
 
 /// All candidates of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidates {
-    /// In the order of their numbers.
+    /// Candidates in the order of their numbers.
     pub all: Vec<Candidate>,
-    /// Why combinations were left out, and how many.
+    /// Reasons why combinations were left out, and the number of combinations for each.
     pub skipped: BTreeMap<String, usize>,
 }
 
-/// What candidates are made of.
+/// Axes and settings that candidates are made from.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid<'a> {
-    /// What is tried.
+    /// Axes of the search.
     pub axes: &'a [Axis],
-    /// Settings of all candidates that do not try others.
+    /// Settings of all candidates that do not override them.
     pub with: &'a Settings,
-    /// Whether the presets are candidates too.
+    /// True if the presets are candidates too.
     pub presets: bool,
-    /// What maps may take.
+    /// Budget of the maps.
     pub budget: Budget,
     /// View depths in metres that shadows cover.
     pub range: Option<(f64, f64)>,
-    /// The lights of the shots.
+    /// Kinds of the lights of the shots.
     pub lights: &'a [LightKind],
 }
 
-/// What became of a combination.
+/// Result of a combination.
 enum Tried {
     Config(Box<ShadowConfig>),
-    /// Rules exclude it.
+    /// Rules exclude the combination.
     Excluded(String),
-    /// The budget has to be as much.
+    /// The budget is too small; at least this budget is needed.
     TooSmall(Budget),
 }
 
 impl Grid<'_> {
-    /// Every combination that rules allow and the budget pays for, then the presets.
+    /// Makes every combination that rules allow and the budget pays for, and then the presets.
     ///
     /// # Errors
-    /// [`Failure::Input`] naming a setting whose value is wrong, [`Error::BudgetTooSmall`],
+    /// [`Failure::Input`] with a setting whose value is wrong, [`Error::BudgetTooSmall`],
     /// [`Error::NothingToTry`].
     pub fn candidates(&self) -> Result<Candidates> {
         for (number, axis) in self.axes.iter().enumerate() {
@@ -173,7 +173,7 @@ impl Grid<'_> {
         Ok(found)
     }
 
-    /// The presets at the budget; one that is a candidate already is marked.
+    /// Adds the presets at the budget. One that is a candidate already is marked.
     fn add_presets(&self, found: &mut Candidates) -> Result<()> {
         for preset in Preset::ALL {
             let name = preset.word().to_owned();
@@ -189,7 +189,7 @@ impl Grid<'_> {
         Ok(())
     }
 
-    /// Every way to take one value of each axis; the last axis changes fastest.
+    /// Returns every way to take one value of each axis; the last axis changes fastest.
     fn combinations(&self) -> Vec<Settings> {
         self.axes.iter().fold(vec![Settings::new()], |before, axis| {
             let with = |settings: &Settings, value: &String| {
@@ -201,7 +201,7 @@ impl Grid<'_> {
         })
     }
 
-    /// The config of what is tried, with or without the settings for all.
+    /// Makes the config of a combination, with or without the settings for all.
     fn config(&self, tried: &[(String, String)], with_all: bool) -> Result<Tried> {
         let mut given: Settings = tried.to_vec();
         if with_all {
@@ -244,7 +244,7 @@ impl Grid<'_> {
     }
 }
 
-/// Maps of a config that are kept at once, at most.
+/// Returns the largest number of maps of a config that are stored at once.
 fn maps(config: &ShadowConfig, lights: &[LightKind]) -> usize {
     let splits = config.splits();
     let faces: usize = lights.iter().map(|light| light.faces()).max().unwrap_or(1);
@@ -258,8 +258,8 @@ fn maps(config: &ShadowConfig, lights: &[LightKind]) -> usize {
     layers * faces
 }
 
-/// Bytes of one texel of every map, at most: depth, an id or a depth buffer beside it, moments with
-/// their levels and the texture between two blurs.
+/// Returns the most bytes that one texel of every map takes: depth, an id or a depth buffer beside
+/// it, moments with their levels and the texture between two blurs.
 fn texel_bytes(config: &ShadowConfig, maps: usize) -> u64 {
     let maps = maps as u64;
     let depth = config.texel_bytes() * u64::from(config.filter.samples());
@@ -280,7 +280,7 @@ fn texel_bytes(config: &ShadowConfig, maps: usize) -> u64 {
     maps * (depth + beside) + moments
 }
 
-/// The edge of the largest maps that a budget pays for.
+/// Returns the edge in texels of the largest maps that a budget pays for.
 fn edge(config: &ShadowConfig, budget: Budget, lights: &[LightKind]) -> u32 {
     let maps = maps(config, lights);
     match budget {
@@ -289,7 +289,7 @@ fn edge(config: &ShadowConfig, budget: Budget, lights: &[LightKind]) -> u32 {
     }
 }
 
-/// The least whole budget, of the kind of `like`, a share of which pays for a config.
+/// Returns the least whole budget, of the kind of `like`, a share of which pays for a config.
 fn least_budget(config: &ShadowConfig, like: Budget, lights: &[LightKind], share: f64) -> Budget {
     let maps = maps(config, lights);
     let edge = u64::from(Budget::least_edge(&config.filter, config.is_stabilised()));

@@ -1,4 +1,4 @@
-//! Which candidate is best, and which are worth a thought.
+//! Choice of the best candidate, and of the Pareto front.
 
 use super::{
     Error,
@@ -6,28 +6,28 @@ use super::{
 };
 use umbrage::config::Budget;
 
-/// What was chosen among the outcomes; indices into them.
+/// Chosen outcomes, as indices into the list of outcomes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Choice {
-    /// The best.
+    /// Index of the best outcome.
     pub best: usize,
-    /// Those that no other beats in both error and bytes, by bytes; of those that flicker little
-    /// and fit the budget.
+    /// Indices of the Pareto front, by bytes: outcomes that no other beats in both error and bytes,
+    /// among those that flicker little and fit the budget.
     pub front: Vec<usize>,
 }
 
-/// Whether a candidate flickers no more than the share `most`; one whose camera never moves does
-/// not.
+/// Returns whether a candidate flickers no more than the share `most`. One whose camera never moves
+/// does not flicker.
 #[must_use]
 pub fn is_still(outcome: &Outcome, most: f64) -> bool {
     outcome.flicker.is_none_or(|flicker| flicker <= most)
 }
 
-/// The candidate of least mean E, of those that flicker no more than the share `most` and fit the
-/// budget; of equals the one with fewer bytes, then the first.
+/// Chooses the candidate of least mean E, among those that flicker no more than the share `most`
+/// and fit the budget. Of equals it takes the one with fewer bytes, then the first.
 ///
 /// # Errors
-/// [`Error::NoView`], [`Error::Flicker`] and [`Error::OverBudget`] where there is none.
+/// [`Error::NoView`], [`Error::Flicker`] and [`Error::OverBudget`] if there is none.
 pub fn choose(run: &Run, outcomes: &[Outcome], most: f64) -> Result<Choice, Error> {
     let scored: Vec<usize> = (0..outcomes.len()).filter(|&index| outcomes[index].e.is_some()).collect();
     if scored.is_empty() {
@@ -53,7 +53,7 @@ pub fn choose(run: &Run, outcomes: &[Outcome], most: f64) -> Result<Choice, Erro
     Ok(Choice { best, front: front(outcomes, still) })
 }
 
-/// Whether what was measured is no more than the budget.
+/// Returns whether the measured size is no more than the budget.
 fn fits(run: &Run, outcome: &Outcome) -> bool {
     match run.budget.parse() {
         Ok(Budget::Bytes(bytes)) => outcome.bytes <= bytes,
@@ -62,7 +62,7 @@ fn fits(run: &Run, outcome: &Outcome) -> bool {
     }
 }
 
-/// Those that no other beats in error with as few bytes.
+/// Returns the outcomes that no other beats in error with as few bytes.
 fn front(outcomes: &[Outcome], mut of: Vec<usize>) -> Vec<usize> {
     let error = |index: usize| outcomes[index].e.unwrap_or(f64::INFINITY);
     of.sort_by(|a, b| outcomes[*a].bytes.cmp(&outcomes[*b].bytes).then(error(*a).total_cmp(&error(*b))));

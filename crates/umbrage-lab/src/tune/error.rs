@@ -1,4 +1,4 @@
-//! Why there is no best config.
+//! Errors of a search without a result.
 
 use std::path::PathBuf;
 
@@ -6,17 +6,17 @@ use umbrage::config::Budget;
 
 use crate::failure::Failure;
 
-/// Why a search ended without a result. Each is bad input: the message names the option at fault
-/// and what to do.
+/// Reason why a search ended without a result. All are bad input: the message names the option at
+/// fault and says what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A key or value that cannot be tried.
+    /// A key or value cannot be tried.
     #[error("--try {axis}: {reason}")]
     Axis {
-        /// The axis as given.
+        /// Axis as it was given.
         axis: String,
-        /// What was wrong and what to do.
+        /// Fault and remedy.
         reason: String,
     },
     /// The budget pays for no candidate's maps.
@@ -24,17 +24,17 @@ pub enum Error {
         "--budget {budget}: too small for every candidate; the least that is possible with these settings is {least}"
     )]
     BudgetTooSmall {
-        /// The budget.
+        /// Budget that was given.
         budget: Budget,
-        /// The least that pays for a candidate.
+        /// Least budget that pays for a candidate.
         least: Budget,
     },
     /// Rules exclude every combination.
     #[error("--try: no combination is left, {count} are excluded: {reason}")]
     NothingToTry {
-        /// How many there were.
+        /// Number of combinations.
         count: usize,
-        /// Why, of the first.
+        /// Reason why the first one is excluded.
         reason: String,
     },
     /// No view has enough edges.
@@ -42,7 +42,7 @@ pub enum Error {
         "no view counts: none has {least_edges} edge pixels; give a larger --size, other shots, or a smaller --least-edges"
     )]
     NoView {
-        /// What `--least-edges` asks for.
+        /// Number of edge pixels that `--least-edges` asks for.
         least_edges: usize,
     },
     /// Every candidate flickers too much.
@@ -51,11 +51,11 @@ pub enum Error {
          or try stiller settings, such as --try stabilize=exact/approximate"
     )]
     Flicker {
-        /// What was asked for, per cent.
+        /// Largest flicker that was asked for, in per cent.
         most: f64,
-        /// The least found, per cent.
+        /// Least flicker of a candidate, in per cent.
         least: f64,
-        /// Which candidate that is.
+        /// Label of that candidate.
         label: String,
     },
     /// Every candidate takes more than the budget on this device.
@@ -63,12 +63,12 @@ pub enum Error {
         "--budget {budget}: on this device the smallest candidate takes {least} bytes; give a budget of that or more"
     )]
     OverBudget {
-        /// The budget as written.
+        /// Budget as it was written.
         budget: String,
-        /// The least that was measured.
+        /// Least size that was measured, in bytes.
         least: u64,
     },
-    /// Two files of different runs.
+    /// Two files belong to different runs.
     #[error(
         "--merge: {} and {} are of different runs, they differ in {difference}; merge shards of one run, with the \
          same options",
@@ -76,43 +76,43 @@ pub enum Error {
         .other.display()
     )]
     OtherRun {
-        /// The first file.
+        /// Path of the first file.
         first: PathBuf,
-        /// The file that differs.
+        /// Path of the file that differs.
         other: PathBuf,
-        /// What they differ in.
+        /// Name of the field in which the runs differ.
         difference: String,
     },
-    /// A file without a first line.
+    /// A file lacks its first line.
     #[error("--merge: {} is empty; nothing of its shard was finished, run that again", .file.display())]
     Empty {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
     },
-    /// Two files say different things about one candidate.
+    /// Two files contradict each other about one candidate.
     #[error(
         "--merge: {} gives other figures for candidate {candidate} ({label}) than a file before it; a run's figures do \
          not depend on its shards, so one of the files was changed or the device is faulty",
         .file.display()
     )]
     Contradiction {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// The candidate's number.
+        /// Number of the candidate.
         candidate: usize,
-        /// Its label.
+        /// Label of the candidate.
         label: String,
     },
-    /// Not all candidates are there.
+    /// Some candidates are missing.
     #[error(
         "--merge: {missing} of {all} candidates are missing: {shards}; run those shards again, they go on from their files"
     )]
     Missing {
-        /// How many.
+        /// Number of missing candidates.
         missing: usize,
-        /// Of how many.
+        /// Number of all candidates.
         all: usize,
-        /// How many of which shards.
+        /// Numbers of missing candidates by shard.
         shards: String,
     },
 }

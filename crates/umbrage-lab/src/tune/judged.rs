@@ -1,4 +1,4 @@
-//! The views with their truth, traced once, and what a candidate answers in them.
+//! The views with their ground truth, traced once, and a candidate's answers in them.
 
 use indicatif::ProgressBar;
 use umbrage_render::{Frame, Gpu, Lamp, Outputs, ProbePoint, Renderer, Samples};
@@ -22,7 +22,7 @@ use crate::{
     technique::{ShadowOptions, ShadowRequest},
 };
 
-/// A scene with the truth of its views.
+/// A scene with the ground truth of its views.
 pub struct JudgedScene<'a> {
     set: &'a SceneShots,
     series: Vec<JudgedSeries>,
@@ -36,7 +36,7 @@ struct JudgedSeries {
 
 struct JudgedFrame {
     judged: ViewTruth,
-    /// What this frame shares with the next.
+    /// Points that this frame shares with the next.
     shared: Vec<ProbePoint>,
     counts: bool,
 }
@@ -73,12 +73,12 @@ impl<'a> JudgedScene<'a> {
         Ok(Self { set, series: all })
     }
 
-    /// Whether any view has edges enough.
+    /// Returns whether any view has enough edges to count.
     pub fn counts(&self) -> bool {
         self.series.iter().flat_map(|series| &series.frames).any(|frame| frame.counts)
     }
 
-    /// Has a candidate draw and answer every view.
+    /// Draws and scores every view with a candidate.
     fn judge(
         &self,
         gpu: &Gpu,
@@ -142,7 +142,7 @@ impl<'a> JudgedScene<'a> {
     }
 }
 
-/// Says which candidate it was.
+/// Adds the candidate to an error.
 fn named(candidate: &Candidate, error: umbrage_render::Error) -> Failure {
     match Failure::from(error) {
         Failure::Input(message) => Failure::Input(format!("candidate {}: {message}", candidate.label)),
@@ -150,10 +150,10 @@ fn named(candidate: &Candidate, error: umbrage_render::Error) -> Failure {
     }
 }
 
-/// What a candidate comes to over all scenes.
+/// Judges a candidate over all scenes.
 ///
 /// # Errors
-/// [`Failure`] naming the candidate that cannot be drawn.
+/// [`Failure`] with the candidate that cannot be drawn.
 pub fn judge(
     gpu: &Gpu,
     scenes: &[JudgedScene<'_>],

@@ -1,4 +1,4 @@
-//! Shards of one run, put together.
+//! Merging of the shards of one run.
 
 use std::path::PathBuf;
 
@@ -14,12 +14,12 @@ use crate::{
     journal,
 };
 
-/// Puts the files of a run's shards together and writes the outputs: those of a run that was never
-/// divided.
+/// Merges the result files of a run's shards and writes the outputs, which are those of an
+/// undivided run.
 ///
 /// # Errors
-/// [`Error`] naming the files of different runs, or what is missing; [`Failure::Input`] naming a
-/// file that cannot be read or a line that is damaged.
+/// [`Error`] with the files of different runs, or with the missing candidates; [`Failure::Input`]
+/// with a file that cannot be read or a line that is damaged.
 pub fn merge(files: &[PathBuf], most_flicker: f64, outputs: &Outputs) -> Result<()> {
     let (run, outcomes) = read(files)?;
     output::write(&run, outcomes, most_flicker, outputs)
@@ -63,7 +63,7 @@ fn read(files: &[PathBuf]) -> Result<(Run, Vec<Outcome>)> {
     Ok((Run { shard: Shard::WHOLE, ..run }, outcomes))
 }
 
-/// A description in which shards of one run are alike.
+/// Returns a description that is equal for all shards of one run.
 fn without_shard_number(header: &Value) -> Value {
     let mut header = header.clone();
     if let Some(shard) = header.get_mut("shard").and_then(Value::as_object_mut) {

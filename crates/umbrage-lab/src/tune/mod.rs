@@ -1,10 +1,10 @@
-//! The best config for a budget, searched against the judge.
+//! Search for the best config within a budget, by the scores of the judge.
 //!
 //! [`candidates`] are all combinations of some settings' values, with maps as large as the budget
-//! allows, and the presets. [`run()`] has the truth traced once and every candidate draw and answer
-//! the same views; each one's [`record::Outcome`] is a line of a [`crate::journal`], so that a run
-//! can be cut off, spread over machines and merged ([`merge`]). [`choice`] says which is best,
-//! [`output`] writes it, the plot and the page.
+//! allows, and the presets. [`run()`] traces the truth once and scores every candidate in the same
+//! views. Each one's [`record::Outcome`] is a line of a [`crate::journal`], so that a run can be
+//! cut off, spread over machines and merged ([`merge`]). [`choice`] chooses the best; [`output`]
+//! writes its config, the plot and the page.
 
 pub mod candidates;
 pub mod choice;
@@ -25,5 +25,5 @@ pub use record::{Shard, shard};
 pub use run::{Job, run};
 pub use settings::Settings;
 
-/// The option that names a file of results, and what its lines are of.
+/// Kind of the result files of a search.
 pub(crate) const RESULTS: crate::journal::Kind = crate::journal::Kind { option: "--results", run: "tune run" };

@@ -1,4 +1,4 @@
-//! What a search leaves: a config file, a plot, a page, all figures.
+//! Outputs of a search: a config file, a plot, a page, all results.
 
 use std::{
     fmt::Write as _,
@@ -18,26 +18,27 @@ use crate::{
     report::to_json,
 };
 
-/// Where things go.
+/// Output files of a search.
 #[derive(Clone, Debug, Default)]
 pub struct Outputs {
-    /// The best config (TOML).
+    /// File of the best config (TOML).
     pub config: Option<PathBuf>,
-    /// Error over bytes (SVG).
+    /// File of the plot of error over bytes (SVG).
     pub plot: Option<PathBuf>,
-    /// One page (HTML).
+    /// File of the page (HTML).
     pub page: Option<PathBuf>,
-    /// All figures (JSON).
+    /// File of all results (JSON).
     pub json: Option<PathBuf>,
 }
 
 impl Outputs {
-    /// All files.
+    /// Iterates over all files.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         [&self.config, &self.plot, &self.page, &self.json].into_iter().flatten().map(AsRef::as_ref)
     }
 
-    /// Refuses what cannot be written, before any work is done; `results` is written beside.
+    /// Refuses files that cannot be written, before any work is done. `results` is another file
+    /// that is written.
     ///
     /// # Errors
     /// As [`output::check`].
@@ -46,7 +47,7 @@ impl Outputs {
     }
 }
 
-/// Everything that was found, as the JSON has it.
+/// Results of a search, as they are written to JSON.
 #[derive(Serialize)]
 struct Found<'a> {
     version: &'a str,
@@ -60,9 +61,9 @@ struct Found<'a> {
     #[serde(rename = "try")]
     axes: &'a [super::Axis],
     with: &'a [(String, String)],
-    /// The number of the best candidate.
+    /// Number of the best candidate.
     best: usize,
-    /// The numbers of those on the Pareto front.
+    /// Numbers of the candidates on the Pareto front.
     front: Vec<usize>,
     candidates: Vec<FoundCandidate<'a>>,
     skipped: Vec<Skipped<'a>>,
@@ -85,11 +86,10 @@ struct Skipped<'a> {
     count: usize,
 }
 
-/// Chooses, and writes what was asked for, whole or not at all.
+/// Chooses the best candidate and writes all outputs, or none.
 ///
 /// # Errors
-/// [`super::Error`] where there is no best; [`Failure::Input`] naming a file that cannot be
-/// written.
+/// [`super::Error`] if there is no best one; [`Failure::Input`] with a file that cannot be written.
 pub fn write(run: &Run, mut outcomes: Vec<Outcome>, most: f64, outputs: &Outputs) -> Result<()> {
     outcomes.sort_by_key(|outcome| outcome.candidate);
     let choice = choose(run, &outcomes, most)?;
@@ -142,7 +142,7 @@ fn found<'a>(run: &'a Run, outcomes: &'a [Outcome], choice: &Choice, most: f64) 
     }
 }
 
-/// The best config as a file that `--config` reads, with a comment of what it was tuned for.
+/// Writes the best config as a file for `--config`, with a comment on the run.
 fn config_file(run: &Run, best: &Outcome, most: f64) -> Result<String> {
     let candidate = &run.candidates[best.candidate];
     let settings = toml::to_string(&candidate.config)

@@ -1,4 +1,4 @@
-//! Error over bytes as a plot, and everything as one page.
+//! The plot of error over bytes, and the page of a search.
 
 use super::{
     choice::{Choice, is_still},
@@ -10,10 +10,10 @@ use crate::{
     page::plot::{Axis, Chart, Colour, Mark, Series, Style},
 };
 
-/// Bytes in a MiB.
+/// Number of bytes in a MiB.
 const MIB: f64 = 1024.0 * 1024.0;
 
-/// Error over bytes: every candidate, the Pareto front, the presets, the best.
+/// Plots error over bytes: every candidate, the Pareto front, the presets, the best.
 ///
 /// # Errors
 /// [`Failure::Other`] if the chart cannot be drawn, which would be a mistake of ours.
@@ -68,7 +68,7 @@ pub fn plot(run: &Run, outcomes: &[Outcome], choice: &Choice, most: f64) -> Resu
     chart.to_svg().map_err(|error| Failure::other(error.to_string()))
 }
 
-/// The page's text; `plot` as [`plot`] draws it, and the best config as a file.
+/// Makes the page's text. `plot` is the result of [`plot`], followed by the best config as a file.
 pub fn page(run: &Run, outcomes: &[Outcome], choice: &Choice, most: f64, (plot, toml): (String, &str)) -> String {
     let [width, height] = run.size;
     let best = &outcomes[choice.best];
@@ -108,7 +108,7 @@ fn percent(value: Option<f64>, decimals: usize) -> Cell {
     value.map_or(Cell::Missing, |value| Cell::Number(100.0 * value, decimals))
 }
 
-/// All candidates, the best first.
+/// Makes the table of all candidates, the best first.
 fn candidates(run: &Run, outcomes: &[Outcome], choice: &Choice, most: f64) -> Table {
     let least = |title: &str| Column::best(title, Best::Lowest);
     let columns = vec![
@@ -160,7 +160,7 @@ fn candidates(run: &Run, outcomes: &[Outcome], choice: &Choice, most: f64) -> Ta
     table
 }
 
-/// E of the best in every view, beside the presets'.
+/// Makes the table of E of the best in every view, beside the presets'.
 fn view_table(run: &Run, outcomes: &[Outcome], choice: &Choice) -> Table {
     let preset = |index: &usize| run.candidates[outcomes[*index].candidate].preset.is_some();
     let shown: Vec<usize> = [choice.best]
@@ -182,7 +182,7 @@ fn view_table(run: &Run, outcomes: &[Outcome], choice: &Choice) -> Table {
     table
 }
 
-/// What was tried and what was not.
+/// Makes the section on the axes that were tried and the combinations that were left out.
 fn left_out(run: &Run) -> Section {
     let axes: Vec<String> = run.axes.iter().map(|axis| format!("`{}={}`", axis.key, axis.values.join("/"))).collect();
     let with: Vec<String> = run.with.iter().map(|(key, value)| format!("`{key}={value}`")).collect();

@@ -1,4 +1,4 @@
-//! What a run is of and what it found, as it is in a file of results.
+//! The description of a run and its outcomes, as they are written to a file of results.
 
 use std::collections::BTreeMap;
 
@@ -6,20 +6,20 @@ use serde::{Deserialize, Serialize};
 
 use super::{Axis, candidates::Candidate};
 
-/// Which part of the candidates is judged: every `of`-th, from `number` on, counted from 1.
+/// A shard: every `of`-th candidate, from the `number`-th on, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
-    /// 1 to `of`.
+    /// Number of the shard, 1 to `of`.
     pub number: usize,
-    /// How many there are.
+    /// Number of shards.
     pub of: usize,
 }
 
 impl Shard {
-    /// All candidates.
+    /// Shard of all candidates.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// Whether a candidate belongs to it.
+    /// Returns whether a candidate belongs to the shard.
     #[must_use]
     pub const fn has(self, candidate: usize) -> bool {
         candidate % self.of + 1 == self.number
@@ -32,7 +32,7 @@ impl std::fmt::Display for Shard {
     }
 }
 
-/// `--shard`: `2/4`.
+/// Reads a shard of `--shard`: `2/4`.
 pub fn shard(text: &str) -> Result<Shard, String> {
     let numbers =
         text.split_once('/').and_then(|(number, of)| Some((number.trim().parse().ok()?, of.trim().parse().ok()?)));
@@ -43,91 +43,92 @@ pub fn shard(text: &str) -> Result<Shard, String> {
     }
 }
 
-/// Everything that decides what candidates come to: the first line of a file of results.
+/// Description of a run: all inputs that the outcomes depend on. It is the first line of a file of
+/// results.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Run {
-    /// Of umbrage.
+    /// Version of umbrage.
     pub version: String,
-    /// The graphics adapter.
+    /// Name of the graphics adapter.
     pub adapter: String,
-    /// What maps may take.
+    /// Budget of the maps.
     pub budget: String,
-    /// What is tried.
+    /// Axes of the search.
     #[serde(rename = "try")]
     pub axes: Vec<Axis>,
-    /// Settings of all that do not try others.
+    /// Settings of all candidates that do not override them.
     pub with: Vec<(String, String)>,
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// View depths that are scored, metres.
+    /// View depths that are scored, in metres.
     pub shadow_range: Option<(f64, f64)>,
-    /// Degrees across the sun.
+    /// Angular diameter of the sun in degrees.
     pub sun_angle: Option<f64>,
-    /// Edge pixels of a view that counts.
+    /// Fewest edge pixels of a view that counts.
     pub least_edges: usize,
-    /// What all candidates are judged on.
+    /// Views that all candidates are judged on.
     pub views: Vec<ViewName>,
-    /// In the order of their numbers.
+    /// Candidates in the order of their numbers.
     pub candidates: Vec<Candidate>,
-    /// Why combinations were left out, and how many.
+    /// Reasons why combinations were left out, and the number of combinations for each.
     pub skipped: BTreeMap<String, usize>,
-    /// Which of them are judged.
+    /// Shard of the candidates that are judged.
     pub shard: Shard,
 }
 
-/// A view.
+/// Name of a view.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ViewName {
-    /// The scene as it was named.
+    /// Scene as it was named.
     pub scene: String,
-    /// The camera.
+    /// Name of the camera.
     pub camera: String,
-    /// The sun in words.
+    /// Sun in words.
     pub sun: String,
     /// Number of the frame in its walk.
     pub frame: usize,
-    /// The options of `umbrage render` that show it.
+    /// Options of `umbrage render` that show the view.
     pub options: Vec<String>,
 }
 
-/// What a candidate came to; one line of a file of results. Rates are shares in 0..=1.
+/// Scores of a candidate: one line of a file of results. Rates are shares in 0..=1.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
-    /// Its number.
+    /// Number of the candidate.
     pub candidate: usize,
     /// Bytes of all maps on the device.
     pub bytes: u64,
-    /// E, the mean over the views that count.
+    /// Mean of the error rate E over the views that count.
     pub e: Option<f64>,
-    /// E_log.
+    /// Mean of E over bins of depth, E_log.
     pub e_log: Option<f64>,
-    /// Acne.
+    /// Rate of acne.
     pub acne: Option<f64>,
-    /// Leaks.
+    /// Rate of leaks.
     pub leak: Option<f64>,
-    /// D.
+    /// Mean distance of edges in pixels, D.
     pub edge_distance_px: Option<f64>,
-    /// F_edge, the mean over the walks that count; none where no camera moves.
+    /// Mean of F_edge over the walks that count; `None` if no camera moves.
     pub flicker: Option<f64>,
-    /// Draw calls into maps, the mean over the views that count.
+    /// Mean number of draw calls into maps, over the views that count.
     pub draws: Option<f64>,
-    /// Each view alone.
+    /// Scores of each view.
     pub views: Vec<ViewOutcome>,
 }
 
-/// What a candidate came to in a view.
+/// Scores of a candidate in a view.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ViewOutcome {
-    /// E.
+    /// Error rate E.
     pub e: Option<f64>,
-    /// Edge pixels of the true shadow.
+    /// Number of edge pixels of the true shadow.
     pub edges: usize,
-    /// Whether it counts in means.
+    /// True if the view counts in means.
     pub counts: bool,
 }
 
-/// The figures of an outcome in words.
+/// Describes the scores of an outcome in words.
 pub(super) fn figures(outcome: &Outcome) -> String {
     let percent = |value: Option<f64>| value.map_or("none".to_owned(), |value| format!("{:.3} %", 100.0 * value));
     format!(
@@ -138,14 +139,15 @@ pub(super) fn figures(outcome: &Outcome) -> String {
     )
 }
 
-/// The scenes of a run.
+/// Returns the scenes of a run.
 pub(super) fn scenes(run: &Run) -> Vec<String> {
     let mut scenes: Vec<String> = run.views.iter().map(|view| view.scene.clone()).collect();
     scenes.dedup();
     scenes
 }
 
-/// The views of the outcomes that count; they are the same for all.
+/// Returns the views of the first outcome. The views, and which of them count, are the same for all
+/// outcomes.
 pub(super) fn views_of(outcomes: &[Outcome]) -> &[ViewOutcome] {
     outcomes.first().map_or(&[], |outcome| &outcome.views)
 }

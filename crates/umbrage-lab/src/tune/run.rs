@@ -1,4 +1,4 @@
-//! Traces, judges candidate after candidate, writes.
+//! Running a search: traces the truth, judges candidate after candidate, writes the outputs.
 
 use std::path::PathBuf;
 
@@ -16,36 +16,36 @@ use crate::{
     compare::shots::SceneShots, failure::Result, journal::Journal, notes, progress, technique::text::Settings as Given,
 };
 
-/// A search, everything checked that can be before a frame is drawn.
+/// A search. Everything that can be is checked before a frame is drawn.
 #[derive(Debug)]
 pub struct Job {
-    /// What maps may take.
+    /// Budget of the maps.
     pub budget: Budget,
-    /// What is tried.
+    /// Axes of the search.
     pub axes: Vec<Axis>,
-    /// Settings of all candidates that do not try others.
+    /// Settings of all candidates that do not override them.
     pub with: Given,
-    /// Whether the presets are candidates too.
+    /// True if the presets are candidates too.
     pub presets: bool,
     /// Scenes, opened, with their views.
     pub scenes: Vec<SceneShots>,
-    /// What holds for all candidates.
+    /// Settings of all candidates.
     pub settings: Settings,
-    /// The most F_edge of the best, a share.
+    /// Largest F_edge of the best candidate, as a share.
     pub most_flicker: f64,
-    /// Where finished candidates are kept, and taken from if a run was cut off.
+    /// File of finished candidates, from which a run that was cut off continues.
     pub results: Option<PathBuf>,
-    /// Which candidates are judged.
+    /// Shard of the candidates that are judged.
     pub shard: Shard,
-    /// Where things go.
+    /// Output files.
     pub outputs: Outputs,
 }
 
-/// Judges the candidates of the shard that no earlier run judged; writes the outputs, unless the
-/// shard is but a part.
+/// Judges the candidates of the shard that no earlier run judged. Writes the outputs, unless the
+/// shard is only a part.
 ///
 /// # Errors
-/// [`crate::failure::Failure`] naming the option, file or candidate at fault.
+/// [`crate::failure::Failure`] with the option, file or candidate at fault.
 pub fn run(job: &Job) -> Result<()> {
     let lights: Vec<LightKind> =
         job.scenes.iter().flat_map(|set| &set.series).map(|series| series.light.light.into()).collect();
@@ -114,7 +114,8 @@ fn judge_missing(
     Ok(())
 }
 
-/// A line of a file of results, of a run with so many candidates; what is wrong with it in words.
+/// Reads a line of a file of results, of a run with `candidates` candidates. The error says what is
+/// wrong with it.
 pub(super) fn read_outcome(line: &str, candidates: usize) -> std::result::Result<Outcome, String> {
     let outcome: Outcome = serde_json::from_str(line).map_err(|error| error.to_string())?;
     if outcome.candidate < candidates {

@@ -1,14 +1,14 @@
-//! What holds for all candidates of a search.
+//! Settings of all candidates of a search.
 
-/// What holds for all candidates.
+/// Settings of all candidates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// View depths in metres that are scored; none: the camera's near and far.
+    /// View depths in metres that are scored; `None` uses the camera's near and far.
     pub shadow_range: Option<(f64, f64)>,
-    /// Degrees across the sun, for pcss.
+    /// Angular diameter of the sun in degrees, for the filter pcss.
     pub sun_angle: Option<f64>,
-    /// Edge pixels of the true shadow that a view needs to count.
+    /// Fewest edge pixels of the true shadow in a view that counts.
     pub least_edges: usize,
 }

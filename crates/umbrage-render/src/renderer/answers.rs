@@ -1,4 +1,4 @@
-//! Answers at given points: maps, and the pass that asks them.
+//! Answers at given points: draws the maps and records the pass that probes them.
 
 use glam::DVec3;
 use umbrage::{Aabb, ShadowPlan};
@@ -43,7 +43,7 @@ impl Renderer {
         Ok(answers)
     }
 
-    /// Asks one batch of points.
+    /// Probes one batch of points.
     async fn ask(
         &self,
         frame: &Frame<'_>,
@@ -78,7 +78,7 @@ impl Renderer {
         Ok(replies)
     }
 
-    /// Who answers for a point.
+    /// Chooses the split that answers for a point.
     fn responder(&self, frame: &Frame<'_>, plan: &ShadowPlan, point: DVec3) -> Responder {
         if !frame.light.light.reaches(point) {
             return Responder::Nobody;

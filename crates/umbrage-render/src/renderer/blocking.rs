@@ -1,10 +1,10 @@
-//! What waits by blocking the thread, which no page in a browser may do.
+//! Calls that wait by blocking the thread, which a page in a browser may not do.
 
 use super::{Frame, Outputs, Rendered, Renderer};
 use crate::{ProbeAnswer, ProbePoint, Result};
 
 impl Renderer {
-    /// Draws a frame and waits for what was asked for.
+    /// Draws a frame and waits for the requested outputs.
     ///
     /// # Errors
     /// As [`Renderer::render_async`].
@@ -12,7 +12,7 @@ impl Renderer {
         pollster::block_on(self.render_async(frame, outputs))
     }
 
-    /// [`Renderer::probe_async`], blocking.
+    /// Probes points as [`Renderer::probe_async`] does, and blocks until the answers are there.
     ///
     /// # Errors
     /// As [`Renderer::probe_async`].

@@ -1,5 +1,5 @@
-//! What each pass over the maps draws: the casters of its splits, and of large meshes the clusters
-//! that reach them.
+//! Lists of the casters that each pass over the maps draws: the casters of its splits and, of large
+//! meshes, the clusters that reach the maps.
 
 use std::ops::Range;
 
@@ -16,18 +16,19 @@ use crate::draw_list::{Parts, Run};
 use crate::geometry::GpuPrimitive;
 use crate::shadow_mesh::{Cluster, descend};
 
-/// Triangles that each draw of an object in parts has to spare, or it is drawn whole: with others
-/// of its mesh in one draw. Gaps between its parts that spare less are drawn too.
+/// Fewest triangles that a draw of part of an object must spare. If it spares fewer, the object is
+/// drawn whole, with others of its mesh in one draw; gaps between its parts that spare fewer are
+/// drawn too.
 const LEAST_SPARED: u32 = 40;
 
-/// Triangles that are asked for together, at most, but for the ends of what is drawn.
+/// Most triangles that are tested together, except at the ends of the drawn ranges.
 const BLOCK: u32 = 24;
 
-/// Triangles of the parts that the planner is told of, at most.
+/// Most triangles in a part whose box is given to the planner.
 const PART: u32 = 128;
 
 impl Renderer {
-    /// What each pass over the maps draws; nothing where shadows are off.
+    /// Lists the casters of each pass over the maps; empty where shadows are off.
     pub(crate) fn caster_runs(&mut self, frame: &Frame<'_>, origin: DVec3, objects: &Gathered) -> Vec<Vec<Run>> {
         if !frame.shadows_on {
             return Vec::new();
@@ -84,8 +85,9 @@ impl Renderer {
         all
     }
 
-    /// Adds what visible objects are made of, for the planner; false if no caster may be drawn in
-    /// part. Of thousands of objects each is a cluster of its own: the planner has their boxes.
+    /// Adds the boxes of the clusters of visible objects, for the planner; returns false if no
+    /// caster may be drawn in part. With thousands of objects each is a cluster of its own, whose
+    /// box the planner has already.
     pub(super) fn receiver_clusters(&self, pose: &Pose, visible: &[usize], parts: &mut Vec<Aabb>) -> bool {
         let (meshes, maps) = (&self.scene.meshes, self.shadows.maps());
         let may_be_in_part = |object: &Object| self.is_listed(pose, object) && has_parts(object, meshes);
@@ -111,13 +113,13 @@ impl Renderer {
     }
 }
 
-/// Whether maps may leave out some of an object.
+/// Returns whether maps may draw parts of an object.
 fn has_parts(object: &Object, meshes: &[Vec<GpuPrimitive>]) -> bool {
     object.skinned.is_none() && meshes[object.mesh].iter().any(|primitive| primitive.clusters.len() > 1)
 }
 
-/// For each primitive the ranges of indices that reach a map; `None` if the object is better
-/// drawn whole.
+/// Returns, for each primitive, the ranges of indices that reach a map; `None` if the object is
+/// better drawn whole.
 fn parts_in(map: &ShadowMap<'_>, object: &Object, primitives: &[GpuPrimitive]) -> Option<Parts> {
     let reaches = |node: &Cluster| map.is_reached_by(&node.bounds().transformed(&object.world_from_local));
     let mut spared = 0;
@@ -134,11 +136,11 @@ fn parts_in(map: &ShadowMap<'_>, object: &Object, primitives: &[GpuPrimitive]) -
     (spared > 0 && spared >= LEAST_SPARED * draws).then_some(parts)
 }
 
-/// The ranges of indices of a tree's leaves that reach, and what lies between them in the same
-/// block or in a narrow gap.
+/// Returns the ranges of indices of a tree's leaves that reach a map, with the gaps between them in
+/// the same block and narrow gaps elsewhere.
 ///
-/// Blocks are asked first. The smaller leaves are worth asking where a row of blocks begins and
-/// where it ends, and nowhere else.
+/// Blocks are tested first. Leaves are tested only in the first and in the last block of a row of
+/// blocks, where they shorten the range.
 fn reaching(tree: &[Cluster], reaches: impl Fn(&Cluster) -> bool) -> Vec<Range<u32>> {
     // Rows of blocks, the first and the last of each.
     let mut rows: Vec<[usize; 2]> = Vec::new();

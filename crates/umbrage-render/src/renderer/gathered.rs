@@ -1,4 +1,4 @@
-//! What a frame is planned from. The lists are kept, so that steady frames allocate nothing.
+//! Inputs of a frame's plan. The lists are reused, so that steady frames allocate nothing.
 
 use umbrage::{Aabb, Layers, Light, View};
 use umbrage_scene::Pose;
@@ -8,31 +8,31 @@ use crate::cull;
 use crate::lamps::Lamp;
 use crate::{Error, Result};
 
-/// What a frame is planned from.
+/// Inputs of a frame's plan.
 #[derive(Default)]
 pub(crate) struct Gathered {
-    /// Objects that a plan may name as casters, by their numbers in the pose; empty where a set
-    /// holds them, whose casters are called by these numbers.
+    /// Objects that a plan may name as casters, as indices into the pose; empty if the objects are
+    /// in a set, which names casters by these indices.
     casters: Vec<usize>,
-    /// Whether a set holds them.
+    /// True if the objects are in a set.
     is_set: bool,
-    /// Objects that the view may show, by the depth of their centres, near ones first.
+    /// Objects that the view may show, by the view depth of their centres, near ones first.
     pub visible: Vec<usize>,
     pub lamps: Vec<Lamp>,
     pub lights: Vec<Light>,
-    /// Boxes of `casters`; empty where a set holds them.
+    /// Boxes of `casters`; empty if the objects are in a set.
     pub caster_boxes: Vec<Aabb>,
-    /// Boxes of all objects; empty where a set holds them.
+    /// Boxes of all objects; empty if the objects are in a set.
     pub receiver_boxes: Vec<Aabb>,
-    /// What visible objects are made of.
+    /// Boxes of the clusters of visible objects.
     clusters: Option<Vec<Aabb>>,
-    /// The list of `clusters` while there are none.
+    /// Spare list for `clusters` while it is `None`.
     spare: Vec<Aabb>,
     depths: Vec<(f64, usize)>,
 }
 
 impl Gathered {
-    /// The object that a caster of a plan is.
+    /// Returns the object of a caster of a plan.
     pub fn object(&self, caster: u32) -> usize {
         if self.is_set { caster as usize } else { self.casters[caster as usize] }
     }
@@ -41,8 +41,8 @@ impl Gathered {
         self.clusters.as_deref()
     }
 
-    /// Gathers a frame. Objects alone ask the maps with `asks_surfaces`, so that their parts may
-    /// be told apart.
+    /// Gathers the inputs of a frame's plan. Set `asks_surfaces` if nothing but drawn surfaces
+    /// reads the maps, so that parts of objects may be told apart.
     ///
     /// # Errors
     /// [`Error::LampSlots`]; and as `Renderer::follow`.

@@ -1,5 +1,4 @@
-//! What may change while frames go on: the config, the picture's size, the view that maps are
-//! planned for.
+//! Changes between frames: the config, the picture's size, and the view that maps are planned for.
 
 use std::sync::OnceLock;
 
@@ -17,31 +16,31 @@ use crate::timing::Timer;
 use crate::{Error, Result};
 
 impl Renderer {
-    /// The config that is carried out.
+    /// Returns the config in use.
     #[must_use]
     pub fn config(&self) -> &ShadowConfig {
         self.shadows.config()
     }
 
-    /// What the casters of a plan are indices into: the objects of a pose that are drawn into maps,
-    /// by index; all objects where something is kept of maps, or where they are thousands.
+    /// Lists the objects that a plan's caster indices refer to, as indices into the pose: the
+    /// objects that are drawn into maps, or all objects if maps are kept or the objects are
+    /// thousands.
     #[must_use]
     pub fn casters_of(&self, pose: &Pose) -> Vec<usize> {
         self.caster_indices(pose).collect()
     }
 
-    /// [`Renderer::casters_of`], one by one.
+    /// Iterates over the objects of [`Renderer::casters_of`].
     pub(super) fn caster_indices(&self, pose: &Pose) -> impl Iterator<Item = usize> {
         (0..pose.objects.len()).filter(|&index| self.is_listed(pose, &pose.objects[index]))
     }
 
-    /// Changes the config; `scene` is the one that the renderer was made with. The scene stays on
-    /// the device, and what stabilised maps hold on to stays where the change does not concern it.
-    /// Returns what was rebuilt at most.
+    /// Changes the config. `scene` is the scene that the renderer was made with: it stays on the
+    /// device. State of stabilised maps stays where the change does not concern it. Returns the
+    /// most expensive rebuild that took place.
     ///
     /// # Errors
-    /// As [`Renderer::new`], and [`Error::SlicesOfAnotherView`]. The config is then the one of
-    /// before.
+    /// As [`Renderer::new`], and [`Error::SlicesOfAnotherView`]. The config is then unchanged.
     pub fn set_config(&mut self, scene: &Scene, config: &ShadowConfig) -> Result<Rebuilds> {
         let gpu = self.gpu.clone();
         let before = self.shadows.config().clone();
@@ -71,6 +70,7 @@ impl Renderer {
                 self.forward = Forward::new(&gpu, maps, materials, samples, with, self.shading);
                 self.probe = OnceLock::new();
                 self.shadow_mask = None;
+                self.through_mask = None;
                 self.dithered_nodes = dithered_nodes(scene, config);
             }
             self.notes = notes_of(&self.shadows, self.contact.as_ref(), &self.timer);
@@ -78,10 +78,10 @@ impl Renderer {
         })
     }
 
-    /// Changes the picture's size in pixels. Maps, and what they hold on to, stay.
+    /// Changes the picture's size in pixels. Maps and their stabilisation state stay.
     ///
     /// # Errors
-    /// [`Error::ImageSize`] or [`Error::OutOfMemory`]; the size is then the one of before.
+    /// [`Error::ImageSize`] or [`Error::OutOfMemory`]; the size is then unchanged.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
         if size == self.size {
             return Ok(());
@@ -96,14 +96,17 @@ impl Renderer {
         self.contact = gpu.guarded("resizing the picture", || Ok(Contact::wanted(&gpu, config, size)))?;
         // Targets are made when a frame wants them.
         (self.picture, self.mask, self.counts, self.size) = (None, None, None, size);
+        if let Some(through) = &mut self.through_mask {
+            through.forget_picture();
+        }
         Ok(())
     }
 
-    /// Plans the maps of all coming frames for this view, whatever view is drawn: its maps as
-    /// another eye sees them. `None`: for the view that is drawn.
+    /// Plans the maps of all coming frames for this view, whichever view is drawn: the picture then
+    /// shows the maps of another eye. `None` plans for the view that is drawn.
     ///
     /// # Errors
-    /// [`Error::SlicesOfAnotherView`] where one map is used for slice after slice of the view.
+    /// [`Error::SlicesOfAnotherView`] if one map is used for one slice of the view after the other.
     pub fn plan_for(&mut self, view: Option<View>) -> Result<()> {
         if view.is_some() && self.layout() == Layout::Reused {
             return Err(Error::SlicesOfAnotherView);

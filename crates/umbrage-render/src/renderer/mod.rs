@@ -1,11 +1,12 @@
-//! The demonstration renderer: a scene, a view and lights in; a picture, a mask, maps and numbers
-//! out.
+//! The demonstration renderer. It takes a scene, a view and lights, and returns a picture, a mask,
+//! maps and numbers.
 
 mod answers;
 #[cfg(not(target_arch = "wasm32"))]
 mod blocking;
 mod caster_runs;
 mod gathered;
+mod lit;
 mod live;
 mod prepare;
 mod record;
@@ -45,21 +46,26 @@ use crate::names::Names;
 use crate::probe::{self, Probe, ProbeAnswer, ProbePoint};
 use crate::stats::FrameStats;
 use crate::targets::{MaskTarget, PictureTarget};
+use crate::through_mask::ThroughMask;
 use crate::timing::Timer;
 use crate::{Error, Gpu, Result, maps, waiting};
 
-/// What is settled before the first frame.
+/// Settings that are fixed before the first frame.
 #[derive(Clone, Debug)]
 pub struct RenderSettings {
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Samples per pixel of the picture; masks have one always.
+    /// Samples per pixel of the picture. Masks always have one.
     pub samples: Samples,
-    /// Shadows. With [`Coordinates::Deferred`] masks are made from the picture's depth
-    /// ([`umbrage_wgpu::ShadowMask`]).
+    /// Technique of the shadows. With [`Coordinates::Deferred`] masks are made from the picture's
+    /// depth ([`umbrage_wgpu::ShadowMask`]).
     pub config: ShadowConfig,
-    /// The lights of a frame, the first one first: one sun by default.
+    /// Lights of a frame, in order; one sun by default.
     pub lights: Vec<LightMaps>,
+    /// Pictures may take the first light's shadows from a mask that is made of their depth and
+    /// normals, which asks once per pixel however small triangles are. It is done where nothing is
+    /// lost by it: one light, one sample per pixel. `false`: every fragment asks for itself.
+    pub through_mask: bool,
 }
 
 impl Default for RenderSettings {
@@ -69,94 +75,99 @@ impl Default for RenderSettings {
             samples: Samples::default(),
             config: ShadowConfig::default(),
             lights: vec![LightKind::Directional.into()],
+            through_mask: true,
         }
     }
 }
 
-/// What varies from frame to frame.
+/// Inputs that vary from frame to frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
-    /// The scene at this moment; a pose of the scene that the renderer was made with.
+    /// Pose of the scene that the renderer was made with.
     pub pose: &'a Pose,
-    /// Objects of the pose that differ from those of the last frame, by number; an empty list for
-    /// the same pose again. `None`: any may. Where objects are thousands, those that stand still
-    /// then cost nothing.
+    /// Objects of the pose that differ from those of the last frame, by index; an empty list for an
+    /// equal pose. `None` means that any may differ. Given a list, objects that do not move cost
+    /// nothing, which matters with thousands.
     pub moved: Option<&'a [u32]>,
-    /// The eye.
+    /// View that is drawn.
     pub view: &'a View,
-    /// The first light: the one that masks and probes are of.
+    /// The first light. Masks and probes are computed for this light.
     pub light: Lamp,
-    /// More lights, for the picture.
+    /// Further lights of the picture.
     pub more_lights: &'a [Lamp],
-    /// Whether anything casts shadows; if not, whatever faces the light is lit, and what
-    /// stabilised maps hold on to stays as it was.
+    /// False if nothing casts shadows. Every surface that faces the light is then lit, and the
+    /// state of stabilised maps stays unchanged.
     pub shadows_on: bool,
-    /// Whether the picture shows each split in its own colour.
+    /// True if the picture shows each split in its own colour.
     pub tint: bool,
 }
 
-/// What is wanted of a frame.
+/// Choice of a frame's outputs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Outputs {
-    /// The shaded picture.
+    /// True if the shaded picture is wanted.
     pub picture: bool,
-    /// The visibility mask.
+    /// True if the visibility mask is wanted.
     pub mask: bool,
-    /// Each split's depth map.
+    /// True if each split's depth map is wanted.
     pub maps: bool,
-    /// What exact edges do for each pixel: a pass of its own, with a text that counts.
+    /// True if counts of exact edges are wanted for each pixel. A pass of its own draws them, with
+    /// a shader that counts.
     pub edges: bool,
 }
 
-/// What came out of a frame.
+/// Outputs of a frame.
 #[derive(Clone, Debug)]
 pub struct Rendered {
-    /// sRGB, opaque.
+    /// The shaded picture: sRGB, opaque.
     pub picture: Option<RgbaImage>,
-    /// Grey: visibility at the pixel's centre, 255 lit to 0 in shadow or turned away. Alpha: 255
-    /// where a surface is.
+    /// The visibility mask. Grey is visibility at the pixel's centre, from 255 (lit) to 0 (in
+    /// shadow or turned away). Alpha is 255 where a surface is.
     pub mask: Option<GrayAlphaImage>,
-    /// Each split's depths, stretched: black is nearest to the light, white is empty.
+    /// Depths of each split's map, stretched: black is nearest to the light, white is empty.
     pub maps: Vec<GrayImage>,
-    /// What exact edges did for the first light; none where edges are sampled.
+    /// Counts of exact edges of the first light; `None` with sampled edges.
     pub edges: Option<EdgeCounts>,
-    /// Numbers.
+    /// Numbers of the frame.
     pub stats: FrameStats,
 }
 
-/// Draws one scene at one size. Everything that does not change from frame to frame is on the GPU
-/// already.
+/// Renderer of one scene at one size. All data that does not change from frame to frame is on the
+/// GPU.
 pub struct Renderer {
     pub(crate) gpu: Gpu,
     pub(crate) size: [u32; 2],
     pub(crate) samples: Samples,
     pub(crate) shadows: Shadows,
-    /// Where the shadows of the view that is drawn are held: see [`Renderer::render_views`].
+    /// Slot of the shadows of the view that is drawn: see [`Renderer::render_views`].
     pub(crate) view_slot: u32,
-    /// The view that maps are planned for, if it is not the one that is drawn.
+    /// View that maps are planned for, if it is not the view that is drawn.
     pub(crate) planned_for: Option<View>,
     pub(crate) scene: Geometry,
     scene_meshes: SceneMeshes,
     pub(crate) skinned: SkinnedGeometry,
     pub(crate) materials: Materials,
     pub(crate) instances: Instances,
-    /// Who has which ids, with exact edges.
+    /// Ids of the objects, with exact edges.
     pub(crate) names: Names,
     pub(crate) casters: Casters,
     pub(crate) forward: Forward,
     pub(crate) contact: Option<Contact>,
-    /// Per node of the scene, whether its translucent surfaces cast shadows; empty where none do.
+    /// True for each node of the scene whose translucent surfaces cast shadows; empty if none do.
     pub(crate) dithered_nodes: Vec<bool>,
-    /// Made when something is asked.
+    /// The probe pass, made when it is first used.
     pub(crate) probe: OnceLock<Probe>,
     pub(crate) shading: Shading,
     pub(crate) timer: Timer,
     pub(crate) picture: Option<PictureTarget>,
     pub(crate) mask: Option<MaskTarget>,
     pub(crate) shadow_mask: Option<ShadowMask>,
+    /// Whether pictures may go through a mask, and what that takes, made when first needed.
+    may_mask: bool,
+    through_mask: Option<ThroughMask>,
     pub(crate) counts: Option<MaskTarget>,
     pub(crate) notes: Vec<String>,
-    /// The objects that maps are planned for, where something is kept of these.
+    /// Set of the objects that maps are planned for, if maps are kept or the objects are thousands.
     world: WorldSet,
     kept: KeptMaps,
     gathered: Gathered,
@@ -165,7 +176,7 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// Uploads a scene and makes everything that a frame needs.
+    /// Uploads a scene and makes all pipelines and textures of a frame.
     ///
     /// # Errors
     /// [`Error::ImageSize`], [`Error::TextureSize`], [`Error::BufferSize`] or
@@ -175,9 +186,9 @@ impl Renderer {
         Self::with_shading(gpu, scene, settings, Shading::WithShadows)
     }
 
-    /// Draws a scene by shaders that never heard of shadows: what a picture costs without them,
-    /// which a renderer whose shadows are switched off does not tell. [`Frame::shadows_on`] is not
-    /// looked at, and of [`RenderSettings::config`] nothing is.
+    /// Makes a renderer whose shaders contain no shadow code, to measure the cost of a picture
+    /// without shadows. A renderer whose shadows are switched off still pays for the code.
+    /// [`Frame::shadows_on`] and [`RenderSettings::config`] are ignored.
     ///
     /// # Errors
     /// As [`Renderer::new`].
@@ -225,6 +236,8 @@ impl Renderer {
                 picture: None,
                 mask: None,
                 shadow_mask: None,
+                may_mask: settings.through_mask,
+                through_mask: None,
                 counts: None,
                 notes,
                 world: WorldSet::default(),
@@ -239,27 +252,27 @@ impl Renderer {
         })
     }
 
-    /// Forgets what stabilised maps hold on to, as if nothing had been drawn yet: for views that do
+    /// Forgets the state of stabilised maps, as if nothing had been drawn yet, for views that do
     /// not follow each other.
     pub fn restart(&mut self) {
         self.shadows.restart();
         self.sight.forget();
     }
 
-    /// Bytes of vertices, indices and textures on the GPU.
+    /// Returns the bytes of vertices, indices and textures on the GPU.
     #[must_use]
     pub fn scene_bytes(&self) -> u64 {
         self.scene.bytes + self.skinned.geometry.bytes + self.materials.bytes
     }
 
-    /// How maps are kept and drawn: the config's layout, or what the device can do instead.
+    /// Returns the layout of the maps: the config's, or the one that the device can do instead.
     #[must_use]
     pub fn layout(&self) -> Layout {
         self.shadows.maps().layout()
     }
 
-    /// Draws a frame and waits for what was asked for, without blocking in a browser. Elsewhere the
-    /// future is ready when it is polled first, as in [`Renderer::render`].
+    /// Draws a frame and waits for the requested outputs, without blocking in a browser. Elsewhere
+    /// the future is ready when it is first polled, as in [`Renderer::render`].
     ///
     /// # Errors
     /// [`Error::Plan`] if camera, range or bounds are wrong, [`Error::Scene`] if the pose is not
@@ -278,9 +291,9 @@ impl Renderer {
         self.or_forget(drawn)
     }
 
-    /// Visibility of the first light at given points. A point that the view shows within the
-    /// shadowed range gets what a pixel there would get; any other is answered by the first split
-    /// whose map covers it, or is lit where none does.
+    /// Returns the visibility of the first light at given points. A point that the view shows
+    /// within the shadowed range gets the visibility that a pixel there would get. Any other is
+    /// answered by the first split whose map covers it, or is lit where none does.
     ///
     /// # Errors
     /// [`Error::Probe`] naming a point that is not finite or has no normal, and those of
@@ -295,7 +308,8 @@ impl Renderer {
     async fn render_unguarded(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<Rendered> {
         let gpu = self.gpu.clone();
         self.make_targets(outputs)?;
-        let prepared = Prepared { every_map: outputs.maps, ..self.prepare(frame, true)? };
+        let mut prepared = Prepared { every_map: outputs.maps, ..self.prepare(frame, true)? };
+        prepared.is_through_mask = outputs.picture && self.prepare_lit(frame, prepared.origin)?;
         let mut clock = Clock::start(&gpu, &self.timer);
         let samples = self.shadows.maps().config().filter.samples();
         if outputs.maps && samples > 1 {
@@ -342,7 +356,7 @@ impl Renderer {
         })
     }
 
-    /// Makes what is drawn to, when it is first asked for.
+    /// Makes the textures that are drawn to, when they are first needed.
     fn make_targets(&mut self, outputs: Outputs) -> Result<()> {
         if outputs.picture {
             let target = self.picture.get_or_insert_with(|| PictureTarget::new(&self.gpu, self.size, self.samples));
@@ -382,7 +396,7 @@ impl Renderer {
         Ok(ShadowMask::with_runs(device, maps, MASK_FORMAT, MaskNormals::FromDepth, runs)?)
     }
 
-    /// Replaces the mask by what its depth alone says.
+    /// Replaces the mask by one computed from its depth alone.
     fn record_deferred_mask(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -411,7 +425,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// The splits' maps as pictures, nearest first.
+    /// Returns the splits' maps as pictures, nearest first.
     async fn map_pictures(&self, mut maps: Vec<MapCapture>) -> Result<Vec<GrayImage>> {
         maps.sort_by_key(|map| map.split);
         let format = self.shadows.maps().config().depth_format;
@@ -424,18 +438,18 @@ impl Renderer {
         Ok(pictures)
     }
 
-    /// Whether masks are made from the picture's depth.
+    /// Returns whether masks are made from the picture's depth.
     fn is_deferred(&self) -> bool {
         self.shadows.maps().config().coordinates == Coordinates::Deferred
     }
 
-    /// Whether an object is drawn into maps.
+    /// Returns whether an object is drawn into maps.
     pub(crate) fn casts(&self, object: &umbrage_scene::Object) -> bool {
         object.casts || self.dithered_nodes.get(object.node) == Some(&true)
     }
 }
 
-/// The bytes of what was asked for.
+/// Returns the bytes of a capture, if there is one.
 async fn read(gpu: &Gpu, capture: Option<Capture>) -> Result<Option<Vec<u8>>> {
     match capture {
         Some(capture) => capture.read(gpu).await.map(Some),
@@ -443,7 +457,7 @@ async fn read(gpu: &Gpu, capture: Option<Capture>) -> Result<Option<Vec<u8>>> {
     }
 }
 
-/// Fallbacks that are taken.
+/// Lists the fallbacks in use.
 pub(crate) fn notes_of(shadows: &Shadows, contact: Option<&Contact>, timer: &Timer) -> Vec<String> {
     let mut notes = shadows.notes().to_vec();
     if shadows.config().look.contact && contact.is_none() {
@@ -457,7 +471,8 @@ pub(crate) fn notes_of(shadows: &Shadows, contact: Option<&Contact>, timer: &Tim
     notes
 }
 
-/// Per node of a scene, whether its translucent surfaces cast shadows; empty where none do.
+/// Returns, for each node of a scene, whether its translucent surfaces cast shadows; empty if none
+/// do.
 pub(crate) fn dithered_nodes(scene: &Scene, config: &ShadowConfig) -> Vec<bool> {
     match config.look.translucent {
         Translucent::None => Vec::new(),

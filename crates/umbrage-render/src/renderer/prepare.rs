@@ -1,4 +1,4 @@
-//! From a scene at one moment to what is recorded: the plan, and who is drawn where.
+//! Preparation of a frame: from a scene at one moment to the plan and the lists of objects to draw.
 
 use glam::DVec3;
 use umbrage::View;
@@ -16,32 +16,34 @@ use crate::names::Names;
 use crate::view_list::ViewList;
 use crate::{Error, Result};
 
-/// The frame's origin moves in steps of this many metres, so that positions near the eye are exact
-/// to a tenth of a millimetre in `f32` and yet stay the same from frame to frame, which is what
-/// keeps stabilised maps still.
+/// Step of the frame's origin in metres. Positions near the eye are exact to a tenth of a
+/// millimetre in `f32` and yet stay the same from frame to frame, which keeps stabilised maps
+/// still.
 const ORIGIN_STEP: f64 = 1024.0;
 
-/// Objects of the batch that is drawn first where there are many. Lower: more draws. Higher: more
-/// that is shaded and not seen.
+/// Number of objects in the batch that is drawn first, if there are many. Lower values mean more
+/// draws, higher ones more shaded pixels that are hidden later.
 const NEAREST_BATCH: usize = 32;
 
-/// A frame that is planned and uploaded, ready to be recorded.
+/// A frame that is planned and uploaded, and is ready to be recorded.
 pub(crate) struct Prepared {
     pub origin: DVec3,
     pub plan_ms: f64,
-    /// What each pass over the maps draws; none where shadows are off.
+    /// Casters that each pass over the maps draws; empty where shadows are off.
     pub caster_runs: Vec<Vec<Run>>,
     pub solid: ViewList,
     pub translucent: Vec<Run>,
-    /// The view's slices, where it is drawn slice by slice.
+    /// Slices of the view, where it is drawn slice by slice.
     pub slices: Vec<SliceRuns>,
     pub objects_in_view: usize,
-    /// Whether maps without casters are cleared too: nobody reads those of several lights or
-    /// faces, but they may be wanted as pictures.
+    /// True if maps without casters are cleared too. Nothing reads those of several lights or
+    /// faces, but they may be shown as pictures.
     pub every_map: bool,
+    /// Whether the picture takes the first light's shadows from a mask.
+    pub is_through_mask: bool,
 }
 
-/// What lies in one slice of the view.
+/// Objects in one slice of the view.
 pub(crate) struct SliceRuns {
     pub slice: Slice,
     pub solid: ViewList,
@@ -49,8 +51,8 @@ pub(crate) struct SliceRuns {
 }
 
 impl Renderer {
-    /// Plans, uploads what moves, and sorts what is to be drawn. With `surfaces_alone` nothing but
-    /// what is drawn asks the maps.
+    /// Plans a frame, uploads moved objects, and sorts the objects to draw. `surfaces_alone` says
+    /// that nothing but drawn surfaces reads the maps.
     pub(crate) fn prepare(&mut self, frame: &Frame<'_>, surfaces_alone: bool) -> Result<Prepared> {
         let mut gathered = std::mem::take(&mut self.gathered);
         let prepared = self.prepare_from(&mut gathered, frame, surfaces_alone);
@@ -98,10 +100,11 @@ impl Renderer {
             slices,
             objects_in_view: visible.len(),
             every_map: false,
+            is_through_mask: false,
         })
     }
 
-    /// Gathers a frame and plans its maps. Milliseconds that planning took.
+    /// Gathers a frame and plans its maps. Returns the milliseconds that planning took.
     fn plan(&mut self, frame: &Frame<'_>, origin: DVec3, gathered: &mut Gathered, surfaces_alone: bool) -> Result<f64> {
         let asks_surfaces =
             surfaces_alone && frame.shadows_on && frame.more_lights.is_empty() && self.planned_for.is_none();
@@ -127,22 +130,23 @@ impl Renderer {
         Ok(begun.elapsed().as_secs_f64() * 1e3)
     }
 
-    /// Writes the cameras of the view and of its slices, which are returned.
+    /// Writes the cameras of the view and of its slices, and returns the slices.
     fn write_cameras(&mut self, view: &View, lamps: &[Lamp], origin: DVec3) -> Result<Vec<Slice>> {
-        self.forward.prepare(&self.gpu, 0, &FrameUniform::new(view, lamps, origin, None)?);
+        let colour = DVec3::from_array(self.shadows.config().look.colour);
+        self.forward.prepare(&self.gpu, 0, &FrameUniform::new(view, lamps, colour, origin, None)?);
         if let Some(contact) = &self.contact {
             contact.prepare(&self.gpu, view, origin)?;
         }
         let slices = self.shadows.frame().slices(view);
         for slice in &slices {
-            let uniform = FrameUniform::new(view, lamps, origin, Some(slice))?;
+            let uniform = FrameUniform::new(view, lamps, colour, origin, Some(slice))?;
             self.forward.prepare(&self.gpu, 1 + slice.split, &uniform);
         }
         Ok(slices)
     }
 
-    /// Objects in view, those of one mesh together. Of many, near ones are drawn before far ones in
-    /// batches that double: what they hide then need not be shaded.
+    /// Groups the objects in view by mesh. Many objects are drawn in batches of doubling size, near
+    /// ones first, so that surfaces that they hide need not be shaded.
     fn grouped_near_to_far(&mut self, pose: &Pose, origin: DVec3, visible: &[usize]) -> Vec<Run> {
         let (mut runs, mut rest) = (Vec::new(), visible);
         let mut batch = if is_many(pose) { NEAREST_BATCH } else { visible.len() };
@@ -154,8 +158,8 @@ impl Renderer {
         runs
     }
 
-    /// What lies in each slice of the view. `objects` is those in view, near ones first, and those
-    /// of them with translucent parts, far ones first.
+    /// Lists the objects in each slice of the view. `objects` are the objects in view, near ones
+    /// first, and those with translucent parts, far ones first.
     fn slice_runs(
         &mut self,
         slices: Vec<Slice>,

@@ -1,5 +1,5 @@
-//! The passes of a frame, in the order in which they are recorded: all maps and then the view, or,
-//! where one map is used for one split after the other, map and view slice by slice.
+//! The passes of a frame, in the order in which they are recorded: all maps and then the view.
+//! Where one map is used for one split after the other, map and view alternate slice by slice.
 
 use umbrage_wgpu::Slice;
 use web_time::Instant;
@@ -10,29 +10,30 @@ use crate::capture::Capture;
 use crate::draw_list::Drawn;
 use crate::forward::Bindings;
 use crate::targets::{MaskTarget, PictureTarget, Turn};
+use crate::through_mask::ThroughMask;
 use crate::timing::Timer;
 use crate::{Gpu, Result, waiting};
 
-/// A split's map on its way back.
+/// A split's map that is being read back.
 pub(crate) struct MapCapture {
     pub split: usize,
-    /// Texels across the layer that it lies in.
+    /// Width of the map's layer in texels.
     pub row: u32,
     pub corner: [u32; 2],
     pub capture: Capture,
 }
 
-/// What was recorded.
+/// Passes and captures of a frame that were recorded.
 #[derive(Default)]
 pub(crate) struct Recorded {
-    /// Each pass over maps: which, what it drew, and where it stands among the frame's passes.
+    /// Each pass over maps: its index, what it drew, and its index among the frame's passes.
     pub map_passes: Vec<(usize, Drawn, usize)>,
     pub view: Drawn,
     pub maps: Vec<MapCapture>,
 }
 
 impl Renderer {
-    /// Records everything that is drawn, in as many submissions as the clock asks for.
+    /// Records all passes of a frame, in as many submissions as the clock needs.
     pub(crate) async fn record(
         &mut self,
         mut encoder: wgpu::CommandEncoder,
@@ -42,6 +43,7 @@ impl Renderer {
     ) -> Result<(Recorded, wgpu::CommandEncoder)> {
         let mut recorded = Recorded::default();
         let (kept_mask, kept_picture, kept_counts) = (self.mask.take(), self.picture.take(), self.counts.take());
+        let kept_through = self.through_mask.take();
         let mask = kept_mask.as_ref().filter(|_| outputs.mask);
         let counts = kept_counts.as_ref().filter(|_| outputs.edges);
         let picture = kept_picture.as_ref().filter(|_| outputs.picture);
@@ -68,15 +70,8 @@ impl Renderer {
                 self.forward.draw_counts(&mut pass, bindings, &self.drawable(), &prepared.solid);
             }
             if let Some(target) = picture {
-                let slot = self.timer.next(1);
-                let mut pass = target.begin(&mut encoder, Turn::ONLY, self.timer.timestamp_writes(slot));
-                recorded.view += self.timer.counted(&mut pass, slot, |pass| {
-                    let drawable = self.drawable();
-                    let mut drawn = self.forward.draw_solid(pass, bindings, &drawable, &prepared.solid);
-                    self.forward.draw_sky(pass, bindings);
-                    drawn += self.forward.draw_translucent(pass, bindings, &drawable, &prepared.translucent);
-                    drawn
-                });
+                let through = kept_through.as_ref().filter(|_| prepared.is_through_mask);
+                recorded.view += self.record_picture(&mut encoder, target, through, prepared);
             }
         } else {
             self.record_depth(&mut encoder, prepared, &mut recorded);
@@ -84,7 +79,41 @@ impl Renderer {
             encoder = self.record_slices(encoder, clock, prepared, outputs, targets, &mut recorded).await?;
         }
         (self.mask, self.picture, self.counts) = (kept_mask, kept_picture, kept_counts);
+        self.through_mask = kept_through;
         Ok((recorded, encoder))
+    }
+
+    /// Records the picture, all of it.
+    fn record_picture(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &PictureTarget,
+        through: Option<&ThroughMask>,
+        prepared: &Prepared,
+    ) -> Drawn {
+        let mut all = Drawn::default();
+        let turn = match through {
+            Some(through) => {
+                all += self.record_lit(encoder, through, target, &prepared.solid);
+                Turn::OVER_DEPTH
+            }
+            None => Turn::ONLY,
+        };
+        let contact = self.contact.as_ref().map(|contact| &contact.bind_group);
+        let bindings = Bindings { frame: self.forward.bind_group(0), maps: self.shadows.bind_group(), contact };
+        let slot = self.timer.next(1);
+        let mut pass = target.begin(encoder, turn, self.timer.timestamp_writes(slot));
+        all += self.timer.counted(&mut pass, slot, |pass| {
+            let drawable = self.drawable();
+            let mut drawn = match through {
+                Some(through) => through.draw_solid(pass, bindings, &drawable, &prepared.solid),
+                None => self.forward.draw_solid(pass, bindings, &drawable, &prepared.solid),
+            };
+            self.forward.draw_sky(pass, bindings);
+            drawn += self.forward.draw_translucent(pass, bindings, &drawable, &prepared.translucent);
+            drawn
+        });
+        all
     }
 
     /// Records the picture's depth, for contact shadows.
@@ -98,8 +127,8 @@ impl Renderer {
         }
     }
 
-    /// Records passes over the maps, but for maps of several lights or faces in which there is no
-    /// caster: those are not read.
+    /// Records the passes over the maps. Maps of several lights or faces without a caster are
+    /// skipped, because they are not read.
     pub(crate) fn draw_maps(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -146,7 +175,7 @@ impl Renderer {
         recorded.map_passes.push((index, drawn, slot.pass as usize));
     }
 
-    /// Records a map's way back.
+    /// Records the copy of a map that is read back.
     fn capture(&self, encoder: &mut wgpu::CommandEncoder, split: usize) -> Result<MapCapture> {
         let texture = self.shadows.maps().map_texture(split);
         // Depth is copied in whole layers only; a smaller map is cut out of its layer afterwards.
@@ -156,8 +185,8 @@ impl Renderer {
         Ok(MapCapture { split, row: texels[0], corner, capture })
     }
 
-    /// Multipass: each slice's map, then what of the view lies in that slice, front to back. What
-    /// is translucent comes afterwards, back to front, and needs the maps once more.
+    /// Records multipass: each slice's map and then the objects of the view in that slice, front to
+    /// back. Translucent surfaces come afterwards, back to front, and need the maps once more.
     async fn record_slices(
         &mut self,
         mut encoder: wgpu::CommandEncoder,
@@ -178,20 +207,24 @@ impl Renderer {
             let (first, last) = (i == 0, i + 1 == slices.len());
             if let Some(target) = mask {
                 let slot = self.timer.next(1);
-                let mut pass = target.begin(&mut encoder, Turn { first, last }, self.timer.timestamp_writes(slot));
+                let mut pass = target.begin(
+                    &mut encoder,
+                    Turn { first, last, has_depth: false },
+                    self.timer.timestamp_writes(slot),
+                );
                 self.set_slice(&mut pass, &part.slice);
                 recorded.view += self.timer.counted(&mut pass, slot, |pass| {
                     self.forward.draw_mask(pass, self.bindings(&part.slice), &self.drawable(), &part.solid)
                 });
             }
             if let Some(target) = counts {
-                let mut pass = target.begin(&mut encoder, Turn { first, last }, None);
+                let mut pass = target.begin(&mut encoder, Turn { first, last, has_depth: false }, None);
                 self.set_slice(&mut pass, &part.slice);
                 self.forward.draw_counts(&mut pass, self.bindings(&part.slice), &self.drawable(), &part.solid);
             }
             if let Some(target) = picture {
                 let slot = self.timer.next(1);
-                let turn = Turn { first, last: last && !translucent };
+                let turn = Turn { first, last: last && !translucent, has_depth: false };
                 let mut pass = target.begin(&mut encoder, turn, self.timer.timestamp_writes(slot));
                 self.set_slice(&mut pass, &part.slice);
                 recorded.view += self.timer.counted(&mut pass, slot, |pass| {
@@ -215,7 +248,7 @@ impl Renderer {
                 encoder = clock.after_maps(encoder).await?;
             }
             let slot = self.timer.next(1);
-            let turn = Turn { first: false, last: i == 0 };
+            let turn = Turn { first: false, last: i == 0, has_depth: false };
             let mut pass = target.begin(&mut encoder, turn, self.timer.timestamp_writes(slot));
             self.set_slice(&mut pass, &part.slice);
             recorded.view += self.timer.counted(&mut pass, slot, |pass| {
@@ -246,13 +279,13 @@ pub(crate) fn new_encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
     gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("Renderer::encoder") })
 }
 
-/// Submits a frame: at once where the GPU takes the time itself, or where a wait would take longer
-/// than what it measures; else maps and view apart with a wait after each.
+/// Submits a frame. The submission is one if the GPU takes the times, or if a wait would take
+/// longer than the work; else maps and view are submitted apart with a wait after each.
 pub(crate) struct Clock {
     gpu: Gpu,
     by_cpu: bool,
     begun: Instant,
-    /// When the last submission was done, milliseconds since the beginning.
+    /// Milliseconds from the beginning to the end of the last submission.
     done_ms: f64,
     shadow_ms: f64,
 }
@@ -263,7 +296,7 @@ impl Clock {
         Self { gpu: gpu.clone(), by_cpu, begun: Instant::now(), done_ms: 0.0, shadow_ms: 0.0 }
     }
 
-    /// Submits, waits, and returns how long that took since the last time.
+    /// Submits commands, waits, and returns the milliseconds since the last time.
     async fn lap(&mut self, encoder: wgpu::CommandEncoder) -> Result<f64> {
         self.gpu.queue.submit([encoder.finish()]);
         waiting::idle(&self.gpu).await?;
@@ -271,7 +304,7 @@ impl Clock {
         Ok(now - std::mem::replace(&mut self.done_ms, now))
     }
 
-    /// What comes before was maps.
+    /// Ends the measurement of commands that drew maps.
     pub async fn after_maps(&mut self, encoder: wgpu::CommandEncoder) -> Result<wgpu::CommandEncoder> {
         if !self.by_cpu {
             return Ok(encoder);
@@ -280,7 +313,7 @@ impl Clock {
         Ok(new_encoder(&self.gpu))
     }
 
-    /// What comes before was the view, and more maps follow.
+    /// Ends the measurement of commands that drew the view, if more maps follow.
     pub async fn after_view(&mut self, encoder: wgpu::CommandEncoder) -> Result<wgpu::CommandEncoder> {
         if !self.by_cpu {
             return Ok(encoder);
@@ -289,7 +322,7 @@ impl Clock {
         Ok(new_encoder(&self.gpu))
     }
 
-    /// Milliseconds of the maps and of the frame, if the CPU measures.
+    /// Returns the milliseconds of the maps and of the frame, if the CPU measures.
     pub async fn after_all(mut self, encoder: wgpu::CommandEncoder) -> Result<Option<(f64, f64)>> {
         if self.by_cpu {
             self.lap(encoder).await?;

@@ -1,4 +1,4 @@
-//! What a frame was made of and what it cost, from what was recorded and measured.
+//! Statistics of a frame, from what was recorded and measured.
 
 use umbrage::ShadowPlan;
 use umbrage::config::Translucent;
@@ -12,8 +12,8 @@ use crate::stats::{FrameStats, LightStats, SplitStats};
 use crate::timing::{Measured, PassCounts};
 
 impl Renderer {
-    /// The numbers of a frame. `wall` is the milliseconds of maps and frame by the CPU's clock,
-    /// where the GPU has none.
+    /// Computes the statistics of a frame. `wall` are the milliseconds of maps and frame by the
+    /// CPU's clock, if the GPU has none.
     pub(super) fn stats(
         &self,
         frame: &Frame<'_>,
@@ -64,7 +64,7 @@ impl Renderer {
         }
     }
 
-    /// Milliseconds of the maps and of the frame, from the passes' times on the GPU.
+    /// Returns the milliseconds of the maps and of the frame, from the passes' times on the GPU.
     fn milliseconds(&self, prepared: &Prepared, recorded: &Recorded, spans: &[[f64; 2]]) -> (f64, f64) {
         let is_of_maps = |pass: usize| recorded.map_passes.iter().any(|&(_, _, slot)| slot == pass);
         let maps = || spans.iter().enumerate().filter(|&(i, _)| is_of_maps(i)).map(|(_, span)| span);

@@ -1,4 +1,4 @@
-//! What earlier frames showed, where maps are fitted to it (`fit-to depth`).
+//! Visible surfaces of earlier frames, which maps are fitted to with `fit-to depth`.
 
 use std::collections::BTreeMap;
 
@@ -10,13 +10,14 @@ use umbrage_wgpu::{MaskFrame, SeenDepth};
 use super::{Frame, Outputs, Renderer};
 use crate::{Result, waiting};
 
-/// What was seen, by view and by the samples of the depth that it is read from.
+/// Visible surfaces, by view and by the sample count of the depth that they are read from.
 #[derive(Default)]
 pub(super) struct Sight {
     seen: BTreeMap<(u32, u32), SeenDepth>,
-    /// What the view of this frame showed last.
+    /// Boxes around the surfaces that this frame's view showed last.
     boxes: Option<Vec<Aabb>>,
-    /// From where each view was looked around last: again from there shows nothing new.
+    /// Camera of the last extra frame of each view ([`Renderer::look_around`]). Another one from
+    /// there would show nothing new.
     looked: BTreeMap<u32, View>,
 }
 
@@ -33,12 +34,12 @@ impl Sight {
 }
 
 impl Renderer {
-    /// Whether maps are fitted to what was seen.
+    /// Returns whether maps are fitted to visible surfaces.
     pub(super) fn fits_to_depth(&self) -> bool {
         self.shadows.config().fit_to == FitTo::Depth
     }
 
-    /// Takes what has come back of earlier frames of this view.
+    /// Takes the results of earlier frames of this view.
     pub(super) fn remember(&mut self, view: &View) -> Result<()> {
         self.sight.boxes = None;
         let slot = self.view_slot;
@@ -50,8 +51,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// Draws what a camera at rest would have shown before, if nothing is known of it: the frame
-    /// that is asked for then looks as the next ones will.
+    /// Draws the frame that a camera at rest would have shown before, if nothing is known of the
+    /// view. The requested frame then looks as the next ones will.
     pub(super) async fn look_around(&mut self, frame: &Frame<'_>, outputs: Outputs) -> Result<()> {
         self.remember(frame.view)?;
         if !self.fits_to_depth() || self.sight.boxes.is_some() || !(outputs.picture || outputs.mask) {
@@ -70,7 +71,7 @@ impl Renderer {
         self.remember(frame.view)
     }
 
-    /// Records the reading of what this frame shows.
+    /// Records the reading of this frame's depth.
     pub(super) fn look(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -97,7 +98,7 @@ impl Renderer {
     }
 }
 
-/// The camera that drew the depth of a view.
+/// Returns the camera that drew the depth of a view.
 pub(super) fn camera_of(view: &View, origin: DVec3) -> MaskFrame {
     MaskFrame {
         clip_from_eye: view.clip_from_relative(view.eye()),

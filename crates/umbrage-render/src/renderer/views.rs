@@ -7,8 +7,8 @@ use crate::Result;
 
 impl Renderer {
     /// Draws several views, for a split screen: each as if it were drawn alone, under the suns of
-    /// `fade` if there is one. The maps are one view's after the other's; what stabilisation holds
-    /// is kept for each, so a view keeps its place in the list from frame to frame.
+    /// `fade` if there is one. The views use the maps one after the other. Stabilisation state is
+    /// kept for each, so a view keeps its place in the list from frame to frame.
     ///
     /// # Errors
     /// As [`Renderer::render`].

@@ -1,4 +1,4 @@
-//! The scene's objects as a set of casters, for maps of which something is kept.
+//! Set of the scene's objects as casters, for kept maps and for thousands of objects.
 
 use glam::DAffine3;
 use umbrage::config::Cache;
@@ -8,19 +8,19 @@ use umbrage_scene::{Object, Pose};
 use super::{Frame, Renderer};
 use crate::Result;
 
-/// A scene of more objects is kept as a set, whatever becomes of its maps.
+/// Number of objects above which a scene is held as a set, even if its maps are not kept.
 const MANY: usize = 4096;
 
-/// How maps are drawn of which something is kept ([`Cache::Kept`]).
+/// Options of drawing maps that are kept between frames ([`Cache::Kept`]).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct KeptMaps {
-    /// Texels that may be drawn in a frame: see [`umbrage_wgpu::Inputs::kept_texels`].
+    /// Most texels that may be drawn in a frame: see [`umbrage_wgpu::Inputs::kept_texels`].
     pub texels: Option<u64>,
-    /// Whether all is drawn anew: see [`umbrage_wgpu::Inputs::redraws_kept`].
+    /// True if all is drawn anew: see [`umbrage_wgpu::Inputs::redraws_kept`].
     pub redraws: bool,
 }
 
-/// The objects of a pose, kept from frame to frame; keys are their numbers in the pose.
+/// The objects of a pose, kept from frame to frame. Keys are indices into the pose.
 #[derive(Default)]
 pub(super) struct WorldSet {
     pub set: CasterSet,
@@ -28,28 +28,30 @@ pub(super) struct WorldSet {
 }
 
 impl Renderer {
-    /// Chooses how maps are drawn of which something is kept.
+    /// Sets the options of drawing kept maps.
     pub fn set_kept(&mut self, kept: KeptMaps) {
         self.kept = kept;
     }
 
-    /// Whether something is kept of maps: casters are then those of a set, and plans name them by
-    /// their numbers in the pose.
+    /// Returns whether maps are kept. Casters are then those of a set, and plans name them by their
+    /// indices in the pose.
     pub(super) fn keeps_maps(&self) -> bool {
         self.shadows.config().cache == Cache::Kept
     }
 
-    /// Whether the objects of a pose are casters of a set, which plans name by their numbers.
+    /// Returns whether the objects of a pose are casters of a set, which plans name by their
+    /// indices.
     pub(super) fn uses_set(&self, pose: &Pose) -> bool {
         self.keeps_maps() || is_many(pose)
     }
 
-    /// Whether a plan may name an object as a caster.
+    /// Returns whether a plan may name an object as a caster.
     pub(super) fn is_listed(&self, pose: &Pose, object: &Object) -> bool {
         self.uses_set(pose) || self.casts(object)
     }
 
-    /// What a frame came to. Of one that failed it is not known which maps were drawn.
+    /// Returns the result of a frame. If the frame failed, kept maps are forgotten, because it is
+    /// unknown which were drawn.
     pub(super) fn or_forget<T>(&mut self, drawn: Result<T>) -> Result<T> {
         if drawn.is_err() {
             self.shadows.forget_kept();
@@ -57,10 +59,10 @@ impl Renderer {
         drawn
     }
 
-    /// Lets the set follow a frame's pose, where there is one.
+    /// Updates the set to a frame's pose, if there is a set.
     ///
     /// # Errors
-    /// [`crate::Error::Plan`] for boxes that are none.
+    /// [`crate::Error::Plan`] for invalid boxes.
     pub(super) fn follow(&mut self, frame: &Frame<'_>) -> Result<()> {
         if !self.uses_set(frame.pose) {
             return Ok(());
@@ -71,7 +73,7 @@ impl Renderer {
         followed
     }
 
-    /// Objects of which nothing is known from the last frame.
+    /// Returns the objects that may differ from those of the last frame.
     pub(super) fn new_objects<'f>(&self, frame: &Frame<'f>) -> Changed<'f> {
         let is_followed = self.uses_set(frame.pose) && self.world.members.len() == frame.pose.objects.len();
         match frame.moved {
@@ -81,7 +83,7 @@ impl Renderer {
     }
 }
 
-/// Whether a pose has too many objects to list them in every frame.
+/// Returns whether a pose has too many objects to list them in every frame.
 pub(super) fn is_many(pose: &Pose) -> bool {
     pose.objects.len() > MANY
 }
@@ -89,14 +91,14 @@ pub(super) fn is_many(pose: &Pose) -> bool {
 /// Objects that may differ from those of the last frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Changed<'a> {
-    /// All of so many.
+    /// Any of so many objects.
     Any(usize),
-    /// These.
+    /// The objects with these indices.
     These(&'a [u32]),
 }
 
 impl Changed<'_> {
-    /// Their numbers.
+    /// Iterates over the indices of the objects.
     pub fn iter(&self) -> impl Iterator<Item = usize> + '_ {
         let (all, these) = match *self {
             Self::Any(count) => (0..count, &[][..]),
@@ -106,19 +108,19 @@ impl Changed<'_> {
     }
 }
 
-/// An object as the set knows it.
+/// State of an object in the set.
 struct Member {
     handle: CasterHandle,
     caster: Caster,
     mesh: u32,
-    /// [`digest`] of its transform.
+    /// Hash of the object's transform, by [`digest`].
     placed: u64,
 }
 
 impl WorldSet {
-    /// Follows a pose. `casts` says which objects are drawn into maps. Skinned objects move; others
-    /// are static, and the set is told when they are moved all the same.
-    /// Only `moved` objects are looked at, if it is known which have moved.
+    /// Updates the set to a pose. `casts` returns whether an object is drawn into maps. Skinned
+    /// objects count as moving, others as static, and the set is notified when a static one is
+    /// moved. Only `moved` objects are examined, if given.
     pub fn follow(&mut self, pose: &Pose, moved: Option<&[u32]>, casts: impl Fn(&Object) -> bool) -> Result<()> {
         let caster = |(key, object): (usize, &Object)| {
             let motion = if object.skinned.is_some() { Motion::Moving } else { Motion::Static };
@@ -158,7 +160,7 @@ impl Member {
     }
 }
 
-/// 64 bits of a transform, to tell whether it is another one (FNV-1a over its numbers).
+/// Hashes a transform to 64 bits, to detect changes (FNV-1a over its numbers).
 fn digest(transform: &DAffine3) -> u64 {
     let fold = |hash: u64, part: f64| (hash ^ part.to_bits()).wrapping_mul(0x0000_0100_0000_01b3);
     transform.to_cols_array().into_iter().fold(0xcbf2_9ce4_8422_2325, fold)

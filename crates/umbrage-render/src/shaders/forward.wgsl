@@ -11,19 +11,6 @@ struct Vertex {
     @location(3) normal: vec3f,
 }
 
-// The triangle's own unit normal, turned towards the eye. Call in uniform control flow.
-fn geometric_normal(from_eye: vec3f) -> vec3f {
-    let normal = cross(dpdx(from_eye), dpdy(from_eye));
-    let line_of_sight = select(from_eye, frame.forward, frame.is_orthographic > 0.5);
-    let turned = select(normal, -normal, dot(normal, line_of_sight) > 0.0);
-    // Not normalize(): the product of two small steps may be too small to be squared.
-    let largest = max(max(abs(turned.x), abs(turned.y)), abs(turned.z));
-    if largest == 0.0 {
-        return -normalize(line_of_sight);
-    }
-    return normalize(turned / largest);
-}
-
 // The pixel's question to the first light. Call in uniform control flow.
 fn query_of(in: Surface, normal: vec3f) -> UmbrageQuery {
     return umbrage_fragment_query(in.position, normal, dpdx(in.from_eye), dpdy(in.from_eye), in.clip.xy);
@@ -107,12 +94,6 @@ fn base_color(in: Surface) -> vec4f {
     return material.base_color * in.color * textureSample(base_color_texture, smooth_sampler, in.uv);
 }
 
-// The unit vector from a position towards a light.
-fn towards(lamp: Lamp, position: vec3f) -> vec3f {
-    let way = lamp.position - position;
-    return select(lamp.to_light, way / max(length(way), 1e-20), lamp.range > 0.0);
-}
-
 // What a local light has lost on its way (see lamps.rs): 1 at the lamp, 0 at its range and at the rim of its cone.
 fn falloff(lamp: Lamp, position: vec3f) -> f32 {
     let way = position - lamp.position;
@@ -147,17 +128,6 @@ fn shaded(in: Surface, front: bool, base: vec4f, asked: UmbrageQuery) -> vec3f {
     let side = 1.0 + 0.15 * dot(smooth_normal, frame.to_sun);
     let ambient = frame.daylight * side * mix(GROUND_AMBIENT, SKY_AMBIENT, 0.5 * smooth_normal.y + 0.5);
     return tone_mapped((base.rgb * (light + ambient) + material.emissive) * tint);
-}
-
-// Facets of a smooth surface turn away from the light one by one, which would cut its terminator into jags. For the picture
-// a facet that turns away is looked up as if it were grazed: its neighbours shade it or do not, and the smooth normal
-// darkens it. Surfaces whose two normals agree are not concerned. The mask knows nothing of this.
-fn lookup_normal(geometric: vec3f, smooth_normal: vec3f, to_light: vec3f) -> vec3f {
-    // Cosine of about 84 degrees. Lower: jags come back. Higher: light leaks past terminators.
-    const LEAST_FACING: f32 = 0.1;
-    let facing = dot(geometric, to_light);
-    let wanted = min(LEAST_FACING, dot(smooth_normal, to_light));
-    return normalize(geometric + max(wanted - facing, 0.0) * to_light);
 }
 
 struct SkyPixel {

@@ -22,6 +22,8 @@ struct Frame {
     ray_right: vec3f,
     far: f32,
     ray_up: vec3f,
+    // What light of a place in full shadow is multiplied by.
+    shadow_colour: vec3f,
     lamps: array<Lamp, 8>,
 }
 

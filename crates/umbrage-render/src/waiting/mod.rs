@@ -1,5 +1,5 @@
 //! Waiting for the device. A thread of a program blocks; a page in a browser must not, and is
-//! called back. All else of this crate is written once, as `async` functions that a program runs to
+//! called back. The rest of this crate is written once, as `async` functions that a program runs to
 //! their end with `block_on`.
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -15,5 +15,5 @@ pub(crate) use web::{BLOCKS, idle, mapped};
 
 pub(crate) use scopes::Scopes;
 
-/// What is awaited while results are read back, for messages.
+/// Name of the operation "reading results back", for messages.
 pub(crate) const READING: &str = "reading results back";

@@ -1,16 +1,16 @@
-//! Waiting by blocking the thread: every future here is ready when it is polled first.
+//! Waiting by blocking the thread. Every future here is ready when it is first polled.
 
 use std::time::Duration;
 
 use super::READING;
 use crate::{Error, Gpu, Result};
 
-/// Whether waiting costs nothing but the wait itself, so that a frame may be cut into pieces whose
+/// True if a wait costs nothing but its own time. A frame may then be submitted in pieces whose
 /// times are taken.
 pub(crate) const BLOCKS: bool = true;
 
-/// How long a callback may be on its way after the device has nothing left to do. Only a lost
-/// device takes that long.
+/// Longest delay of a callback after the device has finished all work. Only a lost device takes
+/// that long.
 const CALLBACK_PATIENCE: Duration = Duration::from_secs(60);
 
 /// Waits until everything submitted has run.

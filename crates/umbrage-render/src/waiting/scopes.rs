@@ -1,6 +1,6 @@
-//! What the device complains about while work is done.
+//! The device's errors while work is done.
 
-/// Catches what the device complains about, on this thread.
+/// Catches the device's errors on this thread.
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) struct Scopes {
     memory: wgpu::ErrorScopeGuard,
@@ -17,7 +17,7 @@ impl Scopes {
         Self { memory, internal, validation }
     }
 
-    /// The first complaint. Memory comes first: the others follow from it.
+    /// Returns the first error. Errors of memory come first, because the others follow from them.
     pub async fn close(self) -> Option<wgpu::Error> {
         // Scopes close in the reverse order.
         let validation = self.validation.pop().await;
@@ -27,7 +27,8 @@ impl Scopes {
     }
 }
 
-/// Complaints of the device come later here: they surface as faults of a later call.
+/// Error scopes that catch nothing. In a browser the device's errors come later and surface as
+/// faults of a later call.
 #[cfg(target_arch = "wasm32")]
 pub(crate) struct Scopes;
 

@@ -7,10 +7,11 @@ use wasm_bindgen_futures::JsFuture;
 use super::READING;
 use crate::{Error, Gpu, Result};
 
-/// Whether waiting costs nothing but the wait itself: here each wait costs a turn of the page.
+/// True if a wait costs nothing but its own time. Here each wait costs a turn of the page's event
+/// loop.
 pub(crate) const BLOCKS: bool = false;
 
-/// Milliseconds between two looks at a device that calls nobody back by itself.
+/// Milliseconds between two polls of a device that makes no callbacks by itself.
 const TURN_MS: i32 = 2;
 
 /// Waits until everything submitted has run.
@@ -47,7 +48,7 @@ async fn called<T>(gpu: &Gpu, during: &'static str, mut receiver: oneshot::Recei
     }
 }
 
-/// Lets the page do what it has to do.
+/// Lets the page's event loop run.
 async fn turn() {
     let timer = js_sys::Promise::new(&mut |resolve, _| {
         // A page without timers has nothing to wait with: the loop then spins.

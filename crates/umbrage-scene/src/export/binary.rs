@@ -12,7 +12,7 @@ const FLOAT: u32 = 5126;
 const ARRAY_BUFFER: u32 = 34_962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 
-/// What a range of bytes is for, which glTF wants to know of vertices and indices only.
+/// Use of a range of bytes. glTF asks for it for vertices and indices only.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Use {
     Vertices,
@@ -20,7 +20,7 @@ pub(super) enum Use {
     Other,
 }
 
-/// The binary chunk while it grows. Every view starts at a multiple of four bytes.
+/// The binary chunk under construction. Every view starts at a multiple of four bytes.
 #[derive(Default)]
 pub(super) struct Binary {
     bytes: Vec<u8>,
@@ -57,7 +57,8 @@ impl Binary {
         self.accessor(view, FLOAT, kind, values.len())
     }
 
-    /// Smallest and largest of each component, which glTF wants of positions and key times.
+    /// Writes the least and greatest value of each component, which glTF asks for in positions and
+    /// key times.
     fn with_limits<const N: usize>(&mut self, accessor: usize, values: &[[f32; N]]) -> usize {
         let limit = |pick: fn(f32, f32) -> f32, start: f32| {
             let mut limit = [start; N];
@@ -69,18 +70,18 @@ impl Binary {
         accessor
     }
 
-    /// Positions of vertices.
+    /// Adds positions of vertices.
     pub(super) fn positions(&mut self, values: &[[f32; 3]]) -> usize {
         let accessor = self.floats(values, Use::Vertices);
         self.with_limits(accessor, values)
     }
 
-    /// Any other attribute of vertices.
+    /// Adds another attribute of vertices.
     pub(super) fn attribute<const N: usize>(&mut self, values: &[[f32; N]]) -> usize {
         self.floats(values, Use::Vertices)
     }
 
-    /// Joints of vertices, in bytes where they fit.
+    /// Adds joints of vertices, in bytes if they fit.
     pub(super) fn joints(&mut self, values: &[[u16; 4]]) -> usize {
         let flat = values.as_flattened();
         let (bytes, component): (Vec<u8>, u32) = if flat.iter().all(|&joint| joint < 256) {
@@ -92,7 +93,7 @@ impl Binary {
         self.accessor(view, component, "VEC4", values.len())
     }
 
-    /// Indices, 16 bits wide where they fit: 65535 itself restarts primitives and is never used.
+    /// Adds indices, 16 bits wide if they fit. 65535 itself restarts primitives and is never used.
     pub(super) fn indices(&mut self, values: &[u32]) -> usize {
         let (bytes, component): (Vec<u8>, u32) = if values.iter().all(|&index| index < u32::from(u16::MAX)) {
             (values.iter().flat_map(|&index| (index as u16).to_le_bytes()).collect(), UNSIGNED_SHORT)
@@ -103,25 +104,25 @@ impl Binary {
         self.accessor(view, component, "SCALAR", values.len())
     }
 
-    /// Vectors or matrices that are no vertices.
+    /// Adds vectors or matrices that are not vertex attributes.
     pub(super) fn vectors<const N: usize>(&mut self, values: &[[f32; N]]) -> usize {
         self.floats(values, Use::Other)
     }
 
-    /// Numbers that are no vertices.
+    /// Adds numbers that are not vertex attributes.
     pub(super) fn scalars(&mut self, values: &[f32]) -> usize {
         let values: Vec<[f32; 1]> = values.iter().map(|&value| [value]).collect();
         self.floats(&values, Use::Other)
     }
 
-    /// Key times.
+    /// Adds key times.
     pub(super) fn times(&mut self, values: &[f32]) -> usize {
         let values: Vec<[f32; 1]> = values.iter().map(|&time| [time]).collect();
         let accessor = self.floats(&values, Use::Other);
         self.with_limits(accessor, &values)
     }
 
-    /// The file.
+    /// Returns the bytes of the file.
     pub(super) fn finish(mut self, mut document: Map<String, Value>) -> Result<Vec<u8>> {
         const HEADER: usize = 12;
         const CHUNK_HEADER: usize = 8;

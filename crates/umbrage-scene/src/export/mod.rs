@@ -12,8 +12,8 @@ use binary::Binary;
 /// (KHR_lights_punctual), materials with PNG textures, instances (EXT_mesh_gpu_instancing), skins,
 /// animations and `extras.castShadow`.
 ///
-/// Transforms become `f32`, as glTF has no other numbers: far from its node's parent a thing moves
-/// by up to 2⁻²⁴ of the distance. Primitives without triangles are left out.
+/// Transforms become `f32`, as glTF has no other numbers: a node far from its parent moves by up to
+/// 2⁻²⁴ of the distance. Primitives without triangles are left out.
 ///
 /// # Errors
 /// [`Error::InvalidScene`] as [`Scene::validate`]; [`Error::Export`] if a number does not fit into
@@ -108,7 +108,7 @@ fn nodes(
     Ok(nodes.into_iter().map(Value::Object).collect())
 }
 
-/// The node itself if it `is_free`, else a new child of it.
+/// Returns the node itself if it `is_free`, else a new child of it.
 fn place_for(
     nodes: &mut Vec<Map<String, Value>>,
     children: &mut Vec<Vec<usize>>,
@@ -131,7 +131,7 @@ fn extension_of(node: &mut Map<String, Value>, name: &str, extension: Value) {
     }
 }
 
-/// A node's name, transform and mark.
+/// Writes a node's name, transform and shadow flag.
 fn node(scene: &Scene, index: usize, node: &Node) -> Result<Map<String, Value>> {
     let at = || scene.node_element(index);
     let mut json = named(&node.name);
@@ -167,7 +167,7 @@ fn instances(scene: &Scene, index: usize, instances: &[Trs], binary: &mut Binary
     } }))
 }
 
-/// A transform in single precision.
+/// Converts a transform to single precision.
 fn single(trs: &Trs, at: impl Fn() -> String) -> Result<([f32; 3], [f32; 4], [f32; 3])> {
     let (translation, scale) = (trs.translation.as_vec3(), trs.scale.as_vec3());
     let rotation = trs.rotation.normalize().as_quat();
@@ -178,7 +178,7 @@ fn single(trs: &Trs, at: impl Fn() -> String) -> Result<([f32; 3], [f32; 4], [f3
     Ok((translation.to_array(), rotation.to_array(), scale.to_array()))
 }
 
-/// A JSON object with a name, unless that is empty.
+/// Makes a JSON object with a name, unless the name is empty.
 fn named(name: &str) -> Map<String, Value> {
     let mut json = Map::new();
     if !name.is_empty() {
@@ -187,12 +187,12 @@ fn named(name: &str) -> Map<String, Value> {
     json
 }
 
-/// Single-precision numbers, to the last bit.
+/// Writes single-precision numbers, exact to the last bit.
 fn numbers(values: &[f32]) -> Value {
     values.iter().map(|&value| json!(f64::from(value))).collect()
 }
 
-/// A number in single precision, as glTF readers will take it.
+/// Writes a number in single precision, as glTF readers will take it.
 fn number(value: f64, at: &str, field: &str) -> Result<Value> {
     if (value as f32).is_finite() {
         return Ok(json!(f64::from(value as f32)));

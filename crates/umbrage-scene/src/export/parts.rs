@@ -13,10 +13,10 @@ use crate::{
     AlphaMode, Error, Interpolation, Keys, Lens, LightKind, MorphTarget, Primitive, Result, Scene, TextureFilter, Wrap,
 };
 
-/// `magFilter` of samplers that show the nearest texel.
+/// Value of `magFilter` for samplers that show the nearest texel.
 const NEAREST: u32 = 9728;
 
-/// The meshes that have triangles, and where each mesh of the scene has gone.
+/// Writes the meshes that have triangles, and returns the new index of each mesh of the scene.
 pub(super) fn meshes(scene: &Scene, binary: &mut Binary) -> Result<(Vec<Value>, Vec<Option<usize>>)> {
     let (mut list, mut place) = (Vec::new(), Vec::with_capacity(scene.meshes.len()));
     for mesh in &scene.meshes {
@@ -62,8 +62,8 @@ fn primitive(primitive: &Primitive, binary: &mut Binary) -> Value {
     json
 }
 
-/// A morph target. glTF wants one attribute at least, so a target without differences gets those of
-/// positions.
+/// Writes a morph target. glTF asks for one attribute at least, so a target without differences
+/// gets those of positions.
 fn target(primitive: &Primitive, target: &MorphTarget, binary: &mut Binary) -> Value {
     let mut attributes = Map::new();
     if !target.positions.is_empty() {
@@ -125,7 +125,7 @@ pub(super) fn materials(scene: &Scene, extensions_used: &mut Vec<&'static str>) 
     Ok(list)
 }
 
-/// Textures with what they consist of.
+/// Lists of textures, samplers and images.
 #[derive(Default)]
 pub(super) struct TextureLists {
     pub(super) textures: Vec<Value>,
@@ -205,7 +205,7 @@ pub(super) fn cameras(scene: &Scene) -> Result<Vec<Value>> {
     Ok(list)
 }
 
-/// The lights of KHR_lights_punctual.
+/// Writes the lights of KHR_lights_punctual.
 pub(super) fn lights(scene: &Scene) -> Result<Vec<Value>> {
     let mut list = Vec::with_capacity(scene.lights.len());
     for (index, light) in scene.lights.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! Accessors and buffer views. Every range is checked before a byte is read; nothing is trusted
-//! because the JSON says so.
+//! Accessors and buffer views. Every range is checked before a byte is read; nothing in the JSON is
+//! trusted.
 
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::validation::Checked;
@@ -8,16 +8,16 @@ use super::budget::Part;
 use super::{Document, buffers, meshopt};
 use crate::Result;
 
-/// What integers mean that are not marked as normalized.
+/// Meaning of integers that are not marked as normalized.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Integers {
-    /// Themselves (KHR_mesh_quantization).
+    /// Integers as such (KHR_mesh_quantization).
     AsMarked,
-    /// Always fractions: colours and weights, which may not be given otherwise.
+    /// Fractions, for colours and weights, which may not be given otherwise.
     Normalized,
 }
 
-/// The bytes of a buffer view and its stride.
+/// Returns the bytes of a buffer view and its stride.
 pub(super) fn view<'d>(document: &'d Document<'_>, index: usize, user: &str) -> Result<(&'d [u8], Option<usize>)> {
     let view = document.get(&document.root.buffer_views, index, "bufferViews", user)?;
     let stride = view.byte_stride.map(|stride| stride.0).filter(|&stride| stride != 0);
@@ -39,36 +39,36 @@ pub(super) fn view<'d>(document: &'d Document<'_>, index: usize, user: &str) -> 
     Ok((bytes, stride))
 }
 
-/// Which elements of an accessor are wanted.
+/// Choice of the elements of an accessor that are read.
 #[derive(Clone, Copy)]
 pub(super) enum Wanted<'w> {
-    /// All of them.
+    /// All elements.
     All,
-    /// Those with these indices, which rise.
+    /// Elements with these indices, which rise.
     Only(&'w [u32]),
 }
 
-/// Elements of an accessor without gaps, sparse values put in.
+/// Elements of an accessor without gaps, with sparse values put in.
 pub(super) struct Packed {
-    /// The accessor, for messages.
+    /// Index of the accessor, for messages.
     pub(super) index: usize,
     pub(super) bytes: Vec<u8>,
     pub(super) component: ComponentType,
     pub(super) normalized: bool,
 }
 
-/// How many elements an accessor has.
+/// Returns the number of elements of an accessor.
 pub(super) fn count(document: &Document<'_>, index: usize, user: &str) -> Result<u64> {
     Ok(document.get(&document.root.accessors, index, "accessors", user)?.count.0)
 }
 
-/// Whether an accessor has neither bytes nor sparse values, so that all of it is zero.
+/// Returns whether an accessor has neither bytes nor sparse values, so that all of it is zero.
 pub(super) fn is_all_zero(document: &Document<'_>, index: usize, user: &str) -> Result<bool> {
     let accessor = document.get(&document.root.accessors, index, "accessors", user)?;
     Ok(accessor.buffer_view.is_none() && accessor.sparse.is_none())
 }
 
-/// The type and the component type of an accessor; its type has to be one of `expected`.
+/// Returns the type and the component type of an accessor. Its type has to be one of `expected`.
 pub(super) fn types(
     document: &Document<'_>,
     index: usize,
@@ -85,7 +85,7 @@ pub(super) fn types(
     }
 }
 
-/// Reads the wanted elements of an accessor.
+/// Reads the chosen elements of an accessor.
 pub(super) fn packed(
     document: &Document<'_>,
     index: usize,
@@ -148,8 +148,7 @@ pub(super) fn packed(
     Ok(Packed { index, bytes, component, normalized: accessor.normalized })
 }
 
-/// Copies wanted ones of `count` elements of `size` bytes out of strided bytes; `None` if they do
-/// not fit.
+/// Copies chosen elements out of `count` strided ones of `size` bytes; `None` if they do not fit.
 fn gather(
     bytes: &[u8],
     offset: u64,
@@ -187,7 +186,7 @@ fn gather(
     }
 }
 
-/// Unsigned integers of a packed index list.
+/// Iterates over the unsigned integers of a packed index list.
 fn integers(bytes: &[u8], component: ComponentType) -> impl Iterator<Item = u32> + '_ {
     bytes.chunks_exact(component.size()).map(move |b| match *b {
         [a] => u32::from(a),
@@ -197,7 +196,8 @@ fn integers(bytes: &[u8], component: ComponentType) -> impl Iterator<Item = u32>
     })
 }
 
-/// One component as a number. Normalized integers as in the glTF 2.0 specification, section 3.11.
+/// Converts one component to a number. Normalized integers follow the glTF 2.0 specification,
+/// section 3.11.
 fn number(bytes: &[u8], component: ComponentType, normalized: bool) -> f32 {
     let (value, most) = match component {
         ComponentType::F32 => return f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
@@ -213,7 +213,7 @@ fn number(bytes: &[u8], component: ComponentType, normalized: bool) -> f32 {
     if normalized { (value / most).max(-1.0) } else { value }
 }
 
-/// The accessor type of vectors of `N` numbers.
+/// Returns the accessor type of vectors of `N` numbers.
 pub(super) fn type_of<const N: usize>() -> Type {
     match N {
         1 => Type::Scalar,
@@ -243,7 +243,7 @@ pub(super) fn indices(document: &Document<'_>, index: usize, user: &str) -> Resu
 }
 
 impl Packed {
-    /// As vectors of `N` finite numbers.
+    /// Converts the elements to vectors of `N` finite numbers.
     pub(super) fn floats<const N: usize>(
         &self,
         document: &Document<'_>,
@@ -267,7 +267,7 @@ impl Packed {
         Ok(values)
     }
 
-    /// As four joints per vertex.
+    /// Converts the elements to four joints per vertex.
     pub(super) fn joints(&self, document: &Document<'_>) -> Result<Vec<[u16; 4]>> {
         self.unsigned(document, "joints")?;
         let flat: Vec<u32> = integers(&self.bytes, self.component).collect();

@@ -12,7 +12,8 @@ use super::text::NO_NODE;
 use crate::error::element;
 use crate::{Animation, Channel, Interpolation, Keys, Result};
 
-/// Loads all animations. One with anything wrong is left out as a whole: half a movement is none.
+/// Loads all animations. An animation with any fault is left out as a whole, because half a
+/// movement would look wrong.
 pub(super) fn load(document: &Document<'_>, places: &Places) -> Vec<Animation> {
     let mut animations = Vec::with_capacity(document.root.animations.len());
     for (index, json) in document.root.animations.iter().enumerate() {

@@ -8,19 +8,19 @@ use crate::picture::{self, MOST_PIXELS_AN_EDGE};
 
 const MAGIC: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
 
-/// Most pixels. Ours: 8192².
+/// Largest number of pixels of a picture. Ours: 8192².
 const MOST_PIXELS: u64 = 1 << 26;
 
-/// Most bytes of a level once a general-purpose compression is undone: a byte for each pixel and
-/// some to spare.
+/// Largest number of bytes of a level once a general-purpose compression is undone: a byte for each
+/// pixel and some to spare.
 const MOST_LEVEL_BYTES: u64 = 2 * MOST_PIXELS;
 
-/// Whether bytes begin as a KTX 2.0 file does.
+/// Returns whether bytes begin as a KTX 2.0 file does.
 pub(super) fn is_ktx(bytes: &[u8]) -> bool {
     bytes.starts_with(&MAGIC)
 }
 
-/// Width and height, from the header.
+/// Reads width and height from the header.
 pub(super) fn size(bytes: &[u8]) -> Result<[u32; 2], String> {
     let word = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
     let long = |at: usize| Some(u64::from(word(at)?) | u64::from(word(at + 4)?) << 32);
@@ -37,8 +37,8 @@ pub(super) fn size(bytes: &[u8]) -> Result<[u32; 2], String> {
     if width == 0 || height == 0 { Err(format!("is {width}×{height} pixels")) } else { Ok([width, height]) }
 }
 
-/// The picture with its edges halved so often: the level of that size, or one made of the smallest
-/// there is.
+/// Decodes the picture with its edges halved `halvings` times: the level of that size, or one made
+/// of the smallest there is.
 pub(super) fn decode(bytes: &[u8], halvings: u32) -> Result<RgbaImage, String> {
     let broken = |error: basisu::Error| format!("is a KTX file that cannot be transcoded: {error:?}");
     let transcoder = Transcoder::new(bytes).map_err(broken)?;

@@ -1,22 +1,23 @@
-//! How much a file may make of what it has: many parts can refer to the same few bytes, or to none.
+//! Limits on the memory and time that a file may cost: many parts can refer to the same few bytes,
+//! or to none.
 //!
 //! Each limit is an amount that every file may have and an amount for each byte of the file and the
-//! files it names. The numbers are ours: several times what real files make of a byte, and for a
-//! file of 1 MB little enough to be loaded in seconds and some hundred MiB.
+//! files it names. The numbers are ours: several times the amounts per byte of real files, and
+//! small enough that a file of 1 MB loads in seconds and takes some hundred MiB.
 
 use std::cell::Cell;
 
 use super::Document;
 use crate::Result;
 
-/// What is counted.
+/// Kind of data that is counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
-    /// Elements of accessors that are read; costs time only.
+    /// Elements of accessors that are read; they cost time only.
     Element,
-    /// Elements that have no bytes in the file (all zeros but for a sparse part).
+    /// Elements without bytes in the file (all zeros but for a sparse part).
     ZeroElement,
-    /// Bytes of vertices, indices and morph targets kept.
+    /// Bytes of vertices, indices and morph targets that are kept.
     Geometry,
     /// Instances of EXT_mesh_gpu_instancing.
     Instance,
@@ -31,7 +32,7 @@ pub(super) enum Part {
 impl Part {
     const COUNT: usize = 7;
 
-    /// What every file may have, and what it may have for each of its bytes.
+    /// Returns the amount that every file may have, and the amount for each of its bytes.
     const fn limit(self) -> (u64, f64) {
         match self {
             Self::Element => (1 << 26, 64.0),
@@ -57,7 +58,7 @@ impl Part {
     }
 }
 
-/// What has been used of each limit.
+/// Amounts used of each limit.
 #[derive(Default)]
 pub(super) struct Used {
     parts: [Cell<u64>; Part::COUNT],
@@ -65,17 +66,17 @@ pub(super) struct Used {
 }
 
 impl Used {
-    /// For a file of so many bytes.
+    /// Starts counting for a file of `bytes` bytes.
     pub(super) fn new(bytes: usize) -> Self {
         Self { bytes: Cell::new(bytes as u64), ..Self::default() }
     }
 
-    /// A file that the file names has so many bytes.
+    /// Adds the bytes of another file that the file names.
     pub(super) fn add_bytes(&self, bytes: usize) {
         self.bytes.set(self.bytes.get().saturating_add(bytes as u64));
     }
 
-    /// How much of a part the file may have.
+    /// Returns the amount of a part that the file may have.
     fn most(&self, part: Part) -> u64 {
         let (every_file, per_byte) = part.limit();
         every_file.saturating_add((per_byte * self.bytes.get() as f64) as u64)
@@ -83,12 +84,12 @@ impl Used {
 }
 
 impl Document<'_> {
-    /// How much of a part the file may still have.
+    /// Returns the amount of a part that the file may still have.
     pub(super) fn left(&self, part: Part) -> u64 {
         self.used.most(part).saturating_sub(self.used.parts[part as usize].get())
     }
 
-    /// Counts `amount` more of a part on behalf of `user`; an error beyond the limit, and then it
+    /// Counts `amount` more of a part on behalf of `user`. Beyond the limit it returns an error and
     /// does not count.
     pub(super) fn count(&self, part: Part, amount: u64, user: &str) -> Result<()> {
         let used = &self.used.parts[part as usize];

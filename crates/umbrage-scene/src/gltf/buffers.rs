@@ -8,11 +8,11 @@ use gltf::json;
 use super::{Document, uri};
 use crate::Result;
 
-/// The bytes of a file, each buffer read when first asked for: what nobody uses may be missing.
+/// Bytes of a file. Each buffer is read when it is first asked for: an unused one may be missing.
 pub(super) struct Buffers<'a> {
     binary: Option<&'a [u8]>,
     buffers: Vec<OnceCell<Cow<'a, [u8]>>>,
-    /// What compressed buffer views hold.
+    /// Contents of compressed buffer views, unpacked.
     pub(super) unpacked: Vec<OnceCell<Vec<u8>>>,
 }
 
@@ -23,7 +23,7 @@ impl<'a> Buffers<'a> {
     }
 }
 
-/// The bytes of a buffer.
+/// Returns the bytes of a buffer.
 pub(super) fn buffer<'d>(document: &'d Document<'_>, index: usize, user: &str) -> Result<&'d [u8]> {
     let json = document.get(&document.root.buffers, index, "buffers", user)?;
     let slot = document.get(&document.buffers.buffers, index, "buffers", user)?;
@@ -50,7 +50,7 @@ pub(super) fn buffer<'d>(document: &'d Document<'_>, index: usize, user: &str) -
     Ok(slot.get_or_init(|| bytes))
 }
 
-/// A range of bytes; `None` where it ends behind them.
+/// Returns a range of bytes; `None` if it ends behind them.
 pub(super) fn slice(bytes: &[u8], start: u64, length: u64) -> Option<&[u8]> {
     let end = start.checked_add(length)?;
     bytes.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?)

@@ -8,7 +8,7 @@ use super::Document;
 use crate::error::element;
 use crate::{Lens, Result, SceneCamera};
 
-/// The camera on a node, with its index in the file.
+/// Loads the camera on a node, with its index in the file.
 pub(super) fn load(
     document: &Document<'_>,
     json: &json::Node,

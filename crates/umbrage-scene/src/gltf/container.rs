@@ -1,6 +1,6 @@
 //! The .glb container. Source: glTF 2.0 specification, section 4 (GLB file format).
 
-/// What is in the file, still as bytes.
+/// Chunks of the file, as bytes.
 pub(super) struct Chunks<'a> {
     pub(super) json: &'a [u8],
     pub(super) binary: Option<&'a [u8]>,
@@ -10,7 +10,7 @@ const HEADER: usize = 12;
 const CHUNK_HEADER: usize = 8;
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// Splits a .glb into its chunks; anything else is taken for the JSON of a .gltf. The error says
+/// Splits a .glb into its chunks. Anything else is taken for the JSON of a .gltf. The error says
 /// what is wrong.
 pub(super) fn split(bytes: &[u8]) -> Result<Chunks<'_>, String> {
     if !bytes.starts_with(b"glTF") {
@@ -56,8 +56,7 @@ pub(super) fn split(bytes: &[u8]) -> Result<Chunks<'_>, String> {
     }
 }
 
-/// A JSON without its padding: blanks, as the specification wants them, are none of our business,
-/// zeros are.
+/// Strips the padding of a JSON chunk. The specification's blanks need no care, but zeros do.
 fn unpadded(json: &[u8]) -> &[u8] {
     let end = json.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
     &json[..end]

@@ -1,14 +1,16 @@
-//! Matrices as translations, rotations and scales.
+//! Decomposition of matrices into translations, rotations and scales.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::Trs;
 
-/// Least shear (cosine between axes) that counts. Ours: six printed digits of a rotation make 1e-6.
+/// Least shear (cosine between axes) that is not taken for rounding. Ours: six printed digits of a
+/// rotation make 1e-6.
 const LEAST_SHEAR: f64 = 1e-5;
 
-/// A matrix as one [`Trs`], or as two (outer, inner) if it shears, which one cannot: by the
-/// singular value decomposition `M = U Σ Vᵀ` it is a rotation after a scale after a rotation.
+/// Decomposes a matrix into one [`Trs`], or into two (outer, inner) if it shears, which one cannot:
+/// by the singular value decomposition `M = U Σ Vᵀ` it is a rotation after a scale after a
+/// rotation.
 pub(super) fn decompose(parent_from_local: DAffine3) -> (Trs, Option<Trs>) {
     let m = parent_from_local.matrix3;
     let translation = parent_from_local.translation;
@@ -27,8 +29,8 @@ pub(super) fn decompose(parent_from_local: DAffine3) -> (Trs, Option<Trs>) {
     (Trs { translation, rotation, scale }, Some(inner))
 }
 
-/// Orthogonal axes as a rotation and lengths, the last negative if the axes mirror. Axes may be
-/// zero.
+/// Converts orthogonal axes to a rotation and lengths. The last length is negative if the axes
+/// mirror. Axes may be zero.
 fn rotation_and_scale(axes: [DVec3; 3]) -> (DQuat, DVec3) {
     let mut lengths = axes.map(DVec3::length);
     let largest = lengths.iter().copied().fold(0.0, f64::max);
@@ -61,8 +63,8 @@ fn rotation_and_scale(axes: [DVec3; 3]) -> (DQuat, DVec3) {
     (DQuat::from_mat3(&rotation).normalize(), DVec3::from(lengths))
 }
 
-/// Orthonormal eigenvectors of a symmetric matrix by cyclic Jacobi rotations (Golub and Van Loan,
-/// *Matrix Computations*, section 8.5).
+/// Computes orthonormal eigenvectors of a symmetric matrix by cyclic Jacobi rotations (Golub and
+/// Van Loan, *Matrix Computations*, section 8.5).
 fn eigenvectors(symmetric: DMat3) -> DMat3 {
     let mut a = symmetric.to_cols_array_2d();
     let mut v = DMat3::IDENTITY.to_cols_array_2d();

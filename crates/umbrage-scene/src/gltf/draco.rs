@@ -14,25 +14,25 @@ use crate::Result;
 
 const NAME: &str = "KHR_draco_mesh_compression";
 
-/// Corners of a triangle.
+/// Number of corners of a triangle.
 const CORNERS: u64 = 3;
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Extension {
     buffer_view: usize,
-    /// By semantic, the unique identifier of an attribute of the stream.
+    /// Unique identifier in the stream of each attribute, by semantic.
     attributes: BTreeMap<String, u32>,
 }
 
-/// What a stream holds.
+/// Content of a decoded stream.
 pub(super) struct Decoded {
     mesh: draco_core::Mesh,
     attributes: BTreeMap<String, u32>,
 }
 
-/// Decodes the stream of a primitive; `None` if it has none, or one that cannot be read beside
-/// accessors with the same.
+/// Decodes the stream of a primitive; `None` if it has no stream, or an unreadable one whose data
+/// the accessors hold too.
 pub(super) fn decode(document: &Document<'_>, json: &JsonPrimitive, user: &str) -> Result<Option<Decoded>> {
     let Some(extension) = json.extensions.as_ref().and_then(|extensions| extensions.others.get(NAME)) else {
         return Ok(None);
@@ -69,18 +69,18 @@ fn decode_stream(document: &Document<'_>, extension: &serde_json::Value, element
 }
 
 impl Decoded {
-    /// How many vertices there are.
+    /// Returns the number of vertices.
     pub(super) fn vertices(&self) -> u64 {
         self.mesh.num_points() as u64
     }
 
-    /// Three for each triangle.
+    /// Returns the indices, three for each triangle.
     pub(super) fn indices(&self) -> Vec<u32> {
         self.mesh.faces().as_flattened().iter().map(|point| point.0).collect()
     }
 
-    /// The wanted elements of an attribute that an accessor describes; `None` if the stream has it
-    /// not.
+    /// Returns the chosen elements of an attribute that an accessor describes; `None` if the stream
+    /// lacks it.
     pub(super) fn packed(
         &self,
         document: &Document<'_>,
@@ -115,7 +115,7 @@ impl Decoded {
     }
 }
 
-/// Appends the value of a point; zeros where a stream that lies has none.
+/// Appends the value of a point, or zeros if an inconsistent stream has none.
 fn push(bytes: &mut Vec<u8>, attribute: &PointAttribute, point: u32, size: usize) {
     let value = attribute.mapped_index(PointIndex(point)).0 as usize;
     let start = usize::try_from(attribute.byte_stride()).ok().and_then(|stride| stride.checked_mul(value));

@@ -1,9 +1,10 @@
-//! The numbers of nodes as the file has them. The `gltf` crate keeps them in `f32`, which moves
-//! what stands far from the origin: 4 m at 100,000 km. A camera beside it moves otherwise.
+//! The numbers of nodes in the file's precision. The `gltf` crate keeps them in `f32`, which moves
+//! nodes far from the origin: by 4 m at 100,000 km. A camera beside such a node moves by another
+//! amount.
 
 use serde::Deserialize;
 
-/// The transform of a node in `f64`; what the file does not give is `None`.
+/// Transform of a node in `f64`; `None` for each part that the file does not give.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct ExactNode {
@@ -13,7 +14,7 @@ pub(super) struct ExactNode {
     pub scale: Option<[f64; 3]>,
 }
 
-/// The nodes of a file, in its order.
+/// Exact nodes of a file, in its order.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Exact {
@@ -21,8 +22,8 @@ pub(super) struct Exact {
 }
 
 impl Exact {
-    /// Reads them once more from a JSON that has been read. Of a JSON that is not as it should be
-    /// nothing is known here, and the numbers that have been read stand.
+    /// Reads the nodes again from a JSON that was parsed before. If that JSON is malformed no exact
+    /// numbers are known, and the parsed ones are used.
     pub(super) fn of(json: &[u8]) -> Self {
         serde_json::from_slice(json).unwrap_or_default()
     }
@@ -32,8 +33,8 @@ impl Exact {
     }
 }
 
-/// Numbers in `f64`, or those in `f32` where they are not known better: where both are not the same
-/// number, rounded.
+/// Returns the numbers in `f64`, or those in `f32` where the exact ones are missing or round to
+/// other numbers.
 pub(super) fn or_rounded<const N: usize>(exact: Option<[f64; N]>, rounded: [f32; N]) -> [f64; N] {
     let agrees = |(exact, rounded): (&f64, &f32)| *exact as f32 == *rounded;
     exact.filter(|exact| exact.iter().zip(&rounded).all(agrees)).unwrap_or(rounded.map(f64::from))

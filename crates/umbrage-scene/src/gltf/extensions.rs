@@ -1,7 +1,6 @@
-//! Which extensions a file may require.
+//! glTF extensions that a file may require.
 
-/// Extensions that are read, and those by prefixes that change nothing but shading, sound or
-/// metadata.
+/// Extensions that are read.
 const READ: [&str; 11] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
@@ -16,7 +15,7 @@ const READ: [&str; 11] = [
     "KHR_materials_pbrSpecularGlossiness",
 ];
 
-/// Extensions that say nothing about where a surface is.
+/// Extensions that do not affect where a surface is.
 const HARMLESS: [&str; 22] = [
     "AGI_stk_metadata",
     "CESIUM_primitive_outline",
@@ -46,12 +45,13 @@ const HARMLESS: [&str; 22] = [
 const HARMLESS_PARTS: [&str; 9] =
     ["_materials_", "_texture_", "_lights_", "_image_", "_audio", "_xmp", "_physics_", "VRMC_", "_collider"];
 
-/// Whether an extension is read here.
+/// Returns whether an extension is read here.
 pub(super) fn is_read(name: &str) -> bool {
     READ.contains(&name)
 }
 
-/// Whether a file that requires an extension that is not read has its shape without it.
+/// Returns whether a file keeps its shape without an extension that it requires and that is not
+/// read.
 pub(super) fn is_harmless(name: &str) -> bool {
     HARMLESS.contains(&name) || HARMLESS_PARTS.iter().any(|part| name.contains(part))
 }

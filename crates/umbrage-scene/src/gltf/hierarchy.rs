@@ -1,4 +1,4 @@
-//! Which node is whose child, and which nodes the scene shows.
+//! The hierarchy of nodes, and the nodes that the scene shows.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -7,16 +7,16 @@ use super::Document;
 use crate::Result;
 use crate::error::element;
 
-/// The nodes of a file, put in order.
+/// Nodes of a file, in order.
 pub(super) struct Hierarchy {
     /// All nodes of the file, parents before children, otherwise as the file has them.
     pub(super) order: Vec<usize>,
-    /// The parent of each node of the file; none for roots of the scene.
+    /// Parent of each node of the file; `None` for roots of the scene.
     pub(super) parent: Vec<Option<usize>>,
-    /// Whether each node of the file belongs to the scene that is shown.
+    /// True for each node of the file that belongs to the scene that is shown.
     pub(super) shown: Vec<bool>,
-    /// Whether each node of the file is visible (KHR_node_visibility), which its ancestors have to
-    /// be too.
+    /// True for each node of the file that is visible (KHR_node_visibility); all its ancestors have
+    /// to be visible too.
     pub(super) visible: Vec<bool>,
 }
 
@@ -83,9 +83,9 @@ pub(super) fn sort(document: &Document<'_>) -> Result<Hierarchy> {
     Ok(Hierarchy { order, parent, shown, visible })
 }
 
-/// The nodes of the default scene, or of the first one; all of them if the file has no scenes. A
-/// node that the scene lists besides its parent is shown once, under its parent; one whose parent
-/// is not of the scene becomes a root.
+/// Marks the nodes of the default scene, or of the first one; all nodes if the file has no scenes.
+/// A node that the scene lists besides its parent is shown once, under its parent. One whose parent
+/// is not in the scene becomes a root.
 fn shown(document: &Document<'_>, order: &[usize], parent: &mut [Option<usize>]) -> Result<Vec<bool>> {
     let root = &document.root;
     if root.scenes.is_empty() && root.scene.is_none() {
@@ -121,7 +121,8 @@ fn shown(document: &Document<'_>, order: &[usize], parent: &mut [Option<usize>])
     Ok(shown)
 }
 
-/// KHR_node_visibility: a node is visible if it and all its ancestors say so.
+/// Marks visible nodes by KHR_node_visibility: a node is visible if it and all its ancestors are
+/// marked so.
 fn visible(document: &Document<'_>, order: &[usize], parent: &[Option<usize>]) -> Vec<bool> {
     let mut visible = vec![true; order.len()];
     for &node in order {

@@ -1,4 +1,4 @@
-//! Pictures of textures: found, measured, and decoded in a size that the budget allows.
+//! Pictures of textures: found, measured, and decoded at a size that the budget allows.
 
 use std::borrow::Cow;
 
@@ -10,17 +10,18 @@ use crate::error::element;
 use crate::picture;
 use crate::{Error, Result};
 
-/// What pictures of textures may be.
+/// Image formats of textures.
 const FORMATS: [ImageFormat; 3] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP];
 
-/// Most bytes of one decoded picture as the file has it. Ours: a JPEG of 16384 × 8192 pixels fits.
+/// Largest number of bytes of one decoded picture as the file has it. Ours: a JPEG of 16384 × 8192
+/// pixels fits.
 const MOST_BYTES: u64 = 384 << 20;
 
-/// How a picture is encoded.
+/// Encoding of a picture.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Plain(ImageFormat),
-    /// KHR_texture_basisu.
+    /// Basis Universal (KHR_texture_basisu).
     Basis,
 }
 
@@ -28,12 +29,12 @@ enum Kind {
 #[derive(Clone, Debug)]
 pub(super) struct Image {
     pub(super) index: usize,
-    /// For messages.
+    /// Name of the element, for messages.
     pub(super) element: String,
     kind: Kind,
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub(super) size: [u32; 2],
-    /// Bytes as encoded.
+    /// Size in bytes as encoded.
     pub(super) encoded: u64,
 }
 
@@ -55,19 +56,19 @@ impl Image {
         Ok(Self { index, element, kind, size, encoded })
     }
 
-    /// How often the edges have to be halved until none is longer than `longest`.
+    /// Returns the number of halvings until no edge is longer than `longest` pixels.
     pub(super) fn halvings(&self, longest: u32) -> u32 {
         let edge = self.size[0].max(self.size[1]);
         (0..32).find(|halvings| edge.div_ceil(1 << halvings) <= longest).unwrap_or(31)
     }
 
-    /// Bytes of its pixels once halved so often, at four each.
+    /// Returns the bytes of the pixels after `halvings` halvings of the edges, at four bytes each.
     pub(super) fn pixel_bytes(&self, halvings: u32) -> u64 {
         let [width, height] = self.size.map(|edge| u64::from(edge.div_ceil(1 << halvings)));
         4 * width * height
     }
 
-    /// 8-bit sRGB RGBA pixels, each edge halved so often.
+    /// Decodes to 8-bit sRGB RGBA pixels, with each edge halved `halvings` times.
     pub(super) fn decode(&self, document: &Document<'_>, halvings: u32) -> Result<RgbaImage> {
         let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
         document.count(Part::Pixel, pixels, &self.element).map_err(|error| match error {
@@ -87,7 +88,7 @@ fn failed(document: &Document<'_>, element: &str, reason: String) -> Error {
     Error::Image { file: document.file.to_owned(), element: element.to_owned(), reason }
 }
 
-/// The encoded picture.
+/// Returns the encoded picture.
 fn bytes<'d>(document: &'d Document<'_>, index: usize, element: &str) -> Result<Cow<'d, [u8]>> {
     let image = document.get(&document.root.images, index, "images", element)?;
     match (&image.uri, image.buffer_view) {

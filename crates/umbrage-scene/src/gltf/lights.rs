@@ -8,7 +8,7 @@ use super::Document;
 use crate::error::element;
 use crate::{LightKind, Result, SceneLight};
 
-/// The light on a node, with its index in the file.
+/// Loads the light on a node, with its index in the file.
 pub(super) fn load(
     document: &Document<'_>,
     json: &json::Node,

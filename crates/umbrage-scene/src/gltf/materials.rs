@@ -12,10 +12,10 @@ use super::textures::Textures;
 use crate::error::element;
 use crate::{AlphaMode, Error, Material, Result, Texture};
 
-/// Which texture coordinates a material wants, and what becomes of them (KHR_texture_transform).
+/// Set of texture coordinates of a material, and their transform (KHR_texture_transform).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TextureCoordinates {
-    /// n of `TEXCOORD_n`.
+    /// Number of the set: n of `TEXCOORD_n`.
     pub(super) set: u32,
     offset: [f64; 2],
     rotation: f64,
@@ -23,8 +23,8 @@ pub(super) struct TextureCoordinates {
 }
 
 impl TextureCoordinates {
-    /// Translation × rotation × scale, as KHR_texture_transform has it (its rotation is
-    /// counter-clockwise with v down).
+    /// Applies translation × rotation × scale as in KHR_texture_transform. Its rotation is
+    /// counter-clockwise with v down.
     pub(super) fn apply(&self, [u, v]: [f32; 2]) -> [f32; 2] {
         if self.offset == [0.0; 2] && self.rotation == 0.0 && self.scale == [1.0; 2] {
             return [u, v];
@@ -35,7 +35,7 @@ impl TextureCoordinates {
     }
 }
 
-/// KHR_materials_pbrSpecularGlossiness, as far as base colour goes.
+/// KHR_materials_pbrSpecularGlossiness, as far as it affects base colour.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct SpecularGlossiness {
@@ -48,7 +48,7 @@ fn white() -> [f32; 4] {
     [1.0; 4]
 }
 
-/// All materials, the textures they use, and per material where its texture coordinates come from.
+/// All materials, the textures that they use, and the texture coordinates of each material.
 type Loaded = (Vec<Material>, Vec<Texture>, Vec<Option<TextureCoordinates>>);
 
 pub(super) fn load(document: &Document<'_>) -> Result<Loaded> {
@@ -79,7 +79,7 @@ pub(super) fn load(document: &Document<'_>) -> Result<Loaded> {
     Ok((materials, textures.list, coordinates))
 }
 
-/// The texture of a material. One that cannot be read is left out, unless an alpha mask depends on
+/// Loads the texture of a material. An unreadable one is left out, unless an alpha mask depends on
 /// it.
 fn texture(
     document: &Document<'_>,
@@ -110,7 +110,7 @@ fn texture(
     Ok(None)
 }
 
-/// Linear RGBA of a material, and where its texture comes from.
+/// Returns the linear RGBA of a material, and the source of its texture.
 fn base_color(
     document: &Document<'_>,
     json: &json::Material,
@@ -126,7 +126,7 @@ fn base_color(
     Ok((pbr.base_color_factor.0, pbr.base_color_texture.clone()))
 }
 
-/// A material without its texture.
+/// Loads a material without its texture.
 fn load_one(document: &Document<'_>, json: &json::Material, user: &str, base_color: [f32; 4]) -> Result<Material> {
     let name = json.name.clone().unwrap_or_default();
     let extension = |name: &str| json.extensions.as_ref().and_then(|extensions| extensions.others.get(name));

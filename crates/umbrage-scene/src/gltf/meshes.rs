@@ -11,8 +11,8 @@ use super::{Document, draco, targets};
 use crate::error::element;
 use crate::{Material, Mesh, Primitive, Result};
 
-/// How far the sum of weights may be from 1 before it is put right. Ours: several times what
-/// rounding to 16 bits does.
+/// Largest deviation of the sum of weights from 1 that is left as it is. Ours: several times the
+/// rounding to 16 bits.
 const WEIGHT_TOLERANCE: f32 = 1e-4;
 
 /// Loads all meshes. Adds a default material if a primitive has none.
@@ -52,13 +52,13 @@ pub(super) fn load(
     Ok(meshes)
 }
 
-/// Where the attributes of a primitive come from.
+/// Source of a primitive's attributes.
 struct Attributes<'p, 'd> {
     document: &'p Document<'d>,
     json: &'p JsonPrimitive,
     user: &'p str,
     draco: Option<&'p draco::Decoded>,
-    /// Vertices in the file.
+    /// Number of vertices in the file.
     vertices: usize,
     wanted: Wanted<'p>,
 }
@@ -68,12 +68,12 @@ impl Attributes<'_, '_> {
         self.json.attributes.get(&Checked::Valid(semantic)).map(|index| index.value())
     }
 
-    /// What to call an attribute in messages.
+    /// Returns the name of an attribute for messages.
     fn purpose(&self, semantic: &Semantic) -> String {
         format!("{} {}", self.user, semantic.to_string())
     }
 
-    /// The wanted elements of an attribute, which has to have one for each vertex.
+    /// Returns the chosen elements of an attribute, which must have one for each vertex.
     fn packed(&self, semantic: Semantic, components: usize) -> Result<Option<Packed>> {
         let Some(accessor) = self.accessor(semantic.clone()) else { return Ok(None) };
         let purpose = self.purpose(&semantic);
@@ -97,7 +97,7 @@ impl Attributes<'_, '_> {
         self.packed(semantic, N)?.map(|packed| packed.floats(self.document, &purpose, meaning)).transpose()
     }
 
-    /// Vertex colours; alpha is 1 where there are three components.
+    /// Reads vertex colours. Alpha is 1 where there are three components.
     fn colors(&self) -> Result<Option<Vec<[f32; 4]>>> {
         let semantic = Semantic::Colors(0);
         let Some(accessor) = self.accessor(semantic.clone()) else { return Ok(None) };
@@ -111,7 +111,7 @@ impl Attributes<'_, '_> {
     }
 }
 
-/// One primitive; `None` if there is nothing of it to draw.
+/// Loads one primitive; `None` if it has nothing to draw.
 fn load_primitive(
     document: &Document<'_>,
     json: &JsonPrimitive,
@@ -212,7 +212,7 @@ fn load_primitive(
     Ok(Some(primitive))
 }
 
-/// Joints and weights: the four strongest of however many sets there are, with sum 1.
+/// Loads joints and weights: the four strongest of any number of sets, scaled to the sum 1.
 fn load_influences(from: &Attributes<'_, '_>, primitive: &mut Primitive) -> Result<()> {
     let (document, user) = (from.document, from.user);
     let mut all: Vec<Vec<(u16, f32)>> = Vec::new();

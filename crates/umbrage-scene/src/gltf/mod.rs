@@ -1,12 +1,12 @@
-//! glTF 2.0 as users have it: .glb, or .gltf with its files beside it.
+//! Loader of glTF 2.0: .glb, or .gltf with the files beside it.
 //!
-//! The JSON is parsed by the `gltf` crate's types. Everything that follows an index, a length or a
-//! URI is done here and checked here: that crate's own accessors and its validation panic on files
-//! that lie (an accessor beyond its buffer, a `POSITION` that does not exist, a .glb header shorter
-//! than itself).
+//! The JSON is parsed by the `gltf` crate's types. Every index, length and URI is followed and
+//! checked here, because that crate's own accessors and its validation panic on inconsistent files
+//! (an accessor beyond its buffer, a `POSITION` that does not exist, a .glb header shorter than
+//! itself).
 //!
-//! What a shape does not depend on never stops a file: an unreadable texture, animation, camera or
-//! light is left out, and [`Scene::notes`] says so.
+//! Elements that no shape depends on never stop a file: an unreadable texture, animation, camera or
+//! light is left out, with a note in [`Scene::notes`].
 
 mod accessors;
 mod animations;
@@ -44,17 +44,18 @@ use notes::Notes;
 use crate::error::read_file;
 use crate::{Error, Result, Scene};
 
-/// Most bytes of textures where nothing else is said: 512 MiB.
+/// Default limit on the bytes of textures: 512 MiB.
 const TEXTURE_BYTES: u64 = 512 << 20;
 
-/// How glTF files are read.
+/// Options of reading glTF files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GltfOptions {
-    /// Most bytes of all textures of a scene together, at four bytes per pixel and without mip
-    /// levels, default 512 MiB. Pictures that need more are scaled down, with a note.
+    /// Largest number of bytes of all textures of a scene together, at four bytes per pixel and
+    /// without mip levels; 512 MiB by default. Pictures that need more are scaled down, with a
+    /// note.
     pub texture_bytes: u64,
-    /// Whether relative URIs may lead out of the file's folder, as `../textures/bark.png` does;
-    /// default no.
+    /// True if relative URIs may lead out of the file's folder, as `../textures/bark.png` does;
+    /// false by default.
     pub parent_folders: bool,
 }
 
@@ -64,8 +65,8 @@ impl Default for GltfOptions {
     }
 }
 
-/// Loads a .glb or .gltf file with the files it refers to, which have to lie in its folder or below
-/// unless [`GltfOptions::parent_folders`] says otherwise.
+/// Loads a .glb or .gltf file with the files that it refers to. These have to lie in its folder or
+/// below unless [`GltfOptions::parent_folders`] is set.
 ///
 /// Points and lines are left out, as are textures, animations, cameras and lights that cannot be
 /// read; [`Scene::notes`] names them. Primitives without normals get flat ones.
@@ -81,7 +82,7 @@ pub fn load_gltf(path: &Path, options: &GltfOptions) -> Result<Scene> {
     load(&file, &bytes, options, &external)
 }
 
-/// Loads a .glb or a self-contained .gltf from memory; `name` stands for the file in messages.
+/// Loads a .glb or a self-contained .gltf from memory. `name` stands for the file in messages.
 ///
 /// # Errors
 /// As [`load_gltf`]; [`Error::UnsafeUri`] for any external file that a shape depends on.
@@ -125,7 +126,7 @@ fn load(file: &str, bytes: &[u8], options: &GltfOptions, external: External<'_>)
     Ok(scene)
 }
 
-/// The file being read: its JSON, its bytes, and what there is to say about it.
+/// The file being read: its JSON, its bytes, and the notes about it.
 struct Document<'a> {
     file: &'a str,
     root: json::Root,
@@ -143,7 +144,7 @@ impl Document<'_> {
         Error::Invalid { file: self.file.to_owned(), element: element.into(), reason: reason.into() }
     }
 
-    /// Follows an index of the file: `list` is called `kind`, and `user` points at it.
+    /// Looks up an index of the file: `list` is called `kind`, and `user` points at it.
     fn get<'t, T>(&self, list: &'t [T], index: usize, kind: &str, user: &str) -> Result<&'t T> {
         list.get(index).ok_or_else(|| {
             self.invalid(user, format!("refers to {kind}[{index}], but the file has {} of them", list.len()))
@@ -166,7 +167,7 @@ impl Document<'_> {
         self.notes.add(element, format!("left out: {reason}"));
     }
 
-    /// An error's message without the file, which all notes are about.
+    /// Returns an error's message without the file's name, which all notes share.
     fn said(&self, error: &Error) -> String {
         let message = error.to_string();
         match message.strip_prefix(self.file).and_then(|rest| rest.strip_prefix(": ")) {

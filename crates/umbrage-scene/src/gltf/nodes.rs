@@ -1,4 +1,4 @@
-//! Nodes with what hangs on them: meshes, instances, skins, cameras, lights.
+//! Nodes with their meshes, instances, skins, cameras and lights.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, Mat4};
 use gltf::json;
@@ -12,18 +12,18 @@ use super::{Document, cameras, lights};
 use crate::error::element;
 use crate::{Node, Result, Scene, Skin, Trs};
 
-/// How far the last row of a matrix may be from 0 0 0 1. Ours: a hundred times what single
-/// precision leaves of products.
+/// Largest deviation of the last row of a matrix from 0 0 0 1. Ours: a hundred times the rounding
+/// of products in single precision.
 const AFFINE_TOLERANCE: f64 = 1e-4;
 
-/// Where the nodes of the file have gone.
+/// Nodes of the scene that the nodes of the file became.
 pub(super) struct Places {
-    /// Per node of the file, the node of the scene that has its transform, mesh and children.
+    /// Node of the scene for each node of the file: it has the transform, mesh and children.
     pub(super) of_file_node: Vec<usize>,
 }
 
-/// Adds nodes, skins, cameras and lights to a scene that has its meshes. Cameras and lights that
-/// make no sense are left out.
+/// Adds nodes, skins, cameras and lights to a scene that has its meshes. Invalid cameras and lights
+/// are left out.
 pub(super) fn load(document: &Document<'_>, scene: &mut Scene) -> Result<Places> {
     let hierarchy = hierarchy::sort(document)?;
     let mut places = Places { of_file_node: vec![usize::MAX; document.root.nodes.len()] };
@@ -107,7 +107,7 @@ fn add_node(
     Ok(())
 }
 
-/// The local transform of a node, in two parts if its matrix shears.
+/// Returns the local transform of a node, in two parts if its matrix shears.
 fn transform(document: &Document<'_>, json: &json::Node, exact: ExactNode, user: &str) -> Result<(Trs, Option<Trs>)> {
     if let Some(m) = json.matrix {
         document.finite(user, "matrix", &m)?;
@@ -131,14 +131,15 @@ fn transform(document: &Document<'_>, json: &json::Node, exact: ExactNode, user:
     Ok((local, None))
 }
 
-/// A matrix whose last row is 0 0 0 1 but for rounding, after the homogeneous scale is taken out.
+/// Returns a matrix whose last row is 0 0 0 1 but for rounding, after the homogeneous scale is
+/// taken out.
 fn affine(m: &[f64; 16]) -> Option<[f64; 16]> {
     let scaled = m.map(|x| x / m[15]);
     let is_affine = m[15] > 0.0 && [3, 7, 11].into_iter().all(|i| scaled[i].abs() <= AFFINE_TOLERANCE);
     (is_affine && scaled.iter().all(|x| x.is_finite())).then_some(scaled)
 }
 
-/// A rotation; none, with a note, where the quaternion has no length.
+/// Returns a rotation. A quaternion without length gives no rotation and a note.
 fn rotation_or_none(document: &Document<'_>, xyzw: [f64; 4], user: &str) -> DQuat {
     unit_quaternion(xyzw).unwrap_or_else(|| {
         document.notes.add(user, "has a rotation of length 0; it is not rotated");
@@ -151,7 +152,7 @@ fn unit_quaternion(xyzw: [f64; 4]) -> Option<DQuat> {
     (q.length() > 0.0 && q.length().is_finite()).then(|| q.normalize())
 }
 
-/// EXT_mesh_gpu_instancing.
+/// Reads the instances of EXT_mesh_gpu_instancing.
 fn instances(document: &Document<'_>, extension: &serde_json::Value, user: &str) -> Result<Vec<Trs>> {
     let user = format!("{user} EXT_mesh_gpu_instancing");
     let attributes = extension

@@ -1,9 +1,9 @@
-//! Remarks on a file: what was left out, or taken for something else than it says.
+//! Remarks on a file: elements that were left out or read differently.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-/// Remarks, each with the first element that it is about and how many there are.
+/// Remarks, each with the first element concerned and the number of elements.
 #[derive(Default)]
 pub(super) struct Notes(RefCell<BTreeMap<String, (String, usize)>>);
 
@@ -13,7 +13,7 @@ impl Notes {
         self.0.borrow_mut().entry(remark.into()).or_insert_with(|| (element.into(), 0)).1 += 1;
     }
 
-    /// One line each: the element at fault, how many more there are, the remark.
+    /// Returns one line for each remark: the first element, the number of further ones, the remark.
     pub(super) fn into_lines(self) -> Vec<String> {
         let line = |(remark, (element, count)): (String, (String, usize))| match count {
             1 => format!("{element}: {remark}"),

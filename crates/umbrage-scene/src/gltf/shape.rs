@@ -1,18 +1,20 @@
-//! Shapes of triangles: lists of strips and fans, the vertices in use, flat and repaired normals.
+//! Shapes of triangles: lists of strips and fans, the vertices in use, and flat or repaired
+//! normals.
 
 use glam::DVec3;
 use gltf::json::mesh::Mode;
 
 use crate::Primitive;
 
-/// How far the squared length of a normal may be from 1 before it is put right. Ours: several times
-/// what rounding to 16 bits does to it, and nothing that can be seen.
+/// Largest deviation of a normal's squared length from 1 that is left as it is. Ours: several times
+/// the rounding to 16 bits, and invisible.
 const UNIT_TOLERANCE: f32 = 1e-4;
 
-/// No vertex, or none any more.
+/// Index that stands for no vertex.
 const NONE: u32 = u32::MAX;
 
-/// Corners of a list, strip or fan as a list. Source: glTF 2.0 specification, section 3.7.2.1.
+/// Converts the corners of a list, strip or fan to a list. Source: glTF 2.0 specification, section
+/// 3.7.2.1.
 pub(super) fn triangles(mode: Mode, corners: Vec<u32>) -> Vec<u32> {
     if mode == Mode::Triangles {
         return corners;
@@ -28,9 +30,9 @@ pub(super) fn triangles(mode: Mode, corners: Vec<u32>) -> Vec<u32> {
     (0..count).map(triangle).filter(|t| !is_stitch(t)).flatten().collect()
 }
 
-/// The vertices that triangles use, in order, and the indices made to count in them; `None` if all
-/// are used. Leaving the rest out keeps bounds those of what is seen and buffers shared by many
-/// primitives from being stored many times.
+/// Returns the vertices that triangles use, in order, and renumbers the indices to count in them;
+/// `None` if all are used. Unused vertices are left out so that bounds are those of the visible
+/// surface, and so that buffers shared by many primitives are not stored many times.
 pub(super) fn used_vertices(indices: &mut [u32], vertices: u32) -> Option<Vec<u32>> {
     // A few triangles of a large buffer: their number decides the time, not that of the vertices.
     if indices.len() < vertices as usize / 16 {
@@ -60,7 +62,7 @@ pub(super) fn used_vertices(indices: &mut [u32], vertices: u32) -> Option<Vec<u3
     Some(used)
 }
 
-/// Makes `vertices` (of the old ones) the new ones, in that order.
+/// Keeps only `vertices` (indices of the old ones), in that order.
 fn select_vertices(primitive: &mut Primitive, vertices: &[u32]) {
     fn select<T: Copy>(list: &mut Vec<T>, vertices: &[u32]) {
         if !list.is_empty() {
@@ -86,14 +88,14 @@ pub(super) fn unshared(primitive: &mut Primitive) {
     primitive.indices = (0..corners.len() as u32).collect();
 }
 
-/// The normal of a triangle; up if it has no area.
+/// Returns the normal of a triangle; up if it has no area.
 fn face_normal(primitive: &Primitive, triangle: &[u32]) -> DVec3 {
     let [a, b, c] = [0, 1, 2].map(|i| DVec3::from(primitive.positions[triangle[i] as usize].map(f64::from)));
     (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Y)
 }
 
-/// Flat normals, as glTF wants where the file has none. Vertices are shared only by triangles of
-/// the same plane.
+/// Computes flat normals, as glTF asks for where the file has none. Vertices are shared only by
+/// triangles of the same plane.
 pub(super) fn flat_normals(primitive: &mut Primitive) {
     let mut kept: Vec<u32> = Vec::new();
     let mut normals: Vec<[f32; 3]> = Vec::new();
@@ -125,8 +127,8 @@ pub(super) fn flat_normals(primitive: &mut Primitive) {
     (primitive.normals, primitive.indices) = (normals, indices);
 }
 
-/// Makes normals unit vectors. Those without length take the mean of their triangles; returns
-/// whether there were any.
+/// Makes normals unit vectors. Normals without length become the mean of their triangles' normals.
+/// Returns whether there were any.
 pub(super) fn repair_normals(primitive: &mut Primitive) -> bool {
     let mut lost = false;
     for normal in &mut primitive.normals {

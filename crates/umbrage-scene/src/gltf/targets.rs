@@ -7,11 +7,11 @@ use super::accessors::{self, Integers, Wanted};
 use super::budget::Part;
 use crate::{MorphTarget, Result};
 
-/// Bytes of the differences of one vertex.
+/// Number of bytes of the differences of one vertex.
 const VERTEX_BYTES: u64 = size_of::<[f32; 3]>() as u64;
 
-/// The morph targets of a primitive with so many vertices in the file, of which the `wanted` are
-/// kept.
+/// Loads the morph targets of a primitive with `vertices` vertices in the file, of which the
+/// `wanted` are kept.
 pub(super) fn load(
     document: &Document<'_>,
     json: &[JsonTarget],
@@ -35,7 +35,7 @@ pub(super) fn load(
     Ok(targets)
 }
 
-/// One per kept vertex; none if all of them are zero.
+/// Loads the differences, one per kept vertex; empty if all of them are zero.
 fn load_differences(
     document: &Document<'_>,
     accessor: usize,

@@ -1,5 +1,5 @@
-//! The JSON of a glTF document: parsed, put in terms that the `gltf` crate's types know, with the
-//! place of what is wrong.
+//! The JSON of a glTF document: parsed, adapted to the types of the `gltf` crate, with the place of
+//! each fault.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
@@ -15,14 +15,13 @@ use serde_path_to_error::{Path, Segment};
 use super::Notes;
 use crate::{Error, Result};
 
-/// Stands for the node of a channel that has none, which glTF allows; no file has as many nodes.
+/// Stands for the node of a channel that has none, which glTF allows. No file has as many nodes.
 pub(super) const NO_NODE: usize = u32::MAX as usize;
 
 /// The largest whole number up to which every whole number is an `f64`.
 const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
 
-/// Elements whose JSON is not what it has to be, although the scene does not depend on them: what
-/// is wrong, by index.
+/// Faults of elements that the scene does not depend on, by index.
 #[derive(Debug, Default)]
 pub(super) struct Broken {
     pub(super) animations: BTreeMap<usize, String>,
@@ -64,8 +63,7 @@ pub(super) fn parse(file: &str, bytes: &[u8], notes: &Notes) -> Result<(json::Ro
     Ok((root, broken))
 }
 
-/// Puts an element that says nothing in the place of each that cannot be read, so that indices stay
-/// what they are.
+/// Replaces each unreadable element by an empty one, so that indices stay valid.
 fn replace_broken<T: DeserializeOwned>(list: &mut [Value], with: &Value) -> BTreeMap<usize, String> {
     let mut broken = BTreeMap::new();
     for (index, value) in list.iter_mut().enumerate() {
@@ -81,7 +79,7 @@ fn list<'v>(value: &'v mut Value, pointer: &str) -> &'v mut [Value] {
     value.pointer_mut(pointer).and_then(Value::as_array_mut).map_or(&mut [], Vec::as_mut_slice)
 }
 
-/// The text. Names in another encoding lose the characters that are not UTF-8.
+/// Decodes the text. Names in another encoding lose the characters that are not UTF-8.
 fn text<'b>(bytes: &'b [u8], notes: &Notes) -> Cow<'b, str> {
     let text = String::from_utf8_lossy(bytes);
     if matches!(text, Cow::Owned(_)) {
@@ -90,7 +88,7 @@ fn text<'b>(bytes: &'b [u8], notes: &Notes) -> Cow<'b, str> {
     text
 }
 
-/// Refuses any other version of glTF by its name; before version 2 the lists of a document were
+/// Refuses any other version of glTF by its name. Before version 2 the lists of a document were
 /// objects.
 fn check_version(value: &Value) -> Result<(), String> {
     let Some(document) = value.as_object() else { return Err("its JSON is not a glTF document: no object".into()) };
@@ -115,9 +113,9 @@ fn check_version(value: &Value) -> Result<(), String> {
     }
 }
 
-/// Puts what glTF allows, or what its writers take for allowed, in terms that the `gltf` crate's
-/// types know: whole numbers written as `24.0`, scenes without nodes, channels without a target
-/// node, a version that is a number.
+/// Adapts JSON that glTF or its writers allow to the types of the `gltf` crate: whole numbers
+/// written as `24.0`, scenes without nodes, channels without a target node, a version that is a
+/// number.
 fn adapt(value: &mut Value) {
     make_whole(value);
     if let Some(Value::Number(version)) = value.pointer("/asset/version") {
@@ -137,13 +135,13 @@ fn adapt(value: &mut Value) {
     }
 }
 
-/// The objects of a list in a JSON object.
+/// Iterates over the objects of a list in a JSON object.
 fn objects<'v>(object: &'v mut Value, name: &str) -> impl Iterator<Item = &'v mut Map<String, Value>> {
     let list = object.get_mut(name).and_then(Value::as_array_mut);
     list.into_iter().flatten().filter_map(Value::as_object_mut)
 }
 
-/// Makes integers of all numbers that are whole, however they are written.
+/// Converts all whole numbers to integers, however they are written.
 fn make_whole(value: &mut Value) {
     match value {
         Value::Array(list) => list.iter_mut().for_each(make_whole),
@@ -157,7 +155,7 @@ fn make_whole(value: &mut Value) {
     }
 }
 
-/// The line of the text, from 1, at which the value at a path starts.
+/// Returns the line of the text, from 1, at which the value at a path starts.
 fn line(text: &str, path: &Path) -> Option<usize> {
     let mut here: &RawValue = serde_json::from_str(text).ok()?;
     for segment in path.iter() {

@@ -1,4 +1,4 @@
-//! Textures that materials use: which picture each has, and how large the budget lets them be.
+//! Textures that materials use: the picture of each, and the largest size that the budget allows.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -11,35 +11,35 @@ use crate::error::element;
 use crate::picture::MOST_PIXELS_AN_EDGE;
 use crate::{Result, Texture, TextureFilter, Wrap};
 
-/// Bytes of textures that every file may have, and those for each byte of its encoded pictures.
-/// Ours: photographs take up to some 40 bytes a byte on the whole; what takes more is so plain that
-/// it loses little by being smaller.
+/// Bytes of textures that every file may have, and bytes for each byte of its encoded pictures.
+/// Ours: photographs take up to some 40 bytes a byte on the whole. A picture that takes more is so
+/// plain that it loses little by being smaller.
 const BYTES_OF_EVERY_FILE: u64 = 128 << 20;
 const BYTES_PER_ENCODED_BYTE: u64 = 40;
 
-/// Extensions whose object in a texture names a picture besides the texture's own.
+/// Extensions that name another picture in a texture besides the texture's own.
 const SOURCES: [&str; 2] = ["EXT_texture_webp", "KHR_texture_basisu"];
 
-/// Beyond and between texels.
+/// Wrap modes and filter of a texture.
 type Sampling = ([Wrap; 2], TextureFilter);
 
-/// A texture of the file.
+/// A texture of the file that is wanted.
 struct Wish {
     sampling: Sampling,
     image: Result<Image>,
 }
 
-/// The textures of a scene, and what became of those of the file.
+/// Textures of a scene, and the results of loading those of the file.
 #[derive(Default)]
 pub(super) struct Textures {
     pub(super) list: Vec<Texture>,
-    /// By index in the file: an index into `list`, or why there is none.
+    /// Result for each index in the file: an index into `list`, or the reason why there is none.
     pub(super) places: BTreeMap<usize, Result<usize>>,
 }
 
 impl Textures {
-    /// Loads the textures with these indices in the file; `users` name who wants them. Pictures
-    /// that cannot be read are no error here: that is for those who want them to decide.
+    /// Loads the textures with these indices in the file. `users` are the names of the elements
+    /// that use them. Unreadable pictures are no error here: the user of a texture decides.
     pub(super) fn load(document: &Document<'_>, users: &BTreeMap<usize, String>) -> Result<Self> {
         let mut wishes = BTreeMap::new();
         for (&index, user) in users {
@@ -84,10 +84,11 @@ impl Textures {
     }
 }
 
-/// The size that lets all textures of a file fit into the budget.
+/// Size limit by which all textures of a file fit into the budget.
 struct Fit {
     budget: u64,
-    /// Pictures with longer edges are halved until they have none: only the largest lose pixels.
+    /// Longest edge of a picture in pixels. Longer edges are halved, so only the largest pictures
+    /// lose pixels.
     longest_edge: u32,
 }
 
@@ -113,7 +114,7 @@ impl Fit {
     }
 }
 
-/// How a texture is sampled and the first picture of it whose header can be read.
+/// Returns the sampling of a texture and its first picture with a readable header.
 fn wish(document: &Document<'_>, index: usize, user: &str) -> Result<Wish> {
     let texture = document.get(&document.root.textures, index, "textures", user)?;
     let user = element("textures", index, texture.name.as_deref().unwrap_or_default());

@@ -1,4 +1,4 @@
-//! URIs of buffers and images: `data:` ones, and relative ones that stay in the folder of the file.
+//! URIs of buffers and images: `data:` URIs, and relative ones that stay in the folder of the file.
 
 use std::path::{Path, PathBuf};
 
@@ -10,13 +10,13 @@ use super::Document;
 use crate::error::read_file;
 use crate::{Error, GltfOptions, Result};
 
-/// Padding is optional: some exporters leave it out.
+/// Base64 with optional padding, because some exporters leave it out.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &STANDARD,
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-/// The bytes behind a URI of `element`.
+/// Returns the bytes behind a URI of `element`.
 pub(super) fn read(document: &Document<'_>, element: &str, uri: &str) -> Result<Vec<u8>> {
     let is_data = uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:"));
     if !is_data {
@@ -69,8 +69,8 @@ pub(super) fn read_external(
     })
 }
 
-/// The relative path that a URI reference names, with `.` and `..` resolved; it never leaves the
-/// folder unless `parents` allows it to.
+/// Returns the relative path of a URI reference, with `.` and `..` resolved. It never leaves the
+/// folder unless `parents` allows it.
 fn relative_path(uri: &str, parents: bool) -> Result<PathBuf, &'static str> {
     // RFC 3986 section 4.2: in a relative reference no colon stands before the first slash. This
     // covers http:, file: and C:.
@@ -100,7 +100,7 @@ fn relative_path(uri: &str, parents: bool) -> Result<PathBuf, &'static str> {
     if parts.is_empty() { Err("names no file") } else { Ok(parts.iter().collect()) }
 }
 
-/// A URI for a message: long ones lose their tail.
+/// Shortens a URI for a message: long ones lose their tail.
 pub(super) fn shortened(uri: &str) -> String {
     const MOST: usize = 120;
     match uri.char_indices().nth(MOST) {

@@ -7,11 +7,10 @@ use glam::DVec2;
 
 use super::raster::{Metres, Raster, check_size};
 
-/// The largest cells that may be degrees, where nothing says what they are: some 5 km on the
-/// ground.
+/// Largest cell that may be in degrees, where the file gives no unit: some 5 km on the ground.
 const LARGEST_DEGREES: f64 = 0.05;
 
-/// The numbers of a header.
+/// Numbers of a header.
 #[derive(Default)]
 struct Header {
     columns: Option<f64>,
@@ -22,7 +21,7 @@ struct Header {
     missing: Option<f64>,
 }
 
-/// Reads the grid of a file; the units of its posts stand in a .prj beside it, if anywhere.
+/// Reads the grid of a file. The units of its posts are in a .prj beside it, if anywhere.
 pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Raster, String> {
     let text = std::str::from_utf8(bytes).map_err(|error| format!("is not text: {error}"))?;
     let mut words =
@@ -71,7 +70,7 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Raster, String> {
     Ok(Raster { width, height, values, metres: Some(Metres::PLAIN), cell, notes })
 }
 
-/// Metres between posts, if they are metres.
+/// Returns the metres between posts, if the unit is metres.
 fn cell(header: &Header, path: &Path, notes: &mut Vec<String>) -> Option<DVec2> {
     let cell = DVec2::new(header.cell[0]?, header.cell[1]?);
     if !(cell.is_finite() && cell.min_element() > 0.0) {
@@ -100,7 +99,8 @@ fn cell(header: &Header, path: &Path, notes: &mut Vec<String>) -> Option<DVec2> 
     }
 }
 
-/// Metres of the unit of a projection, which is the last that its text (WKT) names.
+/// Returns the metres of the unit of a projection, which is the last unit that its text (WKT)
+/// names.
 fn linear_unit(projection: &str) -> Option<f64> {
     let (_, unit) = projection.rsplit_once("UNIT[")?;
     let (_, number) = unit.split_once(',')?;

@@ -10,7 +10,7 @@ use tiff::tags::Tag;
 
 use super::raster::{Metres, Raster, check_size};
 
-/// Keys of the directory of keys.
+/// Keys of the GeoTIFF key directory.
 const MODEL_TYPE: u32 = 1024;
 const PROJECTED_LINEAR_UNIT: u32 = 3076;
 const VERTICAL_UNIT: u32 = 4099;
@@ -62,13 +62,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, String> {
     Ok(Raster { width, height, values, metres: Some(Metres { unit, offset: 0.0 }), cell, notes })
 }
 
-/// The value that stands for missing data.
+/// Returns the value that stands for missing data.
 fn missing(decoder: &mut Decoder<Cursor<&[u8]>>) -> Option<f32> {
     let text = decoder.get_tag_ascii_string(Tag::GdalNodata).ok()?;
     text.trim_matches(|c: char| c.is_whitespace() || c == '\0').parse::<f64>().ok().map(|value| value as f32)
 }
 
-/// Keys with their short values.
+/// Returns the keys with their short values.
 fn keys(decoder: &mut Decoder<Cursor<&[u8]>>) -> Vec<(u32, u32)> {
     let directory = decoder.get_tag_u32_vec(Tag::GeoKeyDirectoryTag).unwrap_or_default();
     let entries = directory.get(4..).unwrap_or_default().chunks_exact(4);
@@ -76,7 +76,7 @@ fn keys(decoder: &mut Decoder<Cursor<&[u8]>>) -> Vec<(u32, u32)> {
     entries.filter(|entry| entry[1] == 0).map(|entry| (entry[0], entry[3])).collect()
 }
 
-/// Metres of a linear unit by its EPSG code: metre, foot, US survey foot.
+/// Returns the metres of a linear unit by its EPSG code: metre, foot, US survey foot.
 fn linear_unit(code: u32) -> Option<f64> {
     match code {
         9001 => Some(1.0),
@@ -86,7 +86,7 @@ fn linear_unit(code: u32) -> Option<f64> {
     }
 }
 
-/// Metres between posts; `None` if they are in degrees, or nothing is known.
+/// Returns the metres between posts; `None` if they are in degrees or unknown.
 fn cell(
     decoder: &mut Decoder<Cursor<&[u8]>>,
     keys: &[(u32, u32)],
@@ -124,7 +124,7 @@ fn cell(
     }
 }
 
-/// Values of any type; more digits than single precision has are rounded.
+/// Converts values of any type to `f32`. Digits beyond single precision are rounded off.
 fn values(decoded: DecodingResult) -> Vec<f32> {
     match decoded {
         DecodingResult::U8(list) => list.into_iter().map(f32::from).collect(),

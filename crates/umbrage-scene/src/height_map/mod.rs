@@ -16,34 +16,34 @@ use crate::{Error, Result, Scene};
 use raster::{Metres, Raster};
 use terrain::Field;
 
-/// What a height map means in metres. Each field takes precedence over the side file, and that over
-/// the map itself.
+/// Scale of a height map in metres. Each field takes precedence over the side file, and the side
+/// file over the map itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HeightMapOptions {
-    /// Metres between neighbouring posts, in x and z; above 0. Needed where neither map nor side
-    /// file says it.
+    /// Metres between neighbouring posts, in x and z; above 0. Required if neither map nor side
+    /// file gives it.
     pub metres_per_post: Option<f64>,
-    /// Metres of height for one step of grey, or for each metre of a map that has metres; above 0,
+    /// Metres of height for one step of grey, or for each metre of a map in metres; above 0,
     /// default 1.
     pub metres_per_unit: Option<f64>,
-    /// Height in metres of grey 0 or of 0 m; default that of the side file, or 0.
+    /// Height in metres of grey 0 or of 0 m; by default that of the side file, or 0.
     pub height_offset: Option<f64>,
-    /// How pictures hold heights; recognized where it is `None`.
+    /// Encoding of heights in a picture; recognised if it is `None`.
     pub encoding: Option<HeightEncoding>,
 }
 
-/// How a picture holds heights.
+/// Encoding of heights in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeightEncoding {
-    /// In its grey, the same in all colours.
+    /// Heights as grey, the same in all colours.
     Grey,
-    /// Metres in 24 bits of colour: red · 256 + green + blue / 256 − 32768.
+    /// Heights in metres as 24 bits of colour: red · 256 + green + blue / 256 − 32768.
     Terrarium,
-    /// Metres in 24 bits of colour: (red · 65536 + green · 256 + blue) / 10 − 10000.
+    /// Heights in metres as 24 bits of colour: (red · 65536 + green · 256 + blue) / 10 − 10000.
     Mapbox,
 }
 
-/// The JSON beside a map, `name.json` for `name.png`. Keys that are not listed are ignored.
+/// JSON beside a map, `name.json` for `name.png`. Other keys are ignored.
 #[derive(Debug, Default, Deserialize)]
 struct SideFile {
     width: Option<u64>,
@@ -67,14 +67,14 @@ struct SideFile {
 ///
 /// # Errors
 /// [`Error::Read`], [`Error::NotAFile`], or [`Error::HeightMap`] naming the map or side file: no
-/// scale known, a scale that is not above 0, a side file that does not fit the map, colours that
-/// are no heights, a map that is too small or too large.
+/// scale known, a scale that is not above 0, a side file that does not fit the map, colours that do
+/// not encode heights, a map that is too small or too large.
 pub fn load_height_map(path: &Path, options: &HeightMapOptions) -> Result<Scene> {
     load(path, &read_file(path)?, options, &|size| side_file(path, size))
 }
 
-/// Loads a height map from memory, without a side file; `name` stands for the file, and its
-/// extension says what is in it.
+/// Loads a height map from memory, without a side file. `name` stands for the file, and its
+/// extension chooses the format.
 ///
 /// # Errors
 /// As [`load_height_map`].
@@ -82,7 +82,7 @@ pub fn load_height_map_slice(name: &str, bytes: &[u8], options: &HeightMapOption
     load(Path::new(name), bytes, options, &|_| Ok(None))
 }
 
-/// Reads the side file of a map of so many posts across and down.
+/// Reads the side file of a map with this number of posts across and down.
 type Side<'a> = &'a dyn Fn([usize; 2]) -> Result<Option<SideFile>>;
 
 fn load(path: &Path, bytes: &[u8], options: &HeightMapOptions, side: Side<'_>) -> Result<Scene> {
@@ -107,7 +107,7 @@ fn load(path: &Path, bytes: &[u8], options: &HeightMapOptions, side: Side<'_>) -
     Ok(scene)
 }
 
-/// Whether bytes begin as a TIFF does, in either byte order, or as one of more than 4 GiB.
+/// Returns whether bytes begin as a TIFF does, in either byte order, or as one of more than 4 GiB.
 fn is_tiff(bytes: &[u8]) -> bool {
     [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"].iter().any(|start| bytes.starts_with(*start))
 }
@@ -139,7 +139,8 @@ fn side_file(picture: &Path, size: [usize; 2]) -> Result<Option<SideFile>> {
     Ok(Some(side))
 }
 
-/// Metres per post in x and z; metres of a value of the map; what the options make of those.
+/// Metres per post in x and z, and the conversion from values of the map to metres with the options
+/// applied.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Scale {
     cell: DVec2,

@@ -1,4 +1,4 @@
-//! Heights from pictures: grey in whatever form, or metres packed into colours.
+//! Heights from pictures: grey in any format, or metres packed into colours.
 
 use image::{DynamicImage, ImageFormat};
 
@@ -6,11 +6,11 @@ use super::HeightEncoding;
 use super::raster::{Metres, Raster, check_size};
 use crate::picture;
 
-/// Greatest mean step between neighbours, in metres, that terrain has. Ours: coarse maps of whole
-/// mountain chains have some 100 m, pictures of anything else thousands.
+/// Largest mean step between neighbours of terrain, in metres. Ours: coarse maps of whole mountain
+/// chains have some 100 m, pictures of anything else thousands.
 const ROUGHEST: f64 = 300.0;
 
-/// Reds of Terrarium heights from −11,264 to 9,216 m: deeper and higher is nothing on Earth.
+/// Reds of Terrarium heights from −11,264 to 9,216 m. Nothing on Earth is deeper or higher.
 const TERRARIUM_RED: std::ops::RangeInclusive<u8> = 84..=163;
 
 /// Reds of Mapbox heights from −10,000 to 16,214 m.
@@ -67,7 +67,7 @@ fn spread<const N: usize, T>(pixels: &[[T; N]], rgba: impl Fn(&[T; N]) -> [u16; 
     pixels.iter().map(rgba).collect()
 }
 
-/// Where a picture is transparent it has no data, unless it is transparent everywhere.
+/// Clears the data of transparent pixels, unless the picture is transparent everywhere.
 fn clear_transparent(raster: &mut Raster, colors: &[[u16; 4]]) {
     let clear = colors.iter().filter(|color| color[3] == 0).count();
     if clear == colors.len() {
@@ -81,7 +81,7 @@ fn clear_transparent(raster: &mut Raster, colors: &[[u16; 4]]) {
     }
 }
 
-/// What a value of an encoding is in metres.
+/// Returns the conversion of an encoding's values to metres.
 fn metres(encoding: HeightEncoding) -> Option<Metres> {
     match encoding {
         HeightEncoding::Grey => None,
@@ -90,7 +90,7 @@ fn metres(encoding: HeightEncoding) -> Option<Metres> {
     }
 }
 
-/// The value of a pixel: 24 bits of colour, which are exact in `f32`, or grey.
+/// Returns the value of a pixel: 24 bits of colour, which are exact in `f32`, or grey.
 fn value(encoding: HeightEncoding, [r, g, b, _]: [u16; 4]) -> f32 {
     match encoding {
         HeightEncoding::Grey if r == g && g == b => f32::from(r),
@@ -101,7 +101,7 @@ fn value(encoding: HeightEncoding, [r, g, b, _]: [u16; 4]) -> f32 {
     }
 }
 
-/// The encoding whose heights are possible on Earth and as smooth as terrain.
+/// Returns the encoding whose heights are possible on Earth and as smooth as terrain.
 fn recognized(colors: &[[u16; 4]], width: usize) -> Option<HeightEncoding> {
     let seen = || colors.iter().filter(|color| color[3] != 0);
     [(HeightEncoding::Terrarium, TERRARIUM_RED), (HeightEncoding::Mapbox, MAPBOX_RED)].into_iter().find_map(

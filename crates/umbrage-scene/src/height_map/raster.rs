@@ -1,25 +1,25 @@
-//! Heights as a file has them, before anything says what they are in metres.
+//! Heights as a file has them, before they are converted to metres.
 
 use glam::DVec2;
 
 /// A grid of values, row 0 in the north.
 #[derive(Debug, Default)]
 pub(super) struct Raster {
-    /// Posts from west to east.
+    /// Number of posts from west to east.
     pub(super) width: usize,
-    /// Posts from north to south.
+    /// Number of posts from north to south.
     pub(super) height: usize,
-    /// Row after row; NaN where the file has no data.
+    /// Values row after row; NaN where the file has no data.
     pub(super) values: Vec<f32>,
-    /// What a value is in metres; `None` if the file does not say.
+    /// Conversion of values to metres; `None` if the file does not give it.
     pub(super) metres: Option<Metres>,
-    /// Metres between posts, in x and z; `None` if the file does not say.
+    /// Metres between posts, in x and z; `None` if the file does not give them.
     pub(super) cell: Option<DVec2>,
-    /// What was taken for granted.
+    /// Assumptions that were made.
     pub(super) notes: Vec<String>,
 }
 
-/// Height in metres = value · unit + offset.
+/// Conversion to height in metres: value · unit + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Metres {
     pub(super) unit: f64,
@@ -27,20 +27,20 @@ pub(super) struct Metres {
 }
 
 impl Metres {
-    /// Values are metres.
+    /// Conversion of values that are metres.
     pub(super) const PLAIN: Self = Self { unit: 1.0, offset: 0.0 };
 
-    /// The height of a value.
+    /// Returns the height of a value in metres.
     pub(super) fn height(self, value: f32) -> f64 {
         f64::from(value) * self.unit + self.offset
     }
 }
 
-/// Most posts of a file of so many bytes; the error says what to do about more.
+/// Checks the number of posts of a file of `bytes` bytes. The error says what to do about too many.
 ///
-/// 67 million, 8192², are the most at all: their terrain takes some 3 GiB. A file has a million
-/// whatever its size and four for each byte, twice what terrain packs into one, so that a small
-/// file cannot fill the memory. Both are ours.
+/// The limit for all files is 67 million posts, 8192², whose terrain takes some 3 GiB. A file has a
+/// million whatever its size and four for each byte, twice what terrain packs into one, so that a
+/// small file cannot fill the memory. Both are ours.
 pub(super) fn check_size(width: usize, height: usize, bytes: usize) -> Result<(), String> {
     const MOST: usize = 1 << 26;
     let most = (bytes.saturating_mul(4)).saturating_add(1 << 20).min(MOST);

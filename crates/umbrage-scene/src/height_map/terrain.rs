@@ -6,9 +6,9 @@ use super::Scale;
 use super::raster::Raster;
 use crate::{Material, Mesh, Node, Primitive, Scene, Trs};
 
-/// Quads along the edge of a tile. Ours: small enough to be culled, large enough to be drawn fast;
-/// positions inside a tile are relative to its middle, so that `f32` is exact to a fraction of a
-/// millimetre at 30 m posts.
+/// Number of quads along the edge of a tile. Ours: small enough to be culled, large enough to be
+/// drawn fast. Positions inside a tile are relative to its middle, so that `f32` is exact to a
+/// fraction of a millimetre at 30 m posts.
 const TILE_QUADS: usize = 64;
 
 /// A grid of heights in metres.
@@ -26,20 +26,21 @@ impl Field {
         self.raster.height
     }
 
-    /// NaN where there is no data.
+    /// Returns the height of a post in metres; NaN where there is no data.
     fn y(&self, i: usize, j: usize) -> f64 {
         let value = self.raster.values[j * self.width() + i];
         self.scale.metres.height(value) * self.scale.unit + self.scale.offset
     }
 
-    /// Where post (i, j) stands in x and z; `i` and `j` may lie between posts.
+    /// Returns the position of post (i, j) in x and z, in metres; `i` and `j` may lie between
+    /// posts.
     fn xz(&self, i: f64, j: f64) -> DVec2 {
         let middle = 0.5 * DVec2::new((self.width() - 1) as f64, (self.height() - 1) as f64);
         (DVec2::new(i, j) - middle) * self.scale.cell
     }
 
-    /// From central differences, one-sided at the border and beside posts without data: the same on
-    /// both sides of a seam between tiles.
+    /// Computes a normal from central differences, one-sided at the border and beside posts without
+    /// data. It is the same on both sides of a seam between tiles.
     fn normal(&self, i: usize, j: usize) -> [f32; 3] {
         let here = self.y(i, j);
         let slope = |[before, after]: [(usize, usize); 2], cell: f64| {
@@ -58,7 +59,7 @@ impl Field {
         DVec3::new(-slope_x, 1.0, -slope_z).normalize().as_vec3().to_array()
     }
 
-    /// The terrain; the error says what is wrong with it.
+    /// Builds the terrain. The error says what is wrong with the heights.
     pub(super) fn build(&self) -> Result<Scene, String> {
         let heights = self.raster.values.iter().filter(|value| !value.is_nan());
         let heights = heights.map(|&value| self.scale.metres.height(value) * self.scale.unit + self.scale.offset);
@@ -90,8 +91,8 @@ impl Field {
         Ok(scene)
     }
 
-    /// The posts from `first` to `last`, both included, relative to their middle; quads with a
-    /// corner without data are left out, and `None` is a tile without any.
+    /// Builds the tile of the posts from `first` to `last`, both included, relative to their
+    /// middle. Quads with a corner without data are left out; a tile without any quad is `None`.
     fn tile(&self, first: [usize; 2], last: [usize; 2]) -> Option<(Primitive, DVec3)> {
         let across = last[0] - first[0] + 1;
         let local = |i: usize, j: usize| (j - first[1]) * across + (i - first[0]);

@@ -19,9 +19,9 @@ pub(super) enum Piece {
     King,
 }
 
-/// Edges below this angle are turned smooth; beads and rims stay sharp.
+/// Angle in degrees below which edges are smooth; beads and rims stay sharp.
 const TURNED: f64 = 38.0;
-/// Steps around a turned piece.
+/// Number of segments around a turned piece.
 const AROUND: usize = 28;
 
 impl Piece {
@@ -29,7 +29,7 @@ impl Piece {
     pub(super) const BACK_RANK: [Self; 8] =
         [Self::Rook, Self::Knight, Self::Bishop, Self::Queen, Self::King, Self::Bishop, Self::Knight, Self::Rook];
 
-    /// The piece in metres, of one material.
+    /// Returns the piece in metres, of one material.
     pub(super) fn mesh(self, name: &str, material: usize) -> Mesh {
         let solids = match self {
             Self::Pawn => pawn(),
@@ -47,7 +47,7 @@ impl Piece {
     }
 }
 
-/// The foot that all pieces have: plinth, bead and the sweep up to the stem. Ends at the stem's
+/// The foot that all pieces have: plinth, bead and the sweep up to the stem. It ends at the stem's
 /// radius, open upwards.
 fn foot(radius: f64, height: f64, stem: f64) -> Vec<[f64; 2]> {
     let mut profile = vec![[0.0, 0.0], [radius * 0.97, 0.0], [radius, 0.06 * height], [radius, 0.2 * height]];
@@ -85,7 +85,7 @@ fn collar(profile: &mut Vec<[f64; 2]>, radius: f64, thickness: f64) {
     }
 }
 
-/// A ball, from where it leaves a neck of the given radius up to its pole.
+/// A ball, from the neck of the given radius up to its pole.
 fn ball(profile: &mut Vec<[f64; 2]>, neck: f64, radius: f64, steps: usize) {
     let y = profile[profile.len() - 1][1];
     let start = libm::acos(neck / radius).to_degrees();
@@ -280,8 +280,8 @@ fn knight() -> Vec<Solid> {
     vec![body, carved.turned(DVec3::Y, -90.0)]
 }
 
-/// A place on the horse's crest (0 at the withers, 1 between the ears) and the way out of the neck
-/// there.
+/// Returns a place on the horse's crest (0 at the withers, 1 between the ears) and the outward
+/// direction of the neck there.
 fn sections_crest(sections: &[([f64; 2], [f64; 2], f64)], t: f64) -> (DVec3, DVec3) {
     let at = mix(1.2, 7.3, t);
     let (index, share) = (at.floor() as usize, at.fract());

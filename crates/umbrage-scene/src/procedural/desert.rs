@@ -12,10 +12,11 @@ use super::terrain::{Surface, Terrain};
 use super::worlds::{stage, standing};
 use crate::{Channel, Interpolation, Keys, Material, Scene};
 
-/// 1265² m² are the paper's 1.6 km².
+/// Edge of the desert in metres: 1265² m² are the paper's 1.6 km².
 const EDGE_M: f64 = 1265.0;
 
-/// Dunes so gentle that none ever stands in another's shadow: the ground only receives.
+/// Height of dunes so gentle that none ever stands in another's shadow: the ground only receives
+/// shadows.
 fn dunes(place: DVec2) -> f64 {
     let broad = noise::plane_octaves(11, place / 310.0, 2, 0.4);
     // Long crests across the wind.
@@ -25,12 +26,13 @@ fn dunes(place: DVec2) -> f64 {
     13.0 * broad + 7.0 * crest * crest + 0.35 * ripple
 }
 
-/// Where there is life: in groups, more of them towards the middle, with empty desert between.
+/// Returns whether a place is inhabited. Inhabited places form groups, more of them towards the
+/// middle, with empty desert between.
 fn inhabited(place: DVec2) -> bool {
     noise::plane_octaves(16, place / 300.0, 2, 0.5) + 0.4 * (1.0 - place.length() / 420.0) > 0.2
 }
 
-/// The world.
+/// Builds the world.
 pub(super) fn knights() -> Scene {
     let mut stage = stage(World::Knights);
     let terrain = Terrain::new(EDGE_M, 8, 30, dunes);
@@ -83,7 +85,7 @@ pub(super) fn knights() -> Scene {
     stage.scene
 }
 
-/// The meshes of knights, dwarfs, palms and cactuses, some of each.
+/// Makes the meshes of knights, dwarfs, palms and cactuses, some of each.
 fn cast(stage: &mut Stage) -> [Vec<usize>; 4] {
     let steel = stage.paint("steel", 0x8C_92_99);
     let brass = stage.paint("brass", 0xB5_8E_46);

@@ -1,4 +1,4 @@
-//! Pictures of twigs with leaves on nothing, for cards.
+//! Pictures of twigs with leaves on a transparent background, for cards.
 
 use super::maths::{mix, scramble, sin_cos, unit};
 use crate::{Texture, TextureFilter, Wrap};
@@ -19,8 +19,8 @@ impl Leaf {
     pub(super) const ALL: [Self; 7] =
         [Self::Oval, Self::Round, Self::Lance, Self::Lobed, Self::Needles, Self::Scales, Self::Pinnate];
 
-    /// Pairs of leaves on a twig; their length and half width as shares of the picture's width;
-    /// lobes of their edge.
+    /// Returns the pairs of leaves on a twig, their length and half width as shares of the
+    /// picture's width, and the lobes of their edge.
     const fn shape(self) -> (u32, f64, f64, f64) {
         match self {
             Self::Oval => (5, 0.40, 0.11, 0.0),
@@ -34,7 +34,7 @@ impl Leaf {
     }
 }
 
-/// A twig of leaves, its root at the bottom; transparent around them.
+/// Draws a twig of leaves, its root at the bottom, on a transparent background.
 pub(super) fn leaf_texture(leaf: Leaf) -> Texture {
     const EDGE: u32 = 256;
     let edge = f64::from(EDGE);
@@ -61,7 +61,7 @@ struct Canvas {
 }
 
 impl Canvas {
-    /// A leaf from its stalk to its tip, widest in the middle.
+    /// Draws a leaf from its stalk to its tip, widest in the middle.
     fn stroke(&mut self, from: [f64; 2], to: [f64; 2], half_width: f64, lobes: f64, light: f64) {
         let edge = self.coverage.len().isqrt();
         let span = |axis: usize| {

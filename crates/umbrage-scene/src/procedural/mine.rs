@@ -14,17 +14,17 @@ use super::worlds::{stage, standing};
 use crate::{AlphaMode, Channel, Interpolation, Keys, Material, Node, Scene, Trs};
 
 const EDGE_M: f64 = 1600.0;
-/// Height of a bench of the pit.
+/// Height of a bench of the pit in metres.
 const BENCH_M: f64 = 11.0;
 
-/// Metres from the middle of the pit, which is no circle.
+/// Returns the metres from the middle of the pit, which is not quite a circle.
 fn from_pit(place: DVec2) -> f64 {
     let offset = place - DVec2::new(-60.0, 30.0);
     let ragged = 1.0 + 0.3 * noise::plane_octaves(31, place / 300.0, 2, 0.5);
     libm::hypot(offset.x * 0.8, offset.y * 1.05) * ragged
 }
 
-/// Hills, and a pit cut into them in steps.
+/// Returns the height of hills with a pit cut into them in steps.
 fn natural_height(place: DVec2) -> f64 {
     let away = from_pit(place);
     let hills = 78.0 * noise::plane_octaves(32, place / 520.0, 4, 0.42);
@@ -36,7 +36,7 @@ fn natural_height(place: DVec2) -> f64 {
     stepped + 0.5 * noise::plane_octaves(33, place / 22.0, 2, 0.5)
 }
 
-/// A level place for a machine: its ground is level to `radius` and joins the hills 16 m further
+/// A level place for a machine. Its ground is level up to `radius` and joins the hills 16 m further
 /// out.
 struct Pad {
     place: DVec2,
@@ -44,7 +44,7 @@ struct Pad {
     height: f64,
 }
 
-/// The world.
+/// Builds the world.
 pub(super) fn mining_terrain() -> Scene {
     let mut stage = stage(World::MiningTerrain);
     let mut random = Random::new(256);
@@ -115,7 +115,8 @@ fn more(random: &mut Random, radii: &[f64], taken: &[DVec2], fits: impl Fn(DVec2
     [taken, &fresh].concat()
 }
 
-/// Grass on level ground outside the pit, ochre soil inside, grey rock where it is steep.
+/// Colour of the soil: grass on level ground outside the pit, ochre soil inside, grey rock where it
+/// is steep.
 fn soil_colour(at: DVec3, normal: DVec3) -> [f32; 3] {
     let place = DVec2::new(at.x, at.z);
     let patchy = 0.5 * noise::plane_octaves(34, place / 60.0, 3, 0.5);
@@ -130,7 +131,7 @@ fn soil_colour(at: DVec3, normal: DVec3) -> [f32; 3] {
     })
 }
 
-/// The meshes of rocks and pines, some of each.
+/// Makes the meshes of rocks and pines, some of each.
 fn still_meshes(stage: &mut Stage) -> [Vec<usize>; 2] {
     let granite = stage.paint("granite", 0x86_80_78);
     let sandstone = stage.paint("sandstone", 0x94_7B_62);
@@ -218,7 +219,7 @@ fn place_clawbots(stage: &mut Stage, terrain: &Terrain, random: &mut Random, pla
     }
 }
 
-/// Turns a node about an axis by an angle (degrees) that depends on the share of the period.
+/// Rotates a node about an axis by an angle in degrees that depends on the share of the period.
 fn rotations(node: usize, axis: DVec3, period_s: f64, keys: usize, angle: impl Fn(f64) -> f64) -> Channel {
     let share = |key: usize| key as f64 / keys as f64;
     Channel {

@@ -1,4 +1,4 @@
-//! The mine: robots with claws on tracks, tower windmills, rocks.
+//! Objects of the mine: robots with claws on tracks, tower windmills, rocks.
 
 use glam::{DVec3, dvec3};
 
@@ -10,7 +10,7 @@ use crate::Mesh;
 
 const SMOOTH: f64 = 45.0;
 
-/// What a clawbot is made of: indices of materials.
+/// Materials of a clawbot's parts, as indices.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ClawbotsColours {
     pub(super) paint: usize,
@@ -21,21 +21,21 @@ pub(super) struct ClawbotsColours {
 
 /// The meshes of a clawbot, 9 m tall, facing +Z.
 pub(super) struct Clawbot {
-    /// Stands on the ground.
+    /// Tracks, which stand on the ground.
     pub(super) tracks: Mesh,
-    /// Turns about Y on the tracks, around [`TURRET`].
+    /// Trunk, which turns about Y on the tracks, around [`TURRET`].
     pub(super) trunk: Mesh,
-    /// The moving jaw of the left claw (+X), relative to its hinge [`HINGE`]; it opens by turning
-    /// about +Y. Its mirror image is the right one's.
+    /// Moving jaws. The left claw's (+X) is relative to its hinge [`HINGE`] and opens by turning
+    /// about +Y. The right claw's is its mirror image.
     pub(super) jaws: [Mesh; 2],
 }
 
-/// Where the trunk turns on the tracks.
+/// Point on the tracks about which the trunk turns.
 pub(super) const TURRET: DVec3 = DVec3::new(0.0, 2.6, 0.0);
-/// The left jaw's hinge relative to [`TURRET`].
+/// Hinge of the left jaw, relative to [`TURRET`].
 pub(super) const HINGE: DVec3 = DVec3::new(3.75, 1.3, 4.1);
 
-/// A clawbot.
+/// Makes a clawbot.
 pub(super) fn clawbot(colours: ClawbotsColours) -> Clawbot {
     let mut tracks = Sculpture::default();
     tracks.add(colours.rubber, 30.0, &track().at(2.3, 0.0, 0.0).and_mirrored());
@@ -247,7 +247,7 @@ fn moving_jaw() -> Solid {
     half_claw(2.75).at(0.3, 0.0, 0.15).and(knuckle).at(0.0, -0.05, 0.0)
 }
 
-/// What a windmill is made of: indices of materials.
+/// Materials of a windmill's parts, as indices.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WindmillsColours {
     pub(super) stone: usize,
@@ -256,10 +256,10 @@ pub(super) struct WindmillsColours {
     pub(super) cloth: usize,
 }
 
-/// Where a windmill's rotor turns about +Z.
+/// Point about which a windmill's rotor turns, around +Z.
 pub(super) const HUB: DVec3 = DVec3::new(0.0, 21.5, 5.2);
 
-/// A tower mill, 25 m tall with its sails facing +Z, and its rotor around [`HUB`].
+/// Makes a tower mill, 25 m tall with its sails facing +Z, and its rotor around [`HUB`].
 pub(super) fn windmill(colours: WindmillsColours) -> [Mesh; 2] {
     let mut tower = Sculpture::default();
     tower.add(colours.stone, 32.0, &stone_tower());
@@ -399,8 +399,8 @@ fn canvas() -> Solid {
     Solid::all((0..4).map(|i| one.clone().turned(DVec3::Z, 90.0 * f64::from(i))))
 }
 
-/// A boulder of radius about 1, another one for every seed; its lower third belongs into the
-/// ground.
+/// Makes a boulder of radius about 1; every seed gives another one. Its lower third belongs into
+/// the ground.
 pub(super) fn rock(name: &str, seed: u64, material: usize) -> Mesh {
     let stone = Solid::cube_sphere(26).bent(|p| {
         // Planes that cut the ball make a broken stone; noise makes it rough.

@@ -41,20 +41,20 @@ pub enum World {
     /// km²; 1.3 million triangles.
     MiningTerrain,
     /// A wood of 1.44 hectares whose foliage is alpha-tested cards, 152 materials, each merged into
-    /// one mesh; 1.1 million triangles. It is no world of the paper: it measures what hidden leaves
-    /// cost.
+    /// one mesh; 1.1 million triangles. It is not from the paper; it measures the cost of hidden
+    /// leaves.
     Thicket,
-    /// A million trees on 100 km² of mountains, or as many as [`WorldOptions::trees`] says; four
-    /// shapes of each kind.
+    /// A million trees on 100 km² of mountains, or [`WorldOptions::trees`] of them; four levels of
+    /// detail of each kind.
     Forest,
-    /// 100,000 buildings on a grid of streets, or as many as [`WorldOptions::buildings`] says.
+    /// 100,000 buildings on a grid of streets, or [`WorldOptions::buildings`] of them.
     CityBlocks,
 }
 
 impl World {
     /// The paper's worlds, in its order.
     pub const PAPER: [Self; 4] = [Self::RobotWar, Self::Chessboard, Self::Knights, Self::MiningTerrain];
-    /// Every world.
+    /// All worlds.
     pub const ALL: [Self; 7] = [
         Self::RobotWar,
         Self::Chessboard,
@@ -64,11 +64,11 @@ impl World {
         Self::Forest,
         Self::CityBlocks,
     ];
-    /// Those whose number of objects is an option alone: they take seconds and hundreds of
-    /// megabytes to build.
+    /// Worlds that are made for any number of objects. They take seconds and hundreds of megabytes
+    /// to build.
     pub const LARGE: [Self; 2] = [Self::Forest, Self::CityBlocks];
 
-    /// As it is called on the command line.
+    /// Returns the world's name on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -82,13 +82,13 @@ impl World {
         }
     }
 
-    /// The world of that [`World::name`].
+    /// Returns the world with this [`World::name`].
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|world| world.name() == name)
     }
 
-    /// As a heading, and as the paper calls its own.
+    /// Returns the world's name as a heading, which is the paper's name for the paper's worlds.
     #[must_use]
     pub const fn title(self) -> &'static str {
         match self {
@@ -102,7 +102,7 @@ impl World {
         }
     }
 
-    /// The camera's near and far distance in metres.
+    /// Returns the camera's near and far distance in metres.
     #[must_use]
     pub const fn near_far(self) -> (f64, f64) {
         match self {
@@ -114,14 +114,14 @@ impl World {
         }
     }
 
-    /// Builds the world with its own number of objects.
+    /// Builds the world with its default number of objects.
     #[must_use]
     pub fn build(self) -> Scene {
         self.build_counted(&WorldOptions::default(), &|_| ())
     }
 
-    /// Builds the world with a number of objects that [`WorldOptions`] may give, and says how far
-    /// it is.
+    /// Builds the world with the number of objects that `options` may give, and reports progress to
+    /// `watch`.
     ///
     /// # Errors
     /// [`crate::Error::WorldOption`] for a number that is not of this world, or out of its limits.

@@ -15,7 +15,7 @@ fn fade(t: f64) -> f64 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
 
-/// Smooth noise of the plane, about −0.7 to 0.7, one bump per unit; 0 at whole coordinates.
+/// Returns smooth noise of the plane, about −0.7 to 0.7, one bump per unit; 0 at whole coordinates.
 pub(super) fn plane(seed: u64, at: DVec2) -> f64 {
     let cell = at.floor();
     let f = at - cell;
@@ -28,7 +28,7 @@ pub(super) fn plane(seed: u64, at: DVec2) -> f64 {
     mix(south, north, fade(f.y))
 }
 
-/// Smooth noise of space, about −0.9 to 0.9, one bump per unit; 0 at whole coordinates.
+/// Returns smooth noise of space, about −0.9 to 0.9, one bump per unit; 0 at whole coordinates.
 pub(super) fn space(seed: u64, at: DVec3) -> f64 {
     let cell = at.floor();
     let f = at - cell;
@@ -45,14 +45,14 @@ pub(super) fn space(seed: u64, at: DVec3) -> f64 {
     mix(face(0.0), face(1.0), fade(f.z))
 }
 
-/// A sum of octaves of [`plane`]: each has twice the frequency and `gain` times the height of the
-/// one before.
+/// Sums octaves of [`plane`]. Each has twice the frequency and `gain` times the height of the one
+/// before.
 pub(super) fn plane_octaves(seed: u64, at: DVec2, octaves: u32, gain: f64) -> f64 {
     octave_sum(octaves, gain, |octave, frequency| plane(seed + u64::from(octave), at * frequency))
 }
 
-/// A sum of octaves of [`space`]: each has twice the frequency and `gain` times the height of the
-/// one before.
+/// Sums octaves of [`space`]. Each has twice the frequency and `gain` times the height of the one
+/// before.
 pub(super) fn space_octaves(seed: u64, at: DVec3, octaves: u32, gain: f64) -> f64 {
     octave_sum(octaves, gain, |octave, frequency| space(seed + u64::from(octave), at * frequency))
 }

@@ -20,7 +20,7 @@ pub(super) struct PalmsColours {
     pub(super) fruit: usize,
 }
 
-/// A date palm, about 12 m tall; another one for every seed.
+/// Makes a date palm, about 12 m tall. Every seed gives another one.
 pub(super) fn palm(name: &str, seed: u64, colours: PalmsColours) -> Mesh {
     let mut random = Random::new(seed);
     let mut sculpture = Sculpture::default();
@@ -123,7 +123,7 @@ pub(super) struct CactusColours {
     pub(super) flower: usize,
 }
 
-/// A saguaro, about 10 m tall; another one for every seed.
+/// Makes a saguaro, about 10 m tall. Every seed gives another one.
 pub(super) fn cactus(name: &str, seed: u64, colours: CactusColours) -> Mesh {
     let mut random = Random::new(seed);
     let mut columns = Vec::new();
@@ -186,7 +186,7 @@ pub(super) struct PinesColours {
     pub(super) needles: usize,
 }
 
-/// A pine, about 20 m tall; another one for every seed.
+/// Makes a pine, about 20 m tall. Every seed gives another one.
 pub(super) fn pine(name: &str, seed: u64, colours: PinesColours) -> Mesh {
     let mut random = Random::new(seed);
     let mut sculpture = Sculpture::default();

@@ -8,7 +8,7 @@ use super::sculpt::Sculpture;
 use super::shapes::{Solid, beam};
 use crate::Mesh;
 
-/// What a robot is made of: indices of materials.
+/// Materials of a robot's parts, as indices.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Livery {
     pub(super) armour: usize,
@@ -36,7 +36,7 @@ impl Make {
 const FLAT: f64 = 30.0;
 const ROUND: f64 = 50.0;
 
-/// A robot. No part of it is further than [`REACH`] from its axis.
+/// Makes a robot. No part of it is further than [`REACH`] from its axis.
 pub(super) fn robot(make: Make, livery: Livery) -> Mesh {
     let mut parts = Parts::default();
     match make {
@@ -83,7 +83,7 @@ pub(super) fn robot(make: Make, livery: Livery) -> Mesh {
     sculpture.finish(&format!("{make:?}").to_lowercase())
 }
 
-/// Metres from a robot's axis to its farthest part, at scale 1.
+/// Distance in metres from a robot's axis to its farthest part, at scale 1.
 pub(super) const REACH: f64 = 5.6;
 
 #[derive(Default)]

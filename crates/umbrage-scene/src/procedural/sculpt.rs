@@ -1,4 +1,4 @@
-//! From solids to meshes: one primitive per material, normals by crease angle.
+//! Conversion of solids to meshes: one primitive per material, normals by crease angle.
 
 use std::collections::BTreeMap;
 
@@ -44,8 +44,8 @@ impl Sculpture {
     }
 
     /// Adds an open sheet through rows of points, seen from the side on which rows run to the right
-    /// and follow one another upwards. All of it has one normal: the ground's, or for foliage the
-    /// way out of the crown, which is softer than each leaf's own.
+    /// and follow one another upwards. The whole sheet has one normal: the ground's, or for foliage
+    /// the direction out of the crown, which looks softer than each leaf's own.
     pub(super) fn sheet(&mut self, material: usize, rows: &[Vec<DVec3>], normal: DVec3) -> &mut Self {
         let primitive = self.primitives.entry(material).or_insert_with(|| Primitive { material, ..Default::default() });
         let (across, first) = (rows[0].len() as u32, primitive.positions.len() as u32);
@@ -76,14 +76,14 @@ impl Sculpture {
         self
     }
 
-    /// The mesh.
+    /// Returns the mesh.
     pub(super) fn finish(self, name: &str) -> Mesh {
         Mesh { name: name.to_owned(), primitives: self.primitives.into_values().collect(), weights: Vec::new() }
     }
 }
 
-/// One unit normal per corner of each face: the mean of the faces at the point that are within
-/// `crease` degrees of the corner's own, weighted by their angles at the point.
+/// Returns one unit normal per corner of each face: the mean of the faces at the point that are
+/// within `crease` degrees of the corner's own, weighted by their angles at the point.
 fn corner_normals(solid: &Solid, crease: f64) -> Vec<[DVec3; 3]> {
     let at = |i: u32| solid.points[i as usize];
     let face_normals: Vec<DVec3> =

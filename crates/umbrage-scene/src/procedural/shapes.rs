@@ -17,18 +17,18 @@ pub(super) struct Solid {
     pub(super) faces: Vec<[u32; 3]>,
 }
 
-/// How a loft ends.
+/// End of a loft.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum End {
-    /// With the convex polygon of its last ring.
+    /// The convex polygon of the last ring.
     Flat,
-    /// In a point.
+    /// A point.
     Point(DVec3),
 }
 
 impl Solid {
-    /// A skin over `rings`, which have the same number of points and run counter-clockwise seen
-    /// from the last ring.
+    /// Makes a skin over `rings`, which have the same number of points and run counter-clockwise
+    /// seen from the last ring.
     pub(super) fn loft(start: End, rings: &[Vec<DVec3>], end: End) -> Self {
         let around = rings[0].len();
         let mut solid = Self::default();
@@ -52,7 +52,7 @@ impl Solid {
         solid
     }
 
-    /// Two triangles for four corners, cut along the shorter diagonal.
+    /// Adds two triangles for four corners, cut along the shorter diagonal.
     fn quad(&mut self, [a, b, c, d]: [u32; 4]) {
         let at = |i: u32| self.points[i as usize];
         // The bias keeps the choice the same where both are equal but for rounding.
@@ -319,14 +319,14 @@ impl Solid {
         solid
     }
 
-    /// Every point moved by a function that keeps the surface from turning inside out.
+    /// Moves every point by a function that keeps the surface from turning inside out.
     #[must_use]
     pub(super) fn bent(mut self, bend: impl Fn(DVec3) -> DVec3) -> Self {
         self.points.iter_mut().for_each(|point| *point = bend(*point));
         self
     }
 
-    /// Transformed; a mirror image keeps its outside outside.
+    /// Transforms the solid. A mirror image keeps its outside outside.
     #[must_use]
     pub(super) fn transformed(mut self, transform: &DAffine3) -> Self {
         self.points.iter_mut().for_each(|point| *point = transform.transform_point3(*point));
@@ -336,32 +336,32 @@ impl Solid {
         self
     }
 
-    /// Moved.
+    /// Moves the solid by (x, y, z).
     #[must_use]
     pub(super) fn at(self, x: f64, y: f64, z: f64) -> Self {
         self.transformed(&DAffine3::from_translation(dvec3(x, y, z)))
     }
 
-    /// Turned about the origin.
+    /// Rotates the solid about the origin.
     #[must_use]
     pub(super) fn turned(self, axis: DVec3, degrees: f64) -> Self {
         self.transformed(&DAffine3::from_quat(turn(axis, degrees)))
     }
 
-    /// Scaled about the origin.
+    /// Scales the solid about the origin.
     #[must_use]
     pub(super) fn scaled(self, x: f64, y: f64, z: f64) -> Self {
         self.transformed(&DAffine3::from_mat3(DMat3::from_diagonal(dvec3(x, y, z))))
     }
 
-    /// With its image in the plane x = 0.
+    /// Adds the mirror image in the plane x = 0.
     #[must_use]
     pub(super) fn and_mirrored(self) -> Self {
         let image = self.clone().scaled(-1.0, 1.0, 1.0);
         self.and(image)
     }
 
-    /// Both. Their surfaces stay apart even where they touch.
+    /// Joins two solids. Their surfaces stay apart even where they touch.
     #[must_use]
     pub(super) fn and(mut self, other: Self) -> Self {
         let offset = self.points.len() as u32;
@@ -370,7 +370,7 @@ impl Solid {
         self
     }
 
-    /// All of them.
+    /// Joins all solids.
     pub(super) fn all(solids: impl IntoIterator<Item = Self>) -> Self {
         solids.into_iter().fold(Self::default(), Self::and)
     }
@@ -432,7 +432,7 @@ mod tests {
         solid.faces.iter().map(|&[a, b, c]| at(a).dot(at(b).cross(at(c))) / 6.0).sum()
     }
 
-    /// Every edge is walked once in each direction.
+    /// Returns whether every edge is walked once in each direction.
     fn is_closed(solid: &Solid) -> bool {
         let mut balance = BTreeMap::new();
         for face in &solid.faces {

@@ -1,5 +1,5 @@
-//! What all worlds share: materials by colour, nodes, cameras, the moving sun, clips, and
-//! scattering things apart.
+//! Tools that all worlds share: materials by colour, nodes, cameras, the moving sun, clips, and
+//! scattered places.
 
 use glam::{DVec2, DVec3};
 
@@ -19,7 +19,7 @@ impl Stage {
         Self { scene: Scene { name: name.to_owned(), ..Scene::default() }, near_far }
     }
 
-    /// A matte material of a colour as a painter names it: `0xRRGGBB`, sRGB.
+    /// Adds a matte material of an sRGB colour, `0xRRGGBB`.
     pub(super) fn paint(&mut self, name: &str, srgb: u32) -> usize {
         let linear = |shift: u32| {
             let value = f64::from((srgb >> shift) & 0xFF) / 255.0;
@@ -40,7 +40,7 @@ impl Stage {
         self.scene.meshes.len() - 1
     }
 
-    /// A node that shows a mesh.
+    /// Adds a node that shows a mesh.
     pub(super) fn place(&mut self, name: String, mesh: usize, local: Trs) -> usize {
         self.node(Node { name, mesh: Some(mesh), local, ..Node::default() })
     }
@@ -50,7 +50,7 @@ impl Stage {
         self.scene.nodes.len() - 1
     }
 
-    /// A camera with the paper's lens, 60° from bottom to top.
+    /// Adds a camera with the paper's lens, 60° from bottom to top.
     pub(super) fn camera(&mut self, name: &str, eye: DVec3, target: DVec3) {
         let local = Trs { translation: eye, rotation: looking_along(target - eye), ..Trs::IDENTITY };
         let node = self.node(Node { name: name.to_owned(), local, ..Node::default() });
@@ -59,8 +59,8 @@ impl Stage {
         self.scene.cameras.push(SceneCamera { name: name.to_owned(), node, lens });
     }
 
-    /// The sun: at time 0 it stands at `start`, in two minutes it goes to `noon` and back, over a
-    /// great circle at an even pace but for a rest at either end.
+    /// Adds the sun. At time 0 it stands at `start`; in two minutes it goes to `noon` and back,
+    /// over a great circle at an even pace but for a rest at either end.
     pub(super) fn sun(&mut self, start: SkyPoint, noon: SkyPoint) {
         const KEYS: usize = 97;
         const PERIOD_S: f64 = 120.0;
@@ -90,7 +90,7 @@ impl Stage {
         );
     }
 
-    /// A clip that plays in a loop beside all others.
+    /// Adds a clip that plays in a loop beside all others.
     pub(super) fn clip(&mut self, name: &str, channels: Vec<Channel>) {
         let last = |channel: &Channel| channel.times.last().copied().unwrap_or(0.0);
         let duration = f64::from(channels.iter().map(last).fold(0.0, f32::max));
@@ -106,16 +106,16 @@ pub(super) struct SkyPoint {
 }
 
 impl SkyPoint {
-    /// From the ground towards it; unit length.
+    /// Returns the unit vector from the ground towards the point.
     pub(super) fn direction(self) -> DVec3 {
         let ((sin_b, cos_b), (sin_e, cos_e)) = (sin_cos(self.bearing), sin_cos(self.elevation));
         DVec3::new(cos_e * cos_b, sin_e, -cos_e * sin_b)
     }
 }
 
-/// Places on a square of the ground (x, z) around the origin, such that circles of the given radii
-/// around them stay apart and inside. Larger circles should come first. Places that `fits` refuses
-/// stay free.
+/// Chooses places on a square of the ground (x, z) around the origin, such that circles of the
+/// given radii around them stay apart and inside. Larger circles should come first. Places that
+/// `fits` refuses stay free.
 pub(super) fn scatter(random: &mut Random, edge: f64, radii: &[f64], fits: impl Fn(DVec2) -> bool) -> Vec<DVec2> {
     const TRIES: usize = 100_000;
     let mut places: Vec<DVec2> = Vec::new();

@@ -14,7 +14,7 @@ pub(super) struct Terrain {
     heights: Vec<f64>,
 }
 
-/// What the ground looks like and whether it casts shadows.
+/// Look of the ground, and whether it casts shadows.
 pub(super) struct Surface<'a> {
     pub(super) material: usize,
     /// Linear colour at a place with a normal, multiplied into the material's.
@@ -30,14 +30,14 @@ enum Cut {
     Rising,
 }
 
-/// A grid of 1/1024 m: coordinates on it are exact in `f32` relative to a tile and in the world, so
-/// tiles meet exactly.
+/// Rounds to a grid of 1/1024 m. Coordinates on it are exact in `f32` relative to a tile and in the
+/// world, so tiles meet exactly.
 fn on_grid(metres: f64) -> f64 {
     (metres * 1024.0).round() / 1024.0
 }
 
 impl Terrain {
-    /// `tiles` × `tiles` tiles of `cells` × `cells` squares, `edge` metres in all.
+    /// Makes `tiles` × `tiles` tiles of `cells` × `cells` squares, `edge` metres in all.
     pub(super) fn new(edge: f64, tiles: usize, cells: usize, height: impl Fn(DVec2) -> f64) -> Self {
         let mut terrain = Self { edge, tiles, cells, heights: Vec::new() };
         let posts = tiles * cells + 1;
@@ -62,7 +62,7 @@ impl Terrain {
         dvec3(self.coordinate(column), self.heights[row * self.posts() + column], self.coordinate(row))
     }
 
-    /// The mean slope around a post, as a normal.
+    /// Returns the mean slope around a post, as a normal.
     fn normal(&self, column: usize, row: usize) -> DVec3 {
         let last = self.posts() - 1;
         let (west, east) = (self.post(column.saturating_sub(1), row), self.post((column + 1).min(last), row));
@@ -70,7 +70,8 @@ impl Terrain {
         (south - north).cross(east - west).normalize()
     }
 
-    /// The height of the ground's triangles at a place (x, z), which must lie on the ground.
+    /// Returns the height of the ground's triangles at a place (x, z), which must lie on the
+    /// ground.
     pub(super) fn height_at(&self, place: DVec2) -> f64 {
         let cells = self.posts() - 1;
         let locate = |coordinate: f64| {
@@ -98,25 +99,26 @@ impl Terrain {
         }
     }
 
-    /// The place on the ground that is nearest to one that may lie beyond it.
+    /// Returns the place on the ground nearest to one that may lie beyond it.
     pub(super) fn nearest(&self, place: DVec2) -> DVec2 {
         place.clamp(DVec2::splat(self.coordinate(0)), DVec2::splat(self.coordinate(self.posts() - 1)))
     }
 
-    /// Heights of a square's corners: north-west, north-east, south-west, south-east.
+    /// Returns the heights of a square's corners: north-west, north-east, south-west, south-east.
     fn corners(&self, column: usize, row: usize) -> [f64; 4] {
         let height = |column, row| self.heights[row * self.posts() + column];
         [height(column, row), height(column + 1, row), height(column, row + 1), height(column + 1, row + 1)]
     }
 
-    /// The cut that follows the ground's contour lines, so that the crest of a bench is no saw.
+    /// Chooses the cut that follows the ground's contour lines, so that the crest of a bench is not
+    /// jagged.
     fn cut(&self, column: usize, row: usize) -> Cut {
         let [north_west, north_east, south_west, south_east] = self.corners(column, row);
         if (north_west - south_east).abs() <= (north_east - south_west).abs() { Cut::Falling } else { Cut::Rising }
     }
 
-    /// The lowest ground on a circle and in its middle: where something wide has to stand so as not
-    /// to float.
+    /// Returns the lowest ground on a circle and in its middle, where a wide object has to stand so
+    /// as not to float.
     pub(super) fn lowest_around(&self, place: DVec2, radius: f64) -> f64 {
         (0..12)
             .map(|i| {
@@ -126,7 +128,7 @@ impl Terrain {
             .fold(self.height_at(place), f64::min)
     }
 
-    /// The place (x, z) with the ground's height.
+    /// Returns the place (x, z) with the ground's height.
     pub(super) fn on_ground(&self, place: DVec2) -> DVec3 {
         dvec3(place.x, self.height_at(place), place.y)
     }
@@ -170,7 +172,7 @@ impl Terrain {
         )
     }
 
-    /// Puts the tiles on the stage.
+    /// Adds the tiles to the stage.
     pub(super) fn place(&self, stage: &mut Stage, surface: &Surface) {
         for row in 0..self.tiles {
             for column in 0..self.tiles {

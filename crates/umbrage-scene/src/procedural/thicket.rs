@@ -1,9 +1,9 @@
 //! The world "Thicket": a dense wood whose foliage is cards with holes, merged by material as
 //! exporters merge it.
 //!
-//! It is no world of the paper. It is what is hard for a renderer: a million small triangles, more
-//! than half of them alpha-tested, 152 materials, every one of them all over the wood, so that no
-//! object is near or far.
+//! It is not from the paper. It is hard for a renderer: a million small triangles, more than half
+//! of them alpha-tested, and 152 materials, each spread all over the wood, so that no object is
+//! near or far.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ use crate::{AlphaMode, Material, Mesh, Primitive, Scene, Trs};
 
 const EDGE_M: f64 = 120.0;
 
-/// How a plant grows.
+/// Habit of a plant's growth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Habit {
     Broadleaf,
@@ -31,12 +31,12 @@ enum Habit {
     Fern,
 }
 
-/// Tints of a species' foliage; each is a material.
+/// Number of tints of a species' foliage; each is a material.
 const TINTS: usize = 4;
-/// Models of a species; plants are copies of them, turned and scaled.
+/// Number of models of a species. Plants are copies of them, turned and scaled.
 const MODELS: u64 = 2;
 
-/// A species: how it grows, which of the leaves it has, and how many stand in the wood.
+/// Species: habit, leaf, and number of plants in the wood.
 const SPECIES: [(Habit, Leaf, usize); 22] = [
     (Habit::Broadleaf, Leaf::Oval, 11),
     (Habit::Broadleaf, Leaf::Lobed, 11),
@@ -70,7 +70,7 @@ struct Colours {
     foliage: [usize; TINTS],
 }
 
-/// The world.
+/// Builds the world.
 pub(super) fn thicket() -> Scene {
     let mut stage = stage(World::Thicket);
     let mut random = Random::new(152);
@@ -119,14 +119,14 @@ fn ground_height(place: DVec2) -> f64 {
     3.0 * noise::plane_octaves(61, place / 45.0, 3, 0.45) + 0.15 * noise::plane_octaves(62, place / 4.0, 2, 0.5)
 }
 
-/// Brown leaves, and moss in patches.
+/// Colour of the litter: brown leaves, with moss in patches.
 fn litter_colour(at: DVec3, _normal: DVec3) -> [f32; 3] {
     let moss = (0.5 + noise::plane_octaves(63, DVec2::new(at.x, at.z) / 9.0, 3, 0.5)).clamp(0.0, 1.0);
     let mixed = |channel: usize| mix([0.24, 0.16, 0.09][channel], [0.13, 0.18, 0.05][channel], moss) as f32;
     std::array::from_fn(mixed)
 }
 
-/// One texture for each kind of leaf.
+/// Makes one texture for each kind of leaf.
 fn leaf_textures(stage: &mut Stage) -> Vec<usize> {
     let textures = &mut stage.scene.textures;
     textures.extend(Leaf::ALL.map(leaf_texture));
@@ -161,7 +161,7 @@ fn colours(stage: &mut Stage, species: usize, texture: usize, random: &mut Rando
     Colours { bark, twig, foliage }
 }
 
-/// A plant that stands on y = 0.
+/// Makes a plant that stands on y = 0.
 fn plant(habit: Habit, seed: u64, colours: Colours) -> Mesh {
     let mut random = Random::new(seed);
     let mut sculpture = Sculpture::default();
@@ -174,7 +174,7 @@ fn plant(habit: Habit, seed: u64, colours: Colours) -> Mesh {
     sculpture.finish("plant")
 }
 
-/// A tapering trunk with a foot that reaches below the ground.
+/// Adds a tapering trunk with a foot that reaches below the ground.
 fn trunk(sculpture: &mut Sculpture, colours: Colours, radius: f64, at: impl Fn(f64) -> DVec3) {
     const RINGS: u32 = 14;
     let path: Vec<_> = (0..=RINGS)
@@ -187,7 +187,7 @@ fn trunk(sculpture: &mut Sculpture, colours: Colours, radius: f64, at: impl Fn(f
     sculpture.add(colours.bark, 50.0, &Solid::sweep(&path, &ribbed(7, 3, 0.14)));
 }
 
-/// A card of leaves that begins at `root` and grows along `way`, and bends down a little.
+/// Adds a card of leaves that begins at `root`, grows along `way`, and bends down a little.
 fn card(sculpture: &mut Sculpture, material: usize, root: DVec3, way: DVec3, roll: f64, outward: DVec3) {
     let length = way.length();
     let side = way.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
@@ -288,7 +288,7 @@ fn fern(sculpture: &mut Sculpture, random: &mut Random, colours: Colours) {
     }
 }
 
-/// A round stone about 2 m across, around the origin.
+/// Makes a round stone about 2 m across, around the origin.
 fn boulder(seed: u64, material: usize) -> Mesh {
     let mut sculpture = Sculpture::default();
     let rough = |p: DVec3| p * (1.0 + 0.35 * noise::space_octaves(seed, p * 1.3, 3, 0.5));
@@ -296,14 +296,14 @@ fn boulder(seed: u64, material: usize) -> Mesh {
     sculpture.finish("boulder")
 }
 
-/// The wood, one primitive for each material.
+/// The wood under construction, one primitive for each material.
 #[derive(Default)]
 struct Wood {
     primitives: BTreeMap<usize, Primitive>,
 }
 
 impl Wood {
-    /// Adds a copy of a model; nothing of it is shared.
+    /// Adds a copy of a model. The copy shares no vertices.
     fn add(&mut self, model: &Mesh, place: Trs) {
         let world_from_model: DAffine3 = place.to_affine();
         for source in &model.primitives {
@@ -321,7 +321,7 @@ impl Wood {
         }
     }
 
-    /// One node for each material.
+    /// Adds one node for each material to the stage.
     fn place(self, stage: &mut Stage) {
         for (material, primitive) in self.primitives {
             let name = stage.scene.materials[material].name.clone();

@@ -1,4 +1,4 @@
-//! The worlds themselves: what stands where, from where one looks, where the sun goes.
+//! The worlds Robot War and Chessboard: places of objects, cameras and the path of the sun.
 
 use glam::{DVec2, DVec3, dvec3};
 
@@ -14,12 +14,12 @@ pub(super) fn stage(world: World) -> Stage {
     Stage::new(world.name(), world.near_far())
 }
 
-/// On the ground, turned about Y, scaled.
+/// Returns a transform that stands an object on the ground, turned about Y and scaled.
 pub(super) fn standing(at: DVec3, yaw_degrees: f64, scale: f64) -> Trs {
     Trs { translation: at, rotation: turn(DVec3::Y, yaw_degrees), scale: DVec3::splat(scale) }
 }
 
-/// 160 robots on a plain of 1200 m × 1200 m.
+/// Builds 160 robots on a plain of 1200 m × 1200 m.
 pub(super) fn robot_war() -> Scene {
     const EDGE_M: f64 = 1200.0;
     let mut stage = stage(World::RobotWar);
@@ -47,7 +47,7 @@ pub(super) fn robot_war() -> Scene {
     stage.scene
 }
 
-/// Every make of robot in every colour.
+/// Makes every make of robot in every colour.
 pub(super) fn robot_meshes(stage: &mut Stage) -> Vec<usize> {
     let metal = stage.paint("gun metal", 0x4A_4D_52);
     let glass = stage.paint("visor", 0xD8_A2_3A);
@@ -63,12 +63,12 @@ pub(super) fn robot_meshes(stage: &mut Stage) -> Vec<usize> {
         .collect()
 }
 
-/// The sun of Robot War.
+/// Adds the sun of Robot War.
 pub(super) fn robot_sun(stage: &mut Stage) {
     stage.sun(SkyPoint { bearing: 35.0, elevation: 31.0 }, SkyPoint { bearing: 130.0, elevation: 58.0 });
 }
 
-/// A game on a board of 700 m × 700 m, all men still on it.
+/// Builds a game on a board of 700 m × 700 m, with all men still on it.
 pub(super) fn chessboard() -> Scene {
     const SQUARE_M: f64 = 87.5;
     let mut stage = stage(World::Chessboard);
@@ -122,8 +122,8 @@ pub(super) fn chessboard() -> Scene {
     stage.scene
 }
 
-/// The men of one side after the ten half moves 1 e4 e5 2 Nf3 Nc6 3 Bc4 Bc5 4 c3 Nf6 5 d3 d6,
-/// nobody taken: files and ranks count from 0.
+/// Returns the men of one side after the ten half moves 1 e4 e5 2 Nf3 Nc6 3 Bc4 Bc5 4 c3 Nf6 5 d3
+/// d6, none taken. Files and ranks count from 0.
 fn position(side: &str) -> Vec<([u8; 2], Piece)> {
     let white = side == "white";
     let rank = |from_own_side: u8| if white { from_own_side } else { 7 - from_own_side };
@@ -148,8 +148,8 @@ fn position(side: &str) -> Vec<([u8; 2], Piece)> {
     men
 }
 
-/// Two by two squares around the origin, the light ones at north-west and south-east, each of 2 × 2
-/// cells.
+/// Makes two by two squares around the origin, the light ones at north-west and south-east, each of
+/// 2 × 2 cells.
 fn four_squares(square: f64, [light, dark]: [usize; 2]) -> Mesh {
     let mut sculpture = super::sculpt::Sculpture::default();
     for (column, row) in [(0, 0), (1, 0), (0, 1), (1, 1)] {

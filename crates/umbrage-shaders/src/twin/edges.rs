@@ -1,18 +1,22 @@
-//! `lib/edges.wesl` on the CPU: whether the triangles that texels name shade a point.
+//! `lib/edges.wesl` on the CPU: the decision whether the triangles that texels name shade a point.
 
 use super::bias::Receiver;
 use crate::ExactEdges;
 
-/// `edges::LEAST_M`: metres along the light within which nothing shades.
+/// `edges::LEAST_M`: metres along the light within which nothing shades that is as good as parallel
+/// to the point's surface.
 pub const LEAST_M: f32 = 0.002;
-/// `edges::SLACK_TEXELS`: texels that a stored depth may lie before the receiver's plane before the
-/// point is tested, beside the receiver's own bias.
+/// `edges::PARALLEL`: cosine from which on two surfaces are as good as parallel.
+pub const PARALLEL: f32 = 0.866;
+/// `edges::SLACK_TEXELS`: texels, of the shorter edge, by which a stored depth may lie in front of
+/// the receiver's plane
+/// before the point is tested, in addition to the receiver's own bias.
 pub const SLACK_TEXELS: f32 = 0.25;
 /// `edges::STEEPEST`: tangent of the steepest angle at which the receiver's plane is followed.
 pub const STEEPEST: f32 = 20.0;
 /// `edges::LOST`: share of the numbers involved that `f32` may have lost.
 pub const LOST: f32 = 9.536_743e-7;
-/// `edges::ROUND`: the nine texels, the middle first.
+/// `edges::ROUND`: offsets of the nine texels, the middle one first.
 pub const ROUND: [[f32; 2]; 9] =
     [[0.0, 0.0], [-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
 
@@ -23,14 +27,14 @@ pub struct Run {
     pub rows: [[f32; 4]; 3],
     /// Least corner of a box around the triangles.
     pub min: [f32; 3],
-    /// Greatest corner of it.
+    /// Greatest corner of the box.
     pub max: [f32; 3],
     /// The triangles.
     pub triangles: Vec<[[f32; 3]; 3]>,
 }
 
 impl Run {
-    /// Triangles whose space is that of the frame.
+    /// A run of triangles in the space of the frame.
     #[must_use]
     pub fn in_frame(triangles: &[[[f32; 3]; 3]]) -> Self {
         let corners = || triangles.iter().flatten();
@@ -46,49 +50,53 @@ impl Run {
     }
 }
 
-/// `edges::Ray`: a point's way to the light, and the pixel round the point.
+/// `edges::Ray`: the ray from a point to the light, and the pixel around the point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Metres from the frame's origin.
+    /// Origin in metres from the frame's origin.
     pub origin: [f32; 3],
+    /// Unit normal of the point's surface.
+    pub normal: [f32; 3],
+    /// From the point to the eye, metres.
+    pub to_eye: [f32; 3],
     /// Unit vector towards the light.
     pub to_light: [f32; 3],
-    /// Metres to the light.
+    /// Distance to the light in metres.
     pub length_m: f32,
-    /// How the position changes to the next pixel on the right and to the next one below, metres.
+    /// Change of the position to the next pixel on the right and to the next one below, in metres.
     pub pixel: [[f32; 3]; 2],
 }
 
 impl Ray {
-    /// The way of a point without a pixel to a sun.
+    /// The ray from a point without a pixel to a sun; the point is seen along its normal.
     #[must_use]
-    pub const fn to_sun(origin: [f32; 3], to_light: [f32; 3]) -> Self {
-        Self { origin, to_light, length_m: 3e38, pixel: [[0.0; 3]; 2] }
+    pub const fn to_sun(origin: [f32; 3], normal: [f32; 3], to_light: [f32; 3]) -> Self {
+        Self { origin, normal, to_eye: normal, to_light, length_m: 3e38, pixel: [[0.0; 3]; 2] }
     }
 }
 
-/// What the nine texels round a point hold, in the order of [`ROUND`].
+/// Contents of the nine texels around a point, in the order of [`ROUND`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Around {
-    /// The corner of the middle texel nearest to the map's first, in texels of the light's plane:
-    /// whole numbers.
+    /// Corner of the middle texel that is nearest to the map's first corner, in texels of the
+    /// light's plane: whole numbers.
     pub middle: [f32; 2],
     /// Stored depths.
     pub depths: [f32; 9],
-    /// Ids; 0 names nothing.
+    /// Ids; 0 for no run.
     pub ids: [u32; 9],
 }
 
-/// What is decided of a point.
+/// Decision for a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decision {
-    /// Nothing stands in its way.
+    /// No triangle lies on the ray to the light.
     Lit,
-    /// All texels that count hold something before it.
+    /// All texels that count contain a surface in front of the point.
     Covered,
-    /// A triangle that a texel names stands in its way, or in that of some positions of its pixel.
+    /// A triangle that a texel names shades the point, or some positions of its pixel.
     Shaded,
-    /// A caster without a name may stand in its way: the filter answers.
+    /// A caster without an id may shade the point: the filter decides.
     Undecided,
 }
 
@@ -97,7 +105,7 @@ pub fn decided<'a>(at: &Receiver, around: &Around, ray: Ray, runs: impl Fn(u32) 
     shares(at, around, ray, ExactEdges::default(), runs).0
 }
 
-/// `edges::decided` of several positions of a pixel: what is decided, and the share of them that
+/// `edges::decided` for several positions of a pixel: the decision, and the share of positions that
 /// no triangle shades.
 pub fn shares<'a>(
     at: &Receiver,
@@ -135,21 +143,22 @@ pub fn shares<'a>(
     (decision, share)
 }
 
-/// `edges::four_of`: which of [`ROUND`] are the four texels round a point, as bits.
+/// `edges::four_of`: mask of the four texels of [`ROUND`] around a point.
 #[must_use]
 pub fn four_of(beyond: [bool; 2]) -> u32 {
     let [right, below] = beyond.map(u32::from);
     1 | 1 << (1 + right) | 1 << (3 + below) | 1 << (5 + right + 2 * below)
 }
 
-/// `edges::dark_round`: which of the nine hold something before the receiver's plane, as bits.
+/// `edges::dark_round`: mask of those of the nine texels that contain a surface in front of the
+/// receiver's plane.
 #[must_use]
 pub fn dark_round(at: &Receiver, around: &Around) -> u32 {
     let slope: [f32; 2] = std::array::from_fn(|axis| {
         let most = STEEPEST * at.texel_m[axis] / at.range_m;
         at.slope[axis].clamp(-most, most)
     });
-    let slack = (SLACK_TEXELS * at.texel_m[0].max(at.texel_m[1]) + LEAST_M) / at.range_m;
+    let slack = SLACK_TEXELS * at.texel_m[0].min(at.texel_m[1]) / at.range_m;
     let mut dark = 0;
     for (i, step) in ROUND.iter().enumerate() {
         let offset: [f32; 2] = std::array::from_fn(|axis| around.middle[axis] + step[axis] + 0.5 - at.texel[axis]);
@@ -159,13 +168,13 @@ pub fn dark_round(at: &Receiver, around: &Around) -> u32 {
     dark
 }
 
-/// `edges::lit_past` of one position: whether a run of triangles shades a point.
+/// `edges::lit_past` of one position: returns whether a run of triangles shades a point.
 #[must_use]
 pub fn shades(run: &Run, ray: Ray) -> bool {
     shaded_places(run, ray, &[[0.0; 2]])[0]
 }
 
-/// `edges::lit_past`: which of some places of a pixel a run of triangles shades.
+/// `edges::lit_past`: returns for each position of a pixel whether a run of triangles shades it.
 fn shaded_places(run: &Run, ray: Ray, places: &[[f32; 2]]) -> Vec<bool> {
     let own = |v: [f32; 3]| run.rows.map(|[x, y, z, _]| dot([x, y, z], v));
     let origin = run.rows.map(|[x, y, z, w]| dot([x, y, z], ray.origin) + w);
@@ -179,14 +188,35 @@ fn shaded_places(run: &Run, ray: Ray, places: &[[f32; 2]]) -> Vec<bool> {
     let axis = dominant(to_light);
     let along = turned(to_light, axis);
     let shear = [along[0] / along[2], along[1] / along[2]];
+    let surface = Surface {
+        normal: turned(plane_of(own, ray.normal), axis),
+        to_eye: turned(own(ray.to_eye), axis),
+        to_light: along,
+    };
     let shaded = |[right, below]: &[f32; 2]| {
         let aside = turned([0, 1, 2].map(|axis| right * pixel[0][axis] + below * pixel[1][axis]), axis);
         run.triangles.iter().any(|corners| {
             let corners = corners.map(|corner| minus(turned(minus(corner, origin), axis), aside));
-            is_before(corners, shear, along[2], [ray.length_m, lost])
+            is_before(corners, surface, shear, [ray.length_m, lost])
         })
     };
     places.iter().map(shaded).collect()
+}
+
+/// `edges::Surface`: that of a point, in a run's own space, axes turned.
+#[derive(Clone, Copy)]
+struct Surface {
+    normal: [f32; 3],
+    to_eye: [f32; 3],
+    to_light: [f32; 3],
+}
+
+/// `edges::plane_of`: a normal in a run's own space, where `own` takes directions.
+fn plane_of(own: impl Fn([f32; 3]) -> [f32; 3], normal: [f32; 3]) -> [f32; 3] {
+    let aside = if normal[0].abs() > 0.7 { [0.0, 1.0, 0.0] } else { [1.0, 0.0, 0.0] };
+    let u = cross(normal, aside);
+    let plane = cross(own(u), own(cross(normal, u)));
+    if dot(plane, own(normal)) > 0.0 { plane } else { plane.map(|x| -x) }
 }
 
 fn meets_box(run: &Run, origin: [f32; 3], direction: [f32; 3], by: [f32; 3], length_m: f32) -> bool {
@@ -200,21 +230,28 @@ fn meets_box(run: &Run, origin: [f32; 3], direction: [f32; 3], by: [f32; 3], len
     enters <= leaves
 }
 
-fn is_before([a, b, c]: [[f32; 3]; 3], shear: [f32; 2], along: f32, [length_m, lost]: [f32; 2]) -> bool {
+fn is_before([a, b, c]: [[f32; 3]; 3], surface: Surface, shear: [f32; 2], [length_m, lost]: [f32; 2]) -> bool {
     let [p, q, r] = [a, b, c].map(|corner| [corner[0] - shear[0] * corner[2], corner[1] - shear[1] * corner[2]]);
     let weights = [r[0] * q[1] - r[1] * q[0], p[0] * r[1] - p[1] * r[0], q[0] * p[1] - q[1] * p[0]];
-    let twice_area: f32 = weights.iter().sum();
-    let is_under = weights.iter().all(|weight| *weight >= 0.0) || weights.iter().all(|weight| *weight <= 0.0);
-    if !is_under || twice_area == 0.0 {
-        return false;
-    }
-    let metres = dot(weights, [a[2], b[2], c[2]]) / (twice_area * along);
-    if metres <= LEAST_M || metres >= length_m {
-        return false;
-    }
     let normal = cross(minus(b, a), minus(c, a));
     let reach = length(a).max(length(b)).max(length(c));
-    dot(normal, a).abs() > (lost + LOST * reach) * length(normal)
+    let lost = lost + LOST * reach;
+    let highest = [a, b, c].map(|corner| dot(surface.normal, corner)).into_iter().fold(f32::MIN, f32::max);
+    let is_parallel = dot(normal, surface.normal).abs() > PARALLEL * length(normal) * length(surface.normal);
+    let rises = !is_parallel && highest > lost * length(surface.normal);
+    let all_on_one_side =
+        |by: f32| weights.iter().all(|weight| *weight >= -by) || weights.iter().all(|weight| *weight <= by);
+    if dot(normal, a).abs() <= lost * length(normal) {
+        // An edge's function is its length times how far it is passed.
+        let is_met = all_on_one_side(2.0 * lost * reach);
+        return is_met && rises && dot(normal, surface.to_eye) * dot(normal, surface.to_light) < 0.0;
+    }
+    let twice_area: f32 = weights.iter().sum();
+    if !all_on_one_side(0.0) || twice_area == 0.0 {
+        return false;
+    }
+    let metres = dot(weights, [a[2], b[2], c[2]]) / (twice_area * surface.to_light[2]);
+    metres > if rises { 0.0 } else { LEAST_M } && metres < length_m
 }
 
 fn dominant(v: [f32; 3]) -> usize {

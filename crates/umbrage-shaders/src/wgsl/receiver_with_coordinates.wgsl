@@ -480,6 +480,8 @@ struct UmbrageRun {
 @if(exact)
 struct UmbrageRay {
     origin: vec3f,
+    normal: vec3f,
+    to_eye: vec3f,
     to_light: vec3f,
     length_m: f32,
     dx: vec3f,
@@ -491,6 +493,9 @@ var<private> umbrage_edges_counts: vec4u;
 
 @if(exact)
 const UMBRAGE_EDGES_LEAST_M: f32 = 0.002;
+
+@if(exact)
+const UMBRAGE_EDGES_PARALLEL: f32 = 0.866;
 
 @if(exact)
 const UMBRAGE_EDGES_SLACK_TEXELS: f32 = 0.25;
@@ -583,7 +588,7 @@ fn umbrage_edges_texel_round(layer: UmbrageLayer, middle: vec2f, i: u32) -> vec2
 fn umbrage_edges_dark_round(layer: UmbrageLayer, at: UmbrageReceiver, middle: vec2f) -> u32 {
     let most = UMBRAGE_EDGES_STEEPEST * at.texel_m / at.range_m;
     let slope = clamp(at.slope, -most, most);
-    let slack = (UMBRAGE_EDGES_SLACK_TEXELS * max(at.texel_m.x, at.texel_m.y) + UMBRAGE_EDGES_LEAST_M) / at.range_m;
+    let slack = UMBRAGE_EDGES_SLACK_TEXELS * min(at.texel_m.x, at.texel_m.y) / at.range_m;
     var dark = 0u;
     for (var i = 0u; i < 9u; i++) {
         let texel = umbrage_edges_texel_round(layer, middle, i);
@@ -611,6 +616,7 @@ fn umbrage_edges_lit_past(id: u32, ray: UmbrageRay, lit: u32) -> u32 {
     if !umbrage_edges_meets_box(run, origin, to_light, pixel + lost, ray.length_m) {
         return lit;
     }
+    let surface = UmbrageSurface(umbrage_edges_plane_of(run, ray.normal), umbrage_edges_own(run, ray.to_eye), to_light);
     let axis = umbrage_edges_dominant(to_light);
     let along = umbrage_edges_turned(to_light, axis);
     let shear = along.xy / along.z;
@@ -624,7 +630,8 @@ fn umbrage_edges_lit_past(id: u32, ray: UmbrageRay, lit: u32) -> u32 {
         for (var k = 0u; k < UMBRAGE_EDGE_SAMPLES; k++) {
             let place = umbrage_edges_place_of(k);
             let aside = umbrage_edges_turned(place.x * dx + place.y * dy, axis);
-            let shades = umbrage_edges_is_before(a - aside, b - aside, c - aside, shear, along.z, vec2f(ray.length_m, lost));
+            let at = array<vec3f, 3>(a - aside, b - aside, c - aside);
+            let shades = umbrage_edges_is_before(at, umbrage_edges_turned_surface(surface, axis), shear, vec2f(ray.length_m, lost));
             left &= ~select(0u, 1u << k, shades);
         }
     }
@@ -634,6 +641,26 @@ fn umbrage_edges_lit_past(id: u32, ray: UmbrageRay, lit: u32) -> u32 {
 @if(exact)
 fn umbrage_edges_own(run: UmbrageRun, v: vec3f) -> vec3f {
     return vec3f(dot(run.row_x.xyz, v), dot(run.row_y.xyz, v), dot(run.row_z.xyz, v));
+}
+
+@if(exact)
+struct UmbrageSurface {
+    normal: vec3f,
+    to_eye: vec3f,
+    to_light: vec3f
+}
+
+@if(exact)
+fn umbrage_edges_plane_of(run: UmbrageRun, normal: vec3f) -> vec3f {
+    let aside = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(normal.x) > 0.7);
+    let u = cross(normal, aside);
+    let plane = cross(umbrage_edges_own(run, u), umbrage_edges_own(run, cross(normal, u)));
+    return select(-plane, plane, dot(plane, umbrage_edges_own(run, normal)) > 0.0);
+}
+
+@if(exact)
+fn umbrage_edges_turned_surface(surface: UmbrageSurface, axis: u32) -> UmbrageSurface {
+    return UmbrageSurface(umbrage_edges_turned(surface.normal, axis), umbrage_edges_turned(surface.to_eye, axis), umbrage_edges_turned(surface.to_light, axis));
 }
 
 @if(exact)
@@ -659,23 +686,32 @@ fn umbrage_edges_turned(v: vec3f, axis: u32) -> vec3f {
 }
 
 @if(exact)
-fn umbrage_edges_is_before(a: vec3f, b: vec3f, c: vec3f, shear: vec2f, along: f32, bounds: vec2f) -> bool {
+fn umbrage_edges_is_before(corners: array<vec3f, 3>, surface: UmbrageSurface, shear: vec2f, bounds: vec2f) -> bool {
+    let a = corners[0];
+    let b = corners[1];
+    let c = corners[2];
     let p = a.xy - shear * a.z;
     let q = b.xy - shear * b.z;
     let r = c.xy - shear * c.z;
     let weights = vec3f(r.x * q.y - r.y * q.x, p.x * r.y - p.y * r.x, q.x * p.y - q.y * p.x);
+    let normal = cross(b - a, c - a);
+    let reach = max(max(length(a), length(b)), length(c));
+    let lost = bounds.y + UMBRAGE_EDGES_LOST * reach;
+    let highest = max(max(dot(surface.normal, a), dot(surface.normal, b)), dot(surface.normal, c));
+    let is_parallel = abs(dot(normal, surface.normal)) > UMBRAGE_EDGES_PARALLEL * length(normal) * length(surface.normal);
+    let rises = !is_parallel && highest > lost * length(surface.normal);
+    if abs(dot(normal, a)) <= lost * length(normal) {
+        let passed = vec3f(2.0 * lost * reach);
+        let is_met = all(weights >= -passed) || all(weights <= passed);
+        return is_met && rises && dot(normal, surface.to_eye) * dot(normal, surface.to_light) < 0.0;
+    }
     let twice_area = weights.x + weights.y + weights.z;
     let is_under = all(weights >= vec3f(0.0)) || all(weights <= vec3f(0.0));
     if !is_under || twice_area == 0.0 {
         return false;
     }
-    let metres = dot(weights, vec3f(a.z, b.z, c.z)) / (twice_area * along);
-    if metres <= UMBRAGE_EDGES_LEAST_M || metres >= bounds.x {
-        return false;
-    }
-    let normal = cross(b - a, c - a);
-    let reach = max(max(length(a), length(b)), length(c));
-    return abs(dot(normal, a)) > (bounds.y + UMBRAGE_EDGES_LOST * reach) * length(normal);
+    let metres = dot(weights, vec3f(a.z, b.z, c.z)) / (twice_area * surface.to_light.z);
+    return metres > select(UMBRAGE_EDGES_LEAST_M, 0.0, rises) && metres < bounds.x;
 }
 
 const UMBRAGE_FILTER_LEAST_LIGHT: f32 = 0.05;
@@ -1287,5 +1323,6 @@ fn umbrage_shade_ray_of(frame: u32, at: UmbrageReceiver, point: UmbragePoint, to
     let longest = 2.0 * max(at.texel_m.x, at.texel_m.y);
     let dx = point.dx * min(1.0, longest / max(length(cross(point.dx, towards_light)), 1e-20));
     let dy = point.dy * min(1.0, longest / max(length(cross(point.dy, towards_light)), 1e-20));
-    return UmbrageRay(point.position, towards_light, metres, dx, dy);
+    let to_eye = umbrage_frames[frame].eye - point.position;
+    return UmbrageRay(point.position, point.normal, to_eye, towards_light, metres, dx, dy);
 }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use umbrage::ShadowConfig;
+use umbrage::config::Edges;
 use umbrage_tests::closed::{Light, Rooms, VIEWS, Walls, closed_room, light_of, sun};
 use umbrage_tests::stage::gpu;
 
@@ -11,11 +12,11 @@ const SIZE: [u32; 2] = [240, 180];
 const SUNS: [[f64; 2]; 5] = [[54.0, 37.0], [35.0, 122.0], [12.0, 199.0], [80.0, 251.0], [24.0, 321.0]];
 
 /// Light in all views under all suns.
-fn light(walls: Walls, edge: u32) -> Option<Light> {
+fn light(walls: Walls, config: &ShadowConfig) -> Option<Light> {
     let gpu = gpu()?;
     let scene = closed_room(walls);
-    let config = ShadowConfig { map_sizes: vec![edge; 4], ..ShadowConfig::default() };
-    let mut rooms = Rooms::new(gpu, &scene, &config, SIZE);
+    let edge = config.map_sizes[0];
+    let mut rooms = Rooms::new(gpu, &scene, config, SIZE);
     let mut sum = Light::default();
     for [height, bearing] in SUNS {
         for (number, view) in VIEWS.into_iter().enumerate() {
@@ -42,8 +43,12 @@ const MOST_BRIGHT: f64 = 8e-6;
 /// Most pixels that may be more than half lit in coarse maps. Asked: 0.1 %. Measured: 0.045 %.
 const MOST_BRIGHT_COARSE: f64 = 6e-4;
 
+fn sized(edge: u32) -> ShadowConfig {
+    ShadowConfig { map_sizes: vec![edge; 4], ..ShadowConfig::default() }
+}
+
 fn check(walls: Walls) {
-    let (Some(fine), Some(coarse)) = (light(walls, 1024), light(walls, 128)) else { return };
+    let (Some(fine), Some(coarse)) = (light(walls, &sized(1024)), light(walls, &sized(128))) else { return };
     let share = |count: usize| count as f64 / fine.pixels as f64;
     assert_eq!(fine.pixels, SUNS.len() * VIEWS.len() * (SIZE[0] * SIZE[1]) as usize);
     assert_eq!(coarse.pixels, fine.pixels);
@@ -67,6 +72,18 @@ fn a_room_of_thin_shells_is_dark() {
 fn a_room_of_slabs_is_dark() {
     check(Walls::Slabs(0.02));
     check(Walls::Slabs(0.2));
+}
+
+/// The triangles of walls stand in light's way however near it starts.
+#[test]
+fn exact_edges_leave_rooms_dark() {
+    let config = ShadowConfig { edges: Edges::Exact, ..sized(1024) };
+    let mut lit = Vec::new();
+    for walls in [Walls::Thin, Walls::Shell(0.01), Walls::Shell(0.05), Walls::Slabs(0.02), Walls::Slabs(0.2)] {
+        let Some(light) = light(walls, &config) else { return };
+        lit.extend((light.more_than_2_percent > 0).then_some((walls, light)));
+    }
+    assert!(lit.is_empty(), "{lit:#?}");
 }
 
 /// The comparison can say no: to a room with a wall missing.

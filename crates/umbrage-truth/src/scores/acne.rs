@@ -1,4 +1,4 @@
-//! Acne and leak: wrong decisions that no true edge explains.
+//! Acne and leaks: wrong decisions that no true edge explains.
 
 use glam::DVec3;
 use umbrage::View;
@@ -9,55 +9,57 @@ use super::footprint::pixels_per_texel;
 use super::{Answers, Domain, TexelGradient};
 use crate::{Result, TruthMask};
 
-/// A wrong decision this many pixels from a true edge, and [`EDGE_TEXELS`] beyond, may be the
-/// edge's.
+/// Distance in pixels from a true edge, with [`EDGE_TEXELS`] added, within which a wrong decision
+/// may be the edge's.
 pub const EDGE_PIXELS: f64 = 2.0;
-/// See [`EDGE_PIXELS`]: times m, the pixels that a texel covers there.
+/// Distance in texels that is added to [`EDGE_PIXELS`]: its factor is m, the number of pixels that
+/// a texel covers there.
 pub const EDGE_TEXELS: f64 = 1.5;
 
 /// Wrong decisions farther from every true edge than the map's resolution explains.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct AcneAndLeak {
-    /// |Ω_f|.
+    /// Number of scored pixels, |Ω_f|.
     pub pixels: usize,
-    /// How many of them lie farther than `2 + 1.5 m` pixels from B*.
+    /// Number of scored pixels farther than `2 + 1.5 m` pixels from B*.
     pub beyond: usize,
-    /// Those beyond that are lit in truth and dark in the answer.
+    /// Number of pixels beyond that distance that are lit in truth and dark in the answer.
     pub acne: usize,
-    /// Those beyond that are dark in truth and lit in the answer.
+    /// Number of pixels beyond that distance that are dark in truth and lit in the answer.
     pub leak: usize,
-    /// Acne and leak, as indices into the image, rising.
+    /// Pixels of acne and leaks, as indices into the image, rising.
     pub wrong: Vec<usize>,
 }
 
 impl AcneAndLeak {
-    /// Acne as a share of Ω_f, or 0 of no pixels.
+    /// Returns acne as a share of Ω_f, or 0 if Ω_f is empty.
     #[must_use]
     pub fn acne_rate(&self) -> f64 {
         share(self.acne, self.pixels)
     }
 
-    /// Leak as a share of Ω_f, or 0 of no pixels.
+    /// Returns leaks as a share of Ω_f, or 0 if Ω_f is empty.
     #[must_use]
     pub fn leak_rate(&self) -> f64 {
         share(self.leak, self.pixels)
     }
 
-    /// Acne as a share of the pixels beyond the edges' reach, the stricter count; 0 of none.
+    /// Returns acne as a share of the pixels beyond the edges' reach, or 0 if there are none. This
+    /// count is the stricter one.
     #[must_use]
     pub fn acne_rate_beyond(&self) -> f64 {
         share(self.acne, self.beyond)
     }
 
-    /// Leak as a share of the pixels beyond the edges' reach; 0 of none.
+    /// Returns leaks as a share of the pixels beyond the edges' reach, or 0 if there are none.
     #[must_use]
     pub fn leak_rate_beyond(&self) -> f64 {
         share(self.leak, self.beyond)
     }
 
-    /// Share of Ω_f that lies beyond the edges' reach: where maps are coarse little does, and small
-    /// rates say little.
+    /// Returns the share of Ω_f that lies beyond the edges' reach. Where maps are coarse this share
+    /// is small, and small rates of acne then mean little.
     #[must_use]
     pub fn beyond_rate(&self) -> f64 {
         share(self.beyond, self.pixels)
@@ -68,11 +70,12 @@ fn share(of: usize, pixels: usize) -> f64 {
     if pixels == 0 { 0.0 } else { of as f64 / pixels as f64 }
 }
 
-/// Counts acne and leak. `gradient` answers, for a world point and its view depth, how the map that
-/// serves it lies there; where none does m is 0.
+/// Counts acne and leaks. `gradient` returns, for a world point and its view depth, the texel
+/// gradient of the map that covers it; where no map does, m is 0.
 ///
 /// # Errors
-/// As [`super::mis_shadowed`], and [`crate::Error::SizeMismatch`] if the mask is another frame's.
+/// As [`super::mis_shadowed`], and [`crate::Error::SizeMismatch`] if the mask belongs to another
+/// frame.
 pub fn acne_and_leak(
     view: &View,
     mask: &TruthMask,

@@ -1,4 +1,4 @@
-//! V̂: what a technique answers.
+//! V̂: the visibilities that a technique computes.
 
 use image::GrayAlphaImage;
 
@@ -14,7 +14,7 @@ pub struct Answers {
 }
 
 impl Answers {
-    /// From a mask as `umbrage render --visibility` writes it: grey / 255, no answer where
+    /// Reads a mask as `umbrage render --visibility` writes it: grey / 255, and no answer where
     /// alpha is 0.
     #[must_use]
     pub fn from_mask(image: &GrayAlphaImage) -> Self {
@@ -22,12 +22,12 @@ impl Answers {
         Self { size: [image.width() as usize, image.height() as usize], visibility }
     }
 
-    /// From one answer for each pixel of Ω_f, in the order of [`Domain::pixels`]: `umbrage probe`
-    /// asked for [`Domain::points`].
+    /// Makes answers from one visibility for each pixel of Ω_f, in the order of [`Domain::pixels`]:
+    /// those of `umbrage probe` at [`Domain::points`].
     ///
     /// # Errors
-    /// [`Error::SizeMismatch`] if there are more or fewer, [`Error::NotAVisibility`] for one
-    /// outside `[0, 1]`.
+    /// [`Error::SizeMismatch`] if their number differs, [`Error::NotAVisibility`] for one outside
+    /// `[0, 1]`.
     pub fn from_points(domain: &Domain, answers: &[f32]) -> Result<Self> {
         check_size("the list of answers", [answers.len(), 1], [domain.pixels().len(), 1])?;
         check_visibilities("answer", answers.iter().copied().enumerate())?;
@@ -38,30 +38,31 @@ impl Answers {
         Ok(Self { size: domain.size(), visibility })
     }
 
-    /// From one answer for each pixel of an image.
+    /// Makes answers from one visibility for each pixel of an image.
     ///
     /// # Errors
-    /// [`Error::SizeMismatch`] if there are more or fewer than pixels, [`Error::NotAVisibility`]
-    /// for one outside `[0, 1]`.
+    /// [`Error::SizeMismatch`] if their number differs from the number of pixels,
+    /// [`Error::NotAVisibility`] for one outside `[0, 1]`.
     pub fn from_pixels(size: [usize; 2], visibility: Vec<Option<f32>>) -> Result<Self> {
         check_size("the list of answers", [visibility.len(), 1], [size[0] * size[1], 1])?;
         check_visibilities("pixel", visibility.iter().enumerate().filter_map(|(i, v)| v.map(|v| (i, v))))?;
         Ok(Self { size, visibility })
     }
 
-    /// Width and height of the image.
+    /// Returns width and height of the image in pixels.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
         self.size
     }
 
-    /// V̂ per pixel of the image.
+    /// Returns V̂ of each pixel of the image.
     #[must_use]
     pub fn visibility(&self) -> &[Option<f32>] {
         &self.visibility
     }
 
-    /// The hard decision at a pixel: V̂ ≥ ½, and the wrong one where there is no answer.
+    /// Returns the hard decision at a pixel, V̂ ≥ ½, and the wrong decision where there is no
+    /// answer.
     pub(super) fn decision(&self, domain: &Domain, pixel: usize) -> bool {
         self.visibility[pixel].map_or(!domain.lit(pixel), is_lit)
     }
@@ -72,7 +73,7 @@ impl Answers {
     }
 }
 
-/// The hard decision.
+/// Returns the hard decision for a visibility.
 pub(super) fn is_lit(visibility: f32) -> bool {
     visibility >= 0.5
 }

@@ -1,26 +1,26 @@
-//! Techniques beside each other.
+//! Comparisons of techniques.
 
 use crate::{Error, Result};
 
-/// One technique against another over the same views: the first's score minus the second's, so less
-/// than 0 is better.
+/// Comparison of one technique with another over the same views: the first one's score minus the
+/// second one's, so that less than 0 is better.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Paired {
     /// Mean of the differences.
     pub mean_difference: f64,
-    /// Standard error of that mean; `None` for one view.
+    /// Standard error of the mean difference; `None` for one view.
     pub standard_error: Option<f64>,
-    /// Views in which the first scores lower, and so is better.
+    /// Number of views in which the first technique scores lower, and so is better.
     pub first_better: usize,
-    /// Views in which the second is better.
+    /// Number of views in which the second technique is better.
     pub second_better: usize,
-    /// Views in which both score the same.
+    /// Number of views in which both score the same.
     pub ties: usize,
 }
 
 impl Paired {
-    /// How many views were compared.
+    /// Returns the number of views compared.
     #[must_use]
     pub fn views(&self) -> usize {
         self.first_better + self.second_better + self.ties
@@ -28,7 +28,7 @@ impl Paired {
 }
 
 /// Compares two techniques by their scores in the same views, view by view. Leave out views that do
-/// not count ([`super::Domain::counts_as_view`]) before.
+/// not count ([`super::Domain::counts_as_view`]) beforehand.
 ///
 /// # Errors
 /// [`Error::SizeMismatch`] if the lists differ in length, [`Error::NothingToScore`] if they are
@@ -55,19 +55,19 @@ pub fn paired(first: &[f64], second: &[f64]) -> Result<Paired> {
     })
 }
 
-/// How much memory brings a technique's error down to a limit.
+/// Memory that brings a technique's error down to a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MemoryAt {
-    /// The least memory that was measured is enough already.
+    /// No more than the least memory that was measured.
     AtMost(f64),
-    /// Between two measurements.
+    /// A value between two measurements.
     About(f64),
-    /// The most memory that was measured is not enough.
+    /// More than the most memory that was measured.
     MoreThan(f64),
 }
 
-/// The memory at which a technique's error first falls to `limit` (0.005, say) as memory grows.
-/// `measured` holds pairs of memory (texels or bytes, more than 0) and error. Between two
+/// Returns the memory at which a technique's error first falls to `limit` (0.005, say) as memory
+/// grows. `measured` holds pairs of memory (texels or bytes, more than 0) and error. Between two
 /// measurements ln(memory) is linear in ln(error), as it is where error falls with a power of
 /// memory; an error of 0 is taken as 1e-9 there.
 ///

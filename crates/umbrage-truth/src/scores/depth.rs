@@ -1,35 +1,35 @@
-//! E_log: E that is fair to every depth.
+//! E_log: the error rate E averaged over depth, so that no depth dominates.
 
 use super::{Answers, Domain, MisShadowed};
 use crate::Result;
 
-/// A bin with fewer pixels of Ω_f is ignored.
+/// Fewest pixels of Ω_f in a bin that counts.
 pub const LEAST_PIXELS_IN_BIN: usize = 200;
 
 const BINS: usize = 8;
 
-/// E between two depths.
+/// Error rate between two depths.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct DepthBin {
     /// View depth in metres at which the bin begins.
     pub near: f64,
-    /// View depth in metres at which it ends.
+    /// View depth in metres at which the bin ends.
     pub far: f64,
-    /// The decisions in it.
+    /// Decisions in the bin.
     pub score: MisShadowed,
 }
 
-/// E in eight equal bins of ln z.
+/// Error rate in eight equal bins of ln z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ByDepth {
-    /// From near to far.
+    /// Bins from near to far.
     pub bins: [DepthBin; BINS],
 }
 
 impl ByDepth {
-    /// E_log in `[0, 1]`: the mean of E over the bins that have a say; `None` if none has.
+    /// Returns E_log in `[0, 1]`: the mean of E over the bins that count; `None` if none does.
     #[must_use]
     pub fn mean(&self) -> Option<f64> {
         let full = self.bins.iter().filter(|bin| bin.score.pixels >= LEAST_PIXELS_IN_BIN);

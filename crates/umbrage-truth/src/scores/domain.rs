@@ -1,34 +1,36 @@
-//! Ω_f: the pixels that are scored, and the truth about them.
+//! Ω_f: the pixels that are scored, and their ground truth.
 
 use glam::DVec3;
 
 use crate::{Error, Result, TruthMask};
 
-/// Least n_g·l of a scored pixel; below it the surface is dark by its own slope.
+/// Least n_g·l of a scored pixel. Below it the surface is dark by its own slope.
 pub const LEAST_FACING: f64 = 0.02;
 
-/// Least |B*| of a view that counts: wholly lit and wholly shaded views say nothing.
+/// Least |B*| of a view that counts. Wholly lit and wholly shaded views do not tell techniques
+/// apart.
 pub const LEAST_EDGES: usize = 2000;
 
-/// Neighbours whose depths differ by this share of the nearer one lie on different surfaces.
+/// Least difference of the depths of neighbours on different surfaces, as a share of the nearer
+/// depth.
 const SAME_SURFACE: f64 = 0.05;
 
-/// The scored pixels of a frame, Ω_f, with their depths and the truth.
+/// The scored pixels of a frame, Ω_f, with their depths and their ground truth.
 #[derive(Clone, Debug)]
 pub struct Domain {
     size: [usize; 2],
     range: (f64, f64),
-    /// View depth per pixel of the image; NaN outside Ω_f.
+    /// View depth of each pixel of the image in metres; NaN outside Ω_f.
     depth: Vec<f64>,
-    /// V* per pixel of the image; false outside Ω_f.
+    /// V* of each pixel of the image; false outside Ω_f.
     lit: Vec<bool>,
     pixels: Vec<usize>,
     edges: Vec<usize>,
 }
 
 impl Domain {
-    /// Ω_f of a mask for a shadowed range `[n, f]` in metres of view depth. What a local light's
-    /// range and cone do not reach does not belong to it.
+    /// Selects Ω_f of a mask for a shadowed range `[n, f]` in metres of view depth. Points outside
+    /// a local light's range and cone do not belong to it.
     ///
     /// # Errors
     /// [`Error::InvalidSetting`] unless 0 < n < f < ∞.
@@ -59,59 +61,60 @@ impl Domain {
         Ok(domain)
     }
 
-    /// Width and height of the image.
+    /// Returns width and height of the image in pixels.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
         self.size
     }
 
-    /// The shadowed range `[n, f]` in metres of view depth.
+    /// Returns the shadowed range `[n, f]` in metres of view depth.
     #[must_use]
     pub fn range(&self) -> (f64, f64) {
         self.range
     }
 
-    /// The pixels of Ω_f as indices into the image, rising.
+    /// Returns the pixels of Ω_f as indices into the image, rising.
     #[must_use]
     pub fn pixels(&self) -> &[usize] {
         &self.pixels
     }
 
-    /// Whether a pixel of the image belongs to Ω_f.
+    /// Returns whether a pixel of the image belongs to Ω_f.
     #[must_use]
     pub fn contains(&self, pixel: usize) -> bool {
         !self.depth[pixel].is_nan()
     }
 
-    /// View depth of a pixel of Ω_f in metres; NaN outside.
+    /// Returns the view depth of a pixel of Ω_f in metres; NaN outside.
     #[must_use]
     pub fn depth(&self, pixel: usize) -> f64 {
         self.depth[pixel]
     }
 
-    /// V* of a pixel of Ω_f; false outside.
+    /// Returns V* of a pixel of Ω_f; false outside.
     #[must_use]
     pub fn lit(&self, pixel: usize) -> bool {
         self.lit[pixel]
     }
 
-    /// B*, the pixels at which the true shadow has an edge, as indices into the image, rising.
+    /// Returns B*, the pixels at which the true shadow has an edge, as indices into the image,
+    /// rising.
     #[must_use]
     pub fn edges(&self) -> &[usize] {
         &self.edges
     }
 
-    /// The view rule: whether there are edges enough for this view to say anything.
+    /// Returns whether the view counts: it has at least [`LEAST_EDGES`] edge pixels.
     #[must_use]
     pub fn counts_as_view(&self) -> bool {
         self.edges.len() >= LEAST_EDGES
     }
 
-    /// World positions and geometric normals of Ω_f, in the order of [`Domain::pixels`]: what to
-    /// ask `umbrage probe`.
+    /// Returns world positions and geometric normals of Ω_f, in the order of [`Domain::pixels`], as
+    /// inputs of `umbrage probe`.
     ///
     /// # Errors
-    /// [`Error::SizeMismatch`] if this is not the mask that the domain was made of.
+    /// [`Error::SizeMismatch`] if the domain was not made from this mask.
     pub fn points(&self, mask: &TruthMask) -> Result<Vec<(DVec3, DVec3)>> {
         check_size("the mask", mask.size(), self.size)?;
         self.pixels
@@ -133,8 +136,8 @@ impl Domain {
     }
 }
 
-/// B(V): pixels with a right or lower neighbour on the same surface, both in Ω_f, that decides
-/// otherwise.
+/// Returns B(V): pixels with a right or lower neighbour on the same surface, both in Ω_f, with
+/// another decision.
 pub(super) fn edges_of(domain: &Domain, lit: impl Fn(usize) -> bool) -> Vec<usize> {
     let [width, _] = domain.size();
     let count = domain.size()[0] * domain.size()[1];
@@ -146,13 +149,13 @@ pub(super) fn edges_of(domain: &Domain, lit: impl Fn(usize) -> bool) -> Vec<usiz
     domain.pixels().iter().copied().filter(has_edge).collect()
 }
 
-/// Whether two neighbours, the first in Ω_f, lie in Ω_f both and on one surface.
+/// Returns whether two neighbours, the first of them in Ω_f, both lie in Ω_f and on one surface.
 pub(super) fn same_surface(domain: &Domain, pixel: usize, other: usize) -> bool {
     let (z, other_z) = (domain.depth(pixel), domain.depth(other));
     domain.contains(other) && (z - other_z).abs() < SAME_SURFACE * z.min(other_z)
 }
 
-/// Whether two images have one size.
+/// Checks that two images have one size.
 pub(super) fn check_size(what: &'static str, got: [usize; 2], expected: [usize; 2]) -> Result<()> {
     if got == expected { Ok(()) } else { Err(Error::SizeMismatch { what, got, expected }) }
 }

@@ -1,28 +1,29 @@
-//! D: how far the shadows' edges lie apart.
+//! D: the distance between the edges of true and answered shadows.
 
 use super::domain::edges_of;
 use super::stats::percentile;
 use super::{Answers, Domain};
 use crate::Result;
 
-/// Pixels at which an edge that is missed altogether is counted.
+/// Distance in pixels that counts for an edge without a counterpart, and the largest one that
+/// counts.
 pub const EDGE_DISTANCE_CAP: f64 = 64.0;
 
 /// Distance between the true edges and the technique's, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct EdgeDistance {
-    /// D, the mean over both sets.
+    /// D, the mean distance over both sets of edges, in pixels.
     pub mean: f64,
-    /// 95th percentile over both sets.
+    /// 95th percentile of the edge distance over both sets, in pixels.
     pub p95: f64,
-    /// |B*|.
+    /// Number of pixels on true edges, |B*|.
     pub true_edges: usize,
-    /// |B̂|.
+    /// Number of pixels on answered edges, |B̂|.
     pub answered_edges: usize,
 }
 
-/// D of the answers; `None` if neither the truth nor the answers have an edge.
+/// Computes D of the answers; `None` if neither the truth nor the answers have an edge.
 ///
 /// # Errors
 /// As [`super::mis_shadowed`].
@@ -45,8 +46,8 @@ pub fn edge_distance(domain: &Domain, answers: &Answers) -> Result<Option<EdgeDi
     }))
 }
 
-/// Squared distance in pixels from every pixel to the nearest of `seeds`, exact; infinite without
-/// seeds.
+/// Computes the squared distance in pixels from every pixel to the nearest of `seeds`, exactly;
+/// infinite without seeds.
 ///
 /// Felzenszwalb and Huttenlocher, "Distance Transforms of Sampled Functions" (2012): the lower
 /// envelope of parabolas, first down the columns, then along the rows. (The crate `edt` is exact
@@ -72,7 +73,7 @@ pub(super) fn squared_distances(width: usize, height: usize, seeds: &[usize]) ->
 /// The lower envelope of the parabolas `(x − at)² + height`.
 #[derive(Default)]
 struct Envelope {
-    /// Each parabola's `at` and `height`, and the x from which on it is the lowest.
+    /// `at` and `height` of each parabola, and the x from which on it is the lowest.
     parabolas: Vec<(f64, f64, f64)>,
 }
 

@@ -1,4 +1,4 @@
-//! F: how many decisions flip when only the camera moves.
+//! F: the share of decisions that flip when only the camera moves.
 
 use glam::DVec3;
 use umbrage::View;
@@ -11,7 +11,7 @@ use crate::{Error, Result, Truth, TruthMask};
 /// Share of the next frame that is cut off at each border.
 pub const BORDER_CUT: f64 = 0.03;
 
-/// Flips along a camera path, summed up pair of frames by pair of frames.
+/// Flips along a camera path, summed over pairs of frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Flicker {
     rates: Vec<f64>,
@@ -19,28 +19,28 @@ pub struct Flicker {
     edges: usize,
 }
 
-/// Two neighbouring frames' answers at the same world points P_k.
+/// Answers of two neighbouring frames at the same world points P_k.
 #[derive(Clone, Copy, Debug)]
 pub struct FramePair<'a> {
-    /// Frame k.
+    /// Scored pixels of frame k.
     pub domain: &'a Domain,
-    /// V̂_k at P_k.
+    /// Answers of frame k at P_k, V̂_k.
     pub now: &'a [f32],
-    /// V̂_{k+1} at P_k.
+    /// Answers of frame k + 1 at P_k, V̂_{k+1}.
     pub next: &'a [f32],
 }
 
 /// One frame of a path.
 #[derive(Clone, Copy, Debug)]
 pub struct FlickerFrame<'a> {
-    /// The camera.
+    /// Camera of the frame.
     pub view: &'a View,
-    /// The truth of this frame.
+    /// Ground truth of the frame.
     pub mask: &'a TruthMask,
-    /// Ω_f of this frame.
+    /// Scored pixels of the frame, Ω_f.
     pub domain: &'a Domain,
-    /// The geometry of this frame, if things move: then only points whose truth is the same in both
-    /// frames are kept.
+    /// Geometry of the frame, if objects move. Only points whose truth is the same in both frames
+    /// are then kept.
     pub truth: Option<&'a Truth>,
 }
 
@@ -63,27 +63,27 @@ impl Flicker {
         Ok(())
     }
 
-    /// How many pairs of frames were counted.
+    /// Returns the number of pairs of frames counted.
     #[must_use]
     pub fn pairs(&self) -> usize {
         self.rates.len()
     }
 
-    /// F in `[0, 1]`; `None` of no pairs.
+    /// Returns F in `[0, 1]`; `None` without pairs.
     #[must_use]
     pub fn rate(&self) -> Option<f64> {
         (!self.rates.is_empty()).then(|| self.rates.iter().sum::<f64>() / self.rates.len() as f64)
     }
 
-    /// F_edge; may exceed 1. `None` if the path has no edge.
+    /// Returns F_edge, which may exceed 1; `None` if the path has no edge.
     #[must_use]
     pub fn per_edge(&self) -> Option<f64> {
         (self.edges > 0).then(|| self.rate().map(|rate| rate * self.scored as f64 / self.edges as f64))?
     }
 }
 
-/// P_k: those pixels of Ω_f of a frame whose points lie in the next frame's frustum, cut by 3 % at
-/// each border, and inside its shadowed range. Indices into the image.
+/// Returns P_k as indices into the image: the pixels of Ω_f of a frame whose points lie in the next
+/// frame's frustum, cut by 3 % at each border, and inside its shadowed range.
 #[must_use]
 pub fn shared_points(mask: &TruthMask, domain: &Domain, next: &View, next_range: (f64, f64)) -> Vec<usize> {
     let frustum = next.frustum();
@@ -105,12 +105,12 @@ pub fn shared_points(mask: &TruthMask, domain: &Domain, next: &View, next_range:
     domain.pixels().iter().copied().filter(stays).collect()
 }
 
-/// F along a whole path. `probe` is the technique: asked for frame k (counted from 0) and world
-/// points with normals, it answers V̂_k there. It is asked for the points of frame k twice, once in
-/// frame k and once in frame k + 1.
+/// Computes F along a whole path. `probe` is the technique: for frame k (counted from 0) and world
+/// points with normals, it returns V̂_k there. It is called twice for the points of frame k, once
+/// in frame k and once in frame k + 1.
 ///
 /// # Errors
-/// What `probe` fails with, or what [`Flicker::add`] and [`Truth::visibility_at`] refuse;
+/// Errors of `probe`, of [`Flicker::add`] and of [`Truth::visibility_at`];
 /// [`Error::NothingToScore`] for fewer than two frames.
 pub fn flicker_along<E: From<Error>>(
     frames: &[FlickerFrame],
@@ -141,7 +141,7 @@ pub fn flicker_along<E: From<Error>>(
 }
 
 impl FramePair<'_> {
-    /// Flips between whole images at the same pixels: what is left of [`Flicker`] for a camera that
+    /// Counts flips between whole images at the same pixels, which is [`Flicker`] for a camera that
     /// stands still.
     ///
     /// # Errors

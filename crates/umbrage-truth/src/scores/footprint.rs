@@ -1,4 +1,4 @@
-//! m: how many pixels a texel covers on the screen.
+//! m: the number of pixels that a texel covers on the screen.
 
 use glam::{DMat2, DVec2, DVec3};
 use umbrage::{Projection, View};
@@ -8,20 +8,21 @@ use super::domain::check_size;
 use super::stats::percentile;
 use crate::{Hit, Result, TruthMask};
 
-/// How a map's texel coordinates change with the world at one point: the rows of
+/// Change of a map's texel coordinates with the world position at one point: the rows of
 /// `∂(texel)/∂(world)`, in texels per metre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TexelGradient {
-    /// Gradient of the horizontal texel coordinate.
+    /// Gradient of the horizontal texel coordinate, in texels per metre.
     pub u: DVec3,
-    /// Gradient of the vertical texel coordinate.
+    /// Gradient of the vertical texel coordinate, in texels per metre.
     pub v: DVec3,
-    /// t_w, the larger edge of a texel in metres.
+    /// Larger edge of a texel in metres, t_w.
     pub width: f64,
 }
 
 impl TexelGradient {
-    /// Of an orthographic map: unit axes and metres per texel along them. The same at every point.
+    /// Gradient of an orthographic map with unit axes and metres per texel along them. It is the
+    /// same at every point.
     #[must_use]
     pub fn orthographic(u_axis: DVec3, v_axis: DVec3, texel_m: DVec2) -> Self {
         Self { u: u_axis / texel_m.x, v: v_axis / texel_m.y, width: texel_m.max_element() }
@@ -31,24 +32,24 @@ impl TexelGradient {
 /// Pixels per texel over a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footprint {
-    /// Median of m.
+    /// Median of m, in pixels per texel.
     pub median: f64,
-    /// 99th percentile of m.
+    /// 99th percentile of m, in pixels per texel.
     pub p99: f64,
-    /// Median of the perspective part m_p.
+    /// Median of the perspective part m_p, in pixels per texel.
     pub perspective_median: f64,
-    /// 99th percentile of the perspective part m_p.
+    /// 99th percentile of the perspective part m_p, in pixels per texel.
     pub perspective_p99: f64,
-    /// How many pixels of Ω_f a map serves.
+    /// Number of pixels of Ω_f that a map covers.
     pub pixels: usize,
 }
 
-/// m and m_p over those pixels of Ω_f that a map serves. `gradient` answers, for a world point and
-/// its view depth, how the map that serves it lies there, and `None` if none does. `None` comes
-/// back if no pixel is served.
+/// Computes m and m_p over the pixels of Ω_f that a map covers. `gradient` returns, for a world
+/// point and its view depth, the texel gradient of the map that covers it, or `None` if no map
+/// does. Returns `None` if no pixel is covered.
 ///
 /// # Errors
-/// [`crate::Error::SizeMismatch`] if the mask is another frame's.
+/// [`crate::Error::SizeMismatch`] if the mask belongs to another frame.
 pub fn texel_footprint(
     view: &View,
     mask: &TruthMask,
@@ -77,7 +78,7 @@ pub fn texel_footprint(
     })())
 }
 
-/// m of one pixel, whose ray met `hit` where the map lies as `map` says.
+/// Returns m of one pixel, whose ray met `hit` and whose map has the gradient `map` there.
 pub(super) fn pixels_per_texel(view: &View, size: [usize; 2], pixel: usize, hit: &Hit, map: &TexelGradient) -> f64 {
     let [dx, dy] = world_from_pixel(view, size, pixel, hit.normal, hit.depth);
     let texel_from_pixel =
@@ -85,7 +86,7 @@ pub(super) fn pixels_per_texel(view: &View, size: [usize; 2], pixel: usize, hit:
     1.0 / least_singular_value(texel_from_pixel)
 }
 
-/// `∂(world)/∂(pixel)` along x and y, through the plane of the receiver that a pixel shows.
+/// Returns `∂(world)/∂(pixel)` along x and y, on the plane of the receiver in a pixel.
 fn world_from_pixel(view: &View, size: [usize; 2], pixel: usize, normal: DVec3, depth: f64) -> [DVec3; 2] {
     let [width, height] = size.map(|n| n as f64);
     let at = ((pixel % size[0]) as f64 + 0.5, (pixel / size[0]) as f64 + 0.5);
@@ -106,8 +107,8 @@ fn world_from_pixel(view: &View, size: [usize; 2], pixel: usize, normal: DVec3, 
     })
 }
 
-/// The smaller singular value of a 2 × 2 matrix: with squared norm s and determinant d,
-/// `σ² = (s − √(s² − 4 d²)) / 2 = 2 d² / (s + √(s² − 4 d²))`.
+/// Returns the smaller singular value of a 2 × 2 matrix: with squared norm s and determinant d, `σ²
+/// = (s − √(s² − 4 d²)) / 2 = 2 d² / (s + √(s² − 4 d²))`.
 fn least_singular_value(m: DMat2) -> f64 {
     let s = m.x_axis.length_squared() + m.y_axis.length_squared();
     let d = m.determinant();

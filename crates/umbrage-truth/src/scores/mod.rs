@@ -1,7 +1,8 @@
-//! How wrong shadows are: decisions at world points, not pixels of a shaded picture.
+//! Scores of shadow techniques. They count wrong decisions at world points, not differences of
+//! shaded pixels.
 //!
-//! A [`Domain`] is the truth's side of one frame, an [`Answers`] the technique's. Everything else
-//! takes both.
+//! A [`Domain`] is the ground truth of one frame, an [`Answers`] the technique's visibilities. All
+//! scores take both.
 //!
 //! # Definitions
 //! Frame k, light direction l (towards the light), W × H pixels, one ray through each pixel centre;

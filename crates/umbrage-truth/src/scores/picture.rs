@@ -1,4 +1,4 @@
-//! Where it is wrong: signed false colours on the truth in grey.
+//! False-colour images of wrong decisions, drawn over the ground truth in grey.
 
 use image::{Rgb, RgbImage};
 
@@ -6,17 +6,17 @@ use super::domain::check_size;
 use super::{Answers, Domain};
 use crate::{Result, SoftTruth, TruthMask};
 
-/// False light: a leak.
+/// Colour of false light, a leak.
 const LEAK: [f32; 3] = [230.0, 30.0, 20.0];
-/// False shadow: acne.
+/// Colour of false shadow, acne.
 const ACNE: [f32; 3] = [20.0, 80.0, 240.0];
-/// Grey of the truth's shadow and light.
+/// Grey of true shadow and of true light.
 const GREY: (f32, f32) = (60.0, 190.0);
-/// Pixels that are not scored are dimmed to this share.
+/// Factor by which pixels that are not scored are dimmed.
 const NOT_SCORED: f32 = 0.5;
 
-/// The truth in grey (light where lit, dimmed outside Ω_f, black where nothing was hit), wrong
-/// decisions in full colour: leaks red, acne blue.
+/// Draws the truth in grey (bright where lit, dimmed outside Ω_f, black where nothing was hit) and
+/// wrong decisions in full colour: leaks red, acne blue.
 ///
 /// # Errors
 /// [`crate::Error::SizeMismatch`] unless all three have one size.
@@ -30,7 +30,7 @@ pub fn false_colour(mask: &TruthMask, domain: &Domain, answers: &Answers) -> Res
     }))
 }
 
-/// Errors of soft shadows in false colour: the colour is as strong as the difference.
+/// Draws the errors of soft shadows in false colour. The colour is as strong as the difference.
 ///
 /// # Errors
 /// As [`false_colour`].

@@ -3,33 +3,34 @@
 use super::{Answers, Domain};
 use crate::Result;
 
-/// How many decisions were made, and how many of them were wrong.
+/// Numbers of decisions and of wrong decisions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MisShadowed {
-    /// |Ω_f|.
+    /// Number of scored pixels, |Ω_f|.
     pub pixels: usize,
-    /// Lit in truth, dark in the answer: acne, shadows that are too wide.
+    /// Number of pixels that are lit in truth and dark in the answer: acne, shadows that are too
+    /// wide.
     pub false_shadow: usize,
-    /// Dark in truth, lit in the answer: leaks, detached shadows.
+    /// Number of pixels that are dark in truth and lit in the answer: leaks, detached shadows.
     pub false_light: usize,
-    /// How many of the wrong ones are wrong because there was no answer.
+    /// Number of wrong decisions for lack of an answer.
     pub missing: usize,
 }
 
 impl MisShadowed {
-    /// E in `[0, 1]`, or 0 of no pixels.
+    /// Returns E in `[0, 1]`, or 0 if Ω_f is empty.
     #[must_use]
     pub fn rate(&self) -> f64 {
         self.share(self.false_shadow + self.false_light)
     }
 
-    /// E_fs in `[0, 1]`.
+    /// Returns E_fs in `[0, 1]`.
     #[must_use]
     pub fn false_shadow_rate(&self) -> f64 {
         self.share(self.false_shadow)
     }
 
-    /// E_fl in `[0, 1]`.
+    /// Returns E_fl in `[0, 1]`.
     #[must_use]
     pub fn false_light_rate(&self) -> f64 {
         self.share(self.false_light)

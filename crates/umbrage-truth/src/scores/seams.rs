@@ -1,33 +1,33 @@
-//! The seam score: whether shadows are worse where one split meets the next.
+//! The seam score: whether shadows are worse at the border between two splits.
 
 use super::domain::same_surface;
 use super::edges::squared_distances;
 use super::{Answers, Domain, MisShadowed};
 use crate::{Error, Result};
 
-/// Pixels of the seam: no farther from a border than this.
+/// Largest distance in pixels of the seam's pixels from a border.
 pub const SEAM_PX: f64 = 2.0;
-/// Pixels beside it, on either side: between these distances.
+/// Least and largest distance in pixels of the pixels beside the seam, on either side.
 pub const BESIDE_PX: [f64; 2] = [3.0, 12.0];
-/// A seam may have this many times the error of the worse side.
+/// Largest ratio of the seam's error to that of the worse side at which no seam shows.
 pub const MOST_RATIO: f64 = 1.1;
-/// Fewer pixels of a seam say nothing.
+/// Fewest pixels of a seam that are enough to judge it.
 pub const LEAST_SEAM_PIXELS: usize = 2000;
 
 /// Decisions on and beside the borders of splits, pooled over borders and frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Seams {
-    /// Within [`SEAM_PX`] of a border.
+    /// Decisions within [`SEAM_PX`] of a border.
     pub seam: MisShadowed,
-    /// At [`BESIDE_PX`] on the near side.
+    /// Decisions at [`BESIDE_PX`] on the near side.
     pub nearer: MisShadowed,
-    /// At [`BESIDE_PX`] on the far side.
+    /// Decisions at [`BESIDE_PX`] on the far side.
     pub farther: MisShadowed,
 }
 
 impl Seams {
-    /// E of the seam over the larger E of its sides: 1 or less is no seam. Infinite where only the
-    /// seam has errors, `None` where there are none at all.
+    /// Returns E of the seam over the larger E of its sides: 1 or less is no seam. Infinite if only
+    /// the seam has errors, `None` if there are none at all.
     #[must_use]
     pub fn ratio(&self) -> Option<f64> {
         let beside = self.nearer.rate().max(self.farther.rate());
@@ -38,13 +38,14 @@ impl Seams {
         }
     }
 
-    /// Whether enough pixels were looked at.
+    /// Returns whether seam and sides have enough pixels to be judged.
     #[must_use]
     pub fn counts(&self) -> bool {
         [self.seam, self.nearer, self.farther].iter().all(|count| count.pixels >= LEAST_SEAM_PIXELS)
     }
 
-    /// Whether no seam shows: [`Seams::ratio`] is at most [`MOST_RATIO`]. `None` unless it counts.
+    /// Returns whether no seam shows: [`Seams::ratio`] is at most [`MOST_RATIO`]. `None` if there
+    /// are too few pixels.
     #[must_use]
     pub fn are_hidden(&self) -> Option<bool> {
         self.counts().then(|| self.ratio().is_none_or(|ratio| ratio <= MOST_RATIO))
@@ -59,9 +60,9 @@ impl std::ops::AddAssign for Seams {
     }
 }
 
-/// Decisions around the given borders, each a value of `measure`: of a pixel's view depth
-/// ([`Domain::depth`]), or of its distance from the eye where bands are radial. A pixel that is
-/// near two borders counts for the nearer one.
+/// Counts decisions around the given borders. Each border is a value of `measure`: of a pixel's
+/// view depth ([`Domain::depth`]), or of its distance from the eye where bands are radial. A pixel
+/// that is near two borders counts for the nearer one.
 ///
 /// # Errors
 /// As [`super::mis_shadowed`], and [`Error::InvalidSetting`] for borders that do not rise.
@@ -96,7 +97,8 @@ pub fn seams(domain: &Domain, answers: &Answers, borders: &[f64], measure: impl 
     Ok(seams)
 }
 
-/// Pixels of Ω_f with a neighbour of the same surface on the other side, both of each pair.
+/// Returns the pixels of Ω_f with a neighbour of the same surface on the other side, both of each
+/// pair.
 fn crossings(domain: &Domain, is_nearer: impl Fn(usize) -> bool) -> Vec<usize> {
     let [width, height] = domain.size();
     let mut found = Vec::new();

@@ -1,4 +1,4 @@
-//! Image metrics, printed beside and never gating.
+//! Image metrics, printed for information. No test depends on them.
 
 use image::RgbImage;
 use image_compare::Algorithm;
@@ -6,7 +6,7 @@ use image_compare::Algorithm;
 use super::domain::check_size;
 use crate::{Error, Result};
 
-/// How alike two pictures look.
+/// Similarity of two pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Similarity {
@@ -19,7 +19,7 @@ pub struct Similarity {
     pub ssim: f64,
 }
 
-/// Compares a picture with the one it should be.
+/// Compares a picture with its reference.
 ///
 /// # Errors
 /// [`Error::SizeMismatch`] if the sizes differ, [`Error::NothingToScore`] for pictures without

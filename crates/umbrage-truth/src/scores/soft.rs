@@ -1,29 +1,29 @@
-//! E_soft and E_pen: how far soft shadows are off.
+//! E_soft and E_pen: the errors of soft shadows.
 
 use super::domain::check_size;
 use super::{Answers, Domain};
 use crate::{Result, SoftTruth};
 
-/// Penumbra: more than this of the sun is hidden, and more than this of it is seen.
+/// Least share of the sun that is hidden, and least share that is visible, in a penumbra.
 const PENUMBRA: f32 = 0.02;
 
 /// Mean differences of visibility, in `[0, 1]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SoftError {
-    /// E_soft, over Ω_f.
+    /// Mean difference over Ω_f, E_soft.
     pub whole: f64,
-    /// E_pen, over the penumbra; `None` if there is none.
+    /// Mean difference over the penumbra, E_pen; `None` if there is none.
     pub penumbra: Option<f64>,
-    /// |Ω_f|.
+    /// Number of scored pixels, |Ω_f|.
     pub pixels: usize,
-    /// Pixels of Ω_f in the penumbra.
+    /// Number of scored pixels in the penumbra.
     pub penumbra_pixels: usize,
 }
 
-/// How far the answers are from V*_A. The noise floor is what this says of the truth by another set
-/// of directions: `soft_error(&domain, &soft, &Answers::from_pixels(soft.size(),
-/// other.visibility().to_vec())?)`. A pixel without an answer is off by 1.
+/// Computes the mean difference of the answers from V*_A. A pixel without an answer differs by 1.
+/// The noise floor is the score of the truth with another set of directions: `soft_error(&domain,
+/// &soft, &Answers::from_pixels(soft.size(), other.visibility().to_vec())?)`.
 ///
 /// # Errors
 /// As [`super::mis_shadowed`].

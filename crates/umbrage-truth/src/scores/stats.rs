@@ -1,6 +1,7 @@
 //! Small statistics.
 
-/// The least value that is not below a share `q` of all values (nearest rank); `None` of nothing.
+/// Returns the least value that is not below a share `q` of all values (nearest rank); `None`
+/// without values.
 pub(super) fn percentile(values: &mut [f64], q: f64) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let rank = (q * values.len() as f64).ceil() as usize;

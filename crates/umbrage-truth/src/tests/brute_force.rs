@@ -74,8 +74,8 @@ fn soup() -> impl Strategy<Value = Stage> {
     )
 }
 
-/// How a ray is chosen: from a random point in a random or axis-parallel direction, or at a corner,
-/// an edge or the middle of a random triangle.
+/// Choice of a ray: from a random point in a random or axis-parallel direction, or at a corner, an
+/// edge or the middle of a random triangle.
 fn aim() -> impl Strategy<Value = (DVec3, DVec3, usize, u8)> {
     (point(), point(), any::<prop::sample::Index>(), 0..8_u8).prop_map(|(a, b, i, kind)| (a, b, i.index(1 << 20), kind))
 }

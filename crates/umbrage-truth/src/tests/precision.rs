@@ -10,17 +10,17 @@ use crate::{SunDisc, Truth, TruthMask};
 
 const SIZE: [u32; 2] = [256, 192];
 
-/// How a scene becomes larger or smaller.
+/// Way in which a scene is scaled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ScaledBy {
-    /// Its files hold other numbers, rounded to `f32`.
+    /// The file holds other numbers, rounded to `f32`.
     Vertices,
-    /// Its nodes have a scale.
+    /// The nodes have a scale.
     Nodes,
 }
 
-/// Hills, boxes, a sphere, a fence of thin slats, leaves of two single-sided faces, a decal and a
-/// lid: what rounding can hurt.
+/// Makes hills, boxes, a sphere, a fence of thin slats, leaves of two single-sided faces, a decal
+/// and a lid: shapes that are sensitive to rounding.
 fn village(scale: f64, by: ScaledBy, moved: DVec3) -> Stage {
     let mut stage = Stage::default();
     let mut add = |mut shape: Shape, at: DAffine3, single_sided: bool| {
@@ -91,7 +91,7 @@ fn village_mask(scale: f64, by: ScaledBy, moved: DVec3) -> TruthMask {
     village(scale, by, moved).mask(&view_of_village(scale, moved), DVec3::new(1.0, -0.8, -0.45), SIZE)
 }
 
-/// How many pixels decide otherwise.
+/// Returns the number of pixels with different decisions.
 fn differences(a: &TruthMask, b: &TruthMask) -> usize {
     let decision = |hit: &Option<crate::Hit>| hit.map(|hit| hit.lit);
     a.hits().iter().zip(b.hits()).filter(|(a, b)| decision(a) != decision(b)).count()

@@ -1,4 +1,4 @@
-//! Which surfaces the eye sees and which stop light.
+//! Tests of the surfaces that the eye sees and of those that stop light.
 
 use glam::{DAffine3, DQuat, DVec3};
 use umbrage::{Frustum, View};

@@ -1,5 +1,5 @@
-//! The viewer between the session and the controls: what works beside the window on one side,
-//! panels on the other.
+//! The viewer without its window: it connects the session with the tasks beside the window and with
+//! the panels.
 
 pub mod panel;
 
@@ -20,31 +20,31 @@ use crate::studio::{Order, Studio};
 use crate::textures::Textures;
 use panel::Fields;
 
-/// Time between two frames of what moves by itself.
+/// Time between two frames of an animation.
 const FRAME: std::time::Duration = std::time::Duration::from_millis(16);
 
 /// The viewer without its window.
 pub struct App {
-    /// What it knows.
+    /// State of the viewer.
     pub session: Session,
-    /// What stands in its controls.
+    /// State of the controls.
     pub fields: Fields,
-    /// Whether the panels are hidden.
+    /// True if the panels are hidden.
     pub bare: bool,
-    /// Whether the help is shown.
+    /// True if the help is shown.
     pub help: bool,
-    /// Whether it wants a picture of itself in a file of the working folder.
+    /// True if the viewer wants a screenshot of itself in a file of the working folder.
     pub wants_screenshot: bool,
     pub(crate) textures: Textures,
     studio: Option<Studio>,
     judge: Option<Judge>,
-    /// The window's device, where it is shared.
+    /// Device of the window, where it is shared.
     gpu: Option<Gpu>,
     wake: Wake,
 }
 
 impl App {
-    /// A viewer of a session; nothing runs yet.
+    /// Makes a viewer of a session. No task runs yet.
     #[must_use]
     pub fn new(session: Session, wake: Wake) -> Self {
         Self {
@@ -61,18 +61,18 @@ impl App {
         }
     }
 
-    /// Opens a scene beside the one that is shown.
+    /// Opens a scene in the background. The current one stays until the new one is there.
     pub fn open(&mut self, request: SceneRequest) {
         self.open_with(request, None);
     }
 
-    /// Opens a scene whose file's content is there already.
+    /// Opens a scene, from the content of its file if `bytes` has it.
     fn open_with(&mut self, request: SceneRequest, bytes: Option<Arc<[u8]>>) {
         let wake = Arc::clone(&self.wake);
         self.session.open(request, bytes, move || wake());
     }
 
-    /// Draws with this device from now on, which the window draws with too.
+    /// Draws with this device from now on. The window draws with it too.
     pub fn share_device(&mut self, gpu: Gpu) {
         self.gpu = Some(gpu);
         self.session.try_again();
@@ -93,7 +93,7 @@ impl App {
         self.open(request);
     }
 
-    /// Lets time go by, hears what works beside the window and gives it what is next.
+    /// Advances time, takes the results of the tasks and gives them new orders.
     pub fn step(&mut self, seconds: f64) {
         self.session.tick(seconds);
         if let Some(studio) = &self.studio {
@@ -131,19 +131,19 @@ impl App {
         }
     }
 
-    /// Whether the controls have been given the last picture.
+    /// Returns whether the controls show the last picture.
     #[must_use]
     pub fn is_shown(&self) -> bool {
         self.session.drawn.as_ref().is_some_and(|drawn| self.textures.has(drawn))
     }
 
-    /// Share of the rays that are traced, while they are.
+    /// Returns the share of the rays that are traced, while rays are traced.
     #[must_use]
     pub fn judging(&self) -> Option<f32> {
         self.judge.as_ref().filter(|_| self.session.is_judging()).map(Judge::progress)
     }
 
-    /// All controls and the picture.
+    /// Lays out all controls and the picture.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         self.take_events(ui.ctx());
         if !self.bare {
@@ -161,7 +161,7 @@ impl App {
         }
     }
 
-    /// Dropped files, pasted text and keys that belong to no control.
+    /// Handles dropped files, pasted text and keys that belong to no control.
     fn take_events(&mut self, ctx: &egui::Context) {
         let dropped = ctx.input(|input| input.raw.dropped_files.last().map(|file| file.path().to_owned()));
         if let Some(path) = dropped {
@@ -237,7 +237,7 @@ impl App {
         }
     }
 
-    /// Takes over a config from text.
+    /// Replaces the config by one read from text.
     pub fn paste(&mut self, text: &str) {
         match share::read(text) {
             Ok(pasted) => {
@@ -254,18 +254,19 @@ impl App {
         }
     }
 
-    /// The command that shows what is shown.
+    /// Returns the command that shows the current scene, view and settings.
     #[must_use]
     pub fn command_line(&self) -> String {
         link::command_line(&self.session)
     }
 
-    /// The address that shows what is shown, where the viewer has one. It becomes the page's.
+    /// Returns the address that shows the current scene, view and settings, where the viewer has
+    /// one. It becomes the page's address.
     pub fn link(&self) -> Option<String> {
         platform::link(&link::fragment(&self.session))
     }
 
-    /// Takes in what came from outside of the window.
+    /// Handles an event from outside of the window.
     pub fn arrive(&mut self, arrival: Arrival) {
         match arrival {
             // Given to the controls: a field may be waiting for it.
@@ -287,7 +288,7 @@ impl App {
         }
     }
 
-    /// Shows what a link shows.
+    /// Shows the scene, view and settings of a link.
     fn follow(&mut self, linked: Linked) {
         linked.notes.into_iter().for_each(|note| self.session.say(false, note));
         self.session.set_config(linked.config);

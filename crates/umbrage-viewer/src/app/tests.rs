@@ -1,4 +1,5 @@
-//! The controls without a window: what they show, and what keys, pasted text and dropped files do.
+//! Tests of the controls without a window: displayed text, and the effects of keys, pasted text and
+//! dropped files.
 
 use std::path::PathBuf;
 
@@ -18,7 +19,7 @@ struct Desk {
 }
 
 impl Desk {
-    /// A viewer with the chessboard and no threads.
+    /// Makes a viewer with the chessboard and no threads.
     fn new() -> Self {
         let mut session = Session::new(ShadowConfig::default(), [640, 480]);
         let request = SceneRequest::new("chessboard", [64, 48]);
@@ -29,7 +30,7 @@ impl Desk {
         Self { ctx, app: App::new(session, Arc::new(|| ())), size: egui::vec2(1400.0, 900.0), seconds: 0.0 }
     }
 
-    /// A frame with these events; answers what is written on the screen.
+    /// Runs a frame with these events and returns the texts on the screen.
     fn frame(&mut self, events: Vec<Event>) -> Vec<String> {
         self.seconds += 0.1;
         let input = RawInput {
@@ -58,7 +59,7 @@ impl Desk {
     }
 }
 
-/// Texts that can be seen.
+/// Collects the visible texts.
 fn collect(shape: &Shape, clip: Rect, into: &mut Vec<String>) {
     match shape {
         Shape::Vec(shapes) => shapes.iter().for_each(|shape| collect(shape, clip, into)),
@@ -198,7 +199,7 @@ fn the_command_shows_the_same() {
     assert_eq!(read.config, desk.app.session.config);
 }
 
-/// A file that was dropped.
+/// A dropped file.
 #[derive(Debug)]
 struct Dropped(PathBuf);
 

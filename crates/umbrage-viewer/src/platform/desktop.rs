@@ -17,10 +17,10 @@ use winit::window::{Window, WindowAttributes};
 use super::{Arrival, Wake};
 use crate::{Error, Result};
 
-/// Whether what draws the scene uses the window's device.
+/// True if the renderer of the scene uses the window's device.
 pub(crate) const SHARES_DEVICE: bool = false;
 
-/// What may be handed to [`spawn`].
+/// Type that can be passed to [`spawn`].
 pub trait Movable: Send {}
 impl<T: Send> Movable for T {}
 
@@ -32,41 +32,41 @@ pub(crate) fn spawn<F: Future<Output = ()>>(
     std::thread::Builder::new().name(name.to_owned()).spawn(move || pollster::block_on(make())).map(drop)
 }
 
-/// Runs a future to its end, here and now.
+/// Runs a future to its end at once.
 pub(crate) fn finish(future: impl Future<Output = ()> + 'static) {
     pollster::block_on(future);
 }
 
-/// Lets others go on: threads do so by themselves.
+/// Lets other tasks run. Threads do so by themselves.
 pub(crate) async fn pause() {}
 
-/// The interface to graphics, and how the window reaches it.
+/// Opens the graphics interface for a display.
 pub(crate) async fn instance(display: OwnedDisplayHandle) -> wgpu::Instance {
     wgpu::Instance::new(wgpu::InstanceDescriptor::new_with_display_handle_from_env(Box::new(display)))
 }
 
-/// The window to open, with its title and its pixels across and down.
+/// Returns the attributes of the window: its title, and its width and height in pixels.
 pub(crate) fn attributes(title: &str, [width, height]: [u32; 2]) -> WindowAttributes {
     Window::default_attributes().with_title(title).with_inner_size(PhysicalSize::new(width, height))
 }
 
-/// That nothing draws.
+/// Makes the error of a missing graphics adapter.
 pub(crate) fn no_graphics(reason: String) -> Error {
     Error::NoAdapter(reason)
 }
 
-/// What is particular about the controls here: nothing.
+/// Adapts the controls to the platform; a desktop needs no adaptation.
 pub(crate) fn adapt(_: &egui::Context) {}
 
-/// Opens what a request names: a world or a file. There are no `bytes` here.
+/// Opens the scene of a request: a world or a file. `bytes` are never given here.
 ///
 /// # Errors
-/// [`Failure::Input`] naming the file at fault.
+/// [`Failure::Input`] with the file at fault.
 pub(crate) async fn scene(request: &SceneRequest, _bytes: Option<Arc<[u8]>>) -> Result<Scene, Failure> {
     Ok(umbrage_scene::open(&request.scene, &request.files)?)
 }
 
-/// Traces a mask, on every core.
+/// Traces a mask on every core.
 ///
 /// # Errors
 /// As [`Truth::mask_under`].
@@ -80,11 +80,10 @@ pub(crate) async fn mask(
     truth.mask_under(view, light, size, progress)
 }
 
-/// Where a file of the repository lies: below the working folder, or below a folder that the
-/// program lies in.
+/// Finds a file of the repository below the working folder, or below a folder around the program.
 ///
 /// # Errors
-/// Where it was looked for.
+/// The folders that were searched.
 pub(crate) fn shipped(file: &str) -> Result<String, String> {
     let here = std::env::current_dir().ok();
     let program = std::env::current_exe().ok();
@@ -97,11 +96,11 @@ pub(crate) fn shipped(file: &str) -> Result<String, String> {
     })
 }
 
-/// Writes a file that is not there yet into the working folder: `NAME-0001.EXTENSION` and so on.
-/// The file's name.
+/// Writes a new file into the working folder, `NAME-0001.EXTENSION` and so on, and returns its
+/// name.
 ///
 /// # Errors
-/// Why it cannot be written, for people.
+/// The reason why it cannot be written, for users.
 pub(crate) fn save(name: &str, extension: &str, bytes: &[u8]) -> Result<String, String> {
     let failed = |path: &Path, error: &std::io::Error| Failure::file("write", path, error).to_string();
     for number in 1..10_000 {
@@ -118,31 +117,31 @@ pub(crate) fn save(name: &str, extension: &str, bytes: &[u8]) -> Result<String, 
     Err(format!("{name}-0001.{extension} to {name}-9999.{extension} are there already; clear some away"))
 }
 
-/// A link that shows what is shown: a program has none.
+/// Returns `None`, because a program has no address.
 pub(crate) fn link(_fragment: &str) -> Option<String> {
     None
 }
 
-/// Takes over what is to be copied, where the controls cannot do it by themselves: they can.
+/// Does nothing, because the controls can copy by themselves.
 pub(crate) fn take_copies(_: &mut egui::PlatformOutput) {}
 
-/// Says outside of the window how far it is: nobody listens.
+/// Does nothing, because no program reads the state.
 pub(crate) fn tell(_: impl FnOnce() -> Vec<(&'static str, String)>) {}
 
-/// Why the viewer ends is what [`crate::run`] answers.
+/// Does nothing, because [`crate::run`] returns the error.
 pub(crate) fn give_up(_: &Error) {}
 
-/// What comes from outside of the window: nothing that `winit` does not tell.
+/// Events from outside of the window; `winit` reports all of them on a desktop.
 #[derive(Debug)]
 pub(crate) struct Outside;
 
 impl Outside {
-    /// Listens.
+    /// Starts listening.
     pub fn listen(_: Wake) -> Self {
         Self
     }
 
-    /// What has come.
+    /// Takes the events that have arrived.
     pub fn arrivals(&self) -> Vec<Arrival> {
         Vec::new()
     }

@@ -1,10 +1,10 @@
-//! What differs between a program on a desktop and a page in a browser: one module for each, with
-//! the same functions. All else of the viewer is written once.
+//! Differences between a program on a desktop and a page in a browser: one module for each, with
+//! the same functions. The rest of the viewer is written once.
 //!
 //! | | desktop | browser |
 //! |---|---|---|
 //! | `spawn`, `pause`, `finish` | threads, which may block | tasks of the page, which must not |
-//! | `SHARES_DEVICE` | what draws has a device of its own | one device for all: WebGL2 has no other |
+//! | `SHARES_DEVICE` | the renderer has its own device | one device for all: WebGL2 has no other |
 //! | `instance`, `attributes` | by `WGPU_BACKEND`; a window | WebGPU, else WebGL2; the page's canvas |
 //! | `mask` | on every core | a few rows at a time |
 //! | `scene`, `shipped` | files | addresses of the page's own server |
@@ -21,25 +21,25 @@ pub use browser::*;
 #[cfg(not(target_arch = "wasm32"))]
 pub use desktop::*;
 
-/// Called, from any thread, when there is something new to show.
+/// Callback, from any thread, for new results.
 pub type Wake = std::sync::Arc<dyn Fn() + Send + Sync>;
 
-/// What comes from outside of the window.
+/// Event from outside of the window.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Arrival {
-    /// Text that was pasted.
+    /// Pasted text.
     Pasted(String),
-    /// A file that was dropped.
+    /// A dropped file.
     Dropped {
-        /// Its name.
+        /// Name of the file.
         name: String,
-        /// Its content.
+        /// Content of the file.
         bytes: Vec<u8>,
     },
-    /// What stands behind the `#` of the page's address now.
+    /// New fragment of the page's address, without `#`.
     Address(String),
-    /// Something to say; `true` for errors.
+    /// A message; `true` for errors.
     Said(bool, String),
-    /// The browser took the canvas's graphics away, for good.
+    /// Loss of the canvas's graphics for good, with the browser's reason.
     Lost(String),
 }

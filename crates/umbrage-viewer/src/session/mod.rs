@@ -1,4 +1,4 @@
-//! What the viewer knows and decides, without a window: what is opened, drawn, judged and shown
+//! State and decisions of the viewer, without a window: what is opened, drawn, judged and shown
 //! next.
 
 mod orders;
@@ -23,69 +23,68 @@ use crate::studio::{Drawn, Shot};
 use crate::sun::{SkyPoint, Sun};
 pub use show::{Message, Show, Tab, Times};
 
-/// How many pictures' times are kept.
+/// Number of pictures whose times are kept.
 const HISTORY: usize = 240;
-/// Longest message list; older ones are forgotten.
+/// Largest number of messages; older ones are dropped.
 const MESSAGES: usize = 6;
-/// Pictures that take longer than this are drawn at half the size while something moves,
-/// milliseconds.
+/// Time of a picture in milliseconds above which pictures have half the size while something moves.
 const SLOW_MS: f64 = 120.0;
-/// Pictures of one and the same view after which slow ones are not drawn again for maps that go
-/// back in small steps.
+/// Number of pictures of one view after which slow ones are not drawn again while maps recover in
+/// small steps.
 const MOST_SLOW_REPEATS: u32 = 2;
-/// Seconds after which nothing moves any more.
+/// Seconds without motion after which the viewer is at rest.
 const REST_S: f64 = 0.3;
 
-/// Everything that the viewer knows.
+/// State of the viewer.
 #[derive(Debug)]
 pub struct Session {
-    /// The scene that is shown.
+    /// Scene that is shown.
     pub stage: Option<Arc<Stage>>,
-    /// The scene that is being opened.
+    /// Scene that is being opened.
     pub opening: Option<Opening>,
-    /// The eye; of no use before there is a scene.
+    /// Camera; `None` before there is a scene.
     pub camera: Option<Camera>,
-    /// Shadows.
+    /// Technique of the shadows.
     pub config: ShadowConfig,
-    /// Shadows to compare with.
+    /// Technique to compare with.
     pub other: Option<ShadowConfig>,
-    /// How the sun is chosen.
+    /// Choice of the sun.
     pub sun: Sun,
-    /// Seconds into the animations.
+    /// Time of the animations in seconds.
     pub time_s: f64,
-    /// Whether time goes on.
+    /// True if time runs.
     pub playing: bool,
-    /// What is shown.
+    /// Display options.
     pub show: Show,
-    /// The view that maps are held for.
+    /// View that maps are held for.
     pub frozen: Option<View>,
-    /// Pixels of the picture.
+    /// Size of the picture in pixels.
     pub size: [u32; 2],
-    /// The last picture.
+    /// Last picture.
     pub drawn: Option<Arc<Drawn>>,
-    /// The overlay of a picture.
+    /// Overlay of a picture.
     pub laid: Option<Laid>,
-    /// What was clicked on last.
+    /// Point that was clicked last.
     pub picked: Option<Picked>,
-    /// Lines to read, oldest first.
+    /// Messages, oldest first.
     pub messages: VecDeque<Message>,
-    /// What takes a moment.
+    /// Name of the task that takes a moment.
     pub busy: Option<&'static str>,
-    /// The adapter that draws.
+    /// Name of the adapter that draws.
     pub adapter: Option<String>,
     /// Times of the last pictures, oldest first.
     pub times: VecDeque<Times>,
-    /// Pictures so far.
+    /// Number of pictures so far.
     pub pictures: u64,
-    /// The camera path that is recorded.
+    /// Camera path that is recorded.
     pub recording: Option<Recording>,
-    /// The camera path that is followed.
+    /// Camera path that is followed.
     pub following: Option<Following>,
     last_sun: Option<DirectionalLight>,
     in_flight: bool,
     failed: Option<Shot>,
     settled: bool,
-    /// Pictures of the shot that is shown, after its first.
+    /// Number of pictures of the current shot after its first.
     repeats: u32,
     judging: Option<(Shot, Option<Overlay>)>,
     click: Option<DVec2>,
@@ -93,7 +92,7 @@ pub struct Session {
 }
 
 impl Session {
-    /// A session without a scene.
+    /// Makes a session without a scene.
     #[must_use]
     pub fn new(config: ShadowConfig, size: [u32; 2]) -> Self {
         Self {
@@ -129,7 +128,7 @@ impl Session {
         }
     }
 
-    /// Says something.
+    /// Adds a message.
     pub fn say(&mut self, is_error: bool, text: impl Into<String>) {
         let message = Message { is_error, text: text.into() };
         if self.messages.contains(&message) {
@@ -141,24 +140,24 @@ impl Session {
         }
     }
 
-    /// Opens a scene beside the one that is shown. One that is still being opened is given up.
-    /// `bytes` are the content of its file, where that is there already.
+    /// Opens a scene in the background. A scene that is still being opened is given up. `bytes` are
+    /// the content of its file, if it was read already.
     pub fn open(&mut self, request: SceneRequest, bytes: Option<Arc<[u8]>>, wake: impl Fn() + Movable + 'static) {
         self.opening = Some(Opening::start(request, bytes, wake));
     }
 
-    /// Draws again what could not be drawn: there is another device.
+    /// Draws a failed picture again, because there is another device.
     pub fn try_again(&mut self) {
         self.failed = None;
     }
 
-    /// Whether all is drawn, and nothing moves.
+    /// Returns whether all is drawn and nothing moves.
     #[must_use]
     pub fn is_settled(&self) -> bool {
         self.opening.is_none() && !self.in_flight && self.settled && !self.is_moving() && self.is_up_to_date()
     }
 
-    /// Takes over a scene that is open.
+    /// Shows a scene that was opened.
     pub fn enter(&mut self, stage: Stage) {
         let aspect = f64::from(self.size[0]) / f64::from(self.size[1].max(1));
         let mode = self.camera.as_ref().map(|camera| camera.mode);
@@ -183,14 +182,14 @@ impl Session {
         }
     }
 
-    /// What the lights of the scene are.
+    /// Returns the kinds of the scene's lights.
     #[must_use]
     pub fn light_kinds(&self) -> Vec<LightKind> {
         let of_stage = self.stage.as_ref().map(|stage| lights::kinds(&stage.lights));
         of_stage.unwrap_or_else(|| vec![LightKind::Directional])
     }
 
-    /// The sun of the scene as it was last drawn, if its first light is one.
+    /// Returns the sun of the scene as it was last drawn, if its first light is a sun.
     #[must_use]
     pub fn shown_sun(&self) -> Option<DirectionalLight> {
         let drawn = self.drawn.as_ref().filter(|drawn| self.is_of_stage(&drawn.shot));
@@ -205,7 +204,7 @@ impl Session {
         self.stage.as_ref().is_some_and(|stage| stage.id == shot.stage)
     }
 
-    /// Lets time go by: animations, paths, scenes that have been opened.
+    /// Advances time: animations, paths, scenes that have been opened.
     pub fn tick(&mut self, seconds: f64) {
         let seconds = seconds.clamp(0.0, 1.0);
         self.since_moved += seconds;
@@ -235,7 +234,7 @@ impl Session {
         }
     }
 
-    /// Whether frames follow each other by themselves.
+    /// Returns whether frames follow each other without input.
     #[must_use]
     pub fn is_moving(&self) -> bool {
         let animated = self.playing && self.stage.as_ref().is_some_and(|stage| stage.is_animated());
@@ -252,7 +251,7 @@ impl Session {
         }
     }
 
-    /// Looks from elsewhere.
+    /// Moves the camera to a view.
     pub fn jump(&mut self, view: View) {
         let aspect = f64::from(self.size[0]) / f64::from(self.size[1].max(1));
         if let Some(camera) = &mut self.camera {
@@ -262,7 +261,7 @@ impl Session {
         }
     }
 
-    /// Moves the sun by so many picture heights to the right and down.
+    /// Moves the sun by a drag of so many picture heights to the right and down.
     pub fn drag_sun(&mut self, by: DVec2) {
         let from = match self.sun {
             Sun::ByHand(point) => Some(point),
@@ -277,7 +276,7 @@ impl Session {
         }
     }
 
-    /// Makes the picture another size.
+    /// Changes the size of the picture.
     pub fn resize(&mut self, size: [u32; 2]) {
         if size == self.size || size.contains(&0) {
             return;
@@ -288,7 +287,7 @@ impl Session {
         }
     }
 
-    /// Holds the maps for the view of now, or lets go.
+    /// Holds the maps for the current view, or releases them.
     pub fn freeze(&mut self, hold: bool) {
         let reused = |config: &ShadowConfig| config.layout == Layout::Reused;
         if hold && (reused(&self.config) || self.other.as_ref().is_some_and(reused)) {
@@ -304,7 +303,7 @@ impl Session {
         }
     }
 
-    /// Another config.
+    /// Changes the config.
     pub fn set_config(&mut self, config: ShadowConfig) {
         if config.layout == Layout::Reused && self.frozen.take().is_some() {
             self.say(false, "maps are no longer held: storage reused has one map at a time");
@@ -312,20 +311,20 @@ impl Session {
         self.config = config;
     }
 
-    /// Asks what lies under a point of the picture.
+    /// Asks for the surface at a point of the picture.
     pub fn pick(&mut self, at: DVec2) {
         self.click = Some(at);
     }
 
-    /// How long the scene that is being opened has taken.
+    /// Returns the time that the scene being opened has taken so far.
     #[must_use]
     pub fn opening_for(&self) -> Option<Duration> {
         self.opening.as_ref().map(Opening::elapsed)
     }
 }
 
-/// Where a view shows a world point, in shares of the picture, and its view depth; `None` for what
-/// lies outside of it.
+/// Projects a world point to a view: its position in shares of the picture, and its view depth in
+/// metres; `None` outside of the view.
 #[must_use]
 pub fn project(view: &View, point: DVec3) -> Option<(DVec2, f64)> {
     let at = view.view_from_world_point(point);

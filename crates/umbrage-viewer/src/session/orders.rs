@@ -1,4 +1,4 @@
-//! What the studio is asked to draw and the judge to trace, and what becomes of their answers.
+//! Orders to the studio, questions to the judge, and the handling of their answers.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::judge::{Finding, Laid, Overlay, Question};
 use crate::studio::{Drawn, News, Order, Shot, Wants};
 
 impl Session {
-    /// What is to be drawn now.
+    /// Returns the shot that is to be drawn now.
     #[must_use]
     pub fn shot(&self) -> Option<Shot> {
         let (stage, camera) = (self.stage.as_ref()?, self.camera.as_ref()?);
@@ -29,7 +29,7 @@ impl Session {
         })
     }
 
-    /// What is wanted beside the picture.
+    /// Returns the outputs that are wanted beside the picture.
     fn wants(&self, shot: &Shot) -> Wants {
         let probe = self.picked.as_ref().filter(|picked| picked.drawn.shot == *shot).and_then(|picked| {
             let surface = picked.surface.as_ref()?;
@@ -40,7 +40,7 @@ impl Session {
         Wants { maps: self.show.tab == Some(Tab::Maps), mask, edges, probe }
     }
 
-    /// The next picture to ask for: none while one is on its way, or nothing has changed.
+    /// Returns the next picture to order: none while one is being drawn, or if nothing has changed.
     pub fn next_order(&mut self) -> Option<Order> {
         // At night the last sun stays.
         if let Ok(sun) = self.sun.light() {
@@ -64,13 +64,13 @@ impl Session {
         Some(Order { stage, shot, wants, gpu: None })
     }
 
-    /// The order could not be given: the studio is gone.
+    /// Handles an order that could not be given because the studio has ended.
     pub fn order_lost(&mut self, why: &str) {
         self.in_flight = false;
         self.say(true, why);
     }
 
-    /// Takes in what the studio says.
+    /// Handles news from the studio.
     pub fn hear(&mut self, news: News) {
         match news {
             News::Adapter(adapter) => self.adapter = Some(adapter),
@@ -115,7 +115,7 @@ impl Session {
         self.drawn = Some(Arc::new(drawn));
     }
 
-    /// Whether the picture is the one that is wanted, with all that was asked for.
+    /// Returns whether the picture is current, with all outputs that were asked for.
     #[must_use]
     pub fn is_up_to_date(&self) -> bool {
         let Some((shot, drawn)) = self.shot().zip(self.drawn.as_ref()) else { return false };
@@ -126,14 +126,14 @@ impl Session {
             && self.click.is_none()
     }
 
-    /// The overlay of the picture that is shown.
+    /// Returns the overlay of the picture that is shown.
     #[must_use]
     pub fn fitting_overlay(&self) -> Option<&Laid> {
         let drawn = self.drawn.as_ref()?;
         self.laid.as_ref().filter(|laid| laid.shot == drawn.shot && Some(laid.overlay) == self.show.overlay)
     }
 
-    /// The next question to the judge: about the picture that is shown, once nothing moves.
+    /// Returns the next question to the judge: about the picture that is shown, once nothing moves.
     pub fn next_question(&mut self) -> Option<Question> {
         if self.judging.is_some() {
             return None;
@@ -167,13 +167,13 @@ impl Session {
         Some(Question::Overlay(Arc::clone(drawn), overlay))
     }
 
-    /// Whether rays are being traced.
+    /// Returns whether rays are being traced.
     #[must_use]
     pub fn is_judging(&self) -> bool {
         self.judging.is_some()
     }
 
-    /// Takes in what the judge says.
+    /// Handles a finding of the judge.
     pub fn found(&mut self, finding: Finding) {
         let asked = self.judging.take();
         match finding {
@@ -195,7 +195,7 @@ impl Session {
         }
     }
 
-    /// The question could not be asked: the judge is gone.
+    /// Handles a question that could not be asked because the judge has ended.
     pub fn question_lost(&mut self, why: &str) {
         self.judging = None;
         self.show.overlay = None;

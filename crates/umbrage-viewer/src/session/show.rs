@@ -1,45 +1,45 @@
-//! What is shown beside the picture and over it, and lines to read.
+//! Display options, times of pictures, and messages.
 
 use crate::judge::Overlay;
 
-/// A drawn picture's times, milliseconds.
+/// Times of a drawn picture in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Times {
-    /// Planning, on the CPU.
+    /// Time of planning, on the CPU.
     pub plan: f64,
-    /// The maps.
+    /// Time of drawing the maps.
     pub maps: f64,
-    /// The view.
+    /// Time of drawing the view.
     pub view: f64,
-    /// From the order to the picture, with everything that was wanted beside it.
+    /// Time from the order to the picture, with all outputs that were wanted beside it.
     pub wall: f64,
 }
 
-/// A line for whoever looks.
+/// A message for the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Message {
-    /// Whether something failed; else it is a note.
+    /// True for an error, false for a note.
     pub is_error: bool,
-    /// What to read.
+    /// Text of the message.
     pub text: String,
 }
 
-/// What is shown beside the picture, and over it.
+/// Display options of the picture and its surroundings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Show {
-    /// Splits in colours.
+    /// True if splits are coloured.
     pub tint: bool,
-    /// Frusta of splits and of their maps as lines.
+    /// True if frusta of splits and volumes of maps are drawn as lines.
     pub frusta: bool,
-    /// Shadows at all.
+    /// True if there are shadows.
     pub shadows: bool,
-    /// What is laid over the picture.
+    /// Overlay over the picture.
     pub overlay: Option<Overlay>,
-    /// The tab below the picture.
+    /// Tab below the picture.
     pub tab: Option<Tab>,
-    /// Where the first of two compared pictures ends, as a share of the width.
+    /// Position of the line between two compared pictures, as a share of the width.
     pub wipe: f32,
-    /// A caster whose box is drawn: an index into the pose's objects.
+    /// Caster whose box is drawn: an index into the pose's objects.
     pub outlined: Option<usize>,
 }
 
@@ -49,10 +49,10 @@ impl Default for Show {
     }
 }
 
-/// What stands below the picture.
+/// Tab below the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tab {
-    /// The maps as pictures.
+    /// Maps as pictures.
     Maps,
     /// Planes and predicted aliasing.
     Planes,
@@ -63,7 +63,7 @@ pub enum Tab {
 }
 
 impl Tab {
-    /// All of them, with their names.
+    /// All tabs, with their names.
     pub const ALL: [(Self, &'static str); 4] =
         [(Self::Maps, "Maps"), (Self::Planes, "Planes"), (Self::Times, "Times"), (Self::Casters, "Casters")];
 }

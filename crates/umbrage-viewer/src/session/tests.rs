@@ -1,4 +1,4 @@
-//! The state machine without a window, a device or a thread.
+//! Tests of the state machine without a window, a device or a thread.
 
 use umbrage::Frustum;
 use umbrage::config::Preset;
@@ -19,7 +19,7 @@ fn session() -> Session {
     session
 }
 
-/// What the studio would say of an order, without its pictures.
+/// Makes the studio's answer to an order, without its pictures.
 fn drawn(order: &Order) -> News {
     News::Drawn(Box::new(Drawn {
         stage: Arc::clone(&order.stage),
@@ -32,7 +32,7 @@ fn drawn(order: &Order) -> News {
     }))
 }
 
-/// Draws until nothing is left to draw, and says how many pictures that took.
+/// Draws until nothing is left to draw, and returns the number of pictures.
 fn settle(session: &mut Session) -> usize {
     for count in 0..20 {
         let Some(order) = session.next_order() else { return count };

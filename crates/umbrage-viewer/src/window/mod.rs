@@ -1,4 +1,4 @@
-//! The window: events in, controls out, and what happens when a surface or a device is lost.
+//! The window: event handling, and the recovery from a lost surface or device.
 
 mod shown;
 
@@ -23,19 +23,19 @@ use crate::platform::{self, Arrival, Outside, Wake};
 use crate::session::Session;
 use crate::{Error, Options, Result};
 
-/// How often a device is opened again, at most, before the viewer ends.
+/// Number of times that a device is opened again before the viewer ends.
 const MOST_DEVICES: u32 = 5;
-/// How long a screenshot may take to be complete, at most.
+/// Longest time until a screenshot is complete.
 const PATIENCE: Duration = Duration::from_secs(600);
-/// Metres, as a share of the distance to what is looked at, from held maps to the eye that looks at
-/// them.
+/// Distance from held maps' eye to the eye that looks at them, as a share of the distance to the
+/// pivot.
 const STEP_BACK: f64 = 0.9;
 
-/// Something beside the window is new.
+/// Event that a task sends when it has news.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct News;
 
-/// Opens the window and shows the scene until it is closed, or until the screenshot is written. In
+/// Opens the window and shows the scene until the window is closed or the screenshot is written. In
 /// a browser it returns at once, and the viewer goes on.
 ///
 /// # Errors
@@ -47,16 +47,16 @@ pub fn run(options: Options) -> Result<()> {
     viewer.and_then(|viewer| viewer.failure).map_or(Ok(()), Err)
 }
 
-/// What is done with a picture of the window.
+/// Use of a screenshot.
 #[derive(Clone)]
 enum Purpose {
-    /// It is kept, and the viewer goes on.
+    /// Saves it; the viewer goes on.
     Keep,
-    /// It is written here, and the viewer ends.
+    /// Writes it to this path; the viewer ends.
     End(PathBuf),
 }
 
-/// What was begun and is there some time: in a browser not at once.
+/// Operations that were begun and will be ready some time, in a browser not at once.
 #[derive(Default)]
 struct Pending {
     opened: Option<Result<Shown>>,
@@ -69,7 +69,7 @@ pub(crate) struct Viewer {
     app: App,
     ctx: egui::Context,
     shown: Option<Shown>,
-    /// The window while its device is being opened.
+    /// Window while its device is being opened.
     opening: Option<Arc<Window>>,
     pending: Rc<RefCell<Pending>>,
     outside: Outside,
@@ -77,15 +77,15 @@ pub(crate) struct Viewer {
     devices: u32,
     begun: Instant,
     last: Instant,
-    /// Whether the controls were laid out, so that the picture has its size.
+    /// True if the controls were laid out, so that the size of the picture is known.
     is_laid_out: bool,
-    /// When the controls want to be drawn again by themselves.
+    /// Time at which the controls want to be drawn again by themselves.
     due: Option<Instant>,
-    /// [`crate::stage::Stage::id`] of the scene in the window's title.
+    /// Id of the scene in the window's title: [`crate::stage::Stage::id`].
     titled: Option<u64>,
-    /// Whether the maps were held and the eye stepped back, once there was a first picture.
+    /// True once the maps were held and the eye stepped back, after the first picture.
     stepped_back: bool,
-    /// Why it ended, if it did not do what it was asked for.
+    /// Error that ended the viewer, if it did not do what it was asked for.
     pub failure: Option<Error>,
 }
 
@@ -155,7 +155,7 @@ impl Viewer {
         self.take_pending(events);
     }
 
-    /// Takes over what is there at last.
+    /// Takes over the operations that are ready.
     fn take_pending(&mut self, events: &ActiveEventLoop) {
         let Pending { opened, pictures } = std::mem::take(&mut *self.pending.borrow_mut());
         match opened {
@@ -179,7 +179,7 @@ impl Viewer {
         }
     }
 
-    /// One frame of the window.
+    /// Runs one frame of the window.
     fn frame(&mut self, events: &ActiveEventLoop) {
         let now = Instant::now();
         let seconds = now.duration_since(self.last).as_secs_f64();
@@ -231,7 +231,7 @@ impl Viewer {
         self.take_pending(events);
     }
 
-    /// Holds the maps of the first view and looks at them from behind, if that was asked for.
+    /// Holds the maps of the first view and looks at them from behind, if asked for.
     fn step_back(&mut self) {
         let session = &mut self.app.session;
         if !self.options.held || self.stepped_back || session.drawn.is_none() {
@@ -245,7 +245,7 @@ impl Viewer {
         }
     }
 
-    /// Opens the window's device again: everything else goes on.
+    /// Opens the window's device again. All else goes on.
     fn reopen(&mut self, events: &ActiveEventLoop) {
         self.devices += 1;
         let window = self.shown.take().map(|shown| shown.window);
@@ -261,7 +261,7 @@ impl Viewer {
         self.open(events, window);
     }
 
-    /// Takes a picture of the window.
+    /// Takes a screenshot of the window.
     fn snap(&mut self, purpose: Purpose, triangles: &[egui::ClippedPrimitive], scale: f32) {
         let Some(shown) = &mut self.shown else { return };
         let picture = shown.picture(triangles, scale);
@@ -273,7 +273,7 @@ impl Viewer {
         });
     }
 
-    /// Keeps a picture of the window.
+    /// Saves a screenshot of the window.
     fn keep(&mut self, picture: Result<RgbaImage, String>) {
         let kept = picture.and_then(|picture| platform::save("umbrage-view", "png", &png(&picture)?));
         match kept {
@@ -293,7 +293,7 @@ impl Viewer {
         }
     }
 
-    /// Whether all that a screenshot should show is there.
+    /// Returns whether all that a screenshot should show is there.
     fn is_complete(&self) -> bool {
         let session = &self.app.session;
         session.opening.is_none()
@@ -328,13 +328,13 @@ impl Viewer {
     }
 }
 
-/// The window's title.
+/// Returns the window's title.
 fn title(scene: &str) -> String {
     format!("umbrage: {scene}")
 }
 
-/// How far the viewer is, for programs that look at it. Where there is an address, it follows what
-/// is shown.
+/// Returns the state of the viewer, for programs that read it. Where there is an address, it is
+/// updated to the current view.
 fn told(app: &App) -> Vec<(&'static str, String)> {
     let session = &app.session;
     let errors: Vec<&str> =
@@ -354,7 +354,7 @@ fn told(app: &App) -> Vec<(&'static str, String)> {
     told
 }
 
-/// Controls that can be read beside a bright picture.
+/// Makes the context of controls that are readable beside a bright picture.
 fn context(scale: f32) -> egui::Context {
     let ctx = egui::Context::default();
     platform::adapt(&ctx);
@@ -368,7 +368,7 @@ fn context(scale: f32) -> egui::Context {
     ctx
 }
 
-/// A view of a view: from behind and above, on what it looks at.
+/// Returns a view of a view: from behind and above, towards its pivot.
 fn from_behind(view: &View, pivot: glam::DVec3) -> Option<View> {
     let distance = view.eye().distance(pivot).max(1.0);
     let axes = view.world_from_view_rotation();

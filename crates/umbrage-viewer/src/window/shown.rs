@@ -1,4 +1,4 @@
-//! The window's surface, and what draws into it.
+//! The surface of the window, and its renderer.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,9 +14,9 @@ use winit::window::Window;
 use crate::Result;
 use crate::platform::{self, Wake};
 
-/// What became of a frame.
+/// Result of painting a frame.
 pub(super) enum Painted {
-    /// It is on the screen.
+    /// The frame is on the screen.
     Shown,
     /// The window has no pixels now.
     Hidden,
@@ -24,11 +24,11 @@ pub(super) enum Painted {
     Lost,
 }
 
-/// A window with what draws into it.
+/// A window with the objects that draw into it.
 pub(super) struct Shown {
     pub window: Arc<Window>,
     pub input: egui_winit::State,
-    /// What draws the window, and in a browser the scene too.
+    /// Device that draws the window, and in a browser the scene too.
     pub gpu: Gpu,
     surface: wgpu::Surface<'static>,
     config: wgpu::SurfaceConfiguration,
@@ -150,8 +150,7 @@ impl Shown {
         self.gpu.queue.submit(before.into_iter().chain([encoder.finish()]));
     }
 
-    /// The window's content as a picture: drawn once more, where it can be read, and read some
-    /// time.
+    /// Draws the window's content once more into a readable texture, whose pixels are read later.
     pub fn picture(
         &mut self,
         triangles: &[egui::ClippedPrimitive],
@@ -181,7 +180,7 @@ impl Shown {
     }
 }
 
-/// How the surface is drawn to.
+/// Returns the configuration of the surface.
 fn configured(
     surface: &wgpu::Surface<'_>,
     adapter: &wgpu::Adapter,
@@ -200,7 +199,7 @@ fn configured(
     Ok(config)
 }
 
-/// A window's picture without what lies behind the window.
+/// Makes a window's picture opaque.
 fn opaque(mut picture: RgbaImage, swapped: bool) -> RgbaImage {
     for pixel in picture.pixels_mut() {
         let [a, g, c, _] = pixel.0;
@@ -209,7 +208,8 @@ fn opaque(mut picture: RgbaImage, swapped: bool) -> RgbaImage {
     picture
 }
 
-/// No noise against bands: a pixel of the picture is that pixel of the window.
+/// Options of the renderer of controls. No dithering: a pixel of the picture is exactly that pixel
+/// of the window.
 fn painter_options() -> egui_wgpu::RendererOptions {
     egui_wgpu::RendererOptions { dithering: false, ..Default::default() }
 }

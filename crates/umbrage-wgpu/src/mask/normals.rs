@@ -1,13 +1,13 @@
-//! Where a mask takes its normals from; an error carries it.
+//! Source of a mask's normals. An error carries it, so this file needs none.
 
-/// Where the mask's pass takes its normals from.
+/// Source of the normals that the mask's pass uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum MaskNormals {
-    /// From the depth of neighbouring pixels. Exact on planes; wrong where a surface is a pixel or
-    /// two wide, which then may shade itself or lie turned away from the light.
+    /// The depth of neighbouring pixels. Exact on planes; wrong for a surface that is a pixel or
+    /// two wide, which may then shade itself or count as turned away from the light.
     #[default]
     FromDepth,
-    /// From a texture as large as the depth, `texture_2d<f32>` with a format that has a sign: unit
-    /// vectors of the world, of the surfaces themselves and not of their shading.
+    /// A texture as large as the depth, `texture_2d<f32>` with a signed format: unit vectors in the
+    /// world, the geometric normals of surfaces and not those of shading.
     Texture,
 }

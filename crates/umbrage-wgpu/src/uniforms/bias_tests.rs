@@ -1,4 +1,4 @@
-//! The planner's bias, which serves engines with other shaders, against that of our shaders.
+//! The planner's bias, for engines with other shaders, against the bias of the WGSL.
 
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
@@ -12,12 +12,12 @@ use umbrage_shaders::twin::bias::{Receiver, SNAP_TEXELS, TEXEL_BIAS, receiver};
 use crate::maps::place::{Place, Viewport};
 use crate::maps::storage::Tile;
 
-/// A lookup: a receiver, and a tap beside it.
+/// A receiver, and a tap beside it.
 #[derive(Clone, Debug)]
 struct Lookup {
     plan: ShadowPlan,
     view: View,
-    /// Which split, and where in its slice of the view.
+    /// Index of the split, and shares of its slice of the view.
     split: usize,
     at: [f64; 3],
     normal: DVec3,
@@ -25,15 +25,15 @@ struct Lookup {
     offset: DVec2,
     /// Texels that the filter reads along u and v.
     reach: DVec2,
-    /// How far behind the least depth that does not shade the tap lies, in texels.
+    /// Distance of the tap behind the edge of shade, in texels.
     gap: f64,
 }
 
-/// What both sides say of a lookup.
+/// Both forms of the bias for a lookup.
 struct Asked {
     bias: Bias,
     receiver: Receiver,
-    /// Tangent of the angle between light and normal, as far as planes are followed.
+    /// Tangent of the angle between light and normal, at most [`STEEPEST`].
     tangent: f64,
 }
 
@@ -118,9 +118,9 @@ impl Lookup {
     }
 }
 
-/// Whether the planner's bias and the shaders' decide alike about a tap. Its depth is what it would
-/// be by the planner's rule at the edge of shade, and `gap` metres more. The shaders forgive `more`
-/// metres: what they lose by arithmetic of their own. The tap's surface faces the light.
+/// True if both forms of the bias decide alike about a tap that lies `gap` metres behind the edge
+/// of shade by the planner's rule. The WGSL's constant is larger by `more` metres. The tap's surface
+/// faces the light.
 fn agree(bias: &Bias, receiver: &Receiver, depth: f32, more: f64, offset: DVec2, gap: f64) -> bool {
     let rise = bias.depth_per_texel.dot(offset) - (bias.corner_per_texel * offset).length();
     let edge_m = rise.min(0.0) - bias.constant_m - more;
@@ -139,8 +139,8 @@ proptest! {
         let Asked { bias, receiver, tangent } = lookup.ask();
         let longer = f64::from(receiver.texel_m[0].max(receiver.texel_m[1]));
         let range = f64::from(receiver.range_m);
-        // What the shaders add to the constant: for the grid that casters are snapped to, and for
-        // rounding in f32.
+        // The WGSL adds to the constant for the grid that casters are snapped to, and for rounding
+        // in f32.
         let more = f64::from(receiver.tolerance.constant) * range - f64::from(TEXEL_BIAS) * longer;
         let own = f64::from(SNAP_TEXELS) * tangent * longer + f64::from(receiver.tolerance.rounding) * range;
         prop_assert!((more - own).abs() < 1e-3 * longer, "{more} m instead of {own} m");
@@ -154,7 +154,7 @@ proptest! {
     }
 }
 
-/// A bias that is another one by a tenth decides otherwise somewhere.
+/// A bias that differs by a tenth decides otherwise about some tap.
 #[test]
 fn another_bias_is_told_from_the_shaders() {
     let view = view();
@@ -192,7 +192,7 @@ fn another_bias_is_told_from_the_shaders() {
     }
 }
 
-/// The bias for engines with other shaders is that of ours.
+/// The planner's bias, for engines with other shaders, has the constants of the WGSL.
 #[test]
 fn the_planners_bias_has_the_shaders_constants() {
     let text = umbrage_shaders::receiver(0, umbrage_shaders::Maps::default());

@@ -345,7 +345,7 @@ pub fn plan(light: DVec3, center: DVec3, sizes: &[u32], planes: &[f64], widths: 
         splits,
         planes: planes.to_vec(),
         view_depth_plane: DVec4::new(1.0, 0.0, 0.0, 0.0),
-        radial_eye: None,
+        eye: DVec3::ZERO,
         light_direction: depth,
         light: None,
         fade_begin: planes[sizes.len()],

@@ -1,4 +1,4 @@
-//! The name of a caster in a set.
+//! Handles of casters. Errors carry them, so this file needs none.
 
 use std::fmt;
 

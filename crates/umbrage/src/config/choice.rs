@@ -1,4 +1,4 @@
-//! What a choice means: whether a config makes it, in which words, and how to take it back.
+//! Choices that exclude others: whether a config makes them, their words, and how to reset them.
 
 use super::{
     Cache, Choice, Coordinates, Crop, DepthFormat, Edges, Filter, FitTo, Generation, Layout, LightKind, Range,
@@ -7,7 +7,7 @@ use super::{
 use crate::Warp;
 
 impl Choice {
-    /// Whether a config for these lights makes this choice.
+    /// Returns whether a config for these lights makes this choice.
     #[must_use]
     pub fn holds(self, config: &ShadowConfig, lights: &[LightKind]) -> bool {
         match self {
@@ -44,7 +44,7 @@ impl Choice {
         }
     }
 
-    /// The settings that make this choice, the most telling one first.
+    /// Settings that make this choice, the most characteristic one first.
     #[must_use]
     pub const fn keys(self) -> &'static [&'static str] {
         match self {
@@ -91,13 +91,14 @@ impl Choice {
         }
     }
 
-    /// Whether each light's plan makes the choice by itself, and not all maps together.
+    /// Returns whether the choice is made by each light's plan by itself, and not by all maps
+    /// together.
     #[must_use]
     pub const fn is_per_light(self) -> bool {
         matches!(self, Self::Warp | Self::MapSelection | Self::DistanceMetric | Self::OptimalScheme)
     }
 
-    /// Takes the choice back to what excludes nothing. False where there is no such choice.
+    /// Resets the choice to a value that excludes nothing. Returns false if there is no such value.
     pub fn relax(self, config: &mut ShadowConfig) -> bool {
         match self {
             Self::Warp => config.stability = Stability::tight(),

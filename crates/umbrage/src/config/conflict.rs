@@ -1,4 +1,4 @@
-//! Choices that exclude each other, as plain data: an error carries them.
+//! Types of choices that exclude each other. Errors carry them, so this file needs none.
 
 use std::fmt;
 
@@ -47,11 +47,11 @@ pub enum Choice {
     NotStill,
     /// Maps of another format than 32-bit depth.
     OtherDepth,
-    /// What static casters draw is kept.
+    /// Maps keep the depth drawn by static casters.
     KeptMaps,
-    /// Pixels make the coordinates of maps from the picture's depth.
+    /// Pixels compute the coordinates of maps from the image's depth.
     DeferredCoordinates,
-    /// Vertices make the coordinates of maps.
+    /// Vertex shaders compute the coordinates of maps.
     VertexCoordinates,
     /// More splits than vertex shaders pass coordinates for.
     MoreThanFourSplits,
@@ -110,9 +110,9 @@ pub struct Rule {
     pub first: Choice,
     /// The other choice.
     pub second: Choice,
-    /// Why they exclude each other.
+    /// Reason why they exclude each other.
     pub reason: &'static str,
-    /// What to do.
+    /// Remedy.
     pub remedy: &'static str,
 }
 

@@ -1,9 +1,9 @@
-//! What decides where a shadow ends.
+//! Choices of the method that decides where a shadow's edge lies.
 
 use super::names::named;
 
 named! {
-    /// What decides where a shadow ends.
+    /// Method that decides where a shadow's edge lies.
     pub enum Edges as "way to decide edges" {
         /// The filter: an edge is known to the texel
         #[default]

@@ -1,4 +1,4 @@
-//! The page of results: what it has to hold, and when it is refused.
+//! Tests of the page of results: its required content, and the cases in which it is refused.
 
 use std::fs;
 
@@ -10,7 +10,7 @@ use crate::{
     run::root,
 };
 
-/// What stands in place of the page until the jobs have run.
+/// Text in place of the page until the jobs have run.
 const UNMEASURED: &str = "\
 # Results
 
@@ -19,7 +19,7 @@ cores and Mesa's software driver, and writes this page. Figures of earlier build
 decisions that rest on them: [notes](notes/README.md).
 ";
 
-/// Kept figures of tiny runs.
+/// Writes kept results of tiny runs.
 fn example() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     for job in &JOBS {
@@ -70,7 +70,7 @@ fn a_page_without_a_figure_is_refused() {
     page(folder.path(), Scale::Tiny).expect("whole again");
 }
 
-/// Paths of all keys, of the first item of each array.
+/// Returns the paths of all keys, of the first item of each array.
 fn keys(value: &Value) -> Vec<Vec<String>> {
     let below = |step: String, value: &Value| {
         keys(value).into_iter().map(move |path| [vec![step.clone()], path].concat()).collect::<Vec<_>>()

@@ -1,5 +1,5 @@
-//! Culling on the GPU at one number of objects: the plan is made from the ground's tiles, the
-//! instances never pass through a list.
+//! Culling on the GPU at one number of objects. The plan is made from the ground's tiles; no list
+//! of casters holds the instances.
 
 use std::time::Instant;
 
@@ -18,10 +18,10 @@ use crate::{
     scene_setup::SceneSetup,
 };
 
-/// Edge of the tiles that the planner knows of, metres.
+/// Edge in metres of the tiles that are given to the planner.
 const TILE_M: f64 = 250.0;
 
-/// Culls the objects of a setup for its first view, as often as rounds are measured.
+/// Culls the objects of a setup for its first view, once per measured round.
 pub fn measure(gpu: &Gpu, setup: &SceneSetup, job: &ScaleJob) -> Result<Option<GpuReport>> {
     let mut config = job.technique.shadows.for_lights(&setup.lights)?.config;
     config.cache = Cache::Off;
@@ -78,12 +78,12 @@ pub fn measure(gpu: &Gpu, setup: &SceneSetup, job: &ScaleJob) -> Result<Option<G
     }))
 }
 
-/// The view, so many steps of a walk further on.
+/// Moves a view on by some steps of a walk.
 fn step(view: &View, steps: f64) -> View {
     ahead(view, STEP_M * steps)
 }
 
-/// The objects' boxes relative to an origin.
+/// Returns the objects' boxes relative to an origin.
 fn boxes(pose: &Pose, origin: DVec3) -> Vec<CullBox> {
     let own = |object: &umbrage_scene::Object| CullBox {
         center: (object.bounds.center() - origin).as_vec3().to_array(),
@@ -94,7 +94,7 @@ fn boxes(pose: &Pose, origin: DVec3) -> Vec<CullBox> {
     pose.objects.iter().map(own).collect()
 }
 
-/// Each mesh with as many places as objects show it.
+/// Returns each mesh with the number of objects that show it.
 fn meshes(scene: &Scene, pose: &Pose) -> Vec<CullMesh> {
     let mesh = |mesh: &umbrage_scene::Mesh| CullMesh { indices: 0..3 * mesh.triangles() as u32, ..CullMesh::default() };
     let mut meshes: Vec<CullMesh> = scene.meshes.iter().map(mesh).collect();
@@ -102,8 +102,8 @@ fn meshes(scene: &Scene, pose: &Pose) -> Vec<CullMesh> {
     meshes
 }
 
-/// Boxes around what stands in each square of the ground: what an application knows of a level that
-/// it streams.
+/// Returns boxes around the objects in each square of the ground, as an application knows them of a
+/// level that it streams.
 fn tiles(pose: &Pose) -> Vec<Aabb> {
     let mut tiles = std::collections::BTreeMap::new();
     for bounds in pose.objects.iter().map(|object| object.bounds) {
@@ -114,12 +114,12 @@ fn tiles(pose: &Pose) -> Vec<Aabb> {
     tiles.into_values().collect()
 }
 
-/// Waits for everything that was submitted.
+/// Waits for all submitted commands.
 fn wait(gpu: &Gpu) -> Result<()> {
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).map(|_| ()).map_err(|error| Failure::other(error.to_string()))
 }
 
-/// The arguments of all draws, read back.
+/// Reads back the arguments of all draws.
 fn arguments(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<CullDraw>> {
     let back = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("bench: arguments"),

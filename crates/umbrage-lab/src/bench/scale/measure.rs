@@ -19,13 +19,13 @@ use crate::{
     scene_setup::SceneSetup,
 };
 
-/// One object in so many moves.
+/// Number of objects of which one moves.
 const MOVES: usize = 100;
 
-/// The camera.
+/// Name of the camera.
 const CAMERA: &str = "middle";
 
-/// Measures all cases in a forest of that many trees.
+/// Measures all cases in a forest of `trees` trees.
 pub fn measure(gpu: &Gpu, job: &ScaleJob, trees: u32, bar: &ProgressBar) -> Result<SizeReport> {
     let begun = Instant::now();
     let world = WorldOptions { trees: Some(trees), ..WorldOptions::default() };
@@ -96,7 +96,7 @@ fn frames(
     })
 }
 
-/// Objects that move, with where they stand.
+/// Objects that move, with their positions at rest.
 #[derive(Default)]
 struct Movers {
     objects: Vec<u32>,
@@ -104,7 +104,7 @@ struct Movers {
 }
 
 impl Movers {
-    /// One instance in [`MOVES`], spread over the pose.
+    /// Chooses one instance in [`MOVES`], spread over the pose.
     fn of(pose: &Pose) -> Self {
         let instances = pose.objects.iter().enumerate().filter(|(_, object)| object.instance.is_some());
         let chosen = instances
@@ -114,7 +114,7 @@ impl Movers {
         Self { objects, stand }
     }
 
-    /// Moves them to where they are in a frame.
+    /// Moves the objects to their positions in a frame.
     fn step(&self, pose: &mut Pose, frame: u32) {
         let by = DVec3::X * (0.5 * (0.1 * f64::from(frame)).sin());
         self.put(pose, by);

@@ -1,4 +1,4 @@
-//! What shadows cost as worlds grow: a forest of ever more trees, with and without kept maps.
+//! Costs of shadows in growing worlds: a forest of ever more trees, with and without kept maps.
 
 mod gpu;
 mod job;
@@ -21,10 +21,10 @@ use crate::{
     report::to_json,
 };
 
-/// Measures every case at every number of objects, and writes what was asked for.
+/// Measures every case at every number of objects, and writes the outputs.
 ///
 /// # Errors
-/// [`Failure`] naming what cannot be drawn, or the file that cannot be written.
+/// [`Failure`] with the scene that cannot be drawn, or the file that cannot be written.
 pub fn run(job: &ScaleJob) -> Result<()> {
     let files: Vec<&Path> = [&job.json, &job.html].into_iter().flatten().map(AsRef::as_ref).collect();
     if files.is_empty() {

@@ -1,4 +1,4 @@
-//! The page: a table and plots over the number of objects.
+//! The page of a benchmark over the number of objects: a table and plots.
 
 use super::job::Case;
 use super::report::{CaseReport, ScaleReport};
@@ -9,7 +9,7 @@ use crate::{
     page::plot::{Axis, Chart, Series, Style},
 };
 
-/// The whole page.
+/// Makes the whole page.
 pub fn page(report: &ScaleReport) -> Result<String> {
     let [width, height] = report.size;
     let page = Page {
@@ -33,7 +33,7 @@ fn median(summary: Option<Summary>) -> f64 {
     summary.map_or(f64::NAN, |summary| summary.median)
 }
 
-/// Milliseconds that shadows take of a frame.
+/// Returns the milliseconds of a frame that shadows take.
 fn cost(case: &CaseReport) -> f64 {
     median(case.frame_ms) - median(case.frame_without_ms)
 }
@@ -67,7 +67,7 @@ fn plots(report: &ScaleReport) -> Result<Section> {
     ]))
 }
 
-/// Culling on the GPU, number after number.
+/// Makes the section on culling on the GPU, number after number.
 fn by_gpu(report: &ScaleReport) -> Section {
     let columns = vec![
         Column::number("objects"),

@@ -1,73 +1,73 @@
-//! The figures over the number of objects, as they go into JSON.
+//! Results over the number of objects, as they are written to JSON.
 
 use serde::Serialize;
 
 use super::job::Case;
 use crate::bench::summary::Summary;
 
-/// Everything that was measured.
+/// All results.
 #[derive(Debug, Serialize)]
 pub struct ScaleReport {
-    /// The device.
+    /// Name of the device.
     pub adapter: String,
-    /// Pixels.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Frames that count, of each case.
+    /// Number of measured frames of each case.
     pub rounds: u32,
-    /// How shadows were made.
+    /// Technique of the shadows.
     pub technique: String,
-    /// One per number of objects.
+    /// Results of each number of objects.
     pub sizes: Vec<SizeReport>,
 }
 
-/// A number of objects.
+/// Results of one number of objects.
 #[derive(Debug, Serialize)]
 pub struct SizeReport {
-    /// Trees that were asked for.
+    /// Number of trees that were asked for.
     pub trees: u32,
-    /// All objects, with the ground's.
+    /// Number of all objects, with those of the ground.
     pub objects: usize,
-    /// From the name of the world to its pose, milliseconds.
+    /// Milliseconds from the name of the world to its pose.
     pub open_ms: f64,
-    /// One per case.
+    /// Results of each case.
     pub cases: Vec<CaseReport>,
-    /// What culling them on the GPU takes, for a camera that walks; none without compute shaders.
+    /// Results of culling on the GPU, for a camera that walks; `None` without compute shaders.
     pub by_gpu: Option<GpuReport>,
 }
 
-/// Culling on the GPU at a number of objects.
+/// Results of culling on the GPU at one number of objects.
 #[derive(Clone, Debug, Serialize)]
 pub struct GpuReport {
-    /// The planner, which knows of the ground's tiles, and the tests' upload, microseconds on the
-    /// CPU.
+    /// Time in microseconds on the CPU of the planner, which is given the ground's tiles, and of
+    /// the upload of the tests.
     pub plan_us: Option<Summary>,
-    /// The compute pass, from its submission until the device is idle, milliseconds.
+    /// Milliseconds of the compute pass, from its submission until the device is idle.
     pub cull_ms: Option<Summary>,
-    /// Pairs of instances and splits that passed.
+    /// Number of pairs of instances and splits that passed.
     pub pairs: u64,
-    /// Triangles of the draws.
+    /// Number of triangles of the draws.
     pub triangles: u64,
     /// Bytes of boxes, lists and arguments.
     pub bytes: u64,
 }
 
-/// A case at a number of objects.
+/// Results of one case at one number of objects.
 #[derive(Clone, Debug, Serialize)]
 pub struct CaseReport {
-    /// What happens from frame to frame.
+    /// Case that was measured.
     pub case: Case,
-    /// The planner and the books of kept maps, microseconds on the CPU.
+    /// Time in microseconds on the CPU of the planner and of the bookkeeping of kept maps.
     pub plan_us: Option<Summary>,
-    /// Pairs of casters and splits in the plan's lists.
+    /// Number of pairs of casters and splits in the plan's lists.
     pub pairs: Option<Summary>,
-    /// Triangles drawn into maps and what is kept of them.
+    /// Number of triangles drawn into maps, and into their kept parts.
     pub triangles: Option<Summary>,
-    /// Triangles of the first frame, in which all maps are drawn.
+    /// Number of triangles of the first frame, in which all maps are drawn.
     pub first_triangles: u64,
-    /// All maps, GPU timestamps.
+    /// Time of all maps in milliseconds, by GPU timestamps.
     pub shadow_ms: Option<Summary>,
-    /// The whole frame, GPU timestamps.
+    /// Time of the whole frame in milliseconds, by GPU timestamps.
     pub frame_ms: Option<Summary>,
-    /// The frame by shaders without shadows, GPU timestamps.
+    /// Time in milliseconds of the frame by shaders without shadows, by GPU timestamps.
     pub frame_without_ms: Option<Summary>,
 }

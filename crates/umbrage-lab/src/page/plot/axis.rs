@@ -1,56 +1,56 @@
-//! Axes, and numbers as readers like them.
+//! Axes, and readable numbers.
 
 use super::{Error, Result};
 
-/// How values become lengths.
+/// Mapping of values to lengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// Equal differences are equal lengths.
+    /// Linear: equal differences are equal lengths.
     Linear,
-    /// Equal ratios are equal lengths; positive values only.
+    /// Logarithmic: equal ratios are equal lengths. Values must be positive.
     Log,
 }
 
 /// An axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What it shows, with its unit.
+    /// Name of the quantity, with its unit.
     pub label: String,
-    /// How values become lengths.
+    /// Mapping of values to lengths.
     pub scale: Scale,
-    /// Its ends; `None` fits it to the data.
+    /// Ends of the axis; `None` fits them to the data.
     pub range: Option<(f64, f64)>,
-    /// Whether a fitted linear axis reaches down (or up) to zero.
+    /// True if a fitted linear axis reaches down (or up) to zero.
     pub from_zero: bool,
 }
 
 impl Axis {
-    /// A linear axis fitted to the data.
+    /// Makes a linear axis fitted to the data.
     #[must_use]
     pub fn linear(label: impl Into<String>) -> Self {
         Self { label: label.into(), scale: Scale::Linear, range: None, from_zero: false }
     }
 
-    /// A logarithmic axis fitted to the data.
+    /// Makes a logarithmic axis fitted to the data.
     #[must_use]
     pub fn log(label: impl Into<String>) -> Self {
         Self { scale: Scale::Log, ..Self::linear(label) }
     }
 
-    /// Sets the ends. What lies outside is cut off.
+    /// Sets the ends. Data beyond them are cut off.
     #[must_use]
     pub fn range(self, lo: f64, hi: f64) -> Self {
         Self { range: Some((lo, hi)), ..self }
     }
 
-    /// Puts zero on the axis.
+    /// Extends the axis to zero.
     #[must_use]
     pub fn from_zero(self) -> Self {
         Self { from_zero: true, ..self }
     }
 
-    /// Refuses values that the axis cannot show; NaN among them does not count. Answers whether
-    /// there is a value at all.
+    /// Refuses values that the axis cannot show; NaN is ignored. Returns whether there is any
+    /// value.
     pub(super) fn check(&self, title: &str, values: impl Iterator<Item = f64>) -> Result<bool> {
         let refuse = |value, remedy| Error::Value { title: title.into(), axis: self.label.clone(), value, remedy };
         let mut any = false;
@@ -77,14 +77,14 @@ impl Axis {
     }
 }
 
-/// 1, 2 or 5 times a power of ten, not less than `step`.
+/// Returns 1, 2 or 5 times a power of ten, not less than `step`.
 pub(super) fn nice_step(step: f64) -> f64 {
     let decade = 10f64.powf(step.log10().floor());
     [1.0, 2.0, 5.0].into_iter().map(|m| m * decade).find(|&nice| nice >= step * (1.0 - 1e-9)).unwrap_or(10.0 * decade)
 }
 
-/// A value as a reader likes it: up to four figures, thousands apart, powers of ten where it is
-/// very large or small.
+/// Formats a value readably: up to four figures, thousands apart, powers of ten where it is very
+/// large or small.
 #[must_use]
 pub fn number(value: f64) -> String {
     if value == 0.0 {

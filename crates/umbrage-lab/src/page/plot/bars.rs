@@ -1,4 +1,4 @@
-//! Bars, lying, so that long names can stand beside them.
+//! Horizontal bars, so that there is room for long names beside them.
 
 use kuva::{
     plot::{
@@ -18,29 +18,29 @@ use super::{
     svg::{MARK_DASHES, element, layout, mark_entry, render, with_legend, with_plot_height, with_x},
 };
 
-/// Pixels across one bar.
+/// Width of one bar in pixels.
 const BAR: f64 = 15.0;
 /// Share of a category that its bars take.
 const SHARE: f64 = 0.8;
-/// Pixels of the numbers behind the bars.
+/// Size in pixels of the numbers behind the bars.
 const FIGURES: u32 = 12;
 
-/// One bar per category.
+/// A series with one bar per category.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BarSeries {
-    /// In the legend.
+    /// Name in the legend.
     pub name: String,
-    /// One value per category; NaN where there is none.
+    /// Value of each category; NaN where there is none.
     pub values: Vec<f64>,
-    /// How far the values scatter on both sides (a standard deviation, say), one per category;
-    /// empty if that is not shown.
+    /// Spread of each category's values on both sides, such as a standard deviation; empty to show
+    /// none.
     pub spread: Vec<f64>,
-    /// `None`: the palette's next.
+    /// Colour; `None` is the palette's next.
     pub colour: Option<Colour>,
 }
 
 impl BarSeries {
-    /// A series in the palette's next colour.
+    /// Makes a series in the palette's next colour.
     #[must_use]
     pub fn new(name: impl Into<String>, values: Vec<f64>) -> Self {
         Self { name: name.into(), values, spread: Vec::new(), colour: None }
@@ -62,23 +62,23 @@ impl BarSeries {
 /// Bars from zero, grouped by category.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BarChart {
-    /// What it shows, in a few words.
+    /// Description in a few words.
     pub title: String,
-    /// What the bars' lengths are. Linear, as the length of a bar on a logarithmic axis says
-    /// nothing.
+    /// Axis of the bars' lengths. It is linear, because the length of a bar on a logarithmic axis
+    /// has no meaning.
     pub value: Axis,
-    /// Names, top to bottom.
+    /// Names of the categories, top to bottom.
     pub categories: Vec<String>,
-    /// One bar each in every category, top to bottom.
+    /// Series of bars in every category, top to bottom.
     pub series: Vec<BarSeries>,
-    /// Upright lines at values ([`Mark::X`]).
+    /// Vertical lines at values ([`Mark::X`]).
     pub marks: Vec<Mark>,
-    /// Pixels across; the height follows from the bars.
+    /// Width in pixels; the height follows from the bars.
     pub width: f64,
 }
 
 impl BarChart {
-    /// A chart without bars.
+    /// Makes a chart without bars.
     #[must_use]
     pub fn new(title: impl Into<String>, value: Axis, categories: Vec<String>) -> Self {
         Self { title: title.into(), value, categories, series: Vec::new(), marks: Vec::new(), width: 680.0 }
@@ -91,7 +91,7 @@ impl BarChart {
         self
     }
 
-    /// Adds an upright line ([`Mark::X`]).
+    /// Adds a vertical line ([`Mark::X`]).
     #[must_use]
     pub fn mark(mut self, mark: Mark) -> Self {
         self.marks.push(mark);
@@ -104,10 +104,10 @@ impl BarChart {
         Self { width, ..self }
     }
 
-    /// The chart as an `<svg>` element.
+    /// Draws the chart as an `<svg>` element.
     ///
     /// # Errors
-    /// [`Error::Empty`] without a value, [`Error::Length`] if a series has not one value per
+    /// [`Error::Empty`] without a value, [`Error::Length`] if a series does not have one value per
     /// category, [`Error::Value`] for an infinite value or a logarithmic axis.
     pub fn to_svg(&self) -> Result<String> {
         self.check()?;
@@ -178,7 +178,7 @@ impl BarChart {
         }
     }
 
-    /// All values with the ends of their whiskers.
+    /// Iterates over all values and the ends of their whiskers.
     fn values(&self) -> impl Iterator<Item = f64> {
         self.series.iter().flat_map(|series| {
             let spread = series.spread.iter().copied().map(f64::abs).chain(std::iter::repeat(0.0));
@@ -202,8 +202,8 @@ impl BarChart {
     }
 }
 
-/// Writes each bar's number behind it and its whisker. The library draws bars without numbers; they
-/// are found by where they begin.
+/// Writes each bar's number behind the bar and its whisker. The library draws bars without numbers;
+/// they are found by their beginnings.
 fn write_numbers(scene: &mut Scene, computed: &ComputedLayout, numbers: &[String], errors: Option<&Vec<f64>>) {
     let zero = computed.map_x(0.0);
     let bottom = computed.height - computed.margin_bottom;
@@ -234,7 +234,7 @@ fn write_numbers(scene: &mut Scene, computed: &ComputedLayout, numbers: &[String
     }
 }
 
-/// Three figures: all that can be told from the bar.
+/// Rounds to three figures, as many as can be read from the bar.
 fn significant(value: f64) -> f64 {
     if value == 0.0 {
         return value;

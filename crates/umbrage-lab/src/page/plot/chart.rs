@@ -15,15 +15,15 @@ use super::{
     svg::{MARK_DASHES, element, layout, mark_entry, render, with_legend, with_plot_height, with_x, with_y},
 };
 
-/// Radius of a point, pixels.
+/// Radius of a point in pixels.
 const POINT: f64 = 4.0;
-/// Signs of points; shapes differ so that colour is not all that tells series apart.
+/// Markers of points. Their shapes differ, so that series differ not by colour alone.
 const MARKERS: [MarkerShape; 4] =
     [MarkerShape::Circle, MarkerShape::Square, MarkerShape::Triangle, MarkerShape::Diamond];
 /// The pattern of dashed lines.
 const DASHES: &str = "7 4.5";
 
-/// How a series is drawn.
+/// Style of a series.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Style {
     /// A solid line.
@@ -31,7 +31,7 @@ pub enum Style {
     Line,
     /// A thin dashed line: bounds, references, predictions.
     Dashed,
-    /// Points alone.
+    /// Points without lines.
     Points,
     /// Points on a solid line.
     LineAndPoints,
@@ -58,18 +58,18 @@ impl Style {
 /// Points that belong together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// In the legend; a series without a name is not in it.
+    /// Name in the legend; a series without a name is not in it.
     pub name: String,
-    /// `(x, y)`; a NaN breaks the line.
+    /// Points `(x, y)`; a NaN breaks the line.
     pub points: Vec<(f64, f64)>,
-    /// How it is drawn.
+    /// Style of the series.
     pub style: Style,
-    /// `None`: the palette's next.
+    /// Colour; `None` is the palette's next.
     pub colour: Option<Colour>,
 }
 
 impl Series {
-    /// A series in the palette's next colour.
+    /// Makes a series in the palette's next colour.
     #[must_use]
     pub fn new(name: impl Into<String>, style: Style, points: Vec<(f64, f64)>) -> Self {
         Self { name: name.into(), points, style, colour: None }
@@ -82,36 +82,36 @@ impl Series {
     }
 }
 
-/// A thin line right across the chart, with a word to it.
+/// A thin line across the whole chart, with a label.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
-    /// Upright, at a value of x.
+    /// A vertical line at a value of x.
     X(f64, String),
-    /// Level, at a value of y.
+    /// A horizontal line at a value of y.
     Y(f64, String),
 }
 
 /// A chart of lines and points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
-    /// What it shows, in a few words.
+    /// Description in a few words.
     pub title: String,
-    /// To the right.
+    /// Axis to the right.
     pub x: Axis,
-    /// Upwards.
+    /// Axis upwards.
     pub y: Axis,
-    /// What is drawn, the last on top.
+    /// Series, the last on top.
     pub series: Vec<Series>,
-    /// Lines across.
+    /// Lines across the chart.
     pub marks: Vec<Mark>,
-    /// Pixels across.
+    /// Width in pixels.
     pub width: f64,
-    /// Pixels down that the plot itself takes; title, legend and labels come on top.
+    /// Height in pixels of the plot itself, without title, legend and labels.
     pub plot_height: f64,
 }
 
 impl Chart {
-    /// An empty chart of the usual size.
+    /// Makes an empty chart of the usual size.
     #[must_use]
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
         Self { title: title.into(), x, y, series: Vec::new(), marks: Vec::new(), width: 680.0, plot_height: 300.0 }
@@ -124,7 +124,7 @@ impl Chart {
         self
     }
 
-    /// Adds a line across.
+    /// Adds a line across the chart.
     #[must_use]
     pub fn mark(mut self, mark: Mark) -> Self {
         self.marks.push(mark);
@@ -137,7 +137,7 @@ impl Chart {
         Self { width, plot_height, ..self }
     }
 
-    /// The chart as an `<svg>` element.
+    /// Draws the chart as an `<svg>` element.
     ///
     /// # Errors
     /// [`Error::Empty`] without a finite point, [`Error::Value`] for an infinite one, or one at or
@@ -169,7 +169,7 @@ impl Chart {
         element(&self.title, render(plots, with_plot_height(layout, self.plot_height)))
     }
 
-    /// A line for each run of points without a gap, and the points themselves.
+    /// Returns a line for each run of points without a gap, and the points themselves.
     fn plots(&self, index: usize) -> Vec<Plot> {
         let series = &self.series[index];
         let (style, colour) = (series.style, self.colour(index).hex());

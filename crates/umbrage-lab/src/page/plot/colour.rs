@@ -2,24 +2,25 @@
 
 use std::fmt::Write;
 
-/// A colour by its meaning. Each has a form for light paper, which is what the SVG says, and one
-/// for dark paper.
+/// A colour by its meaning. Each has a form for light paper, which the SVG contains, and one for
+/// dark paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colour {
-    /// Text and outlines of the first rank.
+    /// Main text and outlines.
     Ink,
     /// Axis labels, captions.
     Quiet,
     /// Grid lines.
     Grid,
-    /// What is behind everything, to cut lines where they cross.
+    /// Background, to interrupt lines where they cross.
     Paper,
-    /// Things that are told apart, such as techniques. Eight, then they repeat; readable for the
-    /// colour-blind (after Okabe and Ito).
+    /// Colour of the n-th of several series, such as techniques. There are eight, then they repeat;
+    /// they are readable for the colour-blind (after Okabe and Ito).
     Series(usize),
-    /// A split, nearest first: the order of the renderer's tints (red, green, blue, yellow, …).
+    /// Colour of a split, nearest first, in the order of the renderer's tints (red, green, blue,
+    /// yellow, …).
     Split(usize),
-    /// Step `.0` of a ramp of `.1` steps, for things in an order such as a number of splits.
+    /// Step `.0` of a ramp of `.1` steps, for ordered values such as a number of splits.
     Step(usize, usize),
 }
 
@@ -76,15 +77,15 @@ impl Colour {
         }
     }
 
-    /// As `#rrggbb`, on light paper.
+    /// Returns the colour on light paper as `#rrggbb`.
     #[must_use]
     pub fn hex(self) -> String {
         format!("#{:06x}", self.pair().0)
     }
 }
 
-/// CSS rules that repaint the charts below `selector` for dark paper; they stand over the SVG's own
-/// attributes.
+/// Returns CSS rules that recolour the charts below `selector` for dark paper. They override the
+/// SVG's own attributes.
 #[must_use]
 pub fn dark_style(selector: &str) -> String {
     let mut css = String::new();

@@ -9,41 +9,41 @@ use super::{
     svg::{HEADING_LEFT, LARGE, SMALL, element},
 };
 
-/// Pixels around the drawing.
+/// Margin around the drawing in pixels.
 const EDGE: f64 = 14.0;
-/// Pixels from one row of the legend to the next.
+/// Height of a row of the legend in pixels.
 const ROW: f64 = 21.0;
-/// Pixels of a legend's sign and the room behind it.
+/// Width in pixels of a legend's sign and the room behind it.
 const SWATCH: f64 = 30.0;
-/// Pixels between two entries of a legend.
+/// Distance in pixels between two entries of a legend.
 const GAP: f64 = 20.0;
 
-/// How a line is drawn.
+/// Style of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
-    /// Its colour.
+    /// Colour of the line.
     pub colour: Colour,
-    /// Pixels across.
+    /// Width in pixels.
     pub width: f64,
-    /// In dashes.
+    /// True if the line is dashed.
     pub dashed: bool,
 }
 
 impl Stroke {
-    /// A solid line.
+    /// Makes a solid line.
     #[must_use]
     pub fn new(colour: Colour, width: f64) -> Self {
         Self { colour, width, dashed: false }
     }
 
-    /// A dashed line.
+    /// Makes a dashed line.
     #[must_use]
     pub fn dashed(colour: Colour, width: f64) -> Self {
         Self { colour, width, dashed: true }
     }
 }
 
-/// Which side of its point a text stands on.
+/// Position of a text relative to its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the sides")]
 pub enum Anchor {
@@ -54,65 +54,66 @@ pub enum Anchor {
     Centre,
 }
 
-/// What is drawn; positions in the diagram's own unit, y up.
+/// A shape; positions are in the diagram's own unit, y up.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// A closed outline.
     Polygon {
-        /// Its corners in order.
+        /// Corners in order.
         corners: Vec<(f64, f64)>,
-        /// Colour and opacity inside.
+        /// Colour and opacity of the inside.
         fill: Option<(Colour, f64)>,
-        /// Its outline.
+        /// Style of the outline.
         outline: Option<Stroke>,
     },
     /// An open line.
     Line {
-        /// Its corners in order.
+        /// Corners in order.
         points: Vec<(f64, f64)>,
-        /// How it is drawn.
+        /// Style of the line.
         stroke: Stroke,
-        /// Whether its end has a head.
+        /// True if the line ends in an arrowhead.
         arrow: bool,
     },
-    /// A word.
+    /// A text.
     Text {
-        /// Its point.
+        /// Point beside which the text is written.
         at: (f64, f64),
-        /// What it says.
+        /// Content of the text.
         text: String,
-        /// Its colour.
+        /// Colour of the text.
         colour: Colour,
-        /// Where it stands about its point.
+        /// Position of the text relative to its point.
         anchor: Anchor,
     },
 }
 
-/// A drawing in which one unit is as long in every direction.
+/// A drawing to scale: one unit has the same length in every direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagram {
-    /// What it shows, in a few words.
+    /// Description in a few words.
     pub title: String,
-    /// Drawn in this order.
+    /// Shapes, drawn in this order.
     pub shapes: Vec<Shape>,
-    /// Names of colours; dashed lines, or filled with the opacity given.
+    /// Entries of the legend: a name, a colour, and the opacity of a filled sign; `None` is a
+    /// dashed line.
     pub legend: Vec<(String, Colour, Option<f64>)>,
-    /// The unit of lengths, for the scale bar; `None`: no bar.
+    /// Unit of lengths for the scale bar; `None` draws no bar.
     pub unit: Option<String>,
-    /// Pixels across.
+    /// Width in pixels.
     pub width: f64,
-    /// What is shown, as two corners, and where shapes are cut; `None`: everything.
+    /// Visible part as two corners, at which shapes are cut; `None` shows everything.
     pub frame: Option<((f64, f64), (f64, f64))>,
 }
 
 impl Diagram {
-    /// An empty diagram.
+    /// Makes an empty diagram.
     #[must_use]
     pub fn new(title: impl Into<String>) -> Self {
         Self { title: title.into(), shapes: Vec::new(), legend: Vec::new(), unit: None, width: 680.0, frame: None }
     }
 
-    /// The diagram as an `<svg>` element.
+    /// Draws the diagram as an `<svg>` element.
     ///
     /// # Errors
     /// [`Error::Empty`] without a shape, [`Error::Value`] where a corner is not finite.
@@ -169,7 +170,7 @@ impl Diagram {
         element(&self.title, scene)
     }
 
-    /// Where the entries of the legend stand: in rows, from left to right.
+    /// Returns the positions of the entries of the legend: in rows, from left to right.
     fn legend_places(&self) -> Vec<(f64, f64)> {
         let (mut x, mut y) = (4.0, f64::from(LARGE) + 14.0);
         let place = |(name, _, _): &(String, Colour, Option<f64>)| {
@@ -202,7 +203,7 @@ impl Diagram {
     }
 }
 
-/// What a shape draws inside the frame.
+/// Draws a shape, clipped to the frame.
 fn draw(scene: &mut Scene, shape: &Shape, place: &impl Fn(&(f64, f64)) -> (f64, f64)) {
     match shape {
         Shape::Polygon { corners, fill, outline } => {
@@ -220,7 +221,7 @@ fn draw(scene: &mut Scene, shape: &Shape, place: &impl Fn(&(f64, f64)) -> (f64, 
     }
 }
 
-/// What a shape writes, over the frame's edge if need be.
+/// Writes the text of a shape, which may extend over the frame's edge.
 fn write(scene: &mut Scene, shape: &Shape, place: &impl Fn(&(f64, f64)) -> (f64, f64)) {
     if let Shape::Text { at, text: said, colour, anchor } = shape {
         let (x, y) = place(at);
@@ -250,7 +251,7 @@ fn line(points: Vec<(f64, f64)>, pen: Stroke) -> Primitive {
     }
 }
 
-/// A filled area and its outline, each with an opacity of its own.
+/// Draws a filled area and its outline, each with an opacity of its own.
 fn area_of(scene: &mut Scene, corners: &[(f64, f64)], fill: Option<(Colour, f64)>, outline: Option<Stroke>) {
     let mut path: String = corners
         .iter()
@@ -276,7 +277,7 @@ fn area_of(scene: &mut Scene, corners: &[(f64, f64)], fill: Option<(Colour, f64)
     }
 }
 
-/// The head of an arrow.
+/// Draws the head of an arrow.
 fn head(scene: &mut Scene, from: (f64, f64), to: (f64, f64), pen: Stroke) {
     let length = (to.0 - from.0).hypot(to.1 - from.1);
     if length == 0.0 {
@@ -290,13 +291,12 @@ fn head(scene: &mut Scene, from: (f64, f64), to: (f64, f64), pen: Stroke) {
     area_of(scene, &corners, Some((pen.colour, 1.0)), None);
 }
 
-/// About how wide a small text is, in pixels; fonts differ.
+/// Estimates the width of a small text in pixels; fonts differ.
 fn text_width(text: &str) -> f64 {
     0.56 * f64::from(SMALL) * text.chars().count() as f64
 }
 
-/// The corners of the smallest convex outline around `points`, counter-clockwise (Andrew's monotone
-/// chain).
+/// Returns the corners of the convex hull of `points`, counter-clockwise (Andrew's monotone chain).
 #[must_use]
 pub fn convex_hull(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut sorted = points.to_vec();

@@ -1,12 +1,12 @@
 //! Charts and diagrams as SVG text, from plain data.
 //!
 //! [`Chart`] draws lines and points over two axes, linear or logarithmic; [`BarChart`] draws bars;
-//! [`Diagram`] draws shapes to scale. What comes out is one `<svg>` element for a page of
-//! [`super::html`], complete in itself: it can be read as a file too. Colours are plain attributes
-//! in the light palette; [`dark_style`] is the CSS that repaints them for dark pages.
+//! [`Diagram`] draws shapes to scale. The output is one `<svg>` element for a page of
+//! [`super::html`]. It is complete, so it can be a file too. Colours are plain attributes in the
+//! light palette; [`dark_style`] is the CSS that repaints them for dark pages.
 //!
-//! `kuva` draws them: axes, ticks, legends and the SVG itself are its own. What is ours is the
-//! palette, what is refused, and shapes to scale, which no library of charts has.
+//! `kuva` draws axes, ticks, legends and the SVG itself. The palette, the checks of data and the
+//! shapes to scale, which no library of charts has, are ours.
 
 mod axis;
 mod bars;
@@ -24,46 +24,46 @@ pub use diagram::{Anchor, Diagram, Shape, Stroke, convex_hull};
 /// [`std::result::Result`] with this module's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Why a chart could not be drawn.
+/// Reason why a chart could not be drawn.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// No finite point in any series.
+    /// No series has a finite point.
     #[error("chart {title:?} has no finite value to draw; omit the chart, or give it data")]
     Empty {
-        /// The chart's title.
+        /// Title of the chart.
         title: String,
     },
-    /// A value that its axis cannot show.
+    /// The axis cannot show a value.
     #[error("chart {title:?}, axis {axis:?}: {value} cannot be shown; {remedy}")]
     Value {
-        /// The chart's title.
+        /// Title of the chart.
         title: String,
-        /// The axis' label.
+        /// Label of the axis.
         axis: String,
-        /// The value.
+        /// Value at fault.
         value: f64,
-        /// What to give instead.
+        /// Remedy: what to give instead.
         remedy: &'static str,
     },
-    /// Lists that should be of one length are not.
+    /// Lists that should have one length differ.
     #[error("chart {title:?}, series {series:?}: {got} values for {expected} categories; give one for each")]
     Length {
-        /// The chart's title.
+        /// Title of the chart.
         title: String,
-        /// The series.
+        /// Name of the series.
         series: String,
-        /// Values given.
+        /// Number of values given.
         got: usize,
-        /// Values expected.
+        /// Number of values expected.
         expected: usize,
     },
-    /// The drawing library refused.
+    /// The drawing library failed.
     #[error("cannot draw {title:?}: {reason}")]
     Backend {
-        /// The chart's title.
+        /// Title of the chart.
         title: String,
-        /// What it said.
+        /// Message of the library.
         reason: String,
     },
 }

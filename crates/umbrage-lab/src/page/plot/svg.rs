@@ -1,4 +1,4 @@
-//! What all drawings have in common: their theme, and the `<svg>` element around them.
+//! The theme of all drawings, and the `<svg>` element around them.
 
 use kuva::{
     Theme,
@@ -15,20 +15,20 @@ use std::sync::Arc;
 
 use super::{Axis, Colour, Error, Result, Scale, number};
 
-/// The faces of all text, the reader's own first.
+/// Fonts of all text, the reader's own first.
 const FONT: &str = "system-ui, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif";
-/// Where titles begin, pixels.
+/// Left edge of titles in pixels.
 pub(super) const HEADING_LEFT: f64 = 4.0;
-/// Pixels that a chart keeps free on its right, for half of the last tick's label.
+/// Margin in pixels on the right of a chart, for half of the last tick's label.
 const RIGHT: f64 = 16.0;
-/// The pattern of lines right across a chart.
+/// Dash pattern of lines across a chart.
 pub(super) const MARK_DASHES: &str = "3 3";
-/// Pixels of a title.
+/// Size of a title in pixels.
 pub(super) const LARGE: u32 = 15;
-/// Pixels of labels, legends and ticks.
+/// Size of labels, legends and ticks in pixels.
 pub(super) const SMALL: u32 = 13;
 
-/// A layout in the page's colours; axes and sizes are for the caller to add.
+/// Makes a layout in the page's colours. The caller adds axes and sizes.
 pub(super) fn layout(plots: &[Plot], title: &str, width: f64) -> Layout {
     let theme = Theme {
         background: "none".into(),
@@ -52,7 +52,7 @@ pub(super) fn layout(plots: &[Plot], title: &str, width: f64) -> Layout {
         .with_tick_format(TickFormat::Custom(Arc::new(number)))
 }
 
-/// The layout with its horizontal axis.
+/// Adds the horizontal axis to a layout.
 pub(super) fn with_x(layout: Layout, axis: &Axis, lowest: f64) -> Layout {
     let layout = if axis.scale == Scale::Log { layout.with_log_x() } else { layout };
     let layout = match axis.range {
@@ -63,7 +63,7 @@ pub(super) fn with_x(layout: Layout, axis: &Axis, lowest: f64) -> Layout {
     layout.with_x_label(axis.label.as_str())
 }
 
-/// The layout with its upright axis.
+/// Adds the vertical axis to a layout.
 pub(super) fn with_y(layout: Layout, axis: &Axis, lowest: f64) -> Layout {
     let layout = if axis.scale == Scale::Log { layout.with_log_y() } else { layout };
     let layout = match axis.range {
@@ -74,7 +74,7 @@ pub(super) fn with_y(layout: Layout, axis: &Axis, lowest: f64) -> Layout {
     layout.with_y_label(axis.label.as_str())
 }
 
-/// The layout with a legend below the plot; none without entries.
+/// Adds a legend below the plot, if there are entries.
 pub(super) fn with_legend(layout: Layout, entries: Vec<LegendEntry>) -> Layout {
     if entries.is_empty() {
         return layout;
@@ -82,7 +82,8 @@ pub(super) fn with_legend(layout: Layout, entries: Vec<LegendEntry>) -> Layout {
     layout.with_legend_entries(entries).with_legend_position(LegendPosition::OutsideBottomColumns)
 }
 
-/// A line right across. Its word stands in the legend, where no curve is in the way.
+/// Makes the legend's entry of a line across the chart. Its label is in the legend, where no curve
+/// is in the way.
 pub(super) fn mark_entry(label: &str, colour: Colour) -> LegendEntry {
     LegendEntry {
         label: label.to_owned(),
@@ -92,7 +93,7 @@ pub(super) fn mark_entry(label: &str, colour: Colour) -> LegendEntry {
     }
 }
 
-/// The layout so high that the plot itself takes `plot_height` pixels.
+/// Sets the height of a layout so that the plot itself takes `plot_height` pixels.
 pub(super) fn with_plot_height(layout: Layout, plot_height: f64) -> Layout {
     let computed = ComputedLayout::from_layout(&layout);
     layout.with_height(plot_height + computed.margin_top + computed.margin_bottom)
@@ -105,7 +106,7 @@ pub(super) fn render(plots: Vec<Plot>, layout: Layout) -> Scene {
     scene
 }
 
-/// The `<svg>` element of a scene. `title` is also what screen readers say.
+/// Writes the `<svg>` element of a scene. Screen readers read `title`.
 pub(super) fn element(title: &str, mut scene: Scene) -> Result<String> {
     // Titles stand where those of the page do: on the left, bold.
     for element in &mut scene.elements {
@@ -147,7 +148,7 @@ pub(super) fn element(title: &str, mut scene: Scene) -> Result<String> {
     Ok(svg.into_string())
 }
 
-/// Primitives as the library writes them, without its own first and last tag.
+/// Writes primitives with the library's SVG writer, without its outermost tags.
 fn markup(title: &str, elements: Vec<Primitive>) -> Result<String> {
     let scene = Scene { background_color: None, elements, ..Scene::new(0.0, 0.0) };
     let drawn = SvgBackend::new().render_scene(&scene);

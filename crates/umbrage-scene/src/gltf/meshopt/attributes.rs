@@ -2,27 +2,27 @@
 
 use super::Reader;
 
-/// Elements of a group.
+/// Number of elements in a group.
 const GROUP: usize = 16;
 
-/// How the bytes of a group are stored.
+/// Coding of the bytes of a group.
 #[derive(Clone, Copy)]
 enum Coding {
     Zeros,
-    /// Numbers of so many bits; those with all bits set are followed by a byte each.
+    /// Numbers of so many bits. A number with all bits set is followed by a byte.
     Bits(u32),
     Bytes,
 }
 
 use Coding::{Bits, Bytes, Zeros};
 
-/// Codings that the two header bits of a group choose from: in version 0, and by the control modes
-/// 0 and 1 of version 1.
+/// Codings that the two header bits of a group choose from, in version 0 and in the control modes 0
+/// and 1 of version 1.
 const VERSION_0: [Coding; 4] = [Zeros, Bits(2), Bits(4), Bytes];
 const CONTROL_0: [Coding; 4] = [Zeros, Bits(1), Bits(2), Bits(4)];
 const CONTROL_1: [Coding; 4] = [Bits(1), Bits(2), Bits(4), Bytes];
 
-/// `count` elements of `stride` bytes; `None` if the stream is not one.
+/// Decodes `count` elements of `stride` bytes; `None` if the stream is invalid.
 pub(super) fn decode(packed: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
     let (&header, rest) = packed.split_first()?;
     let version = match header {
@@ -84,7 +84,7 @@ pub(super) fn decode(packed: &[u8], count: usize, stride: usize) -> Option<Vec<u
     reader.bytes.is_empty().then_some(elements)
 }
 
-/// The 16 bytes of a group.
+/// Decodes the 16 bytes of a group.
 fn decode_group(reader: &mut Reader<'_>, coding: Coding, out: &mut [u8]) -> Option<()> {
     let bits = match coding {
         Zeros => {
@@ -112,7 +112,7 @@ fn decode_group(reader: &mut Reader<'_>, coding: Coding, out: &mut [u8]) -> Opti
     Some(())
 }
 
-/// Four bytes from those of the element before and their differences.
+/// Computes four bytes from those of the element before and their differences.
 fn apply(before: [u8; 4], difference: [u8; 4], mode: u8) -> Option<[u8; 4]> {
     match (mode & 15, mode >> 4) {
         (0, 0) => {

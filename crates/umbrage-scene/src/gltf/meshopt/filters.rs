@@ -1,6 +1,6 @@
-//! Filters of elements that were decoded.
+//! Filters that are applied to decoded elements.
 
-/// Unit vectors from octahedral coordinates; the fourth component stays.
+/// Converts octahedral coordinates to unit vectors. The fourth component stays.
 pub(super) fn octahedral(bytes: &mut [u8], stride: usize) {
     let decode = |[x, y, one]: [f32; 3], most: f32| {
         let (mut x, mut y) = (x / one, y / one);
@@ -26,7 +26,7 @@ pub(super) fn octahedral(bytes: &mut [u8], stride: usize) {
     }
 }
 
-/// Unit quaternions from three components and the number of the largest.
+/// Converts three components and the number of the largest to unit quaternions.
 pub(super) fn quaternion(bytes: &mut [u8]) {
     for element in bytes.as_chunks_mut::<8>().0 {
         let stored = shorts(element);
@@ -40,7 +40,7 @@ pub(super) fn quaternion(bytes: &mut [u8]) {
     }
 }
 
-/// Floats from an exponent of 8 bits and a mantissa of 24, both signed.
+/// Converts an exponent of 8 bits and a mantissa of 24, both signed, to floats.
 pub(super) fn exponential(bytes: &mut [u8]) {
     for element in bytes.as_chunks_mut::<4>().0 {
         let stored = i32::from_le_bytes(*element);
@@ -51,7 +51,7 @@ pub(super) fn exponential(bytes: &mut [u8]) {
     }
 }
 
-/// Colours from Y, Co, Cg and an alpha whose highest bit tells the number of bits.
+/// Converts Y, Co, Cg and alpha to colours. The highest bit of alpha tells the number of bits.
 pub(super) fn color(bytes: &mut [u8], stride: usize) {
     if stride == 4 {
         for element in bytes.as_chunks_mut::<4>().0 {

@@ -2,10 +2,10 @@
 
 use super::Reader;
 
-/// The last sixteen of something, most recent first.
+/// Ring of the last sixteen values, most recent first.
 struct Recent<T> {
     entries: [Option<T>; 16],
-    /// Where the next one goes.
+    /// Slot of the next value.
     next: usize,
 }
 
@@ -19,7 +19,7 @@ impl<T: Copy> Recent<T> {
         self.next = (self.next + 1) % 16;
     }
 
-    /// `None` if there have not been as many.
+    /// Returns the value `back` places ago; `None` if there have not been as many.
     fn get(&self, back: u8) -> Option<T> {
         self.entries[(self.next + 15 - usize::from(back)) % 16]
     }
@@ -48,7 +48,7 @@ impl Indices<'_> {
         Some(self.last)
     }
 
-    /// An index by four bits: 0 is new, 15 is explicit, others are recent.
+    /// Reads an index by a code of four bits: 0 is new, 15 is explicit, others are recent.
     fn coded(&mut self, code: u8) -> Option<u32> {
         match code {
             0 => Some(self.new_index()),
@@ -58,7 +58,7 @@ impl Indices<'_> {
     }
 }
 
-/// Unsigned LEB128 of at most five bytes.
+/// Reads unsigned LEB128 of at most five bytes.
 fn variable_length(data: &mut Reader<'_>) -> Option<u32> {
     let mut value = 0_u32;
     for shift in [0, 7, 14, 21, 28] {
@@ -71,7 +71,7 @@ fn variable_length(data: &mut Reader<'_>) -> Option<u32> {
     None
 }
 
-/// Indices of a list of triangles; `None` if the stream is not one.
+/// Decodes the indices of a list of triangles; `None` if the stream is invalid.
 pub(super) fn triangles(packed: &[u8], count: usize) -> Option<Vec<u32>> {
     let rest = packed.strip_prefix(&[0xe1])?;
     let (codes, rest) = rest.split_at_checked(count / 3)?;
@@ -129,7 +129,7 @@ pub(super) fn triangles(packed: &[u8], count: usize) -> Option<Vec<u32>> {
     state.data.bytes.is_empty().then_some(indices)
 }
 
-/// Indices of anything; `None` if the stream is not one.
+/// Decodes a sequence of indices; `None` if the stream is invalid.
 pub(super) fn sequence(packed: &[u8], count: usize) -> Option<Vec<u32>> {
     const TAIL: usize = 4;
     let rest = packed.strip_prefix(&[0xd1])?;
@@ -147,7 +147,7 @@ pub(super) fn sequence(packed: &[u8], count: usize) -> Option<Vec<u32>> {
     data.bytes.is_empty().then_some(indices)
 }
 
-/// Little-endian bytes, two or four for each.
+/// Returns little-endian bytes, two or four for each index.
 pub(super) fn bytes(indices: &[u32], stride: usize) -> Vec<u8> {
     if stride == 2 {
         indices.iter().flat_map(|&index| (index as u16).to_le_bytes()).collect()

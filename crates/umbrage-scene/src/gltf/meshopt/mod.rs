@@ -16,7 +16,7 @@ use crate::Result;
 /// The names of the extension.
 const NAMES: [&str; 2] = ["KHR_meshopt_compression", "EXT_meshopt_compression"];
 
-/// What compressed bytes are, and how they were made small.
+/// Description of compressed bytes: their codec, filter and layout.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Compression {
@@ -31,7 +31,7 @@ struct Compression {
     filter: Filter,
 }
 
-/// The codec.
+/// Codec of the bytes.
 #[derive(Clone, Copy, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "UPPERCASE")]
 enum Mode {
@@ -40,7 +40,7 @@ enum Mode {
     Indices,
 }
 
-/// What was done to elements to make them compress.
+/// Filter that was applied to elements to make them compress better.
 #[derive(Clone, Copy, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "UPPERCASE")]
 enum Filter {
@@ -52,7 +52,7 @@ enum Filter {
     Color,
 }
 
-/// The bytes of a buffer view that is compressed; `None` if it is not.
+/// Returns the bytes of a buffer view that is compressed; `None` if it is not.
 pub(super) fn unpacked(document: &Document<'_>, index: usize, user: &str) -> Result<Option<Vec<u8>>> {
     let view = document.get(&document.root.buffer_views, index, "bufferViews", user)?;
     let extensions = view.extensions.as_ref().map(|extensions| &extensions.others);
@@ -89,7 +89,7 @@ pub(super) fn unpacked(document: &Document<'_>, index: usize, user: &str) -> Res
     Ok(Some(bytes))
 }
 
-/// The conditions of the specification.
+/// Checks the conditions of the specification.
 fn check(said: &Compression) -> Result<(), &'static str> {
     let stride = said.byte_stride;
     match said.mode {
@@ -112,7 +112,7 @@ fn check(said: &Compression) -> Result<(), &'static str> {
     }
 }
 
-/// Bytes that are taken one after the other from the front.
+/// Reader of bytes from the front.
 struct Reader<'b> {
     bytes: &'b [u8],
 }

@@ -8,7 +8,7 @@ use crate::procedural::maths::{Random, mix, sin_cos};
 use crate::procedural::sculpt::Sculpture;
 use crate::procedural::shapes::Solid;
 
-/// What a dwarf wears: indices of materials.
+/// Materials of a dwarf's parts, as indices.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::procedural) struct DwarfsColours {
     pub(in crate::procedural) skin: usize,
@@ -18,7 +18,7 @@ pub(in crate::procedural) struct DwarfsColours {
     pub(in crate::procedural) iron: usize,
 }
 
-/// A dwarf.
+/// Makes a dwarf.
 pub(in crate::procedural) fn dwarf(name: &str, colours: DwarfsColours) -> Mesh {
     let mut sculpture = Sculpture::default();
     sculpture.add(colours.skin, SMOOTH, &dwarfs_skin());

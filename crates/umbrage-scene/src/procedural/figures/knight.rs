@@ -8,7 +8,7 @@ use crate::procedural::maths::{Random, mix, sin_cos, smoothstep, turn};
 use crate::procedural::sculpt::Sculpture;
 use crate::procedural::shapes::{Solid, beam};
 
-/// What a knight wears: indices of materials.
+/// Materials of a knight's parts, as indices.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::procedural) struct KnightsColours {
     pub(in crate::procedural) steel: usize,
@@ -17,7 +17,7 @@ pub(in crate::procedural) struct KnightsColours {
     pub(in crate::procedural) leather: usize,
 }
 
-/// A knight.
+/// Makes a knight.
 pub(in crate::procedural) fn knight(name: &str, colours: KnightsColours) -> Mesh {
     let mut sculpture = Sculpture::default();
     let steel = Solid::all([knights_legs(), knights_trunk(), knights_arms(), great_helm()]);
@@ -30,7 +30,7 @@ pub(in crate::procedural) fn knight(name: &str, colours: KnightsColours) -> Mesh
     sculpture.finish(name)
 }
 
-/// Hip, knee, ankle of the leg that is ahead (1) or behind (−1).
+/// Returns hip, knee and ankle of the leg that is ahead (1) or behind (−1).
 fn leg_joints(ahead: f64) -> [DVec3; 3] {
     let x = 0.72 * ahead;
     if ahead > 0.0 {
@@ -190,7 +190,7 @@ fn knights_trim() -> Solid {
     ]))
 }
 
-/// The way the sword points.
+/// Direction in which the sword points.
 const SWORD: DVec3 = DVec3::new(-0.12, 0.9, 0.42);
 
 fn sword_blade() -> Solid {
@@ -251,7 +251,7 @@ fn plume() -> Solid {
     Solid::all((0..13).map(|i| feather(i, &mut random)))
 }
 
-/// Where the shield hangs; its middle, with the outside towards +Z.
+/// Returns the transform of the shield: its middle, with the outside towards +Z.
 fn shield_place(ahead: f64) -> glam::DAffine3 {
     let rotation = turn(DVec3::Y, 32.0);
     glam::DAffine3::from_rotation_translation(

@@ -14,7 +14,8 @@ pub(super) use knight::{KnightsColours, knight};
 
 const SMOOTH: f64 = 48.0;
 
-/// How far the feet reach from a figure's axis at scale 1, sideways and along its way.
+/// Largest distance in metres of the feet from a figure's axis at scale 1, sideways and along its
+/// way.
 pub(super) const STRIDE: [f64; 2] = [1.5, 1.9];
 
 /// A dome on the ground, flat below: boots, knee guards, pauldrons.

@@ -1,5 +1,5 @@
 //! Buildings that are drawn by the hundred thousand: walls with pictures of their windows, roofs
-//! with what stands on them, and coarser shapes without.
+//! with objects on them, and coarser levels of detail without.
 
 use glam::{DVec3, dvec3};
 
@@ -10,18 +10,19 @@ use super::super::stage::Stage;
 use super::Levels;
 use crate::{Material, Mesh, Primitive, Texture, TextureFilter, Wrap};
 
-/// A storey's height and a window's share of a wall, metres: one picture of a facade.
+/// Height of a storey, and width of a window's share of a wall, in metres: one picture of a facade.
 pub(super) const STOREY_M: f64 = 3.3;
 
-/// Metres of the smallest detail of each shape, finest first: parapets and tanks, setbacks, a box.
+/// Size in metres of the smallest detail of each level, finest first: parapets and tanks, setbacks,
+/// a box.
 const DETAILS_M: [f64; 3] = [0.0, 1.2, 4.0];
 
-/// How a building looks from afar.
+/// Style of a building.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Style {
     /// Three or four storeys under a gable.
     House,
-    /// Six or so storeys, flat, with a water tank.
+    /// About six storeys, flat, with a water tank.
     Apartments,
     /// A slab of offices.
     Office,
@@ -31,7 +32,7 @@ pub(super) enum Style {
     Glass,
 }
 
-/// A kind of building: all of one kind share meshes.
+/// A kind of building. All buildings of a kind share meshes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Kind {
     pub(super) style: Style,
@@ -42,7 +43,7 @@ pub(super) struct Kind {
     roof: u32,
 }
 
-/// A picture of a wall: its colours, and how much of it is window.
+/// A picture of a wall: its colours, and the share of it that is window.
 #[derive(Clone, Copy, Debug)]
 struct Facade {
     wall: u32,
@@ -62,7 +63,7 @@ const fn kind(style: Style, size: [f64; 2], storeys: u32, (wall, window): (u32, 
     Kind { style, size, storeys, facade: Facade { wall, window, opening }, roof }
 }
 
-/// Every kind.
+/// Kinds of buildings.
 pub(super) const KINDS: [Kind; 16] = [
     kind(Style::House, [9.9, 13.2], 3, (0x9A_5B_46, 0x3A_42_4A), 0x5A_46_40),
     kind(Style::House, [9.9, 13.2], 3, (0xC9_B9_9A, 0x46_4A_4C), 0x7C_4A_3A),
@@ -82,7 +83,7 @@ pub(super) const KINDS: [Kind; 16] = [
     kind(Style::Glass, [29.7, 29.7], 34, (0x86_8E_92, 0x54_6C_70), 0x66_68_6A),
 ];
 
-/// Kinds of a style.
+/// Iterates over the kinds of a style.
 pub(super) fn of_style(style: Style) -> impl Iterator<Item = usize> {
     (0..KINDS.len()).filter(move |&kind| KINDS[kind].style == style)
 }
@@ -95,7 +96,7 @@ struct Paints {
     trim: usize,
 }
 
-/// Stores a kind's meshes; the index of the finest.
+/// Stores a kind's meshes and returns the index of the finest.
 pub(super) fn store(stage: &mut Stage, index: usize) -> usize {
     let kind = KINDS[index];
     stage.scene.textures.push(facade_picture(kind.facade, index as u64));
@@ -119,7 +120,7 @@ struct Builder {
     paints: Paints,
 }
 
-/// A part of a building: its middle, half its size, and from where to where it goes up.
+/// A part of a building: its middle, half its size, and its lower and upper height.
 #[derive(Clone, Copy)]
 struct Block {
     middle: [f64; 2],
@@ -133,7 +134,7 @@ impl Builder {
         Self { walls: Primitive { material: paints.walls, ..Primitive::default() }, rest: Sculpture::default(), paints }
     }
 
-    /// Four walls, whose pictures repeat for each storey.
+    /// Adds four walls, whose pictures repeat for each storey.
     fn walls(&mut self, block: Block) {
         let [x, z] = block.middle;
         let [half_x, half_z] = block.half;
@@ -155,7 +156,7 @@ impl Builder {
         }
     }
 
-    /// A closed box that is no wall.
+    /// Adds a closed box that is no wall.
     fn solid(&mut self, material: usize, block: Block) {
         let [x, z] = block.middle;
         let size = [2.0 * block.half[0], block.to - block.from, 2.0 * block.half[1]];
@@ -163,7 +164,7 @@ impl Builder {
         self.rest.add(material, 30.0, &solid);
     }
 
-    /// Walls and a flat roof; with a parapet where `lip` is not 0.
+    /// Adds walls and a flat roof, with a parapet where `lip` is not 0.
     fn block(&mut self, block: Block, lip: f64) {
         self.walls(block);
         let roof = Block { from: block.to - 0.4, half: block.half.map(|half| half - 0.02), ..block };
@@ -186,7 +187,7 @@ impl Builder {
         }
     }
 
-    /// A gable along x.
+    /// Adds a gable along x.
     fn gable(&mut self, block: Block, rise: f64) {
         let [x, z] = block.middle;
         let [half_x, half_z] = block.half;
@@ -206,7 +207,7 @@ impl Builder {
     }
 }
 
-/// One shape of a kind, standing on y = 0 with its front towards +Z.
+/// Makes one level of detail of a kind, standing on y = 0 with its front towards +Z.
 fn building(index: usize, level: usize, paints: Paints) -> Mesh {
     let kind = KINDS[index];
     let mut random = Random::new(900 + index as u64);
@@ -252,7 +253,7 @@ fn building(index: usize, level: usize, paints: Paints) -> Mesh {
     builder.finish(&format!("building {index}, shape {level}"))
 }
 
-/// A whole number of storeys.
+/// Rounds a height to a whole number of storeys.
 fn storey(height: f64) -> f64 {
     (height / STOREY_M).round() * STOREY_M
 }
@@ -265,7 +266,7 @@ fn chimneys(builder: &mut Builder, whole: Block) {
     }
 }
 
-/// A stair's head, machines, and on some a water tank on legs.
+/// Adds a stair's head, machines, and on some a water tank on legs.
 fn roof_things(builder: &mut Builder, random: &mut Random, whole: Block) {
     let roof = whole.to;
     let place =

@@ -15,7 +15,7 @@ use super::trees::{Paints, Tree};
 use super::{Crowd, Watch};
 use crate::{Node, Scene, Trs};
 
-/// Buildings of the whole city.
+/// Number of buildings of the whole city.
 pub(in super::super) const BUILDINGS: u32 = 100_000;
 
 /// Metres of a block between its pavements' edges, along x and z, and of the streets between.
@@ -25,13 +25,13 @@ const STREETS_M: [f64; 2] = [20.0, 14.0];
 /// Metres of pavement in front of houses.
 const PAVEMENT_M: f64 = 3.0;
 
-/// Height of a pavement over the street, metres.
+/// Height of a pavement over the street in metres.
 const KERB_M: f64 = 0.16;
 
-/// One block in so many is a park.
+/// Number of blocks of which one is a park.
 const PARKS: u64 = 23;
 
-/// What a city is put together from.
+/// Meshes and crowds that make up a city.
 struct City {
     buildings: Crowd,
     trees: Crowd,
@@ -39,7 +39,7 @@ struct City {
     lawns: Vec<Trs>,
 }
 
-/// A city of that many buildings: block after block, from the middle outwards.
+/// Builds a city of `count` buildings, block after block from the middle outwards.
 pub(in super::super) fn city_blocks(count: u32, watch: Watch<'_>) -> Scene {
     let mut stage = stage(World::CityBlocks);
     let meshes = (0..KINDS.len()).map(|kind| buildings::store(&mut stage, kind)).collect();
@@ -87,12 +87,12 @@ pub(in super::super) fn city_blocks(count: u32, watch: Watch<'_>) -> Scene {
     stage.scene
 }
 
-/// Metres from one block's middle to the next, along x (0) or z (1).
+/// Returns the metres from one block's middle to the next, along x (0) or z (1).
 fn pitch(axis: usize) -> f64 {
     BLOCK_M[axis] + STREETS_M[axis]
 }
 
-/// Blocks by their distance from the middle, more than that many buildings need.
+/// Lists blocks by their distance from the middle, more than `count` buildings need.
 fn outwards(count: u32) -> Vec<(i32, i32)> {
     // At least eight buildings to a block, and half as many blocks again for parks.
     let area = (f64::from(count) / 8.0 * 1.5 + 40.0) * pitch(0) * pitch(1);
@@ -107,7 +107,7 @@ fn outwards(count: u32) -> Vec<(i32, i32)> {
     blocks
 }
 
-/// What stands at a distance from the middle.
+/// Chooses the style of a building by its distance from the middle.
 fn style_at(place: DVec2, random: &mut Random) -> Style {
     let away = place.length() * (1.0 + 0.5 * noise::plane_octaves(81, place / 700.0, 3, 0.5));
     let draw = random.between(0.0, 1.0);
@@ -124,7 +124,7 @@ fn style_at(place: DVec2, random: &mut Random) -> Style {
     }
 }
 
-/// Two rows of houses, back to back; how many there are.
+/// Adds two rows of houses, back to back, and returns their number.
 fn block(crowd: &mut Crowd, middle: DVec2, seed: u64, most: u32) -> u32 {
     let mut random = Random::new(seed);
     let mut built = 0;
@@ -150,7 +150,7 @@ fn block(crowd: &mut Crowd, middle: DVec2, seed: u64, most: u32) -> u32 {
     built
 }
 
-/// Trees on a lawn.
+/// Adds trees on a lawn.
 fn park(trees: &mut Crowd, middle: DVec2, seed: u64) {
     let mut random = Random::new(seed);
     for step in 0..46 {
@@ -166,7 +166,7 @@ fn park(trees: &mut Crowd, middle: DVec2, seed: u64) {
     }
 }
 
-/// Asphalt under all, and grass beyond.
+/// Adds asphalt under the city, and grass beyond.
 fn ground(stage: &mut Stage, reach: f64) {
     let asphalt = stage.paint("streets", 0xFF_FF_FF);
     let tint = |at: DVec3, _: DVec3| {
@@ -177,7 +177,7 @@ fn ground(stage: &mut Stage, reach: f64) {
     Terrain::new((2.0 * reach).ceil(), 8, 8, |_| 0.0).place(stage, &surface);
 }
 
-/// Down the streets and over the roofs.
+/// Adds cameras that look down the streets and over the roofs.
 fn cameras(stage: &mut Stage) {
     stage.sun(SkyPoint { bearing: 52.0, elevation: 38.0 }, SkyPoint { bearing: 120.0, elevation: 62.0 });
     let street = 0.5 * pitch(1);

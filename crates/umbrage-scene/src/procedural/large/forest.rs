@@ -12,29 +12,29 @@ use super::trees::{Paints, Tree};
 use super::{Crowd, Watch};
 use crate::{Scene, Trs};
 
-/// Trees of the whole forest.
+/// Number of trees of the whole forest.
 pub(in super::super) const TREES: u32 = 1_000_000;
 
-/// Edge of the ground under [`TREES`] trees, metres: 100 km².
+/// Edge of the ground under [`TREES`] trees in metres: 100 km².
 const EDGE_M: f64 = 10_000.0;
 
-/// Least edge of the ground, metres.
+/// Least edge of the ground in metres.
 const LEAST_EDGE_M: f64 = 800.0;
 
-/// Posts of the ground stand so many metres apart.
+/// Metres between the posts of the ground.
 const POST_M: f64 = 20.0;
 
-/// Edge of the squares that are planted one after the other, metres. What grows in one depends on
-/// its place and its number of trees alone.
+/// Edge in metres of the squares that are planted one after the other. The plants of a square
+/// depend on its place and its number of trees alone.
 const SQUARE_M: f64 = 100.0;
 
-/// How often a place is looked for before one is taken where trees do not like it.
+/// Number of places that are tried for a tree before an unsuitable one is taken.
 const TRIES: usize = 40;
 
-/// Trees that like light stand along the forest's edge: where the density is below this.
+/// Density below which a place is the forest's edge, where trees that like light stand.
 const EDGE_OF_FOREST: f64 = 0.45;
 
-/// A forest of that many trees: as dense as the whole one, on as much ground as they need.
+/// Builds a forest of `trees` trees, as dense as the whole one, on as much ground as they need.
 pub(in super::super) fn forest(trees: u32, watch: Watch<'_>) -> Scene {
     let edge = (EDGE_M * (f64::from(trees) / f64::from(TREES)).sqrt()).max(LEAST_EDGE_M);
     let mut stage = stage(World::Forest);
@@ -53,7 +53,7 @@ pub(in super::super) fn forest(trees: u32, watch: Watch<'_>) -> Scene {
     stage.scene
 }
 
-/// Plants square after square, each its share of the trees.
+/// Plants square after square, each with its share of the trees.
 fn plant(crowd: &mut Crowd, terrain: &Terrain, (edge, trees): (f64, u32), watch: Watch<'_>) {
     let across = (edge / SQUARE_M).ceil() as usize;
     let square_m = edge / across as f64;
@@ -103,7 +103,7 @@ fn plant_square(crowd: &mut Crowd, terrain: &Terrain, (corner, square_m): (DVec2
     }
 }
 
-/// The kind of the tree at a place, and how it stands.
+/// Chooses the kind and the transform of the tree at a place.
 fn tree_at(terrain: &Terrain, (place, density): (DVec2, f64), random: &mut Random) -> (usize, Trs) {
     let at = terrain.on_ground(place);
     let high = smoothstep(60.0, 240.0, at.y + 60.0 * noise::plane_octaves(74, place / 300.0, 2, 0.5));
@@ -126,20 +126,20 @@ fn tree_at(terrain: &Terrain, (place, density): (DVec2, f64), random: &mut Rando
     (kind, tree)
 }
 
-/// How much trees like a place: 0 to 1. Clearings, scree and heights stay free.
+/// Returns the density of trees at a place, 0 to 1. Clearings, scree and heights stay free.
 fn density(terrain: &Terrain, place: DVec2) -> f64 {
     let at = terrain.on_ground(place);
     let treeline = smoothstep(470.0, 330.0, at.y + 90.0 * noise::plane_octaves(76, place / 240.0, 2, 0.5));
     wooded(place) * treeline * smoothstep(1.15, 0.75, steepness(terrain, place))
 }
 
-/// 0 in clearings, one of which is the middle of the ground, 1 in the wood.
+/// Returns 0 in clearings, one of which is the middle of the ground, and 1 in the wood.
 fn wooded(place: DVec2) -> f64 {
     let open = smoothstep(35.0, 60.0, place.length());
     open * smoothstep(-0.26, -0.02, noise::plane_octaves(75, place / 330.0, 3, 0.5))
 }
 
-/// Metres up per metre along.
+/// Returns the slope of the ground in metres up per metre along.
 fn steepness(terrain: &Terrain, place: DVec2) -> f64 {
     const STEP_M: f64 = 8.0;
     let inside = |p: DVec2| terrain.height_at(terrain.nearest(p));
@@ -147,7 +147,8 @@ fn steepness(terrain: &Terrain, place: DVec2) -> f64 {
     rise(DVec2::X * STEP_M).hypot(rise(DVec2::Y * STEP_M))
 }
 
-/// A valley between mountains, which rise to the rim of the whole forest's ground.
+/// Returns the height of a valley between mountains, which rise to the rim of the whole forest's
+/// ground.
 fn height(place: DVec2, edge: f64) -> f64 {
     let rolling = 46.0 * noise::plane_octaves(71, place / 780.0, 4, 0.42);
     let ridges = 1.0 - 2.0 * noise::plane_octaves(72, place / 2300.0, 5, 0.48).abs();
@@ -156,7 +157,7 @@ fn height(place: DVec2, edge: f64) -> f64 {
     rolling + bumps + mix(0.0, 620.0, away) * (ridges - 0.25).max(-0.2)
 }
 
-/// Grass, needles under trees, rock where it is steep, and bare heights.
+/// Colour of the soil: grass, needles under trees, rock where it is steep, and bare heights.
 fn soil_colour(at: DVec3, normal: DVec3) -> [f32; 3] {
     let place = DVec2::new(at.x, at.z);
     let patch = 0.5 + 0.7 * noise::plane_octaves(77, place / 60.0, 3, 0.55);
@@ -171,7 +172,7 @@ fn soil_colour(at: DVec3, normal: DVec3) -> [f32; 3] {
     std::array::from_fn(channel)
 }
 
-/// The middle of the ground is a clearing.
+/// Adds the cameras. The middle of the ground is a clearing.
 fn cameras(stage: &mut Stage, terrain: &Terrain) {
     stage.sun(SkyPoint { bearing: 158.0, elevation: 27.0 }, SkyPoint { bearing: 100.0, elevation: 55.0 });
     let above = |x: f64, z: f64, height: f64| terrain.on_ground(DVec2::new(x, z)) + DVec3::Y * height;

@@ -1,28 +1,29 @@
-//! How many objects a world has.
+//! Options for the number of objects in a world.
 
 use super::super::World;
 use crate::{Error, Result};
 
-/// Numbers of objects of the worlds that may have any; `None`: the world's own number.
+/// Numbers of objects of the worlds that may have any number; `None` is the world's own number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WorldOptions {
-    /// Robots of [`World::RobotWar`]: the paper's 160.
+    /// Number of robots of [`World::RobotWar`]; by default the paper's 160.
     pub robots: Option<u32>,
-    /// Trees of [`World::Forest`]: a million, on 100 km². Fewer trees stand on less ground.
+    /// Number of trees of [`World::Forest`]; by default a million, on 100 km². Fewer trees stand on
+    /// less ground.
     pub trees: Option<u32>,
-    /// Buildings of [`World::CityBlocks`]: 100,000.
+    /// Number of buildings of [`World::CityBlocks`]; by default 100,000.
     pub buildings: Option<u32>,
 }
 
 impl WorldOptions {
-    /// Most robots.
+    /// Largest number of robots.
     pub const MOST_ROBOTS: u32 = 100_000;
-    /// Most trees.
+    /// Largest number of trees.
     pub const MOST_TREES: u32 = 4_000_000;
-    /// Most buildings.
+    /// Largest number of buildings.
     pub const MOST_BUILDINGS: u32 = 1_000_000;
 
-    /// Each number with its option, its world and its limit.
+    /// Returns each number with its option, its world and its limit.
     fn rows(&self) -> [(Option<u32>, &'static str, World, u32); 3] {
         [
             (self.robots, "robots", World::RobotWar, Self::MOST_ROBOTS),
@@ -31,10 +32,10 @@ impl WorldOptions {
         ]
     }
 
-    /// Checks the numbers for a scene of that name.
+    /// Checks the numbers for the scene named `scene`.
     ///
     /// # Errors
-    /// [`Error::WorldOption`] naming a number that is 0, above its limit, or not of that scene.
+    /// [`Error::WorldOption`] with a number that is 0, above its limit, or not of that scene.
     pub fn check(&self, scene: &str) -> Result<()> {
         for (number, option, world, most) in self.rows() {
             let Some(number) = number else { continue };

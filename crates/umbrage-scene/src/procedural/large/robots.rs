@@ -10,13 +10,13 @@ use super::super::worlds::{robot_meshes, robot_sun, stage, standing};
 use super::{Crowd, Watch};
 use crate::Scene;
 
-/// Edge of the square that each robot has to itself: its arms and its step aside.
+/// Edge in metres of the square that each robot has to itself: its arms and its step aside.
 const SQUARE_M: f64 = 36.0;
 
 /// Metres of plain around the army.
 const RIM_M: f64 = 200.0;
 
-/// Robots in ranks and files, each a little out of line, on a plain of their own size.
+/// Builds robots in ranks and files, each a little out of line, on a plain of matching size.
 pub(in super::super) fn robot_war(count: u32, watch: Watch<'_>) -> Scene {
     let mut stage = stage(World::RobotWar);
     let files = f64::from(count).sqrt().ceil();

@@ -1,4 +1,4 @@
-//! Trees that are drawn by the million: four shapes of each, down to eight triangles.
+//! Trees that are drawn by the million, each with four levels of detail, down to eight triangles.
 
 use glam::{DVec3, dvec3};
 
@@ -10,7 +10,8 @@ use super::super::stage::Stage;
 use super::Levels;
 use crate::Mesh;
 
-/// Metres of the smallest detail of each shape, finest first: boughs, clumps, tiers, the crown.
+/// Size in metres of the smallest detail of each level, finest first: boughs, clumps, tiers, the
+/// crown.
 const DETAILS_M: [f64; 4] = [0.0, 0.25, 0.8, 2.0];
 
 /// Materials that all trees share.
@@ -22,7 +23,7 @@ pub(in super::super) struct Paints {
 }
 
 impl Paints {
-    /// Puts them on the stage. Leaves take their colour from vertices.
+    /// Adds the materials to the stage. Leaves take their colour from vertices.
     pub(in super::super) fn new(stage: &mut Stage) -> Self {
         Self {
             bark: stage.paint("bark", 0x5B_4A_3C),
@@ -49,7 +50,7 @@ pub(in super::super) enum Tree {
 type Greens = [[f64; 3]; 2];
 
 impl Tree {
-    /// Six of them make a forest.
+    /// Kinds of trees of the forest, with their seeds.
     pub(in super::super) const FOREST: [(Self, u64); 6] =
         [(Self::Spruce, 1), (Self::Spruce, 2), (Self::Pine, 3), (Self::Oak, 4), (Self::Oak, 5), (Self::Birch, 6)];
 
@@ -64,7 +65,7 @@ impl Tree {
         [dark, bright.map(|channel| light * channel)]
     }
 
-    /// The tree in all its shapes; another one for every seed.
+    /// Makes the tree at all levels of detail. Every seed gives another tree.
     pub(in super::super) fn levels(self, seed: u64, paints: Paints) -> Levels {
         let shape = |(level, detail_m): (usize, f64)| {
             let mut mesh = match self {
@@ -81,7 +82,7 @@ impl Tree {
     }
 }
 
-/// Darker near the trunk and below, lighter outside and above, with a little noise.
+/// Colours leaves: darker near the trunk and below, lighter outside and above, with a little noise.
 fn colour(mesh: &mut Mesh, leaves: usize, [dark, bright]: Greens, seed: u64) {
     for primitive in &mut mesh.primitives {
         if primitive.material != leaves {
@@ -102,7 +103,8 @@ fn colour(mesh: &mut Mesh, leaves: usize, [dark, bright]: Greens, seed: u64) {
     }
 }
 
-/// Tiers of boughs, each a star whose points droop: tiers, points of a star, sides of the trunk.
+/// Shape of each level of a spruce: tiers of boughs, each a star whose points droop; points of a
+/// star; sides of the trunk.
 const SPRUCE: [(i32, usize, usize); 4] = [(13, 8, 6), (7, 5, 4), (3, 0, 0), (1, 0, 0)];
 
 /// A spruce, 20 m tall.
@@ -140,15 +142,15 @@ fn spruce(seed: u64, level: usize, paints: Paints) -> Mesh {
 
 /// A trunk under clumps of leaves.
 struct Crowned {
-    /// Metres to the crown's centre.
+    /// Height of the crown's centre in metres.
     height: f64,
-    /// Half the crown's extent across and upwards, metres.
+    /// Half the crown's extent across and upwards, in metres.
     crown: [f64; 2],
-    /// The trunk's radius above its roots, metres.
+    /// Radius of the trunk above its roots, in metres.
     trunk: f64,
-    /// Clumps of the finest shape.
+    /// Number of clumps at the finest level.
     clumps: usize,
-    /// A clump's radius as a share of the crown's.
+    /// Radius of a clump as a share of the crown's.
     clump: f64,
 }
 
@@ -156,7 +158,7 @@ const OAK: Crowned = Crowned { height: 7.6, crown: [4.3, 3.6], trunk: 0.42, clum
 const BIRCH: Crowned = Crowned { height: 9.6, crown: [2.3, 5.0], trunk: 0.17, clumps: 15, clump: 0.5 };
 const PINE: Crowned = Crowned { height: 15.0, crown: [3.6, 2.3], trunk: 0.34, clumps: 12, clump: 0.45 };
 
-/// Clumps of each shape as a share of the finest one's, and sides of its trunk.
+/// Shape of each level: clumps as a share of the finest level's, and sides of the trunk.
 const CROWNED: [(f64, usize); 4] = [(1.0, 7), (0.5, 4), (0.2, 3), (0.0, 3)];
 
 /// A tree with a round crown.

@@ -7,7 +7,7 @@ use super::frames::{answers, domain, edge_at, inverted, nothing};
 use crate::TruthMask;
 use crate::scores::{AcneAndLeak, Answers, TexelGradient, acne_and_leak};
 
-/// From straight above, so that a pixel shows a metre and m is the texel in metres.
+/// View from straight above: a pixel shows a metre, and m is the texel in metres.
 fn view([width, height]: [usize; 2]) -> View {
     let lens = Frustum::orthographic(width as f64, height as f64, 0.1, 100.0).expect("a lens");
     View::look_at(DVec3::Y * 10.0, DVec3::ZERO, DVec3::NEG_Z, lens).expect("a view")

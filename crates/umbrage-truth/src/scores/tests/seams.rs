@@ -1,4 +1,4 @@
-//! The seam score, and that it says no.
+//! Tests of the seam score, and of cases in which it fails.
 
 use super::frames::{domain, mask};
 use crate::scores::{Answers, Domain, LEAST_SEAM_PIXELS, Seams, seams};
@@ -11,7 +11,7 @@ fn ground() -> Domain {
     domain(&mask(SIZE, |x, y| Some((14.1 + 0.2 * y as f64, x % 4 < 2))))
 }
 
-/// The truth, wrong wherever `wrong` says so.
+/// Returns the true answers, wrong wherever `wrong` is true.
 fn answers(domain: &Domain, wrong: impl Fn(usize, usize) -> bool) -> Answers {
     let visibility = |pixel: usize| {
         let lit = domain.lit(pixel) != wrong(pixel % SIZE[0], pixel / SIZE[0]);

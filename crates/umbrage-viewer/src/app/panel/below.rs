@@ -1,4 +1,4 @@
-//! Below the picture: maps, planes, times, casters.
+//! The tabs below the picture: maps, planes, times, casters.
 
 use egui::{Panel, ScrollArea, Ui};
 
@@ -6,7 +6,7 @@ use super::plots;
 use crate::app::App;
 use crate::session::Tab;
 
-/// The tabs, and the one that is open.
+/// Lays out the tabs, and the one that is open.
 pub fn below(app: &mut App, ui: &mut Ui) {
     Panel::bottom("tabs").show(ui, |ui| {
         ui.horizontal(|ui| {

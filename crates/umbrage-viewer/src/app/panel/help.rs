@@ -1,10 +1,10 @@
-//! F1.
+//! The help window of the key F1.
 
 use egui::{Grid, RichText, Ui, Window};
 
 use crate::app::App;
 
-/// Keys and gestures with what they do.
+/// Keys and gestures with their effects.
 const KEYS: &[(&str, &str)] = &[
     ("drag", "look around; in orbit, go around what you clicked last"),
     ("right drag, Shift + drag, two fingers", "move sideways"),
@@ -28,7 +28,7 @@ const KEYS: &[(&str, &str)] = &[
     ("F12", "a picture of this window, into the working folder"),
 ];
 
-/// The window of the help.
+/// Lays out the window of the help.
 pub fn help(app: &mut App, ui: &mut Ui) {
     let mut open = app.help;
     let room = ui.ctx().content_rect().size();

@@ -1,4 +1,4 @@
-//! What explains a shadow: switches, overlays with their legends, comparisons.
+//! Controls that explain a shadow: switches, overlays with their legends, comparisons.
 
 use egui::{Align2, Color32, Pos2, ProgressBar, Rect, Sense, TextStyle, Ui, Vec2};
 use umbrage::config::Preset;
@@ -8,7 +8,7 @@ use crate::app::App;
 use crate::judge::{ERROR_COLOURS, Overlay, Sums, density_colour};
 use crate::session::Session;
 
-/// The switches.
+/// Lays out the switches.
 pub(super) fn look(app: &mut App, ui: &mut Ui) {
     let judging = app.judging();
     let session = &mut app.session;
@@ -62,7 +62,7 @@ pub(super) fn look(app: &mut App, ui: &mut Ui) {
     compare(session, ui);
 }
 
-/// What the overlay's colours mean, and what it amounts to.
+/// Lays out the legend of the overlay's colours, and its numbers.
 fn legend(session: &Session, ui: &mut Ui) {
     let sums = session.fitting_overlay().map(|laid| laid.sums);
     match session.show.overlay {
@@ -116,7 +116,7 @@ fn legend(session: &Session, ui: &mut Ui) {
     }
 }
 
-/// The colours of texels per pixel with their numbers, on a logarithmic scale.
+/// Lays out the colours of texels per pixel with their numbers, on a logarithmic scale.
 fn scale(ui: &mut Ui) {
     const STEPS: u8 = 48;
     let size = Vec2::new(ui.available_width().min(220.0), 28.0);
@@ -143,7 +143,7 @@ fn scale(ui: &mut Ui) {
     }
 }
 
-/// Two configs beside each other.
+/// Lays out the comparison of two configs.
 fn compare(session: &mut Session, ui: &mut Ui) {
     ui.label("Compare with:");
     ui.horizontal_wrapped(|ui| {

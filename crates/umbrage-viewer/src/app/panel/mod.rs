@@ -1,4 +1,4 @@
-//! The controls around the picture, and over it.
+//! The controls around the picture and over it.
 
 mod below;
 mod help;
@@ -20,46 +20,46 @@ pub use viewport::viewport;
 
 use std::collections::BTreeMap;
 
-/// What stands in text fields until it is a value.
+/// State of the controls: texts of fields, and choices that are not yet values.
 #[derive(Clone, Debug, Default)]
 pub struct Fields {
-    /// A file to open.
+    /// Path of a file to open.
     pub file: String,
-    /// Words that settings are searched for.
+    /// Words to search settings for.
     pub search: String,
-    /// Settings as they are being typed, by key, each with what is wrong with it.
+    /// Values that are being typed, by the key of their setting, each with its error.
     pub typed: BTreeMap<&'static str, (String, Option<String>)>,
     /// Text to paste.
     pub pasted: String,
-    /// The caster under the pointer, for one frame: an index into the pose's objects.
+    /// Caster under the pointer, for one frame: an index into the pose's objects.
     pub hovered_caster: Option<usize>,
-    /// Where the card of a pixel opens.
+    /// Position at which the card of a pixel opens.
     pub card_at: egui::Pos2,
-    /// What gave way to the last choice.
+    /// Settings that the last choice changed to make room.
     pub gave_way: Vec<String>,
 }
 
-/// A panel beside the picture. In a small window, or with large text, it leaves the picture its
-/// third.
+/// Limits the width of a panel beside the picture. In a small window, or with large text, the panel
+/// leaves the picture a third.
 fn side(panel: egui::Panel, width: f32, ui: &egui::Ui) -> egui::Panel {
     let third = ui.ctx().content_rect().width() / 3.0;
     let least = third.min(180.0);
     panel.default_size(width.min(third)).size_range(least..=third.max(least))
 }
 
-/// Colour of a split for the controls.
+/// Returns the colour of a split for the controls.
 fn split_colour(split: usize) -> egui::Color32 {
     let [r, g, b] = crate::lines::split_colour(split);
     egui::Color32::from_rgb(r, g, b)
 }
 
-/// A number of bytes for people.
+/// Formats a number of bytes.
 fn bytes(bytes: u64) -> String {
     let mib = bytes as f64 / f64::from(1 << 20);
     if mib >= 10.0 { format!("{mib:.0} MiB") } else { format!("{mib:.1} MiB") }
 }
 
-/// A length for people.
+/// Formats a length in metres.
 fn metres(m: f64) -> String {
     match m.abs() {
         small if small < 0.01 => format!("{:.2} mm", m * 1e3),
@@ -70,7 +70,7 @@ fn metres(m: f64) -> String {
     }
 }
 
-/// The name of an object of a pose.
+/// Returns the name of an object of a pose.
 fn object_name(stage: &crate::stage::Stage, pose: &umbrage_scene::Pose, object: usize) -> String {
     let Some(object) = pose.objects.get(object) else { return format!("object {object}") };
     let node = stage.scene.nodes.get(object.node).map_or("", |node| node.name.as_str());

@@ -1,4 +1,4 @@
-//! Why a pixel is lit or dark: the card of what was clicked on.
+//! The card of the clicked pixel, which explains why it is lit or dark.
 
 use egui::{RichText, Ui, Window};
 use umbrage_render::ProbeAnswer;
@@ -8,7 +8,7 @@ use crate::app::App;
 use crate::judge::{MapLook, Picked, Surface};
 use crate::session::Session;
 
-/// The card, and whether it was closed.
+/// Lays out the card, and closes it if the user asks for that.
 pub(super) fn picked(app: &mut App, ui: &mut Ui) {
     let Some(picked) = app.session.picked.clone() else { return };
     let answer = answer(&app.session, &picked);
@@ -30,7 +30,7 @@ pub(super) fn picked(app: &mut App, ui: &mut Ui) {
     }
 }
 
-/// What the maps said, if it is of the picture that was clicked on.
+/// Returns the answer of the maps, if it belongs to the picture that was clicked.
 fn answer(session: &Session, picked: &Picked) -> Option<ProbeAnswer> {
     let drawn = session.drawn.as_ref().filter(|drawn| drawn.shot == picked.drawn.shot)?;
     drawn.wants.probe?;
@@ -76,7 +76,7 @@ fn card(picked: &Picked, surface: &Surface, answer: Option<ProbeAnswer>, ui: &mu
     }
 }
 
-/// The answer beside the truth, in a sentence.
+/// Describes the answer beside the truth in a sentence.
 fn sentence(surface: &Surface, visibility: f32) -> String {
     let percent = 100.0 * visibility;
     let right = (visibility >= 0.5) == surface.lit;

@@ -1,4 +1,4 @@
-//! What is shown below the picture.
+//! Tabs below the picture: maps, planes, times, casters.
 
 use std::sync::Arc;
 
@@ -12,19 +12,19 @@ use crate::lines;
 use crate::session::Session;
 use crate::studio::{Drawn, Taken};
 
-/// Samples of a curve over one split.
+/// Number of samples of a curve over one split.
 const SAMPLES: u32 = 64;
 
 fn first(drawn: &Drawn) -> Option<&Taken> {
     drawn.taken.first()
 }
 
-/// The view that maps were planned for.
+/// Returns the view that maps were planned for.
 fn planned(drawn: &Drawn) -> &umbrage::View {
     drawn.shot.planned_for.as_ref().unwrap_or(&drawn.shot.view)
 }
 
-/// The maps as pictures.
+/// Lays out the maps as pictures.
 pub(super) fn maps(app: &mut App, drawn: &Arc<Drawn>, ui: &mut Ui) {
     let Some(taken) = first(drawn) else { return };
     let outlined = app.session.show.outlined;
@@ -70,7 +70,7 @@ fn on_map(split: &Split, rect: egui::Rect, point: glam::DVec3) -> Option<egui::P
         .then(|| rect.min + rect.size() * egui::vec2(share.x as f32, share.y as f32))
 }
 
-/// The slice of the view that the map is for.
+/// Draws the slice of the view that the map is for.
 fn outline_slice(painter: &egui::Painter, rect: egui::Rect, (drawn, split): (&Drawn, &Split), colour: Color32) {
     for segment in lines::slice(planned(drawn), split.near, split.far) {
         if let [Some(a), Some(b)] = segment.map(|point| on_map(split, rect, point)) {
@@ -79,7 +79,7 @@ fn outline_slice(painter: &egui::Painter, rect: egui::Rect, (drawn, split): (&Dr
     }
 }
 
-/// The boxes of casters, the outlined one stronger.
+/// Draws the boxes of casters, the outlined one stronger.
 fn outline_casters(
     painter: &egui::Painter,
     rect: egui::Rect,
@@ -102,7 +102,7 @@ fn outline_casters(
     }
 }
 
-/// Grid lines of a logarithmic axis: decades and their parts.
+/// Returns grid lines of a logarithmic axis: decades and their parts.
 fn decades(input: GridInput) -> Vec<GridMark> {
     let (from, to) = input.bounds;
     #[expect(clippy::cast_possible_truncation, reason = "exponents of lengths")]
@@ -120,7 +120,7 @@ fn round(value: f64) -> String {
     if value >= 100.0 { format!("{value:.0}") } else { format!("{}", (value * 100.0).round() / 100.0) }
 }
 
-/// The planes on a logarithmic axis, with predicted aliasing.
+/// Lays out the split planes on a logarithmic axis, with predicted aliasing.
 pub(super) fn planes(drawn: &Drawn, ui: &mut Ui) {
     let Some(taken) = first(drawn) else { return };
     let plan = &taken.stats.plan;
@@ -172,7 +172,7 @@ pub(super) fn planes(drawn: &Drawn, ui: &mut Ui) {
         });
 }
 
-/// Pixels per texel over the depths of each split of the first face, both as logarithms.
+/// Returns pixels per texel over the depths of each split of the first face, both as logarithms.
 fn aliasing(plan: &ShadowPlan, view: &umbrage::View, height: u32) -> Vec<(usize, Vec<[f64; 2]>)> {
     let per_face = plan.splits.len() / plan.faces().max(1);
     let of = |(index, split): (usize, &Split)| {
@@ -188,7 +188,7 @@ fn aliasing(plan: &ShadowPlan, view: &umbrage::View, height: u32) -> Vec<(usize,
     plan.splits.iter().take(per_face).enumerate().filter(|(_, split)| !split.casters.is_empty()).map(of).collect()
 }
 
-/// Times of the last pictures, and what each split costs.
+/// Lays out the times of the last pictures and the cost of each split.
 pub(super) fn times(session: &Session, drawn: &Drawn, ui: &mut Ui) {
     let Some(taken) = first(drawn) else { return };
     ui.horizontal_top(|ui| {
@@ -258,7 +258,7 @@ fn costs(drawn: &Drawn, taken: &Taken, ui: &mut Ui) {
     }
 }
 
-/// The casters of each split.
+/// Lays out the casters of each split.
 pub(super) fn casters(app: &mut App, drawn: &Drawn, ui: &mut Ui) {
     let Some(taken) = first(drawn) else { return };
     let mut hovered = None;

@@ -1,4 +1,4 @@
-//! The left side: what is looked at, from where, when, under which sun.
+//! The left side: scene, camera, time and sun.
 
 use egui::{Panel, ProgressBar, ScrollArea, Slider, TextEdit, Ui};
 
@@ -9,11 +9,11 @@ use crate::path::Recording;
 use crate::session::Session;
 use crate::stage::shipped;
 
-/// Widest field for a file, points: one that took all there is would push the panel wider with
-/// every frame.
+/// Widest field for a file, in points. A field that took all the room would push the panel wider
+/// with every frame.
 const FIELD: f32 = 170.0;
 
-/// The left side.
+/// Lays out the left side.
 pub fn scene(app: &mut App, ui: &mut Ui) {
     side(Panel::left("scene"), 250.0, ui).show(ui, |ui| {
         ScrollArea::both().auto_shrink(false).show(ui, |ui| {
@@ -116,7 +116,7 @@ fn camera(app: &mut App, ui: &mut Ui) {
     paths(session, ui);
 }
 
-/// Records and follows paths.
+/// Lays out the controls that record and follow camera paths.
 fn paths(session: &mut Session, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         match &session.recording {
@@ -142,7 +142,7 @@ fn paths(session: &mut Session, ui: &mut Ui) {
     });
 }
 
-/// Writes the recorded path into the working folder, beside those that are there.
+/// Writes the recorded path into the working folder, beside earlier ones.
 fn save(session: &mut Session) {
     let Some(recording) = session.recording.take() else { return };
     let sun = session.shown_sun().map(|sun| sun.direction());

@@ -1,4 +1,4 @@
-//! The right side: every setting of shadows.
+//! The right side: all settings of shadows.
 
 use egui::{CollapsingHeader, ComboBox, DragValue, Panel, RichText, ScrollArea, Slider, TextEdit, Ui};
 use umbrage::ShadowConfig;
@@ -9,7 +9,7 @@ use crate::app::App;
 use crate::controls::{OTHERS, Row, SECTIONS, Verdict, changes, choose, rows, section, verdict};
 use crate::share::Spelled;
 
-/// The right side.
+/// Lays out the right side.
 pub fn settings(app: &mut App, ui: &mut Ui) {
     side(Panel::right("settings"), 320.0, ui).show(ui, |ui| {
         ui.heading("Shadows");
@@ -38,7 +38,7 @@ fn presets(app: &mut App, ui: &mut Ui) {
     });
 }
 
-/// Takes over a config that was made by hand.
+/// Replaces the config by one that the user made.
 fn take(app: &mut App, config: ShadowConfig, gave_way: Vec<String>) {
     let (config, more) = config.for_lights(&app.session.light_kinds());
     app.fields.gave_way = gave_way.into_iter().chain(more).collect();
@@ -46,7 +46,7 @@ fn take(app: &mut App, config: ShadowConfig, gave_way: Vec<String>) {
     app.session.set_config(config);
 }
 
-/// Copies, and pastes back.
+/// Lays out the buttons that copy and paste a config.
 fn carry(app: &mut App, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         ui.menu_button("copy", |ui| {
@@ -105,10 +105,10 @@ fn sections(app: &mut App, ui: &mut Ui) {
     }
 }
 
-/// A choice that was made: its text.
+/// Text of a choice that was made.
 type Choice = Option<String>;
 
-/// One setting: its name and control, and its line of help.
+/// Lays out one setting: its name, its control, and its line of help.
 fn setting(app: &mut App, row: &Row, ui: &mut Ui) {
     let kinds = app.session.light_kinds();
     let config = app.session.config.clone();
@@ -165,7 +165,7 @@ fn hover(row: &Row) -> String {
     )
 }
 
-/// A setting that the other choices leave no room for: why, or a button that makes room.
+/// Lays out a setting that the other choices exclude: the reason, or a button that makes room.
 fn unused(row: &Row, (config, kinds): (&ShadowConfig, &[LightKind]), ui: &mut Ui) -> Choice {
     let value = row.stand_in();
     match choose(config, kinds, row.setting, &value) {
@@ -183,7 +183,7 @@ fn unused(row: &Row, (config, kinds): (&ShadowConfig, &[LightKind]), ui: &mut Ui
     }
 }
 
-/// The control of a setting that has a value.
+/// Lays out the control of a setting that has a value.
 fn control(app: &mut App, row: &Row, value: &Value, state: (&ShadowConfig, &[LightKind]), ui: &mut Ui) -> Choice {
     match (row.setting.kind, value) {
         (Kind::Words(words), Value::Word(word)) => one_word(row, words, word, state, ui),
@@ -225,7 +225,7 @@ fn control(app: &mut App, row: &Row, value: &Value, state: (&ShadowConfig, &[Lig
     }
 }
 
-/// Words in a list; what a rule excludes is grey and says why.
+/// Lays out words in a list. Words that a rule excludes are grey and show the reason.
 fn one_word(
     row: &Row,
     words: &'static [Word],
@@ -268,7 +268,7 @@ fn one_choice(row: &Row, word: &Word, (config, kinds): (&ShadowConfig, &[LightKi
     }
 }
 
-/// A word for each split.
+/// Lays out a word for each split.
 fn word_for_each(
     row: &Row,
     words: &'static [Word],
@@ -311,7 +311,7 @@ fn colour(numbers: &[f64], ui: &mut Ui) -> Choice {
     changed.then(|| rgb.map(|channel| channel.clamp(0.0, 1.0).to_string()).join(","))
 }
 
-/// Sizes of maps: one for all by a list of powers of two, or typed.
+/// Lays out sizes of maps: one for all from a list of powers of two, or typed.
 fn texels(app: &mut App, row: &Row, sizes: &[u32], ui: &mut Ui) -> Choice {
     let same = sizes.windows(2).all(|pair| pair[0] == pair[1]);
     let mut choice = None;
@@ -328,7 +328,7 @@ fn texels(app: &mut App, row: &Row, sizes: &[u32], ui: &mut Ui) -> Choice {
     choice.or_else(|| typed(app, row, &Value::Counts(shown.to_vec()), ui))
 }
 
-/// A value that is typed; it counts when the field is left.
+/// Lays out a typed value, which takes effect when the field is left.
 fn typed(app: &mut App, row: &Row, value: &Value, ui: &mut Ui) -> Choice {
     let entry = app.fields.typed.get(row.setting.key).cloned();
     let mut text = entry.map_or_else(|| value.to_string(), |(text, _)| text);

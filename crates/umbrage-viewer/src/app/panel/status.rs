@@ -1,11 +1,11 @@
-//! The line at the bottom: what draws, how long that took, what it is waiting for.
+//! The status line at the bottom: the adapter, the times, and the running task.
 
 use egui::{Panel, Ui};
 
 use super::bytes;
 use crate::app::App;
 
-/// The line at the bottom.
+/// Lays out the status line.
 pub fn status(app: &mut App, ui: &mut Ui) {
     // One line always: a line that wraps would resize the picture, which would be drawn again and
     // change the line.

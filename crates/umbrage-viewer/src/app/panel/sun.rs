@@ -5,7 +5,7 @@ use egui::{DragValue, Slider, Ui};
 use crate::session::Session;
 use crate::sun::{Almanac, SkyPoint, Sun};
 
-/// Where the sun stands.
+/// Lays out the controls of the sun.
 pub(super) fn sun(session: &mut Session, ui: &mut Ui) {
     let Some(shown) = session.shown_sun() else {
         ui.weak("The first light of this scene is a lamp.");
@@ -61,7 +61,7 @@ fn by_date(almanac: &mut Almanac, point: SkyPoint, ui: &mut Ui) {
     ui.weak(format!("{:.1}° high, from {:.0}° ({})", point.elevation, point.bearing, compass(point.bearing)));
 }
 
-/// The nearest of eight winds.
+/// Returns the nearest of eight compass points.
 fn compass(bearing: f64) -> &'static str {
     const WINDS: [&str; 8] = ["north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west"];
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bearing of 0 to 360")]

@@ -1,4 +1,4 @@
-//! The picture, what is drawn over it, and the hands that move it.
+//! The picture, the drawings over it, and the gestures that move the camera.
 
 use std::sync::Arc;
 
@@ -18,14 +18,14 @@ use crate::studio::Drawn;
 const POINTS_PER_NOTCH: f32 = 50.0;
 /// Factor of the speed while Shift is held.
 const HASTE: f64 = 4.0;
-/// Half the width of the wipe's handle, points.
+/// Half the width of the wipe's handle in points.
 const HANDLE: f32 = 6.0;
-/// Picture heights that a second of an arrow key turns by.
+/// Picture heights by which an arrow key turns the camera in a second.
 const TURN_PER_S: f64 = 0.6;
 
 const WHOLE: Rect = Rect { min: Pos2::ZERO, max: Pos2 { x: 1.0, y: 1.0 } };
 
-/// The picture.
+/// Lays out the picture.
 pub fn viewport(app: &mut App, ui: &mut Ui) {
     CentralPanel::no_frame().frame(Frame::NONE.fill(Color32::from_gray(24))).show(ui, |ui| {
         let scale = ui.pixels_per_point();
@@ -73,7 +73,7 @@ fn picture(app: &mut App, ui: &mut Ui, rect: Rect) {
     world_lines(app, ui, rect, &drawn);
 }
 
-/// What stands where no picture is yet.
+/// Draws the message in place of a picture that is not there yet.
 fn waiting(app: &App, ui: &mut Ui, rect: Rect) {
     let text = match (&app.session.opening, app.session.busy, &app.session.stage) {
         (Some(opening), ..) => format!("{}: {} …", opening.spec, opening.step().text()),
@@ -90,7 +90,7 @@ fn waiting(app: &App, ui: &mut Ui, rect: Rect) {
     );
 }
 
-/// The second picture to the right of a line that can be dragged.
+/// Draws the second picture to the right of a line that can be dragged.
 fn wipe(app: &mut App, ui: &mut Ui, rect: Rect, second: egui::TextureId) {
     let x = rect.left() + rect.width() * app.session.show.wipe;
     let handle = Rect::from_min_max(Pos2::new(x - HANDLE, rect.top()), Pos2::new(x + HANDLE, rect.bottom()));
@@ -114,7 +114,7 @@ fn wipe(app: &mut App, ui: &mut Ui, rect: Rect, second: egui::TextureId) {
     }
 }
 
-/// Text that can be read on any picture.
+/// Draws text that is readable on any picture.
 fn shadowed(painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str, size: f32) {
     let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(size), Color32::WHITE);
     let room = anchor.anchor_size(at, galley.size()).expand2(Vec2::new(5.0, 2.0));
@@ -122,7 +122,7 @@ fn shadowed(painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str, size:
     painter.galley(room.min + Vec2::new(5.0, 2.0), galley, Color32::WHITE);
 }
 
-/// Frusta, the outlined caster, what was clicked on.
+/// Draws frusta, the outlined caster and the clicked point.
 fn world_lines(app: &mut App, ui: &mut Ui, rect: Rect, drawn: &Arc<Drawn>) {
     let view = &drawn.shot.view;
     let painter = ui.painter_at(rect);
@@ -154,7 +154,7 @@ fn world_lines(app: &mut App, ui: &mut Ui, rect: Rect, drawn: &Arc<Drawn>) {
     }
 }
 
-/// Mouse, touch and keys.
+/// Handles mouse, touch and keys.
 fn hands(app: &mut App, ui: &mut Ui, response: &Response) {
     let rect = response.rect;
     let height = f64::from(rect.height().max(1.0));
@@ -202,7 +202,7 @@ fn hands(app: &mut App, ui: &mut Ui, response: &Response) {
     app.session.fly(&motion);
 }
 
-/// Keys that are held.
+/// Adds the motion of keys that are held.
 fn keys(ui: &Ui, motion: &mut Motion) {
     ui.input(|input| {
         if input.modifiers.command || input.modifiers.alt {
@@ -217,7 +217,7 @@ fn keys(ui: &Ui, motion: &mut Motion) {
     });
 }
 
-/// Lines to read, each with a button that takes it away.
+/// Lays out messages, each with a button that removes it.
 fn messages(app: &mut App, ui: &mut Ui, rect: Rect) {
     if app.session.messages.is_empty() || app.bare {
         return;

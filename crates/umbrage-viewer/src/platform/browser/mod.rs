@@ -26,13 +26,13 @@ pub use self::tasks::Movable;
 pub(crate) use self::tasks::{finish, pause, spawn};
 use crate::{Error, Result};
 
-/// Whether what draws the scene uses the window's device.
+/// True if the renderer of the scene uses the window's device.
 pub(crate) const SHARES_DEVICE: bool = true;
 
-/// How long rays are traced before the page is let go on.
+/// Longest time for which rays are traced before the page may go on.
 const TRACED_AT_ONCE: Duration = Duration::from_millis(40);
 
-/// The interface to graphics: WebGPU, or WebGL2 where that is missing.
+/// Opens WebGPU, or WebGL2 where that is missing.
 pub(crate) async fn instance(display: OwnedDisplayHandle) -> wgpu::Instance {
     let wanted = wgpu::InstanceDescriptor::new_with_display_handle(Box::new(display));
     let backends = match page::query("api").as_deref() {
@@ -42,20 +42,20 @@ pub(crate) async fn instance(display: OwnedDisplayHandle) -> wgpu::Instance {
     wgpu::util::new_instance_with_webgpu_detection(wgpu::InstanceDescriptor { backends, ..wanted }).await
 }
 
-/// The page's canvas, as a window.
+/// Returns the page's canvas as a window.
 pub(crate) fn attributes(_title: &str, _size: [u32; 2]) -> WindowAttributes {
     let canvas = page::element(page::CANVAS).and_then(|element| element.dyn_into().ok());
     // What the page keeps from the browser is chosen key by key: see `outside`.
     Window::default_attributes().with_canvas(canvas).with_prevent_default(false)
 }
 
-/// That nothing draws.
+/// Makes the error of a missing graphics interface.
 pub(crate) fn no_graphics(reason: String) -> Error {
     Error::NoInterface(reason)
 }
 
-/// What is particular about the controls here: keys that a browser magnifies pages by are its own,
-/// and of `egui`'s fonts there are those that the controls use.
+/// Adapts the controls to a browser: its zoom keys stay its own, and only those of `egui`'s fonts
+/// are there that the controls use.
 pub(crate) fn adapt(ctx: &egui::Context) {
     ctx.set_fonts(fonts());
     ctx.options_mut(|options| options.zoom_with_keyboard = false);
@@ -63,7 +63,7 @@ pub(crate) fn adapt(ctx: &egui::Context) {
     ctx.set_os(egui::os::OperatingSystem::from_user_agent(&agent.unwrap_or_default()));
 }
 
-/// The letters of the controls: each family falls back on the other's face.
+/// Returns the fonts of the controls: each family falls back on the other's face.
 fn fonts() -> egui::FontDefinitions {
     use egui::FontFamily::{Monospace, Proportional};
     let faces = [
@@ -81,11 +81,11 @@ fn fonts() -> egui::FontDefinitions {
     fonts
 }
 
-/// Opens what a request names: a world, bytes that were dropped, or an address of the page's own
+/// Opens the scene of a request: a world, bytes that were dropped, or an address of the page's own
 /// server.
 ///
 /// # Errors
-/// [`Failure::Input`] naming the address or the file at fault.
+/// [`Failure::Input`] with the address or the file at fault.
 pub(crate) async fn scene(request: &SceneRequest, bytes: Option<Arc<[u8]>>) -> Result<Scene, Failure> {
     // The page shows what it is about to do.
     pause().await;
@@ -99,7 +99,7 @@ pub(crate) async fn scene(request: &SceneRequest, bytes: Option<Arc<[u8]>>) -> R
     Ok(umbrage_scene::open_slice(&request.scene, &bytes, &request.files)?)
 }
 
-/// Traces a mask between other things that the page has to do.
+/// Traces a mask in pieces, between which the page can go on.
 ///
 /// # Errors
 /// As [`Truth::begin_mask`].
@@ -125,15 +125,16 @@ pub(crate) async fn mask(
     }
 }
 
-/// Where a file of the repository lies: below the page, as `cargo xtask web` lays it.
+/// Returns the address of a file of the repository: below the page, where `cargo xtask web` puts
+/// it.
 ///
 /// # Errors
-/// None here; a file that is not there is said when it is fetched.
+/// None here. A missing file is an error when it is fetched.
 pub(crate) fn shipped(file: &str) -> Result<String, String> {
     Ok(file.to_owned())
 }
 
-/// Runs the viewer: it goes on after this has returned.
+/// Starts the viewer, which goes on after this function has returned.
 #[expect(clippy::unnecessary_wraps, reason = "as events may stop coming")]
 pub(crate) fn run<T: 'static, V: ApplicationHandler<T> + 'static>(
     events: EventLoop<T>,
@@ -143,7 +144,7 @@ pub(crate) fn run<T: 'static, V: ApplicationHandler<T> + 'static>(
     Ok(None)
 }
 
-/// Says on the page what went wrong where there is no viewer to say it.
+/// Shows panics on the page, where there is no viewer to show them.
 pub(crate) fn say_panics() {
     std::panic::set_hook(Box::new(|panic| {
         give_up(&Error::Defect(panic.to_string()));

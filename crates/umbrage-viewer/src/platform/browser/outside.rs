@@ -1,5 +1,5 @@
-//! What the browser tells the page beside what `winit` hears: dropped files, pasted text, a new
-//! address, a tab that is seen again.
+//! Events of the page that `winit` does not report: dropped files, pasted text, a new address, a
+//! tab that is visible again.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -17,7 +17,7 @@ use crate::platform::{Arrival, Wake};
 /// Listens to the page.
 pub(crate) struct Outside {
     arrivals: Rc<RefCell<Vec<Arrival>>>,
-    /// They listen as long as they are kept.
+    /// Listeners, which listen until they are dropped.
     _listeners: Vec<Listener>,
 }
 
@@ -28,7 +28,7 @@ struct Listener {
 }
 
 impl Outside {
-    /// Listens; `wake` is called when something has come.
+    /// Starts listening. `wake` is called after an event.
     pub fn listen(wake: Wake) -> Self {
         let arrivals = Rc::new(RefCell::new(Vec::new()));
         let post = Post { arrivals: Rc::clone(&arrivals), wake };
@@ -47,7 +47,7 @@ impl Outside {
         Self { arrivals, _listeners: listeners }
     }
 
-    /// What has come.
+    /// Takes the events that have arrived.
     pub fn arrivals(&self) -> Vec<Arrival> {
         std::mem::take(&mut self.arrivals.borrow_mut())
     }
@@ -102,7 +102,7 @@ impl Post {
     }
 }
 
-/// What the canvas keeps from the browser: keys and gestures that mean something to the viewer.
+/// Makes listeners that keep keys and gestures of the viewer from the browser.
 fn of_canvas(canvas: &EventTarget) -> Vec<Listener> {
     let keep = |event: Event| event.prevent_default();
     vec![

@@ -1,4 +1,4 @@
-//! The page around the canvas: its address, its clipboard, what it says.
+//! The page around the canvas: its address, its clipboard, its messages.
 
 use js_sys::{Array, Uint8Array};
 use wasm_bindgen::{JsCast, JsValue};
@@ -9,7 +9,7 @@ use crate::Error;
 
 /// The canvas of `index.html`.
 pub(super) const CANVAS: &str = "canvas";
-/// What stands in the canvas's place where there is no viewer.
+/// Element that is shown in the canvas's place where there is no viewer.
 const MESSAGE: &str = "message";
 
 pub(super) fn window() -> Option<web_sys::Window> {
@@ -20,30 +20,30 @@ fn document() -> Option<Document> {
     window()?.document()
 }
 
-/// An element of the page by its id.
+/// Returns an element of the page by its id.
 pub(super) fn element(id: &str) -> Option<Element> {
     document()?.get_element_by_id(id)
 }
 
-/// What stands behind `KEY=` in the address's query.
+/// Returns the value of `KEY=` in the address's query.
 pub(super) fn query(key: &str) -> Option<String> {
     let query = window()?.location().search().ok()?;
     web_sys::UrlSearchParams::new_with_str(&query).ok()?.get(key)
 }
 
-/// The scene of the address's query, and what stands behind its `#`.
+/// Returns the scene of the address's query, and its fragment.
 pub(crate) fn first_address() -> (Option<String>, String) {
     (query("scene"), fragment())
 }
 
-/// What stands behind the `#`.
+/// Returns the address's fragment, without `#`.
 pub(super) fn fragment() -> String {
     let hash = window().and_then(|window| window.location().hash().ok()).unwrap_or_default();
     hash.trim_start_matches('#').to_owned()
 }
 
-/// The page's address with another fragment. It is the address from then on, without an entry in
-/// the history for each turn of a slider.
+/// Returns the page's address with another fragment. It becomes the page's address, without an
+/// entry in the history for each move of a slider.
 pub(crate) fn link(fragment: &str) -> Option<String> {
     let page = window()?;
     let whole = page.location().href().ok()?;
@@ -54,10 +54,10 @@ pub(crate) fn link(fragment: &str) -> Option<String> {
     Some(address)
 }
 
-/// The content of an address.
+/// Fetches the content of an address.
 ///
 /// # Errors
-/// What the server or the browser says, naming the address.
+/// The message of the server or the browser, with the address.
 pub(super) async fn fetched(address: &str) -> Result<Vec<u8>, String> {
     let said = |error: JsValue| {
         let why = error.dyn_ref::<js_sys::Error>().map_or("the browser refuses".to_owned(), |e| e.message().into());
@@ -72,10 +72,10 @@ pub(super) async fn fetched(address: &str) -> Result<Vec<u8>, String> {
     Ok(Uint8Array::new(&buffer).to_vec())
 }
 
-/// Gives a file to the browser to keep. Its name.
+/// Saves a file by way of the browser, and returns its name.
 ///
 /// # Errors
-/// Why the browser does not take it, for people.
+/// The reason why the browser refuses it, for users.
 pub(crate) fn save(name: &str, extension: &str, bytes: &[u8]) -> Result<String, String> {
     let name = format!("{name}.{extension}");
     let given = || -> Option<()> {
@@ -94,7 +94,7 @@ pub(crate) fn save(name: &str, extension: &str, bytes: &[u8]) -> Result<String, 
     Ok(name)
 }
 
-/// Takes over what is to be copied: the page's clipboard is not the controls'.
+/// Copies text to the page's clipboard, because the controls cannot.
 pub(crate) fn take_copies(output: &mut egui::PlatformOutput) {
     output.commands.retain(|command| {
         let egui::OutputCommand::CopyText(text) = command else { return true };
@@ -107,7 +107,7 @@ pub(crate) fn take_copies(output: &mut egui::PlatformOutput) {
     });
 }
 
-/// Says on the page how far the viewer is, for programs that look at it: `cargo xtask test --web`.
+/// Writes the state of the viewer on the page, for programs that read it: `cargo xtask test --web`.
 pub(crate) fn tell(told: impl FnOnce() -> Vec<(&'static str, String)>) {
     let root = document().and_then(|document| document.document_element());
     let Some(Ok(root)) = root.map(Element::dyn_into::<HtmlElement>) else { return };
@@ -121,7 +121,7 @@ pub(crate) fn tell(told: impl FnOnce() -> Vec<(&'static str, String)>) {
     }
 }
 
-/// Says why there is no viewer, or no more, in its place.
+/// Shows the reason why there is no viewer, in its place.
 pub(crate) fn give_up(error: &Error) {
     web_sys::console::error_1(&error.to_string().into());
     let Some(message) = element(MESSAGE) else { return };

@@ -1,16 +1,16 @@
-//! Tasks of the page: what a desktop does on threads.
+//! Tasks of the page, in place of a desktop's threads.
 
 use wasm_bindgen::JsValue;
 use wasm_bindgen_futures::{JsFuture, spawn_local};
 
-/// What may be handed to [`spawn`]: anything, as all runs on one thread.
+/// Type that can be passed to [`spawn`]: any, because all tasks run on one thread.
 pub trait Movable {}
 impl<T> Movable for T {}
 
-/// Milliseconds after which the page has drawn what was changed last.
+/// Milliseconds after which the page has drawn the last change.
 const PAUSE_MS: i32 = 20;
 
-/// Runs a future whenever it can go on.
+/// Runs a future whenever it can continue.
 #[expect(clippy::unnecessary_wraps, reason = "as threads may run out")]
 pub(crate) fn spawn<F: Future<Output = ()> + 'static>(
     _name: &str,
@@ -20,12 +20,12 @@ pub(crate) fn spawn<F: Future<Output = ()> + 'static>(
     Ok(())
 }
 
-/// Runs a future to its end, some time.
+/// Runs a future to its end, at some later time.
 pub(crate) fn finish(future: impl Future<Output = ()> + 'static) {
     spawn_local(future);
 }
 
-/// Lets the page draw and hear.
+/// Lets the page draw and handle events.
 pub(crate) async fn pause() {
     let timer = js_sys::Promise::new(&mut |resolve, _| {
         let timer = super::page::window()

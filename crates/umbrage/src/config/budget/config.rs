@@ -1,11 +1,11 @@
-//! The config that a budget pays for.
+//! Config for a budget.
 
 use super::{Budget, EDGE_STEP};
 use crate::config::{Filter, Preset, ShadowConfig};
 use crate::margin::FilterReach;
 use crate::{Error, Result};
 
-/// From so many texels on, so many splits.
+/// Number of splits and filter from a number of texels on.
 struct Rung {
     texels: u64,
     splits: usize,
@@ -22,7 +22,7 @@ const RUNGS: [Rung; 3] = [
 ];
 
 impl Budget {
-    /// Edge in texels of the smallest map that [`Budget::edge`] gives and that a filter works in.
+    /// Edge in texels of the smallest map that [`Budget::edge`] gives and in which a filter works.
     #[must_use]
     pub fn least_edge(filter: &Filter, is_stabilised: bool) -> u32 {
         let margins = FilterReach::from(filter).least_map_size(is_stabilised);
@@ -31,8 +31,9 @@ impl Budget {
 }
 
 impl ShadowConfig {
-    /// [`Preset::Balanced`] within a budget: number of splits, sizes of maps and filter. Maps never
-    /// take more than the budget; a larger budget never has fewer texels.
+    /// [`Preset::Balanced`] within a budget, which decides the number of splits, the sizes of maps
+    /// and the filter. Maps never take more than the budget; a larger budget never has fewer
+    /// texels.
     ///
     /// ```
     /// use umbrage::config::{Budget, ShadowConfig};
@@ -43,8 +44,8 @@ impl ShadowConfig {
     /// ```
     ///
     /// # Errors
-    /// [`Error::BudgetTooSmall`] if it does not pay for the map of a single split; it says the
-    /// least that does.
+    /// [`Error::BudgetTooSmall`] if the budget does not pay for the map of a single split. The
+    /// error contains the least budget that does.
     pub fn for_budget(budget: Budget) -> Result<Self> {
         let balanced = Preset::Balanced.config();
         let texel_bytes = balanced.depth_format.texel_bytes();

@@ -1,4 +1,4 @@
-//! Budgets as text.
+//! Parsing of budgets.
 
 use std::str::FromStr;
 
