@@ -119,8 +119,8 @@ impl Lookup {
 }
 
 /// True if both forms of the bias decide alike about a tap that lies `gap` metres behind the edge
-/// of shade by the planner's rule. The WGSL's constant is larger by `more` metres. The tap's surface
-/// faces the light.
+/// of shade by the planner's rule. The WGSL's constant is larger by `more` metres. The tap's
+/// surface faces the light.
 fn agree(bias: &Bias, receiver: &Receiver, depth: f32, more: f64, offset: DVec2, gap: f64) -> bool {
     let rise = bias.depth_per_texel.dot(offset) - (bias.corner_per_texel * offset).length();
     let edge_m = rise.min(0.0) - bias.constant_m - more;
