@@ -4,7 +4,7 @@
 pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// Format of masks: red is visibility, green is 1 where a surface was hit.
 pub(crate) const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Unorm;
-/// Format of unit normals for a mask. Sixteen bits would turn planes by a millimetre within a texel.
+/// Format of unit normals for a mask. Sixteen bits would tilt the planes of receivers.
 pub(crate) const NORMALS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 /// Format of the mask that a picture takes its shadows from: red is visibility.
 pub(crate) const LIT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;

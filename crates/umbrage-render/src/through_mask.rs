@@ -1,5 +1,5 @@
-//! Pictures that take the first light's shadows from a mask: depth and normals first, then the mask,
-//! then the picture.
+//! Pictures that take the first light's shadows from a mask: depth and normals first, then the
+//! mask, then the picture.
 //!
 //! A forward picture asks for shadows once per fragment, and fragments are run for whole blocks of
 //! pixels: where triangles are small, several times per pixel. A mask asks once.
