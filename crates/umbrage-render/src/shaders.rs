@@ -68,7 +68,8 @@ pub(crate) fn depth() -> String {
     [SCENE, VIEW, include_str!("shaders/depth.wgsl")].join("\n")
 }
 
-/// WGSL of passes that draw depth and normals for a mask. Bind group 0 is the frame, 1 the material.
+/// WGSL of passes that draw depth and normals for a mask. Bind group 0 is the frame, 1 the
+/// material.
 pub(crate) fn facing() -> String {
     [SCENE, VIEW, NORMALS, include_str!("shaders/facing.wgsl")].join("\n")
 }
