@@ -12,7 +12,7 @@ use umbrage_wgpu::{MaskFrame, MaskNormals, ShadowMask, Shadows};
 
 use crate::contact::Contact;
 use crate::draw_list::{Drawable, Drawn, Show};
-use crate::formats::{LIT_FORMAT, NORMALS_FORMAT, PICTURE_FORMAT};
+use crate::formats::{LIT_FORMAT, MARK_FORMAT, NORMALS_FORMAT, PICTURE_FORMAT};
 use crate::forward::{Bindings, Forward, Samples, Shading, bind, pick_pieces};
 use crate::materials::{GpuMaterial, Materials};
 use crate::surfaces::{Depth, Recipe, Surface, SurfacePipelines, Vertices};
@@ -26,6 +26,7 @@ pub(crate) struct ThroughMask {
     picture: SurfacePipelines,
     lit_layout: wgpu::BindGroupLayout,
     mask: ShadowMask,
+    in_two_draws: bool,
     /// Made for a picture's depth, when a picture is wanted.
     targets: Option<Targets>,
 }
@@ -34,6 +35,8 @@ struct Targets {
     size: [u32; 2],
     normals: wgpu::TextureView,
     lit: wgpu::TextureView,
+    /// Marks of a mask in two draws.
+    marks: Option<wgpu::TextureView>,
     /// Depth and normals, for the mask.
     surfaces: wgpu::BindGroup,
     /// The mask, for the picture.
@@ -101,6 +104,13 @@ impl ThroughMask {
             |entry| Surface { fragment_entry: Some(entry), format: Some(PICTURE_FORMAT), ..Surface::default() };
         let [solid, masked] = ["fs_facing", "fs_facing_masked"].map(facing);
         let text = shaders::forward(shaders::LIT, Coordinates::World, false);
+        // Software drivers run what a branch leaves out; on a GPU one draw is less work.
+        let in_two_draws = gpu.adapter_info.device_type == wgpu::DeviceType::Cpu;
+        let (maps, normals) = (shadows.maps(), MaskNormals::Texture);
+        let mask = match in_two_draws {
+            true => ShadowMask::in_two_draws(device, maps, LIT_FORMAT, normals, MARK_FORMAT)?,
+            false => ShadowMask::new(device, maps, LIT_FORMAT, normals)?,
+        };
         // The third of each is never drawn: what is translucent asks for itself.
         Ok(Self {
             facing: recipe("ThroughMask::facing", shaders::facing(), None, Depth::Drawn)
@@ -109,7 +119,8 @@ impl ThroughMask {
                 "ThroughMask::picture",
                 ["fs_picture_opaque", "fs_picture_masked", "fs_picture_opaque"].map(picture),
             ),
-            mask: ShadowMask::new(device, shadows.maps(), LIT_FORMAT, MaskNormals::Texture)?,
+            mask,
+            in_two_draws,
             lit_layout,
             targets: None,
         })
@@ -153,7 +164,8 @@ impl ThroughMask {
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&lit) }],
         });
         let surfaces = self.mask.bind_group(&gpu.device, &picture.depth, Some(&normals))?;
-        Ok(Targets { size, normals, lit, surfaces, lit_group })
+        let marks = self.in_two_draws.then(|| texture("ThroughMask::marks", MARK_FORMAT));
+        Ok(Targets { size, normals, lit, marks, surfaces, lit_group })
     }
 
     /// Begins the pass for [`ThroughMask::draw_facing`].
@@ -197,6 +209,13 @@ impl ThroughMask {
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("ThroughMask::mask"),
             color_attachments: &[self.attachment(|targets| &targets.lit)],
+            depth_stencil_attachment: self.targets.as_ref().and_then(|targets| targets.marks.as_ref()).map(|view| {
+                wgpu::RenderPassDepthStencilAttachment {
+                    view,
+                    depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Discard }),
+                    stencil_ops: None,
+                }
+            }),
             timestamp_writes,
             ..Default::default()
         })

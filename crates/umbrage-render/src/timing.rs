@@ -3,8 +3,8 @@
 use crate::capture::read_buffer;
 use crate::{Gpu, Result};
 
-/// Number of passes of a frame beside those of its maps: the depth for contact shadows, the mask, and
-/// the picture, which may be three: its normals, a mask of them and itself.
+/// Number of passes of a frame beside those of its maps: the depth for contact shadows, the mask,
+/// and the picture, which may be three: its normals, a mask of them and itself.
 const VIEW_PASSES: u32 = 5;
 /// Most passes for each map. Drawn slice by slice, a map's pass is followed by those of the mask
 /// and the picture; for translucent surfaces the map and the picture are drawn once more.

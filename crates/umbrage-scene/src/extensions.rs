@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-/// Extensions of the files that [`crate::open`] reads, in lower case and without the dot. `Display` writes
-/// them as a list for messages.
+/// Extensions of the files that [`crate::open`] reads, in lower case and without the dot. `Display`
+/// writes them as a list for messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extensions {
     /// Extensions of glTF files.

@@ -128,10 +128,10 @@ fn joined(sources: &Path, (root, features, name): &Root) -> Result<Text> {
     let counts: Vec<String> = (1..=MOST_MAPS).map(|map| format!("maps_{map}")).collect();
     let known = FEATURES.into_iter().chain(counts.iter().map(String::as_str));
     let features = Features {
-        // All other conditions are choices that a receiver's text may be made without at run time:
-        // `ReceiverText` of `umbrage-shaders` knows them. They stay in the texts of receivers;
-        // every other text has all of them.
-        default: if *root == "receiver::api" { Feature::Keep } else { Feature::Enable },
+        // All other conditions are choices that a text may be made without at run time:
+        // `ReceiverText` and `MaskText` of `umbrage-shaders` know them. They stay in the texts of
+        // receivers and masks; every other text has all of them.
+        default: if ["receiver::api", "pass::mask"].contains(root) { Feature::Keep } else { Feature::Enable },
         flags: known.map(|name| (name.to_owned(), features.iter().any(|wanted| wanted == name).into())).collect(),
     };
     let mut compiler = Wesl::new(sources);

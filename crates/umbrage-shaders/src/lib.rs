@@ -194,13 +194,25 @@ pub fn seen(samples: bool) -> &'static str {
     if samples { text!("seen_of_samples") } else { text!("seen") }
 }
 
+/// Choices of a mask's pass.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct MaskText {
+    /// True if there is a texture of normals beside the depth.
+    pub normals: bool,
+    /// True if queries contain their pixel's footprint, for [`ExactEdges`] of several positions.
+    pub footprint: bool,
+    /// True if pixels that bounds do not decide are discarded, for a second draw; the receiver's
+    /// text is then one of [`ReceiverText::bounds`].
+    pub bounds: bool,
+}
+
 /// WGSL of a whole pass to put after a [`receiver`]: the entry points `umbrage_mask_vertex` and
-/// `umbrage_mask_fragment` convert an image's depth (and its normals, if there is a texture of
-/// them) to a mask of visibility. With `footprint` queries contain their pixel's footprint, for
-/// [`ExactEdges`] of several positions.
+/// `umbrage_mask_fragment` convert an image's depth, and its normals where there are some, to a
+/// mask of visibility.
 #[must_use]
-pub fn mask(group: u32, normals: bool, footprint: bool) -> String {
-    let text = if normals { text!("mask_with_normals") } else { text!("mask") };
+pub fn mask(group: u32, choices: MaskText) -> String {
+    let MaskText { normals, footprint, bounds } = choices;
+    let text = variant::resolved(if normals { text!("mask_with_normals") } else { text!("mask") }, |_| bounds);
     format!("const UMBRAGE_MASK_GROUP = {group}u;\nconst UMBRAGE_MASK_FOOTPRINT = {footprint};\n{text}\n")
 }
 

@@ -151,6 +151,10 @@ pub struct ReceiverText {
     /// shadow ends; see [`stored_runs`]. For depth that can be loaded from, and only with the
     /// filter [`FilterKind::Pcf3`].
     pub exact: Option<ExactEdges>,
+    /// True if the text knows only the answers that bounds over a filter's kernel give, without the
+    /// filter: it then has `umbrage_is_undecided() -> bool`. For a first draw of cheap pixels,
+    /// which leaves the others to a second one.
+    pub bounds: bool,
 }
 
 impl Default for ReceiverText {
@@ -173,6 +177,7 @@ impl From<Maps> for ReceiverText {
             lights: Lights::Any,
             sliced: true,
             exact: None,
+            bounds: false,
         }
     }
 }
@@ -206,6 +211,7 @@ impl ReceiverText {
             "faces" => self.lights == Lights::Any,
             "sliced" => self.sliced,
             "exact" => self.exact.is_some(),
+            "bounds" => self.bounds,
             "counted" => self.exact.is_some_and(|exact| exact.counted),
             "linear" => !suns_alone && self.maps.r32f,
             _ => unreachable!("the condition {name} stands for no choice"),

@@ -3,7 +3,7 @@
 use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use umbrage_shaders::layout::{BiasKind, FilterKind, MetricKind, SelectionKind, TransitionKind};
-use umbrage_shaders::{Bound, Casters, ExactEdges, Lights, Maps, MomentMaps, Projection, ReceiverText};
+use umbrage_shaders::{Bound, Casters, ExactEdges, Lights, Maps, MaskText, MomentMaps, Projection, ReceiverText};
 
 const WITHOUT_LOADS: Maps = Maps {
     bound: Bound::Array,
@@ -286,8 +286,10 @@ fn every_name_is_in_our_namespace() {
 
 #[test]
 fn deferred_masks_stand_behind_receivers() {
-    for normals in [false, true] {
-        validated(&(umbrage_shaders::receiver(1, Maps::default()) + &umbrage_shaders::mask(0, normals, normals)));
+    for (normals, bounds) in [(false, false), (true, false), (false, true), (true, true)] {
+        let text = ReceiverText { bounds, ..ReceiverText::default() };
+        let own = umbrage_shaders::mask(0, MaskText { normals, footprint: normals, bounds });
+        validated(&(umbrage_shaders::receiver(1, text) + &own));
     }
 }
 

@@ -56,6 +56,14 @@ pub enum Error {
         /// True if a texture was given.
         given: bool,
     },
+    /// A mask in two draws was asked for with a depth target that stores no depth.
+    #[error(
+        "a mask's depth target was to have the format {format:?}, which stores no depth; give Depth16Unorm or another depth format"
+    )]
+    MaskDepth {
+        /// The requested format.
+        format: wgpu::TextureFormat,
+    },
     /// The device has no texture as large as a map.
     #[error(
         "map_sizes[{split}] is {size}, but this device's textures are at most {limit} texels wide \

@@ -10,6 +10,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, DVec3};
 use umbrage::config::{Coordinates, Edges, ShadowConfig};
 
+use umbrage_shaders::MaskText;
+
 use crate::{Error, Result, ShadowMaps};
 
 /// The camera that drew the depth.
@@ -71,7 +73,8 @@ impl Uniform {
 /// cannot load from a depth texture.
 #[derive(Debug)]
 pub struct ShadowMask {
-    pipeline: wgpu::RenderPipeline,
+    /// One, or that of pixels that bounds decide and then that of the others.
+    pipelines: Vec<wgpu::RenderPipeline>,
     layout: wgpu::BindGroupLayout,
     uniform: wgpu::Buffer,
     normals: MaskNormals,
@@ -103,7 +106,32 @@ impl ShadowMask {
     ) -> Result<Self> {
         match maps.edges() {
             Edges::Exact => Err(Error::MaskNeedsRuns),
-            Edges::Sampled => Self::with(device, maps, format, normals, None),
+            Edges::Sampled => Self::with(device, maps, (format, None), normals, None),
+        }
+    }
+
+    /// [`ShadowMask::new`] for a pass that has a depth target too, of `depth_format` and cleared to
+    /// 1, which nothing else uses. The answers are equal.
+    ///
+    /// A first draw answers the pixels that bounds over the filter's kernel decide, which are most,
+    /// and marks them in depth. The early depth test then keeps the second draw, which has the
+    /// whole filter, from all others. It is quicker where a branch that a pixel does not take costs
+    /// nearly as much as one that it takes: on software drivers. Kernels that are no square of
+    /// texels ([`umbrage::config::Filter::Disc`] and the like) have no bounds, and one draw.
+    ///
+    /// # Errors
+    /// As [`ShadowMask::new`], and [`Error::MaskDepth`] if the format is no depth format.
+    pub fn in_two_draws(
+        device: &wgpu::Device,
+        maps: &ShadowMaps,
+        format: wgpu::TextureFormat,
+        normals: MaskNormals,
+        depth_format: wgpu::TextureFormat,
+    ) -> Result<Self> {
+        match maps.edges() {
+            Edges::Exact => Err(Error::MaskNeedsRuns),
+            Edges::Sampled if !depth_format.has_depth_aspect() => Err(Error::MaskDepth { format: depth_format }),
+            Edges::Sampled => Self::with(device, maps, (format, Some(depth_format)), normals, None),
         }
     }
 
@@ -119,13 +147,13 @@ impl ShadowMask {
         normals: MaskNormals,
         runs: MaskRuns<'_>,
     ) -> Result<Self> {
-        Self::with(device, maps, format, normals, (maps.edges() == Edges::Exact).then_some(runs))
+        Self::with(device, maps, (format, None), normals, (maps.edges() == Edges::Exact).then_some(runs))
     }
 
     fn with(
         device: &wgpu::Device,
         maps: &ShadowMaps,
-        format: wgpu::TextureFormat,
+        (format, depth_format): (wgpu::TextureFormat, Option<wgpu::TextureFormat>),
         normals: MaskNormals,
         runs: Option<MaskRuns<'_>>,
     ) -> Result<Self> {
@@ -164,46 +192,36 @@ impl ShadowMask {
             entries: &entries,
         });
         let footprint = runs.is_some() && maps.config().edge_samples > 1;
-        let own = umbrage_shaders::mask(0, normals == MaskNormals::Texture, footprint);
-        let text = maps.receiver_wgsl(1) + runs.map_or("", |runs| runs.wgsl) + &own;
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("ShadowMask::shader"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(text)),
-        });
+        let choices = MaskText { normals: normals == MaskNormals::Texture, footprint, bounds: false };
+        let whole = maps.receiver_wgsl(1) + runs.map_or("", |runs| runs.wgsl) + &umbrage_shaders::mask(0, choices);
+        let first = maps.bounds_receiver_wgsl(1).filter(|_| depth_format.is_some());
+        let first = first.map(|text| text + &umbrage_shaders::mask(0, MaskText { bounds: true, ..choices }));
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("ShadowMask::pipeline_layout"),
             bind_group_layouts: &[Some(&layout), Some(maps.receiver_layout()), runs.map(|runs| runs.layout)]
                 [..if runs.is_some() { 3 } else { 2 }],
             immediate_size: 0,
         });
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("ShadowMask::pipeline"),
-            layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("umbrage_mask_vertex"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("umbrage_mask_fragment"),
-                compilation_options: Default::default(),
-                targets: &[Some(format.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+        // Depth is 1 where nobody has answered, and 0, that of the triangle, where the first did.
+        let pipeline = |text, depth_compare| {
+            let depth_stencil = depth_format.map(|format| wgpu::DepthStencilState {
+                format,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(depth_compare),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            });
+            pipeline(device, text, &pipeline_layout, format, depth_stencil)
+        };
+        let first = first.map(|text| pipeline(text, wgpu::CompareFunction::Always));
+        let pipelines = first.into_iter().chain([pipeline(whole, wgpu::CompareFunction::Less)]).collect();
         let uniform = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("ShadowMask::uniform"),
             size: size_of::<Uniform>() as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        Ok(Self { pipeline, layout, uniform, normals })
+        Ok(Self { pipelines, layout, uniform, normals })
     }
 
     /// Writes a frame's camera to the GPU. Takes effect with the next submission to `queue`.
@@ -246,9 +264,46 @@ impl ShadowMask {
     /// Draws the mask into a pass with one colour target and no depth. Changes bind groups 0 and 1;
     /// with [`MaskRuns`] the application sets group 2.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, maps: &ShadowMaps, group: &wgpu::BindGroup) {
-        pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, group, &[]);
         pass.set_bind_group(1, maps.receiver_bind_group(), &[]);
-        pass.draw(0..3, 0..1);
+        for pipeline in &self.pipelines {
+            pass.set_pipeline(pipeline);
+            pass.draw(0..3, 0..1);
+        }
     }
+}
+
+/// A pipeline that draws one triangle over the whole picture.
+fn pipeline(
+    device: &wgpu::Device,
+    text: String,
+    layout: &wgpu::PipelineLayout,
+    format: wgpu::TextureFormat,
+    depth_stencil: Option<wgpu::DepthStencilState>,
+) -> wgpu::RenderPipeline {
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("ShadowMask::shader"),
+        source: wgpu::ShaderSource::Wgsl(Cow::Owned(text)),
+    });
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("ShadowMask::pipeline"),
+        layout: Some(layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("umbrage_mask_vertex"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("umbrage_mask_fragment"),
+            compilation_options: Default::default(),
+            targets: &[Some(format.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
 }

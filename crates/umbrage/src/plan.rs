@@ -19,8 +19,8 @@ pub struct ShadowPlan {
     /// The splits, nearest first. For a point light, the splits of its first face, then those of
     /// the next.
     pub splits: Vec<Split>,
-    /// Split planes `C_0 ..= C_m`: view depths in metres; with radial bands distances to the
-    /// camera, see [`ShadowPlan::metric`].
+    /// Split planes `C_0 ..= C_m`: view depths in metres. With radial bands they are distances to
+    /// the camera, see [`ShadowPlan::metric`].
     pub planes: Vec<f64>,
     /// The plane that measures view depth: `xyz · point + w`, in metres.
     pub view_depth_plane: DVec4,

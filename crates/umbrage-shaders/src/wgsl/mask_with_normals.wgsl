@@ -33,6 +33,12 @@ fn umbrage_mask_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
         query.dy = umbrage_mask_step(pixel, from_eye, vec2i(0, 1));
     }
     let shadow = umbrage_shadow(query);
+    @if(bounds)
+    {
+        if umbrage_is_undecided() && !is_empty {
+            discard;
+        }
+    }
     return vec4f(select(shadow.visibility, 1.0, is_empty), select(1.0, 0.0, is_empty), 0.0, 1.0);
 }
 

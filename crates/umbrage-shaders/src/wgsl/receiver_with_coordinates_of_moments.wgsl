@@ -81,6 +81,11 @@ fn umbrage_edge_counts() -> vec4u {
     return umbrage_edges_counts;
 }
 
+@if(bounds)
+fn umbrage_is_undecided() -> bool {
+    return umbrage_filter_is_undecided;
+}
+
 fn umbrage_point(query: UmbrageQuery) -> UmbragePoint {
     var point: UmbragePoint;
     point.position = query.position;
@@ -297,6 +302,9 @@ struct UmbrageCrease {
 
 @if(exact && counted)
 var<private> umbrage_edges_counts: vec4u;
+
+@if(bounds)
+var<private> umbrage_filter_is_undecided: bool;
 
 fn umbrage_filter_gradient_noise(pixel: vec2f) -> f32 {
     return fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));

@@ -72,6 +72,11 @@ fn umbrage_edge_counts() -> vec4u {
     return umbrage_edges_counts;
 }
 
+@if(bounds)
+fn umbrage_is_undecided() -> bool {
+    return umbrage_filter_is_undecided;
+}
+
 fn umbrage_point(query: UmbrageQuery) -> UmbragePoint {
     var point: UmbragePoint;
     point.position = query.position;
@@ -606,6 +611,17 @@ const UMBRAGE_FILTER_DOUBTED_LIGHT: f32 = 0.5;
 
 const UMBRAGE_FILTER_LEAST_OWN: f32 = 0.02;
 
+@if(bounds)
+var<private> umbrage_filter_is_undecided: bool;
+
+@if(bounds)
+fn umbrage_filter_lit_by_bounds(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
+    let plain = UMBRAGE_KERNEL_UNSURE;
+    umbrage_filter_is_undecided = umbrage_filter_is_undecided || plain == UMBRAGE_KERNEL_UNSURE;
+    return plain;
+}
+
+@if(!bounds)
 fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftness, at: UmbrageReceiver, centre: vec2f) -> f32 {
     var asked = at;
     var seen = vec3f(0.0);
@@ -1120,6 +1136,9 @@ fn umbrage_shade_lit_share(frame: u32, split: UmbrageSplit, index: u32, plane: U
     {
         at = umbrage_bias_without_plane(at, umbrage_kernel_reach(kind, softness, at));
     }
+    @if(bounds)
+    let lit = umbrage_filter_lit_by_bounds(layer, kind, softness, at, clamp(at.texel, first, last));
+    @if(!bounds)
     let lit = umbrage_filter_lit_share(layer, kind, softness, at, clamp(at.texel, first, last));
     @if(exact)
     return select(0.0, -found, lit >= 0.5);

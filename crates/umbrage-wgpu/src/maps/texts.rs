@@ -1,8 +1,8 @@
 //! WGSL texts that applications put before the shaders of receivers.
 
-use umbrage::config::{Coordinates, Edges, LightKind, Selection, SplitMetric, Storage};
 #[cfg(doc)]
-use umbrage::config::{DepthFormat, Filter};
+use umbrage::config::DepthFormat;
+use umbrage::config::{Coordinates, Edges, Filter, LightKind, Selection, SplitMetric, Storage};
 use umbrage_shaders::layout::{MetricKind, SelectionKind};
 use umbrage_shaders::{Bound, ExactEdges, Lights, Maps, Projection, ReceiverText};
 
@@ -32,6 +32,17 @@ impl ShadowMaps {
         let text = self.receiver_text();
         let exact = text.exact.map(|exact| ExactEdges { counted: true, ..exact });
         umbrage_shaders::receiver(group, ReceiverText { exact, ..text })
+    }
+
+    /// [`ShadowMaps::receiver_wgsl`] that knows only the answers that bounds over the filter's kernel
+    /// give (`umbrage_is_undecided`); `None` if the config's filter has no bounds.
+    pub(crate) fn bounds_receiver_wgsl(&self, group: u32) -> Option<String> {
+        let has_bounds = match self.config.filter {
+            Filter::Pcf2 | Filter::Pcf3 { .. } | Filter::Pcf5 { .. } | Filter::Pcf7 { .. } | Filter::Castano5 => true,
+            Filter::Hard | Filter::Disc { .. } | Filter::Pcss { .. } | Filter::Moments(_) => false,
+        };
+        let text = ReceiverText { bounds: true, ..self.receiver_text() };
+        has_bounds.then(|| umbrage_shaders::receiver(group, text))
     }
 
     /// Choices for which the receivers' text is made: those that the config fixes, and no others.
