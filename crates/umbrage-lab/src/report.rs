@@ -42,7 +42,7 @@ pub struct Report {
     /// `planar` or `radial`: what `planes_m` and the splits' ends measure, view depth or distance
     /// to the eye.
     pub bands: String,
-    /// Where planes stand: `uniform`, `log`, `practical`, `manual` or `fitted`.
+    /// Where planes stand: `uniform`, `log`, `practical`, `manual` or `optimal`.
     pub scheme: String,
     /// `none`, `psm`, `lispsm` or `tsm`: one for all splits, or one for each.
     pub warp: Vec<String>,

@@ -52,6 +52,9 @@ pub enum Error {
         /// The key as given.
         key: String,
     },
+    /// A setting was given a word of a former version.
+    #[error("shadow setting {0}")]
+    RenamedWord(crate::config::Renamed),
     /// A budget that cannot be read.
     #[error("budget {text:?}: {reason}")]
     InvalidBudget {

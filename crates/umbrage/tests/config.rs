@@ -3,7 +3,8 @@
 
 use proptest::prelude::*;
 use umbrage::config::{
-    Choice, Kind, LightKind, Preset, RULES, Range, Rebuilds, SETTINGS, Setting, Stability, Transition,
+    Choice, Kind, LightKind, Preset, RENAMED, RULES, Range, Rebuilds, Renamed, SETTINGS, Setting, Stability,
+    Transition,
 };
 use umbrage::{Error, ShadowConfig};
 
@@ -86,6 +87,26 @@ fn a_refused_setting_changes_nothing() {
         assert_eq!(config, before, "{bad}");
     }
     assert!(matches!(config.apply(&given("no-such-thing=1")), Err(Error::UnknownSetting { .. })));
+}
+
+#[test]
+fn an_old_word_is_refused_by_the_new_one() {
+    for row in RENAMED {
+        let old = [(row.key.to_owned(), row.old.to_owned())];
+        let new = [(row.key.to_owned(), row.new.to_owned())];
+        let mut config = Preset::Papers.config();
+        let error = config.apply(&old).unwrap_err();
+        assert!(matches!(error, Error::RenamedWord(renamed) if renamed == *row), "{row:?}: {error:?}");
+        let message = format!("{} `{}` is now called `{}`", row.key, row.old, row.new);
+        assert!(error.to_string().contains(&message), "{error}");
+        let json = format!("{{\"{}\": \"{}\"}}", row.key, row.old);
+        let refused = serde_json::from_str::<ShadowConfig>(&json).unwrap_err().to_string();
+        assert!(refused.contains(&message), "{refused}");
+        assert_eq!(config.apply(&new).map(|_| ()), Ok(()), "{row:?}");
+        let setting = SETTINGS.iter().find(|setting| setting.key == row.key).unwrap();
+        assert!(setting.kind.check(row.new).is_ok() && setting.kind.check(row.old).is_err(), "{row:?}");
+    }
+    assert!(Renamed::find("scheme", "optimal").is_none() && Renamed::find("filter", "fitted").is_none());
 }
 
 /// Makes a choice without breaking any rule of its own making.

@@ -22,10 +22,9 @@ variants of one enum. `ShadowConfig::apply` takes keys and values as listed here
 (textures and bind groups), or the pipelines.
 ";
 
-/// Words as a list; former words are read, but not offered.
+/// Words as a list.
 fn listed(words: &[Word]) -> String {
-    let offered = words.iter().filter(|word| !word.help.starts_with("Old name"));
-    offered.map(|word| format!("`{}`", word.word)).collect::<Vec<_>>().join(", ")
+    words.iter().map(|word| format!("`{}`", word.word)).collect::<Vec<_>>().join(", ")
 }
 
 fn values(kind: Kind) -> String {

@@ -16,6 +16,7 @@ mod layout;
 mod look;
 mod names;
 mod presets;
+mod renamed;
 mod rules;
 #[cfg(feature = "serde")]
 mod serialize;
@@ -37,6 +38,7 @@ pub use look::{Look, ReceiverBias, Translucent};
 pub use names::Word;
 pub(crate) use names::unknown;
 pub use presets::Preset;
+pub use renamed::{RENAMED, Renamed};
 pub use rules::{Conflict, RULES, Rule};
 pub use setting::{Kind, Rebuilds, Setting, Value};
 pub use settings::SETTINGS;

@@ -104,7 +104,7 @@ pub(super) fn scheme(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -
         "uniform" => SplitScheme::Uniform,
         "log" => SplitScheme::Logarithmic,
         "practical" => SplitScheme::practical(),
-        "optimal" | "fitted" => SplitScheme::Optimal,
+        "optimal" => SplitScheme::Optimal,
         "manual" if given.has("planes") || config.splits() == 1 => SplitScheme::Manual { planes: Vec::new() },
         "manual" => {
             let (inner, splits) = (config.splits() - 1, config.splits());

@@ -45,7 +45,6 @@ impl SplitScheme {
         super::Word { word: "practical", help: "A mix of both, by lambda" },
         super::Word { word: "manual", help: "The planes that are given" },
         super::Word { word: "optimal", help: "The planes of least predicted error" },
-        super::Word { word: "fitted", help: "Old name of optimal" },
     ];
 
     /// The scheme's word in config files and on the command line.
