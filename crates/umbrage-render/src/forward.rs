@@ -174,7 +174,7 @@ impl Forward {
         let (library, coordinates): (String, Coordinates) = match shadows {
             Shading::WithShadows => {
                 let runs = match maps.edges() {
-                    Edges::Exact => umbrage_wgpu::stored_runs_wgsl(0, Names::BINDING),
+                    Edges::Exact { .. } => umbrage_wgpu::stored_runs_wgsl(0, Names::BINDING),
                     Edges::Sampled => String::new(),
                 };
                 (maps.receiver_wgsl(2) + &runs, maps.config().coordinates)
@@ -221,7 +221,7 @@ impl Forward {
             label: Some("Forward::depth_shader"),
             source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::depth())),
         });
-        let counts = (shadows == Shading::WithShadows && maps.edges() == Edges::Exact).then(|| {
+        let counts = (shadows == Shading::WithShadows && maps.edges().is_exact()).then(|| {
             let library = maps.counting_receiver_wgsl(2) + &umbrage_wgpu::stored_runs_wgsl(0, Names::BINDING);
             shaders::edge_counts(&library, coordinates)
         });
@@ -391,7 +391,7 @@ fn frame_layout(device: &wgpu::Device, edges: Edges) -> wgpu::BindGroupLayout {
         },
         count: None,
     }];
-    if edges == Edges::Exact {
+    if edges.is_exact() {
         entries.extend(Names::layout(Names::BINDING));
     }
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {

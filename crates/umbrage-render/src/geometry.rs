@@ -149,7 +149,7 @@ impl Geometry {
         }
         let named = match edges {
             Edges::Sampled => None,
-            Edges::Exact => {
+            Edges::Exact { .. } => {
                 let mut runs = vec![0; positions.len()];
                 let named = |primitive: &Primitive| matter(primitive) == Matter::Solid;
                 let of_meshes = name(meshes, &mut ranges, (&mut positions, &mut runs, &mut indices), named);

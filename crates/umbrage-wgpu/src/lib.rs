@@ -60,9 +60,8 @@
 //!    buffers of the application's ([`stored_runs_layout`], [`stored_runs`]), or two functions of
 //!    its own.
 //!
-//! It holds for all lights and storages. With [`umbrage::config::ShadowConfig::edge_samples`] of 4
-//! or 8 that many positions of a pixel are decided, and edges are smooth; the query has to know its
-//! pixel then (`umbrage_fragment_query`). Deferred masks ask through [`ShadowMask::with_runs`].
+//! It holds for all lights and storages. With `samples` of 4 or 8 that many positions of a pixel are
+//! decided, and edges are smooth; the query has to know its pixel then (`umbrage_fragment_query`). Deferred masks ask through [`ShadowMask::with_runs`].
 //! [`ShadowMaps::counting_receiver_wgsl`] counts what is tested, for debug views.
 //!
 //! A run is told by a flat vertex attribute, so that no feature of the device is needed: each

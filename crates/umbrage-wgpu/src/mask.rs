@@ -107,7 +107,7 @@ impl ShadowMask {
         normals: MaskNormals,
     ) -> Result<Self> {
         match maps.edges() {
-            Edges::Exact => Err(Error::MaskNeedsRuns),
+            Edges::Exact { .. } => Err(Error::MaskNeedsRuns),
             Edges::Sampled => Self::with(device, maps, format, normals, None),
         }
     }
@@ -124,7 +124,7 @@ impl ShadowMask {
         normals: MaskNormals,
         runs: MaskRuns<'_>,
     ) -> Result<Self> {
-        Self::with(device, maps, format, normals, (maps.edges() == Edges::Exact).then_some(runs))
+        Self::with(device, maps, format, normals, maps.edges().is_exact().then_some(runs))
     }
 
     fn with(
@@ -168,7 +168,7 @@ impl ShadowMask {
             label: Some("ShadowMask::layout"),
             entries: &entries,
         });
-        let footprint = runs.is_some() && maps.config().edge_samples > 1;
+        let footprint = runs.is_some() && maps.edges().samples().is_some_and(|samples| samples > 1);
         let own = umbrage_shaders::mask(0, normals == MaskNormals::Texture, footprint);
         let text = maps.receiver_wgsl(1) + runs.map_or("", |runs| runs.wgsl) + &own;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {

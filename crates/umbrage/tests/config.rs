@@ -114,6 +114,8 @@ fn choose(choice: Choice) -> (&'static str, &'static [LightKind]) {
     let sun = &[LightKind::Directional];
     match choice {
         Choice::Warp => ("warp=tsm", sun),
+        Choice::AllWarped => ("warp=lispsm", sun),
+        Choice::SmallCasters => ("drop-small-casters=on", sun),
         Choice::MapSelection => ("selection=map", sun),
         Choice::DistanceMetric => ("bands=radial", sun),
         Choice::VisibleRange => ("range-fit=visible", sun),
@@ -133,6 +135,7 @@ fn choose(choice: Choice) -> (&'static str, &'static [LightKind]) {
         Choice::MoreThanSixSplits => ("splits=7", sun),
         Choice::UnequalSizes => ("map-size=1024,512,512,256", sun),
         Choice::NotStill => ("stabilize=none", sun),
+        Choice::ExactlyStill => ("stabilize=exact", sun),
         Choice::OtherDepth => ("depth-format=d16", sun),
         Choice::KeptMaps => ("cache=kept", sun),
         Choice::DeferredCoordinates => ("coordinates=deferred", sun),
@@ -170,27 +173,29 @@ fn every_pair_of_choices_is_refused_exactly_where_a_rule_says_so() {
             let ruled = RULES.iter().any(|rule| {
                 (rule.first == first && rule.second == second) || (rule.first == second && rule.second == first)
             });
-            let by_type = matches!(
-                (first, second),
-                (Choice::MapSelection | Choice::FitToDepth, Choice::DistanceMetric)
-                    | (Choice::DistanceMetric, Choice::MapSelection | Choice::FitToDepth)
-                    | (
-                        Choice::OneMap | Choice::NotLayers | Choice::CubeFaces,
-                        Choice::NotPerSplit | Choice::TiledLayers
-                    )
-                    | (
-                        Choice::NotPerSplit | Choice::TiledLayers,
-                        Choice::OneMap | Choice::NotLayers | Choice::CubeFaces
-                    )
-                    | (Choice::MoreThanSixSplits | Choice::MoreThanFourSplits, Choice::UnequalSizes)
-                    | (Choice::UnequalSizes, Choice::MoreThanSixSplits | Choice::MoreThanFourSplits)
-            );
+            let is_by_type = |first, second| {
+                matches!(
+                    (first, second),
+                    (Choice::MapSelection | Choice::FitToDepth, Choice::DistanceMetric)
+                        | (Choice::OneMap | Choice::NotLayers, Choice::NotPerSplit | Choice::TiledLayers)
+                        | (Choice::CubeFaces, Choice::TiledLayers)
+                        | (Choice::Warp | Choice::AllWarped, Choice::ExactlyStill)
+                        | (Choice::MoreThanSixSplits | Choice::MoreThanFourSplits, Choice::UnequalSizes)
+                )
+            };
+            let by_type = is_by_type(first, second) || is_by_type(second, first);
             if ruled {
                 let error = told.clone().unwrap_or_else(|| panic!("{a} {b} {lights:?} is accepted"));
                 let text = error.to_string();
                 assert!(holds(first) && holds(second), "{first:?} {second:?}: {text}");
                 assert!(text.contains(" exclude each other: "), "{text}");
-            } else if !by_type {
+            } else if by_type {
+                // No value makes both choices: who asks for both is told, and gets neither.
+                let error = told.clone().unwrap_or_else(|| panic!("{a} {b} {lights:?} is accepted"));
+                assert!(config == Preset::Papers.config(), "{first:?} {second:?}: {error}");
+                let keys = [first, second].map(|choice| choice.keys().iter().any(|key| error.to_string().contains(key)));
+                assert_eq!(keys, [true; 2], "{first:?} {second:?}: {error}");
+            } else {
                 let implied = |choice: Choice, other: Choice| {
                     RULES.iter().any(|rule| {
                         let (one, two) = (rule.first, rule.second);

@@ -63,6 +63,7 @@ fn settings() -> impl Strategy<Value = (ShadowConfig, PlannerOptions)> {
     (1usize..=8, scheme, stability, way, range, share, any::<[bool; 3]>(), 0.5..4.0f64).prop_map(
         |(m, scheme, stability, selection, range, share, [dependent, depth_clamp, visible], radius_texels)| {
             let fits = visible && range == Range::Camera && selection.metric() == SplitMetric::ViewDepth;
+            let fits_to_depth = dependent && selection == Selection::Map && stability != Stability::Exact;
             let config = ShadowConfig {
                 map_sizes: vec![256; m],
                 scheme,
@@ -71,7 +72,7 @@ fn settings() -> impl Strategy<Value = (ShadowConfig, PlannerOptions)> {
                 range: if fits { Range::Visible } else { range },
                 transition: Transition::Blend { share },
                 crop: if dependent { Crop::SceneDependent } else { Crop::SceneIndependent },
-                fit_to: if dependent && selection == Selection::Map { FitTo::Depth } else { FitTo::Boxes },
+                fit_to: if fits_to_depth { FitTo::Depth } else { FitTo::Boxes },
                 ..Preset::Papers.config()
             };
             let reach = FilterReach { radius_texels, half_width_m: None };

@@ -94,6 +94,8 @@ fn page() -> String {
 const fn name(choice: Choice) -> &'static str {
     match choice {
         Choice::Warp => "`warp` other than `none`",
+        Choice::AllWarped => "`warp` other than `none` for every map",
+        Choice::SmallCasters => "`drop-small-casters on`",
         Choice::MapSelection => "`selection map`",
         Choice::DistanceMetric => "`bands radial`",
         Choice::VisibleRange => "`range-fit visible`",
@@ -113,6 +115,7 @@ const fn name(choice: Choice) -> &'static str {
         Choice::MoreThanSixSplits => "more than 6 `splits`",
         Choice::UnequalSizes => "different sizes in `map-size`",
         Choice::NotStill => "`stabilize` other than `exact`",
+        Choice::ExactlyStill => "`stabilize exact`",
         Choice::OtherDepth => "`depth-format` other than `d32f`",
         Choice::KeptMaps => "`cache kept`",
         Choice::DeferredCoordinates => "`coordinates deferred`",

@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use glam::DVec3;
 use umbrage::Aabb;
-use umbrage::config::Edges;
 use umbrage_scene::{Object, Pose};
 use umbrage_wgpu::{MapPass, ShadowMap};
 
@@ -47,7 +46,7 @@ impl Renderer {
     ) -> Vec<Vec<Run>> {
         let pose = frame.pose;
         // Texels that name triangles name those of the shape that is seen.
-        let names_casters = self.shadows.maps().edges() == Edges::Exact;
+        let names_casters = self.shadows.maps().edges().is_exact();
         // Of several lights or faces, objects are drawn whole.
         let is_one_light = self.shadows.maps().map_count() == self.shadows.maps().splits();
         let shown = self.shadows.frame();

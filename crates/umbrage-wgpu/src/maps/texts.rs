@@ -1,8 +1,8 @@
 //! The texts that receivers put before their shaders.
 
-use umbrage::config::{Coordinates, Edges, LightKind, Selection, SplitMetric, Storage};
+use umbrage::config::{Coordinates, LightKind, Selection, SplitMetric, Storage};
 #[cfg(doc)]
-use umbrage::config::{DepthFormat, Filter};
+use umbrage::config::{DepthFormat, Edges, Filter};
 use umbrage_shaders::layout::{MetricKind, SelectionKind};
 use umbrage_shaders::{Bound, ExactEdges, Lights, Maps, Projection, ReceiverText};
 
@@ -61,8 +61,7 @@ impl ShadowMaps {
             projection: if config.first_warp().is_some() { Projection::Any } else { Projection::Plain },
             lights,
             sliced: self.layout.storage() == Storage::Reused,
-            exact: (self.edges == Edges::Exact)
-                .then_some(ExactEdges { positions: config.edge_samples, counted: false }),
+            exact: self.edges.samples().map(|positions| ExactEdges { positions, counted: false }),
             ..self.receiver_maps().into()
         }
     }

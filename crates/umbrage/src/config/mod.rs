@@ -119,22 +119,20 @@ pub struct ShadowConfig {
     pub crop: Crop,
     /// What planes and maps are fitted to. With [`FitTo::Depth`] and
     /// [`crate::PlanInputs::seen`] all maps but the last serve what was seen alone: a wall before
-    /// the eye then takes no texels from what it shows. Spot and point lights ignore it, and so do
-    /// maps that stand exactly still, which show whole slices of the view.
+    /// the eye then takes no texels from what it shows. Not for spot and point lights, nor with
+    /// [`Stability::Exact`], whose maps show whole slices of the view.
     pub fit_to: FitTo,
     /// Whether shadows stand still while the camera moves.
     pub stability: Stability,
     /// Whether the maps of a sun omit casters whose whole shadow is smaller than half a texel along
     /// both axes of the map, split by split. Such a caster covers one texel of the map or none;
-    /// which one changes with every step of the map. Warped maps, and those of spot and point
-    /// lights, contain all casters.
+    /// which one changes with every step of the map. A warped map beside plain ones contains all
+    /// casters. Not for spot and point lights, nor where all maps are warped.
     pub drop_small_casters: bool,
     /// How a map is filtered.
     pub filter: Filter,
     /// What decides where a shadow ends.
     pub edges: Edges,
-    /// Positions of a pixel that [`Edges::Exact`] decides, for smooth edges: 1, 4 or 8.
-    pub edge_samples: u32,
     /// What a texel of a map stores.
     pub depth_format: DepthFormat,
     /// Where maps are stored and how they are drawn.
@@ -175,7 +173,7 @@ impl ShadowConfig {
     #[must_use]
     pub const fn texel_bytes(&self) -> u64 {
         let id = match self.edges {
-            Edges::Exact => 4,
+            Edges::Exact { .. } => 4,
             Edges::Sampled => 0,
         };
         self.depth_format.texel_bytes() + id
@@ -265,7 +263,6 @@ impl ShadowConfig {
             drop_small_casters,
             filter: _,
             edges: _,
-            edge_samples: _,
             depth_format: _,
             layout: _,
             cache,
@@ -450,8 +447,7 @@ impl ShadowConfig {
     }
 
     fn check_filter(&self) -> Result<()> {
-        if !matches!(self.edge_samples, 1 | 4 | 8) {
-            let samples = self.edge_samples;
+        if let Some(samples) = self.edges.samples().filter(|samples| !matches!(samples, 1 | 4 | 8)) {
             return Err(Error::setting("edge-samples", format!("{samples} samples are not supported; give 1, 4 or 8")));
         }
         if let Some(width) = self.filter.width_m()

@@ -330,19 +330,20 @@ pub(super) fn moments<'a>(config: &'a mut ShadowConfig, key: &str) -> Result<&'a
 }
 
 pub(super) fn edges(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
-    config.edges = text.parse()?;
-    if config.edges != Edges::Exact {
-        config.edge_samples = 1;
+    if config.edges.word() != text {
+        config.edges = text.parse()?;
     }
     Ok(())
 }
 
 pub(super) fn edge_samples(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
-    if config.edges != Edges::Exact {
-        return refuse("edge-samples applies to edges exact only; omit it, or use edges exact".to_owned());
+    match &mut config.edges {
+        Edges::Exact { samples } => {
+            *samples = count(text)?;
+            Ok(())
+        }
+        Edges::Sampled => refuse("applies to edges exact only, but edges is sampled; omit it, or use edges exact"),
     }
-    config.edge_samples = count(text)?;
-    Ok(())
 }
 
 pub(super) fn transition(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {

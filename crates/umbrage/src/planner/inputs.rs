@@ -118,8 +118,7 @@ pub struct PlanInputs<'a> {
     /// World boxes that hold all that an earlier picture showed, from its depth. Planes are then
     /// placed, and all maps but the last fitted, for what was seen instead of for all receivers in
     /// view; the last map serves whatever has come into view since. `None`: not known. For
-    /// [`crate::config::FitTo::Depth`]; ignored otherwise, by local lights, and with
-    /// [`crate::config::Stability::Exact`].
+    /// [`crate::config::FitTo::Depth`]; ignored otherwise.
     pub seen: Option<&'a [Aabb]>,
     /// Pixels across the picture: a split is widened by one 2×2 pixel quad at its near side.
     pub image_size: [u32; 2],

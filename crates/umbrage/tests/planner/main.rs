@@ -347,20 +347,23 @@ fn a_range_without_end_stops_at_the_scene() {
 }
 
 #[test]
-fn maps_that_stand_exactly_still_take_nothing_from_what_was_seen() {
+fn what_was_seen_counts_for_maps_that_are_fitted_to_it_alone() {
     let boxes = robots(2000);
     let seen: Vec<Aabb> = boxes.iter().step_by(3).map(|it| Aabb::new(it.min, 0.5 * (it.min + it.max))).collect();
     let lens = Frustum::perspective(1.0, 4.0 / 3.0, 0.1, 500.0).unwrap();
     let view = View::look_at_upright(DVec3::new(-5.0, 2.0, -8.0), DVec3::new(20.0, 0.0, 30.0), lens).unwrap();
     let sun = DirectionalLight::new(DVec3::new(0.3, -0.6, 0.5)).unwrap();
-    let plan = |stability, seen| {
-        let config = ShadowConfig { stability, fit_to: FitTo::Depth, ..ShadowConfig::default() };
+    let plan = |fit_to, seen| {
+        let config = ShadowConfig { fit_to, ..ShadowConfig::default() };
         let inputs = PlanInputs { seen, ..PlanInputs::new(&view, sun, &boxes, &boxes) };
         Planner::new(&config).unwrap().plan_frame(&inputs).unwrap().clone()
     };
-    assert!(plan(Stability::Exact, Some(&seen)) == plan(Stability::Exact, None));
-    // Others do take something from it.
-    assert!(plan(ShadowConfig::default().stability, Some(&seen)) != plan(ShadowConfig::default().stability, None));
+    assert!(plan(FitTo::Boxes, Some(&seen)) == plan(FitTo::Boxes, None));
+    assert!(plan(FitTo::Depth, Some(&seen)) != plan(FitTo::Depth, None));
+    // Maps that stand exactly still show whole slices, so they cannot be asked to be fitted to it.
+    let still = ShadowConfig { fit_to: FitTo::Depth, ..Preset::Still.config() };
+    let told = Planner::new(&still).unwrap_err().to_string();
+    assert!(told.contains("fit-to depth") && told.contains("stabilize exact"), "{told}");
 }
 
 /// A flat box that the sun runs along, before an eye that looks into the sun: no slice has a cost.
