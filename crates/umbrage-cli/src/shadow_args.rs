@@ -10,6 +10,8 @@ use umbrage::config::{Kind, Preset, Renamed, SETTINGS, Setting};
 
 use umbrage_lab::technique::ShadowOptions;
 
+use crate::words;
+
 /// The heading of these options in the help.
 const HEADING: &str = "Shadows";
 
@@ -64,10 +66,7 @@ fn option(setting: &'static Setting) -> Arg {
         .help(format!("{}{}", setting.help, default.unwrap_or_default()))
         .allow_hyphen_values(true);
     match setting.kind {
-        Kind::Words(words) => {
-            let values = words.iter().map(|word| PossibleValue::new(word.word).help(word.help));
-            arg.value_parser(Words { key: setting.key, offered: PossibleValuesParser::new(values) })
-        }
+        Kind::Words(words) => arg.value_parser(Words { key: setting.key, offered: words::offered(words) }),
         // The option alone means `on`.
         Kind::Switch => arg
             .value_parser([PossibleValue::new("on").alias("true"), PossibleValue::new("off").alias("false")])
@@ -103,13 +102,11 @@ impl TypedValueParser for Words {
 }
 
 fn preset() -> Arg {
-    let values = Preset::WORDS.iter().map(|word| PossibleValue::new(word.word).help(word.help));
-    let parser = PossibleValuesParser::new(values);
     Arg::new("preset")
         .long("preset")
         .value_name("NAME")
         .help("Settings by name; single options override them [default: balanced]")
-        .value_parser(parser.map(|word: String| word.parse::<Preset>().unwrap_or_default()))
+        .value_parser(words::parser::<Preset>(Preset::WORDS))
 }
 
 fn config() -> Arg {

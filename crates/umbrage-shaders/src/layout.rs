@@ -1,4 +1,9 @@
 //! The structs that WGSL and Rust share, member by member as `shaders/lib/layout.wesl` has them.
+//!
+//! The enums are numbers that the shaders compare, and which code a text of receivers needs. They
+//! are no second config: they have no data, no words and no default. The choices of an application
+//! are `umbrage::config`, which this crate does not depend on, so that other renderers can use the
+//! WGSL without the planner. `umbrage-wgpu` turns one into the other, in `options.rs` alone.
 
 use bytemuck::{Pod, Zeroable};
 

@@ -1,8 +1,10 @@
 //! What the config's choices are for wgpu and for the shaders, and what varies from frame to frame.
 
 use glam::DVec3;
-use umbrage::config::{DepthFormat, Filter, LightKind, MomentKind, ReceiverBias, Transition};
-use umbrage_shaders::layout::{BiasKind, FilterKind, TransitionKind};
+use umbrage::config::{
+    DepthFormat, Filter, LightKind, MomentKind, ReceiverBias, Selection, SplitMetric, Transition,
+};
+use umbrage_shaders::layout::{BiasKind, FilterKind, MetricKind, SelectionKind, TransitionKind};
 
 use crate::{Error, Result};
 
@@ -71,6 +73,22 @@ pub(crate) fn transition_kind(transition: Transition) -> TransitionKind {
         Transition::Blend { .. } => TransitionKind::Blend,
         Transition::Dither { .. } => TransitionKind::Dither,
         Transition::Hard => TransitionKind::Hard,
+    }
+}
+
+/// The selection's name in the shaders.
+pub(crate) fn selection_kind(selection: Selection) -> SelectionKind {
+    match selection {
+        Selection::Interval(_) => SelectionKind::Depth,
+        Selection::Map => SelectionKind::Map,
+    }
+}
+
+/// The name in the shaders of what splits are measured in.
+pub(crate) fn metric_kind(metric: SplitMetric) -> MetricKind {
+    match metric {
+        SplitMetric::ViewDepth => MetricKind::ViewDepth,
+        SplitMetric::Distance => MetricKind::Distance,
     }
 }
 

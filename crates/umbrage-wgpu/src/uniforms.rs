@@ -5,11 +5,11 @@ use std::f32::consts::TAU;
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use umbrage::ShadowPlan;
 use umbrage::config::{Filter, LightKind, Selection, ShadowConfig, SplitMetric};
-use umbrage_shaders::layout::{self, SelectionKind};
+use umbrage_shaders::layout;
 
 use crate::maps::place::Place;
 use crate::maps::slot::Slot;
-use crate::options::{bias_kind, depth_step, filter_kind, reach_within, transition_kind};
+use crate::options::{bias_kind, depth_step, filter_kind, reach_within, selection_kind, transition_kind};
 use crate::{Error, FrameOptions, LightMaps, Result, local};
 
 /// The uniform that receivers read: the frames of each light's slot. Their splits are what casters
@@ -105,10 +105,7 @@ fn frame(
         turn_per_pixel: if rotated { TAU } else { 0.0 },
         transition: transition_kind(config.transition) as u32,
         slice: layout::EVERY_SLICE,
-        selection: match plan.selection {
-            Selection::Interval(_) => SelectionKind::Depth,
-            Selection::Map => SelectionKind::Map,
-        } as u32,
+        selection: selection_kind(plan.selection) as u32,
         map_blend: plan.blend as f32,
         bias_kind: bias_kind(look.bias) as u32,
         shadow_colour: look.colour.map(|part| part as f32),

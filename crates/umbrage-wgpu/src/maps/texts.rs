@@ -1,14 +1,13 @@
 //! The texts that receivers put before their shaders.
 
-use umbrage::config::{Coordinates, LightKind, Selection, SplitMetric, Storage};
+use umbrage::config::{Coordinates, LightKind, Storage};
 #[cfg(doc)]
 use umbrage::config::{DepthFormat, Edges, Filter};
-use umbrage_shaders::layout::{MetricKind, SelectionKind};
 use umbrage_shaders::{Bound, ExactEdges, Lights, Maps, Projection, ReceiverText};
 
 use super::ShadowMaps;
 use crate::moments::Moments;
-use crate::options::{filter_kind, transition_kind};
+use crate::options::{filter_kind, metric_kind, selection_kind, transition_kind};
 
 impl ShadowMaps {
     /// What any shader needs to ask for visibility; `group` is the index at which the app binds
@@ -45,15 +44,10 @@ impl ShadowMaps {
         };
         // Splits of local lights are chosen by view depth, whatever a sun's are chosen by.
         let of_suns = lights == Lights::Suns;
-        let (selection, metric) = match config.selection {
-            Selection::Map => (SelectionKind::Map, None),
-            Selection::Interval(SplitMetric::ViewDepth) => (SelectionKind::Depth, Some(MetricKind::ViewDepth)),
-            Selection::Interval(SplitMetric::Distance) => (SelectionKind::Depth, Some(MetricKind::Distance)),
-        };
         ReceiverText {
             filter: Some(filter_kind(&config.filter)),
-            selection: of_suns.then_some(selection),
-            metric: metric.filter(|_| of_suns).or((of_suns).then_some(MetricKind::ViewDepth)),
+            selection: of_suns.then(|| selection_kind(config.selection)),
+            metric: of_suns.then(|| metric_kind(config.selection.metric())),
             transition: Some(transition_kind(config.transition)),
             // Part of the look, which changes from frame to frame.
             bias: None,

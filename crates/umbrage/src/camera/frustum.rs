@@ -4,6 +4,7 @@ use glam::{DMat4, DVec3, DVec4};
 
 use super::matrix::Matrix;
 use crate::bounds::{LEAST_METRES, MOST_METRES};
+use crate::config::named;
 use crate::{Error, Result, maths};
 
 /// The largest tangent between a perspective camera's axis and a side of its view.
@@ -12,18 +13,22 @@ const WIDEST: f64 = 1e6;
 /// The least width and height of a view, as tangents or in metres.
 const NARROWEST: f64 = 1e-9;
 
-/// What an engine's graphics interface takes for granted: needed to read near and far back from a
-/// camera's projection, and to hand maps to the engine ([`crate::Split::shadow_from_world_in`],
-/// [`crate::Split::texture_from_world`]).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DepthConvention {
-    /// NDC y up and depth in \[0,1\], textures' v down: wgpu, Direct3D, Metal, Vulkan with a
-    /// negative viewport height. A camera's depth may run either way (reversed or not).
-    ZeroToOne,
-    /// NDC y down and depth in \[0,1\], textures' v down: Vulkan with a positive viewport height.
-    ZeroToOneYDown,
-    /// NDC depth in [−1,1], textures' v up: OpenGL.
-    MinusOneToOne,
+named! {
+    /// What an engine's graphics interface takes for granted: needed to read near and far back from a
+    /// camera's projection, and to hand maps to the engine ([`crate::Split::shadow_from_world_in`],
+    /// [`crate::Split::texture_from_world`]).
+    ///
+    /// A camera's depth may run either way (reversed or not).
+    pub enum DepthConvention as "depth convention" {
+        /// NDC y up, z in 0..1; textures' v down: wgpu, Direct3D, Metal, Vulkan with a negative
+        /// viewport height
+        #[default]
+        ZeroToOne = "zero-to-one",
+        /// NDC y down, z in 0..1; textures' v down: Vulkan with a positive viewport height
+        ZeroToOneYDown = "zero-to-one-y-down",
+        /// NDC y up, z in −1..1; textures' v up: OpenGL
+        MinusOneToOne = "minus-one-to-one",
+    }
 }
 
 impl DepthConvention {

@@ -70,7 +70,10 @@ impl Stability {
 }
 
 /// The steps in which an approximately stabilised map changes its extent.
+///
+/// Serialised as `{"per_doubling": 24}` or `{"levels": 64}`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
 pub enum ExtentSteps {
     /// Geometric steps of the extent in metres, this many per doubling: 4 to 64. Ours.
     ///

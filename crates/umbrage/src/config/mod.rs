@@ -36,7 +36,7 @@ pub use given::Given;
 pub use layout::{Cache, Coordinates, DepthFormat, Fallbacks, Generation, Layout, Storage};
 pub use look::{Look, ReceiverBias, Translucent};
 pub use names::Word;
-pub(crate) use names::unknown;
+pub(crate) use names::{named, unknown};
 pub use presets::Preset;
 pub use renamed::{RENAMED, Renamed};
 pub use rules::{Conflict, RULES, Rule};
