@@ -190,7 +190,7 @@ pub struct Split {
     /// its near plane and 1 at its far one, instead of `A − B/w`.
     pub is_linear: u32,
     /// Texels around a sample that the filter may read.
-    pub filter_reach: f32,
+    pub filter_radius_texels: f32,
 }
 
 /// What a pass needs that draws several splits at once.

@@ -128,7 +128,7 @@ pub enum MomentMaps {
     /// anisotropic one would.
     Taps,
     /// Read without a sampler: the shader weighs texels itself.
-    ByHand,
+    Manual,
 }
 
 /// How casters are instanced into the maps of several splits in one pass; neither: each pass draws

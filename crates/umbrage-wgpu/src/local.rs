@@ -128,7 +128,7 @@ mod tests {
                 let exact = planned.map_from_world(origin + relative.as_dvec3());
                 // Sums of terms near 400 m lose some 1e-4 m, over a texel of so many metres here;
                 // twice for w.
-                let texel = planned.texel_edges(point).min_element();
+                let texel = planned.texel_size_m(point).min_element();
                 let texels = 3e-4 * (1.0 + exact.truncate().length() / 1024.0) / texel + 1e-3;
                 prop_assert!((found[0] - exact.x).abs() < texels && (found[1] - exact.y).abs() < texels, "{found:?} instead of {exact}");
                 let near = planned.depth_near - axis.dot(center);

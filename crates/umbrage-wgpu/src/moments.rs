@@ -246,7 +246,7 @@ impl Moments {
     /// The text that reads them.
     pub fn maps(&self) -> MomentMaps {
         match (self.storage, self.own_taps) {
-            (MomentStorage::F32Manual, _) => MomentMaps::ByHand,
+            (MomentStorage::F32Manual, _) => MomentMaps::Manual,
             (_, true) => MomentMaps::Taps,
             (_, false) => MomentMaps::Sampled,
         }

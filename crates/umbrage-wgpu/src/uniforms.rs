@@ -118,7 +118,7 @@ fn frame(
     let splits = plan.splits.iter().enumerate().skip(first);
     for ((uniform, (index, split)), place) in frame.splits.iter_mut().zip(splits).zip(places) {
         *uniform = self::split(index, split, depth_step(config.depth_format), *place, options.origin)?;
-        uniform.filter_reach = reach_within(filter, split.filter_reach) as f32;
+        uniform.filter_radius_texels = reach_within(filter, split.filter_radius_texels) as f32;
         uniform.is_linear = (config.depth_format.is_colour() && split.light_position.is_some()).into();
     }
     Ok(frame)
@@ -262,8 +262,8 @@ fn check(index: usize, split: &umbrage::Split) -> Result<()> {
     if !split.far.is_finite() {
         return bad("far", split.far, "a finite view depth");
     }
-    if !(split.filter_reach >= 0.0 && split.filter_reach.is_finite()) {
-        return bad("filter_reach", split.filter_reach, "finite texels, 0 or more");
+    if !(split.filter_radius_texels >= 0.0 && split.filter_radius_texels.is_finite()) {
+        return bad("filter_radius_texels", split.filter_radius_texels, "finite texels, 0 or more");
     }
     if !split.blend_begin.is_finite() || split.blend_begin > split.far {
         return bad("blend_begin", split.blend_begin, "a finite view depth no greater than far");
@@ -316,7 +316,7 @@ mod tests {
             depth_near: depth_axis.dot(center) - 50.0,
             depth_far: depth_axis.dot(center) + 50.0,
             receiver_depths: (depth_axis.dot(center) - 50.0, depth_axis.dot(center) + 50.0),
-            filter_reach: 1.5,
+            filter_radius_texels: 1.5,
             warp: None,
             light_position: None,
             casters: 0..1,

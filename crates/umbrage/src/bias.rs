@@ -68,8 +68,8 @@ impl Split {
         if self.warp.is_none() {
             return self.bias(normal);
         }
-        let [u, v] = self.texel_steps(point);
-        bias(normal, self.travel_at(point), u, v)
+        let [u, v] = self.texel_axes_m(point);
+        bias(normal, self.light_direction_at(point), u, v)
     }
 }
 

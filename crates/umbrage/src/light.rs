@@ -222,10 +222,10 @@ impl Light {
         }
     }
 
-    /// Whether a world point lies within the light's range and cone. Outside nothing is asked of
-    /// its maps.
+    /// Whether a world point lies within the light's range and cone, whatever casts a shadow on it.
+    /// Outside nothing is asked of its maps.
     #[must_use]
-    pub fn reaches(&self, point: DVec3) -> bool {
+    pub fn illuminates(&self, point: DVec3) -> bool {
         match self {
             Self::Directional(_) => true,
             Self::Spot(light) => {

@@ -140,7 +140,7 @@ impl ShadowPlan {
     /// casters answers "lit", but not with [`Selection::Map`]. `None`: no map answers.
     #[must_use]
     pub fn covering_split(&self, point: DVec3) -> Option<usize> {
-        let in_map = |split: &Split| split.contains(point, split.filter_reach);
+        let in_map = |split: &Split| split.contains(point, split.filter_radius_texels);
         if let Some(light) = self.light.filter(|light| light.position().is_some()) {
             let m = self.coverage.local.len() / light.faces();
             let first = light.face_of(point) * m;
@@ -148,7 +148,7 @@ impl ShadowPlan {
                 let split = &self.splits[i];
                 self.coverage.contains_local(i, point) && (split.casters.is_empty() || in_map(split))
             };
-            return (first..first + m).find(covers).filter(|_| light.reaches(point));
+            return (first..first + m).find(covers).filter(|_| light.illuminates(point));
         }
         let mut covering = self.splits.iter().enumerate().filter(|(i, _)| self.coverage.contains(*i, point));
         match self.selection {
@@ -157,7 +157,7 @@ impl ShadowPlan {
             // to answer or nobody does. It does not answer for points before its depth range, where
             // nobody looked for casters.
             Selection::Map => covering
-                .find(|(_, split)| !split.casters.is_empty() && split.lies_over(point, split.filter_reach))
+                .find(|(_, split)| !split.casters.is_empty() && split.lies_over(point, split.filter_radius_texels))
                 .filter(|(_, split)| in_map(split)),
         }
         .map(|(i, _)| i)
@@ -214,7 +214,7 @@ pub struct Split {
     /// light's picture.
     pub depth_axis: DVec3,
     /// Metres per texel along u and v. A warped map and that of a local light have this size of
-    /// texel in the middle of their receivers only, see [`Split::texel_edges`].
+    /// texel in the middle of their receivers only, see [`Split::texel_size_m`].
     pub texel_m: DVec2,
     /// The map's upper left corner in texels of the light's plane (of a local light: from the
     /// axis); whole numbers when the split is stabilised.
@@ -230,7 +230,7 @@ pub struct Split {
     /// Texels around a sample that a filter may read: what lies on screen lies that far inside the
     /// map. [`crate::FilterReach::radius_texels`], or less where the filter's width is known in
     /// metres.
-    pub filter_reach: f64,
+    pub filter_radius_texels: f64,
     /// Shadow NDC (x, y in [−1,1], y up, z in \[0,1\]) from world, to be divided by w; `None` for a
     /// plain map. w is positive at every receiver, and does not change along parallel light.
     pub warp: Option<DMat4>,
@@ -259,9 +259,9 @@ impl Split {
         texel.extend((self.depth_axis.dot(point) - self.depth_near) / (self.depth_far - self.depth_near))
     }
 
-    /// The way light travels at a world point, a unit vector.
+    /// The direction in which light travels at a world point, a unit vector.
     #[must_use]
-    pub fn travel_at(&self, point: DVec3) -> DVec3 {
+    pub fn light_direction_at(&self, point: DVec3) -> DVec3 {
         self.light_position.map_or(self.depth_axis, |light| (point - light).try_normalize().unwrap_or(self.depth_axis))
     }
 
@@ -354,10 +354,11 @@ impl Split {
         inside.contains(&at.x) && inside.contains(&at.y)
     }
 
-    /// How u and v change with the world around a point, in texels per metre. Both vectors lie
-    /// across the light. The same everywhere in a plain map.
+    /// The Jacobian of the map's coordinates: its rows are the gradients of u and v by the world's
+    /// position, in texels per metre. Both lie across the light, and are the same everywhere in a
+    /// plain map.
     #[must_use]
-    pub fn texel_gradients(&self, point: DVec3) -> [DVec3; 2] {
+    pub fn texel_jacobian(&self, point: DVec3) -> [DVec3; 2] {
         let Some(shadow_from_world) = self.warp else {
             return [self.u_axis / self.texel_m.x, self.v_axis / self.texel_m.y];
         };
@@ -370,17 +371,17 @@ impl Split {
     /// A texel's edges along u and v at a world point, as vectors across the light in metres: the
     /// steps that change u alone and v alone, by one.
     #[must_use]
-    pub fn texel_steps(&self, point: DVec3) -> [DVec3; 2] {
-        let [u, v] = self.texel_gradients(point);
-        let travel = self.travel_at(point);
+    pub fn texel_axes_m(&self, point: DVec3) -> [DVec3; 2] {
+        let [u, v] = self.texel_jacobian(point);
+        let travel = self.light_direction_at(point);
         let (along_u, along_v) = (v.cross(travel), travel.cross(u));
         [along_u / u.dot(along_u), along_v / v.dot(along_v)]
     }
 
     /// The lengths of a texel's edges along u and v at a world point, metres.
     #[must_use]
-    pub fn texel_edges(&self, point: DVec3) -> DVec2 {
-        let [u, v] = self.texel_steps(point);
+    pub fn texel_size_m(&self, point: DVec3) -> DVec2 {
+        let [u, v] = self.texel_axes_m(point);
         DVec2::new(u.length(), v.length())
     }
 }

@@ -75,7 +75,7 @@ fn settings() -> impl Strategy<Value = (ShadowConfig, PlannerOptions)> {
                 fit_to: if fits_to_depth { FitTo::Depth } else { FitTo::Boxes },
                 ..Preset::Papers.config()
             };
-            let reach = FilterReach { radius_texels, half_width_m: None };
+            let reach = FilterReach { radius_texels, radius_m: None };
             (config, PlannerOptions { depth_clamp, filter_reach: Some(reach), ..PlannerOptions::default() })
         },
     )
@@ -220,7 +220,7 @@ fn asked(plan: &ShadowPlan, point: DVec3) -> Option<Vec<usize>> {
     if plan.selection == Selection::Map {
         let holds = |i: &usize| {
             let split = &plan.splits[*i];
-            !split.casters.is_empty() && split.contains(point, split.filter_reach)
+            !split.casters.is_empty() && split.contains(point, split.filter_radius_texels)
         };
         return Some((0..plan.splits.len()).find(holds).into_iter().collect());
     }
@@ -269,7 +269,7 @@ fn check(case: &Case, view: &View, plan: &ShadowPlan) -> Result<(), TestCaseErro
             for split in splits {
                 let map = &plan.splits[split];
                 // Planes may reach as far as it does, while maps end with what can be seen.
-                if is_tiny && !map.contains(point, map.filter_reach) {
+                if is_tiny && !map.contains(point, map.filter_radius_texels) {
                     continue;
                 }
                 prop_assert!(
@@ -277,7 +277,7 @@ fn check(case: &Case, view: &View, plan: &ShadowPlan) -> Result<(), TestCaseErro
                     "split {split} lacks {index}, which shades {point}"
                 );
                 prop_assert!(
-                    map.contains(point, map.filter_reach),
+                    map.contains(point, map.filter_radius_texels),
                     "{point} lies at {} of split {split}",
                     map.map_from_world(point)
                 );

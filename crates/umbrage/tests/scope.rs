@@ -39,7 +39,7 @@ fn plan(settings: &ShadowConfig, view: &View, boxes: &[Aabb]) -> ShadowPlan {
 /// metres.
 fn texel_at(plan: &ShadowPlan, point: DVec3) -> (f64, f64) {
     let split = plan.splits.iter().find(|split| plan.depth_at(point) < split.far).expect("the point is in range");
-    assert!(split.contains(point, split.filter_reach) || split.casters.is_empty(), "{point} in {split:?}");
+    assert!(split.contains(point, split.filter_radius_texels) || split.casters.is_empty(), "{point} in {split:?}");
     (split.texel_m.max_element(), split.depth_far - split.depth_near)
 }
 

@@ -101,7 +101,7 @@ mod tests {
             depth_near: -12.0,
             depth_far: 40.0,
             receiver_depths: (-10.0, 38.0),
-            filter_reach: 3.0,
+            filter_radius_texels: 3.0,
             warp: None,
             light_position: None,
             casters: 0..0,

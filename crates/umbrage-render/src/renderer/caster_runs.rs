@@ -118,7 +118,7 @@ fn has_parts(object: &Object, meshes: &[Vec<GpuPrimitive>]) -> bool {
 /// For each primitive the ranges of indices that reach a map; `None` if the object is better
 /// drawn whole.
 fn parts_in(map: &ShadowMap<'_>, object: &Object, primitives: &[GpuPrimitive]) -> Option<Parts> {
-    let reaches = |node: &Cluster| map.is_reached_by(&node.bounds().transformed(&object.world_from_local));
+    let reaches = |node: &Cluster| map.casts_into(&node.bounds().transformed(&object.world_from_local));
     let mut spared = 0;
     let parts: Parts = primitives
         .iter()

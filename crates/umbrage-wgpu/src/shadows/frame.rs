@@ -146,12 +146,12 @@ impl<'a> ShadowMap<'a> {
     }
 
     /// Whether a part of one of the casters, by the part's world box, has to be drawn: in a region
-    /// whether it reaches it, in a map of one split what [`ShadowPlan::casts_into`] says. Skipping
+    /// what [`umbrage::KeptRegion::casts_into`] says, in a map [`ShadowPlan::casts_into`]. Skipping
     /// what it rejects never changes a visible pixel, nor what is kept.
     #[must_use]
-    pub fn is_reached_by(&self, part: &Aabb) -> bool {
+    pub fn casts_into(&self, part: &Aabb) -> bool {
         match self.region() {
-            Some(region) => region.is_reached_by(part),
+            Some(region) => region.casts_into(part),
             None => self.splits().any(|split| self.shadows.plans[self.light()].casts_into(split, part)),
         }
     }

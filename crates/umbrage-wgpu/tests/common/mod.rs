@@ -334,7 +334,7 @@ pub fn plan(light: DVec3, center: DVec3, sizes: &[u32], planes: &[f64], widths: 
                 depth_near: depth.dot(center) - 100.0,
                 depth_far: depth.dot(center) + 100.0,
                 receiver_depths: (depth.dot(center) - 100.0, depth.dot(center) + 100.0),
-                filter_reach: 16.0,
+                filter_radius_texels: 16.0,
                 warp: None,
                 light_position: None,
                 casters: i..i + 1,

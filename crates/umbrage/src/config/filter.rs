@@ -182,7 +182,7 @@ impl Filter {
     /// Half the width of the filter's kernel in metres, where it is known: maps whose texels are
     /// large keep a margin of so many metres instead of [`Filter::radius_texels`].
     #[must_use]
-    pub fn half_width_m(&self) -> Option<f64> {
+    pub fn radius_m(&self) -> Option<f64> {
         match *self {
             Self::Disc { width_m, .. } => width_m.map(|width| 0.5 * width),
             Self::Pcss { sun_degrees, .. } => Some(maths::tan((0.5 * sun_degrees).to_radians()) * MOST_BLOCKER_M),
@@ -275,6 +275,6 @@ impl std::str::FromStr for Filter {
 
 impl From<&Filter> for FilterReach {
     fn from(filter: &Filter) -> Self {
-        Self { radius_texels: filter.radius_texels(), half_width_m: filter.half_width_m() }
+        Self { radius_texels: filter.radius_texels(), radius_m: filter.radius_m() }
     }
 }

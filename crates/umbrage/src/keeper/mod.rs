@@ -119,9 +119,10 @@ pub struct KeptRegion {
 }
 
 impl KeptRegion {
-    /// Whether a part of a caster, by its world box, can leave anything in the region.
+    /// Whether a part of a caster, by its world box, can leave anything in the region, as
+    /// [`crate::ShadowPlan::casts_into`] says of a whole map.
     #[must_use]
-    pub fn is_reached_by(&self, part: &Aabb) -> bool {
+    pub fn casts_into(&self, part: &Aabb) -> bool {
         self.grid.footprint(&Placed::from(*part)).meets(&self.texels)
     }
 }
