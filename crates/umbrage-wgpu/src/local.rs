@@ -1,6 +1,8 @@
 //! Lights that stand somewhere: how their maps become uniforms, and how several lights share one
 //! list of frames.
 
+use std::borrow::Borrow;
+
 use glam::{DMat4, DVec3, DVec4};
 use umbrage::{Light, ShadowPlan};
 use umbrage_shaders::layout;
@@ -66,12 +68,12 @@ pub(crate) fn place_light(frame: &mut layout::Frame, plan: &ShadowPlan, origin: 
 }
 
 /// Numbers the frames of several lights: what a shader needs to find those of each.
-pub(crate) fn number(frames: &mut [layout::Frame], slots: &[Slot], plans: &[&ShadowPlan]) {
+pub(crate) fn number(frames: &mut [layout::Frame], slots: &[Slot], plans: &[impl Borrow<ShadowPlan>]) {
     for (light, (slot, plan)) in slots.iter().zip(plans).enumerate() {
         let first = slot.first_frame;
         frames[light].first_frame = first as u32;
         let own = frames[first..first + slot.kind.faces()].iter_mut();
-        own.for_each(|frame| frame.face_count = plan.faces() as u32);
+        own.for_each(|frame| frame.face_count = plan.borrow().faces() as u32);
     }
 }
 

@@ -38,11 +38,17 @@ pub(super) struct Kept {
 }
 
 impl Kept {
-    /// Writes the plan of these inputs, and what is held after it, if it is known.
-    pub fn serve(&self, inputs: Option<&Inputs>, held: &mut Held, plan: &mut ShadowPlan) -> bool {
+    /// Writes the plan of these inputs, and what is held after it and before it, if it is known.
+    pub fn serve(
+        &self,
+        inputs: Option<&Inputs>,
+        (held, before): (&mut Held, &mut Held),
+        plan: &mut ShadowPlan,
+    ) -> bool {
         let is_known = inputs.is_some() && self.inputs.as_ref() == inputs && self.before == *held;
         if is_known {
             plan.copy_from(&self.plan);
+            before.clone_from(&self.before);
             held.clone_from(&self.after);
         }
         is_known

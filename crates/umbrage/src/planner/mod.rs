@@ -48,6 +48,8 @@ pub struct Planner {
     held: Held,
     buffers: Buffers,
     plan: ShadowPlan,
+    /// Whether the buffers have what was held before the last frame.
+    can_take_back: bool,
 }
 
 /// Memory of one call that the next one uses again. Holds nothing that a plan depends on.
@@ -63,6 +65,7 @@ struct Buffers {
     kept: Kept,
     sun: SunBuffers,
     local: LocalBuffers,
+    /// What was held before the last frame that was not refused.
     held: Held,
 }
 
@@ -83,7 +86,7 @@ impl Planner {
     pub fn with_options(config: &ShadowConfig, options: PlannerOptions) -> Result<Self> {
         options.check(config)?;
         let (config, held, buffers) = (config.clone(), Held::default(), Buffers::default());
-        Ok(Self { config, options, held, buffers, plan: ShadowPlan::default() })
+        Ok(Self { config, options, held, buffers, plan: ShadowPlan::default(), can_take_back: false })
     }
 
     /// Plans by another config and other options from the next frame on. What is held stays held if
@@ -100,6 +103,7 @@ impl Planner {
         if !is_alike {
             self.held = Held::default();
         }
+        self.can_take_back = false;
         self.buffers.kept.clear();
         (self.config, self.options) = (config.clone(), options);
         Ok(())
@@ -135,6 +139,15 @@ impl Planner {
     /// from nothing.
     pub fn set_held(&mut self, held: Held) {
         self.held = held;
+        self.can_take_back = false;
+    }
+
+    /// Takes the last frame back, which is not shown: what is held is what it was before. Does
+    /// nothing if that frame was refused, or taken back already.
+    pub fn take_back(&mut self) {
+        if std::mem::take(&mut self.can_take_back) {
+            std::mem::swap(&mut self.held, &mut self.buffers.held);
+        }
     }
 
     /// Plans the maps of one frame for one light, for a picture of [`PlannerOptions::image_size`];
@@ -183,7 +196,10 @@ impl Planner {
     /// warp; [`crate::Error::CameraConflict`] for splits by distance with an orthographic camera.
     /// What is held is left as it was; the plan is of no use.
     pub fn plan_into(&mut self, inputs: &PlanInputs<'_>, plan: &mut ShadowPlan) -> Result<()> {
-        plan_with((&self.config, &self.options), inputs, &mut self.held, &mut self.buffers, plan)
+        self.can_take_back = false;
+        plan_with((&self.config, &self.options), inputs, &mut self.held, &mut self.buffers, plan)?;
+        self.can_take_back = true;
+        Ok(())
     }
 }
 
@@ -214,7 +230,7 @@ fn plan_with(
 ) -> Result<()> {
     inputs.check()?;
     let known = kept::Inputs::of(inputs);
-    if buffers.kept.serve(known.as_ref(), held, plan) {
+    if buffers.kept.serve(known.as_ref(), (held, &mut buffers.held), plan) {
         buffers.visited = Visited::default();
         return Ok(());
     }
