@@ -160,7 +160,7 @@ fn report(
         stabilize: shadows.word("stabilize"),
         extent_steps: match shadows.config.stability {
             Stability::Approximate { steps } => Some(steps),
-            Stability::Tight { .. } | Stability::Exact => None,
+            _ => None,
         },
         bands: shadows.config.selection.metric().to_string(),
         scheme: shadows.word("scheme"),

@@ -137,9 +137,8 @@ type NamedEncoding = Option<HeightEncoding>;
 /// `--height-encoding`: the words of the encodings, and `auto`.
 fn height_encoding() -> impl TypedValueParser<Value = NamedEncoding> {
     const AUTO: Word = Word { word: "auto", help: "Whichever fits its values" };
-    words::offered([&AUTO].into_iter().chain(HeightEncoding::WORDS)).try_map(|word| {
-        if word == AUTO.word { Ok(None) } else { word.parse::<HeightEncoding>().map(Some) }
-    })
+    words::offered([&AUTO].into_iter().chain(HeightEncoding::WORDS))
+        .try_map(|word| if word == AUTO.word { Ok(None) } else { word.parse::<HeightEncoding>().map(Some) })
 }
 
 impl SceneArgs {

@@ -205,7 +205,10 @@ fn shadow_options_that_say_nonsense() {
         folder.refuse(&format!("render tiny.glb -o out.png {options}"), culprits);
         folder.refuse(&format!("plan tiny.glb -o out.json {options}"), culprits);
     }
-    folder.refuse("plan tiny.glb --depth-convention backwards", &["--depth-convention", "zero-to-one", "zero-to-one-y-down", "minus-one-to-one"]);
+    folder.refuse(
+        "plan tiny.glb --depth-convention backwards",
+        &["--depth-convention", "zero-to-one", "zero-to-one-y-down", "minus-one-to-one"],
+    );
     folder.refuse("plan missing.glb", &["missing.glb"]);
     folder.refuse("plan tiny.glb -o tiny.glb", &["tiny.glb", "input"]);
 }

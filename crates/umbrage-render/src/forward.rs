@@ -173,9 +173,9 @@ impl Forward {
         let device = &gpu.device;
         let (library, coordinates): (String, Coordinates) = match shadows {
             Shading::WithShadows => {
-                let runs = match maps.edges() {
-                    Edges::Exact { .. } => umbrage_wgpu::stored_runs_wgsl(0, Names::BINDING),
-                    Edges::Sampled => String::new(),
+                let runs = match maps.edges().is_exact() {
+                    true => umbrage_wgpu::stored_runs_wgsl(0, Names::BINDING),
+                    false => String::new(),
                 };
                 (maps.receiver_wgsl(2) + &runs, maps.config().coordinates)
             }

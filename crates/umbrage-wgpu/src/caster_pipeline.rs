@@ -1,6 +1,5 @@
 //! A pipeline that draws casters, for the common case.
 
-
 use crate::device::made;
 use crate::{Error, Result, ShadowMaps, Shadows};
 

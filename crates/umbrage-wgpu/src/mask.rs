@@ -4,7 +4,9 @@ use std::borrow::Cow;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, DVec3};
-use umbrage::config::{Coordinates, Edges, ShadowConfig};
+#[cfg(doc)]
+use umbrage::config::Edges;
+use umbrage::config::{Coordinates, ShadowConfig};
 
 use crate::{Error, Result, ShadowMaps};
 
@@ -106,10 +108,10 @@ impl ShadowMask {
         format: wgpu::TextureFormat,
         normals: MaskNormals,
     ) -> Result<Self> {
-        match maps.edges() {
-            Edges::Exact { .. } => Err(Error::MaskNeedsRuns),
-            Edges::Sampled => Self::with(device, maps, format, normals, None),
+        if maps.edges().is_exact() {
+            return Err(Error::MaskNeedsRuns);
         }
+        Self::with(device, maps, format, normals, None)
     }
 
     /// [`ShadowMask::new`] for exact edges: set bind group 2 in the pass before

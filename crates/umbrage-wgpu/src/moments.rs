@@ -11,6 +11,7 @@ use crate::{Error, Filter, Result, device};
 
 /// What a device keeps moments in. Chosen when the maps are made, the first that it can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum MomentStorage {
     /// 32-bit floats through the hardware's sampler: needs `FLOAT32_FILTERABLE` (see
     /// [`crate::optional_features`]).

@@ -1,9 +1,7 @@
 //! What the config's choices are for wgpu and for the shaders, and what varies from frame to frame.
 
 use glam::DVec3;
-use umbrage::config::{
-    DepthFormat, Filter, LightKind, MomentKind, ReceiverBias, Selection, SplitMetric, Transition,
-};
+use umbrage::config::{DepthFormat, Filter, LightKind, MomentKind, ReceiverBias, Selection, SplitMetric, Transition};
 use umbrage_shaders::layout::{BiasKind, FilterKind, MetricKind, SelectionKind, TransitionKind};
 
 use crate::{Error, Result};

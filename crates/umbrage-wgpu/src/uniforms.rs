@@ -1,5 +1,6 @@
 //! From a plan in `f64` world metres to the uniforms in `f32` relative to the frame's origin.
 
+use std::borrow::Borrow;
 use std::f32::consts::TAU;
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
@@ -15,7 +16,7 @@ use crate::{Error, FrameOptions, LightMaps, Result, local};
 /// The uniform that receivers read: the frames of each light's slot. Their splits are what casters
 /// read. `places` are those of all maps.
 pub(crate) fn frames(
-    plans: &[&ShadowPlan],
+    plans: &[impl Borrow<ShadowPlan>],
     config: &ShadowConfig,
     slots: &[Slot],
     places: &[Place],
@@ -26,7 +27,7 @@ pub(crate) fn frames(
         return Err(Error::LightCount { plans: plans.len(), lights: slots.len() });
     }
     let mut frames = Vec::new();
-    for (light, (plan, slot)) in plans.iter().zip(slots).enumerate() {
+    for (light, (plan, slot)) in plans.iter().map(Borrow::borrow).zip(slots).enumerate() {
         let given = plan.light.map_or(LightKind::Directional, LightKind::from);
         LightMaps::from(slot.kind).check(light, given)?;
         for face in 0..slot.kind.faces() {
@@ -302,25 +303,16 @@ mod tests {
         let (u_axis, v_axis) = light.map_axes();
         let depth_axis = light.direction();
         let at = DVec2::new(u_axis.dot(center), v_axis.dot(center)) / texel;
-        umbrage::Split {
-            near: 1.0,
-            far: 10.0,
-            blend_begin: 9.0,
-            coverage: (1.0, 10.0),
-            size,
-            u_axis,
-            v_axis,
-            depth_axis,
-            texel_m: DVec2::splat(texel),
-            min_texel: (at - 0.5 * f64::from(size)).round(),
-            depth_near: depth_axis.dot(center) - 50.0,
-            depth_far: depth_axis.dot(center) + 50.0,
-            receiver_depths: (depth_axis.dot(center) - 50.0, depth_axis.dot(center) + 50.0),
-            filter_radius_texels: 1.5,
-            warp: None,
-            light_position: None,
-            casters: 0..1,
-        }
+        let mut split = umbrage::Split::default();
+        (split.near, split.far, split.blend_begin, split.coverage) = (1.0, 10.0, 9.0, (1.0, 10.0));
+        (split.size, split.texel_m) = (size, DVec2::splat(texel));
+        (split.u_axis, split.v_axis, split.depth_axis) = (u_axis, v_axis, depth_axis);
+        split.min_texel = (at - 0.5 * f64::from(size)).round();
+        (split.depth_near, split.depth_far) = (depth_axis.dot(center) - 50.0, depth_axis.dot(center) + 50.0);
+        split.receiver_depths = (split.depth_near, split.depth_far);
+        split.filter_radius_texels = 1.5;
+        split.casters = 0..1;
+        split
     }
 
     fn unit() -> impl Strategy<Value = DVec3> {
@@ -481,7 +473,8 @@ mod tests {
             value.and_then(|value| value.parse().ok()).unwrap_or_else(|| panic!("{name} is not in the text"))
         };
         let texel = DVec2::new(0.3, 0.1);
-        let planned = umbrage::Split { texel_m: texel, ..split_near(DVec3::NEG_Y, DVec3::ZERO, 0.1, 1024) };
+        let mut planned = split_near(DVec3::NEG_Y, DVec3::ZERO, 0.1, 1024);
+        planned.texel_m = texel;
         let of = |tangent: f64| planned.bias((planned.u_axis * tangent - planned.depth_axis).normalize());
         assert!((of(0.0).constant_m - constant("TEXEL_BIAS") * texel.max_element()).abs() < 1e-12);
         let corner = |tangent: f64| of(tangent).corner_per_texel / texel.min_element();

@@ -14,6 +14,7 @@ use crate::Split;
 /// umbrage's WGSL also asks of a texel that is nearer than that, or nearer than the receiver but
 /// far behind its plane, where its surface leads (`meets_receiver` in `bias.wesl`).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Bias {
     /// Metres of depth per texel along u and v on the receiver's plane.
     pub depth_per_texel: DVec2,

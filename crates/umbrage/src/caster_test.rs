@@ -26,6 +26,7 @@ const LEVEL: f32 = 1e-9;
 /// ([`CasterTest::mask`]). Every test leaves room for rounding: a box that
 /// [`ShadowPlan::casts_into`] accepts passes, and drawing one more never changes a visible pixel.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct CasterTest {
     /// Half spaces `normal · p <= w`: an outward unit normal, and metres that filters reach
     /// included.
@@ -38,6 +39,7 @@ pub struct CasterTest {
 
 /// What lies wholly below everything that shows shadows casts none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct BelowTest {
     /// The way light travels.
     pub direction: Vec3,
@@ -54,6 +56,7 @@ pub struct BelowTest {
 /// A grid across the light that holds the least height of a receiver in each cell; *height* is the
 /// coordinate along a world axis, counted towards the light.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct CasterMask {
     /// The world axis of heights: 0, 1 or 2. Those of the grid follow it.
     pub axis: u32,

@@ -14,7 +14,8 @@ pub const MAX_SPLITS: usize = 8;
 ///
 /// All positions are `f64` world metres; a renderer subtracts its own origin before it goes to
 /// `f32`.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ShadowPlan {
     /// The splits, nearest first; of a point light those of its first face, then those of the next.
     pub splits: Vec<Split>,
@@ -52,6 +53,27 @@ pub struct ShadowPlan {
     pub coverage: PlanCoverage,
 }
 
+impl Default for ShadowPlan {
+    /// A plan without splits.
+    fn default() -> Self {
+        Self {
+            splits: Vec::new(),
+            planes: Vec::new(),
+            view_depth_plane: DVec4::ZERO,
+            radial_eye: None,
+            light_direction: DVec3::ZERO,
+            light: None,
+            fade_begin: 0.0,
+            selection: Selection::VIEW_DEPTH,
+            blend: 0.0,
+            caster_indices: Vec::new(),
+            dropped_casters: Vec::new(),
+            split_range: Vec::new(),
+            coverage: PlanCoverage::default(),
+        }
+    }
+}
+
 impl ShadowPlan {
     /// Empties the plan for a frame.
     pub(crate) fn begin(&mut self, view: &View, light: Light) {
@@ -63,7 +85,7 @@ impl ShadowPlan {
             Light::Point(_) => DVec3::NEG_Y,
         };
         self.light = Some(light);
-        self.selection = Selection::default();
+        self.selection = Selection::VIEW_DEPTH;
         self.blend = 0.0;
         self.planes.clear();
         self.caster_indices.clear();
@@ -193,7 +215,8 @@ impl ShadowPlan {
 /// The map of a local light is a perspective picture taken from [`Split::light_position`] along
 /// [`Split::depth_axis`], which [`Split::warp`] takes too: w is the depth along that axis in
 /// metres, and the stored depth is `A − B/w`, 0 at `depth_near` and 1 at `depth_far`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Split {
     /// Where the slice begins, `C_i`: a view depth in metres; see [`ShadowPlan::radial_eye`].
     pub near: f64,

@@ -3,8 +3,7 @@
 
 use proptest::prelude::*;
 use umbrage::config::{
-    Choice, Kind, LightKind, Preset, RENAMED, RULES, Range, Rebuilds, Renamed, SETTINGS, Setting, Stability,
-    Transition,
+    Choice, Kind, LightKind, Preset, RENAMED, RULES, Range, Rebuilds, Renamed, SETTINGS, Setting, Stability, Transition,
 };
 use umbrage::{Error, ShadowConfig};
 
@@ -146,6 +145,7 @@ fn choose(choice: Choice) -> (&'static str, &'static [LightKind]) {
         Choice::FitToDepth => ("fit-to=depth", sun),
         Choice::IntervalSelection => ("selection=depth", sun),
         Choice::SliceCrop => ("fit=independent", sun),
+        other => panic!("{other:?} is not chosen by anything here"),
     }
 }
 
@@ -193,7 +193,8 @@ fn every_pair_of_choices_is_refused_exactly_where_a_rule_says_so() {
                 // No value makes both choices: who asks for both is told, and gets neither.
                 let error = told.clone().unwrap_or_else(|| panic!("{a} {b} {lights:?} is accepted"));
                 assert!(config == Preset::Papers.config(), "{first:?} {second:?}: {error}");
-                let keys = [first, second].map(|choice| choice.keys().iter().any(|key| error.to_string().contains(key)));
+                let keys =
+                    [first, second].map(|choice| choice.keys().iter().any(|key| error.to_string().contains(key)));
                 assert_eq!(keys, [true; 2], "{first:?} {second:?}: {error}");
             } else {
                 let implied = |choice: Choice, other: Choice| {

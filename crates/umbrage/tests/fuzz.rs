@@ -155,7 +155,7 @@ fn any_case() -> impl Strategy<Value = Case> {
                 }
                 let is_radial = settings.selection.metric() == SplitMetric::Distance;
                 if is_radial && lens.projection == Projection::Orthographic {
-                    settings.selection = Selection::default();
+                    settings.selection = Selection::VIEW_DEPTH;
                 }
                 let seen = parts.map(|parts| seen(&boxes, &parts.map(|part| part % 16)));
                 Case { settings, options, views, sun, boxes, seen, probes }

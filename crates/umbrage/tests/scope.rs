@@ -161,7 +161,7 @@ fn a_map_without_casters_does_not_answer_for_a_later_one() {
     // The only caster stands far away: the first split has none.
     let caster = Aabb::new(DVec3::new(-3.0, 4.0, -103.0), DVec3::new(3.0, 8.0, -97.0));
     let shaded = DVec3::new(1.5, 0.0, -100.0);
-    for selection in [Selection::default(), Selection::Map] {
+    for selection in [Selection::VIEW_DEPTH, Selection::Map] {
         let settings = ShadowConfig { selection, ..Preset::Papers.config() };
         let mut planner = Planner::new(&settings).expect("settings");
         let plan = planner.plan(&view, &sun, &[caster], &[ground]).expect("a plan");

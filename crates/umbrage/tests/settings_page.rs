@@ -126,6 +126,7 @@ const fn name(choice: Choice) -> &'static str {
         Choice::FitToDepth => "`fit-to depth`",
         Choice::IntervalSelection => "`selection depth`",
         Choice::SliceCrop => "`fit independent`",
+        _ => panic!("a choice has no words here"),
     }
 }
 

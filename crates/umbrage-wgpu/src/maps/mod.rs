@@ -435,8 +435,8 @@ impl ShadowMaps {
 
 /// What casters' fragments write beside depth.
 fn colour_format(config: &ShadowConfig, edges: Edges) -> Option<wgpu::TextureFormat> {
-    match edges {
-        Edges::Exact { .. } => Some(targets::ID_FORMAT),
-        Edges::Sampled => config.depth_format.is_colour().then(|| texture_format(config.depth_format)),
+    if edges.is_exact() {
+        return Some(targets::ID_FORMAT);
     }
+    config.depth_format.is_colour().then(|| texture_format(config.depth_format))
 }

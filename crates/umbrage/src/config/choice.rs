@@ -2,13 +2,14 @@
 //! them back.
 
 use super::{
-    Cache, Coordinates, Crop, DepthFormat, Edges, ExtentSteps, Filter, FitTo, Generation, Layout, LightKind, Range, Selection,
-    ShadowConfig, SplitMetric, SplitScheme, Stability, Storage, Transition,
+    Cache, Coordinates, Crop, DepthFormat, Edges, ExtentSteps, Filter, FitTo, Generation, Layout, LightKind, Range,
+    Selection, ShadowConfig, SplitMetric, SplitScheme, Stability, Storage, Transition,
 };
 use crate::Warp;
 
 /// A choice that excludes others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Choice {
     /// A map that spreads its texels unevenly.
     Warp,
@@ -226,7 +227,7 @@ impl Choice {
         match self {
             Self::Warp | Self::AllWarped => config.stability = Stability::tight(),
             Self::SmallCasters => config.drop_small_casters = false,
-            Self::MapSelection | Self::DistanceMetric => config.selection = Selection::default(),
+            Self::MapSelection | Self::DistanceMetric => config.selection = Selection::VIEW_DEPTH,
             Self::VisibleRange => config.range = Range::Camera,
             Self::OptimalScheme => config.scheme = SplitScheme::practical(),
             Self::Band => config.transition = Transition::Hard,

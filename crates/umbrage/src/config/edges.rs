@@ -4,6 +4,7 @@ use super::names::{Word, unknown};
 
 /// What decides where a shadow ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Edges {
     /// The filter: an edge is known to the texel.
     #[default]
@@ -19,10 +20,7 @@ impl Edges {
     /// The word of each way to decide edges.
     pub const WORDS: &'static [Word] = &[
         Word { word: "sampled", help: "The filter: an edge is known to the texel" },
-        Word {
-            word: "exact",
-            help: "The triangles that texels name: an edge is exact where casters can be asked",
-        },
+        Word { word: "exact", help: "The triangles that texels name: an edge is exact where casters can be asked" },
     ];
 
     /// Exact edges of one position of a pixel: visibility is 0 or 1.

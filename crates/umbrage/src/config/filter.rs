@@ -94,6 +94,7 @@ named! {
 
 named! {
     /// How a moment filter finds the mip level where neighbouring pixels use different splits.
+    #[non_exhaustive]
     pub enum Derivatives as "source of derivatives" {
         /// By the change of position from pixel to pixel, which no border interrupts
         #[default]

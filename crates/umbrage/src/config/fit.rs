@@ -11,6 +11,7 @@ named! {
     /// receivers in its slice, and there to where casters can cast a shadow on them. Exactly
     /// stabilised maps have the same rectangle either way: their depth and their list of casters
     /// depend on the scene.
+    #[non_exhaustive]
     pub enum Crop as "crop" {
         /// The slice, its receivers and its casters: scene-dependent
         #[default]
@@ -22,6 +23,7 @@ named! {
 
 /// How still shadows are while the camera moves.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Stability {
     /// The tightest map in every frame; edges crawl when the camera moves.
     Tight {
@@ -74,6 +76,7 @@ impl Stability {
 /// Serialised as `{"per_doubling": 24}` or `{"levels": 64}`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
+#[non_exhaustive]
 pub enum ExtentSteps {
     /// Geometric steps of the extent in metres, this many per doubling: 4 to 64. Ours.
     ///
@@ -97,6 +100,7 @@ impl Default for ExtentSteps {
 
 named! {
     /// What planes and maps are fitted to.
+    #[non_exhaustive]
     pub enum FitTo as "what maps are fitted to" {
         /// The boxes of the receivers in view
         #[default]

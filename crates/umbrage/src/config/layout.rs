@@ -68,6 +68,7 @@ named! {
 
 named! {
     /// Whether what static casters draw into a sun's maps is kept from frame to frame.
+    #[non_exhaustive]
     pub enum Cache as "cache" {
         /// Every map is drawn again in every frame
         #[default]
@@ -79,6 +80,7 @@ named! {
 
 /// Where maps are stored and how they are drawn: the nine pairs that go together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Layout {
     /// Layers of one texture, one pass for each split.
     #[default]

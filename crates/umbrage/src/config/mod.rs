@@ -13,6 +13,7 @@ mod filter;
 mod fit;
 mod given;
 mod layout;
+mod light_kind;
 mod look;
 mod names;
 mod presets;
@@ -34,6 +35,7 @@ pub use filter::{Derivatives, Filter, MomentKind, Moments, SUN_DEGREES};
 pub use fit::{Crop, ExtentSteps, FitTo, Stability};
 pub use given::Given;
 pub use layout::{Cache, Coordinates, DepthFormat, Fallbacks, Generation, Layout, Storage};
+pub use light_kind::LightKind;
 pub use look::{Look, ReceiverBias, Translucent};
 pub use names::Word;
 pub(crate) use names::{named, unknown};
@@ -47,46 +49,7 @@ pub use splits::{Range, Selection, SplitMetric, SplitScheme, Transition};
 
 use crate::bounds::MOST_METRES;
 use crate::margin::FilterReach;
-use crate::{Error, Light, MAX_SPLITS, Result, Warp};
-
-/// What kind of light casts shadows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum LightKind {
-    /// A sun: parallel light.
-    #[default]
-    Directional,
-    /// A cone of light from a point.
-    Spot,
-    /// Light from a point in all directions: six faces of a cube.
-    Point,
-}
-
-impl LightKind {
-    /// How many times the maps of [`ShadowConfig::map_sizes`] the light has.
-    #[must_use]
-    pub const fn faces(self) -> usize {
-        match self {
-            Self::Directional | Self::Spot => 1,
-            Self::Point => 6,
-        }
-    }
-
-    /// Whether the light has a position, as spot and point lights do.
-    #[must_use]
-    pub const fn is_local(self) -> bool {
-        !matches!(self, Self::Directional)
-    }
-}
-
-impl From<Light> for LightKind {
-    fn from(light: Light) -> Self {
-        match light {
-            Light::Directional(_) => Self::Directional,
-            Light::Spot(_) => Self::Spot,
-            Light::Point(_) => Self::Point,
-        }
-    }
-}
+use crate::{Error, MAX_SPLITS, Result, Warp};
 
 /// Everything that can be chosen about shadows.
 ///

@@ -8,6 +8,7 @@ use super::{
 
 named! {
     /// A config by name, and what it trades.
+    #[non_exhaustive]
     pub enum Preset as "preset" {
         /// Fewest texels and samples: 3 maps of 1024² and 2×2 texels per lookup
         Fast = "fast",
@@ -33,7 +34,7 @@ impl Preset {
             map_sizes: vec![1024; 4],
             scheme: SplitScheme::practical(),
             range: Range::Camera,
-            selection: Selection::default(),
+            selection: Selection::VIEW_DEPTH,
             transition: Transition::Blend { share: 0.1 },
             far_fade: 0.1,
             crop: Crop::SceneDependent,

@@ -7,6 +7,7 @@ use super::{Choice, LightKind, ShadowConfig};
 
 /// Two choices that exclude each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Rule {
     /// The choice that is reset if neither was given.
     pub first: Choice,
@@ -300,6 +301,7 @@ impl Rule {
 
 /// Two settings that exclude each other.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Conflict {
     /// The rule that is broken.
     pub rule: Rule,

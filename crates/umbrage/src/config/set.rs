@@ -188,7 +188,7 @@ pub(super) fn selection(config: &mut ShadowConfig, text: &str, _: &Given<'_>) ->
     known("selection", text)?;
     match (text, config.selection) {
         ("map", _) => config.selection = Selection::Map,
-        (_, Selection::Map) => config.selection = Selection::default(),
+        (_, Selection::Map) => config.selection = Selection::VIEW_DEPTH,
         (_, Selection::Interval(_)) => {}
     }
     Ok(())

@@ -8,6 +8,7 @@ use super::{ShadowConfig, text};
 
 /// One choice of a [`ShadowConfig`].
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Setting {
     /// The key in config files; the command's option is the key behind two dashes.
     pub key: &'static str,

@@ -9,6 +9,7 @@ use crate::{Error, Result};
 /// `n` and `f` are the ends of the shadowed range, `m` is the number of splits. Source: \[PSSM06\]
 /// section 3.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum SplitScheme {
     /// `C_i = n + (f − n) i/m`: slices of equal depth.
     Uniform,
@@ -67,11 +68,10 @@ impl SplitScheme {
 }
 
 /// The view depths that shadows cover.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Range {
     /// The camera's near and far planes; far is capped by the receivers and by 1.5 times the depth
-    /// of the deepest shadow. The default of this enum, not of [`super::ShadowConfig`], which has
-    /// [`Range::Visible`].
+    /// of the deepest shadow.
     ///
     /// The near plane of an orthographic camera moves up to the scene. Receivers far beyond all
     /// others are ignored if together they fill less than 0.01 % of the picture: they are lit.
@@ -81,7 +81,6 @@ pub enum Range {
     /// planes follow once a view needs √2 times the depth that they were placed for; the range ends
     /// at √2 times that depth at most. While the camera stands still, both return to what a new
     /// planner would choose.
-    #[default]
     Camera,
     /// The view depths between which the view shows receivers, by their boxes clipped to the
     /// frustum.
@@ -117,6 +116,9 @@ pub enum Selection {
 }
 
 impl Selection {
+    /// By the planes between splits, which measure view depth.
+    pub const VIEW_DEPTH: Self = Self::Interval(SplitMetric::ViewDepth);
+
     /// What the planes between splits are measured in; view depth where maps are chosen by what
     /// they contain.
     #[must_use]
@@ -125,12 +127,6 @@ impl Selection {
             Self::Interval(metric) => metric,
             Self::Map => SplitMetric::ViewDepth,
         }
-    }
-}
-
-impl Default for Selection {
-    fn default() -> Self {
-        Self::Interval(SplitMetric::ViewDepth)
     }
 }
 

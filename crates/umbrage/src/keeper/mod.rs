@@ -104,6 +104,7 @@ pub struct KeptFrame<'a> {
 /// A part of a split's kept texture that is to be drawn: cleared, then its casters, cut at its
 /// edge.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct KeptRegion {
     /// The split.
     pub split: usize,
@@ -129,6 +130,7 @@ impl KeptRegion {
 
 /// How a split's map comes from its kept texture.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct KeptMap {
     /// Where the map's upper left texel lies in the texture; texels past its edge are at its other
     /// end.

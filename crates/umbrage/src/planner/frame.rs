@@ -6,7 +6,7 @@ use super::inputs::PlanInputs;
 use super::options::PlannerOptions;
 use crate::bounds::Placed;
 use crate::casters::{Crowd, Most};
-use crate::config::FitTo;
+use crate::config::{FitTo, Stability};
 use crate::geometry::region::Fan;
 use crate::geometry::volume::{Lies, Slice};
 use crate::margin::{EDGE_TEXELS, FilterReach};
