@@ -202,3 +202,50 @@ fn pages_of_items_stand_alone() {
     }
     assert!(found.is_empty(), "items explained by another one:\n{}", found.join("\n"));
 }
+
+/// Crates in which the first word of every item's page is checked.
+const CHECKED: [&str; 3] = ["umbrage", "umbrage-wgpu", "umbrage-shaders"];
+
+/// First words of pages that do not name their subject.
+const NO_SUBJECT: [&str; 9] = ["What", "Whether", "Where", "Which", "How", "Its", "That", "Those", "It"];
+
+/// Numbers of the lines of a source on which an item's page begins without its subject.
+fn pages_without_subject(text: &str) -> Vec<usize> {
+    let opens_so = |page: &str| {
+        let word = page.trim_start().split(|letter: char| !letter.is_alphabetic()).next();
+        word.is_some_and(|word| NO_SUBJECT.contains(&word))
+    };
+    let mut is_in_page = false;
+    let mut found = Vec::new();
+    for (number, line) in (1..).zip(text.lines()) {
+        let page = line.trim_start().strip_prefix("///");
+        if !is_in_page && page.is_some_and(opens_so) {
+            found.push(number);
+        }
+        is_in_page = page.is_some();
+    }
+    found
+}
+
+#[test]
+fn pages_of_items_name_their_subject_first() {
+    let mut found = Vec::new();
+    for name in CHECKED {
+        let mut paths = Vec::new();
+        files(&root().join("crates").join(name).join("src"), &["rs"], &mut paths);
+        for path in paths {
+            let text = fs::read_to_string(&path).expect("sources are text");
+            found.extend(pages_without_subject(&text).iter().map(|line| format!("{}:{line}", path.display())));
+        }
+    }
+    assert!(found.is_empty(), "begin with the noun, as in \"Number of …\" or \"True if …\":\n{}", found.join("\n"));
+}
+
+#[test]
+fn pages_without_subject_are_found() {
+    let good = "/// Number of maps.\n/// What follows is no first line.\nmaps: u32,\n//! What a module does\n";
+    assert!(pages_without_subject(good).is_empty());
+    assert!(pages_without_subject("/// Whatever is left.\n\n/// `It` is a name.\n// What is no page").is_empty());
+    let bad = "/// How many there are.\nmaps: u32,\n    /// It's dark\n    /// there.\n    dark: bool,\n///Which\n";
+    assert_eq!(pages_without_subject(bad), [1, 3, 6]);
+}

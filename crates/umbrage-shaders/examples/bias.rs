@@ -1,18 +1,18 @@
-//! Draws the decision of `lib/bias.wesl`: what a texel is taken for, over its offset and the depth
-//! that it stores. `cargo run -p umbrage-shaders --example bias -- docs/images/bias.svg`
+//! Draws the decision of `lib/bias.wesl`: the class of a texel, over its offset and the depth that
+//! it stores. `cargo run -p umbrage-shaders --example bias -- docs/images/bias.svg`
 
 use std::fmt::Write as _;
 
 use umbrage_shaders::twin::bias::{Receiver, tolerance};
 
-/// Edge of a panel in pixels; cells on each axis.
+/// Edge of a panel in pixels; number of cells on each axis.
 const EDGE: f32 = 420.0;
 const CELLS: u16 = 210;
 
 /// Texels shown to either side of the receiver.
 const REACH: f32 = 5.0;
 
-/// What a texel is taken for, its colour, and what the key says.
+/// Colour and text of each class of texels.
 const KEY: [(&str, &str); 5] = [
     ("#dfe9f5", "behind the receiver: does not shade"),
     ("#a9cf9b", "A. same_surface: the receiver's own, does not shade"),
@@ -21,7 +21,7 @@ const KEY: [(&str, &str); 5] = [
     ("#5b5566", "another surface, too steep to be continued: shades"),
 ];
 
-/// What the texel at `offset` texels that stores `stored` is taken for.
+/// Class of the texel at `offset` texels that stores `stored`.
 fn category(at: &Receiver, offset: f32, stored: f32) -> usize {
     let offset = [offset, 0.0];
     // A surface whose next texels are so deep that it arrives behind any receiver: `meets_receiver`
@@ -36,7 +36,7 @@ fn category(at: &Receiver, offset: f32, stored: f32) -> usize {
     }
 }
 
-/// One panel: a receiver whose normal and the light have this tangent between them, in a map of
+/// Draws one panel: a receiver with this tangent between its normal and the light, in a map of
 /// texels of 1 m; `span` metres of depth.
 fn panel(svg: &mut String, left: f32, tangent: f32, span: f32, title: &str) {
     let range_m = 1000.0;

@@ -1,4 +1,4 @@
-//! The receivers' text, made of what is used.
+//! The receivers' text, made only of the parts that are used.
 
 use crate::layout::{BiasKind, FilterKind, MetricKind, SelectionKind, TransitionKind};
 use crate::{Bound, Maps, MomentMaps, layout, variant};
@@ -45,56 +45,57 @@ const SEPARATE_IDS: [&str; layout::MAX_SPLITS] = [
     text!("ids_8"),
 ];
 
-/// Lights that receivers may be asked about.
+/// Kinds of lights that receivers may sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Lights {
-    /// Suns alone.
+    /// Only suns.
     Suns,
     /// Suns and spot lights: one frame for each light.
     Single,
-    /// Point lights too.
+    /// Suns, spot lights and point lights.
     #[default]
     Any,
 }
 
-/// Maps that a sun may have. A local light's maps are perspective, whatever this says.
+/// Kinds of maps that a sun may have. A local light's maps are always perspective.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Projection {
-    /// Plain ones, in which a texel is as large everywhere.
+    /// Plain maps, in which all texels have one size.
     Plain,
-    /// Warped ones.
+    /// Warped maps.
     Warped,
-    /// Either, split by split.
+    /// Either kind, split by split.
     #[default]
     Any,
 }
 
-/// How triangles that texels name decide where a shadow ends.
+/// Options of exact edges, by which the triangles that texels name decide where a shadow ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ExactEdges {
-    /// Positions of a pixel that are decided, each lit or dark: 1, the query's own, 4 or 8, which
-    /// lie as the samples of a pixel do.
+    /// Number of positions of a pixel that are decided, each lit or dark: 1, which is the query's
+    /// own, or 4 or 8, at the positions of a pixel's samples.
     pub positions: u32,
-    /// Whether the text counts what it does, for a debug view: it then has `umbrage_edge_counts()
-    /// -> vec4u`, of all questions of an invocation.
+    /// True if the text counts its work, for a debug view: it then has `umbrage_edge_counts() ->
+    /// vec4u`, for all queries of an invocation.
     pub counted: bool,
 }
 
 impl Default for ExactEdges {
-    /// One position, nothing counted.
+    /// One position, without counting.
     fn default() -> Self {
         Self { positions: 1, counted: false }
     }
 }
 
 impl ExactEdges {
-    /// Sixteenths of a pixel from its middle, of one position, and of the usual samples of 4 and 8
+    /// Offsets from a pixel's centre in sixteenths, for one position and for the usual samples of 4
+    /// and 8
     /// (<https://registry.khronos.org/vulkan/specs/latest/html/vkspec.html#primsrast-multisampling>).
     const ONE: &[[i32; 2]] = &[[0, 0]];
     const FOUR: &[[i32; 2]] = &[[-2, -6], [6, -2], [-6, 2], [2, 6]];
     const EIGHT: &[[i32; 2]] = &[[1, -3], [-1, 3], [5, 1], [-3, -5], [-5, 5], [-7, -1], [3, 7], [7, -7]];
 
-    /// Where the positions lie, in pixels to the right and down from the middle.
+    /// Offsets of the positions in pixels, to the right and down from the centre.
     #[must_use]
     pub fn places(self) -> Vec<[f32; 2]> {
         self.sixteenths().iter().map(|place| place.map(|by| by as f32 / 16.0)).collect()
@@ -108,7 +109,7 @@ impl ExactEdges {
         }
     }
 
-    /// The constants that `shaders/lib/edges.wesl` asks for.
+    /// Declares the constants that `shaders/lib/edges.wesl` needs.
     fn constants(self, ids_binding: usize) -> String {
         let packed = |axis: usize| {
             let nibble = |(i, place): (usize, &[i32; 2])| ((place[axis] + 8) as u32) << (4 * i);
@@ -122,12 +123,12 @@ impl ExactEdges {
     }
 }
 
-/// What a receiver's text is made for; everything else is not in it. Where a choice is `None` the
-/// text has all of them, and the [`layout::Frame`] says which is meant. What the text was made for
-/// and what the frame says have to agree: the text does not look.
+/// Choices for which a receiver's text is made; code for other choices is not in it. If a choice is
+/// `None` the text has all alternatives, and the [`layout::Frame`] selects one. The frame has to
+/// agree with the choices of the text: the text does not check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ReceiverText {
-    /// How maps are bound and read.
+    /// Binding of the maps, and the way in which they are read.
     pub maps: Maps,
     /// [`layout::Frame::filter_kind`].
     pub filter: Option<FilterKind>,
@@ -139,20 +140,21 @@ pub struct ReceiverText {
     pub transition: Option<TransitionKind>,
     /// [`layout::Frame::bias_kind`].
     pub bias: Option<BiasKind>,
-    /// Which maps a sun has.
+    /// Kinds of maps that a sun may have.
     pub projection: Projection,
-    /// Which lights there are.
+    /// Kinds of lights.
     pub lights: Lights,
-    /// One map may be used for one split after the other: [`layout::Frame::slice`] is looked at.
+    /// True if one map may be used for one split after the other: [`layout::Frame::slice`] is then
+    /// read.
     pub sliced: bool,
-    /// Texels name the triangles that they show, and those decide where a shadow ends: see
-    /// [`stored_runs`]. For depth that can be loaded from, and no other filter than
-    /// [`FilterKind::Pcf3`].
+    /// Exact edges: texels store ids of the triangles that they show, and these decide where a
+    /// shadow ends; see [`stored_runs`]. For depth that can be loaded from, and only with the
+    /// filter [`FilterKind::Pcf3`].
     pub exact: Option<ExactEdges>,
 }
 
 impl Default for ReceiverText {
-    /// Everything is in the text.
+    /// A text with all choices.
     fn default() -> Self {
         Self::from(Maps::default())
     }
@@ -176,10 +178,10 @@ impl From<Maps> for ReceiverText {
 }
 
 impl ReceiverText {
-    /// Whether the text has what stands behind a condition of that name: whatever joined texts
-    /// keep.
+    /// Returns whether the text contains the code behind a condition of this name, for conditions
+    /// that the joined texts keep.
     fn has(&self, name: &str) -> bool {
-        /// Whether a choice is this one, or open.
+        /// Returns whether a choice is one of these, or open.
         fn may<T: Copy + PartialEq>(choice: Option<T>, these: &[T]) -> bool {
             choice.is_none_or(|choice| these.contains(&choice))
         }
@@ -211,17 +213,17 @@ impl ReceiverText {
     }
 }
 
-/// Text to put before a shader that asks what is lit.
+/// WGSL to put before a shader that computes visibility.
 ///
-/// | WGSL | what it answers |
+/// | WGSL | result |
 /// |---|---|
-/// | `umbrage_visibility(position: vec3f, normal: vec3f) -> f32` | how much of the first light reaches a surface, 0 to 1 |
-/// | `umbrage_shadow(query: UmbrageQuery) -> UmbrageShadow` | the same of any light, with the split that answered |
-/// | `umbrage_shadow_from_coordinates(query, coordinates) -> UmbrageShadow` | the same from what vertices made ([`Maps::coordinates`]) |
+/// | `umbrage_visibility(position: vec3f, normal: vec3f) -> f32` | share of the first light that reaches a surface, 0 to 1 |
+/// | `umbrage_shadow(query: UmbrageQuery) -> UmbrageShadow` | the same for any light, with the split that was sampled |
+/// | `umbrage_shadow_from_coordinates(query, coordinates) -> UmbrageShadow` | the same from coordinates that vertex shaders computed ([`Maps::coordinates`]) |
 ///
 /// `umbrage_query(position, normal)` makes a query in any stage; `umbrage_fragment_query(position,
-/// normal, dx, dy, pixel)` makes one that knows its pixel, in uniform control flow. Set a query's
-/// `light`, `pixel` or `split` to ask something else.
+/// normal, dx, dy, pixel)` makes one that contains its pixel, in uniform control flow. Set a
+/// query's `light`, `pixel` or `split` for another query.
 ///
 /// # Panics
 /// If there are fewer than 1 or more than [`layout::MAX_SPLITS`] separate maps.
@@ -269,19 +271,19 @@ pub fn receiver(group: u32, text: impl Into<ReceiverText>) -> String {
     )
 }
 
-/// Text to put beside a [`receiver`] of exact edges ([`ReceiverText::exact`]): the two functions
-/// that it asks, for casters whose positions and indices lie in storage buffers.
+/// WGSL to put beside a [`receiver`] of exact edges ([`ReceiverText::exact`]): the two functions
+/// that it calls, for casters whose positions and indices lie in storage buffers.
 ///
-/// | binding, from `binding` on | what |
+/// | binding, from `binding` on | resource |
 /// |---|---|
 /// | 0 | [`layout::StoredSlot`] of each slot |
 /// | 1 | [`layout::StoredRun`]s |
 /// | 2 | indices, `u32` |
-/// | 3 | positions, three `f32` each, of the runs' own space |
+/// | 3 | positions, three `f32` each, in the runs' own space |
 ///
 /// An application that keeps its meshes otherwise declares the functions itself:
 ///
-/// | WGSL | what it answers |
+/// | WGSL | result |
 /// |---|---|
 /// | `umbrage_run(id: u32) -> UmbrageRun` | the rows of the transform from metres relative to the frame's origin to the run's own space, a box around its triangles, their number |
 /// | `umbrage_corner(run: UmbrageRun, corner: u32) -> vec3f` | corner `3 i + k` of triangle `i`, in that space |
@@ -302,7 +304,7 @@ pub fn stored_runs(group: u32, binding: u32) -> String {
 mod tests {
     use super::*;
 
-    /// Lines of code, to see that a text is made of less.
+    /// Lines of code, to show that a text has fewer.
     fn lines(text: &ReceiverText) -> usize {
         receiver(0, *text).lines().count()
     }

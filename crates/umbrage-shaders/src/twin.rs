@@ -1,5 +1,5 @@
-//! The receiver's decisions on the CPU, in `f32` and under the names that `shaders/lib` and
-//! `shaders/pass` use, for tests.
+//! The receiver's decisions on the CPU, in `f32` and with the names of `shaders/lib` and
+//! `shaders/pass`, for tests.
 
 use crate::layout::{Frame, Split};
 
@@ -8,11 +8,11 @@ pub mod crease;
 pub mod edges;
 pub mod moments;
 
-/// `kernel::MOST_BLOCKER_M`: metres from a surface within which casters give it a penumbra as wide
-/// as the sun asks for.
+/// `kernel::MOST_BLOCKER_M`: metres from a surface within which casters give it the full penumbra
+/// of the sun.
 pub const MOST_BLOCKER_M: f32 = 200.0;
 
-/// `kernel::DISC_RADIUS`: texels of a disc that was given no width.
+/// `kernel::DISC_RADIUS`: radius in texels of a disc without a given width.
 pub const DISC_RADIUS: f32 = 3.0;
 
 /// `kernel::integral`: the share of a tent of half width `r` around 0 that lies left of `x`.
@@ -22,8 +22,8 @@ pub fn tent_integral(x: f32, r: f32) -> f32 {
     0.5 + y - 0.5 * y * y.abs()
 }
 
-/// `kernel::pair` of a tent along one axis: the place of the hardware tap over texels `first` and
-/// `first + 1`, and its weight.
+/// `kernel::pair` of a tent along one axis: the position of the hardware tap over texels `first`
+/// and `first + 1`, and its weight.
 #[must_use]
 pub fn tent_tap(first: f32, centre: f32, r: f32) -> (f32, f32) {
     let left = first - centre;
@@ -33,8 +33,8 @@ pub fn tent_tap(first: f32, centre: f32, r: f32) -> (f32, f32) {
 }
 
 /// `kernel::half_width` along one axis: half the kernel in texels, from its width and the texel in
-/// metres; `own` where `width_m` is 0. Never more than `most`, 1 or more texels, which is what the
-/// taps reach.
+/// metres; `own` if `width_m` is 0. At least 1 texel for a given width, and at most `most`, the
+/// reach of the taps.
 #[must_use]
 pub fn half_width(width_m: f32, texel_m: f32, own: f32, most: f32) -> f32 {
     if width_m > 0.0 { (0.5 * width_m / texel_m).clamp(1.0, most) } else { own.min(most) }
@@ -48,7 +48,7 @@ pub fn vogel(i: u32, count: u32, turn: f32) -> [f32; 2] {
     [radius * angle.cos(), radius * angle.sin()]
 }
 
-/// `filter::gradient_noise`: noise in `[0, 1)` of a pixel.
+/// `filter::gradient_noise`: noise in `[0, 1)` for a pixel.
 #[must_use]
 pub fn gradient_noise(pixel: [f32; 2]) -> f32 {
     let inner = pixel[0] * 0.067_110_56 + pixel[1] * 0.005_837_15;
@@ -73,13 +73,13 @@ pub fn map_from_world(split: &Split, position: [f32; 3]) -> [f32; 3] {
     ]
 }
 
-/// `umbrage_split_at`: the split whose slice holds a view depth, `None` beyond the last.
+/// `umbrage_split_at`: the split whose slice contains a view depth, `None` beyond the last.
 #[must_use]
 pub fn split_at(frame: &Frame, view_depth: f32) -> Option<usize> {
     frame.splits[..frame.split_count as usize].iter().position(|split| view_depth < split.far)
 }
 
-/// `umbrage_frame_at`: the frame of light `light` that answers for a position.
+/// `umbrage_frame_at`: index of the frame of light `light` that serves a position.
 #[must_use]
 pub fn frame_at(frames: &[Frame], light: usize, position: [f32; 3]) -> usize {
     let first = frames[light].first_frame as usize;

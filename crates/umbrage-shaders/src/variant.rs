@@ -1,11 +1,11 @@
-//! Makes a text of what is used: takes or drops what stands behind `@if(…)` (WESL's conditional
-//! translation), at run time.
+//! Makes a text of the parts that are used: keeps or drops the code behind `@if(…)` (WESL's
+//! conditional translation), at run time.
 //!
-//! `umbrage-shaders-join` resolves what is known when the texts are joined and keeps the conditions
-//! of a receiver's choices in them. What may follow such a condition here is a declaration, a
-//! member of a struct, a statement or a block.
+//! `umbrage-shaders-join` resolves the conditions that are known when the texts are joined, and
+//! keeps the conditions of a receiver's choices in them. Such a condition may be followed by a
+//! declaration, a member of a struct, a statement or a block.
 
-/// `text` with every `@if(condition)` resolved: `is_on` says which names are true.
+/// `text` with every `@if(condition)` resolved: `is_on` gives the value of a name.
 pub(crate) fn resolved(text: &str, is_on: impl Fn(&str) -> bool) -> String {
     const MARK: &str = "@if";
     let mut result = String::with_capacity(text.len());
@@ -19,7 +19,7 @@ pub(crate) fn resolved(text: &str, is_on: impl Fn(&str) -> bool) -> String {
     result + rest
 }
 
-/// What stands between the parenthesis that `text` begins with and its partner, and what follows
+/// The text between the parenthesis that `text` begins with and its partner, and the text after
 /// that.
 fn parenthesised(text: &str) -> (&str, &str) {
     let text = text.trim_start();
@@ -35,7 +35,7 @@ fn parenthesised(text: &str) -> (&str, &str) {
     (text, "")
 }
 
-/// Bytes of the declaration, member, statement or block that `text` begins with.
+/// Number of bytes of the declaration, member, statement or block that `text` begins with.
 fn length(text: &str) -> usize {
     let (mut round, mut curly) = (0i32, 0i32);
     for (at, c) in text.char_indices() {

@@ -1,7 +1,7 @@
-//! Deferred shading: normals and depth first, then a mask of what is lit, then light.
+//! Deferred shading: normals and depth first, then a mask of visibility, then light.
 //!
-//! `cargo run -p umbrage-wgpu --example deferred`, with `-- --picture out.png` for one picture.
-//! The shadows know nothing of the application's shaders: `ShadowMask` asks for every pixel.
+//! `cargo run -p umbrage-wgpu --example deferred`, with `-- --picture out.png` for one picture. The
+//! application's shaders do not call the shadows: `ShadowMask` computes visibility for every pixel.
 
 mod support;
 
@@ -11,7 +11,7 @@ use umbrage_wgpu::{Inputs, MaskFrame, MaskNormals, ShadowConfig, ShadowMask, Sha
 
 /// A format with a sign, for normals.
 const NORMALS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Red: what is lit. Green: where something is.
+/// Red: visibility. Green: 1 where there is a surface.
 const MASK: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Unorm;
 
 const SURFACES: &str = "
@@ -48,7 +48,7 @@ struct Scene {
     light_layout: wgpu::BindGroupLayout,
 }
 
-/// What is drawn before there is light, at the size of the picture.
+/// Textures drawn before the light, at the size of the image.
 struct Buffers {
     normals: wgpu::TextureView,
     mask: wgpu::TextureView,
@@ -111,7 +111,7 @@ impl Scene {
     }
 }
 
-/// The camera that drew the depth.
+/// The camera that drew the depth texture.
 fn mask_frame(view: &View, inputs: &Inputs<'_>) -> MaskFrame {
     MaskFrame {
         clip_from_eye: view.clip_from_relative(view.eye()),

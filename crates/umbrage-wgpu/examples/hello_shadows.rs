@@ -1,8 +1,8 @@
 //! Shadows in a small wgpu program: boxes on a plain, and a camera that walks around them.
 //!
 //! `cargo run -p umbrage-wgpu --example hello_shadows` opens a window; `cargo run -p umbrage-wgpu
-//! --example hello_shadows -- --picture out.png` writes one picture. What shadows add to the
-//! program is in `Scene::new`, `Scene::draw` and the two shaders, at the marks ◐.
+//! --example hello_shadows -- --picture out.png` writes one picture. The marks ◐ show the additions
+//! for shadows, in `Scene::new`, `Scene::draw` and the two shaders.
 
 mod support;
 
@@ -13,10 +13,10 @@ use support::{Target, cuboid, pipeline, vertex_buffer};
 use umbrage_wgpu::umbrage::{Aabb, DirectionalLight, Frustum, Light, View};
 use umbrage_wgpu::{CasterPipeline, Inputs, ShadowConfig, Shadows, wgpu};
 
-/// Towards the sun.
+/// Direction towards the sun.
 const TO_SUN: DVec3 = DVec3::new(0.6, 0.5, 0.3);
 
-/// The application's own shader, behind the text that answers for shadows.
+/// The application's own shader, which is appended to the receiver text.
 const SHADER: &str = "
 @group(0) @binding(0) var<uniform> clip_from_world: mat4x4f;
 
@@ -36,7 +36,7 @@ struct Varying {
     return vec4f(vec3f(0.10, 0.13, 0.2) + light * vec3f(0.8, 0.72, 0.6), 1.0);
 }";
 
-/// Everything that is drawn, and what draws it.
+/// The scene, and the resources that draw it.
 struct Scene {
     vertices: wgpu::Buffer,
     vertex_count: u32,
@@ -79,7 +79,7 @@ impl Scene {
         })
     }
 
-    /// Draws the world as it is seen `seconds` after the beginning.
+    /// Draws the world `seconds` after the beginning.
     fn draw(
         &mut self,
         device: &wgpu::Device,

@@ -1,7 +1,7 @@
-//! Three lights with shadows: a sun, a spot light that swings, and a lamp that shines all round.
+//! Three lights with shadows: a sun, a spot light that swings, and a point light.
 //!
 //! `cargo run -p umbrage-wgpu --example lamps`, with `-- --picture out.png` for one picture. A
-//! shader asks for one light after the other: `UmbrageQuery.light`.
+//! shader samples one light after the other: `UmbrageQuery.light`.
 
 mod support;
 
@@ -11,7 +11,7 @@ use umbrage_wgpu::umbrage::config::LightKind;
 use umbrage_wgpu::umbrage::{DirectionalLight, Light, PointLight, SpotLight};
 use umbrage_wgpu::{Inputs, LightMaps, ShadowConfig, Shadows, wgpu};
 
-/// Metres at which a lamp's light ends.
+/// Range of the lamps in metres.
 const RANGE: f64 = 40.0;
 
 const FRAGMENT: &str = "

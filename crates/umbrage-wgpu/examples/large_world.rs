@@ -1,8 +1,8 @@
 //! A wood of 10,000 trees whose shadows cost nothing while nothing moves.
 //!
 //! `cargo run -p umbrage-wgpu --example large_world`, with `-- --picture out.png` for one picture.
-//! Trees are a `CasterSet`, so that planning looks at those in view alone; with `cache kept` each
-//! piece of a map is drawn once. A cart drives through the wood and is drawn in every frame.
+//! Trees are a `CasterSet`, so that planning looks only at trees in view; with `cache kept` each
+//! part of a map is drawn once. A cart drives through the wood and is drawn in every frame.
 
 mod support;
 
@@ -14,10 +14,10 @@ use umbrage_wgpu::{CasterPipeline, Inputs, ShadowConfig, Shadows, wgpu};
 use wgpu::util::DeviceExt;
 
 const TREES: u32 = 10_000;
-/// Edge of the wood, metres.
+/// Edge of the wood in metres.
 const EDGE: f64 = 1000.0;
 
-/// Vertices of the meshes, one behind the other.
+/// Vertex ranges of the meshes, one after the other.
 const TREE: std::ops::Range<u32> = 0..72;
 const CART: std::ops::Range<u32> = 72..108;
 const PLAIN: std::ops::Range<u32> = 108..144;
@@ -51,7 +51,7 @@ struct Varying {
 
 struct Scene {
     vertices: wgpu::Buffer,
-    /// Place and size of each tree, and last those of the cart and of the plain.
+    /// Position and size of each tree, and last those of the cart and of the plain.
     rows: wgpu::Buffer,
     camera: wgpu::Buffer,
     camera_group: wgpu::BindGroup,
@@ -152,7 +152,7 @@ impl Scene {
     }
 }
 
-/// Where a tree stands, and how large it is; none on the way.
+/// Position and size of a tree; none stands on the path.
 fn tree(index: u32) -> Vec4 {
     let [x, z, size] = [0.754_877_67, 0.569_840_29, 0.381_966_01].map(|step| (f64::from(index) * step).fract());
     let beside = EDGE * (x - 0.5);
@@ -173,7 +173,7 @@ fn cart_bounds(at: DVec3) -> Aabb {
     Aabb::new(at + DVec3::new(-1.0, 0.4, -1.6), at + DVec3::new(1.0, 1.4, 1.6))
 }
 
-/// A camera that walks along the way.
+/// A camera that walks along the path.
 fn camera_at(seconds: f64, [width, height]: [u32; 2]) -> Result<View> {
     let lens = Frustum::perspective(60f64.to_radians(), f64::from(width) / f64::from(height), 0.1, 800.0)?;
     let eye = DVec3::new(-2.0, 2.5, -1.4 * (seconds % 120.0));

@@ -1,8 +1,9 @@
-//! Shadows in a renderer of the shape that wgpu tutorials build: cgmath, `f32` matrices, depth from
-//! 0 to 1, a camera in group 1, a light in group 2, instances with a matrix each.
+//! Shadows in a renderer as wgpu tutorials build it: cgmath, `f32` matrices, depth from 0 to 1, a
+//! camera in group 1, a light in group 2, instances with a matrix each.
 //!
 //! `cargo run -p umbrage-wgpu --example learn_wgpu`, with `-- --picture out.png` for one picture.
-//! What shadows add is at the marks ◐: shadows take group 3, and matrices as they are.
+//! The marks ◐ show the additions for shadows: shadows take group 3, and the renderer's matrices
+//! unchanged.
 
 mod support;
 
@@ -12,7 +13,7 @@ use umbrage_wgpu::umbrage::{Aabb, DepthConvention, DirectionalLight, Light, View
 use umbrage_wgpu::{CasterPipeline, Inputs, ShadowConfig, Shadows, wgpu};
 use wgpu::util::DeviceExt;
 
-/// OpenGL's depth from -1 to 1 becomes wgpu's from 0 to 1.
+/// Converts OpenGL's depth, from -1 to 1, to wgpu's, from 0 to 1.
 const OPENGL_TO_WGPU_MATRIX: Matrix4<f32> = Matrix4::new(
     1.0, 0.0, 0.0, 0.0, //
     0.0, 1.0, 0.0, 0.0, //
@@ -22,14 +23,14 @@ const OPENGL_TO_WGPU_MATRIX: Matrix4<f32> = Matrix4::new(
 const INSTANCES_PER_ROW: i32 = 10;
 const TO_SUN: Vector3<f32> = Vector3::new(0.6, 0.5, 0.3);
 
-/// The matrix of an instance: four columns.
+/// Vertex layout of an instance's matrix: four columns.
 const INSTANCE: wgpu::VertexBufferLayout<'_> = wgpu::VertexBufferLayout {
     array_stride: 64,
     step_mode: wgpu::VertexStepMode::Instance,
     attributes: &wgpu::vertex_attr_array![5 => Float32x4, 6 => Float32x4, 7 => Float32x4, 8 => Float32x4],
 };
 
-/// ◐ Casters: the application's instances, in its own vertex layout.
+/// ◐ Casters: the application's instances in its own vertex layout.
 const CASTER: &str = include_str!("casters/instance_buffer.wgsl");
 
 const SHADER: &str = "

@@ -1,8 +1,8 @@
-//! A sun that moves: in steps, with a fade from each to the next, so that no shadow edge crawls.
+//! A sun that moves in steps, with a fade from each to the next, so that no shadow edge crawls.
 //!
 //! `cargo run -p umbrage-wgpu --example moving_sun`, with `-- --picture out.png` for one picture.
-//! The sun that is left and the one that is faded to are two lights with maps of their own; the
-//! first one's maps are drawn during a fade only.
+//! The sun that is faded out and the one that is faded in are two lights with maps of their own;
+//! the first one's maps are drawn only during a fade.
 
 mod support;
 

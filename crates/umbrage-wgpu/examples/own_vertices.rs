@@ -1,8 +1,8 @@
-//! Casters with shaders of their own: packed vertices, holes from a texture, and bones.
+//! Casters with their own shaders: packed vertices, holes from a texture, and bones.
 //!
 //! `cargo run -p umbrage-wgpu --example own_vertices`, with `-- --picture out.png` for one picture.
-//! Nets wave in the wind. Their vertices are 16-bit integers, their meshes have holes where the
-//! texture says so, and two bones move them: in the maps as in the picture.
+//! Nets wave in the wind. Their vertices are 16-bit integers, a texture makes holes in their
+//! meshes, and two bones move them, in the maps as in the image.
 
 mod support;
 
@@ -12,12 +12,12 @@ use umbrage_wgpu::umbrage::{Aabb, DirectionalLight, Light};
 use umbrage_wgpu::{CasterPipeline, Inputs, ShadowConfig, Shadows, wgpu};
 use wgpu::util::DeviceExt;
 
-/// Metres that the largest 16-bit integer stands for.
+/// Length in metres of the largest 16-bit integer.
 const SCALE: f64 = 64.0;
 const NETS: usize = 3;
-/// Rows of quads in a net, from its upper edge to the lower.
+/// Number of rows of quads in a net, from its upper edge to the lower.
 const ROWS: usize = 8;
-/// Metres by which the wind moves a net at most.
+/// Largest displacement of a net by the wind, in metres.
 const SWAY: f64 = 1.2;
 
 /// A vertex: position as a share of [`SCALE`], with the weight of the second bone, and texture
@@ -28,7 +28,8 @@ const LAYOUT: wgpu::VertexBufferLayout<'_> = wgpu::VertexBufferLayout {
     attributes: &wgpu::vertex_attr_array![0 => Snorm16x4, 1 => Unorm16x2],
 };
 
-/// What casters and receivers share: the application's own group, behind the number of that group.
+/// WGSL shared by casters and receivers: the application's own group, with a placeholder for the
+/// group's number.
 const SKIN: &str = "
 @group(GROUP) @binding(0) var<uniform> bones: array<mat4x4f, 2>;
 @group(GROUP) @binding(1) var net: texture_2d<f32>;
@@ -89,7 +90,7 @@ const TOWN: &str = "
 
 struct Scene {
     town: Town,
-    /// Bounds of the town's casters and of the nets behind them.
+    /// Bounds of the town's casters, followed by those of the nets.
     casters: Vec<Aabb>,
     vertices: wgpu::Buffer,
     bones: wgpu::Buffer,
@@ -191,7 +192,7 @@ impl Scene {
     }
 }
 
-/// The upper left corner of a net, metres; it is 3 m wide and 5 m high.
+/// Upper left corner of a net in metres; a net is 3 m wide and 5 m high.
 fn corner(net: usize) -> DVec3 {
     DVec3::new(4.0 * net as f64 - 2.5, 5.2, 13.0 - 1.5 * net as f64)
 }
@@ -210,13 +211,13 @@ fn net(net: usize) -> Vec<[i16; 6]> {
     (0..ROWS).flat_map(quad).map(|(right, down)| vertex(right, down)).collect()
 }
 
-/// All places that the wind may move a net to.
+/// Bounds of a net over all its positions in the wind.
 fn net_bounds(net: usize) -> Aabb {
     let (corner, sway) = (corner(net), DVec3::Z * SWAY);
     Aabb::new(corner - DVec3::Y * 5.0 - sway, corner + DVec3::X * 3.0 + sway)
 }
 
-/// The buffer of bones; layout and group of bones and texture.
+/// The buffer of bones, and the layout and bind group of bones and texture.
 fn skin(device: &wgpu::Device, queue: &wgpu::Queue) -> (wgpu::Buffer, wgpu::BindGroupLayout, wgpu::BindGroup) {
     let bones = device.create_buffer(&wgpu::BufferDescriptor {
         label: None,

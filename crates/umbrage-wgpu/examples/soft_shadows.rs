@@ -1,8 +1,8 @@
 //! Soft shadows from moments: maps are blurred once, and a pixel needs one look-up.
 //!
 //! `cargo run -p umbrage-wgpu --example soft_shadows`, with `-- --picture out.png` for one picture.
-//! What differs from `hello_shadows` is the config, `Shadows::prefilter`, and a query that says
-//! what the pixel covers.
+//! The differences from `hello_shadows` are the config, `Shadows::prefilter`, and a query with the
+//! pixel's footprint.
 
 mod support;
 

@@ -1,8 +1,8 @@
 //! Two players on one screen: two views, one `Shadows`.
 //!
 //! `cargo run -p umbrage-wgpu --example split_screen`, with `-- --picture out.png` for one picture.
-//! Each view has a slot of its own, in which what its stabilised maps hold is kept. Both use the
-//! same maps, one after the other.
+//! Each view has a slot of its own for the state of its stabilised maps. Both use the same maps,
+//! one after the other.
 
 mod support;
 

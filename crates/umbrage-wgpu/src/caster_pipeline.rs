@@ -3,10 +3,10 @@
 use crate::device::made;
 use crate::{Error, Result, ShadowMaps, Shadows};
 
-/// How casters are drawn.
+/// Options of a pipeline that draws casters.
 ///
-/// The default draws triangle lists of `vec3f` positions, metres relative to the frame's origin, at
-/// location 0 of tightly packed vertices, both faces.
+/// The default draws triangle lists of `vec3f` positions, in metres relative to the frame's origin,
+/// at location 0 of tightly packed vertices, and both faces.
 ///
 /// ```no_run
 /// # use umbrage_wgpu::{CasterPipeline, Shadows, wgpu};
@@ -27,23 +27,24 @@ pub struct CasterPipeline<'a> {
     /// WGSL with an entry point `vertex`, and `fragment` if [`CasterPipeline::discards`]. It is
     /// appended to [`Shadows::caster_wgsl`] of group 0.
     pub wgsl: &'a str,
-    /// What `vertex` passes to `fragment`: members of the struct `UmbrageCast`.
+    /// Members of the struct `UmbrageCast`, which `vertex` passes to `fragment`.
     pub members: &'a str,
-    /// Whether `wgsl` has an entry point `fragment`, which discards. It returns a `UmbrageTexel` at
-    /// location 0, `umbrage_caster_texel(at, 0u)` of its `@builtin(position)`: for maps that are
-    /// colours, and with exact edges to say that the caster cannot be asked.
+    /// True if `wgsl` has an entry point `fragment`, which discards. It returns a `UmbrageTexel` at
+    /// location 0, `umbrage_caster_texel(at, 0u)` of its `@builtin(position)`: the depth for maps
+    /// that are colour textures, and with exact edges the id 0, because the caster's triangles
+    /// cannot be tested.
     pub discards: bool,
     /// The application's own bind groups, from group 1 on.
     pub bind_group_layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
-    /// Lists or strips.
+    /// Primitive topology: lists or strips.
     pub topology: wgpu::PrimitiveTopology,
     /// Format of indices, for strips only.
     pub strip_index_format: Option<wgpu::IndexFormat>,
-    /// Which side is the front.
+    /// Winding order of front faces.
     pub front_face: wgpu::FrontFace,
     /// Faces to cull. With `None`, single-sided walls cast shadows from both sides.
     pub cull_mode: Option<wgpu::Face>,
-    /// The application's own cache of compiled pipelines, where it has one (Vulkan).
+    /// The application's own cache of compiled pipelines, if it has one (Vulkan).
     pub cache: Option<&'a wgpu::PipelineCache>,
 }
 
@@ -52,19 +53,20 @@ const POSITIONS: &str = "@vertex fn vertex(@location(0) position: vec3f, instanc
     return umbrage_cast(position, instance);
 }";
 
-/// What writes maps that are colours where nothing is discarded.
+/// Fragment shader that writes the depth into colour maps, for casters that discard nothing.
 const DEPTH: &str = "
 @fragment fn fragment(@builtin(position) at: vec4f) -> @location(0) f32 {
     return umbrage_caster_depth(at);
 }";
 
-/// What writes ids where nothing is discarded: 0 unless the vertex shader has named them.
+/// Fragment shader that writes ids, for casters that discard nothing: 0 unless the vertex shader
+/// has set one.
 const ID: &str = "
 @fragment fn fragment(@location(15) @interpolate(flat, first) id: u32) -> @location(0) u32 {
     return id;
 }";
 
-/// Tightly packed positions.
+/// Vertex attribute of tightly packed positions.
 const PACKED: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x3];
 
 impl Default for CasterPipeline<'_> {
@@ -87,7 +89,7 @@ impl Default for CasterPipeline<'_> {
 }
 
 impl CasterPipeline<'_> {
-    /// A buffer of vertices `stride` bytes apart.
+    /// Layout of a vertex buffer with vertices `stride` bytes apart.
     #[must_use]
     pub const fn positions(stride: u64, attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {
         wgpu::VertexBufferLayout { array_stride: stride, step_mode: wgpu::VertexStepMode::Vertex, attributes }
@@ -102,7 +104,7 @@ impl Shadows {
     /// # Errors
     /// [`crate::Error::Device`] if the device refuses shader or states,
     /// [`crate::Error::CasterWithoutId`] for a fragment shader that does not write the id that
-    /// exact edges want, [`crate::Error::DeviceLost`].
+    /// exact edges need, [`crate::Error::DeviceLost`].
     pub fn caster_pipeline(&self, options: &CasterPipeline<'_>) -> Result<wgpu::RenderPipeline> {
         let maps = self.maps();
         // wgpu takes a fragment shader that leaves a target as it was.

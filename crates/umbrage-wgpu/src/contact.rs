@@ -1,17 +1,17 @@
-//! Contact shadows: what maps are too coarse for, from the picture's own depth.
+//! Contact shadows: detail for which maps are too coarse, from the image's own depth.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, DVec3};
 
 use crate::{Error, Result};
 
-/// How contact shadows are looked for.
+/// Options of the search for contact shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactOptions {
-    /// How far from a surface to look for what shades it, metres towards the light.
+    /// Distance from a surface towards the light within which casters are searched, in metres.
     pub length_m: f32,
-    /// How thick what the camera sees is taken to be, metres: shadows end where something passes
-    /// farther than this before the surface.
+    /// Assumed thickness of visible surfaces in metres: a ray that passes farther than this behind
+    /// a surface is not blocked by it.
     pub thickness_m: f32,
 }
 
@@ -40,14 +40,16 @@ impl ContactOptions {
 /// The camera of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactFrame {
-    /// Positions relative to the eye, along the world's axes, to the clip space that the depth was
-    /// drawn in. Any depth that a GPU takes, reversed and infinite ones too.
+    /// Matrix from positions relative to the camera, along the world's axes, to the clip space in
+    /// which the depth was drawn. Any depth convention of a GPU, including reversed and infinite
+    /// ones.
     pub clip_from_eye: DMat4,
-    /// The eye in the world.
+    /// Position of the camera in world metres.
     pub eye: DVec3,
-    /// Where the camera looks, a unit vector.
+    /// Viewing direction of the camera, a unit vector.
     pub forward: DVec3,
-    /// What positions in the app's shaders are relative to, as [`crate::FrameOptions::origin`].
+    /// World point to which positions in the application's shaders are relative, as
+    /// [`crate::FrameOptions::origin`].
     pub origin: DVec3,
     /// Height of the depth texture in pixels.
     pub height: u32,
@@ -96,9 +98,10 @@ impl Uniform {
     }
 }
 
-/// A uniform and a bind group layout for `umbrage_contact_visibility` ([`contact_wgsl`]). The app
-/// draws its picture's depth first, with one sample per pixel, into a texture that it may bind as
-/// `texture_depth_2d`. Not on GL and WebGL2, which cannot load from one.
+/// A uniform and a bind group layout for `umbrage_contact_visibility` ([`contact_wgsl`]). The
+/// application draws its image's depth first, with one sample per pixel, into a texture that it can
+/// bind as `texture_depth_2d`. Not available on GL and WebGL2, which cannot load from such a
+/// texture.
 #[derive(Debug)]
 pub struct ContactShadows {
     uniform: wgpu::Buffer,
@@ -106,7 +109,7 @@ pub struct ContactShadows {
 }
 
 impl ContactShadows {
-    /// Makes both.
+    /// Creates the uniform and the layout.
     #[must_use]
     pub fn new(device: &wgpu::Device) -> Self {
         let visibility = wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE;
@@ -141,22 +144,22 @@ impl ContactShadows {
         Self { uniform, layout }
     }
 
-    /// Hands a frame's camera to the GPU. Takes effect with the next submission to `queue`.
+    /// Writes a frame's camera to the GPU. Takes effect with the next submission to `queue`.
     ///
     /// # Errors
-    /// [`Error::InvalidFrameOption`] naming what is wrong. Nothing has been written then.
+    /// [`Error::InvalidFrameOption`] naming the wrong field. Nothing has been written then.
     pub fn prepare(&self, queue: &wgpu::Queue, frame: &ContactFrame, options: &ContactOptions) -> Result<()> {
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&Uniform::new(frame, options)?));
         Ok(())
     }
 
-    /// Layout of the group that [`contact_wgsl`] declares.
+    /// Layout of the bind group that [`contact_wgsl`] declares.
     #[must_use]
     pub fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.layout
     }
 
-    /// The group to bind, with the depth of the picture.
+    /// The bind group, with the depth of the image.
     #[must_use]
     pub fn bind_group(&self, device: &wgpu::Device, depth: &wgpu::TextureView) -> wgpu::BindGroup {
         device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -170,10 +173,10 @@ impl ContactShadows {
     }
 }
 
-/// WGSL to put before a shader that computes contact shadows, beside
-/// [`crate::ShadowMaps::receiver_wgsl`] or without it; `group` is the index at which the app binds
-/// [`ContactShadows::bind_group`]. `umbrage_contact_visibility(position, normal, to_light, noise)
-/// -> f32` is to be multiplied with, or taken the smaller of, what the maps say.
+/// WGSL to put before a shader that computes contact shadows, with or without
+/// [`crate::ShadowMaps::receiver_wgsl`]. `group` is the index at which the application binds
+/// [`ContactShadows::bind_group`]. Multiply the result of `umbrage_contact_visibility(position,
+/// normal, to_light, noise) -> f32` with the visibility from the maps, or take the minimum of both.
 #[must_use]
 pub fn contact_wgsl(group: u32) -> String {
     umbrage_shaders::contact(group)

@@ -1,12 +1,12 @@
-//! What the device has to complain about, as errors.
+//! Errors of the device, as errors of this crate.
 
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
 use crate::{Error, Result};
 
-/// Runs `work` and turns the device's errors about it into one of ours. A browser answers later
-/// than that: its complaints go where the application has them go.
+/// Runs `work` and converts the device's errors about it to one of this crate. A browser reports
+/// errors later: they go to the application's handler.
 pub(crate) fn guarded<T>(device: &wgpu::Device, during: &'static str, work: impl FnOnce() -> Result<T>) -> Result<T> {
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -22,8 +22,8 @@ pub(crate) fn guarded<T>(device: &wgpu::Device, during: &'static str, work: impl
     }
 }
 
-/// [`guarded`] for work that makes resources: those of a lost device are invalid, and `wgpu` says
-/// so to nobody but the application's callback.
+/// [`guarded`] for work that creates resources. Resources of a lost device are invalid, and `wgpu`
+/// reports that only to the application's callback.
 pub(crate) fn made<T>(device: &wgpu::Device, during: &'static str, work: impl FnOnce() -> Result<T>) -> Result<T> {
     let made = guarded(device, during, work);
     if is_lost(device) { Err(Error::DeviceLost) } else { made }
@@ -32,8 +32,8 @@ pub(crate) fn made<T>(device: &wgpu::Device, during: &'static str, work: impl Fn
 /// Writes `bytes` into `buffer`, from the next submission on.
 ///
 /// # Errors
-/// [`Error::DeviceLost`], which [`wgpu::Queue::write_buffer`] does not tell. In a [`guarded`] call
-/// another reason takes precedence. A browser does not say that a device is lost.
+/// [`Error::DeviceLost`], which [`wgpu::Queue::write_buffer`] does not report. In a [`guarded`]
+/// call another reason takes precedence. A browser does not report that a device is lost.
 pub(crate) fn write(queue: &wgpu::Queue, buffer: &wgpu::Buffer, offset: u64, bytes: &[u8]) -> Result<()> {
     let Some(size) = wgpu::BufferSize::new(bytes.len() as u64) else { return Ok(()) };
     let mut view = queue.write_buffer_with(buffer, offset, size).ok_or(Error::DeviceLost)?;
@@ -41,7 +41,8 @@ pub(crate) fn write(queue: &wgpu::Queue, buffer: &wgpu::Buffer, offset: u64, byt
     Ok(())
 }
 
-/// Whether a device is lost: no buffer of it can be mapped then. A browser does not say so.
+/// Returns whether a device is lost: its buffers can then not be mapped. A browser does not report
+/// this.
 fn is_lost(device: &wgpu::Device) -> bool {
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
@@ -54,7 +55,7 @@ fn is_lost(device: &wgpu::Device) -> bool {
     now(memory.pop()).is_none() && !is_mapped
 }
 
-/// The answer, if it is there already.
+/// The answer, if it is already there.
 fn now(answer: impl Future<Output = Option<wgpu::Error>>) -> Option<wgpu::Error> {
     match pin!(answer).poll(&mut Context::from_waker(Waker::noop())) {
         Poll::Ready(error) => error,

@@ -1,10 +1,10 @@
-//! Why maps could not be made or prepared.
+//! Errors in making and preparing maps.
 
 /// [`std::result::Result`] with this crate's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Why shadow maps could not be created, prepared or drawn. Every message names the field, what was
-/// wrong and what to do.
+/// Error in creating, preparing or drawing shadow maps. Every message names the field, the problem
+/// and the remedy.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -20,11 +20,11 @@ pub enum Error {
     /// The device ran out of memory.
     #[error("the graphics device ran out of memory while {during}; use smaller maps")]
     OutOfMemory {
-        /// What was being done.
+        /// The operation that failed.
         during: &'static str,
     },
     /// The device is lost: its driver was reset or updated, its adapter was unplugged, or the
-    /// application destroyed it. Nothing that belongs to it works any more.
+    /// application destroyed it. None of its resources works any more.
     #[error(
         "the graphics device is lost; request a new device, and create Shadows (or ShadowMaps) and all pipelines again on it"
     )]
@@ -32,28 +32,28 @@ pub enum Error {
     /// The device refused a command.
     #[error("the graphics device failed while {during}: {message}")]
     Device {
-        /// What was being done.
+        /// The operation that failed.
         during: &'static str,
-        /// What the device said.
+        /// The device's message.
         message: String,
     },
-    /// A pass that loads from depth textures, on a device that cannot.
+    /// The device cannot load from depth textures, as a mask's pass does.
     #[error(
         "depth textures cannot be loaded on GL and WebGL2; compute visibility where surfaces are drawn instead of in a mask"
     )]
     MaskNeedsDepthLoads,
-    /// Depth that what was seen cannot be read from.
+    /// The depth of an image cannot be read.
     #[error("what was seen cannot be read: {reason}")]
     SeenDepth {
-        /// What is wrong, and what to do.
+        /// Problem and remedy.
         reason: String,
     },
-    /// A mask was given normals that it was not made for, or none where it needs them.
+    /// A mask was given normals for which it was not made, or none although it needs them.
     #[error("a mask with normals {normals:?} was {}; give a texture of normals with MaskNormals::Texture and with nothing else", if *.given { "given a texture of them" } else { "given none" })]
     MaskNormals {
-        /// As the mask was made.
+        /// Source of normals for which the mask was made.
         normals: crate::MaskNormals,
-        /// Whether a texture was given.
+        /// True if a texture was given.
         given: bool,
     },
     /// The device has no texture as large as a map.
@@ -64,12 +64,12 @@ pub enum Error {
     MapTooLarge {
         /// Index into `map_sizes`.
         split: usize,
-        /// The edge that was asked for, in texels.
+        /// Requested edge in texels.
         size: u32,
         /// The device's limit, in texels.
         limit: u32,
     },
-    /// The device has no texture as large as what is kept of a map.
+    /// The device has no texture as large as a kept map needs.
     #[error(
         "cache kept needs a texture of {kept} texels for map_sizes[{split}], which is {size}, but this device's textures are at \
          most {limit} texels wide (max_texture_dimension_2d); use a smaller map, or cache off"
@@ -77,14 +77,14 @@ pub enum Error {
     KeptMapTooLarge {
         /// Index into `map_sizes`.
         split: usize,
-        /// The map's edge in texels.
+        /// Edge of the map in texels.
         size: u32,
-        /// The edge of what is kept of it, in texels.
+        /// Edge of the kept texture in texels.
         kept: u32,
         /// The device's limit, in texels.
         limit: u32,
     },
-    /// The device has no texture array as long as the list of maps.
+    /// The device has no texture array with as many layers as there are maps.
     #[error(
         "lights and map_sizes ask for {count} layers, but this device's texture arrays have at most {limit} layers \
          (max_texture_array_layers); use fewer splits"
@@ -104,24 +104,24 @@ pub enum Error {
         /// The filter.
         filter: &'static str,
     },
-    /// Depth cannot become moments where it cannot be loaded.
+    /// The device cannot load from depth textures, and so cannot convert depth to moments.
     #[error("filter {filter} loads from depth maps, which GL cannot; use a filter that compares depth, such as pcf5")]
     NoDepthLoads {
         /// The filter.
         filter: &'static str,
     },
-    /// Exact edges load from depth maps.
+    /// The device cannot load from depth maps, as exact edges do, and fallbacks are forbidden.
     #[error(
         "edges exact loads from depth maps, which GL cannot, and fallbacks are forbidden; allow fallbacks, or use edges sampled"
     )]
     NoExactEdges,
-    /// A mask knows no triangles.
+    /// A mask without triangles cannot decide exact edges.
     #[error(
         "edges exact asks which triangles texels name, and a mask's pass knows none; use ShadowMask::with_runs, or edges \
          sampled"
     )]
     MaskNeedsRuns,
-    /// A pipeline for casters would leave the ids of what is behind it in the maps.
+    /// A pipeline for casters would leave the ids of casters behind it in the maps.
     #[error(
         "the fragment shader of {label} does not return the UmbrageTexel that exact edges want, and would leave the id of \
          what is behind it; return umbrage_caster_texel(at, 0u) at location 0"
@@ -130,7 +130,7 @@ pub enum Error {
         /// Label of the pipeline.
         label: String,
     },
-    /// More runs of triangles than ids can name.
+    /// A caster has more runs of triangles than there are free ids.
     #[error(
         "a caster of {runs} runs needs {needed} slots of ids, but {free} of {all} are free; remove casters from \
          Shadows::occluders, or draw some with the id 0"
@@ -138,14 +138,14 @@ pub enum Error {
     TooManyOccluders {
         /// Runs of the caster.
         runs: u32,
-        /// Slots that they take, one after the other.
+        /// Number of slots that the runs take, one after the other.
         needed: u32,
-        /// Slots that are free.
+        /// Number of free slots.
         free: u32,
-        /// All slots.
+        /// Number of all slots.
         all: u32,
     },
-    /// A slot of ids that nobody has.
+    /// The slots of ids do not belong to a caster.
     #[error(
         "the slots {first} to {last} of ids are not those of a caster that is there; remove a caster once, from the \
          occluders that it was inserted into"
@@ -156,37 +156,37 @@ pub enum Error {
         /// The last slot.
         last: u32,
     },
-    /// The device has no texture that holds all maps side by side.
+    /// The device has no texture that has room for all maps side by side.
     #[error(
         "storage atlas needs one texture that holds maps of {sizes:?} texels side by side, but this device's textures are at most \
          {limit} texels wide (max_texture_dimension_2d); use smaller map_sizes, or storage array"
     )]
     AtlasTooLarge {
-        /// The sizes asked for, nearest split first.
+        /// Requested sizes, nearest split first.
         sizes: Vec<u32>,
         /// The device's limit, in texels.
         limit: u32,
     },
-    /// The device lacks a feature that was asked for by name, and fallbacks are forbidden.
+    /// The device lacks a feature for the requested generation, and fallbacks are forbidden.
     #[error(
         "generation {generation} needs {feature}, which this device was not requested with, and fallbacks are forbidden; request the \
          feature (optional_features), allow fallbacks, or use generation per-split"
     )]
     MissingFeature {
-        /// The generation that was asked for.
+        /// The requested generation.
         generation: &'static str,
-        /// What it needs.
+        /// The feature that it needs.
         feature: &'static str,
     },
-    /// More maps than textures that a shader can sample.
+    /// There are more maps than textures that a shader can sample.
     #[error(
         "storage separate needs {count} sampled textures for the {maps} maps in map_sizes, but a shader of this device samples \
          {limit} at most (max_sampled_textures_per_shader_stage); use fewer splits, or storage array"
     )]
     TooManyTextures {
-        /// Maps asked for.
+        /// Number of requested maps.
         maps: usize,
-        /// Textures needed: one for each map, with exact edges two.
+        /// Number of textures needed: one for each map, with exact edges two.
         count: usize,
         /// The device's limit.
         limit: u32,
@@ -197,31 +197,31 @@ pub enum Error {
          create the Planner and the ShadowMaps with the same map_sizes"
     )]
     PlanMismatch {
-        /// The plan's sizes, nearest split first.
+        /// Sizes of the plan's maps, nearest split first.
         plan: Vec<u32>,
-        /// The sizes given at creation.
+        /// Sizes given at creation.
         maps: Vec<u32>,
     },
-    /// A number of the plan cannot be used.
+    /// A value of the plan cannot be used.
     #[error("split {split} of the plan: {field} is {value}, but it has to be {expected}")]
     InvalidSplit {
         /// Index of the split.
         split: usize,
         /// Field of [`umbrage::Split`].
         field: &'static str,
-        /// What it was.
+        /// The value as given.
         value: f64,
-        /// What it may be.
+        /// Values that are allowed.
         expected: &'static str,
     },
-    /// A number of the plan that belongs to no split cannot be used.
+    /// A value of the plan that belongs to no split cannot be used.
     #[error("the plan's {field} is {value}, but it has to be {expected}")]
     InvalidPlan {
         /// Field of [`umbrage::ShadowPlan`].
         field: &'static str,
-        /// What it was.
+        /// The value as given.
         value: f64,
-        /// What it may be.
+        /// Values that are allowed.
         expected: &'static str,
     },
     /// A frame option is out of range.
@@ -229,34 +229,34 @@ pub enum Error {
     InvalidFrameOption {
         /// Field of [`crate::FrameOptions`].
         field: &'static str,
-        /// What it was.
+        /// The value as given.
         value: f64,
-        /// What it may be.
+        /// Values that are allowed.
         expected: &'static str,
     },
     /// Casters or receivers of a frame were given as lists beside a set, where they would be
     /// ignored.
     #[error("the inputs have a caster set and {listed} boxes in lists; put the boxes into the set, or omit it")]
     SetAndLists {
-        /// Casters and receivers in lists.
+        /// Number of casters and receivers in lists.
         listed: usize,
     },
-    /// A filter so wide that its radius exceeds even the widest map.
+    /// The radius of a filter exceeds even the widest map.
     #[error(
         "the filter is {width_m} m wide, half of which is more than the {map_m:.3} m of the widest map; give less, or no width"
     )]
     FilterTooWide {
-        /// The filter's full width in metres.
+        /// Full width of the filter in metres.
         width_m: f64,
-        /// The longest edge of any of the light's maps, metres.
+        /// The longest edge of any of the light's maps, in metres.
         map_m: f64,
     },
-    /// Something that culling on the GPU was given cannot be used.
+    /// An input of culling on the GPU cannot be used.
     #[error("culling: {field}: {reason}")]
     Culling {
         /// The argument or its field.
         field: &'static str,
-        /// What is wrong with it, and what to do.
+        /// Problem and remedy.
         reason: String,
     },
     /// The device has no buffer as large as culling needs.
@@ -267,35 +267,35 @@ pub enum Error {
     CullingTooLarge {
         /// Label of the buffer.
         what: &'static str,
-        /// Its bytes.
+        /// Size of the buffer in bytes.
         bytes: u64,
         /// The device's limit in bytes.
         limit: u64,
     },
-    /// The device runs no compute shaders.
+    /// The device runs no compute shaders with the storage buffers that culling needs.
     #[error(
         "this device runs no compute shader with seven storage buffers; make the lists with InstanceCulling::cull_on_cpu, or \
          keep instances in an umbrage::CasterSet"
     )]
     CullingNeedsCompute,
-    /// A plan that has no test for culling on the GPU.
+    /// The plan has no test for culling on the GPU.
     #[error(
         "instances cannot be culled on the GPU: {what}; use one sun with generation per-split or multipass and cache off, or the \
          casters of ShadowMap::casters"
     )]
     CullingPlan {
-        /// Why.
+        /// Reason.
         what: &'static str,
     },
-    /// More or fewer plans than lights.
+    /// The number of plans is not that of the lights.
     #[error("got {plans} lights, but these maps were made for {lights}; give one plan or light for each")]
     LightCount {
-        /// How many plans there were.
+        /// Number of plans.
         plans: usize,
-        /// How many lights the maps were made for.
+        /// Number of lights for which the maps were made.
         lights: usize,
     },
-    /// A plan was made by a choice that the shaders of these maps were not made for.
+    /// The plan was made by a choice for which the shaders of these maps were not made.
     #[error(
         "the plan has {setting} {given}, but these maps and their shaders were made for {setting} {made_for}; plan with the config \
          that the maps were made with"
@@ -303,32 +303,32 @@ pub enum Error {
     PlanOfOtherConfig {
         /// Key of the setting.
         setting: &'static str,
-        /// What the maps were made for.
+        /// Value for which the maps were made.
         made_for: String,
-        /// What the plan has.
+        /// Value of the plan.
         given: String,
     },
-    /// The maps of a light serve another kind of light.
+    /// The maps of a light were made for another kind of light.
     #[error(
         "light {light} is {given:?}, but its maps were made for LightKind::{made_for:?}; make maps for LightKind::{given:?} there"
     )]
     LightKind {
         /// Index into the lights.
         light: usize,
-        /// What the plan is of.
+        /// Kind of the plan's light.
         given: umbrage::config::LightKind,
-        /// What the maps are for.
+        /// Kind of light for which the maps were made.
         made_for: umbrage::config::LightKind,
     },
-    /// The frames of all lights are more than a uniform buffer holds.
+    /// The frames of all lights exceed a uniform buffer.
     #[error(
         "lights asks for {frames} frames (one for each light, 6 for a point light) of {bytes} bytes together, but this device's \
          uniform buffers hold {limit} (max_uniform_buffer_binding_size); use fewer lights"
     )]
     TooManyLights {
-        /// Frames needed; 0 if there is no light at all.
+        /// Number of frames needed; 0 if there is no light at all.
         frames: usize,
-        /// Their bytes.
+        /// Size of these frames in bytes.
         bytes: u64,
         /// The device's limit in bytes.
         limit: u64,

@@ -15,21 +15,22 @@
 //!    casters of every map of [`ShadowFrame::maps`]; [`Shadows::prefilter`]; then your own pass
 //!    with [`Shadows::bind_group`].
 //!
-//! `examples/hello_shadows` is a whole program. [`ShadowConfig`] holds all settings; [`Shadows`]
-//! lists what a change costs. [`ShadowMaps`] and [`umbrage::Planner`] are the low-level API, for
+//! `examples/hello_shadows` is a whole program. [`ShadowConfig`] contains all settings; [`Shadows`]
+//! lists the cost of a change. [`ShadowMaps`] and [`umbrage::Planner`] are the low-level API, for
 //! engines that plan or draw in another way.
 //!
 //! Positions in both shaders are in metres relative to [`Inputs::origin`]. The normal is the
-//! geometric one, not an interpolated or mapped one, turned towards the eye: the bias comes from
-//! it. A fragment shader without one uses `normalize(cross(dpdy(position), dpdx(position)))`.
+//! geometric normal, not an interpolated or mapped one, turned towards the camera, because the bias
+//! follows from it. A fragment shader without a normal uses `normalize(cross(dpdy(position),
+//! dpdx(position)))`.
 //!
-//! # Casters with shaders of their own
+//! # Casters with their own shaders
 //!
 //! Return `umbrage_cast(position, instance)` from the vertex shader, with the position relative to
 //! the origin and the parameter `instance: UmbrageInstance`. How you compute it is up to you:
 //!
 //! **Instanced**, with matrices as attributes of an instance buffer that has one row for each
-//! caster; [`ShadowMap::rows`] says how it is drawn:
+//! caster; [`ShadowMap::rows`] gives the rows to draw:
 //!
 #![doc = concat!("```wgsl\n", include_str!("../examples/casters/instance_buffer.wgsl"), "```")]
 //!
@@ -48,41 +49,43 @@
 //!
 //! # Exact edges
 //!
-//! With [`umbrage::config::Edges::Exact`] a texel names the run of eight triangles that it shows,
-//! and points near an edge are tested against those triangles. The library still sees no mesh:
+//! With [`umbrage::config::Edges::Exact`] a texel stores the id of the run of eight triangles that
+//! it shows, and points near an edge are tested against these triangles. The library still sees no
+//! mesh:
 //!
 //! 1. [`Shadows::occluders`] hands out ids, one for each run of a caster.
 //! 2. **Cast.** The vertex shader returns `umbrage_named(umbrage_cast(position, instance), id)`,
-//!    where `id` is `umbrage_caster_id(first, run)` of the caster's first id and the run that the
-//!    triangle's first vertex belongs to. A caster that does not is drawn with the id 0; it cannot
-//!    be asked, and its edges are the contour of the filter.
+//!    where `id` is `umbrage_caster_id(first, run)` of the caster's first id and the run of the
+//!    triangle's first vertex. A caster whose shader does not is drawn with the id 0; its triangles
+//!    cannot be tested, and its edges are the contour of the filter.
 //! 3. **Receive.** [`stored_runs_wgsl`] beside [`Shadows::receiver_wgsl`], with four storage
-//!    buffers of the application's ([`stored_runs_layout`], [`stored_runs`]), or two functions of
-//!    its own.
+//!    buffers of the application ([`stored_runs_layout`], [`stored_runs`]), or two functions of
+//!    your own.
 //!
-//! It holds for all lights and storages. With `samples` of 4 or 8 that many positions of a pixel are
-//! decided, and edges are smooth; the query has to know its pixel then (`umbrage_fragment_query`). Deferred masks ask through [`ShadowMask::with_runs`].
-//! [`ShadowMaps::counting_receiver_wgsl`] counts what is tested, for debug views.
+//! Exact edges work for all lights and storages. With `samples` of 4 or 8 so many positions of a
+//! pixel are decided, and edges are smooth; the query then has to contain its pixel
+//! (`umbrage_fragment_query`). Deferred masks use [`ShadowMask::with_runs`].
+//! [`ShadowMaps::counting_receiver_wgsl`] counts the tests, for debug views.
 //!
-//! A run is told by a flat vertex attribute, so that no feature of the device is needed: each
-//! triangle's first vertex has to belong to one run alone, which turning the order of corners and,
-//! now and then, a second copy of a vertex achieves. Where a device has `PRIMITIVE_INDEX`, a
-//! fragment shader may compute the run from `@builtin(primitive_index)` instead, which counts from
-//! 0 in each draw.
+//! A run is passed by a flat vertex attribute, so that no feature of the device is needed. Each
+//! triangle's first vertex has to belong to one run alone; rotating the order of corners achieves
+//! that, with a second copy of a vertex now and then. If a device has `PRIMITIVE_INDEX`, a fragment
+//! shader may compute the run from `@builtin(primitive_index)` instead, which counts from 0 in each
+//! draw.
 //!
-//! # What the WGSL offers
+//! # WGSL functions
 //!
 //! | function | result |
 //! |---|---|
-//! | `umbrage_cast(position: vec3f, instance: UmbrageInstance) -> UmbrageCast` | what a caster's vertex shader returns |
+//! | `umbrage_cast(position: vec3f, instance: UmbrageInstance) -> UmbrageCast` | the return value of a caster's vertex shader |
 //! | `umbrage_cast_at(position: vec3f, code: u32) -> UmbrageCast` | the same for a shader that takes `@builtin(instance_index)` itself; drawn into several layers at once it also takes `view: u32` |
-//! | `umbrage_caster_depth(position: vec4f) -> f32` | what a caster's fragment shader returns where maps are colours |
-//! | `umbrage_caster_texel(position: vec4f, id: u32) -> UmbrageTexel` | what a caster's fragment shader returns in any config: the id with exact edges, else the depth |
-//! | `umbrage_named(drawn: UmbrageCast, id: u32) -> UmbrageCast` | with exact edges gives what a caster's vertex shader returns an id; else does nothing |
-//! | `umbrage_in_slice(position) -> bool` | whether a fragment belongs to the slice that is drawn, where one map is reused |
-//! | `umbrage_visibility(position: vec3f, normal: vec3f) -> f32` | of the first light: 1 lit, 0 in shadow or turned away |
-//! | `umbrage_shadow(query: UmbrageQuery) -> UmbrageShadow` | of any light: `visibility: f32`, `split: i32` (−1: none), `tint: vec3f` and `light: vec3f`, what to multiply the light by ([`umbrage::config::Look::colour`]) |
-//! | `umbrage_shadow_from_coordinates(query, coordinates) -> UmbrageShadow` | the same from coordinates that vertices made ([`umbrage::config::Coordinates::Vertex`]) |
+//! | `umbrage_caster_depth(position: vec4f) -> f32` | the return value of a caster's fragment shader, if maps are colour textures |
+//! | `umbrage_caster_texel(position: vec4f, id: u32) -> UmbrageTexel` | the return value of a caster's fragment shader in any config: the id with exact edges, otherwise the depth |
+//! | `umbrage_named(drawn: UmbrageCast, id: u32) -> UmbrageCast` | with exact edges, the return value of a caster's vertex shader with an id; otherwise `drawn` |
+//! | `umbrage_in_slice(position) -> bool` | whether a fragment belongs to the slice that is drawn, if one map is reused |
+//! | `umbrage_visibility(position: vec3f, normal: vec3f) -> f32` | visibility of the first light: 1 lit, 0 in shadow or turned away |
+//! | `umbrage_shadow(query: UmbrageQuery) -> UmbrageShadow` | of any light: `visibility: f32`, `split: i32` (−1: none), `tint: vec3f` and `light: vec3f`, the factor of the light ([`umbrage::config::Look::colour`]) |
+//! | `umbrage_shadow_from_coordinates(query, coordinates) -> UmbrageShadow` | the same from coordinates that vertex shaders computed ([`umbrage::config::Coordinates::Vertex`]) |
 //!
 //! A query is a struct that one of two functions fills:
 //!
@@ -95,9 +98,9 @@
 //!
 //! Call `umbrage_fragment_query` in uniform control flow only. It passes on the pixel, which
 //! dithered transitions and rotated kernels need, and the pixel's footprint, from which moment
-//! filters ([`Filter::is_prefiltered`]) choose a mip level and exact edges the positions that they
-//! decide. Without it the former read the finest level, which shimmers in the distance, and the
-//! latter decide the position alone. All other functions work in any control flow and any stage.
+//! filters ([`Filter::is_prefiltered`]) choose a mip level and exact edges the positions to decide.
+//! Without it moment filters read the finest level, which shimmers in the distance, and exact edges
+//! decide the position alone. All other functions work in any control flow and any stage.
 //!
 //! Put caster WGSL and receiver WGSL into separate shader modules: both declare the shared types.
 

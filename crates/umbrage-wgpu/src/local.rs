@@ -1,5 +1,4 @@
-//! Lights that stand somewhere: how their maps become uniforms, and how several lights share one
-//! list of frames.
+//! Local lights: the uniforms of their maps, and the list of frames that several lights share.
 
 use std::borrow::Borrow;
 
@@ -11,12 +10,12 @@ use crate::maps::place::Place;
 use crate::maps::slot::Slot;
 use crate::{Error, Result};
 
-/// The cosine that means that a light has no cone.
+/// Cosine of a light without a cone.
 const NO_CONE: f32 = -2.0;
 
-/// One split of a local light. Its matrix is taken apart: w is metres along the axis, and depth `A
-/// − B/w` keeps its two numbers apart, because `(A w − B)/w` in `f32` would lose with every metre
-/// from the origin what A alone does not.
+/// Uniform of one split of a local light. Its matrix is taken apart: w is metres along the axis,
+/// and depth `A − B/w` keeps its two numbers apart, because `(A w − B)/w` in `f32` would lose
+/// precision with every metre from the origin, and A alone does not.
 pub(crate) fn split(
     index: usize,
     split: &umbrage::Split,
@@ -56,7 +55,7 @@ pub(crate) fn split(
     })
 }
 
-/// What a frame contains of the position of its light.
+/// Writes the position, range and cone of a frame's light.
 pub(crate) fn place_light(frame: &mut layout::Frame, plan: &ShadowPlan, origin: DVec3) {
     frame.cone_cosine = NO_CONE;
     let Some((light, position)) = plan.light.and_then(|light| Some((light, light.position()?))) else { return };
@@ -67,7 +66,7 @@ pub(crate) fn place_light(frame: &mut layout::Frame, plan: &ShadowPlan, origin: 
     }
 }
 
-/// Numbers the frames of several lights: what a shader needs to find those of each.
+/// Numbers the frames of several lights, so that a shader finds the frames of each light.
 pub(crate) fn number(frames: &mut [layout::Frame], slots: &[Slot], plans: &[impl Borrow<ShadowPlan>]) {
     for (light, (slot, plan)) in slots.iter().zip(plans).enumerate() {
         let first = slot.first_frame;

@@ -1,4 +1,4 @@
-//! Deferred shadows: from the picture's depth to a mask of what is lit.
+//! Deferred shadows: a mask of visibility from the image's depth.
 
 use std::borrow::Cow;
 
@@ -10,31 +10,33 @@ use umbrage::config::{Coordinates, ShadowConfig};
 
 use crate::{Error, Result, ShadowMaps};
 
-/// Where the mask's pass takes its normals from.
+/// Source of the normals that the mask's pass uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum MaskNormals {
-    /// From the depth of neighbouring pixels. Exact on planes; wrong where a surface is a pixel or
-    /// two wide, which then may shade itself or lie turned away from the light.
+    /// The depth of neighbouring pixels. Exact on planes; wrong for a surface that is a pixel or
+    /// two wide, which may then shade itself or count as turned away from the light.
     #[default]
     FromDepth,
-    /// From a texture as large as the depth, `texture_2d<f32>` with a format that has a sign: unit
-    /// vectors of the world, of the surfaces themselves and not of their shading.
+    /// A texture as large as the depth, `texture_2d<f32>` with a signed format: unit vectors in the
+    /// world, the geometric normals of surfaces and not those of shading.
     Texture,
 }
 
 /// The camera that drew the depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaskFrame {
-    /// Positions relative to the eye, along the world's axes, to the clip space that the depth was
-    /// drawn in. Any depth that a GPU takes, reversed and infinite ones too.
+    /// Matrix from positions relative to the camera, along the world's axes, to the clip space in
+    /// which the depth was drawn. Any depth convention of a GPU, including reversed and infinite
+    /// ones.
     pub clip_from_eye: DMat4,
-    /// The eye in the world.
+    /// Position of the camera in world metres.
     pub eye: DVec3,
-    /// Where the camera looks, a unit vector.
+    /// Viewing direction of the camera, a unit vector.
     pub forward: DVec3,
-    /// As [`crate::FrameOptions::origin`].
+    /// World point to which positions in the shaders are relative, as
+    /// [`crate::FrameOptions::origin`].
     pub origin: DVec3,
-    /// What the depth was cleared to: 0 for reversed depth, else 1.
+    /// Clear value of the depth: 0 for reversed depth, otherwise 1.
     pub empty_depth: f32,
 }
 
@@ -70,13 +72,13 @@ impl Uniform {
     }
 }
 
-/// A pass that samples [`ShadowMaps`] for every pixel of a picture whose depth is drawn already,
-/// for applications that shade later: red is the first light's visibility (1 where nothing was
-/// drawn), green 1 where something was.
+/// A pass that samples [`ShadowMaps`] for every pixel of an image whose depth is already drawn, for
+/// applications that shade later. Red is the first light's visibility (1 where nothing was drawn),
+/// green is 1 where something was drawn.
 ///
-/// Positions are rebuilt from depth with one sample per pixel; they agree with the surfaces' own to
-/// rounding (`docs/notes/coordinates.md`).
-/// Not on GL and WebGL2, which cannot load from a depth texture.
+/// Positions are reconstructed from depth with one sample per pixel; they agree with those of the
+/// surfaces up to rounding (`docs/notes/coordinates.md`). Not available on GL and WebGL2, which
+/// cannot load from a depth texture.
 #[derive(Debug)]
 pub struct ShadowMask {
     pipeline: wgpu::RenderPipeline,
@@ -85,7 +87,7 @@ pub struct ShadowMask {
     normals: MaskNormals,
 }
 
-/// What a mask asks of casters, with exact edges.
+/// Access of a mask to the triangles of casters, for exact edges.
 #[derive(Clone, Copy, Debug)]
 pub struct MaskRuns<'a> {
     /// The two functions `umbrage_run` and `umbrage_corner`, with bindings in group 2:
@@ -96,12 +98,13 @@ pub struct MaskRuns<'a> {
 }
 
 impl ShadowMask {
-    /// For masks of `format` (`R8Unorm` holds what is lit, `Rg8Unorm` also where something is).
+    /// A pass for masks of `format` (`R8Unorm` stores visibility, `Rg8Unorm` also where something
+    /// was drawn).
     ///
     /// # Errors
-    /// [`Error::MaskNeedsDepthLoads`] where depth textures cannot be loaded from, [`Error::Config`]
-    /// with [`umbrage::config::Layout::Reused`], whose maps are gone when the picture's depth is
-    /// complete, [`Error::MaskNeedsRuns`] with [`Edges::Exact`].
+    /// [`Error::MaskNeedsDepthLoads`] if depth textures cannot be loaded from, [`Error::Config`]
+    /// with [`umbrage::config::Layout::Reused`], whose maps are overwritten by the time the image's
+    /// depth is complete, [`Error::MaskNeedsRuns`] with [`Edges::Exact`].
     pub fn new(
         device: &wgpu::Device,
         maps: &ShadowMaps,
@@ -115,7 +118,7 @@ impl ShadowMask {
     }
 
     /// [`ShadowMask::new`] for exact edges: set bind group 2 in the pass before
-    /// [`ShadowMask::draw`]. With [`Edges::Sampled`] it is not asked for.
+    /// [`ShadowMask::draw`]. With [`Edges::Sampled`] the group is not used.
     ///
     /// # Errors
     /// As [`ShadowMask::new`].
@@ -213,20 +216,20 @@ impl ShadowMask {
         Ok(Self { pipeline, layout, uniform, normals })
     }
 
-    /// Hands a frame's camera to the GPU. Takes effect with the next submission to `queue`.
+    /// Writes a frame's camera to the GPU. Takes effect with the next submission to `queue`.
     ///
     /// # Errors
-    /// [`Error::InvalidFrameOption`] naming what is wrong. Nothing has been written then.
+    /// [`Error::InvalidFrameOption`] naming the wrong field. Nothing has been written then.
     pub fn prepare(&self, queue: &wgpu::Queue, frame: &MaskFrame) -> Result<()> {
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&Uniform::new(frame)?));
         Ok(())
     }
 
-    /// The group that [`ShadowMask::draw`] wants: the picture's depth and, with
+    /// The bind group for [`ShadowMask::draw`]: the image's depth and, with
     /// [`MaskNormals::Texture`], its normals.
     ///
     /// # Errors
-    /// [`Error::MaskNormals`] if normals are missing or not asked for.
+    /// [`Error::MaskNormals`] if normals are missing or not needed.
     pub fn bind_group(
         &self,
         device: &wgpu::Device,
@@ -250,8 +253,8 @@ impl ShadowMask {
         }))
     }
 
-    /// Draws the mask into a pass of one colour target and no depth. Changes bind groups 0 and 1;
-    /// with [`MaskRuns`] the application has set group 2.
+    /// Draws the mask into a pass with one colour target and no depth. Changes bind groups 0 and 1;
+    /// with [`MaskRuns`] the application sets group 2.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, maps: &ShadowMaps, group: &wgpu::BindGroup) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, group, &[]);

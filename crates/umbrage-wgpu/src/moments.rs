@@ -1,5 +1,5 @@
-//! From depth maps to moments: conversion, blur and mip levels, and the textures that receivers
-//! read.
+//! Conversion of depth maps to moments: conversion, blur and mip levels, and the textures that
+//! receivers read.
 
 use umbrage::config::{Derivatives, Fallbacks, MomentKind, Moments as MomentFilter};
 use umbrage::{MAX_SPLITS, ShadowPlan};
@@ -9,36 +9,36 @@ use umbrage_shaders::{MOMENT_PASSES, MOMENT_PASSES_OF_SAMPLES, MomentMaps, twin:
 use crate::options::filter_kind;
 use crate::{Error, Filter, Result, device};
 
-/// What a device keeps moments in. Chosen when the maps are made, the first that it can do.
+/// Number format of moments: the best that the device supports, chosen when the maps are created.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum MomentStorage {
-    /// 32-bit floats through the hardware's sampler: needs `FLOAT32_FILTERABLE` (see
+    /// 32-bit floats, filtered by the hardware's sampler: needs `FLOAT32_FILTERABLE` (see
     /// [`crate::optional_features`]).
     F32,
     /// 16-bit floats, for the exponential filters, with exponents that fit. They leak more light.
     F16,
-    /// 32-bit floats that the receiver's shader filters itself, for filters that 16 bits are too
-    /// few for.
+    /// 32-bit floats that the receiver's shader filters itself, for filters for which 16 bits are
+    /// not enough.
     F32Manual,
 }
 
-/// Kernels are this many texels wide at most to each side; maps have as much room around what they
-/// serve.
+/// Most texels of a kernel to each side; maps keep as much room around the points that they serve.
 const MOST_RADIUS: f64 = 15.0;
 
-/// Width of a kernel that was given none, in texels of the finest map; the same in metres in all
-/// others, where it is no less than linear sampling itself.
+/// Width in texels of the finest map of a kernel without a given width. All other maps have the
+/// same width in metres, unless that is less than the width of linear sampling.
 const DEFAULT_TEXELS: f64 = 8.0;
 
-/// Levels end at maps of 4 texels: no pixel sees more of a map than that.
+/// Edge of the smallest mip level in texels: no pixel covers more of a map than that.
 const LEAST_LEVEL: u32 = 4;
 
-/// Texels along the longer axis of a pixel's footprint that a sampler takes.
+/// Most texels along the longer axis of a pixel's footprint that a sampler reads.
 const ANISOTROPY: u16 = 16;
 
 impl MomentStorage {
-    /// What a device with these features has for a filter, or none where fallbacks are forbidden.
+    /// The format for a filter on a device with these features; an error if fallbacks are
+    /// forbidden.
     fn choose(kind: MomentKind, features: wgpu::Features, fallbacks: Fallbacks) -> Result<Self> {
         if features.contains(wgpu::Features::FLOAT32_FILTERABLE) {
             return Ok(Self::F32);
@@ -49,9 +49,9 @@ impl MomentStorage {
         Ok(if matches!(kind, MomentKind::Vsm | MomentKind::Msm) { Self::F32Manual } else { Self::F16 })
     }
 
-    /// Exponents of the rising and the falling exponential, the largest whose squares fit: e^(2·40)
-    /// of 3e38, e^(2·5.5) of 65504. The falling one is A. Lauritzen's 5 where there is room, as
-    /// larger ones only add noise. One moment is no square.
+    /// Exponents of the rising and the falling exponential: the largest ones whose squares fit,
+    /// e^(2·40) in 3e38 and e^(2·5.5) in 65504. The falling one is A. Lauritzen's 5 if there is
+    /// room, as larger ones only add noise. A single moment is not squared.
     fn exponents(self, kind: MomentKind) -> [f32; 2] {
         match (self, kind) {
             (Self::F16, MomentKind::Esm) => [9.0, 0.0],
@@ -72,8 +72,7 @@ impl MomentStorage {
         }
     }
 
-    /// What to tell of a device that keeps moments otherwise than in 32-bit floats with the
-    /// hardware's filter.
+    /// Note for a device that does not store moments as 32-bit floats with the hardware's filter.
     pub(crate) fn note(self, kind: MomentKind) -> Option<String> {
         match self {
             Self::F32 => None,
@@ -105,25 +104,25 @@ pub(crate) struct Moments {
     halve: wgpu::RenderPipeline,
     far: wgpu::Color,
     splits: Vec<SplitTargets>,
-    /// What the last plan wants of each split; `None` where nothing casts a shadow.
+    /// Uniform of each split for the last plan; `None` for a split without casters.
     wanted: Vec<Option<layout::MomentPass>>,
 }
 
 /// One split's views and bind groups.
 #[derive(Debug)]
 struct SplitTargets {
-    /// Level by level.
+    /// Views of the mip levels.
     levels: Vec<wgpu::TextureView>,
     from_depth: wgpu::BindGroup,
     from_level_0: wgpu::BindGroup,
     from_between: wgpu::BindGroup,
-    /// Reads level i to make level i + 1.
+    /// Bind groups that read level i to make level i + 1.
     halves: Vec<wgpu::BindGroup>,
 }
 
 impl Moments {
-    /// `depths` has one view for each split; `edge` is that of a layer, of which there are
-    /// `layers`.
+    /// Creates textures and pipelines. `depths` has one view for each split; `edge` is the edge of
+    /// a layer, and `layers` the number of layers.
     pub fn new(
         device: &wgpu::Device,
         &MomentFilter { kind, samples, .. }: &MomentFilter,
@@ -239,12 +238,12 @@ impl Moments {
         })
     }
 
-    /// What was chosen.
+    /// The chosen number format.
     pub fn storage(&self) -> MomentStorage {
         self.storage
     }
 
-    /// The text that reads them.
+    /// The part of the receiver text that reads these moments.
     pub fn maps(&self) -> MomentMaps {
         match (self.storage, self.own_taps) {
             (MomentStorage::F32Manual, _) => MomentMaps::Manual,
@@ -253,12 +252,12 @@ impl Moments {
         }
     }
 
-    /// Bytes of all levels and of the texture between the blurs.
+    /// Memory in bytes of all levels and of the texture between the blurs.
     pub fn bytes(&self) -> u64 {
         [&self.texture, &self.between].into_iter().map(texture_bytes).sum()
     }
 
-    /// The layout's entries after the frame's uniform, and what to bind there.
+    /// Bind group layout entries after the frame's uniform.
     pub fn receiver_entries(&self, visibility: wgpu::ShaderStages) -> Vec<wgpu::BindGroupLayoutEntry> {
         let by_hand = self.storage == MomentStorage::F32Manual;
         let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
@@ -282,7 +281,7 @@ impl Moments {
         if by_hand { vec![texture, uniform] } else { vec![texture, sampler, uniform] }
     }
 
-    /// What to bind there.
+    /// The bind group for [`Moments::receiver_entries`].
     pub fn receiver_bind_group(
         &self,
         device: &wgpu::Device,
@@ -316,13 +315,13 @@ impl Moments {
         })
     }
 
-    /// Takes a plan; nothing is written if it cannot be used.
+    /// Writes a plan's uniforms; nothing is written if the plan cannot be used.
     pub fn prepare(&mut self, queue: &wgpu::Queue, plan: &ShadowPlan, filter: &MomentFilter) -> Result<()> {
         let wanted = self.wanted(plan, filter)?;
         self.write(queue, wanted, filter)
     }
 
-    /// What a plan needs, checked.
+    /// Checked uniforms of a plan's splits.
     fn wanted(&self, plan: &ShadowPlan, filter: &MomentFilter) -> Result<Vec<Option<layout::MomentPass>>> {
         let finest = plan.splits.iter().map(|split| split.texel_m.max_element()).fold(f64::INFINITY, f64::min);
         let width = filter.width_m.unwrap_or(DEFAULT_TEXELS * finest);
@@ -412,7 +411,7 @@ impl Moments {
     }
 }
 
-/// One level of one layer.
+/// View of one level of one layer.
 fn level_view(texture: &wgpu::Texture, layer: u32, level: u32) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor {
         label: Some("Moments::level"),
@@ -425,7 +424,7 @@ fn level_view(texture: &wgpu::Texture, layer: u32, level: u32) -> wgpu::TextureV
     })
 }
 
-/// Bytes of all levels of a colour texture.
+/// Memory in bytes of all levels of a colour texture.
 fn texture_bytes(texture: &wgpu::Texture) -> u64 {
     let texel = u64::from(texture.format().block_copy_size(None).unwrap_or(0));
     let level =
@@ -433,7 +432,8 @@ fn texture_bytes(texture: &wgpu::Texture) -> u64 {
     (0..texture.mip_level_count()).map(level).sum::<u64>() * u64::from(texture.depth_or_array_layers()) * texel
 }
 
-/// A uniform at 0 if there is one, and a texture: depths at 1, moments at 2.
+/// Bind group layout of a pass: a uniform at 0 if there is one, and a texture: depths at 1, moments
+/// at 2.
 fn pass_layout(
     device: &wgpu::Device,
     uniform: bool,

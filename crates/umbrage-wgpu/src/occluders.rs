@@ -1,4 +1,4 @@
-//! Names for what casters consist of, for exact edges.
+//! Ids of the triangles of casters, for exact edges.
 
 use std::collections::BTreeMap;
 
@@ -6,13 +6,13 @@ use umbrage_shaders::layout::{RUN_BITS, RUN_TRIANGLES, StoredRun};
 
 use crate::{Error, Result};
 
-/// Runs that a slot names.
+/// Number of runs in a slot.
 const SLOT_RUNS: u32 = 1 << RUN_BITS;
 
-/// All slots: the last would have ids beyond 32 bits, as 0 names nothing.
+/// Number of slots. One more would have ids beyond 32 bits, because 0 is not an id of a run.
 const SLOTS: u32 = (1 << (32 - RUN_BITS)) - 1;
 
-/// A caster's ids: one for each of its runs, [`Occluder::first_id`] and those that follow.
+/// Ids of a caster, one for each of its runs: [`Occluder::first_id`] and those that follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Occluder {
     first_slot: u32,
@@ -20,49 +20,49 @@ pub struct Occluder {
 }
 
 impl Occluder {
-    /// The id of its first run: `first` of `umbrage_caster_id(first, run)`. Never 0.
+    /// Id of the caster's first run: `first` of `umbrage_caster_id(first, run)`. Never 0.
     #[must_use]
     pub const fn first_id(self) -> u32 {
         1 + (self.first_slot << RUN_BITS)
     }
 
-    /// Its slots, as indices into the array of
-    /// [`StoredSlot`](umbrage_shaders::layout::StoredSlot)s. Run `r` belongs to the
-    /// slot `r / 4096` of them, which says by `first_run` where its own runs begin.
+    /// Slots of the caster, as indices into the array of
+    /// [`StoredSlot`](umbrage_shaders::layout::StoredSlot)s. Run `r` belongs to slot `r / 4096` of
+    /// them, whose `first_run` gives the index of its first run.
     #[must_use]
     pub fn slots(self) -> impl ExactSizeIterator<Item = u32> {
         self.first_slot..self.first_slot + self.slots
     }
 
-    /// The slots, each with the first of its runs, counted from the caster's first.
+    /// Slots of the caster, each with the index of its first run among the caster's.
     #[must_use]
     pub fn runs_of_slots(self) -> impl ExactSizeIterator<Item = (u32, u32)> {
         (0..self.slots).map(move |slot| (self.first_slot + slot, slot * SLOT_RUNS))
     }
 }
 
-/// Hands out ids for exact edges ([`umbrage::config::Edges::Exact`]): a caster that is drawn with
-/// them can be asked where its triangles are.
+/// Allocator of ids for exact edges ([`umbrage::config::Edges::Exact`]): shaders can look up the
+/// triangles of a caster that is drawn with ids.
 ///
-/// What is removed is given away again after the next [`crate::Shadows::prepare`]: until maps are
-/// drawn anew their texels name it.
+/// Removed ids are allocated again only after the next [`crate::Shadows::prepare`], because the
+/// texels of the last maps contain them until the maps are drawn again.
 #[derive(Clone, Debug, Default)]
 pub struct Occluders {
-    /// Slots that were never given away begin here.
+    /// First slot that was never allocated.
     end: u32,
-    /// Free slots before that: the first of a row, and how many.
+    /// Free slots before `end`: the first slot of each row, and the number of slots in it.
     free: BTreeMap<u32, u32>,
-    /// Slots of casters that are there: the first, and how many.
+    /// Slots of casters: the first slot of each, and the number of its slots.
     used: BTreeMap<u32, u32>,
-    /// Slots that the last maps may name.
+    /// Removed slots that the texels of the last maps may contain.
     removed: Vec<Occluder>,
 }
 
 impl Occluders {
-    /// Ids for a caster of so many runs, 1 at least.
+    /// Allocates ids for a caster of so many runs, at least 1.
     ///
     /// # Errors
-    /// [`Error::TooManyOccluders`] if there are not enough left in a row.
+    /// [`Error::TooManyOccluders`] if there are not enough free slots in a row.
     pub fn insert(&mut self, runs: u32) -> Result<Occluder> {
         let slots = runs.max(1).div_ceil(SLOT_RUNS);
         let row = self.free.iter().find(|&(_, &count)| count >= slots).map(|(&first, &count)| (first, count));
@@ -87,11 +87,11 @@ impl Occluders {
         Ok(Occluder { first_slot, slots })
     }
 
-    /// Takes ids back.
+    /// Frees the ids of a caster.
     ///
     /// # Errors
-    /// [`Error::UnknownOccluder`] for a caster that was removed already, or is another one's. The
-    /// ids are then as they were.
+    /// [`Error::UnknownOccluder`] for a caster that was already removed, or that belongs to another
+    /// allocator. The ids are unchanged then.
     pub fn remove(&mut self, occluder: Occluder) -> Result<()> {
         let Occluder { first_slot, slots } = occluder;
         if self.used.get(&first_slot) != Some(&slots) {
@@ -102,14 +102,14 @@ impl Occluders {
         Ok(())
     }
 
-    /// Slots from the first to the last that was ever given away: as many
-    /// [`StoredSlot`](umbrage_shaders::layout::StoredSlot)s a buffer has to hold.
+    /// Number of slots up to the last one that was ever allocated: the buffer needs so many
+    /// [`StoredSlot`](umbrage_shaders::layout::StoredSlot)s.
     #[must_use]
     pub fn slot_count(&self) -> usize {
         self.end as usize
     }
 
-    /// Maps are about to be drawn anew: no texel names what was removed before.
+    /// Frees the slots that were removed earlier. To be called before maps are drawn again.
     pub(crate) fn recycle(&mut self) {
         for Occluder { first_slot, slots } in self.removed.drain(..) {
             let (mut first, mut count) = (first_slot, slots);
@@ -126,9 +126,8 @@ impl Occluders {
     }
 }
 
-/// The runs of a triangle list in the order in which it is drawn, for
-/// [`stored_runs_wgsl`]: `first_index` is where `indices` begin in the stored ones, and indices
-/// count the stored `positions`.
+/// The runs of a triangle list in drawing order, for [`stored_runs_wgsl`]. `first_index` is the
+/// offset of `indices` in the stored ones, and indices refer to the stored `positions`.
 ///
 /// # Panics
 /// If an index points beyond the positions.
@@ -148,8 +147,8 @@ pub fn stored_runs(positions: &[[f32; 3]], indices: &[u32], first_index: u32) ->
     runs.map(run).collect()
 }
 
-/// WGSL that stands beside [`crate::Shadows::receiver_wgsl`] where an application keeps positions
-/// and indices of its casters in storage buffers: the two functions that exact edges ask. See
+/// WGSL to put beside [`crate::Shadows::receiver_wgsl`] if an application keeps positions and
+/// indices of its casters in storage buffers: the two functions that exact edges call. See
 /// [`umbrage_shaders::stored_runs`] for the four bindings, from `binding` on in group `group`, and
 /// for the functions of applications that keep them otherwise.
 #[must_use]
@@ -157,7 +156,7 @@ pub fn stored_runs_wgsl(group: u32, binding: u32) -> String {
     umbrage_shaders::stored_runs(group, binding)
 }
 
-/// Layout of the bindings that [`stored_runs_wgsl`] declares: four storage buffers that are read.
+/// Layout of the bindings that [`stored_runs_wgsl`] declares: four read-only storage buffers.
 #[must_use]
 pub fn stored_runs_layout(binding: u32, visibility: wgpu::ShaderStages) -> [wgpu::BindGroupLayoutEntry; 4] {
     [0, 1, 2, 3].map(|offset| wgpu::BindGroupLayoutEntry {

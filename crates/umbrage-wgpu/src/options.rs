@@ -1,4 +1,4 @@
-//! What the config's choices are for wgpu and for the shaders, and what varies from frame to frame.
+//! Options of a frame, and the config's choices as values for wgpu and for the shaders.
 
 use glam::DVec3;
 use umbrage::config::{DepthFormat, Filter, LightKind, MomentKind, ReceiverBias, Selection, SplitMetric, Transition};
@@ -6,7 +6,7 @@ use umbrage_shaders::layout::{BiasKind, FilterKind, MetricKind, SelectionKind, T
 
 use crate::{Error, Result};
 
-/// wgpu's format of a map's texels.
+/// Texture format of a map's texels in wgpu.
 #[must_use]
 pub fn texture_format(format: DepthFormat) -> wgpu::TextureFormat {
     match format {
@@ -16,8 +16,7 @@ pub fn texture_format(format: DepthFormat) -> wgpu::TextureFormat {
     }
 }
 
-/// The step between stored depths as a share of the depth range; 0 where it is no coarser than
-/// `f32`.
+/// Step between stored depths as a share of the depth range; 0 if it is no coarser than `f32`.
 pub(crate) fn depth_step(format: DepthFormat) -> f64 {
     match format {
         DepthFormat::D32Float | DepthFormat::R32Float => 0.0,
@@ -25,10 +24,10 @@ pub(crate) fn depth_step(format: DepthFormat) -> f64 {
     }
 }
 
-/// Texels that the narrowest disc reaches: that of one tap, and the tap's own.
+/// Reach in texels of the narrowest disc: that of one tap, plus the tap's own.
 const LEAST_REACH: f64 = 2.0;
 
-/// Texels around a sample that the shader may read where a map was planned to keep `planned` free.
+/// Texels around a sample that the shader may read if a map was planned to keep `planned` free.
 pub(crate) fn reach_within(filter: &Filter, planned: f64) -> f64 {
     match filter {
         Filter::Disc { .. } | Filter::Pcss { .. } => planned.clamp(LEAST_REACH, 16.0),
@@ -36,7 +35,7 @@ pub(crate) fn reach_within(filter: &Filter, planned: f64) -> f64 {
     }
 }
 
-/// The filter's name in the shaders.
+/// The filter as the shaders' enum.
 pub(crate) fn filter_kind(filter: &Filter) -> FilterKind {
     match filter {
         Filter::Hard => FilterKind::Hard,
@@ -57,7 +56,7 @@ pub(crate) fn filter_kind(filter: &Filter) -> FilterKind {
     }
 }
 
-/// How the sampler that compares depth mixes texels.
+/// Filter mode of the sampler that compares depth.
 pub(crate) fn sampler_mode(filter: &Filter) -> wgpu::FilterMode {
     match filter {
         Filter::Hard => wgpu::FilterMode::Nearest,
@@ -65,7 +64,7 @@ pub(crate) fn sampler_mode(filter: &Filter) -> wgpu::FilterMode {
     }
 }
 
-/// The transition's name in the shaders.
+/// The transition as the shaders' enum.
 pub(crate) fn transition_kind(transition: Transition) -> TransitionKind {
     match transition {
         Transition::Blend { .. } => TransitionKind::Blend,
@@ -74,7 +73,7 @@ pub(crate) fn transition_kind(transition: Transition) -> TransitionKind {
     }
 }
 
-/// The selection's name in the shaders.
+/// The selection as the shaders' enum.
 pub(crate) fn selection_kind(selection: Selection) -> SelectionKind {
     match selection {
         Selection::Interval(_) => SelectionKind::Depth,
@@ -82,7 +81,7 @@ pub(crate) fn selection_kind(selection: Selection) -> SelectionKind {
     }
 }
 
-/// The name in the shaders of what splits are measured in.
+/// The measure of splits as the shaders' enum.
 pub(crate) fn metric_kind(metric: SplitMetric) -> MetricKind {
     match metric {
         SplitMetric::ViewDepth => MetricKind::ViewDepth,
@@ -90,7 +89,7 @@ pub(crate) fn metric_kind(metric: SplitMetric) -> MetricKind {
     }
 }
 
-/// The bias's name in the shaders.
+/// The bias as the shaders' enum.
 pub(crate) fn bias_kind(bias: ReceiverBias) -> BiasKind {
     match bias {
         ReceiverBias::Plane => BiasKind::Plane,
@@ -100,10 +99,11 @@ pub(crate) fn bias_kind(bias: ReceiverBias) -> BiasKind {
 
 /// The maps of one light.
 ///
-/// Maps for a spot light serve a directional light too; those for a point light serve any.
+/// Maps for a spot light also serve a directional light; those for a point light serve any light.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct LightMaps {
-    /// What kind of light they are for. A point light has six times the maps of the others.
+    /// Kind of light for which the maps are made. A point light has six times the maps of the
+    /// others.
     pub kind: LightKind,
     /// Edge of each split's map in texels, nearest split first; `None` for the config's
     /// [`umbrage::ShadowConfig::map_sizes`].
@@ -111,13 +111,13 @@ pub struct LightMaps {
 }
 
 impl LightMaps {
-    /// Maps of other sizes, and as many splits, than the config's.
+    /// Maps with other sizes, and another number of splits, than the config's.
     #[must_use]
     pub fn with_sizes(kind: LightKind, map_sizes: &[u32]) -> Self {
         Self { kind, map_sizes: Some(map_sizes.to_vec()) }
     }
 
-    /// Checks that these maps serve a light of this kind, which is the light `light` of a frame.
+    /// Checks that these maps serve a light of this kind. `light` is its index in the frame.
     pub(crate) fn check(&self, light: usize, given: LightKind) -> Result<()> {
         if given.faces() > self.kind.faces() || (given.is_local() && !self.kind.is_local()) {
             return Err(Error::LightKind { light, given, made_for: self.kind });
@@ -138,16 +138,16 @@ impl From<umbrage::Light> for LightMaps {
     }
 }
 
-/// What varies from frame to frame.
+/// Options of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameOptions {
-    /// World point in metres that positions in the application's shaders are relative to. Keep it
-    /// within a kilometre or two of the eye and move it in whole steps: static shadows stand still
-    /// between two steps.
+    /// World point in metres to which positions in the application's shaders are relative. Keep it
+    /// within a kilometre or two of the camera and move it in whole steps: static shadows stand
+    /// still between two steps.
     pub origin: DVec3,
-    /// Whether there are shadows. Without them every surface that faces the light is lit.
+    /// True if there are shadows. Otherwise every surface that faces the light is lit.
     pub enabled: bool,
-    /// Whether `umbrage_shadow` returns a debug colour for each split.
+    /// True if `umbrage_shadow` returns a debug colour for each split.
     pub tint: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What a picture showed, some frames later and without waiting.
+//! Geometry that an image showed, read back some frames later and without waiting.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -9,30 +9,30 @@ use umbrage::{Aabb, View};
 
 use crate::{Error, MaskFrame, Result, device};
 
-/// Tiles across and down the picture. More: boxes leave less air, and more of them are read back
-/// and planned with. Scenes with 12 to 100 tiles across differed by less than a tenth in E
-/// (`docs/notes/fit-to-depth.md`).
+/// Number of tiles across and down the image. With more tiles boxes are tighter, but more of them
+/// are read back and used in planning. Scenes with 12 to 100 tiles across differed by less than a
+/// tenth in E (`docs/notes/fit-to-depth.md`).
 const TILES: [u32; 2] = [32, 24];
 
-/// Pictures that may be on their way back at once. A fourth one is not looked at.
+/// Most images that may be on their way back at once. A fourth one is skipped.
 const SLOTS: usize = 3;
 
 /// Bytes of a tile: two corners.
 const TILE_BYTES: u64 = 32;
 
-/// A camera that has turned by more than this many radians since, or has moved by more than this
-/// share of the distance of what it saw, sees other things. Turning by 90° in a second and waiting
-/// for three frames makes 4.5°.
+/// Most radians by which a camera may turn, and most share of the distance to the seen geometry by
+/// which it may move, for the boxes to stay valid. Turning by 90° in a second and waiting for three
+/// frames makes 4.5°.
 const MOST_TURN: f64 = 0.2;
 const MOST_STEP: f64 = 0.1;
 
-/// Reads from the depth of pictures what they showed, as boxes for [`crate::Inputs::seen`]
-/// (`fit-to depth`).
+/// Reads from the depth of images the geometry that they showed, as boxes for
+/// [`crate::Inputs::seen`] (`fit-to depth`).
 ///
-/// A compute pass makes a box of each of 32 × 24 tiles. The boxes come back one to three frames
-/// later; nothing waits for them, and pictures that come while three others are on their way are
-/// passed over. Source: \[SDSM10\] fits to the frame's samples; ours keeps boxes of tiles, so that
-/// any later view, light and split can be fitted to them.
+/// A compute pass makes a box for each of 32 × 24 tiles. The boxes come back one to three frames
+/// later; nothing waits for them, and images are skipped while three others are on their way.
+/// Source: \[SDSM10\] fits to the frame's samples. Here boxes of tiles are kept, so that any later
+/// view, light and split can be fitted to them.
 ///
 /// ```no_run
 /// # use umbrage_wgpu::{Inputs, MaskFrame, SeenDepth, Shadows, wgpu};
@@ -53,34 +53,34 @@ pub struct SeenDepth {
     pipeline: wgpu::ComputePipeline,
     samples: u32,
     slots: [Slot; SLOTS],
-    /// Counts the pictures.
+    /// Number of images so far.
     turn: u64,
     boxes: Vec<Aabb>,
-    /// The picture that the boxes are of.
+    /// The image from which the boxes are.
     shown: Option<Shown>,
-    /// Pictures up to this one are forgotten.
+    /// Images up to this number are forgotten.
     forgotten: u64,
 }
 
-/// A picture that has come back.
+/// An image that has come back.
 #[derive(Clone, Copy, Debug)]
 struct Shown {
     turn: u64,
     eye: DVec3,
     forward: DVec3,
-    /// Metres from the eye to the middle one of its boxes.
+    /// Median distance in metres from the camera to the image's boxes.
     distance: f64,
 }
 
 impl Shown {
-    /// Whether a view sees much the same.
+    /// Returns whether a view sees much the same geometry.
     fn is_like(&self, view: &View) -> bool {
         let turned = self.forward.angle_between(view.forward());
         turned <= MOST_TURN && self.eye.distance(view.eye()) <= MOST_STEP * self.distance
     }
 }
 
-/// A picture on its way back.
+/// An image on its way back.
 #[derive(Debug)]
 struct Slot {
     uniform: wgpu::Buffer,
@@ -95,9 +95,9 @@ struct Slot {
 #[derive(Debug)]
 enum State {
     Free,
-    /// The pass is recorded, and submitted before anybody asks.
+    /// The pass is recorded; it is submitted before the next call of [`SeenDepth::boxes`].
     Recorded,
-    /// [`ARRIVED`] or [`LOST`] once it is here.
+    /// The map request is pending; the value is [`ARRIVED`] or [`LOST`] once it ends.
     Awaited(Arc<AtomicU8>),
 }
 
@@ -115,10 +115,10 @@ struct Uniform {
 }
 
 impl SeenDepth {
-    /// For depth of `samples` samples a pixel, of which the first one is looked at.
+    /// A reader for depth with `samples` samples per pixel, of which it uses the first.
     ///
     /// # Errors
-    /// [`Error::SeenDepth`] without compute shaders or where depth cannot be loaded (GL, WebGL2).
+    /// [`Error::SeenDepth`] without compute shaders, or if depth cannot be loaded (GL, WebGL2).
     pub fn new(device: &wgpu::Device, samples: u32) -> Result<Self> {
         if device.adapter_info().backend == wgpu::Backend::Gl {
             return Err(bad("depth textures cannot be loaded on GL and WebGL2; use fit-to boxes"));
@@ -143,13 +143,13 @@ impl SeenDepth {
         })
     }
 
-    /// Reads a picture's depth, once it is drawn. `camera` drew it. The encoder is to be submitted
-    /// before [`SeenDepth::boxes`] is called again.
+    /// Reads an image's depth, after the image is drawn. `camera` is the camera that drew it.
+    /// Submit the encoder before the next call of [`SeenDepth::boxes`].
     ///
     /// # Errors
-    /// [`Error::SeenDepth`] for a view that is not of a depth texture with as many samples as this
-    /// was made for, or that cannot be bound; [`Error::InvalidFrameOption`] for a camera without an
-    /// inverse. Nothing has been recorded then.
+    /// [`Error::SeenDepth`] for a view that is not of a depth texture with the number of samples
+    /// for which this was made, or that cannot be bound; [`Error::InvalidFrameOption`] for a camera
+    /// without an inverse. Nothing has been recorded then.
     pub fn reduce(
         &mut self,
         queue: &wgpu::Queue,
@@ -191,8 +191,8 @@ impl SeenDepth {
         Ok(())
     }
 
-    /// What the newest picture showed that has come back: world boxes. `None` before the first one,
-    /// and for a view of other things: after a cut. Never waits.
+    /// World boxes of the geometry that the newest returned image showed. `None` before the first
+    /// one, and for a view of other geometry, as after a cut. Never waits.
     ///
     /// # Errors
     /// [`Error::DeviceLost`].
@@ -215,7 +215,7 @@ impl SeenDepth {
         Ok(shown.filter(|shown| shown.is_like(view)).map(|_| &boxes[..]))
     }
 
-    /// Forgets what was seen: after a cut to another place.
+    /// Forgets the seen geometry, as after a cut to another place.
     pub fn forget(&mut self) {
         self.shown = None;
         self.forgotten = self.turn;
@@ -272,7 +272,7 @@ impl Slot {
         self.state = State::Awaited(state);
     }
 
-    /// Writes the boxes of what has come back; `None` if there are none.
+    /// Writes the boxes of the returned image; `None` if there are none.
     fn read(&self, boxes: &mut Vec<Aabb>) -> Option<Shown> {
         boxes.clear();
         if let Ok(range) = self.back.get_mapped_range(..) {
@@ -289,7 +289,7 @@ impl Slot {
         Some(Shown { turn: self.turn, eye: self.eye, forward: self.forward, distance })
     }
 
-    /// The box of a tile, a little wider than what `f32` tells; `None` where it shows nothing.
+    /// The box of a tile, slightly wider than `f32` gives; `None` if the tile shows nothing.
     fn tile(&self, corners: &[[f32; 4]]) -> Option<Aabb> {
         let [low, high] = [corners[0], corners[1]].map(|[x, y, z, _]| DVec3::new(x.into(), y.into(), z.into()));
         if !(low.is_finite() && high.is_finite() && low.cmple(high).all()) {

@@ -1,4 +1,4 @@
-//! From a plan in `f64` world metres to the uniforms in `f32` relative to the frame's origin.
+//! Conversion of a plan in `f64` world metres to uniforms in `f32` relative to the frame's origin.
 
 use std::borrow::Borrow;
 use std::f32::consts::TAU;
@@ -13,8 +13,8 @@ use crate::maps::slot::Slot;
 use crate::options::{bias_kind, depth_step, filter_kind, reach_within, selection_kind, transition_kind};
 use crate::{Error, FrameOptions, LightMaps, Result, local};
 
-/// The uniform that receivers read: the frames of each light's slot. Their splits are what casters
-/// read. `places` are those of all maps.
+/// The uniform that receivers read: the frames of each light's slot. Their splits are the uniforms
+/// of casters. `places` are those of all maps.
 pub(crate) fn frames(
     plans: &[impl Borrow<ShadowPlan>],
     config: &ShadowConfig,
@@ -44,7 +44,8 @@ pub(crate) fn frames(
     Ok(frames)
 }
 
-/// A sun's plan is made by the choices that receivers' text was made for: the text does not look.
+/// Checks that a sun's plan is made by the choices for which the receivers' text was made, because
+/// the text does not check.
 fn check_choices(plan: &ShadowPlan, config: &ShadowConfig) -> Result<()> {
     if plan.light.is_some_and(|light| light.position().is_some()) {
         return Ok(());
@@ -69,7 +70,7 @@ fn check_choices(plan: &ShadowPlan, config: &ShadowConfig) -> Result<()> {
     Ok(())
 }
 
-/// One face of one light. `places` are those of its splits.
+/// The uniform of one face of one light. `places` are those of its splits.
 fn frame(
     plan: &ShadowPlan,
     face: usize,
@@ -125,7 +126,7 @@ fn frame(
     Ok(frame)
 }
 
-/// Checks what of a plan belongs to no split.
+/// Checks the values of a plan that belong to no split.
 fn check_plan(plan: &ShadowPlan, slot: &Slot) -> Result<()> {
     let all_faces = (0..plan.faces()).flat_map(|_| &slot.sizes);
     if !plan.splits.iter().map(|split| &split.size).eq(all_faces) {
@@ -156,7 +157,7 @@ fn check_plan(plan: &ShadowPlan, slot: &Slot) -> Result<()> {
     Ok(())
 }
 
-/// One split. `depth_step` is the format's step as a share of the depth range.
+/// The uniform of one split. `depth_step` is the format's step as a share of the depth range.
 pub(crate) fn split(
     index: usize,
     split: &umbrage::Split,
@@ -198,7 +199,7 @@ pub(crate) fn split(
     Ok(uniform)
 }
 
-/// One split whose map is warped.
+/// The uniform of one split whose map is warped.
 fn warped(
     index: usize,
     split: &umbrage::Split,
@@ -239,7 +240,7 @@ fn warped(
     })
 }
 
-/// What the arithmetic above needs: every number finite and nothing divided by zero.
+/// Checks that every number of the computations above is finite and nothing is divided by zero.
 fn check(index: usize, split: &umbrage::Split) -> Result<()> {
     let bad = |field, value, expected| Err(Error::InvalidSplit { split: index, field, value, expected });
     for (field, axis) in [("u_axis", split.u_axis), ("v_axis", split.v_axis), ("depth_axis", split.depth_axis)] {
@@ -272,7 +273,7 @@ fn check(index: usize, split: &umbrage::Split) -> Result<()> {
     Ok(())
 }
 
-/// False for NaN too.
+/// Returns whether a vector has length 1; false for NaN.
 fn is_unit(axis: DVec3) -> bool {
     (axis.length() - 1.0).abs() < 1e-6
 }
@@ -297,7 +298,7 @@ mod tests {
         Place { tile, viewport: Viewport::around(size, 8192) }
     }
 
-    /// A stabilised split of a light and a point near which its map lies.
+    /// A stabilised split of a light, whose map lies near a point.
     fn split_near(direction: DVec3, center: DVec3, texel: f64, size: u32) -> umbrage::Split {
         let light = DirectionalLight::new(direction).expect("not zero");
         let (u_axis, v_axis) = light.map_axes();
@@ -320,7 +321,7 @@ mod tests {
         prop_oneof![4 => random.prop_filter("has a direction", |v| v.length() > 0.1), 1 => Just(DVec3::NEG_Y), 1 => Just(DVec3::X)]
     }
 
-    /// Up to 100 km from the world's origin.
+    /// Points up to 100 km from the world's origin.
     fn far_away() -> impl Strategy<Value = DVec3> {
         (prop_oneof![Just(0.0), Just(1e4), Just(1e5)], unit()).prop_map(|(distance, v)| distance * v.normalize())
     }
@@ -412,10 +413,10 @@ mod tests {
         }
     }
 
-    /// Source 003, Listings 4.1.4 and 4.1.5: map coordinates that a vertex shader passes on, and
-    /// those that a fragment makes of an interpolated position. The source calls the second wrong;
-    /// perspective-correct interpolation is exact for both, as both are affine in the position, and
-    /// in `f32` they differ by rounding alone.
+    /// \[PCSM\], Listings 4.1.4 and 4.1.5: map coordinates that a vertex shader passes on, and
+    /// those that a fragment shader computes from an interpolated position. The source calls the
+    /// second wrong; perspective-correct interpolation is exact for both, as both are affine in the
+    /// position, and in `f32` they differ by rounding alone.
     #[test]
     fn coordinates_of_vertices_and_of_fragments_agree_to_rounding() {
         let planned = split_near(DVec3::new(0.3, -1.0, 0.4), DVec3::new(20.0, 0.0, -30.0), 0.1, 1024);
@@ -463,7 +464,7 @@ mod tests {
         assert!((straight - right).abs() > 100.0, "{straight} and {right}");
     }
 
-    /// The bias for engines with other shaders is that of ours.
+    /// The planner's bias, for engines with other shaders, equals that of the WGSL.
     #[test]
     fn the_planners_bias_has_the_shaders_constants() {
         let text = umbrage_shaders::receiver(0, umbrage_shaders::Maps::default());

@@ -10,7 +10,7 @@ use glam::DVec3;
 use umbrage::config::{Preset, ShadowConfig};
 use umbrage::{Aabb, DirectionalLight, Frustum, PlanInputs, Planner, View};
 
-/// Pixels of the picture.
+/// Size of the image in pixels.
 const IMAGE_SIZE: [u32; 2] = [1920, 1080];
 
 /// A street of houses on a plain, as boxes in world metres.
@@ -29,10 +29,10 @@ fn street() -> (Vec<Aabb>, Vec<Aabb>) {
     (houses, receivers)
 }
 
-/// Plans one frame and says what was planned.
+/// Plans one frame and returns a text report of the plan.
 ///
 /// # Errors
-/// Those of the planner; none for this scene.
+/// The planner's errors; none occur for this scene.
 pub fn report() -> Result<String, Box<dyn Error>> {
     let config = ShadowConfig { map_sizes: vec![2048, 1024, 1024], ..Preset::Papers.config() };
     config.validate()?;

@@ -15,11 +15,11 @@ pub(crate) const LEAST_METRES: f64 = 1e-9;
 /// 1.2 km).
 const BELOW_ALL: f64 = 1e-6;
 
-/// [`BELOW_ALL`] in metres, at most: a ground of a thousand kilometres does cast its shadow on
-/// what lies a metre under it.
+/// Upper limit of [`BELOW_ALL`] in metres. A ground of a thousand kilometres does cast its shadow
+/// on receivers a metre below.
 const MOST_BELOW: f64 = 2e-3;
 
-/// Metres by which rounding may move the bounds of something in a box of this extent.
+/// Metres by which rounding may move the bounds of an object in a box of this extent.
 pub(crate) fn rounding(extent: DVec3) -> f64 {
     (BELOW_ALL * extent.max_element()).min(MOST_BELOW)
 }
@@ -65,19 +65,20 @@ impl Aabb {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// Whether the box contains no point.
+    /// Returns whether the box contains no point.
     #[must_use]
     pub fn is_empty(self) -> bool {
         !self.min.cmple(self.max).all()
     }
 
-    /// Whether every coordinate is finite and the corners are in order.
+    /// Returns whether every coordinate is finite and the corners are in order.
     #[must_use]
     pub fn is_valid(self) -> bool {
         self.min.is_finite() && self.max.is_finite() && !self.is_empty()
     }
 
-    /// Whether the planner takes the box: [`Aabb::is_valid`], and no coordinate beyond ±10^12 m.
+    /// Returns whether the planner accepts the box: [`Aabb::is_valid`], and no coordinate beyond
+    /// ±10^12 m.
     #[must_use]
     pub fn is_accepted(self) -> bool {
         self.is_valid() && self.min.abs().max(self.max.abs()).max_element() <= MOST_METRES
@@ -107,10 +108,10 @@ impl Aabb {
         })
     }
 
-    /// The smallest axis-aligned box around this one where a matrix places it: the bounds of an
-    /// instance from those of its mesh.
+    /// The smallest axis-aligned box around this one after a transform: the bounds of an instance
+    /// from those of its mesh.
     ///
-    /// The matrix is affine, as an application has it: of `glam`, or an array of columns.
+    /// The matrix is affine, either a `glam` matrix or an array of columns.
     ///
     /// ```
     /// # use umbrage::Aabb;
@@ -137,7 +138,7 @@ impl From<[[f32; 3]; 2]> for Aabb {
     }
 }
 
-/// A box as centre and half extent, which is what tests against planes need.
+/// A box as centre and half extent, the form that tests against planes need.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Placed {
     pub center: DVec3,
@@ -149,7 +150,7 @@ impl Placed {
         Aabb::new(self.center - self.half, self.center + self.half)
     }
 
-    /// Whether the box has no thickness along some axis, but for rounding.
+    /// Returns whether the box has no thickness along some axis, but for rounding.
     pub fn is_flat(&self) -> bool {
         2.0 * self.half.min_element() <= rounding(self.half)
     }

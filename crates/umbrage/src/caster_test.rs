@@ -1,4 +1,4 @@
-//! The test that casters of a split are listed by, in single precision: what a GPU asks of boxes.
+//! The test by which the casters of a split are listed, in single precision for culling on a GPU.
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
@@ -12,14 +12,14 @@ use crate::{ShadowPlan, Split};
 /// times its precision.
 const ROUNDING: f32 = 1e-6;
 
-/// Cells of a mask that a box is asked about along either axis, at most; a wider one passes.
+/// Most cells of a mask that are looked up for a box along either axis; a wider box passes.
 const MOST_CELLS: f32 = 12.0;
 
-/// A component of the light's way below this does not count as falling or rising.
+/// A component of the light's direction below this does not count as falling or rising.
 const LEVEL: f32 = 1e-9;
 
-/// Which boxes can cast a shadow that a split serves, relative to an origin, in `f32`: for culling
-/// on a GPU, and its twin on the CPU.
+/// Conservative test of boxes in `f32`, relative to an origin: a box that fails casts no shadow
+/// that the split serves. For culling on a GPU; [`CasterTest::passes`] is the same test on the CPU.
 ///
 /// A box passes only if it reaches into every half space of [`CasterTest::planes`], does not lie
 /// below all receivers ([`CasterTest::below`]) and has a receiver behind it
@@ -28,28 +28,28 @@ const LEVEL: f32 = 1e-9;
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct CasterTest {
-    /// Half spaces `normal · p <= w`: an outward unit normal, and metres that filters reach
-    /// included.
+    /// Half spaces `normal · p <= w` with outward unit normals. `w` is in metres and includes the
+    /// filter's reach.
     pub planes: Vec<Vec4>,
-    /// The receivers' box, if it is known.
+    /// Test against the receivers' box, if that box is known.
     pub below: Option<BelowTest>,
-    /// Where the receivers lie along the light, if the plan was made with clusters of them.
+    /// Heights of the receivers along the light, if the plan was made with clusters of receivers.
     pub mask: Option<CasterMask>,
 }
 
-/// What lies wholly below everything that shows shadows casts none.
+/// Test that rejects a box lying wholly below all receivers: it casts no visible shadow.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct BelowTest {
-    /// The way light travels.
+    /// Direction in which light travels.
     pub direction: Vec3,
     /// Least corner of the receivers' box.
     pub min: Vec3,
     /// Greatest corner of the receivers' box.
     pub max: Vec3,
-    /// Metres that a flat box may rise above the receivers' lowest point.
+    /// Metres by which a flat box may rise above the receivers' lowest point and still be rejected.
     pub slack: f32,
-    /// Metres that any other box has to lie below it.
+    /// Metres by which any other box has to lie below the receivers' lowest point to be rejected.
     pub margin: f32,
 }
 
@@ -58,28 +58,30 @@ pub struct BelowTest {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct CasterMask {
-    /// The world axis of heights: 0, 1 or 2. Those of the grid follow it.
+    /// World axis of heights: 0, 1 or 2. The grid's own axes follow it in cyclic order.
     pub axis: u32,
-    /// 1 or −1: height is so many times the coordinate.
+    /// Sign of heights, 1 or −1: height is the coordinate times this.
     pub sign: f32,
-    /// How far a ray of light moves along the grid's axes per metre of height.
+    /// Metres that a ray of light moves along the grid's axes per metre of height.
     pub slope: Vec2,
-    /// Where the grid begins.
+    /// Least corner of the grid, in metres along its axes.
     pub begin: Vec2,
-    /// Metres of a cell.
+    /// Size of a cell in metres.
     pub cell: Vec2,
-    /// Least heights, row after row of [`CasterMask::EDGE`] cells; infinite where nothing is.
+    /// Least heights, row after row of [`CasterMask::EDGE`] cells; infinite for a cell without
+    /// receivers.
     pub lowest: Vec<f32>,
 }
 
 impl CasterMask {
-    /// Cells along either edge of the grid.
+    /// Number of cells along either edge of the grid.
     pub const EDGE: usize = CELLS;
 }
 
 impl ShadowPlan {
     /// The test of a split's casters for boxes relative to `origin`. `None` for a plan that is not
-    /// of a sun, for one of warped maps, and for a split that does not exist.
+    /// of a sun, for a warped map, for a split that does not exist, and for one whose points the
+    /// next split serves ([`crate::config::Cache::Kept`]).
     #[must_use]
     pub fn caster_test(&self, split: usize, origin: DVec3) -> Option<CasterTest> {
         let (map, coverage) = (self.splits.get(split)?, &self.coverage);
@@ -105,7 +107,7 @@ fn plane(normal: DVec3, offset: f64, origin: DVec3) -> Vec4 {
     normal.as_vec3().extend((offset - normal.dot(origin)) as f32)
 }
 
-/// The sides of a plain map, a texel farther out.
+/// The sides of a plain map, moved outwards by one texel.
 fn map_planes(map: &Split, origin: DVec3) -> Vec<Vec4> {
     let mut planes = Vec::with_capacity(5);
     for (axis, texel, begin) in
@@ -141,7 +143,7 @@ fn below(volume: &CoverageVolume, fan: &Fan, origin: DVec3) -> Option<BelowTest>
 }
 
 impl CasterTest {
-    /// Whether a box passes, relative to the test's origin.
+    /// Returns whether a box passes; its centre is relative to the test's origin.
     #[must_use]
     pub fn passes(&self, center: Vec3, half: Vec3) -> bool {
         self.planes.iter().all(|plane| {

@@ -1,5 +1,5 @@
-//! What a plan's lists are complete for: the points that a map may be asked about, and the parts
-//! that shade them.
+//! Coverage of a plan's caster lists: the points that a map serves with all their casters, and the
+//! parts of casters that shade these points.
 
 use glam::DVec3;
 
@@ -13,22 +13,22 @@ use crate::geometry::volume::{Slice, SweptVolume, lies_below};
 /// The receivers of a slice: their bounds in the light's plane and in the world.
 pub(crate) type Served = (Region, Aabb);
 
-/// The points whose shadows a sun's map has all casters for.
+/// The points for whose shadows a sun's map has all casters.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct CoverageVolume {
     pub slice: Slice,
     /// The slice pushed towards the light.
     pub swept: SweptVolume,
-    /// Scene-dependent fit: the receivers inside the slice.
+    /// Receivers inside the slice, for a scene-dependent fit.
     pub receivers: Option<Served>,
-    /// Metres around it that filters ask about.
+    /// Margin around the volume in metres, within which filters read.
     pub margin: f64,
-    /// The slice is none that the view shows: no caster was looked for.
+    /// True if the view shows nothing of the slice: no caster was looked for.
     pub is_void: bool,
 }
 
 impl CoverageVolume {
-    /// Whether a box can cast a shadow into the volume or its margin (conservatively).
+    /// Returns whether a box may cast a shadow into the volume or its margin (conservative).
     pub fn is_shaded_by(&self, fan: &Fan, center: DVec3, half: DVec3) -> bool {
         can_shade(&Placed { center, half }, &self.swept, self.receivers.as_ref(), fan, self.margin)
     }
@@ -47,8 +47,8 @@ impl CoverageVolume {
     }
 }
 
-/// Whether a caster may leave a shadow on the receivers of a slice, within `margin` metres beside
-/// them.
+/// Returns whether a caster may cast a shadow on the receivers of a slice or within `margin` metres
+/// beside them (conservative).
 pub(crate) fn can_shade(caster: &Placed, swept: &SweptVolume, served: Option<&Served>, fan: &Fan, margin: f64) -> bool {
     let &Placed { center, half } = caster;
     swept.meets(center, half, margin)
@@ -57,7 +57,7 @@ pub(crate) fn can_shade(caster: &Placed, swept: &SweptVolume, served: Option<&Se
         })
 }
 
-/// The points whose shadows a local light's map has all casters for.
+/// The points for whose shadows a local light's map has all casters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LocalVolume {
     pub swept: SweptVolume,
@@ -77,26 +77,27 @@ impl LocalVolume {
     }
 }
 
-/// What the lists of a [`crate::ShadowPlan`] are complete for, split by split. Made by the planner;
-/// [`crate::ShadowPlan::casts_into`] and [`crate::ShadowPlan::covering_split`] ask it.
+/// Points for which the caster lists of a [`crate::ShadowPlan`] are complete, split by split. Made
+/// by the planner, and used by [`crate::ShadowPlan::casts_into`] and
+/// [`crate::ShadowPlan::covering_split`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlanCoverage {
-    /// Of a sun's plan.
+    /// Directions of a sun's plan.
     pub(crate) fan: Option<Fan>,
     pub(crate) volumes: Vec<CoverageVolume>,
-    /// Where maps are chosen by what they contain: any map may be asked about all of this.
+    /// With [`crate::config::Selection::Map`], the volume that every map may be asked about.
     pub(crate) shown: Option<CoverageVolume>,
-    /// Where the clusters of each split's receivers lie; meaningful if `has_masks`.
+    /// Positions of each split's receiver clusters; meaningful if `has_masks`.
     pub(crate) masks: Vec<ReceiverMask>,
     pub(crate) has_masks: bool,
-    /// Of a local light's plan.
+    /// Volumes of a local light's plan.
     pub(crate) local: Vec<LocalVolume>,
-    /// Bit `i`: the next split answers for split `i`, too.
+    /// Bit `i` is set if the next split also serves the points of split `i`.
     pub(crate) handed_on: u8,
 }
 
 impl PlanCoverage {
-    /// Empties it for a frame; buffers are kept.
+    /// Clears it for a frame; buffers are kept.
     pub(crate) fn clear(&mut self) {
         self.fan = None;
         self.volumes.clear();
@@ -106,17 +107,17 @@ impl PlanCoverage {
         self.handed_on = 0;
     }
 
-    /// Lets the next split answer for `split`, too.
+    /// Lets the next split also serve the points of `split`.
     pub(crate) fn hand_on(&mut self, split: usize) {
         self.handed_on |= 1 << split;
     }
 
-    /// Whether the next split answers for `split`, too.
+    /// Returns whether the next split also serves the points of `split`.
     pub(crate) fn is_handed_on(&self, split: usize) -> bool {
         split < u8::BITS as usize && self.handed_on >> split & 1 == 1
     }
 
-    /// The splits that `split` answers for: none, itself, or some before it and itself.
+    /// The splits whose points `split` serves: none, itself, or itself and some before it.
     fn served_by(&self, split: usize) -> std::ops::Range<usize> {
         if self.is_handed_on(split) {
             return 0..0;
@@ -125,7 +126,7 @@ impl PlanCoverage {
         first.unwrap_or(split)..split + 1
     }
 
-    /// Takes over what has no masks. Buffers are kept.
+    /// Copies everything but the masks. Buffers are kept.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.clear();
         (self.fan, self.shown) = (other.fan, other.shown.clone());
@@ -145,7 +146,7 @@ impl PlanCoverage {
         self.has_masks = true;
     }
 
-    /// As [`crate::ShadowPlan::casts_into`].
+    /// Implements [`crate::ShadowPlan::casts_into`].
     pub(crate) fn casts_into(&self, split: usize, part: &Aabb) -> bool {
         self.served_by(split).any(|split| self.casts_into_slice(split, part))
     }
@@ -161,7 +162,7 @@ impl PlanCoverage {
         }
     }
 
-    /// Whether a sun's split has all casters of a point.
+    /// Returns whether a sun's split has all casters of a point.
     pub(crate) fn contains(&self, split: usize, point: DVec3) -> bool {
         self.served_by(split).any(|split| {
             let volume = self.shown.as_ref().or(self.volumes.get(split));
@@ -169,7 +170,7 @@ impl PlanCoverage {
         })
     }
 
-    /// Whether a local light's split has all casters of a point.
+    /// Returns whether a local light's split has all casters of a point.
     pub(crate) fn contains_local(&self, split: usize, point: DVec3) -> bool {
         self.local.get(split).is_some_and(|volume| volume.contains(point))
     }

@@ -1,10 +1,10 @@
-//! What can be wrong with settings, cameras, lights and bounds.
+//! Errors in settings, cameras, lights and bounds.
 
 /// [`std::result::Result`] with this crate's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Why the planner refused its input. Every message names the field, what was wrong and what to
-/// give instead.
+/// Error in the planner's input. Every message names the field, the problem and the values that are
+/// allowed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -13,9 +13,9 @@ pub enum Error {
     InvalidCamera {
         /// The parameter at fault.
         field: &'static str,
-        /// What it was.
+        /// The value as given.
         value: f64,
-        /// What it may be.
+        /// Values that are allowed.
         expected: &'static str,
     },
     /// The matrices of an orthographic camera do not say which way it looks.
@@ -29,7 +29,7 @@ pub enum Error {
     InvalidLight {
         /// The parameter at fault.
         field: &'static str,
-        /// What was wrong and what to do.
+        /// Problem and remedy.
         reason: String,
     },
     /// A shadow setting is out of range.
@@ -38,7 +38,7 @@ pub enum Error {
         /// The setting at fault by its key in [`crate::config::SETTINGS`], or the field of
         /// [`crate::PlannerOptions`], [`crate::FilterReach`] or [`crate::PlanInputs`].
         field: &'static str,
-        /// What was wrong and what to do.
+        /// Problem and remedy.
         reason: String,
     },
     /// A shadow setting and the camera exclude each other.
@@ -46,7 +46,7 @@ pub enum Error {
     CameraConflict {
         /// The setting's key.
         setting: &'static str,
-        /// Why, and what to do.
+        /// Reason and remedy.
         reason: String,
     },
     /// Two settings of a [`crate::ShadowConfig`], or a setting and the light, exclude each other.
@@ -61,20 +61,20 @@ pub enum Error {
     /// A setting was given a word of a former version.
     #[error("shadow setting {0}")]
     RenamedWord(crate::config::Renamed),
-    /// A budget that cannot be read.
+    /// A budget cannot be read.
     #[error("budget {text:?}: {reason}")]
     InvalidBudget {
         /// The budget as given.
         text: String,
-        /// What was wrong and what to give instead.
+        /// Problem and remedy.
         reason: String,
     },
-    /// A budget that does not pay for one map.
+    /// A budget does not pay for one map.
     #[error("a budget of {budget} is too small for one split; give at least {least}")]
     BudgetTooSmall {
         /// The budget as given.
         budget: crate::config::Budget,
-        /// The least that pays for one map.
+        /// The least budget that pays for one map.
         least: crate::config::Budget,
     },
     /// The bounds of a caster or receiver are inverted, NaN or beyond 10^12 m.
@@ -86,9 +86,9 @@ pub enum Error {
         list: &'static str,
         /// Index into that list.
         index: usize,
-        /// Its minimum corner as given.
+        /// Minimum corner as given.
         min: glam::DVec3,
-        /// Its maximum corner as given.
+        /// Maximum corner as given.
         max: glam::DVec3,
     },
     /// A caster of a [`crate::CasterSet`] has bounds that are inverted, NaN or beyond 10^12 m.
@@ -97,13 +97,13 @@ pub enum Error {
         handle.map_or_else(|| format!("with key {key}"), |handle| format!("{handle} (key {key})"))
     )]
     InvalidCaster {
-        /// Its handle, if it has one yet.
+        /// Handle of the caster, if it has one yet.
         handle: Option<crate::CasterHandle>,
-        /// Its key.
+        /// Key of the caster.
         key: u32,
-        /// Its minimum corner as given.
+        /// Minimum corner as given.
         min: glam::DVec3,
-        /// Its maximum corner as given.
+        /// Maximum corner as given.
         max: glam::DVec3,
     },
     /// No caster of this [`crate::CasterSet`] has the handle.
@@ -112,7 +112,7 @@ pub enum Error {
         /// The handle.
         handle: crate::CasterHandle,
     },
-    /// There is no such layer.
+    /// A layer has a number that does not exist.
     #[error("there is no layer {layer}; layers are counted from 0 to 31")]
     NoSuchLayer {
         /// The layer as given.

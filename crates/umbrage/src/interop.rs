@@ -1,5 +1,5 @@
-//! Conversions of plain arrays, and of the types of `mint`, in which Rust's mathematical libraries
-//! hand values to each other.
+//! Conversions from plain arrays and from the types of `mint`, the common exchange format of Rust's
+//! mathematical libraries.
 
 use glam::{DVec3, Vec3};
 
@@ -8,7 +8,7 @@ use crate::{DirectionalLight, Error};
 impl TryFrom<[f64; 3]> for DirectionalLight {
     type Error = Error;
 
-    /// As [`DirectionalLight::new`]: the way the light travels.
+    /// A light from its direction of travel, as [`DirectionalLight::new`].
     fn try_from(direction: [f64; 3]) -> Result<Self, Error> {
         Self::new(direction.into())
     }
@@ -17,7 +17,7 @@ impl TryFrom<[f64; 3]> for DirectionalLight {
 impl TryFrom<[f32; 3]> for DirectionalLight {
     type Error = Error;
 
-    /// As [`DirectionalLight::new`]: the way the light travels.
+    /// A light from its direction of travel, as [`DirectionalLight::new`].
     fn try_from(direction: [f32; 3]) -> Result<Self, Error> {
         Self::new(Vec3::from(direction).as_dvec3())
     }
@@ -26,7 +26,7 @@ impl TryFrom<[f32; 3]> for DirectionalLight {
 impl TryFrom<DVec3> for DirectionalLight {
     type Error = Error;
 
-    /// As [`DirectionalLight::new`]: the way the light travels.
+    /// A light from its direction of travel, as [`DirectionalLight::new`].
     fn try_from(direction: DVec3) -> Result<Self, Error> {
         Self::new(direction)
     }
@@ -60,7 +60,7 @@ mod with_mint {
             impl TryFrom<mint::Vector3<$float>> for DirectionalLight {
                 type Error = Error;
 
-                /// As [`DirectionalLight::new`]: the way the light travels.
+                /// A light from its direction of travel, as [`DirectionalLight::new`].
                 fn try_from(direction: mint::Vector3<$float>) -> Result<Self, Error> {
                     <[$float; 3]>::from(direction).try_into()
                 }

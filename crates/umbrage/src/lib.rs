@@ -17,12 +17,12 @@
 //!
 //! # Reproducible plans
 //!
-//! Equal inputs give equal plans, bit for bit, in every run, on any number of threads and whatever
-//! the operating system's mathematical functions are: the planner calls none of those, but `libm`,
-//! which is compiled in, and operations that IEEE 754 defines exactly. It takes no time and no
-//! random number, and iterates over no hash table. The test `reproducible` compares plans with
-//! recorded ones. What is handed in counts: a camera built with the system's `sin` may differ in
-//! its last bits from machine to machine.
+//! Equal inputs give equal plans, bit for bit, in every run, on any number of threads and with any
+//! mathematical functions of the operating system. The planner calls only `libm`, which is compiled
+//! in, and operations that IEEE 754 defines exactly. It reads no clock and no random numbers, and
+//! iterates over no hash table. The test `reproducible` compares plans with recorded ones. The
+//! inputs count: a camera built with the system's `sin` may differ in its last bits from machine to
+//! machine.
 //!
 //! # Speed in a development build
 //!

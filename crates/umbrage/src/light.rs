@@ -1,20 +1,20 @@
-//! Lights, and the space in which their maps lie.
+//! Lights, and the axes of their maps.
 
 use glam::DVec3;
 
 use crate::bounds::MOST_METRES;
 use crate::{Error, Result, maths};
 
-/// Share of a local light's range within which nothing casts, unless another is given: a
-/// lamp's own glass.
+/// Share of a local light's range that is its default near distance: the glass of a lamp casts no
+/// shadow.
 const NEAR_SHARE: f64 = 1.0 / 256.0;
 
-/// The least distance that a local light may shine, metres.
+/// The least range of a local light in metres.
 const LEAST_RANGE: f64 = 1e-6;
 
-/// The widest angle, in radians, between a spot light's axis and the rim of its cone: 85°. Ours: a
-/// map of the whole cone then covers 2 tan 85° = 23 times the distance, and wider is what a point
-/// light is for.
+/// The widest angle in radians between a spot light's axis and the rim of its cone: 85°. Not from a
+/// paper: a map of the whole cone then covers 2 tan 85° = 23 times the distance, and a point light
+/// is better for wider cones.
 const WIDEST_CONE: f64 = 85.0 * std::f64::consts::PI / 180.0;
 
 /// A sun: light that travels in one direction everywhere.
@@ -24,8 +24,8 @@ pub struct DirectionalLight {
 }
 
 impl DirectionalLight {
-    /// `direction` is the way the light travels (from the sun to the ground); it need not be
-    /// normalised.
+    /// A sun from the direction in which its light travels (from the sun to the ground). The vector
+    /// need not be normalised.
     ///
     /// # Errors
     /// [`Error::InvalidLight`] if the vector is zero or not finite.
@@ -33,22 +33,22 @@ impl DirectionalLight {
         Ok(Self { direction: unit_direction(direction)? })
     }
 
-    /// The way the light travels, a unit vector in the world.
+    /// Direction in which the light travels, a unit vector in the world.
     #[must_use]
     pub fn direction(&self) -> DVec3 {
         self.direction
     }
 
-    /// The light's own basis, fixed to the light and never to the camera: unit vectors along a
-    /// map's u (right) and v (down). Together with [`DirectionalLight::direction`] (depth) they are
-    /// a right-handed frame (u, v, depth).
+    /// Axes of the light's maps, fixed to the light and never to the camera: unit vectors along u
+    /// (right) and v (down). Together with [`DirectionalLight::direction`] (depth) they are a
+    /// right-handed frame (u, v, depth).
     #[must_use]
     pub fn map_axes(&self) -> (DVec3, DVec3) {
         map_axes(self.direction)
     }
 }
 
-/// Light from a point into a cone.
+/// A spot light: light from a point into a cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpotLight {
     position: DVec3,
@@ -59,12 +59,13 @@ pub struct SpotLight {
 }
 
 impl SpotLight {
-    /// A light at `position` (world, metres) that shines along `direction` (any length) as far as
-    /// `range` metres, up to `outer_angle` radians from its axis: half of the cone's opening.
+    /// A light at `position` (world metres) that shines along `direction` (any length), up to
+    /// `range` metres away and up to `outer_angle` radians from its axis: half of the cone's
+    /// opening angle.
     ///
     /// # Errors
-    /// [`Error::InvalidLight`] naming the parameter: a position or direction that is not finite, no
-    /// direction, an angle that is not in (0, 85°], a range outside of 10^-6 to 10^12 m.
+    /// [`Error::InvalidLight`] naming the parameter: a position or direction that is not finite, a
+    /// direction of length 0, an angle that is not in (0, 85°], a range outside 10^-6 to 10^12 m.
     pub fn new(position: DVec3, direction: DVec3, outer_angle: f64, range: f64) -> Result<Self> {
         if !(outer_angle > 0.0 && outer_angle <= WIDEST_CONE) {
             return Err(Error::light(
@@ -79,8 +80,9 @@ impl SpotLight {
         Ok(Self { position, direction: unit_direction(direction)?, outer_angle, range, near: range * NEAR_SHARE })
     }
 
-    /// This light with another distance, in metres, within which nothing casts (its own lamp). The
-    /// default is 1/256 of the range; a map's precision grows with it.
+    /// The light with another near distance in metres, within which nothing casts a shadow (such as
+    /// its own lamp). The default is 1/256 of the range; a larger one makes the map's depth more
+    /// precise.
     ///
     /// # Errors
     /// [`Error::InvalidLight`] unless 0 < `near` < range.
@@ -88,38 +90,38 @@ impl SpotLight {
         Ok(Self { near: distance_within(near, self.range)?, ..self })
     }
 
-    /// Where it shines from, metres.
+    /// Position of the light in world metres.
     #[must_use]
     pub fn position(&self) -> DVec3 {
         self.position
     }
 
-    /// Its axis, a unit vector.
+    /// Axis of the cone, a unit vector.
     #[must_use]
     pub fn direction(&self) -> DVec3 {
         self.direction
     }
 
-    /// Radians between the axis and the rim of the cone.
+    /// Angle between the axis and the rim of the cone in radians.
     #[must_use]
     pub fn outer_angle(&self) -> f64 {
         self.outer_angle
     }
 
-    /// How far it shines, metres.
+    /// Range of the light in metres.
     #[must_use]
     pub fn range(&self) -> f64 {
         self.range
     }
 
-    /// Distance along the axis, in metres, within which nothing casts.
+    /// Near distance along the axis in metres, within which nothing casts a shadow.
     #[must_use]
     pub fn near(&self) -> f64 {
         self.near
     }
 }
 
-/// Light from a point to all sides.
+/// A point light: light from a point in all directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointLight {
     position: DVec3,
@@ -128,17 +130,18 @@ pub struct PointLight {
 }
 
 impl PointLight {
-    /// A light at `position` (world, metres) that shines as far as `range` metres.
+    /// A light at `position` (world metres) that shines up to `range` metres away.
     ///
     /// # Errors
-    /// [`Error::InvalidLight`] naming the parameter: a position beyond 10^12 m, a range outside of
+    /// [`Error::InvalidLight`] naming the parameter: a position beyond 10^12 m, a range outside
     /// 10^-6 to 10^12 m.
     pub fn new(position: DVec3, range: f64) -> Result<Self> {
         let (position, range) = (place(position)?, reach(range)?);
         Ok(Self { position, range, near: range * NEAR_SHARE })
     }
 
-    /// As [`SpotLight::with_near`], along the axis of the face in question.
+    /// The light with another near distance, as [`SpotLight::with_near`], along the axis of each
+    /// face.
     ///
     /// # Errors
     /// [`Error::InvalidLight`] unless 0 < `near` < range.
@@ -146,33 +149,33 @@ impl PointLight {
         Ok(Self { near: distance_within(near, self.range)?, ..self })
     }
 
-    /// Where it shines from, metres.
+    /// Position of the light in world metres.
     #[must_use]
     pub fn position(&self) -> DVec3 {
         self.position
     }
 
-    /// How far it shines, metres.
+    /// Range of the light in metres.
     #[must_use]
     pub fn range(&self) -> f64 {
         self.range
     }
 
-    /// Distance along a face's axis, in metres, within which nothing casts.
+    /// Near distance along a face's axis in metres, within which nothing casts a shadow.
     #[must_use]
     pub fn near(&self) -> f64 {
         self.near
     }
 }
 
-/// Any light that casts shadows.
+/// A light of any kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Light {
-    /// A sun.
+    /// A sun: parallel light.
     Directional(DirectionalLight),
-    /// Light from a point into a cone.
+    /// A spot light: light from a point into a cone.
     Spot(SpotLight),
-    /// Light from a point to all sides.
+    /// A point light: light from a point in all directions.
     Point(PointLight),
 }
 
@@ -180,7 +183,7 @@ impl Light {
     /// The axes of a point light's six faces, in the order of its faces: +X, −X, +Y, −Y, +Z, −Z.
     pub const FACE_AXES: [DVec3; 6] = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
 
-    /// Where it shines from, metres; `None` for a sun.
+    /// Position of the light in world metres; `None` for a sun.
     #[must_use]
     pub fn position(&self) -> Option<DVec3> {
         match self {
@@ -190,7 +193,7 @@ impl Light {
         }
     }
 
-    /// How far it shines, metres; infinite for a sun.
+    /// Range of the light in metres; infinite for a sun.
     #[must_use]
     pub fn range(&self) -> f64 {
         match self {
@@ -200,8 +203,9 @@ impl Light {
         }
     }
 
-    /// How many maps show its surroundings once: 6 for a point light, one for each face of a cube,
-    /// else 1. A plan has this many times as many splits as its settings.
+    /// Number of maps that together show the light's whole surroundings: 6 for a point light, one
+    /// for each face of a cube; otherwise 1. A plan has this many times the number of splits in its
+    /// config.
     #[must_use]
     pub fn faces(&self) -> usize {
         match self {
@@ -210,8 +214,7 @@ impl Light {
         }
     }
 
-    /// The unit vector from a world point towards the light. At the very place of a local light it
-    /// has no direction and is 0.
+    /// Unit vector from a world point towards the light. At the position of a local light it is 0.
     #[must_use]
     pub fn to_light(&self, point: DVec3) -> DVec3 {
         match self {
@@ -222,8 +225,8 @@ impl Light {
         }
     }
 
-    /// Whether a world point lies within the light's range and cone, whatever casts a shadow on it.
-    /// Outside nothing is asked of its maps.
+    /// Returns whether a world point lies within the light's range and cone. No map is sampled for
+    /// points outside.
     #[must_use]
     pub fn illuminates(&self, point: DVec3) -> bool {
         match self {
@@ -237,8 +240,9 @@ impl Light {
         }
     }
 
-    /// The face of a point light in whose frustum a world point lies (see [`Light::FACE_AXES`]); 0
-    /// for other lights. Where two meet, x goes before y and y before z, as in the WGSL.
+    /// Index of the face of a point light whose frustum contains a world point (see
+    /// [`Light::FACE_AXES`]); 0 for other lights. On a border x comes before y and y before z, as
+    /// in the WGSL.
     #[must_use]
     pub fn face_of(&self, point: DVec3) -> usize {
         let Self::Point(light) = self else { return 0 };
@@ -273,7 +277,7 @@ impl From<PointLight> for Light {
     }
 }
 
-/// Unit vectors along u (right) and v (down) of a map whose depth runs along `direction`.
+/// Unit vectors along u (right) and v (down) of a map whose depth axis is `direction`.
 pub(crate) fn map_axes(direction: DVec3) -> (DVec3, DVec3) {
     // −Z is "up" for a light that comes straight down, so a map then has north on top.
     let up = if direction.y.abs() > 1.0 - 1e-6 { DVec3::NEG_Z } else { DVec3::Y };

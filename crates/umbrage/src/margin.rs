@@ -1,4 +1,4 @@
-//! How many texels a map keeps free around what it serves.
+//! Margins: texels that a map keeps free around the points that it serves.
 
 use crate::{Error, Result};
 
@@ -9,25 +9,26 @@ pub(crate) const EDGE_TEXELS: f64 = 1.5;
 /// Texels beyond a kernel's half width that its outermost taps read.
 const TAP: f64 = 1.0;
 
-/// The fewest texels that a filter of known metres is given: that of a disc three texels wide,
-/// which such a filter falls back to where depth cannot be loaded.
+/// Least reach in texels of a filter of known width in metres: that of a disc three texels wide, to
+/// which such a filter falls back where depth cannot be loaded.
 const LEAST_REACH: f64 = 4.0;
 
-/// How far a filter reads from the sample: the margin that each map keeps around what it serves.
+/// Reach of a filter around the sample. Every map keeps a margin of this size around the points
+/// that it serves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilterReach {
-    /// Texels from the sample, 0 to 64: 0.5 for one nearest texel, 1 for a bilinear comparison, 1.5
-    /// and 2.5 for tents of 3 and 5.
+    /// Reach in texels, 0 to 64: 0.5 for one nearest texel, 1 for a bilinear comparison, 1.5 and
+    /// 2.5 for tents of 3 and 5.
     pub radius_texels: f64,
-    /// Half the width of the filter's kernel in metres, up to 1000 km, where it is known. Splits in
-    /// which that is less than `radius_texels` keep a margin of as many metres, and of 4 texels at
-    /// least ([`crate::Split::filter_radius_texels`]). `None`: all keep `radius_texels`. Warped maps and
-    /// those of local lights always do.
+    /// Half the width of the filter's kernel in metres, up to 1000 km, if it is known. Splits in
+    /// which this is less than `radius_texels` keep a margin of as many metres, and of at least 4
+    /// texels ([`crate::Split::filter_radius_texels`]). With `None` all splits keep `radius_texels`.
+    /// Warped maps and those of local lights always do.
     pub radius_m: Option<f64>,
 }
 
 impl FilterReach {
-    /// Checks that it means something, and that maps of these edges in texels hold it.
+    /// Checks the values, and that maps of these edges in texels have room for the margins.
     pub(crate) fn check(self, map_sizes: &[u32], is_stabilised: bool) -> Result<()> {
         let Self { radius_texels: radius, radius_m } = self;
         if !(0.0..=64.0).contains(&radius) {
@@ -48,24 +49,24 @@ impl FilterReach {
         }
     }
 
-    /// Edge in texels of the smallest map that holds the filter's margins: one texel beside them,
-    /// and one for moving in whole texels.
+    /// Edge in texels of the smallest map with room for the filter's margins, one texel beside
+    /// them, and one for moving in whole texels.
     pub(crate) fn least_map_size(self, is_stabilised: bool) -> u32 {
         let moving = if is_stabilised { 5.0 } else { 4.0 };
         (2.0 * self.radius_texels + moving).ceil() as u32
     }
 
-    /// That of maps whose texels differ in size: the most.
+    /// The reach for maps whose texels differ in size: the largest.
     pub(crate) fn most(self) -> Self {
         Self { radius_m: None, ..self }
     }
 
-    /// Texels around the sample in a map of `size` texels whose shorter edge has to show `edge`
-    /// metres; `spare` texels of that edge are for neither.
+    /// Reach in texels in a map of `size` texels whose shorter edge has to show `edge` metres;
+    /// `spare` texels of that edge serve neither.
     ///
-    /// With a kernel of radius r the edge takes e + 2 r metres and 2 + spare texels, so a texel
-    /// is (e + 2 r) / (size − 2 − spare) and the reach 1 + r / texel, unless that is more than the
-    /// filter's most: then it is that, and the filter narrower than asked for.
+    /// With a kernel of radius r the edge takes e + 2 r metres and 2 + spare texels. A texel is
+    /// thus (e + 2 r) / (size − 2 − spare), and the reach 1 + r / texel. If that exceeds
+    /// `radius_texels`, the reach is `radius_texels` and the filter is narrower than given.
     pub(crate) fn texels(self, edge: f64, size: u32, spare: f64) -> f64 {
         let Some(radius) = self.radius_m else { return self.radius_texels };
         let texel = (edge + 2.0 * radius) / (f64::from(size) - 2.0 * TAP - spare);

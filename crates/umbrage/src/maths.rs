@@ -1,11 +1,11 @@
 //! Transcendental functions that give the same bits on every machine.
 //!
-//! The standard library leaves `sin`, `powf` and their like to the C library of the system, whose
-//! last bits differ from one to the next. A plan must not: it holds its maps by comparing with what
-//! it planned before, and recorded plans, tests and peers of a network compare bits. These are the
-//! functions of `libm`, which are compiled into the program. `sqrt`, `floor`, `round` and
-//! `to_radians` are exactly defined and stay those of the standard library; `clippy.toml` lists
-//! what must not be called in this crate.
+//! The standard library leaves `sin`, `powf` and similar functions to the C library of the system,
+//! whose last bits differ between systems. A plan must not differ: the planner compares maps with
+//! earlier plans, and recorded plans, tests and peers of a network compare bits. The functions here
+//! are those of `libm`, which are compiled into the program. `sqrt`, `floor`, `round` and
+//! `to_radians` are exactly defined and are those of the standard library; `clippy.toml` lists the
+//! functions that must not be called in this crate.
 
 use glam::DVec3;
 
@@ -39,19 +39,19 @@ pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
     libm::sincos(angle)
 }
 
-/// The length of the hypotenuse over two legs. Neither leg may be so large or so small that its
-/// square is not a number: those of views are between 10^-9 and 10^12.
+/// Length of the hypotenuse over two legs. Neither leg may be so large or so small that its square
+/// overflows or vanishes; legs of views are between 10^-9 and 10^12.
 pub(crate) fn hypot(a: f64, b: f64) -> f64 {
     (a * a + b * b).sqrt()
 }
 
-/// The angle between two unit vectors, in radians; precise for small ones, too.
+/// Angle between two unit vectors in radians; also precise for small angles.
 pub(crate) fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }
 
-/// Which doubling of 1 `x` lies in: the logarithm to base 2, rounded down. Subnormal numbers and 0
-/// count as 2^-1023, infinity as 2^1024.
+/// Logarithm of `x` to base 2, rounded down. Subnormal numbers and 0 count as 2^-1023, infinity as
+/// 2^1024.
 pub(crate) fn doubling(x: f64) -> i32 {
     let exponent = x.to_bits() >> (f64::MANTISSA_DIGITS - 1) & 0x7ff;
     exponent as i32 - (f64::MAX_EXP - 1)

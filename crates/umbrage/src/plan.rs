@@ -7,48 +7,49 @@ use crate::config::Selection;
 use crate::coverage::PlanCoverage;
 use crate::{Aabb, DepthConvention, Light, View};
 
-/// The most splits a light can have.
+/// The most splits that a light can have.
 pub const MAX_SPLITS: usize = 8;
 
 /// The shadow maps of one light for one view.
 ///
-/// All positions are `f64` world metres; a renderer subtracts its own origin before it goes to
-/// `f32`.
+/// All positions are `f64` world metres; a renderer subtracts its own origin before it converts
+/// them to `f32`.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ShadowPlan {
-    /// The splits, nearest first; of a point light those of its first face, then those of the next.
+    /// The splits, nearest first. For a point light, the splits of its first face, then those of
+    /// the next.
     pub splits: Vec<Split>,
-    /// `C_0 ..= C_m`: view depths in metres; see [`ShadowPlan::radial_eye`].
+    /// Split planes `C_0 ..= C_m`: view depths in metres; see [`ShadowPlan::radial_eye`].
     pub planes: Vec<f64>,
     /// The plane that measures view depth: `xyz · point + w`, in metres.
     pub view_depth_plane: DVec4,
-    /// With [`crate::config::SplitMetric::Distance`] the eye, metres: all depths of this plan are
-    /// then distances to it. `None`: view depths.
+    /// Position of the camera in metres with [`crate::config::SplitMetric::Distance`]: all depths
+    /// of this plan are then distances to it. With `None` they are view depths.
     pub radial_eye: Option<DVec3>,
-    /// The way light travels, a unit vector; the axis of a spot light. A point light has none and
-    /// the value is straight down.
+    /// Direction in which light travels, a unit vector; for a spot light its axis. A point light
+    /// has none, and the value is straight down.
     pub light_direction: DVec3,
     /// The light that was planned for; `None` stands for a sun along `light_direction`.
     pub light: Option<Light>,
     /// View depth at which the fade to lit begins; `C_m` if there is none.
     pub fade_begin: f64,
-    /// Which map a point uses.
+    /// Rule by which a point selects its split.
     pub selection: Selection,
-    /// With [`Selection::Map`]: share of a map's half edge over which it blends into the next that
-    /// contains the point.
+    /// With [`Selection::Map`]: share of a map's half edge over which the map blends into the next
+    /// one that contains the point.
     pub blend: f64,
-    /// Indices into the planner's caster list, or keys of its set, split after split; see
-    /// [`ShadowPlan::casters`].
+    /// Casters of all splits, one split after the other: indices into the planner's caster list, or
+    /// keys of its set; see [`ShadowPlan::casters`].
     pub caster_indices: Vec<u32>,
-    /// For each split how many casters its list leaves out by
+    /// For each split, the number of casters that its list omits by
     /// [`crate::ShadowConfig::drop_small_casters`].
     pub dropped_casters: Vec<u32>,
-    /// For each caster of a list the first and the last split it is drawn in, `None` if it is drawn
-    /// in none. The range is a bound: the lists are exact. Empty for a set, whose keys may be any
-    /// numbers: see [`ShadowPlan::splits_of`].
+    /// For each caster of a list, the first and the last split in which it is drawn; `None` if it
+    /// is drawn in no split. The range is a bound: the lists are exact. Empty for a set, whose keys
+    /// may be any numbers: see [`ShadowPlan::splits_of`].
     pub split_range: Vec<Option<(u8, u8)>>,
-    /// What the lists are complete for; see [`ShadowPlan::casts_into`] and
+    /// Points for which the caster lists are complete; see [`ShadowPlan::casts_into`] and
     /// [`ShadowPlan::covering_split`].
     pub coverage: PlanCoverage,
 }
@@ -95,7 +96,7 @@ impl ShadowPlan {
         self.coverage.clear();
     }
 
-    /// Takes over another plan that was made without receiver clusters. Buffers are kept.
+    /// Copies another plan that was made without receiver clusters. Buffers are kept.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.splits.clone_from(&other.splits);
         self.planes.clone_from(&other.planes);
@@ -108,7 +109,7 @@ impl ShadowPlan {
         (self.fade_begin, self.selection, self.blend) = (other.fade_begin, other.selection, other.blend);
     }
 
-    /// Adds a split with those of the gathered casters that stand at `places`.
+    /// Adds a split with those of the gathered casters that are at `places`.
     pub(crate) fn add_listed(&mut self, mut split: Split, casters: &mut Gathered, places: &[u32]) {
         let begin = self.caster_indices.len();
         casters.name(places, &mut self.caster_indices);
@@ -116,7 +117,7 @@ impl ShadowPlan {
         self.add(split);
     }
 
-    /// Adds a split whose casters are listed. Those of a set have no place among the ranges.
+    /// Adds a split whose casters are listed. Casters of a set have no entry in `split_range`.
     fn add(&mut self, split: Split) {
         let at = self.splits.len() as u8;
         if !self.split_range.is_empty() {
@@ -129,8 +130,8 @@ impl ShadowPlan {
         self.dropped_casters.resize(self.splits.len(), 0);
     }
 
-    /// What chooses the split of a world point, metres: its view depth, or with radial bands its
-    /// distance to the eye.
+    /// Depth in metres by which the split of a world point is chosen: its view depth, or with
+    /// radial bands its distance to the camera.
     #[must_use]
     pub fn depth_at(&self, point: DVec3) -> f64 {
         match self.radial_eye {
@@ -139,27 +140,28 @@ impl ShadowPlan {
         }
     }
 
-    /// How many times the settings' splits there are; see [`Light::faces`].
+    /// Number of faces, each of which has the splits of the config; see [`Light::faces`].
     #[must_use]
     pub fn faces(&self) -> usize {
         self.light.map_or(1, |light| light.faces())
     }
 
-    /// Whether a part of a caster of `split` can cast a shadow on anything that the split serves:
-    /// the test that casters were listed by, for the part's own world box. An application that
-    /// keeps large meshes in clusters skips those that it rejects.
+    /// Returns whether a part of a caster of `split`, given by its world box, can cast a shadow on
+    /// anything that the split serves. This is the test by which casters were listed. An
+    /// application that keeps large meshes in clusters skips those that are rejected.
     ///
-    /// Conservative: skipping what it rejects never changes a visible pixel. With
-    /// [`crate::PlanInputs::receiver_clusters`] it also rejects parts with no such cluster behind
+    /// The test is conservative: skipping what it rejects never changes a visible pixel. With
+    /// [`crate::PlanInputs::receiver_clusters`] it also rejects parts without such a cluster behind
     /// them. Always `true` for local lights and with [`Selection::Map`].
     #[must_use]
     pub fn casts_into(&self, split: usize, part: &Aabb) -> bool {
         self.coverage.casts_into(split, part)
     }
 
-    /// The first split whose map holds every caster that can shade `point`, for points that the
+    /// The first split whose map contains every caster that can shade `point`, for points that the
     /// view does not show (points that it shows use the split of their view depth). A split without
-    /// casters answers "lit", but not with [`Selection::Map`]. `None`: no map answers.
+    /// casters counts as well, and means lit, but not with [`Selection::Map`]. `None` if no map
+    /// serves the point.
     #[must_use]
     pub fn covering_split(&self, point: DVec3) -> Option<usize> {
         let in_map = |split: &Split| split.contains(point, split.filter_radius_texels);
@@ -185,16 +187,16 @@ impl ShadowPlan {
         .map(|(i, _)| i)
     }
 
-    /// The splits that a caster, by its index or key, is drawn in: bit `i` stands for split `i`. 0:
-    /// none.
+    /// Mask of the splits in which a caster, named by its index or key, is drawn: bit `i` stands
+    /// for split `i`. 0 if there is none.
     #[must_use]
     pub fn splits_of(&self, caster: u32) -> u64 {
         let is_in = |&split: &usize| self.casters(split).binary_search(&caster).is_ok();
         (0..self.splits.len()).filter(is_in).fold(0, |splits, split| splits | 1 << split)
     }
 
-    /// The casters of split `index`, rising: indices into the list given to the planner, or keys of
-    /// its set.
+    /// Casters of split `index`, rising: indices into the list given to the planner, or keys of its
+    /// set.
     #[must_use]
     pub fn casters(&self, index: usize) -> &[u32] {
         &self.caster_indices[self.splits[index].casters.clone()]
@@ -203,29 +205,29 @@ impl ShadowPlan {
 
 /// One slice of the view and the map that serves it.
 ///
-/// A plain map is an orthographic picture taken along [`Split::depth_axis`]. With `p` a world
-/// point, `texel = ((u_axis·p)/texel_m.x − min_texel.x, (v_axis·p)/texel_m.y − min_texel.y)` is its
-/// place in the map in texels, v down, `[0, size]²`, and `depth = (depth_axis·p −
-/// depth_near)/(depth_far − depth_near)` what the map stores.
+/// A plain map is an orthographic image along [`Split::depth_axis`]. For a world point `p`, `texel
+/// = ((u_axis·p)/texel_m.x − min_texel.x, (v_axis·p)/texel_m.y − min_texel.y)` is its position in
+/// the map in texels, v down, `[0, size]²`, and `depth = (depth_axis·p − depth_near)/(depth_far −
+/// depth_near)` is the depth that the map stores.
 ///
-/// A warped map is the picture that [`Split::warp`] takes. The axes, `min_texel` and the depths are
-/// then those of the plain map that it replaces; [`Split::map_from_world`] and its neighbours
+/// A warped map is projected by [`Split::warp`]. The axes, `min_texel` and the depths are then
+/// those of the plain map that it replaces; [`Split::map_from_world`] and the methods beside it
 /// work for either kind.
 ///
-/// The map of a local light is a perspective picture taken from [`Split::light_position`] along
-/// [`Split::depth_axis`], which [`Split::warp`] takes too: w is the depth along that axis in
+/// The map of a local light is a perspective image from [`Split::light_position`] along
+/// [`Split::depth_axis`], also projected by [`Split::warp`]: w is the depth along that axis in
 /// metres, and the stored depth is `A − B/w`, 0 at `depth_near` and 1 at `depth_far`.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Split {
-    /// Where the slice begins, `C_i`: a view depth in metres; see [`ShadowPlan::radial_eye`].
+    /// Near end of the slice, `C_i`: a view depth in metres; see [`ShadowPlan::radial_eye`].
     pub near: f64,
-    /// Where the slice ends, `C_{i+1}`.
+    /// Far end of the slice, `C_{i+1}`.
     pub far: f64,
     /// View depth at which the blend into the next split begins; `far` if there is none.
     pub blend_begin: f64,
-    /// The view depths, with radial bands too, that may sample this map: the slice widened by the
-    /// previous split's blend band and a pixel quad.
+    /// Range of view depths, with radial bands too, that may sample this map: the slice, widened by
+    /// the previous split's blend band and a pixel quad.
     pub coverage: (f64, f64),
     /// Edge of the map in texels.
     pub size: u32,
@@ -233,40 +235,41 @@ pub struct Split {
     pub u_axis: DVec3,
     /// World direction of the map's v (down), a unit vector.
     pub v_axis: DVec3,
-    /// World direction of depth, a unit vector: the way light travels, or the axis of a local
-    /// light's picture.
+    /// World direction of depth, a unit vector: the direction in which light travels, or the
+    /// viewing direction of a local light's map.
     pub depth_axis: DVec3,
-    /// Metres per texel along u and v. A warped map and that of a local light have this size of
-    /// texel in the middle of their receivers only, see [`Split::texel_size_m`].
+    /// Metres per texel along u and v. In a warped map or that of a local light, texels have this
+    /// size only in the middle of their receivers; see [`Split::texel_size_m`].
     pub texel_m: DVec2,
-    /// The map's upper left corner in texels of the light's plane (of a local light: from the
-    /// axis); whole numbers when the split is stabilised.
+    /// The map's upper left corner in texels of the light's plane (for a local light: from the
+    /// axis); whole numbers if the split is stabilised.
     pub min_texel: DVec2,
     /// Metres along `depth_axis` at depth 0.
     pub depth_near: f64,
     /// Metres along `depth_axis` at depth 1.
     pub depth_far: f64,
-    /// Metres along `depth_axis` of the first and the last place that is seen through this map,
-    /// with room for the bias: what filters of depth's moments spread their numbers over. A caster
-    /// may lie before it.
+    /// Metres along `depth_axis` of the nearest and the farthest point that is shaded by this map,
+    /// with room for the bias. Moment filters scale depth to this range. A caster may lie before
+    /// it.
     pub receiver_depths: (f64, f64),
-    /// Texels around a sample that a filter may read: what lies on screen lies that far inside the
-    /// map. [`crate::FilterReach::radius_texels`], or less where the filter's width is known in
+    /// Texels around a sample that a filter may read: points on screen lie at least this far inside
+    /// the map. [`crate::FilterReach::radius_texels`], or less if the filter's width is known in
     /// metres.
     pub filter_radius_texels: f64,
-    /// Shadow NDC (x, y in [−1,1], y up, z in \[0,1\]) from world, to be divided by w; `None` for a
-    /// plain map. w is positive at every receiver, and does not change along parallel light.
+    /// Matrix from world to shadow NDC (x, y in [−1,1], y up, z in \[0,1\]), to be divided by w;
+    /// `None` for a plain map. w is positive at every receiver, and does not change along parallel
+    /// light.
     pub warp: Option<DMat4>,
-    /// Where the light stands, metres; `None` for parallel light.
+    /// Position of the light in world metres; `None` for parallel light.
     pub light_position: Option<DVec3>,
-    /// This split's part of [`ShadowPlan::caster_indices`]. Empty: nothing casts a shadow here and
-    /// the split is lit.
+    /// This split's part of [`ShadowPlan::caster_indices`]. If it is empty, nothing casts a shadow
+    /// here and the split is lit.
     pub casters: std::ops::Range<usize>,
 }
 
 impl Split {
-    /// Where a world point lies in the map: texels (v down) and stored depth. NaN behind a warped
-    /// map's projection centre, where it shows nothing.
+    /// Position of a world point in the map: texels (v down) and stored depth. NaN behind a warped
+    /// map's projection centre, where the map shows nothing.
     #[must_use]
     pub fn map_from_world(&self, point: DVec3) -> DVec3 {
         if let Some(shadow_from_world) = self.warp {
@@ -282,22 +285,22 @@ impl Split {
         texel.extend((self.depth_axis.dot(point) - self.depth_near) / (self.depth_far - self.depth_near))
     }
 
-    /// The direction in which light travels at a world point, a unit vector.
+    /// Direction in which light travels at a world point, a unit vector.
     #[must_use]
     pub fn light_direction_at(&self, point: DVec3) -> DVec3 {
         self.light_position.map_or(self.depth_axis, |light| (point - light).try_normalize().unwrap_or(self.depth_axis))
     }
 
-    /// The split's map as a matrix to NDC (x right, y up, both in [−1,1], z in \[0,1\]); to be
+    /// Matrix from world to the map's NDC (x right, y up, both in [−1,1], z in \[0,1\]), to be
     /// divided by w, which is 1 in a plain map.
     #[must_use]
     pub fn shadow_from_world(&self) -> DMat4 {
         self.warp.unwrap_or_else(|| self.plain_shadow_from_world())
     }
 
-    /// [`Split::shadow_from_world`] for an engine of the given convention. All draw the same map:
-    /// where NDC's y points down it is turned, and OpenGL's z lies in [−1,1] (`z' = 2z − w`), which
-    /// its depth range puts back into \[0,1\].
+    /// [`Split::shadow_from_world`] for a given depth convention. All conventions draw the same
+    /// map: y is flipped if NDC's y points down, and OpenGL's z lies in [−1,1] (`z' = 2z − w`),
+    /// which its depth range maps back to \[0,1\].
     #[must_use]
     pub fn shadow_from_world_in(&self, convention: DepthConvention) -> DMat4 {
         let to_convention = match convention {
@@ -308,9 +311,9 @@ impl Split {
         to_convention * self.shadow_from_world()
     }
 
-    /// To the map as a texture of an engine of the given convention: u and v in \[0,1\], v down or,
-    /// with OpenGL's, up, and the depth that the map stores there, in \[0,1\] with either; to be
-    /// divided by w, which is 1 in a plain map.
+    /// Matrix from world to the map as a texture, for a given depth convention: u and v in \[0,1\],
+    /// v down, or up for OpenGL, and the stored depth, in \[0,1\] for all. To be divided by w,
+    /// which is 1 in a plain map.
     #[must_use]
     pub fn texture_from_world(&self, convention: DepthConvention) -> DMat4 {
         let up = match convention {
@@ -323,7 +326,7 @@ impl Split {
     }
 
     /// [`Split::shadow_from_world_in`] for points relative to `origin`, a world point near the
-    /// camera: entries stay small enough for `f32` 100 km from the world's origin.
+    /// camera. Entries stay small enough for `f32` 100 km from the world's origin.
     #[must_use]
     pub fn shadow_from_relative(&self, origin: DVec3, convention: DepthConvention) -> DMat4 {
         self.shadow_from_world_in(convention) * DMat4::from_translation(origin)
@@ -349,9 +352,10 @@ impl Split {
         )
     }
 
-    /// By how many texels (u, v) this map has moved since `earlier`, a map of the same split: what
-    /// was at texel `t` then is at `t` less the shift now, with the same depth. `None` if the two
-    /// do not share a grid: a step was taken in between, the map is not stabilised, or not a sun's.
+    /// Texels (u, v) by which this map has moved since `earlier`, a map of the same split. A point
+    /// at texel `t` of `earlier` lies at `t` minus this shift now, with equal depth. `None` if the
+    /// two maps do not share a grid: a step was taken in between, the map is not stabilised, or the
+    /// light is not a sun.
     #[must_use]
     pub fn texels_moved_since(&self, earlier: &Self) -> Option<DVec2> {
         let grid = |s: &Self| {
@@ -362,23 +366,23 @@ impl Split {
         shared.then_some(shift)
     }
 
-    /// Whether a world point lies inside the map, `margin` texels away from its edge, and within
-    /// its depth range.
+    /// Returns whether a world point lies inside the map, at least `margin` texels from its edge,
+    /// and within its depth range.
     #[must_use]
     pub fn contains(&self, point: DVec3, margin: f64) -> bool {
         self.lies_over(point, margin) && (0.0..=1.0).contains(&self.map_from_world(point).z)
     }
 
-    /// Whether a world point lies over the map's rectangle, `margin` texels away from its edge, at
-    /// any depth.
+    /// Returns whether a world point lies over the map's rectangle, at least `margin` texels from
+    /// its edge, at any depth.
     pub(crate) fn lies_over(&self, point: DVec3, margin: f64) -> bool {
         let at = self.map_from_world(point);
         let inside = margin..=f64::from(self.size) - margin;
         inside.contains(&at.x) && inside.contains(&at.y)
     }
 
-    /// The Jacobian of the map's coordinates: its rows are the gradients of u and v by the world's
-    /// position, in texels per metre. Both lie across the light, and are the same everywhere in a
+    /// Jacobian of the map's coordinates: its rows are the gradients of u and v by the position in
+    /// the world, in texels per metre. Both lie across the light. They are equal everywhere in a
     /// plain map.
     #[must_use]
     pub fn texel_jacobian(&self, point: DVec3) -> [DVec3; 2] {
@@ -391,7 +395,7 @@ impl Split {
         [texels * (x - w * (at.x / at.w)), -texels * (y - w * (at.y / at.w))]
     }
 
-    /// A texel's edges along u and v at a world point, as vectors across the light in metres: the
+    /// Edges of a texel along u and v at a world point, as vectors across the light in metres: the
     /// steps that change u alone and v alone, by one.
     #[must_use]
     pub fn texel_axes_m(&self, point: DVec3) -> [DVec3; 2] {
@@ -401,7 +405,7 @@ impl Split {
         [along_u / u.dot(along_u), along_v / v.dot(along_v)]
     }
 
-    /// The lengths of a texel's edges along u and v at a world point, metres.
+    /// Lengths of a texel's edges along u and v at a world point, in metres.
     #[must_use]
     pub fn texel_size_m(&self, point: DVec3) -> DVec2 {
         let [u, v] = self.texel_axes_m(point);

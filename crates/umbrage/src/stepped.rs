@@ -2,13 +2,13 @@
 
 use crate::{DirectionalLight, Error, Result, maths};
 
-/// Follows a moving sun in steps, so that shadows stand still between two of them, and returns how
-/// to fade from one to the next.
+/// Follows a moving sun in steps, between which shadows stand still, and gives the fade from one
+/// step to the next.
 ///
-/// If the sun moves a little every frame, every shadow edge falls into other texels every frame,
-/// and all edges crawl. This sun stays where it is until it is `step` behind, and is then
-/// cross-faded to its true direction. Nothing changes in between; a fade costs a second set of
-/// maps. Ours: \[PCSM\] has a static light.
+/// If the sun moves a little in every frame, every shadow edge falls on other texels in every
+/// frame, and all edges crawl. This sun stays in place until it is `step` behind the true one, and
+/// is then cross-faded to the true direction. Nothing changes in between; a fade costs a second set
+/// of maps. Not from a paper: \[PCSM\] has a static light.
 ///
 /// ```
 /// # use umbrage::{DirectionalLight, SteppedSun};
@@ -28,25 +28,25 @@ pub struct SteppedSun {
     fade: Option<SunFade>,
 }
 
-/// The one or two suns whose shadows are shown, and their shares.
+/// The one or two suns whose shadows are shown, and the weight of the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunFade {
-    /// The sun that is left; the same as `to` between two fades.
+    /// The sun that is faded out; equal to `to` between two fades.
     pub from: DirectionalLight,
-    /// The sun that is faded to.
+    /// The sun that is faded in.
     pub to: DirectionalLight,
-    /// The share of `to`, 0 to 1: 1 between two fades.
+    /// Weight of `to`, 0 to 1: 1 between two fades.
     pub weight: f64,
 }
 
 impl SunFade {
-    /// Whether two sets of maps are needed.
+    /// Returns whether two sets of maps are needed.
     #[must_use]
     pub fn is_fading(&self) -> bool {
         self.weight < 1.0
     }
 
-    /// What is shown, of what the two suns' maps answer.
+    /// Mixes the visibilities from the two suns' maps.
     #[must_use]
     pub fn mix(&self, from: f64, to: f64) -> f64 {
         from + (to - from) * self.weight
@@ -54,9 +54,9 @@ impl SunFade {
 }
 
 impl SteppedSun {
-    /// `step` in radians: how far behind the true sun shadows may fall. `fade` is how long a step
-    /// is faded, in the unit of the time given to [`SteppedSun::follow`] (seconds, frames); 0 is a
-    /// sudden step.
+    /// A sun with steps of `step` radians: the angle by which shadows may fall behind the true sun.
+    /// `fade` is the duration of a step's fade, in the unit of the time given to
+    /// [`SteppedSun::follow`] (seconds, frames); 0 is a sudden step.
     ///
     /// # Errors
     /// [`Error::InvalidLight`] for a step outside (0, π], or a fade that is negative or not finite.
@@ -71,12 +71,12 @@ impl SteppedSun {
         Ok(Self { step, duration: fade, fade: None })
     }
 
-    /// The suns to draw with, now that the true one stands at `sun` and `elapsed` has passed since
-    /// the last call. The first call shows the sun where it is.
+    /// The suns to draw with, for the true direction `sun` and the time `elapsed` since the last
+    /// call. The first call returns the sun in its true direction.
     ///
-    /// A sun that moves more than a step while one is being faded is taken up where it is after
-    /// that fade, so shadows fall at most a step and what the sun moves in a fade behind. A sun
-    /// that trembles by less than a step changes nothing.
+    /// If the sun moves more than a step during a fade, the next step begins from its direction
+    /// after that fade, so shadows fall behind by at most a step and the sun's movement in a fade.
+    /// A sun that trembles by less than a step changes nothing.
     ///
     /// # Errors
     /// [`Error::InvalidLight`] if `elapsed` is negative or not finite.

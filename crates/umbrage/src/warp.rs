@@ -1,27 +1,27 @@
 //! Warps: perspective reparameterisations of a directional light's map (PSM, LiSPSM, TSM), for one
 //! map or inside a split.
 //!
-//! Each is a matrix to shadow NDC in which receivers near the eye get more texels. Light stays
-//! parallel to the map's depth: what shades a point shares its texel, nearer to the light at
-//! smaller depth. All three are compared with the plain map of the same fit; none can be
-//! stabilised, as the warp follows the camera.
+//! Each is a matrix to shadow NDC in which receivers near the camera get more texels. Light stays
+//! parallel to the map's depth: a point and its casters share a texel, and the casters, nearer to
+//! the light, have smaller depth. All three are compared with the plain map of the same fit; none
+//! can be stabilised, as the warp follows the camera.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use crate::{Projection, View, maths};
 
-/// How a map spreads its texels.
+/// Distribution of a map's texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Warp {
-    /// Evenly: one texel is the same length everywhere.
+    /// Even: one texel has the same length everywhere.
     #[default]
     None,
     /// Perspective shadow maps: a map of the camera's own post-perspective space. M. Stamminger, G.
     /// Drettakis, *Perspective Shadow Maps*, SIGGRAPH 2002. The virtual camera slides back until
-    /// every caster is in front of it, as there and in S. Kozlov, *GPU Gems*, chapter 14. Our
-    /// deviations: both perspectives are one matrix, so that nothing is divided twice and what is
-    /// behind the eye keeps its order; depth is linear along the light; and the warp fades as view
-    /// and light become parallel, where the source's is torn apart.
+    /// every caster is in front of it, as there and in S. Kozlov, *GPU Gems*, chapter 14.
+    /// Deviations: both perspectives are one matrix, so that nothing is divided twice and points
+    /// behind the camera keep their order; depth is linear along the light; and the warp fades as
+    /// view and light become parallel, where the source's map degenerates.
     Psm,
     /// Light space perspective shadow maps, `n_opt = (z_n + √(z_n z_f)) / sin γ` with γ between
     /// view and light. M. Wimmer, D. Scherzer, W. Purgathofer, *Light Space Perspective Shadow
@@ -29,8 +29,8 @@ pub enum Warp {
     Lispsm,
     /// Trapezoidal shadow maps: the first `focus` of the slice's depth gets 80 % of the map. T.
     /// Martin, T.-S. Tan, *Anti-aliasing and Continuity with Trapezoidal Shadow Maps*, EGSR 2004.
-    /// Our deviation: the trapezoid opens to a rectangle by sin γ as view and light become
-    /// parallel, where the source's degenerates.
+    /// Deviation: the trapezoid opens to a rectangle by sin γ as view and light become parallel,
+    /// where the source's degenerates.
     Tsm {
         /// Share of the slice's depth range, 0 to 1.
         focus: f64,
@@ -38,7 +38,7 @@ pub enum Warp {
 }
 
 impl Warp {
-    /// The word of each warp.
+    /// Word and help of each warp.
     pub const WORDS: &'static [crate::config::Word] = &[
         crate::config::Word { word: "none", help: "Evenly" },
         crate::config::Word { word: "psm", help: "As a perspective shadow map" },
@@ -76,26 +76,26 @@ impl std::str::FromStr for Warp {
 /// Default share of the depth range that a trapezoidal map focuses on.
 const USUAL_FOCUS: f64 = 0.3;
 
-/// Where the focus line of a trapezoid lands: the near 80 % of the map, as NDC from +1 (near) to −1
+/// Position of a trapezoid's focus line: the near 80 % of the map, as NDC from +1 (near) to −1
 /// (far).
 const FOCUS_LINE: f64 = -0.6;
 
-/// A projection distance beyond this many slice lengths is no warp at all to `f32`.
+/// Projection distance in slice lengths beyond which `f32` shows no warp at all.
 const NO_WARP: f64 = 1e6;
 
-/// What a warp has to show.
+/// Geometry that a warped map has to show.
 #[derive(Clone, Copy, Debug)]
 pub struct WarpTarget<'a> {
     /// The camera.
     pub view: &'a View,
-    /// View depths of the slice, metres.
+    /// Range of view depths of the slice in metres.
     pub slice: (f64, f64),
-    /// The way light travels, a unit vector.
+    /// Direction in which light travels, a unit vector.
     pub light: DVec3,
-    /// World points whose convex hull holds every receiver of the slice. All of them land inside
+    /// World points whose convex hull contains every receiver of the slice. All of them fall inside
     /// the map.
     pub receivers: &'a [DVec3],
-    /// World points whose convex hull holds every caster. All that can shade a receiver keep a
+    /// World points whose convex hull contains every caster. Those that can shade a receiver keep a
     /// depth of 0 or more.
     pub casters: &'a [DVec3],
     /// Share of the map's half edge that is kept free for the filter.
@@ -103,10 +103,10 @@ pub struct WarpTarget<'a> {
 }
 
 impl Warp {
-    /// The matrix to shadow NDC (x, y in [−1,1], z in \[0,1\] from the light on), to be divided by
-    /// w.
+    /// Matrix from world to shadow NDC (x, y in [−1,1], z in \[0,1\] from the light on), to be
+    /// divided by w.
     ///
-    /// Returns `None` if there is nothing to show, or nothing but a point.
+    /// Returns `None` if there is no receiver, or only a point.
     #[must_use]
     pub fn shadow_from_world(self, target: &WarpTarget<'_>) -> Option<DMat4> {
         let (near, far) = target.slice;
@@ -139,8 +139,8 @@ impl Warp {
     }
 }
 
-/// The light's space turned so that one axis follows the view: across, along (ahead as the light
-/// sees it), depth.
+/// The light's space, turned so that one axis follows the view: across, along (ahead as seen from
+/// the light), depth.
 struct LightFrame {
     across: DVec3,
     ahead: DVec3,
@@ -161,8 +161,8 @@ impl LightFrame {
         self.ahead.dot(point - self.eye)
     }
 
-    /// Rows of `(x, y, w)`, relative to the eye, of the map whose projection centre lies `distance`
-    /// before `begin` along the view.
+    /// Rows of `(x, y, w)`, relative to the camera, of the map whose projection centre lies
+    /// `distance` before `begin` along the view.
     fn perspective(&self, begin: f64, distance: f64) -> [DVec4; 3] {
         // w grows from `distance` at the near end of the receivers; y falls from there as the
         // trapezoid's −1/w does.
@@ -175,7 +175,7 @@ impl LightFrame {
     }
 
     /// The matrix with these rows, fitted to the receivers. w may not change along the light and
-    /// has to be positive at them.
+    /// has to be positive at all receivers.
     fn fitted(&self, target: &WarpTarget<'_>, [x, y, w]: [DVec4; 3]) -> Option<DMat4> {
         let relative = |p: &DVec3| (*p - self.eye).extend(1.0);
         let (w_lo, w_hi) = bounds(target.receivers.iter().map(|p| w.dot(relative(p))))?;
@@ -210,11 +210,10 @@ impl LightFrame {
 /// eye. `None` if the cube has no depth.
 ///
 /// In that space the light has a source (or a sink) at a finite point, just beyond the far plane;
-/// the map is its picture of the cube. The nearer the light comes to the view's axis, the nearer
-/// comes that point to the cube's far side, and the picture is torn apart. Its plane is then turned
-/// towards the far plane, just as far as it takes to keep w within `(near/far)^sin γ`, γ being the
-/// angle between view and light: turned all the way, the two perspectives cancel and the map is
-/// plain.
+/// the map is its image of the cube. The nearer the light comes to the view's axis, the nearer that
+/// point comes to the cube's far side, and the image degenerates. Its plane is then turned towards
+/// the far plane, just far enough to keep w within `(near/far)^sin γ`, with γ the angle between
+/// view and light. Turned all the way, the two perspectives cancel and the map is plain.
 fn psm(target: &WarpTarget<'_>) -> Option<[DVec4; 3]> {
     let view = target.view;
     let (near, far) = target.slice;
@@ -266,8 +265,8 @@ fn bounds(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     (lo <= hi).then_some((lo, hi))
 }
 
-/// Texels per metre of a warped map at a world point, along two directions: the Jacobian's columns,
-/// for bias and analysis.
+/// Texels of a warped map per metre of `direction` at a world point, for u and v: the derivative of
+/// the projection, for bias and analysis.
 #[must_use]
 pub fn texels_along(shadow_from_world: &DMat4, size: u32, point: DVec3, direction: DVec3) -> DVec2 {
     let (at, step) = (*shadow_from_world * point.extend(1.0), *shadow_from_world * direction.extend(0.0));

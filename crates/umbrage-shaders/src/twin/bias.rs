@@ -1,66 +1,71 @@
-//! `lib/bias.wesl` on the CPU: whether the surface that a map's texel holds shades a receiver.
+//! `lib/bias.wesl` on the CPU: the decision whether the surface in a map's texel shades a receiver.
 
 use super::crease::Crease;
 use crate::layout::Split;
 
-/// `bias::MAX_SLOPE`: tangent of the steepest angle between light and normal that a plane is
-/// followed to.
+/// `bias::MAX_SLOPE`: tangent of the steepest angle between light and normal to which a plane is
+/// followed.
 pub const MAX_SLOPE: f32 = 50.0;
 /// `bias::TEXEL_BIAS`: constant bias in texels.
 pub const TEXEL_BIAS: f32 = 0.25;
-/// `bias::CORNER_SLOPE`: least rise of a surface before its plane, in texels per texel aside.
+/// `bias::CORNER_SLOPE`: least rise of a surface in front of its plane, in texels per texel of
+/// offset.
 pub const CORNER_SLOPE: f32 = 0.5;
 /// `bias::FOLD`: radians by which ground may bend within the filter's reach.
 pub const FOLD: f32 = 0.03;
-/// `bias::MOST_CORNER_SLOPE`: most rise of a surface before its plane, in texels per texel aside.
+/// `bias::MOST_CORNER_SLOPE`: most rise of a surface in front of its plane, in texels per texel of
+/// offset.
 pub const MOST_CORNER_SLOPE: f32 = 12.0;
 /// `bias::MOST_STEEP`: most slope of another surface that is continued to the receiver.
 pub const MOST_STEEP: f32 = 12.0;
-/// `bias::PAST`: how far behind its plane a surface may round off.
+/// `bias::PAST`: distance behind its plane at which a surface may round off, as a multiple of one
+/// texel plus its rise per texel.
 pub const PAST: f32 = 2.0;
-/// `bias::PAST_TEXELS`: how far before the receiver a surface from past the plane has to arrive to
-/// shade, in texels.
+/// `bias::PAST_TEXELS`: distance in texels in front of the receiver at which a surface from past
+/// the plane has to arrive to shade it.
 pub const PAST_TEXELS: f32 = 8.0;
 /// `bias::CREASE_SLOPE`: least slope of a surface that makes a crease.
 pub const CREASE_SLOPE: f32 = 1.9;
-/// `bias::CREASE_SHARE`: share of the receiver's own slope that it is at least.
+/// `bias::CREASE_SHARE`: least slope of such a surface as a share of the receiver's own slope.
 pub const CREASE_SHARE: f32 = 0.9;
-/// `bias::OWN_TEXELS`: how far before the receiver's plane a texel may lie to be of its own surface
-/// beyond doubt.
+/// `bias::OWN_TEXELS`: distance in texels in front of the receiver's plane within which a texel
+/// certainly belongs to its own surface.
 pub const OWN_TEXELS: f32 = 0.05;
 /// `bias::ROUNDING`: share of the numbers involved that `f32` may have lost.
 pub const ROUNDING: f32 = 1.907_348_6e-6;
-/// `bias::SNAP_TEXELS`: texels by which casters are snapped.
+/// `bias::SNAP_TEXELS`: step in texels of the grid to which casters are snapped.
 pub const SNAP_TEXELS: f32 = 0.003_906_25;
 
-/// `bias::Tolerance`: what a lookup forgives, in depth.
+/// `bias::Tolerance`: tolerances of a lookup, in depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tolerance {
-    /// How far the receiver's own surface may rise before its plane, per texel aside.
+    /// Most rise of the receiver's own surface in front of its plane, per texel of offset.
     pub bend: f32,
-    /// How far it may round off behind its plane.
+    /// Distance behind its plane at which the receiver's own surface may round off.
     pub past: f32,
-    /// How far before the plane another surface may lie to be continued to the receiver, per metre
-    /// aside.
+    /// Distance in front of the plane within which another surface is continued to the receiver,
+    /// per metre of offset.
     pub steep: f32,
-    /// How far before the receiver a surface from past the plane has to arrive to shade.
+    /// Distance in front of the receiver at which a surface from past the plane has to arrive to
+    /// shade it.
     pub arrival: f32,
-    /// Least slope of a surface that makes a crease, per metre aside.
+    /// Least slope of a surface that makes a crease, per metre of offset.
     pub crease: f32,
-    /// How far before the plane a texel is of the receiver's own surface beyond doubt.
+    /// Distance in front of the plane within which a texel certainly belongs to the receiver's own
+    /// surface.
     pub own: f32,
-    /// Constant bias, which [`Receiver::depth`] has taken off.
+    /// Constant bias, which is subtracted in [`Receiver::depth`].
     pub constant: f32,
-    /// What of it is for arithmetic and the texture's format.
+    /// The part of the constant bias for arithmetic and the texture's format.
     pub rounding: f32,
 }
 
-/// `bias::Receiver`: what a filter needs to know of a receiver.
+/// `bias::Receiver`: a receiver as a filter needs it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Receiver {
-    /// Place in texels of the light's plane.
+    /// Position in texels of the light's plane.
     pub texel: [f32; 2],
-    /// Depth in `[0, 1]`, with every constant bias taken off.
+    /// Depth in `[0, 1]`, with every constant bias subtracted.
     pub depth: f32,
     /// Change of depth per texel along u and v on the receiver's plane.
     pub slope: [f32; 2],
@@ -70,16 +75,16 @@ pub struct Receiver {
     pub texel_m: [f32; 2],
     /// Metres along the light between depth 0 and depth 1.
     pub range_m: f32,
-    /// A and B of a local light's depth where its map stores depth that is linear in w; `depth` is
-    /// then −B/w. 0 elsewhere.
+    /// A and B of a local light's depth if its map stores depth that is linear in w; `depth` is
+    /// then −B/w. Otherwise 0.
     pub linear: [f32; 2],
-    /// What the lookup forgives.
+    /// Tolerances of the lookup.
     pub tolerance: Tolerance,
-    /// The crease that it lies behind.
+    /// The crease behind which the receiver lies.
     pub crease: Crease,
 }
 
-/// `bias::MapPoint`: where a point lies in a map, and what the map is like there.
+/// `bias::MapPoint`: position of a point in a map, and properties of the map there.
 #[derive(Clone, Copy, Debug)]
 struct MapPoint {
     texel: [f32; 2],
@@ -93,8 +98,8 @@ struct MapPoint {
     linear: [f32; 2],
 }
 
-/// `bias::receiver`: `position` in metres from the frame's origin, `normal` the unit normal of the
-/// surface, `to_light` the unit vector towards the light.
+/// `bias::receiver`: the receiver at `position`, in metres from the frame's origin. `normal` is the
+/// unit normal of the surface, `to_light` the unit vector towards the light.
 #[must_use]
 pub fn receiver(split: &Split, position: [f32; 3], normal: [f32; 3], to_light: [f32; 3]) -> Receiver {
     let at =
@@ -124,7 +129,7 @@ pub fn receiver(split: &Split, position: [f32; 3], normal: [f32; 3], to_light: [
     }
 }
 
-/// `bias::tolerance`: of the tangent between the receiver's normal and the light.
+/// `bias::tolerance`: tolerances for the tangent between the receiver's normal and the light.
 #[must_use]
 pub fn tolerance(tangent: f32, texel_m: [f32; 2], range_m: f32) -> Tolerance {
     let corner = (FOLD * (1.0 + tangent * tangent)).clamp(CORNER_SLOPE, MOST_CORNER_SLOPE);
@@ -202,9 +207,9 @@ impl Receiver {
         self
     }
 
-    /// `bias::crease_at`: the crease that the receiver lies behind, if the texel at `offset` is of
-    /// the surface that makes one. `beyond` is what the next texels on u and on v store, away from
-    /// the receiver, `farther` what those behind them do.
+    /// `bias::crease_at`: the crease behind which the receiver lies, if the texel at `offset`
+    /// belongs to the surface that makes one. `beyond` is the depth in the next texels on u and on
+    /// v, away from the receiver, `farther` the depth in those behind them.
     #[must_use]
     pub fn crease_at(&self, offset: [f32; 2], stored: f32, beyond: [f32; 2], farther: [f32; 2]) -> Crease {
         let changes = beyond.map(|next| next - stored);
@@ -217,8 +222,8 @@ impl Receiver {
         Crease::of(before, offset, rises, self.texel_m.map(|texel| least * texel), unsure)
     }
 
-    /// `bias::before_plane`: how far before the receiver's plane a texel's surface lies, without
-    /// any bias.
+    /// `bias::before_plane`: distance of a texel's surface in front of the receiver's plane,
+    /// without any bias.
     #[must_use]
     pub fn before_plane(&self, offset: [f32; 2], stored: f32) -> f32 {
         self.plane_at(offset) - stored
@@ -229,21 +234,22 @@ impl Receiver {
         self.depth + self.tolerance.constant + along
     }
 
-    /// `bias::lies_before`: the texel's surface lies before the receiver's plane by more than `by`,
-    /// without any bias.
+    /// `bias::lies_before`: returns whether the texel's surface lies in front of the receiver's
+    /// plane by more than `by`, without any bias.
     #[must_use]
     pub fn lies_before(&self, offset: [f32; 2], stored: f32, by: f32) -> bool {
         stored < self.as_stored(self.plane_at(offset) - by)
     }
 
-    /// `bias::is_own`: the texel is of the receiver's own surface beyond doubt.
+    /// `bias::is_own`: returns whether the texel certainly belongs to the receiver's own surface.
     #[must_use]
     pub fn is_own(&self, offset: [f32; 2], stored: f32) -> bool {
         stored >= 1.0 || !self.lies_before(offset, stored, self.tolerance.own) && !self.is_past(offset, stored)
     }
 
-    /// Whether what a texel stores, `offset` texels from the receiver, shades it: all of the
-    /// decision. `beyond` is what the next texels on u and on v store, away from the receiver.
+    /// Returns whether the depth in a texel, `offset` texels from the receiver, shades it: the
+    /// whole decision. `beyond` is the depth in the next texels on u and on v, away from the
+    /// receiver.
     #[must_use]
     pub fn is_shaded(&self, offset: [f32; 2], stored: f32, beyond: [f32; 2]) -> bool {
         self.crease.is_across(offset, self.before_plane(offset, stored))
@@ -252,20 +258,20 @@ impl Receiver {
                 && !self.meets_receiver(offset, stored, beyond)
     }
 
-    /// `bias::lies_behind`: the texel lies behind the receiver.
+    /// `bias::lies_behind`: returns whether the texel lies behind the receiver.
     #[must_use]
     pub fn lies_behind(&self, offset: [f32; 2], stored: f32) -> bool {
         stored >= self.as_stored(self.level(offset))
     }
 
-    /// `bias::same_surface`: the texel is of the receiver's own surface.
+    /// `bias::same_surface`: returns whether the texel belongs to the receiver's own surface.
     #[must_use]
     pub fn same_surface(&self, offset: [f32; 2], stored: f32) -> bool {
         !self.is_past(offset, stored) && self.reference(offset, [0.0; 2]) <= stored
     }
 
-    /// `bias::meets_receiver`: the texel is of a surface that meets the receiver, or arrives behind
-    /// it.
+    /// `bias::meets_receiver`: returns whether the texel belongs to a surface that meets the
+    /// receiver, or arrives behind it.
     #[must_use]
     pub fn meets_receiver(&self, offset: [f32; 2], stored: f32, beyond: [f32; 2]) -> bool {
         let past = self.is_past(offset, stored);
@@ -276,8 +282,8 @@ impl Receiver {
         (past || stored >= steepest) && arrives >= self.as_stored(self.depth - before)
     }
 
-    /// `bias::is_past`: the texel lies so far behind the receiver's plane that the receiver's
-    /// surface has ended before it.
+    /// `bias::is_past`: returns whether the texel lies so far behind the receiver's plane that the
+    /// receiver's surface must have ended before it.
     #[must_use]
     pub fn is_past(&self, offset: [f32; 2], stored: f32) -> bool {
         stored > self.as_stored(self.level(offset) + dot2(self.slope, offset) + self.tolerance.past)
@@ -306,7 +312,8 @@ impl Receiver {
     }
 }
 
-/// `bias::linear_depth`: what a map of linear depth stores `w` metres along the light's axis.
+/// `bias::linear_depth`: the value that a map of linear depth stores `w` metres along the light's
+/// axis.
 #[must_use]
 pub fn linear_depth([a, b]: [f32; 2], w: f32) -> f32 {
     ((w - b / a) * (a * (a - 1.0) / b)).clamp(0.0, 1.0)

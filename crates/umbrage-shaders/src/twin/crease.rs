@@ -1,30 +1,30 @@
-//! `lib/crease.wesl` on the CPU: the line in which another surface meets the receiver's and behind
-//! which it shades it.
+//! `lib/crease.wesl` on the CPU: the line in which another surface meets the receiver's surface,
+//! and behind which it shades that surface.
 
-/// `crease::REACH`: how far behind a crease its other side counts, in texels.
+/// `crease::REACH`: distance in texels behind a crease within which its other side counts.
 pub const REACH: f32 = 2.0;
 /// `crease::WIDTH`: share of a texel within which a texel counts as one of the crease itself.
 pub const WIDTH: f32 = 0.1;
-/// `crease::MOST_FALL`: how much a surface may fall along one axis for what it rises along the
+/// `crease::MOST_FALL`: most fall of a surface along one axis as a multiple of its rise along the
 /// other.
 pub const MOST_FALL: f32 = 0.6;
 
-/// `crease::Crease`: where a surface passes over the receiver; heights are depths before the
-/// receiver's plane.
+/// `crease::Crease`: the passage of another surface over the receiver. Heights are depths in front
+/// of the receiver's plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Crease {
     /// Height of the other surface over the receiver.
     pub height: f32,
-    /// Change of that height per texel along u and v. 0: no surface passes over the receiver.
+    /// Change of that height per texel along u and v; 0 if no surface passes over the receiver.
     pub rise: [f32; 2],
-    /// What of a height may have been lost.
+    /// Uncertainty of a height, from rounding.
     pub unsure: f32,
 }
 
 impl Crease {
-    /// `crease::crease_of`: of a surface that lies `before` the receiver's plane at `offset` texels
-    /// from the receiver and rises by `away` to the next texels on u and on v, away from the
-    /// receiver, and by `farther` from those to the next.
+    /// `crease::crease_of`: the crease of a surface that lies `before` the receiver's plane at
+    /// `offset` texels from the receiver. It rises by `away` to the next texels on u and on v, away
+    /// from the receiver, and by `farther` from these to the next.
     #[must_use]
     pub fn of(before: f32, offset: [f32; 2], [away, farther]: [[f32; 2]; 2], least: [f32; 2], unsure: f32) -> Self {
         let of_axis = |i: usize| {
@@ -42,14 +42,14 @@ impl Crease {
         Self { height, rise: if is_there { rise } else { [0.0; 2] }, unsure }
     }
 
-    /// `crease::is_there`.
+    /// `crease::is_there`: returns whether a surface passes over the receiver.
     #[must_use]
     pub fn is_there(&self) -> bool {
         self.rise != [0.0; 2]
     }
 
-    /// `crease::is_across`: the other surface stands between the receiver and a texel at `offset`
-    /// whose surface lies `before` the receiver's plane, or is that surface.
+    /// `crease::is_across`: returns whether the other surface stands between the receiver and a
+    /// texel at `offset`, whose surface lies `before` the receiver's plane, or is that surface.
     #[must_use]
     pub fn is_across(&self, offset: [f32; 2], before: f32) -> bool {
         let height = self.height + self.rise[0] * offset[0] + self.rise[1] * offset[1];
@@ -62,8 +62,8 @@ impl Crease {
 mod tests {
     use super::Crease;
 
-    /// A floor seen from 45°, a wall without thickness that stands on it along v, and what is
-    /// stored `x` texels from it: a height of 2 for each texel behind it, and 0 before it.
+    /// Stored height `x` texels from a wall without thickness that stands along v on a floor seen
+    /// from 45°: 2 for each texel behind the wall, and 0 in front of it.
     fn height(x: f32) -> f32 {
         (2.0 * x).max(0.0)
     }

@@ -1,18 +1,18 @@
-//! `lib/edges.wesl` on the CPU: whether the triangles that texels name shade a point.
+//! `lib/edges.wesl` on the CPU: the decision whether the triangles that texels name shade a point.
 
 use super::bias::Receiver;
 use crate::ExactEdges;
 
 /// `edges::LEAST_M`: metres along the light within which nothing shades.
 pub const LEAST_M: f32 = 0.002;
-/// `edges::SLACK_TEXELS`: texels that a stored depth may lie before the receiver's plane before the
-/// point is tested, beside the receiver's own bias.
+/// `edges::SLACK_TEXELS`: texels by which a stored depth may lie in front of the receiver's plane
+/// before the point is tested, in addition to the receiver's own bias.
 pub const SLACK_TEXELS: f32 = 0.25;
 /// `edges::STEEPEST`: tangent of the steepest angle at which the receiver's plane is followed.
 pub const STEEPEST: f32 = 20.0;
 /// `edges::LOST`: share of the numbers involved that `f32` may have lost.
 pub const LOST: f32 = 9.536_743e-7;
-/// `edges::ROUND`: the nine texels, the middle first.
+/// `edges::ROUND`: offsets of the nine texels, the middle one first.
 pub const ROUND: [[f32; 2]; 9] =
     [[0.0, 0.0], [-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
 
@@ -23,14 +23,14 @@ pub struct Run {
     pub rows: [[f32; 4]; 3],
     /// Least corner of a box around the triangles.
     pub min: [f32; 3],
-    /// Greatest corner of it.
+    /// Greatest corner of the box.
     pub max: [f32; 3],
     /// The triangles.
     pub triangles: Vec<[[f32; 3]; 3]>,
 }
 
 impl Run {
-    /// Triangles whose space is that of the frame.
+    /// A run of triangles in the space of the frame.
     #[must_use]
     pub fn in_frame(triangles: &[[[f32; 3]; 3]]) -> Self {
         let corners = || triangles.iter().flatten();
@@ -46,49 +46,49 @@ impl Run {
     }
 }
 
-/// `edges::Ray`: a point's way to the light, and the pixel round the point.
+/// `edges::Ray`: the ray from a point to the light, and the pixel around the point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Metres from the frame's origin.
+    /// Origin in metres from the frame's origin.
     pub origin: [f32; 3],
     /// Unit vector towards the light.
     pub to_light: [f32; 3],
-    /// Metres to the light.
+    /// Distance to the light in metres.
     pub length_m: f32,
-    /// How the position changes to the next pixel on the right and to the next one below, metres.
+    /// Change of the position to the next pixel on the right and to the next one below, in metres.
     pub pixel: [[f32; 3]; 2],
 }
 
 impl Ray {
-    /// The way of a point without a pixel to a sun.
+    /// The ray from a point without a pixel to a sun.
     #[must_use]
     pub const fn to_sun(origin: [f32; 3], to_light: [f32; 3]) -> Self {
         Self { origin, to_light, length_m: 3e38, pixel: [[0.0; 3]; 2] }
     }
 }
 
-/// What the nine texels round a point hold, in the order of [`ROUND`].
+/// Contents of the nine texels around a point, in the order of [`ROUND`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Around {
-    /// The corner of the middle texel nearest to the map's first, in texels of the light's plane:
-    /// whole numbers.
+    /// Corner of the middle texel that is nearest to the map's first corner, in texels of the
+    /// light's plane: whole numbers.
     pub middle: [f32; 2],
     /// Stored depths.
     pub depths: [f32; 9],
-    /// Ids; 0 names nothing.
+    /// Ids; 0 for no run.
     pub ids: [u32; 9],
 }
 
-/// What is decided of a point.
+/// Decision for a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decision {
-    /// Nothing stands in its way.
+    /// No triangle lies on the ray to the light.
     Lit,
-    /// All texels that count hold something before it.
+    /// All texels that count contain a surface in front of the point.
     Covered,
-    /// A triangle that a texel names stands in its way, or in that of some positions of its pixel.
+    /// A triangle that a texel names shades the point, or some positions of its pixel.
     Shaded,
-    /// A caster without a name may stand in its way: the filter answers.
+    /// A caster without an id may shade the point: the filter decides.
     Undecided,
 }
 
@@ -97,7 +97,7 @@ pub fn decided<'a>(at: &Receiver, around: &Around, ray: Ray, runs: impl Fn(u32) 
     shares(at, around, ray, ExactEdges::default(), runs).0
 }
 
-/// `edges::decided` of several positions of a pixel: what is decided, and the share of them that
+/// `edges::decided` for several positions of a pixel: the decision, and the share of positions that
 /// no triangle shades.
 pub fn shares<'a>(
     at: &Receiver,
@@ -135,14 +135,15 @@ pub fn shares<'a>(
     (decision, share)
 }
 
-/// `edges::four_of`: which of [`ROUND`] are the four texels round a point, as bits.
+/// `edges::four_of`: mask of the four texels of [`ROUND`] around a point.
 #[must_use]
 pub fn four_of(beyond: [bool; 2]) -> u32 {
     let [right, below] = beyond.map(u32::from);
     1 | 1 << (1 + right) | 1 << (3 + below) | 1 << (5 + right + 2 * below)
 }
 
-/// `edges::dark_round`: which of the nine hold something before the receiver's plane, as bits.
+/// `edges::dark_round`: mask of those of the nine texels that contain a surface in front of the
+/// receiver's plane.
 #[must_use]
 pub fn dark_round(at: &Receiver, around: &Around) -> u32 {
     let slope: [f32; 2] = std::array::from_fn(|axis| {
@@ -159,13 +160,13 @@ pub fn dark_round(at: &Receiver, around: &Around) -> u32 {
     dark
 }
 
-/// `edges::lit_past` of one position: whether a run of triangles shades a point.
+/// `edges::lit_past` of one position: returns whether a run of triangles shades a point.
 #[must_use]
 pub fn shades(run: &Run, ray: Ray) -> bool {
     shaded_places(run, ray, &[[0.0; 2]])[0]
 }
 
-/// `edges::lit_past`: which of some places of a pixel a run of triangles shades.
+/// `edges::lit_past`: returns for each position of a pixel whether a run of triangles shades it.
 fn shaded_places(run: &Run, ray: Ray, places: &[[f32; 2]]) -> Vec<bool> {
     let own = |v: [f32; 3]| run.rows.map(|[x, y, z, _]| dot([x, y, z], v));
     let origin = run.rows.map(|[x, y, z, w]| dot([x, y, z], ray.origin) + w);

@@ -2,17 +2,20 @@
 
 use crate::layout::FilterKind;
 
-/// `moments::LEAST_VARIANCE`.
+/// `moments::LEAST_VARIANCE`: least variance of depth, in the z of moments.
 pub const LEAST_VARIANCE: f32 = 5e-7;
-/// `moments::MOMENT_BIAS`.
+/// `moments::MOMENT_BIAS`: share of the most spread-out distribution that is mixed into four
+/// moments.
 pub const MOMENT_BIAS: f32 = 1e-6;
 
-/// `moments::MOST_WARPED_SPREAD`.
+/// `moments::MOST_WARPED_SPREAD`: largest floor of the standard deviation of an exponential, as a
+/// share of the exponential.
 pub const MOST_WARPED_SPREAD: f32 = 0.05;
-/// `moments::PLANE_BIAS`.
+/// `moments::PLANE_BIAS`: standard deviations of a sloped receiver's depths within the filter, by
+/// which [`hamburger`]'s receiver is moved towards the light.
 pub const PLANE_BIAS: f32 = 2.0;
 
-/// `moments::of_depth`: what is stored for a depth `z` in `[-1, 1]`.
+/// `moments::of_depth`: the moments that are stored for a depth `z` in `[-1, 1]`.
 #[must_use]
 pub fn of_depth(kind: FilterKind, exponents: [f32; 2], z: f32) -> [f32; 4] {
     let warped = (exponents[0] * z).exp();
@@ -26,8 +29,8 @@ pub fn of_depth(kind: FilterKind, exponents: [f32; 2], z: f32) -> [f32; 4] {
     }
 }
 
-/// `moments::chebyshev`: the most of a distribution with these two moments that can lie at `t` or
-/// beyond.
+/// `moments::chebyshev`: the largest share of a distribution with these two moments that can lie at
+/// `t` or beyond.
 #[must_use]
 pub fn chebyshev(mean: f32, square: f32, least_variance: f32, t: f32) -> f32 {
     if t <= mean {
@@ -37,7 +40,8 @@ pub fn chebyshev(mean: f32, square: f32, least_variance: f32, t: f32) -> f32 {
     variance / (variance + (t - mean) * (t - mean))
 }
 
-/// `moments::hamburger`: the same of a distribution on `[-1, 1]` with these four moments.
+/// `moments::hamburger`: the largest share of a distribution on `[-1, 1]` with these four moments
+/// that can lie at `t` or beyond.
 #[must_use]
 pub fn hamburger(moments: [f32; 4], t: f32) -> f32 {
     const WIDEST: [f32; 4] = [0.0, 2.0 / 3.0, 0.0, 2.0 / 3.0];
@@ -64,18 +68,18 @@ pub fn hamburger(moments: [f32; 4], t: f32) -> f32 {
     }
 }
 
-/// `moments::Spread`: how uncertain a receiver's z is.
+/// `moments::Spread`: uncertainty of a receiver's z.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
     /// Standard deviation within a texel.
     pub texel: f32,
     /// Standard deviation of the receiver's plane within the filter.
     pub plane: f32,
-    /// What was taken off as constant bias.
+    /// Constant bias that was subtracted.
     pub bias: f32,
 }
 
-/// `moments::lit_share`: the lit share at a receiver at `t`.
+/// `moments::lit_share`: the lit share for a receiver at `t`.
 #[must_use]
 pub fn lit_share(kind: FilterKind, exponents: [f32; 2], moments: [f32; 4], t: f32, spread: Spread) -> f32 {
     let unbiased = t + spread.bias;
@@ -94,13 +98,13 @@ pub fn lit_share(kind: FilterKind, exponents: [f32; 2], moments: [f32; 4], t: f3
     }
 }
 
-/// `moments::without_bleeding`.
+/// `moments::without_bleeding`: lit share with the share `bleeding` of the light removed as a leak.
 #[must_use]
 pub fn without_bleeding(lit: f32, bleeding: f32) -> f32 {
     ((lit - bleeding) / (1.0 - bleeding)).clamp(0.0, 1.0)
 }
 
-/// `moments::blur_reach`: texels to each side that a blur reads.
+/// `moments::blur_reach`: number of texels to each side that a blur reads.
 #[must_use]
 pub fn blur_reach(radius: f32) -> f32 {
     (radius * radius + 0.5).sqrt().floor()

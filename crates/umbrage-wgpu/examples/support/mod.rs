@@ -1,5 +1,5 @@
-//! What any wgpu program has and shadows have nothing to do with: a device, a window or a picture,
-//! a pipeline.
+//! The parts of a wgpu program that have nothing to do with shadows: a device, a window or a
+//! picture, a pipeline.
 #![allow(dead_code, unused_imports, reason = "each example uses its own part of this module")]
 
 mod net;
@@ -27,7 +27,7 @@ pub type Result<T> = std::result::Result<T, Box<dyn Error>>;
 type New<S> = fn(&wgpu::Device, &wgpu::Queue, wgpu::TextureFormat) -> Result<S>;
 type Draw<S> = fn(&mut S, &wgpu::Device, &wgpu::Queue, &Target, f64) -> Result<()>;
 
-/// A position and a normal.
+/// Vertex attributes: a position and a normal.
 pub const ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
 
 pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -35,7 +35,7 @@ const ATTACHED: wgpu::TextureUsages =
     wgpu::TextureUsages::RENDER_ATTACHMENT.union(wgpu::TextureUsages::TEXTURE_BINDING);
 const SKY: wgpu::Color = wgpu::Color { r: 0.3, g: 0.45, b: 0.7, a: 1.0 };
 
-/// A picture that is drawn, with its depth: reversed, 0 infinitely far away.
+/// An image that is drawn into, with its depth: reversed, 0 infinitely far away.
 pub struct Target {
     pub size: [u32; 2],
     pub color: wgpu::TextureView,
@@ -51,7 +51,7 @@ pub fn run<S>(name: &'static str, arguments: &[String], new: New<S>, draw: Draw<
     }
 }
 
-/// What the command line holds.
+/// Arguments of the command line.
 pub fn arguments() -> Vec<String> {
     std::env::args().skip(1).collect()
 }
@@ -76,12 +76,12 @@ impl Target {
         self.begin_into(encoder, &self.color, wgpu::LoadOp::Clear(SKY), depth)
     }
 
-    /// Begins a pass over what is drawn already, with a new depth.
+    /// Begins a pass over the image as it is, with new depth.
     pub fn begin_again<'e>(&self, encoder: &'e mut wgpu::CommandEncoder) -> wgpu::RenderPass<'e> {
         self.begin_into(encoder, &self.color, wgpu::LoadOp::Load, 0.0)
     }
 
-    /// Begins a pass into another colour, with the depth of this picture.
+    /// Begins a pass into another colour texture, with the depth of this image.
     pub fn begin_other<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
@@ -185,7 +185,7 @@ pub fn pipeline(
     pipeline_with(device, text, groups, vertices, format, wgpu::CompareFunction::Greater)
 }
 
-/// [`pipeline`] for another depth than the reversed one.
+/// [`pipeline`] for a depth comparison other than that of reversed depth.
 pub fn pipeline_with(
     device: &wgpu::Device,
     text: &str,
@@ -244,7 +244,7 @@ pub fn cuboid(vertices: &mut Vec<[Vec3; 2]>, min: DVec3, size: DVec3) -> Aabb {
     Aabb::new(min, min + size)
 }
 
-/// A device, with what makes shadows better where the adapter has it.
+/// A device with the optional features for shadows that the adapter has.
 fn device(adapter: &wgpu::Adapter) -> Result<(wgpu::Device, wgpu::Queue)> {
     Ok(pollster::block_on(adapter.request_device(&device_descriptor(adapter, wgpu::DeviceDescriptor::default())))?)
 }
@@ -294,7 +294,7 @@ struct App<S> {
     failure: Option<Box<dyn Error>>,
 }
 
-/// A window and what is drawn in it.
+/// A window and its contents.
 struct Shown<S> {
     window: Arc<Window>,
     surface: wgpu::Surface<'static>,
@@ -311,7 +311,7 @@ impl<S> Shown<S> {
         Self::open_in(Arc::new(event_loop.create_window(attributes)?), event_loop, new)
     }
 
-    /// Everything except the window is created here: at first, and after the device was lost.
+    /// Creates everything except the window: at first, and after the device was lost.
     fn open_in(window: Arc<Window>, event_loop: &ActiveEventLoop, new: New<S>) -> Result<Self> {
         let display = Box::new(event_loop.owned_display_handle());
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_with_display_handle_from_env(display));
@@ -350,7 +350,7 @@ impl<S> Shown<S> {
 }
 
 impl<S> App<S> {
-    /// Shows what was opened, or ends with the failure.
+    /// Shows an opened window, or ends with the failure.
     fn show(&mut self, opened: Result<Shown<S>>, event_loop: &ActiveEventLoop) {
         match opened {
             Ok(shown) => self.shown = Some(shown),
@@ -361,7 +361,7 @@ impl<S> App<S> {
         }
     }
 
-    /// Draws a frame; with a new device where the old one was lost.
+    /// Draws a frame; on a new device if the old one was lost.
     fn redraw(&mut self, event_loop: &ActiveEventLoop) {
         let Some(mut shown) = self.shown.take() else { return };
         let drawn = shown.draw(self.draw);

@@ -1,14 +1,14 @@
-//! A texture of a net, and the group that binds it beside bones.
+//! A texture of a net, and the bind group layout for it and the bones.
 
 use umbrage_wgpu::wgpu;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 
 use super::texture_descriptor;
 
-/// Texels along an edge of the texture.
+/// Number of texels along an edge of the texture.
 const EDGE: u32 = 32;
 
-/// Bones for vertices; a texture and its sampler for fragments.
+/// Bind group layout: bones for vertices; a texture and its sampler for fragments.
 pub fn skin_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
     let bones = wgpu::BindingType::Buffer {

@@ -1,4 +1,4 @@
-//! Passes over the whole picture.
+//! Passes over the whole image.
 
 use umbrage_wgpu::wgpu;
 
@@ -31,7 +31,7 @@ pub fn texture_group(
     device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
 }
 
-/// A pipeline that draws one triangle over the whole picture.
+/// A pipeline that draws one triangle over the whole image.
 pub fn screen_pipeline(
     device: &wgpu::Device,
     text: &str,
@@ -65,7 +65,7 @@ pub fn screen_pipeline(
     })
 }
 
-/// Begins a pass over the whole of one texture, without depth.
+/// Begins a pass over a whole texture, without depth.
 pub fn screen_pass<'e>(encoder: &'e mut wgpu::CommandEncoder, view: &wgpu::TextureView) -> wgpu::RenderPass<'e> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {

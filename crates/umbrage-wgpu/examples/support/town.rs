@@ -1,5 +1,5 @@
-//! The world of the examples: a plain with boxes on it, and a camera that walks among them. How it
-//! is drawn is explained in `hello_shadows`.
+//! The world of the examples: a plain with boxes on it, and a camera that walks among them. The
+//! example `hello_shadows` explains how it is drawn.
 
 use glam::{DVec3, Mat4};
 use umbrage_wgpu::umbrage::{Aabb, Frustum, View};
@@ -7,7 +7,7 @@ use umbrage_wgpu::{CasterPipeline, ShadowFrame, ShadowMap, Shadows, wgpu};
 
 use super::{ATTRIBUTES, Result, camera, cuboid, pipeline, vertex_buffer};
 
-/// Towards the sun.
+/// Direction towards the sun.
 pub const TO_SUN: DVec3 = DVec3::new(0.6, 0.5, 0.3);
 
 /// The vertex shader of the town's pipelines.
@@ -60,7 +60,7 @@ impl Town {
         Self { bounds, vertices: vertex_buffer(device, &vertices), vertex_count, cameras, groups, layout }
     }
 
-    /// What casts shadows: all but the plain.
+    /// Bounds of the casters: all boxes but the plain.
     pub fn casters(&self) -> &[Aabb] {
         &self.bounds[1..]
     }
@@ -71,7 +71,7 @@ impl Town {
         Ok(shadows.caster_pipeline(&CasterPipeline { buffers, ..CasterPipeline::default() })?)
     }
 
-    /// A pipeline that draws the town into pictures. `text` has a fragment shader of a `Varying`;
+    /// A pipeline that draws the town into images. `text` has a fragment shader of a `Varying`;
     /// `groups` are its bind groups from group 1 on.
     pub fn pipeline(
         &self,
@@ -97,7 +97,7 @@ impl Town {
         }
     }
 
-    /// Draws the town's casters of one map; more may be drawn in the pass that is returned.
+    /// Draws the town's casters into one map; more may be drawn in the returned pass.
     pub fn draw_map<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
@@ -131,7 +131,7 @@ impl Town {
     }
 }
 
-/// A camera that walks among the boxes, for pictures of this size.
+/// A camera that walks among the boxes, for images of this size.
 pub fn walk(seconds: f64, [width, height]: [u32; 2]) -> Result<View> {
     let aspect = f64::from(width) / f64::from(height);
     let lens = Frustum::perspective(60f64.to_radians(), aspect, 0.1, 300.0)?;

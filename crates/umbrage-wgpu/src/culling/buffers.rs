@@ -1,4 +1,4 @@
-//! What the GPU holds for culling.
+//! GPU buffers for culling.
 
 use umbrage::glam::Vec4;
 use umbrage::{CasterMask, CasterTest};
@@ -7,18 +7,18 @@ use umbrage_shaders::layout::{CullDraw, CullFrame, CullMesh as Places, CullSplit
 use super::CullMesh;
 use crate::{Error, Result, device};
 
-/// Storage buffers that the shader binds.
+/// Number of storage buffers that the shader binds.
 pub(super) const STORAGE_BUFFERS: u32 = 7;
 
-/// Half spaces of a split's test, at most: those of a swept slice, two along each direction of the
+/// Most half spaces of a split's test: those of a swept slice, two along each direction of the
 /// planner's fan, and one along depth.
 const MOST_PLANES: usize = 18 + 2 * 32 + 1;
 
-/// Cells of a mask.
+/// Number of cells of a mask.
 const CELLS: usize = CasterMask::EDGE * CasterMask::EDGE;
 
-/// The buffers, bound in this order behind the frame's; the boxes come fourth and are the
-/// application's.
+/// The buffers, bound in this order, beginning with the frame's. The boxes, which are the
+/// application's, are bound at 4, after `lowest`.
 #[derive(Debug)]
 pub(super) struct Buffers {
     frame: wgpu::Buffer,
@@ -28,9 +28,9 @@ pub(super) struct Buffers {
     meshes: wgpu::Buffer,
     pub draws: wgpu::Buffer,
     pub ids: wgpu::Buffer,
-    /// Places in each split.
+    /// Number of places in each split.
     pub room: u32,
-    /// Where each mesh is listed.
+    /// Range of places of each mesh.
     places: Vec<Places>,
 }
 
@@ -110,19 +110,19 @@ impl Buffers {
         device::write(queue, &self.draws, 0, bytemuck::cast_slice(draws))
     }
 
-    /// Where the numbers of a mesh's instances begin in a split, bytes.
+    /// Byte offset at which the numbers of a mesh's instances begin in a split.
     pub fn offset(&self, split: usize, mesh: usize) -> u64 {
         let place = split as u64 * u64::from(self.room) + u64::from(self.places[mesh].first);
         place * size_of::<u32>() as u64
     }
 
-    /// Bytes of all.
+    /// Memory of all buffers in bytes.
     pub fn bytes(&self) -> u64 {
         let all = [&self.frame, &self.splits, &self.planes, &self.lowest, &self.meshes, &self.draws, &self.ids];
         all.map(wgpu::Buffer::size).iter().sum()
     }
 
-    /// What the shader binds.
+    /// Bind group layout of the shader.
     pub fn layout(&self, device: &wgpu::Device) -> wgpu::BindGroupLayout {
         let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
             binding,
@@ -139,7 +139,7 @@ impl Buffers {
         })
     }
 
-    /// The group with the application's boxes.
+    /// The bind group with the application's boxes.
     pub fn group(
         &self,
         device: &wgpu::Device,
@@ -160,7 +160,7 @@ impl Buffers {
     }
 }
 
-/// A test as the shader reads it, but for its half spaces and its mask's cells.
+/// A test in the form that the shader reads, without its half spaces and its mask's cells.
 fn split(test: &CasterTest, first_plane: u32) -> CullSplit {
     let mut split =
         CullSplit { first_plane, plane_count: test.planes.len() as u32, mask_axis: 3, ..Default::default() };

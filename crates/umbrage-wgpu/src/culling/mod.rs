@@ -1,5 +1,4 @@
-//! Culling on the GPU: which instances are drawn into which splits, for applications whose
-//! instances live there.
+//! Culling of instances on the GPU, split by split, for applications whose instances live there.
 
 mod buffers;
 
@@ -14,43 +13,43 @@ use self::buffers::Buffers;
 use crate::shadows::{ShadowFrame, ShadowMap};
 use crate::{Error, Result, device};
 
-/// Threads of a workgroup, as the shader has them.
+/// Threads of a workgroup, as declared in the shader.
 const WORKGROUP: u32 = 64;
 
-/// A mesh that instances show, as its application draws it.
+/// A mesh that instances show, with the index range that the application draws.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct CullMesh {
-    /// Its indices in the index buffer.
+    /// Range of the mesh in the index buffer.
     pub indices: Range<u32>,
-    /// Added to each index.
+    /// Value added to each index.
     pub base_vertex: i32,
-    /// How many instances show it, at most: so many places are kept for it in each split.
+    /// Most instances of the mesh: so many places are reserved for it in each split.
     pub instances: u32,
 }
 
 /// The instances of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CullInputs {
-    /// How many there are, at the beginning of the buffer of boxes.
+    /// Number of instances, at the beginning of the buffer of boxes.
     pub instances: u32,
-    /// The world point that boxes are relative to: one near them, so that `f32` holds them. It need
-    /// not be the frame's origin and may stay as it is for good.
+    /// World point to which boxes are relative, near them, so that `f32` is precise enough. It need
+    /// not be the frame's origin, and may stay the same forever.
     pub origin: DVec3,
 }
 
-/// Culls instances on the GPU: each box against all splits of a sun's plan, and draws of what
-/// passes, without a list on the CPU and without reading back.
+/// Culls instances on the GPU: each box is tested against all splits of a sun's plan, and those
+/// that pass are drawn, without a list on the CPU and without reading back.
 ///
-/// Boxes ([`CullBox`]) lie in a storage buffer of the application's, which says for each instance
-/// which mesh it shows. A compute pass writes the numbers of instances that pass behind each other,
-/// mesh by mesh, and counts them in the arguments of indirect draws. Numbers are a vertex buffer
-/// that advances by instance, bound at the place where a mesh's begin: no device needs to know
-/// first instances, counts of draws or draw indices.
+/// Boxes ([`CullBox`]) lie in a storage buffer of the application, which also gives the mesh of
+/// each instance. A compute pass writes the numbers of the instances that pass one after the other,
+/// mesh by mesh, and counts them in the arguments of indirect draws. The numbers are a vertex
+/// buffer that advances by instance, bound at the offset where those of a mesh begin. The device
+/// therefore needs no feature for first instances, counts of draws or draw indices.
 ///
-/// The plan is made without a list: [`crate::Inputs::casters`] and [`crate::Inputs::receivers`]
-/// are a few boxes that hold all instances, such as a level's tiles. The test is that of the
-/// planner's lists with room for rounding ([`umbrage::CasterTest`]): whatever such a list would
-/// have held is drawn.
+/// The plan is made without a list: [`crate::Inputs::casters`] and [`crate::Inputs::receivers`] are
+/// a few boxes that contain all instances, such as a level's tiles. The test is that of the
+/// planner's lists with room for rounding ([`umbrage::CasterTest`]): every instance that such a
+/// list would have contained is drawn.
 ///
 /// ```no_run
 /// # use umbrage_wgpu::{CullInputs, CullMesh, Error, Inputs, InstanceCulling, Shadows, wgpu};
@@ -83,20 +82,19 @@ pub struct InstanceCulling {
     buffers: Buffers,
     pipeline: Option<wgpu::ComputePipeline>,
     group: Option<wgpu::BindGroup>,
-    /// How many boxes the bound buffer holds.
+    /// Number of boxes in the bound buffer.
     bound: u64,
     tests: Vec<CasterTest>,
     inputs: CullInputs,
-    /// Where lists were made on the CPU, how many instances each draw has.
+    /// Number of instances of each draw, if lists were made on the CPU.
     counts: Option<Vec<u32>>,
 }
 
 impl InstanceCulling {
-    /// For a sun's maps and these meshes; [`crate::ShadowMaps::splits`] says how many splits there
-    /// are.
+    /// Culling for a sun's maps and these meshes; `splits` is [`crate::ShadowMaps::splits`].
     ///
     /// # Errors
-    /// [`Error::Culling`] naming what is wrong with the meshes, [`Error::CullingTooLarge`] if the
+    /// [`Error::Culling`] naming the problem with the meshes, [`Error::CullingTooLarge`] if the
     /// device has no buffer for so many places, [`Error::Device`], [`Error::OutOfMemory`],
     /// [`Error::DeviceLost`].
     pub fn new(device: &wgpu::Device, splits: usize, meshes: &[CullMesh]) -> Result<Self> {
@@ -119,15 +117,14 @@ impl InstanceCulling {
         })
     }
 
-    /// Whether the device runs compute shaders with as many buffers as this takes. Without,
-    /// [`InstanceCulling::cull_on_cpu`] makes the same lists.
+    /// Returns whether the device runs compute shaders with the number of buffers that culling
+    /// needs. Otherwise [`InstanceCulling::cull_on_cpu`] makes the same lists.
     #[must_use]
     pub fn can_compute(&self) -> bool {
         self.pipeline.is_some()
     }
 
-    /// Chooses the buffer of boxes: [`CullBox`] after [`CullBox`], with
-    /// [`wgpu::BufferUsages::STORAGE`].
+    /// Sets the buffer of boxes: an array of [`CullBox`], with [`wgpu::BufferUsages::STORAGE`].
     ///
     /// # Errors
     /// [`Error::Culling`] for a buffer of another usage, [`Error::CullingNeedsCompute`],
@@ -148,13 +145,13 @@ impl InstanceCulling {
         Ok(())
     }
 
-    /// Hands a prepared frame's tests to the GPU and empties the draws; both take effect with the
+    /// Writes a prepared frame's tests to the GPU and clears the draws; both take effect with the
     /// next submission.
     ///
     /// # Errors
-    /// [`Error::CullingPlan`] for plans that have no such test: of several lights or of a lamp, of
-    /// warped or kept maps, or of layouts that draw several splits in one pass.
-    /// [`Error::Culling`] for more instances than a dispatch or the bound buffer holds and for an
+    /// [`Error::CullingPlan`] for plans without such a test: of several lights or of a local light,
+    /// of warped or kept maps, or of layouts that draw several splits in one pass.
+    /// [`Error::Culling`] for more instances than a dispatch or the bound buffer allows, and for an
     /// origin that is not finite. [`Error::DeviceLost`].
     pub fn prepare(&mut self, queue: &wgpu::Queue, frame: &ShadowFrame<'_>, inputs: &CullInputs) -> Result<()> {
         self.check(inputs)?;
@@ -171,7 +168,7 @@ impl InstanceCulling {
         self.buffers.write(queue, &header, &self.tests, &self.draws_of(|_| 0))
     }
 
-    /// Records the compute pass. Draws of this frame come after it.
+    /// Records the compute pass. Draws of this frame have to come after it.
     ///
     /// # Errors
     /// [`Error::CullingNeedsCompute`], [`Error::Culling`] if no boxes are bound.
@@ -221,27 +218,29 @@ impl InstanceCulling {
         Ok(())
     }
 
-    /// The draws of a map, mesh by mesh. Nothing for a map that is not of the prepared frame's sun.
+    /// The draws of a map, mesh by mesh. Empty for a map that does not belong to the prepared
+    /// frame's sun.
     pub fn draws<'a>(&'a self, map: &ShadowMap<'_>) -> impl Iterator<Item = CulledDraw<'a>> + use<'a> {
         let split = map.splits().start;
         let meshes = if split < self.tests.len() { self.meshes.len() } else { 0 };
         (0..meshes).map(move |mesh| CulledDraw { culling: self, split, mesh })
     }
 
-    /// The numbers of instances that passed, as the shader wrote them: [`CulledDraw::places`] says
-    /// where those of a draw lie. To copy from, or to bind as a storage buffer.
+    /// Buffer of the numbers of the instances that passed, as the shader wrote them;
+    /// [`CulledDraw::places`] gives the range of a draw. To copy from, or to bind as a storage
+    /// buffer.
     #[must_use]
     pub fn ids(&self) -> &wgpu::Buffer {
         &self.buffers.ids
     }
 
-    /// The arguments of all draws ([`CullDraw`]), split by split and mesh by mesh.
+    /// Buffer of the arguments of all draws ([`CullDraw`]), split by split and mesh by mesh.
     #[must_use]
     pub fn arguments(&self) -> &wgpu::Buffer {
         &self.buffers.draws
     }
 
-    /// Bytes of all buffers.
+    /// Memory of all buffers in bytes.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.buffers.bytes()
@@ -286,30 +285,30 @@ pub struct CulledDraw<'a> {
 }
 
 impl CulledDraw<'_> {
-    /// Number of the mesh.
+    /// Index of the mesh.
     #[must_use]
     pub fn mesh(&self) -> usize {
         self.mesh
     }
 
-    /// Where the numbers of its instances lie in [`InstanceCulling::ids`], in numbers; how many of
-    /// them are written is in its arguments.
+    /// Range of the draw's instance numbers in [`InstanceCulling::ids`], counted in numbers. The
+    /// draw's arguments give how many of them are written.
     #[must_use]
     pub fn places(&self) -> Range<u64> {
         let first = self.culling.buffers.offset(self.split, self.mesh) / 4;
         first..first + u64::from(self.culling.meshes[self.mesh].instances)
     }
 
-    /// Byte offset of its arguments in [`InstanceCulling::arguments`].
+    /// Byte offset of the draw's arguments in [`InstanceCulling::arguments`].
     #[must_use]
     pub fn arguments_offset(&self) -> u64 {
         let draw = self.split * self.culling.meshes.len() + self.mesh;
         (draw * size_of::<CullDraw>()) as u64
     }
 
-    /// Draws: binds the numbers of its instances as vertex buffer `slot` (one `u32` an instance)
-    /// and draws with its arguments. Pipeline, bind groups, other vertex buffers and the index
-    /// buffer are set already.
+    /// Draws: binds the instance numbers as vertex buffer `slot` (one `u32` per instance) and draws
+    /// with the arguments. Pipeline, bind groups, other vertex buffers and the index buffer have to
+    /// be set before.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, slot: u32) {
         let places = self.places();
         if places.is_empty() {
@@ -372,7 +371,7 @@ fn tests(frame: &ShadowFrame<'_>, splits: usize, origin: DVec3) -> Result<Vec<Ca
     tests.map_or_else(|| refused("it is of a lamp, or its maps are warped"), Ok)
 }
 
-/// Whether compute shaders run, with the seven storage buffers of ours.
+/// Returns whether compute shaders run, with the seven storage buffers that culling needs.
 fn can_compute(device: &wgpu::Device) -> bool {
     let limits = device.limits();
     limits.max_compute_workgroups_per_dimension > 0

@@ -1,19 +1,19 @@
-//! Which layout is taken: what was asked for, or what the device can do instead.
+//! Choice of the layout: the requested one, or the one that the device supports instead.
 
 use umbrage::config::{Edges, Fallbacks, Generation, Layout, ShadowConfig};
 
 use crate::{Error, Result};
 
-/// What of the device decides.
+/// Properties of the device on which the choice depends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Abilities {
-    /// Layers that one pass can draw into; 0 or 1 without multiview.
+    /// Number of layers that one pass can draw into; 0 or 1 without multiview.
     pub views: u32,
-    /// Whether instances can be cut off at the edges of a tile.
+    /// True if instances can be clipped at the edges of a tile.
     pub clip_distances: bool,
-    /// Whether multiview forgets which layer it draws into, see [`super::MapPass::leads`].
+    /// True if multiview forgets which layer it draws into, see [`super::MapPass::leads`].
     pub leads: bool,
-    /// Whether depth textures can be loaded from.
+    /// True if shaders can load from depth textures.
     pub depth_loads: bool,
 }
 
@@ -41,12 +41,12 @@ impl Abilities {
     }
 }
 
-/// The layout that is taken.
+/// The chosen layout.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Chosen {
     pub layout: Layout,
     pub edges: Edges,
-    /// What was asked for and could not be had.
+    /// Requests that could not be met.
     pub notes: Vec<String>,
 }
 

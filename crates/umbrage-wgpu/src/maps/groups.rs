@@ -1,5 +1,4 @@
-//! Bind groups: what casters get of their splits, what receivers get of the frame, and
-//! the maps they read.
+//! Bind groups: the splits for casters; the frame and the maps for receivers.
 
 use umbrage::config::{Filter, Storage};
 use umbrage_shaders::layout;
@@ -10,7 +9,7 @@ use crate::moments::Moments;
 use crate::options::sampler_mode;
 use crate::{Result, device};
 
-/// Uniforms of one kind in one buffer, each with a bind group.
+/// Uniforms of one kind in one buffer, each with its bind group.
 #[derive(Debug)]
 pub(super) struct Uniforms {
     buffer: wgpu::Buffer,
@@ -20,7 +19,7 @@ pub(super) struct Uniforms {
 }
 
 impl Uniforms {
-    /// What each pass tells casters.
+    /// Uniforms of each pass for casters.
     pub fn of_casters(device: &wgpu::Device, passes: &[MapPass]) -> Self {
         let alone = passes.iter().all(MapPass::is_alone);
         let bytes = if alone { size_of::<layout::Split>() } else { size_of::<layout::CasterPass>() } as u64;
@@ -31,14 +30,14 @@ impl Uniforms {
         Self::new(device, "ShadowMaps::caster", layout, bytes, passes.len(), Vec::new())
     }
 
-    /// What the casters of each region of kept maps get, in the layout of a pass of one split.
+    /// Uniforms of each region of kept maps for casters, in the layout of a pass of one split.
     pub fn of_regions(device: &wgpu::Device, layout: wgpu::BindGroupLayout, count: usize) -> Self {
         let bytes = size_of::<layout::Split>() as u64;
         Self::new(device, "KeptMaps::caster", layout, bytes, count, Vec::new())
     }
 
-    /// What receivers get: the frames, once for all splits, and where one map is reused, once
-    /// more for each; and the maps.
+    /// Uniforms and maps for receivers: the frames, once for all splits, and once more for each
+    /// split if one map is reused; and the maps.
     pub fn of_receivers(device: &wgpu::Device, it: &Received, targets: &Targets, moments: Option<&Moments>) -> Self {
         let count = if it.storage == Storage::Reused { 1 + it.maps } else { 1 };
         let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
@@ -114,17 +113,17 @@ impl Uniforms {
     }
 }
 
-/// What receivers get, and how they read it.
+/// Resources of receivers, and the way in which they read them.
 pub(super) struct Received {
     pub filter: Filter,
     pub storage: Storage,
-    /// Maps are colours and not depth.
+    /// True if maps are colour textures and not depth textures.
     pub is_colour: bool,
-    /// Depth textures can be loaded from.
+    /// True if shaders can load from depth textures.
     pub loads: bool,
-    /// Faces of all lights.
+    /// Number of faces of all lights.
     pub frames: usize,
-    /// Maps of all lights.
+    /// Number of maps of all lights.
     pub maps: usize,
 }
 
@@ -213,7 +212,7 @@ fn uniform_buffer(device: &wgpu::Device, label: &str, size: u64) -> wgpu::Buffer
     })
 }
 
-/// A uniform at binding 0.
+/// Layout entry of a uniform at binding 0.
 fn uniform_entry(bytes: u64, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding: 0,

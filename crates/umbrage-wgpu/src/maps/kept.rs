@@ -1,5 +1,5 @@
-//! The textures that hold what static casters have drawn, one for each split, and the way from them
-//! into the maps: [`umbrage::config::Cache::Kept`].
+//! Textures with the depth drawn by static casters, one for each split, and the passes that copy
+//! them into the maps: [`umbrage::config::Cache::Kept`].
 
 use glam::DVec2;
 use umbrage::config::DepthFormat;
@@ -13,14 +13,14 @@ use super::{ShadowMaps, targets};
 use crate::options::{depth_step, texture_format};
 use crate::{Error, FrameOptions, Result, device, uniforms};
 
-/// Turns of the torus that a window meets, at most: two along each axis.
+/// Most turns of the torus that a window meets: two along each axis.
 const TURNS: usize = 4;
 
-/// What is kept of all splits.
+/// Kept textures of all splits.
 #[derive(Debug)]
 pub(super) struct KeptMaps {
     textures: Vec<KeptTexture>,
-    /// What the regions of each split tell casters, a uniform for each turn.
+    /// Uniforms of each split's regions for casters, one for each turn.
     casters: Uniforms,
     windows: wgpu::Buffer,
     window_stride: u64,
@@ -28,21 +28,22 @@ pub(super) struct KeptMaps {
     copy: wgpu::RenderPipeline,
 }
 
-/// What is kept of one split.
+/// Kept texture of one split.
 #[derive(Debug)]
 struct KeptTexture {
     texture: wgpu::Texture,
     view: wgpu::TextureView,
-    /// Where regions are drawn: the whole texture is one map.
+    /// Place of regions: the whole texture is one map.
     place: Place,
-    /// Says where the map lies in it.
+    /// Bind group with the position of the map in the texture.
     window: wgpu::BindGroup,
     /// The map's upper left corner in its layer.
     corner: [u32; 2],
 }
 
 impl KeptMaps {
-    /// For the maps of one sun, `sizes` wide at these `tiles`; `layout` is that of casters' groups.
+    /// Kept textures for the maps of one sun, `sizes` wide at these `tiles`; `layout` is that of
+    /// casters' bind groups.
     pub fn new(
         device: &wgpu::Device,
         layout: &wgpu::BindGroupLayout,
@@ -95,13 +96,13 @@ impl KeptMaps {
         Ok(Self { textures, casters, windows, window_stride, clear, copy })
     }
 
-    /// Bytes of the textures.
+    /// Memory of the textures in bytes.
     pub fn bytes(&self) -> u64 {
         let texel = DepthFormat::D32Float.texel_bytes();
         self.textures.iter().map(|it| u64::from(it.texture.width()) * u64::from(it.texture.height()) * texel).sum()
     }
 
-    /// Hands a frame to the GPU.
+    /// Writes a frame to the GPU.
     pub fn write(&self, queue: &wgpu::Queue, plan: &ShadowPlan, keeper: &Keeper, options: &FrameOptions) -> Result<()> {
         let mut written = None;
         for region in keeper.regions() {
@@ -132,12 +133,12 @@ impl KeptMaps {
         Ok(())
     }
 
-    /// The group to bind while drawing the casters of a region.
+    /// The bind group for drawing the casters of a region.
     pub fn caster_bind_group(&self, region: &KeptRegion) -> &wgpu::BindGroup {
         &self.casters.groups[group_of(region)]
     }
 
-    /// Begins a region: it is cleared, the rest of its texture stays as it is.
+    /// Begins a region: it is cleared; the rest of its texture stays unchanged.
     pub fn begin<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
@@ -169,7 +170,7 @@ impl KeptMaps {
         pass
     }
 
-    /// Copies what a split's map shows of its texture, in a pass over the map whose viewport and
+    /// Copies the map's window of a split's texture, in a pass over the map whose viewport and
     /// scissor are set.
     pub fn copy(&self, pass: &mut wgpu::RenderPass<'_>, split: usize) {
         pass.set_pipeline(&self.copy);
@@ -179,7 +180,7 @@ impl KeptMaps {
 }
 
 impl ShadowMaps {
-    /// Begins a pass over one map with what is kept of it.
+    /// Begins a pass over one map with its kept depth.
     pub(crate) fn begin_kept<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
@@ -193,7 +194,7 @@ impl ShadowMaps {
         render
     }
 
-    /// Begins a region of what is kept; `None` where nothing is.
+    /// Begins a region of a kept texture; `None` if nothing is kept.
     pub(crate) fn begin_region<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
@@ -203,17 +204,17 @@ impl ShadowMaps {
         Some(self.kept.as_ref()?.begin(encoder, region, timestamp_writes))
     }
 
-    /// The group to bind while drawing the casters of a region; `None` where nothing is kept.
+    /// The bind group for drawing the casters of a region; `None` if nothing is kept.
     pub(crate) fn region_bind_group(&self, region: &KeptRegion) -> Option<&wgpu::BindGroup> {
         Some(self.kept.as_ref()?.caster_bind_group(region))
     }
 
-    /// Books of what is kept of the maps, with nothing in them; `None` where nothing is kept.
+    /// Empty bookkeeping for the kept maps; `None` if nothing is kept.
     pub(crate) fn keeper(&self) -> Option<Keeper> {
         self.kept.as_ref().map(|_| Keeper::new(self.map_sizes(0)))
     }
 
-    /// Hands to the GPU what regions and maps are drawn with.
+    /// Writes the uniforms of regions and maps to the GPU.
     pub(crate) fn prepare_kept(
         &self,
         queue: &wgpu::Queue,
@@ -226,7 +227,7 @@ impl ShadowMaps {
     }
 }
 
-/// The uniform of a region: neighbouring turns differ in whether they are even.
+/// Index of a region's uniform: neighbouring turns differ in whether they are even.
 fn group_of(region: &KeptRegion) -> usize {
     let [u, v] = region.turn.map(|turn| turn.rem_euclid(2) as usize);
     TURNS * region.split + 2 * v + u
@@ -251,7 +252,7 @@ fn group_layout(device: &wgpu::Device, bytes: u64) -> wgpu::BindGroupLayout {
     })
 }
 
-/// What clears a region, and what copies a map.
+/// The pipelines that clear a region and copy a map.
 fn pipelines(device: &wgpu::Device, group: &wgpu::BindGroupLayout) -> [wgpu::RenderPipeline; 2] {
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("KeptMaps::shader"),

@@ -14,13 +14,13 @@ impl ShadowMaps {
     /// [`ShadowMaps::prepare`] for several lights: one plan for each, all of them for one view.
     ///
     /// Split `i` of light `l`'s plan is drawn as map `first_map(l) + i`: see
-    /// [`ShadowMaps::first_map`]. Shaders ask with `umbrage_shadow(query)` of a query whose `light`
+    /// [`ShadowMaps::first_map`]. Shaders call `umbrage_shadow(query)` with a query whose `light`
     /// is `l`.
     ///
     /// # Errors
     /// Those of [`ShadowMaps::prepare`]; [`crate::Error::LightCount`] if there is not one plan for
-    /// each light, [`crate::Error::LightKind`] if a light's maps do not serve its plan. Nothing has
-    /// been written then.
+    /// each light, [`crate::Error::LightKind`] if a light's maps were made for another kind of
+    /// light than its plan's. Nothing has been written then.
     pub fn prepare_lights(
         &mut self,
         queue: &wgpu::Queue,
@@ -72,8 +72,8 @@ impl ShadowMaps {
         Ok(())
     }
 
-    /// The map of a light's first split; those of its other splits follow, in the order of its
-    /// plan.
+    /// Index of the map of a light's first split; the maps of its other splits follow, in the order
+    /// of its plan.
     ///
     /// # Panics
     /// If there is no such light.
@@ -83,14 +83,14 @@ impl ShadowMaps {
         self.slots[light].first_map
     }
 
-    /// The number of maps of all lights together; [`ShadowMaps::splits`] where there is one sun or
-    /// spot light.
+    /// Number of maps of all lights together; [`ShadowMaps::splits`] if there is one sun or spot
+    /// light.
     #[must_use]
     pub fn map_count(&self) -> usize {
         self.slots.iter().map(Slot::map_count).sum()
     }
 
-    /// Whether all maps are of one light that has one face.
+    /// Returns whether all maps belong to one light that has one face.
     pub(crate) fn is_of_one_light_and_face(&self) -> bool {
         self.map_count() == self.splits()
     }
@@ -115,7 +115,7 @@ impl ShadowMaps {
         sizes[split % sizes.len()]
     }
 
-    /// The light that a map is of, and the split of that light's plan.
+    /// Index of the light of a map, and of the split in that light's plan.
     ///
     /// # Panics
     /// If there is no such map.

@@ -1,4 +1,4 @@
-//! What the device allows.
+//! Limits of the device.
 
 use umbrage::config::{Edges, Storage};
 
@@ -8,7 +8,7 @@ use super::storage::{Arrangement, Tile};
 use super::targets;
 use crate::{Error, Result};
 
-/// What the device holds of layers and of textures.
+/// Checks the limits of texture layers and of sampled textures.
 pub(super) fn check_limits(
     device: &wgpu::Device,
     (storage, edges): (Storage, Edges),
@@ -28,7 +28,7 @@ pub(super) fn check_limits(
     Ok(())
 }
 
-/// Every size has to fit the device.
+/// Checks that every size fits the device.
 pub(super) fn check_sizes(slots: &[Slot], limits: &wgpu::Limits) -> Result<()> {
     let limit = limits.max_texture_dimension_2d;
     for slot in slots {
@@ -39,14 +39,14 @@ pub(super) fn check_sizes(slots: &[Slot], limits: &wgpu::Limits) -> Result<()> {
     Ok(())
 }
 
-/// A guard band around every map, except in browsers: those that are older than the rule reject a
-/// viewport that leaves its target.
+/// Largest viewport for a guard band around every map; 0, for no guard band, in browsers: those
+/// that are older than the rule reject a viewport that leaves its target.
 pub(super) fn largest_viewport(device: &wgpu::Device) -> u32 {
     let in_browser = device.adapter_info().backend == wgpu::Backend::BrowserWebGpu;
     if in_browser { 0 } else { device.limits().max_texture_dimension_2d }
 }
 
-/// Where the maps lie, each with as wide a guard band as the device allows.
+/// Places of the maps, each with as wide a guard band as the device allows.
 pub(super) fn places(device: &wgpu::Device, sizes: &[u32], tiles: &[Tile]) -> Vec<Place> {
     let largest = largest_viewport(device);
     let place = |(&size, &tile)| Place { tile, viewport: Viewport::around(size, largest) };

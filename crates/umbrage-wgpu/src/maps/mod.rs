@@ -1,4 +1,4 @@
-//! The maps: their textures, the passes that draw them, the bind groups.
+//! Shadow maps: their textures, the passes that draw them, and the bind groups.
 
 mod bindings;
 pub(crate) mod choose;
@@ -35,8 +35,7 @@ use crate::moments::{MomentStorage, Moments};
 use crate::options::texture_format;
 use crate::{Error, FrameOptions, LightMaps, Result, device};
 
-/// Features that make shadows better where an adapter has them; [`device_descriptor`] requests
-/// them.
+/// Features that improve shadows if an adapter has them; [`device_descriptor`] requests them.
 ///
 /// `DEPTH_CLIP_CONTROL` lets near planes of 16-bit maps lie at the receivers
 /// ([`ShadowMaps::depth_clamp`]), `MULTIVIEW` draws the layers of [`Generation::Layered`] and
@@ -51,9 +50,9 @@ pub fn optional_features() -> wgpu::Features {
         | wgpu::Features::FLOAT32_FILTERABLE
 }
 
-/// What to request a device with: the application's own needs, and every feature and limit that
-/// makes shadows better and that the adapter has. Without them other ways are taken, and notes say
-/// so.
+/// Descriptor with which to request a device: the application's own needs, plus every feature and
+/// limit that improves shadows and that the adapter has. Without them the maps use fallbacks, which
+/// their notes name.
 ///
 /// ```no_run
 /// # use umbrage_wgpu::{device_descriptor, wgpu};
@@ -78,23 +77,24 @@ pub fn device_descriptor<'a>(adapter: &wgpu::Adapter, own: wgpu::DeviceDescripto
 /// The shadow maps of one light for one view, or of several lights
 /// ([`ShadowMaps::prepare_lights`]), on the GPU: the low level below [`crate::Shadows`].
 ///
-/// [`Layout`] chooses where maps are stored and how they are drawn. Each frame: [`ShadowMaps::prepare`],
-/// every pass of [`ShadowMaps::passes`] from [`ShadowMaps::begin_pass`], [`ShadowMaps::prefilter`],
-/// then any pass of the app with [`ShadowMaps::receiver_bind_group`]. With [`Layout::Reused`] the
-/// app's pass is taken apart into slices, each after its map: see [`ShadowMaps::slice_bind_group`].
+/// [`Layout`] chooses the storage of maps and the passes that draw them. Each frame:
+/// [`ShadowMaps::prepare`], every pass of [`ShadowMaps::passes`] from [`ShadowMaps::begin_pass`],
+/// [`ShadowMaps::prefilter`], then any pass of the application with
+/// [`ShadowMaps::receiver_bind_group`]. With [`Layout::Reused`] the application's pass is divided
+/// into slices, each after its map: see [`ShadowMaps::slice_bind_group`].
 #[derive(Debug)]
 pub struct ShadowMaps {
     device: wgpu::Device,
-    /// As it was asked for.
+    /// The config as requested.
     config: ShadowConfig,
-    /// As it is carried out.
+    /// The layout in use.
     layout: Layout,
-    /// As they are carried out.
+    /// The edges in use.
     edges: Edges,
     slots: Vec<Slot>,
     notes: Vec<String>,
     places: Vec<Place>,
-    /// The viewport of passes that draw several layers at once.
+    /// Viewport of passes that draw several layers at once.
     viewport: Viewport,
     passes: Vec<MapPass>,
     multiview_mask: Option<NonZeroU32>,
@@ -109,17 +109,17 @@ pub struct ShadowMaps {
 }
 
 impl ShadowMaps {
-    /// Makes the textures, buffers and bind groups for these lights, one at least: kinds
+    /// Creates the textures, buffers and bind groups for these lights, at least one: kinds
     /// ([`umbrage::config::LightKind`]) or [`LightMaps`]. Before the first [`ShadowMaps::prepare`]
-    /// every answer is 0.
+    /// visibility is 0 everywhere.
     ///
     /// # Errors
-    /// [`Error::Config`] for a config that is wrong or does not go with the lights;
+    /// [`Error::Config`] for a config that is wrong or does not suit the lights;
     /// [`Error::MapTooLarge`], [`Error::TooManyLayers`], [`Error::AtlasTooLarge`],
     /// [`Error::TooManyTextures`], [`Error::TooManyLights`], [`Error::MissingFeature`],
-    /// [`Error::NoFilterableFloats`], [`Error::NoDepthLoads`] and [`Error::NoExactEdges`] for what
-    /// the device cannot do; [`Error::Device`] and [`Error::OutOfMemory`] for what the device
-    /// complains about, [`Error::DeviceLost`].
+    /// [`Error::NoFilterableFloats`], [`Error::NoDepthLoads`] and [`Error::NoExactEdges`] for
+    /// limits of the device; [`Error::Device`] and [`Error::OutOfMemory`] for errors that the
+    /// device reports; [`Error::DeviceLost`].
     pub fn new<L: Clone + Into<LightMaps>>(device: &wgpu::Device, config: &ShadowConfig, lights: &[L]) -> Result<Self> {
         let lights: Vec<LightMaps> = lights.iter().cloned().map(Into::into).collect();
         device::made(device, "making shadow maps", || Self::new_unguarded(device, config, &lights))
@@ -206,12 +206,12 @@ impl ShadowMaps {
         })
     }
 
-    /// Takes another config, from the next [`ShadowMaps::prepare`] on, that asks for no other maps
-    /// or pipelines: see [`umbrage::config::Setting::rebuilds`].
+    /// Uses another config from the next [`ShadowMaps::prepare`] on. The config must need no other
+    /// maps or pipelines: see [`umbrage::config::Setting::rebuilds`].
     ///
     /// # Errors
-    /// [`Error::Config`] if it is wrong, [`Error::NeedsNewMaps`] naming a setting that asks for
-    /// more. The maps are unchanged then.
+    /// [`Error::Config`] if the config is wrong, [`Error::NeedsNewMaps`] naming a setting that
+    /// needs other maps or pipelines. The maps are unchanged then.
     pub fn set_config(&mut self, config: &ShadowConfig) -> Result<()> {
         let lights: Vec<LightMaps> =
             self.slots.iter().map(|slot| LightMaps::with_sizes(slot.kind, &slot.sizes)).collect();
@@ -225,13 +225,13 @@ impl ShadowMaps {
         }
     }
 
-    /// Hands a frame's plan to the GPU. Takes effect with the next submission to `queue`.
+    /// Writes a frame's plan to the GPU. Takes effect with the next submission to `queue`.
     ///
     /// # Errors
     /// [`Error::PlanMismatch`] if the plan was made for other maps, [`Error::InvalidPlan`] or
-    /// [`Error::InvalidSplit`] if it holds a number that cannot be used,
+    /// [`Error::InvalidSplit`] if it contains a number that cannot be used,
     /// [`Error::InvalidFrameOption`], [`Error::FilterTooWide`]. Nothing has been written then.
-    /// [`Error::Device`] for what the device complains about, [`Error::DeviceLost`].
+    /// [`Error::Device`] for errors that the device reports, [`Error::DeviceLost`].
     pub fn prepare(&mut self, queue: &wgpu::Queue, plan: &ShadowPlan, options: &FrameOptions) -> Result<()> {
         self.prepare_lights(queue, &[plan], options)
     }
@@ -243,10 +243,10 @@ impl ShadowMaps {
         &self.passes
     }
 
-    /// Begins pass `pass` of [`ShadowMaps::passes`]: its maps are cleared, viewport and scissor are
-    /// set and have to stay. Bind [`ShadowMaps::caster_bind_group`] of the same pass and draw what
-    /// [`MapPass::casters`] lists, in any order. Begin every pass, the first one first: it clears
-    /// what the others share.
+    /// Begins pass `pass` of [`ShadowMaps::passes`]: its maps are cleared, and viewport and scissor
+    /// are set and have to stay. Bind [`ShadowMaps::caster_bind_group`] of the same pass and draw
+    /// the casters of [`MapPass::casters`], in any order. Begin every pass, and the first one
+    /// first, because it clears textures that the others share.
     ///
     /// # Panics
     /// If there is no such pass.
@@ -286,30 +286,30 @@ impl ShadowMaps {
         render
     }
 
-    /// Turns the depths that were drawn into what receivers read: for moment filters
-    /// conversion, blur and mip levels ([`Filter::is_prefiltered`]), for all others nothing. Call
-    /// it after the casters and before any receiver.
+    /// Converts the drawn depths to the form that receivers read: for moment filters by conversion,
+    /// blur and mip levels ([`Filter::is_prefiltered`]); for all others it does nothing. Call it
+    /// after the casters and before any receiver.
     pub fn prefilter(&self, encoder: &mut wgpu::CommandEncoder) {
         if let Some(moments) = &self.moments {
             moments.record(encoder);
         }
     }
 
-    /// What moments are kept in on this device; `None` for filters that compare depth.
+    /// Number format of moments on this device; `None` for filters that compare depth.
     #[must_use]
     pub fn moment_storage(&self) -> Option<MomentStorage> {
         self.moments.as_ref().map(Moments::storage)
     }
 
-    /// The number of splits of the first light; of a point light, of each face.
+    /// Number of splits of the first light; for a point light, of each face.
     #[must_use]
     pub fn splits(&self) -> usize {
         self.slots[0].sizes.len()
     }
 
-    /// What a vertex shader needs to draw casters; `group` is the index at which the app binds
-    /// [`ShadowMaps::caster_bind_group`]. It comes before everything else in its module. The
-    /// vertex shader is the same for every path:
+    /// WGSL that a vertex shader needs to draw casters; `group` is the index at which the
+    /// application binds [`ShadowMaps::caster_bind_group`]. It has to come first in its module. The
+    /// vertex shader is the same for every layout:
     ///
     /// ```wgsl
     /// @vertex fn vertex(@location(0) position: vec3f, instance: UmbrageInstance) -> UmbrageCast {
@@ -321,7 +321,7 @@ impl ShadowMaps {
         self.caster_wgsl_with(group, "")
     }
 
-    /// WGSL of casters whose vertex shaders have more to return: `members` joins the struct
+    /// WGSL for casters whose vertex shaders return more values: `members` is added to the struct
     /// `UmbrageCast`, for example `"@location(0) uv: vec2f,"`.
     #[must_use]
     pub fn caster_wgsl_with(&self, group: u32, members: &str) -> String {
@@ -334,29 +334,30 @@ impl ShadowMaps {
         umbrage_shaders::caster(group, Casters { views, tiles, ids: self.edges.is_exact() }, members)
     }
 
-    /// The config that they carry out.
+    /// The config of the maps.
     #[must_use]
     pub fn config(&self) -> &ShadowConfig {
         &self.config
     }
 
-    /// Where maps are kept and how they are drawn: the config's layout, or what the device can do
-    /// instead.
+    /// Storage of maps and the passes that draw them: the config's layout, or the fallback that the
+    /// device supports.
     #[must_use]
     pub fn layout(&self) -> Layout {
         self.layout
     }
 
-    /// What decides where a shadow ends: the config's edges, or what the device can do instead.
-    /// With [`Edges::Exact`] a shader that asks for visibility declares `umbrage_run` and
-    /// `umbrage_corner`, or takes both from [`crate::stored_runs_wgsl`].
+    /// Method that decides where a shadow's edge lies: the config's edges, or the fallback that the
+    /// device supports. With [`Edges::Exact`] a shader that computes visibility declares
+    /// `umbrage_run` and `umbrage_corner`, or takes both from [`crate::stored_runs_wgsl`].
     #[must_use]
     pub fn edges(&self) -> Edges {
         self.edges
     }
 
-    /// The texture of what each texel of the map of split `split` names, with [`Edges::Exact`]:
-    /// `R32Uint`, with the layers and the places of [`ShadowMaps::map_texture`]. Can be copied.
+    /// Texture of the ids that the texels of the map of split `split` store, with [`Edges::Exact`]:
+    /// `R32Uint`, with the layers and the places of [`ShadowMaps::map_texture`]. Can be copied
+    /// from.
     ///
     /// # Panics
     /// If `split` is not less than [`ShadowMaps::map_count`].
@@ -365,7 +366,8 @@ impl ShadowMaps {
         self.targets.id(self.places[split].tile.layer)
     }
 
-    /// Whether pipelines for casters and receivers that were made for `other` fit these maps too.
+    /// Returns whether pipelines for casters and receivers that were made for `other` also fit
+    /// these maps.
     pub(crate) fn shares_pipelines_with(&self, other: &Self) -> bool {
         // Bind group layouts follow from the texts: they hold what the texts declare.
         self.receiver_wgsl(0) == other.receiver_wgsl(0)
@@ -376,42 +378,43 @@ impl ShadowMaps {
             && self.multiview_mask == other.multiview_mask
     }
 
-    /// The device that they live on.
+    /// The device of the maps.
     pub(crate) fn device(&self) -> &wgpu::Device {
         &self.device
     }
 
-    /// The number of lights.
+    /// Number of lights.
     #[must_use]
     pub fn light_count(&self) -> usize {
         self.slots.len()
     }
 
-    /// What was asked for and the device could not do, with what was done instead.
+    /// Requests that the device could not meet, each with the fallback.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// Bytes of all maps, of depth buffers beside maps that are colours, of ids beside depth, and
-    /// for moment filters of the moments with their mip levels, of the texture between two blurs,
-    /// and of what is kept.
+    /// Memory in bytes of all maps, of depth buffers beside colour maps, of ids beside depth, of
+    /// kept textures, and for moment filters of the moments with their mip levels and of the
+    /// texture between two blurs.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let moments = self.moments.as_ref().map_or(0, Moments::bytes);
         self.targets.bytes() + moments + self.kept.as_ref().map_or(0, KeptMaps::bytes)
     }
 
-    /// Whether casters in front of a map's near plane are clamped to it, so that the plane may lie
-    /// at the receivers: the value for [`umbrage::PlannerOptions::depth_clamp`]. True for 16-bit
-    /// maps on a device with `DEPTH_CLIP_CONTROL` (see [`optional_features`]), which need the
-    /// shorter depth range. 32-bit maps keep a fixed range, which does not move with the camera.
+    /// Returns whether casters in front of a map's near plane are clamped to it, so that the plane
+    /// may lie at the receivers: the value for [`umbrage::PlannerOptions::depth_clamp`]. True for
+    /// 16-bit maps on a device with `DEPTH_CLIP_CONTROL` (see [`optional_features`]), which need
+    /// the shorter depth range. 32-bit maps keep a fixed range, which does not move with the
+    /// camera.
     #[must_use]
     pub fn depth_clamp(&self) -> bool {
         self.depth_clip_control && self.config.depth_format == DepthFormat::D16Unorm
     }
 
-    /// The layer of [`ShadowMaps::map_texture`] that holds the map of split `split`, and the map's
+    /// Layer of [`ShadowMaps::map_texture`] that contains the map of split `split`, and the map's
     /// upper left corner there in texels. The map is a square of `map_sizes[split]` texels.
     ///
     /// # Panics
@@ -422,18 +425,18 @@ impl ShadowMaps {
         (self.targets.layer(tile.layer), tile.corner)
     }
 
-    /// The texture that holds the map of split `split`, at [`ShadowMaps::map_place`]. Can
-    /// be copied from, but not with several samples per texel.
+    /// Texture that contains the map of split `split`, at [`ShadowMaps::map_place`]. Can be copied
+    /// from, but not with several samples per texel.
     ///
     /// # Panics
-    /// If `split` is not less than [`ShadowMaps::splits`].
+    /// If `split` is not less than [`ShadowMaps::map_count`].
     #[must_use]
     pub fn map_texture(&self, split: usize) -> &wgpu::Texture {
         self.targets.map(self.places[split].tile.layer)
     }
 }
 
-/// What casters' fragments write beside depth.
+/// Format of the colour target of casters' fragments, if they write more than depth.
 fn colour_format(config: &ShadowConfig, edges: Edges) -> Option<wgpu::TextureFormat> {
     if edges.is_exact() {
         return Some(targets::ID_FORMAT);

@@ -1,4 +1,4 @@
-//! Which pass draws which splits, and with which instances.
+//! Passes, the splits that each of them draws, and the instances with which they are drawn.
 
 use std::ops::Range;
 
@@ -13,11 +13,12 @@ use super::choose::Abilities;
 #[non_exhaustive]
 pub struct MapPass {
     splits: Range<usize>,
-    /// Layers drawn at once: split `splits.start + t · views + v` is tile `t` of layer `v`.
+    /// Number of layers drawn at once: split `splits.start + t · views + v` is tile `t` of layer
+    /// `v`.
     views: usize,
-    /// One split, whose casters need no code.
+    /// True for one split alone, whose casters need no code.
     alone: bool,
-    /// Every draw begins with an instance that draws nothing.
+    /// True if every draw begins with an instance that draws nothing.
     leads: bool,
 }
 
@@ -41,39 +42,40 @@ impl MapPass {
         }
     }
 
-    /// The splits whose maps it draws; with several lights the maps, see
+    /// Range of the splits whose maps the pass draws; with several lights, of the maps: see
     /// [`crate::ShadowMaps::first_map`].
     #[must_use]
     pub fn splits(&self) -> Range<usize> {
         self.splits.clone()
     }
 
-    /// Layers that it draws at once, 1 without multiview.
+    /// Number of layers that the pass draws at once; 1 without multiview.
     #[must_use]
     pub fn views(&self) -> usize {
         self.views
     }
 
-    /// Whether every draw has to begin with an instance of a code that draws nothing, the one
-    /// before the first of [`MapPass::instances`]' own, which is part of that range then. An app
-    /// that draws many instances in one call needs one of them in each call.
+    /// Returns whether every draw has to begin with an instance whose code draws nothing: the code
+    /// before the first one of [`MapPass::instances`], whose range then includes it. An application
+    /// that draws many instances in one call needs one such instance in each call.
     ///
-    /// Mesa's software driver (seen with 22.3) remembers which layer it draws into when it draws a
-    /// batch that needs no clipping, and draws batches that do into the layer it remembers. Each
-    /// instance is a batch, so an empty one makes it remember the right layer.
+    /// Works around a bug of Mesa's software driver (seen with 22.3). It remembers which layer it
+    /// draws into when it draws a batch that needs no clipping, and draws batches that need
+    /// clipping into the remembered layer. Each instance is a batch, so an empty one makes it
+    /// remember the right layer.
     #[must_use]
     pub fn leads(&self) -> bool {
         self.leads
     }
 
-    /// Whether it draws one split with the plain text for casters.
+    /// Returns whether the pass draws one split with the plain text for casters.
     pub(crate) fn is_alone(&self) -> bool {
         self.alone
     }
 
-    /// The instances that a caster of the splits in `mask` (bit `i`: split `i`) is drawn with; none
-    /// if none of them is drawn here. A caster that is an instance of the app's own gets one
-    /// instance for each number of the range, with that number as its code.
+    /// Range of instances with which to draw a caster of the splits in `mask` (bit `i`: split `i`);
+    /// empty if the pass draws none of them. A caster that is an instance in the application needs
+    /// one instance for each number of the range, with that number as its code.
     #[must_use]
     pub fn instances(&self, mask: u8) -> Range<u32> {
         if self.alone {
@@ -93,8 +95,8 @@ impl MapPass {
         code + tile(first) - u32::from(self.leads)..code + tile(last) + 1
     }
 
-    /// What to draw, where there is one sun or spot light: the plan's casters, as indices into the
-    /// list given to the planner or keys of its set, each with its instances.
+    /// Casters to draw if there is one sun or spot light, each with its instances: the plan's
+    /// casters, as indices into the list given to the planner or keys of its set.
     pub fn casters(&self, plan: &ShadowPlan) -> impl Iterator<Item = (u32, Range<u32>)> + use<> {
         let mut list = Vec::new();
         self.list(plan, &mut list);
@@ -132,7 +134,7 @@ impl MapPass {
 mod tests {
     use super::*;
 
-    /// What `umbrage_cast` makes of a code and a view.
+    /// Split that `umbrage_cast` derives from a code and a view.
     fn decoded(pass: &MapPass, code: u32, view: usize) -> Option<usize> {
         let index = pass.splits.start + (code & 7) as usize * pass.views + view;
         (index < pass.splits.end && (code >> (3 + index)) & 1 == 1).then_some(index)

@@ -1,4 +1,4 @@
-//! Where the map of a split lies, and the viewport that it is drawn with.
+//! Place of a split's map, and the viewport with which it is drawn.
 
 use umbrage_shaders::layout;
 
@@ -10,19 +10,19 @@ use super::storage::Tile;
 pub(crate) struct Viewport {
     /// Edge in texels.
     pub edge: u32,
-    /// Texels from its left and upper edge to the map's.
+    /// Texels from the viewport's left and upper edge to the map's.
     pub guard: u32,
 }
 
 impl Viewport {
-    /// The widest guard band worth having, as a multiple of the map. Ours: a triangle that reaches
-    /// from the map past one and a half maps more is clipped, and its edges may then move by 1/512
-    /// texel between frames. A power of two, so that the step from texels to clip space stays
-    /// exact.
+    /// The widest useful guard band, as a multiple of the map. Not from a paper: a triangle that
+    /// extends more than one and a half maps beyond the map is clipped, and its edges may then move
+    /// by 1/512 texel between frames. A power of two, so that the step from texels to clip space
+    /// stays exact.
     const WIDEST: u32 = 4;
 
-    /// For a map of `size` texels. `largest` is the device's limit for viewports: its
-    /// `max_texture_dimension_2d`, or 0 where they may not be larger than what is drawn to.
+    /// The viewport for a map of `size` texels. `largest` is the device's limit for viewports: its
+    /// `max_texture_dimension_2d`, or 0 if viewports may not be larger than their target.
     pub fn around(size: u32, largest: u32) -> Self {
         let mut edge = size;
         while edge < Self::WIDEST * size && 2 * u64::from(edge) <= u64::from(largest) {
@@ -31,7 +31,7 @@ impl Viewport {
         Self { edge, guard: (edge - size) / 2 }
     }
 
-    /// [`Viewport::around`] for a square of any size, whose edge is a power of two all the same.
+    /// [`Viewport::around`] for a square of any size, with an edge that is still a power of two.
     pub fn of_power(size: u32, largest: u32) -> Self {
         let power = size.next_power_of_two();
         if power > largest {
@@ -42,7 +42,7 @@ impl Viewport {
     }
 }
 
-/// Where a split's map lies, and the viewport that it is drawn with.
+/// Place of a split's map, and the viewport with which it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Place {
     pub tile: Tile,
@@ -50,7 +50,7 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// The members of the uniform that say so.
+    /// A split's uniform with the members that describe this place.
     pub fn into_split(self) -> layout::Split {
         let Tile { layer, corner, layer_texels } = self.tile;
         layout::Split {

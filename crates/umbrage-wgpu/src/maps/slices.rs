@@ -1,32 +1,32 @@
-//! The slices of the view, for apps that draw the picture slice by slice because one map is used
-//! for all of them.
+//! Slices of the view, for applications that draw the image slice by slice because all splits use
+//! one map.
 
 use glam::{DMat4, DVec4};
 use umbrage::{ShadowPlan, View};
 
-/// One slice of the picture: what of clip space it takes, and which part of the depth buffer is its
-/// own. \[PSSM06\] and \[GG3-10\] draw slices front to back, each with the viewport's depth range
-/// of its own; \[GG3-10\]'s Listing 10-3 gives that range in view depths where clip depths are
-/// meant. Depth is reversed, so a slice from `C_i` to `C_{i+1}` has `[z(C_{i+1}), z(C_i)]`.
+/// One slice of the image: its range of clip depths, and its part of the depth buffer. \[PSSM06\]
+/// and \[GG3-10\] draw slices front to back, each with the viewport's depth range of its own;
+/// \[GG3-10\]'s Listing 10-3 gives that range in view depths where clip depths are needed. Depth is
+/// reversed, so a slice from `C_i` to `C_{i+1}` has `[z(C_{i+1}), z(C_i)]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Slice {
-    /// The split whose map it reads.
+    /// Index of the split whose map the slice reads.
     pub split: usize,
-    /// Least and greatest depth of its viewport, for `RenderPass::set_viewport`.
+    /// Least and greatest depth of the slice's viewport, for `RenderPass::set_viewport`.
     pub depth_range: [f32; 2],
     scale: f64,
     offset: f64,
 }
 
 impl Slice {
-    /// Room on both sides of a slice, as a share of its depth range: which slice a pixel belongs to
-    /// is decided by `umbrage_in_slice`, exactly, and the clipper must not be there first. Lower:
-    /// holes between slices. Higher: pixels shaded in vain.
+    /// Room on both sides of a slice, as a share of its depth range. `umbrage_in_slice` decides
+    /// exactly to which slice a pixel belongs, and the clipper must not cut before. A lower value
+    /// leaves holes between slices, a higher one shades pixels in vain.
     const ROOM: f64 = 1.0 / 1024.0;
 
-    /// The slices of a plan as a view of it shows them, nearest first; none for a split that lies
-    /// outside of the view's own near and far.
+    /// The slices of a plan for a view, nearest first. A split outside the view's own near and far
+    /// has no slice.
     #[must_use]
     pub fn all(plan: &ShadowPlan, view: &View) -> Vec<Self> {
         let clip_from_eye = view.clip_from_relative(view.eye());
@@ -51,10 +51,10 @@ impl Slice {
         plan.splits.iter().enumerate().filter_map(slice).collect()
     }
 
-    /// The app's matrix to clip space, with reversed depth, made to fill depth 0 to 1 with this
-    /// slice; the viewport's depth range puts it back where it was. Pipelines with
-    /// `unclipped_depth` leave triangles whole, so that a picture in slices is the same as one in
-    /// one piece.
+    /// The application's matrix to clip space, with reversed depth, changed so that this slice
+    /// fills depth 0 to 1; the viewport's depth range restores the original depth. Pipelines with
+    /// `unclipped_depth` leave triangles whole, so that an image drawn in slices equals one drawn
+    /// at once.
     #[must_use]
     pub fn clip_from(&self, clip: DMat4) -> DMat4 {
         let rows = DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::new(0.0, 0.0, self.scale, 0.0), {

@@ -1,24 +1,24 @@
-//! Which maps and frames are of which light.
+//! Assignment of maps and frames to lights.
 
 use umbrage::config::{LightKind, ShadowConfig};
 use umbrage_shaders::layout;
 
 use crate::{Error, LightMaps, Result};
 
-/// Where one light's maps and frames stand among those of all lights.
+/// Range of one light's maps and frames among those of all lights.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Slot {
     pub kind: LightKind,
     /// Edge of each split's map in texels.
     pub sizes: Vec<u32>,
-    /// The map of its first split.
+    /// Index of the map of the light's first split.
     pub first_map: usize,
-    /// The frame of its first face.
+    /// Index of the frame of the light's first face.
     pub first_frame: usize,
 }
 
 impl Slot {
-    /// Those of all lights, after every rule that they share has been checked.
+    /// The slots of all lights, after every rule that they share has been checked.
     pub fn all(config: &ShadowConfig, lights: &[LightMaps], limits: &wgpu::Limits) -> Result<Vec<Self>> {
         let kinds: Vec<LightKind> = lights.iter().map(|light| light.kind).collect();
         let (mut slots, mut first_map, mut first_frame) = (Vec::new(), 0, 0);
@@ -37,12 +37,12 @@ impl Slot {
         Ok(slots)
     }
 
-    /// The edges of its maps, face after face.
+    /// Edges of the light's maps, face after face.
     pub fn map_sizes(&self) -> impl Iterator<Item = u32> {
         (0..self.kind.faces()).flat_map(|_| self.sizes.iter().copied())
     }
 
-    /// Number of its maps.
+    /// Number of the light's maps.
     pub fn map_count(&self) -> usize {
         self.kind.faces() * self.sizes.len()
     }

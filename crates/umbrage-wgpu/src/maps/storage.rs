@@ -1,11 +1,11 @@
-//! Where each map lies: which layer of which size, and which part of it.
+//! Arrangement of the maps in textures: the layers, their size, and each map's part of a layer.
 
 use umbrage::config::{Generation, Storage};
 
 use super::passes::MapPass;
 use crate::{Error, Result};
 
-/// Where one map lies, in texels.
+/// Part of a layer that one map takes, in texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Tile {
     /// Layer of the texture, face of the cube, or the texture itself.
@@ -16,20 +16,20 @@ pub(crate) struct Tile {
     pub layer_texels: [u32; 2],
 }
 
-/// Where all maps lie, and the texture that holds them.
+/// Arrangement of all maps, and the texture that contains them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Arrangement {
-    /// One for each split.
+    /// The tile of each split's map.
     pub tiles: Vec<Tile>,
-    /// Layers of the texture; of separate textures their number.
+    /// Number of layers of the texture; for separate textures, number of textures.
     pub layers: u32,
-    /// Width and height of each in texels; of separate textures those of the largest.
+    /// Width and height of each layer in texels; for separate textures, those of the largest.
     pub layer_texels: [u32; 2],
 }
 
 impl Arrangement {
-    /// For maps of these edges drawn in these passes, on a device whose textures are at most
-    /// `largest` texels wide.
+    /// The arrangement of maps of these edges drawn in these passes, on a device whose textures are
+    /// at most `largest` texels wide.
     pub fn new(
         storage: Storage,
         generation: Generation,
@@ -57,14 +57,14 @@ impl Arrangement {
         }
     }
 
-    /// A map in each layer, in its upper left corner.
+    /// Arranges one map in each layer, in its upper left corner.
     fn layers(sizes: &[u32], layers: u32) -> Self {
         let layer_texels = [sizes.iter().copied().max().unwrap_or(0); 2];
         let tiles = (0..sizes.len() as u32).map(|layer| Tile { layer, corner: [0; 2], layer_texels }).collect();
         Self { tiles, layers, layer_texels }
     }
 
-    /// Split `t · layers + v` is tile `t` of layer `v`.
+    /// Arranges split `t · layers + v` as tile `t` of layer `v`.
     fn tiles(sizes: &[u32], layers: u32, largest: u32) -> Result<Self> {
         let mut tiles = vec![Tile { layer: 0, corner: [0; 2], layer_texels: [0; 2] }; sizes.len()];
         let mut layer_texels = [0; 2];
@@ -84,14 +84,14 @@ impl Arrangement {
     }
 }
 
-/// Corners of squares that do not overlap, in the order of their edges, and the width and height of
-/// the rectangle around them: the smallest that we find, none if it would be more than `largest`
-/// wide or high.
+/// Corners of squares that do not overlap, in the order of `sizes`, and the width and height of the
+/// rectangle around them: the smallest rectangle found, or `None` if it would be more than
+/// `largest` wide or high.
 ///
 /// Crates that pack rectangles fill a rectangle of a given size; here there are eight squares at
-/// most and the size is what is looked for. So every width that is a sum of some edges is tried,
-/// with the largest square first and each as high up and then as far to the left as there is room
-/// (B. Baker et al., "Orthogonal packings in two dimensions", 1980).
+/// most and the size is the unknown. Therefore every width that is a sum of some edges is tried,
+/// with the largest square first, and each square as high up and then as far to the left as there
+/// is room (B. Baker et al., "Orthogonal packings in two dimensions", 1980).
 fn packed(sizes: &[u32], largest: u32) -> Option<(Vec<[u32; 2]>, [u32; 2])> {
     let mut order: Vec<usize> = (0..sizes.len()).collect();
     order.sort_by_key(|&i| std::cmp::Reverse(sizes[i]));

@@ -1,4 +1,4 @@
-//! The textures that maps are kept in, and what each pass draws into.
+//! Textures of the maps, and the attachments of each pass.
 
 use umbrage::config::{DepthFormat, Edges, Generation, ShadowConfig, Storage};
 
@@ -6,37 +6,37 @@ use super::passes::MapPass;
 use super::storage::Arrangement;
 use crate::options::texture_format;
 
-/// What texels of maps are named in: runs of triangles, see [`umbrage_shaders::layout::RUN_BITS`].
+/// Format of the ids of runs of triangles, see [`umbrage_shaders::layout::RUN_BITS`].
 pub(super) const ID_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
 /// The textures of all maps.
 #[derive(Debug)]
 pub(super) struct Targets {
-    /// One; where maps are separate, or have several samples per texel, one for each split.
+    /// One texture; for separate maps, or several samples per texel, one for each split.
     pub maps: Vec<wgpu::Texture>,
     separate: bool,
-    /// Depth buffers beside maps that are colours.
+    /// Depth buffers beside colour maps.
     depths: Vec<wgpu::Texture>,
-    /// What each texel of the maps shows, with exact edges: a texture for each of `maps`.
+    /// Ids of the runs that the maps' texels show, with exact edges: a texture for each of `maps`.
     pub ids: Vec<wgpu::Texture>,
     attachments: Vec<Attachments>,
 }
 
-/// What one pass draws into.
+/// Attachments of one pass.
 #[derive(Debug)]
 struct Attachments {
-    /// Maps that are colours, or the ids beside depth.
+    /// Colour map, or the ids beside depth.
     colour: Option<wgpu::TextureView>,
-    /// What texels without a caster have.
+    /// Clear value, of texels without a caster.
     clear: wgpu::Color,
     depth: wgpu::TextureView,
-    /// Whether an earlier pass has drawn other tiles.
+    /// True if an earlier pass has drawn other tiles.
     keeps: bool,
 }
 
 impl Targets {
-    /// `sizes` are the edges of all maps; the layout's `storage`, the `edges`, `it` and `passes`
-    /// have been chosen.
+    /// Creates the textures. `sizes` are the edges of all maps; the layout's `storage`, the
+    /// `edges`, `it` and `passes` have been chosen.
     pub fn new(
         device: &wgpu::Device,
         config: &ShadowConfig,
@@ -94,27 +94,27 @@ impl Targets {
         Self { maps, separate, depths, ids, attachments }
     }
 
-    /// The texture that holds what a tile calls its layer.
+    /// The texture that contains a tile's layer.
     pub fn map(&self, layer: u32) -> &wgpu::Texture {
         &self.maps[if self.separate { layer as usize } else { 0 }]
     }
 
-    /// The texture of ids beside it.
+    /// The texture of ids beside the map of a tile's layer.
     pub fn id(&self, layer: u32) -> Option<&wgpu::Texture> {
         self.ids.get(if self.separate { layer as usize } else { 0 })
     }
 
-    /// Which layer of that texture it is.
+    /// Index of a tile's layer in its texture.
     pub fn layer(&self, layer: u32) -> u32 {
         if self.separate { 0 } else { layer }
     }
 
-    /// Each split's layer alone.
+    /// Views of each split's layer alone.
     pub fn splits(&self, it: &Arrangement) -> Vec<wgpu::TextureView> {
         it.tiles.iter().map(|tile| view(self.map(tile.layer), self.layer(tile.layer), 1)).collect()
     }
 
-    /// Bytes of all textures.
+    /// Memory of all textures in bytes.
     pub fn bytes(&self) -> u64 {
         let bytes = |texture: &wgpu::Texture| {
             let size = texture.size();
@@ -127,8 +127,8 @@ impl Targets {
         self.maps.iter().chain(&self.depths).chain(&self.ids).map(bytes).sum()
     }
 
-    /// Begins pass `index`, cleared to the farthest depth or, where all of its map is about to be
-    /// written, as it is.
+    /// Begins pass `index`. It is cleared to the farthest depth, or not cleared if the whole map is
+    /// about to be written.
     pub fn begin<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
@@ -163,10 +163,10 @@ impl Targets {
     }
 }
 
-/// What texels have that no caster is in, or one that cannot be asked.
+/// Id of texels without a caster, or with one whose triangles cannot be tested.
 const NO_ID: wgpu::Color = wgpu::Color::TRANSPARENT;
 
-/// What of a texture is copied.
+/// Aspect of a texture that is copied.
 fn aspect(texture: &wgpu::Texture) -> wgpu::TextureAspect {
     if texture.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All }
 }
@@ -203,14 +203,14 @@ fn view(texture: &wgpu::Texture, first: u32, count: u32) -> wgpu::TextureView {
     })
 }
 
-/// wgpu guesses a GL texture's kind from its number of layers: one is no array, and a multiple of
-/// six squares is a cube. A spare layer makes it an array.
+/// Number of array layers to request. wgpu guesses a GL texture's kind from its number of layers:
+/// one layer is no array, and a multiple of six squares is a cube. A spare layer makes it an array.
 fn array_layers(layers: u32, [width, height]: [u32; 2], backend: wgpu::Backend) -> u32 {
     let mistaken = layers == 1 || (layers.is_multiple_of(6) && width == height);
     if backend == wgpu::Backend::Gl && mistaken { layers + 1 } else { layers }
 }
 
-/// Layers that a texture needs with these options.
+/// Number of layers that a texture needs with these options.
 pub(super) fn layers_needed(device: &wgpu::Device, storage: Storage, it: &Arrangement) -> u32 {
     match storage {
         Storage::Separate => 1,
@@ -219,7 +219,7 @@ pub(super) fn layers_needed(device: &wgpu::Device, storage: Storage, it: &Arrang
     }
 }
 
-/// The views that a pipeline for casters, and every pass, draws into.
+/// Mask of the views that a pipeline for casters, and every pass, draws into.
 pub(super) fn multiview_mask(generation: Generation, passes: &[MapPass]) -> Option<std::num::NonZeroU32> {
     let several = matches!(generation, Generation::Layered | Generation::Mixed);
     let views = passes.first().map_or(1, MapPass::views);

@@ -1,4 +1,4 @@
-//! The texts that receivers put before their shaders.
+//! WGSL texts that applications put before the shaders of receivers.
 
 use umbrage::config::{Coordinates, LightKind, Storage};
 #[cfg(doc)]
@@ -10,9 +10,9 @@ use crate::moments::Moments;
 use crate::options::{filter_kind, metric_kind, selection_kind, transition_kind};
 
 impl ShadowMaps {
-    /// What any shader needs to ask for visibility; `group` is the index at which the app binds
-    /// [`ShadowMaps::receiver_bind_group`]. With [`Coordinates::Vertex`] vertex shaders may make
-    /// the coordinates of every split's map (`umbrage_shadow_coordinates` and
+    /// WGSL that a shader needs to compute visibility; `group` is the index at which the
+    /// application binds [`ShadowMaps::receiver_bind_group`]. With [`Coordinates::Vertex`] vertex
+    /// shaders may compute the coordinates of every split's map (`umbrage_shadow_coordinates` and
     /// `umbrage_shadow_from_coordinates`, see `umbrage_shaders::Maps::coordinates`). On GL and
     /// WebGL2, where depth textures cannot be loaded from, [`Filter::Pcss`] is [`Filter::Disc`],
     /// unless the format is [`DepthFormat::R32Float`].
@@ -21,11 +21,11 @@ impl ShadowMaps {
         umbrage_shaders::receiver(group, self.receiver_text())
     }
 
-    /// [`ShadowMaps::receiver_wgsl`] that counts what exact edges do, for a debug view. With
-    /// [`Edges::Exact`] it has `umbrage_edge_counts() -> vec4u`, of all questions of an invocation:
-    /// the farthest cause (0 nothing was asked, 1 no texel is dark, 2 all that count are, 3
-    /// triangles were asked and none is hit, 4 one is, 5 the filter answered), the maps that were
-    /// asked, the runs whose boxes were, the triangles.
+    /// [`ShadowMaps::receiver_wgsl`] that counts the work of exact edges, for a debug view. With
+    /// [`Edges::Exact`] it has `umbrage_edge_counts() -> vec4u` for all queries of an invocation:
+    /// the farthest cause (0 no query, 1 no texel is dark, 2 all texels that count are dark, 3
+    /// triangles were tested and none is hit, 4 one is hit, 5 the filter decided), and the numbers
+    /// of maps queried, of runs whose boxes were tested, and of triangles tested.
     #[must_use]
     pub fn counting_receiver_wgsl(&self, group: u32) -> String {
         let text = self.receiver_text();
@@ -33,7 +33,7 @@ impl ShadowMaps {
         umbrage_shaders::receiver(group, ReceiverText { exact, ..text })
     }
 
-    /// What receivers' text is made for: what the config settles, and nothing else.
+    /// Choices for which the receivers' text is made: those that the config fixes, and no others.
     fn receiver_text(&self) -> ReceiverText {
         let config = &self.config;
         let kinds = || self.slots.iter().map(|slot| slot.kind);
@@ -60,7 +60,7 @@ impl ShadowMaps {
         }
     }
 
-    /// How receivers read these maps.
+    /// The maps as receivers bind them.
     fn receiver_maps(&self) -> Maps {
         let bound = match self.layout.storage() {
             Storage::Separate => Bound::Separate(self.splits()),

@@ -1,4 +1,4 @@
-//! Which casters each map is drawn with.
+//! Casters to draw into each map.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -7,19 +7,19 @@ use umbrage::{Keeper, ShadowPlan};
 
 use crate::ShadowMaps;
 
-/// What to draw into the maps of a frame. Keeps its buffers.
+/// Casters to draw into the maps of a frame. Buffers are reused.
 #[derive(Debug, Default)]
 pub(super) struct Draws {
-    /// Passes that have to be drawn.
+    /// Indices of the passes that have to be drawn.
     pub passes: Vec<usize>,
     /// Casters of each pass with their instances, pass after pass.
     list: Vec<(u32, Range<u32>)>,
-    /// Where each pass's part of the list ends.
+    /// End of each pass's part of the list.
     ends: Vec<usize>,
 }
 
 impl Draws {
-    /// Lists a frame's casters; none without shadows.
+    /// Lists a frame's casters; none if shadows are disabled.
     pub fn list(&mut self, maps: &ShadowMaps, plans: &[Arc<ShadowPlan>], enabled: bool) {
         self.clear();
         if !enabled {
@@ -45,8 +45,8 @@ impl Draws {
         }
     }
 
-    /// Lists what of one sun's maps is not kept: regions, which follow the passes, and the maps
-    /// that are due with what moves in them.
+    /// Lists the parts of one sun's kept maps that have to be drawn: regions, whose indices follow
+    /// those of the passes, and the maps that are due, with their moving casters.
     pub fn list_kept(&mut self, keeper: &Keeper) {
         self.clear();
         let maps = keeper.maps();
@@ -59,7 +59,7 @@ impl Draws {
         }
     }
 
-    /// Lists nothing.
+    /// Clears the lists.
     pub fn clear(&mut self) {
         self.passes.clear();
         self.list.clear();

@@ -1,4 +1,4 @@
-//! A frame that was prepared, and its maps.
+//! A prepared frame, and its maps.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -9,7 +9,7 @@ use umbrage::{Aabb, KeptRegion, ShadowPlan, View};
 use super::{Shadows, draws};
 use crate::Slice;
 
-/// A frame that was prepared.
+/// A prepared frame.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowFrame<'a> {
     shadows: &'a Shadows,
@@ -20,17 +20,17 @@ impl<'a> ShadowFrame<'a> {
         Self { shadows }
     }
 
-    /// The maps to draw, in this order; none without shadows. Maps of several lights that no caster
-    /// reaches are omitted: nothing reads them. With [`umbrage::config::Cache::Kept`] the regions
-    /// of kept maps come first, and maps that have not changed are omitted, so there may be nothing
-    /// to draw for many frames.
+    /// The maps to draw, in this order; none if shadows are disabled. With several lights, maps
+    /// that no caster reaches are omitted, because nothing reads them. With
+    /// [`umbrage::config::Cache::Kept`] the regions of kept maps come first, and unchanged maps are
+    /// omitted, so there may be nothing to draw for many frames.
     pub fn maps(&self) -> impl Iterator<Item = ShadowMap<'a>> + use<'a> {
         let shadows = self.shadows;
         shadows.draws.passes.iter().map(move |&pass| ShadowMap { shadows, pass })
     }
 
-    /// The map pass of index `pass`, whether it has casters or not; behind the passes of
-    /// [`crate::ShadowMaps::passes`] those of this frame's kept regions.
+    /// The map pass of index `pass`, with or without casters. The passes of
+    /// [`crate::ShadowMaps::passes`] come first, then those of this frame's kept regions.
     ///
     /// # Panics
     /// If there is no such pass.
@@ -40,13 +40,13 @@ impl<'a> ShadowFrame<'a> {
         ShadowMap { shadows: self.shadows, pass }
     }
 
-    /// How many passes [`ShadowFrame::map`] knows.
+    /// Number of passes; [`ShadowFrame::map`] takes an index below it.
     #[must_use]
     pub fn pass_count(&self) -> usize {
         self.shadows.maps.passes().len() + self.shadows.regions().len()
     }
 
-    /// Whether the maps of this frame come from what is kept of them
+    /// Returns whether the maps of this frame are copied from kept textures
     /// ([`umbrage::config::Cache::Kept`]).
     #[must_use]
     pub fn is_kept(&self) -> bool {
@@ -62,7 +62,7 @@ impl<'a> ShadowFrame<'a> {
         &self.shadows.planning.plans()[light]
     }
 
-    /// [`ShadowFrame::plan`] to keep beyond the frame.
+    /// [`ShadowFrame::plan`] as a shared pointer, to keep beyond the frame.
     ///
     /// # Panics
     /// If there is no such light, or no frame was prepared.
@@ -71,10 +71,10 @@ impl<'a> ShadowFrame<'a> {
         Arc::clone(&self.shadows.planning.plans()[light])
     }
 
-    /// The slices in which the picture is drawn where one map is used for one split after the other
-    /// ([`umbrage::config::Layout::Reused`]); none with any other layout and none without shadows.
-    /// Draw [`ShadowFrame::map`] of a slice's split, then what of the picture lies in it, front to
-    /// back.
+    /// The slices in which the image is drawn if one map is used for one split after the other
+    /// ([`umbrage::config::Layout::Reused`]); none with any other layout, and none if shadows are
+    /// disabled. Draw [`ShadowFrame::map`] of a slice's split, then the part of the image in the
+    /// slice, front to back.
     #[must_use]
     pub fn slices(&self, view: &View) -> Vec<Slice> {
         let is_sliced = self.shadows.enabled && self.shadows.maps.layout() == umbrage::config::Layout::Reused;
@@ -82,25 +82,25 @@ impl<'a> ShadowFrame<'a> {
     }
 }
 
-/// Casters of a map that are drawn in one shape.
+/// Casters of a map that are drawn with one shape.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ShapeDraw<S> {
-    /// The shape that was chosen.
+    /// The chosen shape.
     pub shape: S,
-    /// The casters with their instances, as [`ShadowMap::casters`] has them.
+    /// The casters with their instances, as in [`ShadowMap::casters`].
     pub casters: Vec<(u32, Range<u32>)>,
 }
 
 impl<S> ShapeDraw<S> {
-    /// The casters as ranges of neighbours: see [`ShadowMap::rows`], whose layouts they are for.
+    /// The casters as ranges of neighbours, for the layouts of [`ShadowMap::rows`].
     pub fn rows(&self) -> impl Iterator<Item = Range<u32>> + '_ {
         draws::rows(&self.casters)
     }
 }
 
-/// One pass that draws casters: into one map, or with a layered, instanced or mixed layout into
-/// those of several splits at once.
+/// One pass that draws casters: into one map, or with a layered, instanced or mixed layout into the
+/// maps of several splits at once.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowMap<'a> {
     shadows: &'a Shadows,
@@ -108,19 +108,19 @@ pub struct ShadowMap<'a> {
 }
 
 impl<'a> ShadowMap<'a> {
-    /// Its index among all map passes; see [`ShadowFrame::map`].
+    /// Index of the pass among all map passes; see [`ShadowFrame::map`].
     #[must_use]
     pub fn index(&self) -> usize {
         self.pass
     }
 
-    /// The light that it is of.
+    /// Index of the light.
     #[must_use]
     pub fn light(&self) -> usize {
         self.place().0
     }
 
-    /// The splits of the light's plan that it draws: one with layouts that draw one map a pass.
+    /// Splits of the light's plan that the pass draws: one with layouts that draw one map per pass.
     #[must_use]
     pub fn splits(&self) -> Range<usize> {
         if let Some(region) = self.region() {
@@ -130,8 +130,8 @@ impl<'a> ShadowMap<'a> {
         first..first + self.shadows.maps.passes()[self.pass].splits().len()
     }
 
-    /// Edge of a texel in metres, the longer one; of several splits the finest's. What a caster
-    /// has that is smaller leaves no shadow of its own: draw a coarser shape of it
+    /// Longer edge of a texel in metres; with several splits, that of the finest. Details of a
+    /// caster that are smaller cast no shadow of their own: draw a coarser shape
     /// ([`ShadowMap::shapes`]).
     #[must_use]
     pub fn texel_m(&self) -> f64 {
@@ -140,15 +140,15 @@ impl<'a> ShadowMap<'a> {
         texels.map(|split| split.texel_m.max_element()).fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether it is a part of what is kept of a map, and not a map itself.
+    /// Returns whether this is a region of a kept texture, and not a map itself.
     #[must_use]
     pub fn is_region(&self) -> bool {
         self.region().is_some()
     }
 
-    /// Whether a part of one of the casters, by the part's world box, has to be drawn: in a region
-    /// what [`umbrage::KeptRegion::casts_into`] says, in a map [`ShadowPlan::casts_into`]. Skipping
-    /// what it rejects never changes a visible pixel, nor what is kept.
+    /// Returns whether a part of one of the casters, given by its world box, has to be drawn: in a
+    /// region by [`umbrage::KeptRegion::casts_into`], in a map by [`ShadowPlan::casts_into`]. Skipping
+    /// what it rejects never changes a visible pixel or a kept texel.
     #[must_use]
     pub fn casts_into(&self, part: &Aabb) -> bool {
         match self.region() {
@@ -169,20 +169,21 @@ impl<'a> ShadowMap<'a> {
         self.shadows.maps.light_of_map(self.shadows.maps.passes()[self.pass].splits().start)
     }
 
-    /// The casters, by index into [`crate::Inputs::casters`] or by the keys of its set, each
-    /// with the instances that it is drawn with.
+    /// The casters, by index into [`crate::Inputs::casters`] or by the keys of its set, each with
+    /// the instances to draw.
     pub fn casters(&self) -> impl ExactSizeIterator<Item = (u32, Range<u32>)> + use<'a> {
         self.shadows.draws.of_pass(self.pass).iter().cloned()
     }
 
-    /// What to draw where an application has coarser shapes of its casters: `choose` gets a caster
-    /// and the edge of a texel ([`ShadowMap::texel_m`]) and says which shape the map shows. Draws
-    /// come shape by shape, each with its casters in the order of [`ShadowMap::casters`].
+    /// The casters grouped by shape, for applications with coarser shapes of their casters.
+    /// `choose` gets a caster and the edge of a texel ([`ShadowMap::texel_m`]) and returns the
+    /// shape to draw into the map. Draws come shape by shape, each with its casters in the order of
+    /// [`ShadowMap::casters`].
     ///
     /// A shape whose outline differs from the finest by less than a quarter of a texel leaves the
-    /// same shadow but for the texels along its edge. With [`umbrage::config::Cache::Kept`] the
-    /// choice may depend on nothing else: what is kept would show another shape than what is drawn
-    /// anew.
+    /// same shadow, except for texels along its edge. With [`umbrage::config::Cache::Kept`] the
+    /// choice must not depend on anything else, because kept texels would otherwise show another
+    /// shape than newly drawn ones.
     ///
     /// ```no_run
     /// # use umbrage_wgpu::{ShadowMap, wgpu};
@@ -210,10 +211,10 @@ impl<'a> ShadowMap<'a> {
     /// buffer has one row for each caster, in their order: one draw of a mesh draws a range of
     /// rows.
     ///
-    /// `None` with layered, instanced and mixed layouts. Instances of draws then say which splits a
-    /// caster belongs to, and [`ShadowMap::casters`] has them: draw one caster at a time. Matrices
-    /// that are attributes follow those instances there, so the instance buffer has `array_stride`
-    /// 0 in the casters' pipeline, and each draw binds the caster's own row.
+    /// `None` with layered, instanced and mixed layouts. There the instances of a draw encode the
+    /// splits of a caster, and [`ShadowMap::casters`] lists them: draw one caster at a time.
+    /// Matrices that are attributes would advance with these instances, so the instance buffer has
+    /// `array_stride` 0 in the casters' pipeline, and each draw binds the caster's own row.
     ///
     /// ```no_run
     /// # use umbrage_wgpu::{ShadowMap, wgpu};
@@ -235,15 +236,15 @@ impl<'a> ShadowMap<'a> {
         is_alone.then(|| draws::rows(self.shadows.draws.of_pass(self.pass)))
     }
 
-    /// The group that [`Shadows::caster_wgsl`] declares, for this map.
+    /// The bind group that [`Shadows::caster_wgsl`] declares, for this map.
     #[must_use]
     pub fn bind_group(&self) -> &'a wgpu::BindGroup {
         let of_region = self.region().and_then(|region| self.shadows.maps.region_bind_group(region));
         of_region.unwrap_or_else(|| self.shadows.maps.caster_bind_group(self.pass))
     }
 
-    /// Begins the pass: the map is cleared, or shows what is kept of it; viewport and scissor are
-    /// set and have to stay. Pipeline and bind group 0 are to be set.
+    /// Begins the pass: the map is cleared, or contains its kept depth; viewport and scissor are
+    /// set and have to stay. Set the pipeline and bind group 0.
     pub fn begin<'e>(&self, encoder: &'e mut wgpu::CommandEncoder) -> wgpu::RenderPass<'e> {
         self.begin_timed(encoder, None)
     }

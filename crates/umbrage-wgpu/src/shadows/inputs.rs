@@ -1,11 +1,11 @@
-//! What a frame is prepared from.
+//! Inputs of a frame.
 
 use glam::DVec3;
 use umbrage::{Aabb, Boxes, CasterSet, Layers, Light, View};
 
 use crate::{Error, Result};
 
-/// What a frame is prepared from. Positions are world metres.
+/// Inputs of a frame. Positions are in world metres.
 ///
 /// ```no_run
 /// # use umbrage_wgpu::{Inputs, umbrage::{Aabb, Light, View}};
@@ -17,49 +17,48 @@ use crate::{Error, Result};
 pub struct Inputs<'a> {
     /// The camera.
     pub view: &'a View,
-    /// One light for each that the maps were made for, in that order.
+    /// The lights, in the number and order for which the maps were made.
     pub lights: &'a [Light],
-    /// Bounds of what casts shadows. [`crate::ShadowMap::casters`] refers to them by index.
+    /// World bounds of the casters. [`crate::ShadowMap::casters`] names them by index.
     pub casters: &'a [Aabb],
-    /// Bounds of what shows shadows, most casters among them. Where the list is empty, or holds
-    /// nothing that is in view, casters serve as receivers.
+    /// World bounds of the receivers, which include most casters. If the list is empty, or nothing
+    /// in it is in view, casters serve as receivers.
     pub receivers: &'a [Aabb],
-    /// A set that takes the place of both lists, which stay empty then: casters and receivers by
-    /// the thousand, kept from frame to frame. [`crate::ShadowMap::casters`] speaks of its casters
-    /// by their keys.
+    /// A set that replaces both lists, which are then empty: casters and receivers by the thousand,
+    /// kept from frame to frame. [`crate::ShadowMap::casters`] names its casters by their keys.
     pub set: Option<&'a CasterSet>,
-    /// Which members of the set take part: those that are on one of these layers.
+    /// Layers of the members of the set that take part.
     pub layers: Layers,
-    /// Bounds that hold all that is drawn of the receivers in view and leave less air than
+    /// World bounds that enclose all visible parts of the receivers more tightly than
     /// [`Inputs::receivers`]: [`umbrage::ShadowPlan::casts_into`] then rejects more parts of
-    /// casters. `None`: not known.
+    /// casters. `None` if not known.
     pub receiver_clusters: Option<&'a [Aabb]>,
-    /// Boxes that hold all that an earlier picture showed ([`umbrage::PlanInputs::seen`]). `None`:
-    /// not known.
+    /// World boxes that enclose everything that an earlier image showed
+    /// ([`umbrage::PlanInputs::seen`]). `None` if not known.
     pub seen: Option<&'a [Aabb]>,
-    /// World point that positions in the application's shaders are relative to. Keep it within a
-    /// kilometre or two of the eye and move it in whole steps: static shadows stand still between
-    /// two steps.
+    /// World point in metres to which positions in the application's shaders are relative. Keep it
+    /// within a kilometre or two of the camera and move it in whole steps: static shadows stand
+    /// still between two steps.
     pub origin: DVec3,
-    /// Pixels of the picture, across and down.
+    /// Width and height of the image in pixels.
     pub image_size: [u32; 2],
-    /// Which of several views this is; 0 where there is one.
+    /// Index of the view among several views; 0 if there is one.
     pub view_slot: u32,
-    /// Texels of kept maps that may be drawn in this frame; `None`: as many as are missing. A split
-    /// that waits for its texels is answered for by the next one, which is coarser.
+    /// Most texels of kept maps that may be drawn in this frame; `None` for all that are missing. A
+    /// split that has to wait is served by the next split, which is coarser.
     pub kept_texels: Option<u64>,
-    /// Whether kept maps are drawn anew though they are there: to compare with.
+    /// True if kept maps are drawn again although they are valid, for comparison.
     pub redraws_kept: bool,
-    /// Whether there are shadows. Without them there is nothing to draw, every surface that faces a
-    /// light is lit, and what stabilised maps hold stays as it was.
+    /// True if there are shadows. Otherwise there is nothing to draw, every surface that faces a
+    /// light is lit, and the held state of stabilised maps does not change.
     pub enabled: bool,
-    /// Whether `umbrage_shadow` returns a debug colour for each split.
+    /// True if `umbrage_shadow` returns a debug colour for each split.
     pub tint: bool,
 }
 
 impl<'a> Inputs<'a> {
-    /// A frame without casters and receivers, of 1920 × 1080 pixels, relative to the world's
-    /// origin.
+    /// Inputs without casters and receivers, for an image of 1920 × 1080 pixels, relative to the
+    /// world's origin.
     #[must_use]
     pub fn new(view: &'a View, lights: &'a [Light]) -> Self {
         Self {
@@ -81,10 +80,10 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Casters and receivers as the planner takes them.
+    /// Casters and receivers in the form that the planner takes.
     ///
     /// # Errors
-    /// [`Error::SetAndLists`] for lists beside a set: they would be ignored.
+    /// [`Error::SetAndLists`] for lists beside a set, because they would be ignored.
     pub(super) fn boxes(&self) -> Result<[Boxes<'a>; 2]> {
         let Some(set) = self.set else { return Ok([self.casters.into(), self.receivers.into()]) };
         match self.casters.len() + self.receivers.len() {

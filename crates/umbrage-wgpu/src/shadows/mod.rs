@@ -1,4 +1,4 @@
-//! The main API: from a view, lights and boxes to maps that are drawn and sampled.
+//! The main API: prepares maps from a view, lights and boxes.
 
 mod draws;
 mod frame;
@@ -18,36 +18,36 @@ use crate::{Error, FrameOptions, LightMaps, Occluders, Result, ShadowMaps};
 /// Shadows of one sun or several lights, for one view or several.
 ///
 /// Each frame: [`Shadows::prepare`], every map of [`ShadowFrame::maps`] drawn with its casters,
-/// [`Shadows::prefilter`], then the application's own pass with [`Shadows::bind_group`]. What the
-/// filter reaches, whether the device clamps depth, how many layers it draws at once and what a
-/// pixel covers is worked out here.
+/// [`Shadows::prefilter`], then the application's own pass with [`Shadows::bind_group`]. `Shadows`
+/// itself determines the filter's reach, whether the device clamps depth, how many layers it draws
+/// at once, and the footprint of a pixel.
 ///
-/// # Changes while it runs
+/// # Changes at run time
 ///
-/// | change | by | what it costs |
+/// | change | by | cost |
 /// |---|---|---|
-/// | view, directions and positions of lights, casters, receivers, picture size | [`Inputs`] | nothing |
+/// | view, directions and positions of lights, casters, receivers, image size | [`Inputs`] | nothing |
 /// | a setting of [`Rebuilds::Nothing`] | [`Shadows::set_config`] | nothing |
 /// | a setting of [`Rebuilds::Maps`] | [`Shadows::set_config`] | textures and bind groups; pipelines stay valid |
 /// | a setting of [`Rebuilds::Pipelines`] | [`Shadows::set_config`] | possibly pipelines: see the returned value |
 /// | number or kinds of lights | [`Shadows::set_lights`] | possibly pipelines: see the returned value |
 ///
-/// [`umbrage::config::SETTINGS`] lists the settings with what they rebuild at most. Shadows stand
-/// still through every change that has nothing to do with where maps lie.
+/// [`umbrage::config::SETTINGS`] lists the settings with the most that each rebuilds. Shadows stand
+/// still through every change that does not concern the position of maps.
 ///
-/// # What is kept
+/// # Kept maps
 ///
-/// With [`umbrage::config::Cache::Kept`] and [`Inputs::set`], what static casters have drawn is
-/// kept from frame to frame, and [`ShadowFrame::maps`] has what is to be drawn beside it: maybe
-/// nothing. Maps are those that are drawn anew, bit for bit. All maps of a frame that was prepared
-/// have to be drawn, or [`Shadows::forget_kept`] has to be told. Views that take turns draw over
-/// what is kept of each other: give each a `Shadows` of its own.
+/// With [`umbrage::config::Cache::Kept`] and [`Inputs::set`], the depth drawn by static casters is
+/// kept from frame to frame, and [`ShadowFrame::maps`] contains only the parts to draw, which may
+/// be none. Maps equal those that are drawn completely, bit for bit. All maps of a prepared frame
+/// have to be drawn; otherwise call [`Shadows::forget_kept`]. Views that take turns overwrite each
+/// other's kept maps: give each a `Shadows` of its own.
 ///
 /// # Several views
 ///
 /// Views share the maps, one after the other: prepare, draw and submit one view before the next is
-/// prepared. Give each its own [`Inputs::view_slot`], under which its stabilised maps are held.
-/// Views that are drawn in one submission take a `Shadows` each.
+/// prepared. Give each view its own [`Inputs::view_slot`], under which the state of its stabilised
+/// maps is held. Views that are drawn in one submission need a `Shadows` each.
 ///
 /// # A lost device
 ///
@@ -55,8 +55,8 @@ use crate::{Error, FrameOptions, LightMaps, Occluders, Result, ShadowMaps};
 /// are lost. [`Shadows::prepare`] returns [`Error::DeviceLost`] from then on; so does
 /// [`Shadows::new`] with that device. The application requests a new adapter and a new device,
 /// creates its own resources and `Shadows` again and redraws the frame, as the example
-/// `hello_shadows` does. What stabilised maps hold is lost with `Shadows`: their texels may move
-/// once.
+/// `hello_shadows` does. The held state of stabilised maps is lost with `Shadows`: their texels may
+/// move once.
 ///
 /// If the device is lost between `prepare` and the end of the frame, the next `prepare` reports it.
 /// Commands that the frame still records have no effect. wgpu reports some of them to
@@ -67,15 +67,15 @@ pub struct Shadows {
     config: ShadowConfig,
     lights: Vec<LightMaps>,
     maps: ShadowMaps,
-    /// What each light is planned with.
+    /// Config with which each light is planned.
     planned: Vec<ShadowConfig>,
     notes: Vec<String>,
     planning: Planning,
     enabled: bool,
     draws: Draws,
-    /// Books of what is kept of the maps, where anything is.
+    /// Bookkeeping for the kept maps, if maps are kept.
     keeper: Option<Keeper>,
-    /// Whether this frame's maps come from what is kept.
+    /// True if this frame's maps are copied from kept textures.
     is_kept: bool,
     occluders: Occluders,
 }
@@ -89,11 +89,11 @@ impl Shadows {
         Self::with_lights(device, config, &[LightKind::Directional])
     }
 
-    /// Shadows of these lights, one at least: kinds ([`LightKind`]), lights ([`umbrage::Light`]) or
+    /// Shadows of these lights, at least one: kinds ([`LightKind`]), lights ([`umbrage::Light`]) or
     /// [`LightMaps`].
     ///
-    /// A choice that a plan makes by itself and that excludes a kind of light, such as a warp for a
-    /// lamp, is replaced for that light alone; [`Shadows::notes`] lists it.
+    /// A choice that each light's plan makes by itself and that excludes a kind of light, such as a
+    /// warp for a local light, is replaced for that light alone; [`Shadows::notes`] lists it.
     ///
     /// # Errors
     /// Those of [`ShadowMaps::new`].
@@ -122,14 +122,14 @@ impl Shadows {
         })
     }
 
-    /// Plans a frame and hands it to the GPU. Takes effect with the next submission to `queue`.
+    /// Plans a frame and writes it to the GPU. Takes effect with the next submission to `queue`.
     ///
     /// # Errors
-    /// [`Error::LightCount`] or [`Error::LightKind`] if the lights are not those that the maps were
-    /// made for, [`Error::Config`] naming a box that is no box or a camera that the range does not
-    /// go with, [`Error::InvalidFrameOption`] for an origin that is not finite,
-    /// [`Error::SetAndLists`], [`Error::FilterTooWide`], [`Error::Device`] for what the device
-    /// complains about, [`Error::DeviceLost`]. A refused frame does not change the next.
+    /// [`Error::LightCount`] or [`Error::LightKind`] if the lights are not those for which the maps
+    /// were made, [`Error::Config`] naming an invalid box or a camera that does not suit the range,
+    /// [`Error::InvalidFrameOption`] for an origin that is not finite, [`Error::SetAndLists`],
+    /// [`Error::FilterTooWide`], [`Error::Device`] for errors that the device reports,
+    /// [`Error::DeviceLost`]. A refused frame does not change the next.
     pub fn prepare(&mut self, queue: &wgpu::Queue, inputs: &Inputs<'_>) -> Result<ShadowFrame<'_>> {
         self.check(inputs)?;
         self.draws.clear();
@@ -145,7 +145,7 @@ impl Shadows {
         Ok(self.frame())
     }
 
-    /// Hands a frame over that was planned and lists what is drawn.
+    /// Writes a planned frame to the GPU and lists the maps to draw.
     fn hand_over(&mut self, queue: &wgpu::Queue, inputs: &Inputs<'_>) -> Result<()> {
         let options = FrameOptions { origin: inputs.origin, enabled: inputs.enabled, tint: inputs.tint };
         // An origin that is none would be another grid, and all that is kept of no use.
@@ -164,8 +164,8 @@ impl Shadows {
         Ok(())
     }
 
-    /// Works out what has to be drawn into what is kept. False if nothing is: casters of a list say
-    /// neither what is static nor which is which.
+    /// Determines the parts of kept maps to draw. Returns false if nothing is kept: casters of a
+    /// list are neither marked as static nor identified from frame to frame.
     fn keep(&mut self, inputs: &Inputs<'_>) -> bool {
         let Some(keeper) = &mut self.keeper else { return false };
         let (Some(set), Some(plan)) = (inputs.set, self.planning.sole_plan()) else {
@@ -189,7 +189,7 @@ impl Shadows {
         self.keeper.as_ref().filter(|_| self.is_kept).map_or(&[], Keeper::regions)
     }
 
-    /// Whatever can be wrong before anything is planned.
+    /// Checks the inputs before anything is planned.
     fn check(&self, inputs: &Inputs<'_>) -> Result<()> {
         if inputs.lights.len() != self.lights.len() {
             return Err(Error::LightCount { plans: inputs.lights.len(), lights: self.lights.len() });
@@ -200,27 +200,27 @@ impl Shadows {
         Ok(())
     }
 
-    /// The last frame that was prepared.
+    /// The last prepared frame.
     #[must_use]
     pub fn frame(&self) -> ShadowFrame<'_> {
         ShadowFrame::new(self)
     }
 
-    /// Turns drawn depths into what receivers read, for moment filters; for others it does
-    /// nothing. Call it after the casters and before any receiver.
+    /// Converts drawn depths to the form that receivers read, for moment filters; for others it
+    /// does nothing. Call it after the casters and before any receiver.
     pub fn prefilter(&self, encoder: &mut wgpu::CommandEncoder) {
         if self.enabled {
             self.maps.prefilter(encoder);
         }
     }
 
-    /// The group that [`Shadows::receiver_wgsl`] declares.
+    /// The bind group that [`Shadows::receiver_wgsl`] declares.
     #[must_use]
     pub fn bind_group(&self) -> &wgpu::BindGroup {
         self.maps.receiver_bind_group()
     }
 
-    /// Layout of [`Shadows::bind_group`], for pipelines that ask for visibility.
+    /// Layout of [`Shadows::bind_group`], for pipelines that compute visibility.
     #[must_use]
     pub fn bind_group_layout(&self) -> &wgpu::BindGroupLayout {
         self.maps.receiver_layout()
@@ -234,22 +234,22 @@ impl Shadows {
     }
 
     /// WGSL to put before a vertex shader that draws casters; `group` is the index at which
-    /// [`ShadowMap::bind_group`] is bound. [`Shadows::caster_pipeline`] does the rest for the
-    /// common case.
+    /// [`ShadowMap::bind_group`] is bound. For the common case [`Shadows::caster_pipeline`] makes
+    /// the whole pipeline.
     #[must_use]
     pub fn caster_wgsl(&self, group: u32) -> String {
         self.maps.caster_wgsl(group)
     }
 
-    /// [`Shadows::caster_wgsl`] for vertex shaders that hand more to their fragments: `members`
-    /// joins the struct that they return, for example `"@location(0) uv: vec2f,"`.
+    /// [`Shadows::caster_wgsl`] for vertex shaders that pass more to their fragment shaders:
+    /// `members` is added to the struct that they return, for example `"@location(0) uv: vec2f,"`.
     #[must_use]
     pub fn caster_wgsl_with(&self, group: u32, members: &str) -> String {
         self.maps.caster_wgsl_with(group, members)
     }
 
-    /// Ids for casters, for exact edges ([`umbrage::config::Edges::Exact`]). They stay through
-    /// every change of config.
+    /// Allocator of ids for casters, for exact edges ([`umbrage::config::Edges::Exact`]). Ids stay
+    /// valid through every change of config.
     pub fn occluders(&mut self) -> &mut Occluders {
         &mut self.occluders
     }
@@ -260,19 +260,19 @@ impl Shadows {
         &self.maps
     }
 
-    /// The config that is carried out.
+    /// The current config.
     #[must_use]
     pub fn config(&self) -> &ShadowConfig {
         &self.config
     }
 
-    /// The lights that maps are made for.
+    /// The lights for which maps are made.
     #[must_use]
     pub fn lights(&self) -> &[LightMaps] {
         &self.lights
     }
 
-    /// What was asked for and could not be had, with what is done instead.
+    /// Requests that could not be met, each with the fallback.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
@@ -280,7 +280,7 @@ impl Shadows {
 
     /// Changes the config. Returns what was rebuilt: after [`Rebuilds::Pipelines`] shader texts or
     /// pipeline states have changed, and pipelines with them; after [`Rebuilds::Maps`] bind groups.
-    /// The answer is at most what [`ShadowConfig::rebuilds`] promises.
+    /// The result is at most that of [`ShadowConfig::rebuilds`].
     ///
     /// # Errors
     /// Those of [`ShadowMaps::new`]. Nothing has changed then.
@@ -288,7 +288,7 @@ impl Shadows {
         self.change(config.clone(), self.lights.clone())
     }
 
-    /// Changes the lights that maps are made for. Returns what was rebuilt, as
+    /// Changes the lights for which maps are made. Returns what was rebuilt, as
     /// [`Shadows::set_config`] does.
     ///
     /// # Errors
@@ -325,21 +325,21 @@ impl Shadows {
         Ok(rebuilt)
     }
 
-    /// Forgets what stabilised maps hold on to, as if nothing had been drawn yet: for views that do
-    /// not follow each other.
+    /// Forgets the held state of stabilised maps, as if nothing had been drawn yet: for views that
+    /// do not follow each other.
     pub fn restart(&mut self) {
         self.planning.restart();
         self.forget_kept();
     }
 
-    /// [`Shadows::restart`] for one view, [`Inputs::view_slot`]: after a cut. Other views, and what
-    /// is kept of maps, stay as they are.
+    /// [`Shadows::restart`] for one view, [`Inputs::view_slot`], as after a cut. Other views and
+    /// kept maps are unchanged.
     pub fn restart_view(&mut self, view_slot: u32) {
         self.planning.restart_view(view_slot);
     }
 
-    /// Forgets what is kept of maps, for an application that has prepared a frame and not drawn all
-    /// of its maps. What stabilised maps hold on to stays.
+    /// Forgets kept maps, for an application that has prepared a frame and not drawn all of its
+    /// maps. The held state of stabilised maps is unchanged.
     pub fn forget_kept(&mut self) {
         if let Some(keeper) = &mut self.keeper {
             keeper.clear();
@@ -348,19 +348,19 @@ impl Shadows {
         self.is_kept = false;
     }
 
-    /// Lets view `to` go on from what view `from` holds, and forgets `from`.
+    /// Gives the held state of view `from` to view `to`, and forgets `from`.
     pub fn move_view(&mut self, from: u32, to: u32) {
         self.planning.move_view(from, to);
     }
 
-    /// Whether anything is held for a view.
+    /// Returns whether any state is held for a view.
     #[must_use]
     pub fn holds_view(&self, view_slot: u32) -> bool {
         self.planning.holds_view(view_slot)
     }
 }
 
-/// What each light is planned with, and notes on what was replaced.
+/// Config with which each light is planned, and notes on the replaced choices.
 fn planned_with(maps: &ShadowMaps, config: &ShadowConfig, lights: &[LightMaps]) -> (Vec<ShadowConfig>, Vec<String>) {
     let (mut planned, mut notes) = (Vec::new(), maps.notes().to_vec());
     for (light, slot) in lights.iter().enumerate() {
@@ -372,7 +372,7 @@ fn planned_with(maps: &ShadowMaps, config: &ShadowConfig, lights: &[LightMaps]) 
     (planned, notes)
 }
 
-/// The options of planners beside a config. The picture's size is given per frame.
+/// Options of planners beside a config. The image size is given per frame.
 fn planner_options(maps: &ShadowMaps) -> PlannerOptions {
     PlannerOptions { depth_clamp: maps.depth_clamp(), ..PlannerOptions::default() }
 }

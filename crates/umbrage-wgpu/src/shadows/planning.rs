@@ -1,4 +1,4 @@
-//! What plans the maps of each view and light, on the CPU alone.
+//! Planners of each view and light: the part of a frame that needs no GPU.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use crate::Result;
 /// Planners, and the plans of the last frame. After the first frames nothing is allocated.
 #[derive(Debug, Default)]
 pub(super) struct Planning {
-    /// What plans each view's maps, a planner for each light.
+    /// Planners of each view's maps, one for each light.
     views: BTreeMap<u32, Vec<Planner>>,
     /// The last frame's plans, one for each light. Their buffers serve the next frame once nobody
     /// else holds them.
@@ -63,7 +63,7 @@ impl Planning {
         Ok(())
     }
 
-    /// Takes a frame back that was planned and is not shown: what its view holds is what it was.
+    /// Takes back a planned frame that is not shown: its view holds again what it held before.
     pub fn take_back(&mut self, view_slot: u32) {
         self.views.get_mut(&view_slot).into_iter().flatten().for_each(Planner::take_back);
     }
@@ -83,25 +83,25 @@ impl Planning {
         Ok(())
     }
 
-    /// Forgets what all views hold.
+    /// Forgets the held state of all views.
     pub fn restart(&mut self) {
         self.views.clear();
         self.plans.clear();
     }
 
-    /// Forgets what a view holds.
+    /// Forgets the held state of a view.
     pub fn restart_view(&mut self, view_slot: u32) {
         self.views.remove(&view_slot);
     }
 
-    /// Lets view `to` go on from what view `from` holds, and forgets `from`.
+    /// Gives the held state of view `from` to view `to`, and forgets `from`.
     pub fn move_view(&mut self, from: u32, to: u32) {
         if let Some(planners) = self.views.remove(&from) {
             self.views.insert(to, planners);
         }
     }
 
-    /// Whether anything is held for a view.
+    /// Returns whether any state is held for a view.
     pub fn holds_view(&self, view_slot: u32) -> bool {
         self.views.contains_key(&view_slot)
     }

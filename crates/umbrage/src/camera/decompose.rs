@@ -11,14 +11,14 @@ use crate::{Error, Result};
 /// `f32`.
 const SKEW: f64 = 1e-3;
 
-/// By what share a depth row may point aside of the line of sight.
+/// Largest share by which a depth row may deviate from the line of sight.
 const ASIDE: f64 = 1e-3;
 
 /// Share of an orthographic range's length by which the eye is put before near.
 const STANDOFF: f64 = 0.01;
 
-/// The eye, the camera's right, up and back, and the frustum of a view-projection matrix. `forward`
-/// says which way an orthographic camera looks, which its matrix does not.
+/// The eye, the camera's right, up and back, and the frustum from a view-projection matrix.
+/// `forward` says which way an orthographic camera looks, which its matrix does not.
 pub(super) fn camera(
     matrix: Matrix,
     forward: Option<DVec3>,
@@ -51,8 +51,8 @@ pub(super) fn camera(
     orthographic(x, y, z, sight * along.signum(), depth).ok_or_else(foreign)
 }
 
-/// The camera's axes for a direction of sight; the frustum's own x may run the other way, which the
-/// flag says.
+/// The camera's axes for a direction of sight. The flag is true if the frustum's own x runs the
+/// other way.
 fn axes(x: DVec3, y: DVec3, forward: DVec3) -> Option<(DMat3, bool)> {
     let (right, up) = (x.try_normalize()?, y.try_normalize()?);
     if right.dot(up).abs() > SKEW || right.dot(forward).abs() > SKEW || up.dot(forward).abs() > SKEW {
@@ -63,7 +63,7 @@ fn axes(x: DVec3, y: DVec3, forward: DVec3) -> Option<(DMat3, bool)> {
     Some((axes, own_right.dot(right) < 0.0))
 }
 
-/// From rows that are scaled so that w is the view depth.
+/// The camera from rows that are scaled so that w is the view depth.
 fn perspective(x: DVec4, y: DVec4, z: DVec4, w: DVec4, depth: DepthConvention) -> Option<(DVec3, DMat3, Frustum)> {
     let forward = w.truncate();
     // NDC x is `scale · tangent + offset`; y alike.
@@ -98,7 +98,7 @@ fn perspective(x: DVec4, y: DVec4, z: DVec4, w: DVec4, depth: DepthConvention) -
     Some((eye, axes, if is_mirrored { frustum.mirrored() } else { frustum }))
 }
 
-/// From rows that are scaled so that w is 1, and the line of sight. The eye lies in the middle, so
+/// The camera from rows that are scaled so that w is 1, and the line of sight. The eye lies in the middle, so
 /// that a mirrored camera has the sides of one that is not.
 fn orthographic(x: DVec4, y: DVec4, z: DVec4, sight: DVec3, depth: DepthConvention) -> Option<(DVec3, DMat3, Frustum)> {
     let (axes, _) = axes(x.truncate(), y.truncate(), sight)?;

@@ -1,4 +1,4 @@
-//! What a camera sees.
+//! The view frustum of a camera.
 
 use glam::{DMat4, DVec3, DVec4};
 
@@ -10,16 +10,16 @@ use crate::{Error, Result, maths};
 /// The largest tangent between a perspective camera's axis and a side of its view.
 const WIDEST: f64 = 1e6;
 
-/// What a projection matrix has to be.
+/// Requirement on projection matrices, for errors.
 const RIGHT_HANDED: &str = "right-handed, looking down −Z; View::from_matrices takes left-handed ones";
 
 /// The least width and height of a view, as tangents or in metres.
 const NARROWEST: f64 = 1e-9;
 
 named! {
-    /// What an engine's graphics interface takes for granted: needed to read near and far back from a
-    /// camera's projection, and to hand maps to the engine ([`crate::Split::shadow_from_world_in`],
-    /// [`crate::Split::texture_from_world`]).
+    /// Depth range and axis directions of a graphics API. They are needed to read near and far from
+    /// a camera's projection, and to hand maps to an engine
+    /// ([`crate::Split::shadow_from_world_in`], [`crate::Split::texture_from_world`]).
     ///
     /// v is that of textures. A camera's depth may run either way (reversed or not).
     pub enum DepthConvention as "depth convention" {
@@ -40,16 +40,16 @@ impl DepthConvention {
     }
 }
 
-/// Whether rays meet in the eye or run in parallel.
+/// Kind of projection: perspective or orthographic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Projection {
-    /// Sides are tangents: half widths at view depth 1.
+    /// Rays meet in the eye. Sides are tangents: half widths at view depth 1.
     Perspective,
-    /// Sides are metres, the same at every depth.
+    /// Rays run in parallel. Sides are metres, the same at every depth.
     Orthographic,
 }
 
-/// What a camera sees, in its own view space (right-handed, looks down −Z).
+/// View frustum of a camera, in the camera's view space (right-handed, looks down −Z).
 ///
 /// The four sides are `x/d` and `y/d` at view depth `d` for a perspective frustum and plain `x` and
 /// `y` in metres for an orthographic one. They need not be symmetric. `near` and `far` are view
@@ -69,11 +69,11 @@ pub struct Frustum {
 /// On which side of the eye a range lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RangeSide {
-    /// Where a right-handed camera looks.
+    /// The side to which a right-handed camera looks.
     Ahead,
-    /// Where a left-handed camera looks.
+    /// The side to which a left-handed camera looks.
     Behind,
-    /// Only of orthographic cameras.
+    /// Both sides, which only orthographic cameras see.
     Both,
 }
 
@@ -225,7 +225,7 @@ impl Frustum {
         Ok(self)
     }
 
-    /// On which side of the eye the range lies, but for rounding.
+    /// The side of the eye on which the range lies, but for rounding.
     pub(super) fn range_side(&self) -> RangeSide {
         let rounding = ROUNDING * (self.far - self.near);
         match (self.near >= -rounding, self.far <= rounding) {
@@ -235,12 +235,13 @@ impl Frustum {
         }
     }
 
-    /// The frustum of the same camera with its x turned round.
+    /// The frustum of a camera whose x axis is reversed.
     pub(super) fn mirrored(self) -> Self {
         Self { left: -self.right, right: -self.left, ..self }
     }
 
-    /// How much wider the frustum is at view depth `d` than its `left`..`top` say: `d` or 1.
+    /// Factor by which the frustum at view depth `d` is wider than `left`..`top`: `d` for a
+    /// perspective frustum, 1 for an orthographic one.
     #[must_use]
     pub fn scale_at(&self, d: f64) -> f64 {
         match self.projection {
@@ -262,7 +263,7 @@ impl Frustum {
         ]
     }
 
-    /// The projection wgpu wants, with reversed depth: 1 at near, 0 at far (or at infinity).
+    /// Projection matrix for wgpu with reversed depth: 1 at near, 0 at far (or at infinity).
     #[must_use]
     pub fn clip_from_view(&self) -> DMat4 {
         let (l, r, b, t, n, f) = (self.left, self.right, self.bottom, self.top, self.near, self.far);

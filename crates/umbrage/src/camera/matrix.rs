@@ -1,9 +1,10 @@
-//! Matrices as applications have them.
+//! Matrices in the types that applications use.
 
 use glam::{DAffine3, DMat4, Mat4};
 
-/// A 4×4 matrix as an application has it: of `glam`, plain arrays of columns, or with the feature
-/// `mint` that crate's matrices of columns or rows, in `f32` or `f64`.
+/// A 4×4 matrix from any of the types that applications use: a `glam` matrix, a plain array of
+/// columns, or, with the feature `mint`, that crate's matrices of columns or rows, in `f32` or
+/// `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrix(pub DMat4);
 
@@ -54,7 +55,7 @@ impl From<[f32; 16]> for Matrix {
 pub(super) const ROUNDING: f64 = 1e-6;
 
 impl Matrix {
-    /// A projection of which those entries are zero that are so in every projection, but for
+    /// The projection with zeros in those entries that are zero in every projection but for
     /// rounding.
     pub(super) fn without_rounding(self) -> DMat4 {
         let [mut x, mut y, mut z, mut w] = [0, 1, 2, 3].map(|i| self.0.row(i));

@@ -1,4 +1,4 @@
-//! The view: where the eye is, which way it looks and what it sees.
+//! The view: position, orientation and frustum of the camera.
 
 mod decompose;
 mod frustum;
@@ -12,7 +12,7 @@ use frustum::RangeSide;
 pub use frustum::{DepthConvention, Frustum, Projection};
 pub use matrix::Matrix;
 
-/// An eye in the world: a position, an orientation and a [`Frustum`].
+/// A camera in the world: a position, an orientation and a [`Frustum`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     eye: DVec3,
@@ -53,9 +53,9 @@ impl View {
         Self::look_at(eye, target, if along_y { DVec3::NEG_Z } else { DVec3::Y }, frustum)
     }
 
-    /// A view from the camera's transform; only rotation and translation are used (a camera has no
-    /// scale). A transform that mirrors is taken as the mirrored camera that it is: the frustum's
-    /// left and right are those of its own x.
+    /// A view from the camera's transform. Only rotation and translation are used, as a camera has
+    /// no scale. A transform that mirrors makes a mirrored camera: the frustum's left and right are
+    /// measured along the camera's own x.
     ///
     /// # Errors
     /// [`Error::InvalidCamera`] if the matrix is not finite or its axes are degenerate.
@@ -74,9 +74,8 @@ impl View {
         Ok(Self { eye, world_from_view: world_from_view_rotation, frustum: frustum.validated()? })
     }
 
-    /// A view from the two matrices an engine has at hand. Left-handed and mirrored cameras are
-    /// taken as they are. An orthographic camera looks to the side of its eye on which its range
-    /// lies.
+    /// A view from the two matrices that engines have. Left-handed and mirrored cameras are
+    /// accepted. An orthographic camera looks to the side of its eye on which its range lies.
     ///
     /// # Errors
     /// As [`View::from_world_from_view`] and [`Frustum::from_projection_matrix`];
@@ -144,7 +143,7 @@ impl View {
         self.eye
     }
 
-    /// Where the camera looks, a unit vector in the world.
+    /// Viewing direction, a unit vector in the world.
     #[must_use]
     pub fn forward(&self) -> DVec3 {
         -self.world_from_view.z_axis
@@ -156,13 +155,13 @@ impl View {
         self.world_from_view
     }
 
-    /// What the camera sees.
+    /// View frustum of the camera.
     #[must_use]
     pub fn frustum(&self) -> &Frustum {
         &self.frustum
     }
 
-    /// This eye with another frustum.
+    /// The camera with another frustum.
     ///
     /// # Errors
     /// [`Error::InvalidCamera`] if the frustum is not valid.
@@ -176,13 +175,13 @@ impl View {
         (point_in_world - self.eye).dot(self.forward())
     }
 
-    /// A point of view space in the world.
+    /// Transforms a point from view space to the world.
     #[must_use]
     pub fn world_from_view_point(&self, point_in_view: DVec3) -> DVec3 {
         self.eye + self.world_from_view * point_in_view
     }
 
-    /// A point of the world in view space.
+    /// Transforms a point from the world to view space.
     #[must_use]
     pub fn view_from_world_point(&self, point_in_world: DVec3) -> DVec3 {
         self.world_from_view.transpose() * (point_in_world - self.eye)
@@ -196,15 +195,15 @@ impl View {
         std::array::from_fn(|i| self.world_from_view_point(if i < 4 { near[i] } else { far[i - 4] }))
     }
 
-    /// `view_from_world` relative to `origin`: what the GPU gets when its positions are relative to
-    /// that world point.
+    /// Matrix to view space from positions relative to the world point `origin`, for a GPU whose
+    /// positions are relative to that point.
     #[must_use]
     pub fn view_from_relative(&self, origin: DVec3) -> DMat4 {
         let rotation = self.world_from_view.transpose();
         DMat4::from_mat3_translation(rotation, rotation * (origin - self.eye))
     }
 
-    /// `clip_from_world` relative to `origin`, with reversed depth.
+    /// Matrix to clip space from positions relative to `origin`, with reversed depth.
     #[must_use]
     pub fn clip_from_relative(&self, origin: DVec3) -> DMat4 {
         self.frustum.clip_from_view() * self.view_from_relative(origin)
@@ -225,7 +224,7 @@ impl View {
     }
 }
 
-/// Checks where a camera stands.
+/// Checks the position of a camera.
 fn check_eye(eye: DVec3) -> Result<DVec3> {
     if eye.abs().cmple(DVec3::splat(MOST_METRES)).all() {
         return Ok(eye);

@@ -14,17 +14,17 @@ const BITS: u32 = 63;
 /// A world that is this many times as long as it is high is ordered as a plane.
 const FLAT: f64 = 4.0;
 
-/// Codes of places along a curve through a box that visits what is near before what is far.
+/// Codes of points along a curve through a box, so that neighbours in space get nearby codes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Curve {
     origin: DVec3,
     extent: f64,
-    /// The axis that counts least, if it does not count.
+    /// The shortest axis, if the box is so flat that this axis is left out.
     left_out: Option<usize>,
 }
 
 impl Curve {
-    /// Through a box; its cells are cubes.
+    /// A curve through a box; its cells are cubes.
     pub fn through(bounds: Aabb) -> Self {
         let extent = bounds.max - bounds.min;
         let least = (1..3).fold(0, |least, axis| if extent[axis] < extent[least] { axis } else { least });
@@ -33,7 +33,7 @@ impl Curve {
         Self { origin: bounds.min, extent: longest, left_out: is_flat.then_some(least) }
     }
 
-    /// The place of a point of the box.
+    /// Code of a point of the box.
     pub fn code(&self, point: DVec3) -> u64 {
         let share = |axis: usize| match self.extent > 0.0 {
             true => ((point[axis] - self.origin[axis]) / self.extent).clamp(0.0, 1.0),

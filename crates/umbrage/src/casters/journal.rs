@@ -1,27 +1,27 @@
-//! What has changed of a set's static casters, for those who keep what these have drawn.
+//! Record of the changes to a set's static casters, for keepers of maps drawn with these casters.
 
 use std::collections::VecDeque;
 
 use super::slots::CasterHandle;
 use crate::Aabb;
 
-/// One change of one static caster that throws shadows.
+/// One change of one static caster that casts shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Change {
     pub handle: CasterHandle,
     pub key: u32,
-    /// Its box before; `None` if it threw no shadow as a static caster.
+    /// Box before the change; `None` if the caster cast no shadow as a static caster.
     pub old: Option<Aabb>,
-    /// Its box since; `None` if it throws none any more.
+    /// Box after the change; `None` if the caster no longer casts a shadow as a static caster.
     pub new: Option<Aabb>,
 }
 
-/// Changes that are remembered of a small set, at most. Who has missed more has to take all for
-/// changed. 4,096 are some 600 kB.
+/// Most changes that are remembered for a small set. A reader that has missed more has to treat all
+/// casters as changed. 4,096 changes take some 600 kB.
 const MOST: usize = 4096;
 
-/// Of a large set one change for so many casters is remembered: of a million 31,250, some 5 MB once
-/// so many change in a frame.
+/// For a large set, one change for every so many casters is remembered: 31,250 of a million
+/// casters, some 5 MB once so many change in a frame.
 const SHARE: usize = 32;
 
 /// The latest changes, by number.
@@ -33,7 +33,7 @@ pub(super) struct Journal {
 }
 
 impl Journal {
-    /// Notes a change of a set of so many casters.
+    /// Notes a change of a set of `casters` casters.
     pub fn note(&mut self, change: Change, casters: usize) {
         while self.changes.len() >= MOST.max(casters / SHARE) {
             self.changes.pop_front();

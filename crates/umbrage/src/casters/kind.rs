@@ -1,4 +1,4 @@
-//! What casters have in common: the queries that they are part of.
+//! Properties that casters share and that queries select by.
 
 use crate::{Error, Result};
 
@@ -8,7 +8,7 @@ use crate::{Error, Result};
 pub struct Layers(u32);
 
 impl Layers {
-    /// How many layers there are.
+    /// Number of layers.
     pub const COUNT: u32 = u32::BITS;
 
     /// Every layer.
@@ -25,19 +25,19 @@ impl Layers {
         1u32.checked_shl(layer).map(Self).ok_or(Error::NoSuchLayer { layer })
     }
 
-    /// From a mask: bit `i` stands for layer `i`.
+    /// Layers from a mask: bit `i` stands for layer `i`.
     #[must_use]
     pub const fn from_bits(bits: u32) -> Self {
         Self(bits)
     }
 
-    /// As a mask: bit `i` stands for layer `i`.
+    /// The layers as a mask: bit `i` stands for layer `i`.
     #[must_use]
     pub const fn bits(self) -> u32 {
         self.0
     }
 
-    /// Whether any layer is in both.
+    /// Returns whether the two sets share a layer.
     #[must_use]
     pub const fn meets(self, other: Self) -> bool {
         self.0 & other.0 != 0
@@ -59,16 +59,16 @@ impl std::ops::BitOr for Layers {
     }
 }
 
-/// What a box of a set is asked for.
+/// Purpose for which the boxes of a set are queried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
-    /// To cast shadows.
+    /// Casting shadows.
     Caster,
-    /// To show them.
+    /// Showing shadows.
     Receiver,
 }
 
-/// Layers and flags of a caster. Casters share the few combinations that there are.
+/// Layers and flags of a caster. Casters of a set share few combinations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Kind {
     pub layers: Layers,
@@ -76,7 +76,7 @@ pub(super) struct Kind {
     pub receives: bool,
 }
 
-/// A query of a set: which layers, and for what purpose.
+/// A query of a set: its layers, and its purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Ask {
     pub layers: Layers,
@@ -112,7 +112,7 @@ impl Kinds {
         self.0[usize::from(number)]
     }
 
-    /// Whether every kind is asked for, so that none need be looked up.
+    /// Returns whether every kind is queried, so that none need be looked up.
     pub fn are_all_for(&self, ask: Ask) -> bool {
         self.0.iter().all(|&kind| ask.is_for(kind))
     }

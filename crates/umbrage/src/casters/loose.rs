@@ -17,14 +17,14 @@ pub(super) struct Entry {
     pub slot: u32,
     pub kind: u16,
     pub moves: bool,
-    /// Whether the next packing takes it.
+    /// True if the next packing takes the caster.
     pub is_due: bool,
 }
 
 /// Changes after which nodes are fitted again, at least.
 const LEAST_CHANGES: usize = 64;
 
-/// By how much more room leaves may take than when they were last put in order.
+/// Factor by which the spread of leaves may grow after they were last put in order.
 const MOST_SPREAD: f64 = 1.5;
 
 /// The casters that are kept one by one.
@@ -33,9 +33,9 @@ pub(super) struct Loose {
     pub entries: Vec<Entry>,
     tree: BoxTree,
     changes: usize,
-    /// How many of [`Entry::is_due`] there are.
+    /// Number of entries with [`Entry::is_due`].
     pub due: usize,
-    /// What the leaves measured when they were last put in order.
+    /// Spread of the leaves when they were last put in order.
     ordered_spread: f64,
 }
 
@@ -48,7 +48,7 @@ impl Loose {
         (self.entries.len() - 1) as u32
     }
 
-    /// Changes a box.
+    /// Changes the box of a caster.
     pub fn set(&mut self, at: u32, bounds: Aabb, is_due: bool) {
         let entry = &mut self.entries[at as usize];
         entry.bounds = bounds;
@@ -59,7 +59,7 @@ impl Loose {
         self.changes += 1;
     }
 
-    /// Removes a caster, and returns the one that has moved to place `at` instead.
+    /// Removes a caster, and returns the slot of the one that has moved to place `at` instead.
     pub fn remove(&mut self, at: u32) -> Option<u32> {
         let entry = self.entries.swap_remove(at as usize);
         self.due -= usize::from(entry.is_due);
@@ -83,7 +83,7 @@ impl Loose {
         self.tree.shrink();
     }
 
-    /// Fits the nodes once about every caster may have moved. Says whether casters have changed
+    /// Fits the nodes once about every caster may have moved. Returns whether casters have changed
     /// places.
     pub fn settle(&mut self) -> bool {
         if self.changes < self.entries.len().max(LEAST_CHANGES) {
@@ -114,7 +114,7 @@ impl Loose {
         Asked { tree: &self.tree, farthest, is_for: move |at: usize| ask.is_for(kinds.get(self.entries[at].kind)) }
     }
 
-    /// Those without thickness.
+    /// The boxes without thickness, with their places.
     pub fn flats(&self) -> impl Iterator<Item = (usize, &Placed)> + '_ {
         self.tree.flats()
     }

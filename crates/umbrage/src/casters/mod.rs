@@ -1,4 +1,4 @@
-//! A kept set of casters: what a planner is given instead of lists where there are many.
+//! A kept set of casters, which a planner is given instead of lists where there are many.
 
 mod curve;
 mod journal;

@@ -1,8 +1,8 @@
 //! Static casters in 18 bytes each, sixteen to a leaf, and trees over them.
 //!
-//! A box lies on a lattice of [`STEP`] that is the whole world's: it is rounded outwards once, and
-//! what is kept of it depends on nothing else. Its six coordinates are 24-bit numbers of steps from
-//! its leaf's origin, so that the lattice is as fine 100 km from the world's origin as there.
+//! A box lies on a lattice of [`STEP`] that spans the whole world: it is rounded outwards once, and
+//! its kept form depends on nothing else. Its six coordinates are 24-bit numbers of steps from its
+//! leaf's origin, so that the lattice is as fine 100 km from the world's origin as there.
 
 use glam::DVec3;
 
@@ -12,10 +12,10 @@ use super::tree::{Near, Tree, WIDE, with_room};
 use crate::Aabb;
 use crate::bounds::Placed;
 
-/// The lattice, metres: 2^-14.
+/// Step of the lattice in metres: 2^-14.
 pub(super) const STEP: f64 = 1.0 / 16_384.0;
 
-/// Across a leaf, metres: 2^24 steps.
+/// Extent of a leaf in metres: 2^24 steps.
 const SPAN: f64 = STEP * 16_777_216.0;
 
 /// Origins of leaves are whole multiples of so many metres.
@@ -30,8 +30,8 @@ const FARTHEST: f64 = ORIGIN_STEP * (1u64 << 30) as f64;
 /// Casters of a run, at most. A run is built as a whole: in some ten milliseconds.
 pub(super) const RUN: usize = 16_384;
 
-/// The box on the lattice around a box; `None` if it is kept as it is: large, very far away, or
-/// flat, whose place along its axis says whether it lies below something.
+/// The box on the lattice around a box. `None` if the box is kept as it is: large, very far away,
+/// or flat, as the position of a flat box along its axis decides whether it lies below another.
 pub(super) fn on_lattice(bounds: Aabb) -> Option<Aabb> {
     let is_flat = |bounds: Aabb| Placed::from(bounds).is_flat();
     let kept = Aabb::new((bounds.min / STEP).floor() * STEP, (bounds.max / STEP).ceil() * STEP);
@@ -44,7 +44,7 @@ pub(super) fn on_lattice(bounds: Aabb) -> Option<Aabb> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Packing {
     pub code: u64,
-    /// On the lattice.
+    /// Bounds on the lattice.
     pub bounds: Aabb,
     pub key: u32,
     pub kind: u16,
@@ -74,7 +74,7 @@ struct Nodes {
 const NO_NODES: Nodes = Nodes { min: [[0.0; WIDE]; 3], max: [[0.0; WIDE]; 3], layers: [0; WIDE] };
 
 impl Nodes {
-    /// Takes a box. One on no layer is never asked for.
+    /// Includes a box. A box on no layer is never asked for.
     fn include(&mut self, lane: usize, bounds: Aabb, layers: u32) {
         if layers == 0 {
             return;
@@ -113,16 +113,16 @@ pub(super) struct Run {
     /// The numbers of the run's kinds.
     palette: Vec<u16>,
     levels: Vec<Vec<Nodes>>,
-    /// The sum of the three largest coordinates, at most, metres.
+    /// Upper bound of the sum of the three coordinates' magnitudes, in metres.
     farthest: f64,
-    /// How many casters there are, and were at first.
+    /// Number of casters: those left, and those that the run was built with.
     pub live: usize,
     pub built: usize,
 }
 
 impl Run {
-    /// A run of casters in the order of their codes. Says for each its place. `None` if they lie so
-    /// far apart, or are of so many kinds, that there is not room for all: half as many have it.
+    /// A run of casters in the order of their codes, and the place of each. `None` if they lie so
+    /// far apart, or are of so many kinds, that there is not room for all; half as many then fit.
     pub fn new(casters: &[Packing], kinds: &Kinds) -> Option<(Self, Vec<u32>)> {
         let leaves = casters.len().div_ceil(WIDE);
         let mut run = Self {
@@ -246,7 +246,8 @@ impl Run {
         self.live -= 1;
     }
 
-    /// Changes the box of a caster, if its leaf reaches there: nodes grow around it.
+    /// Changes the box of a caster, if its leaf reaches there: nodes grow around it. Returns
+    /// whether it did.
     pub fn set(&mut self, place: u32, bounds: Aabb, layers: Layers) -> bool {
         let (leaf, lane) = split(place);
         let origin = self.origin(leaf);
@@ -262,7 +263,7 @@ impl Run {
         true
     }
 
-    /// All casters with their places.
+    /// Places of all casters.
     pub fn places(&self) -> impl Iterator<Item = u32> + '_ {
         let of = |(leaf, live): (usize, &u16)| lanes(*live).map(move |lane| (WIDE * leaf + lane) as u32);
         self.live_lanes.iter().enumerate().flat_map(of)
@@ -304,7 +305,7 @@ fn split(place: u32) -> (usize, usize) {
     (place as usize / WIDE, place as usize % WIDE)
 }
 
-/// Whether one leaf can hold boxes with these bounds.
+/// Returns whether one leaf can hold boxes with these bounds.
 fn spans(bounds: Aabb) -> bool {
     let origin = (bounds.min / ORIGIN_STEP).floor() * ORIGIN_STEP;
     (bounds.max - origin).max_element() < SPAN
@@ -314,19 +315,19 @@ fn lanes(live: u16) -> impl Iterator<Item = usize> {
     (0..WIDE).filter(move |lane| live >> lane & 1 == 1)
 }
 
-/// A run that is asked.
+/// A run with a query.
 #[derive(Clone, Copy)]
 pub(super) struct AskedRun<'a> {
     pub run: &'a Run,
     /// Metres from the world's origin at which tests are taken.
     pub farthest: f64,
     pub ask: Ask,
-    /// The kinds to look up, unless all are asked for.
+    /// The kinds to look up, unless all are queried.
     pub kinds: Option<&'a Kinds>,
 }
 
 impl AskedRun<'_> {
-    /// The lanes of a leaf that are asked for.
+    /// The lanes of a leaf that are queried.
     fn asked_lanes(&self, leaf: usize) -> u16 {
         let live = self.run.live_lanes[leaf];
         let Some(kinds) = self.kinds else { return live };
@@ -399,8 +400,8 @@ impl Tree for AskedRun<'_> {
 }
 
 impl Run {
-    /// Of the boxes `asked` of a leaf those that may come near the planes, and those of them that
-    /// `f32` cannot be sure of.
+    /// The boxes of a leaf, among `asked`, that may come near the planes, and those of them for
+    /// which `f32` leaves this undecided.
     fn sieve(&self, leaf: usize, ask: &Near<'_>, planes: u32, asked: u16) -> (u16, u16) {
         let boxes = &self.boxes[leaf];
         let mut ends = [[0.0f32; WIDE]; 6];

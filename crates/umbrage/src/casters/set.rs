@@ -1,4 +1,4 @@
-//! The set: what an application does with it.
+//! The set of casters and its public methods.
 
 mod changes;
 mod packing;
@@ -13,18 +13,18 @@ use super::packed::{RUN, Run, on_lattice};
 use super::slots::{CasterHandle, PackedPlace, Place, Slots};
 use crate::{Aabb, Error, Result};
 
-/// Whether a caster is expected to move.
+/// Expected motion of a caster: static or moving.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Motion {
-    /// It stays where it is for a long time: a building, a tree, a piece of ground. It may be moved
-    /// all the same.
+    /// The caster stays in place for a long time: a building, a tree, a piece of ground. Moving it
+    /// is still allowed.
     #[default]
     Static,
-    /// It moves in many frames: a vehicle, a walker, a door.
+    /// The caster moves in many frames: a vehicle, a walker, a door.
     Moving,
 }
 
-/// Something that casts or shows shadows, as a [`CasterSet`] takes it.
+/// A caster or receiver of a [`CasterSet`].
 ///
 /// ```
 /// # use umbrage::{Aabb, Caster, Layers, Motion};
@@ -36,18 +36,18 @@ pub enum Motion {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Caster {
-    /// Its box in the world, metres.
+    /// Bounding box in world metres.
     pub bounds: Aabb,
-    /// What plans call it: the place of the object in the application's own list, for example.
-    /// Casters that share a key are drawn as one: lists hold the key once.
+    /// Name of the caster in plans, for example the index of the object in the application's own
+    /// list. Casters that share a key are drawn as one: lists contain the key once.
     pub key: u32,
-    /// Whether it is expected to move.
+    /// Expected motion.
     pub motion: Motion,
-    /// Who sees it: see [`crate::PlanInputs::layers`].
+    /// Layers that the caster is on: see [`crate::PlanInputs::layers`].
     pub layers: Layers,
-    /// Whether it casts shadows.
+    /// True if the caster casts shadows.
     pub casts: bool,
-    /// Whether it shows shadows: it counts where the set is given as receivers.
+    /// True if the caster shows shadows: it counts where the set is given as receivers.
     pub receives: bool,
 }
 
@@ -67,8 +67,8 @@ impl Caster {
 /// Casters and receivers by the million, kept from frame to frame.
 ///
 /// A planner that is given lists looks at every box in every frame. A set keeps the boxes in trees,
-/// and the planner looks at those that matter: what a plan costs follows from what is in view, not
-/// from the size of the world.
+/// and the planner looks only at relevant boxes: the cost of a plan follows from the part of the
+/// world in view, not from the size of the world.
 ///
 /// ```
 /// use umbrage::{Aabb, Caster, CasterSet, DirectionalLight, Frustum, Motion, PlanInputs, Planner, ShadowConfig, View};
@@ -88,7 +88,7 @@ impl Caster {
 /// let mut planner = Planner::new(&ShadowConfig::default())?;
 /// forest.set_bounds(car, Aabb::new(DVec3::splat(60.0), DVec3::splat(62.0)))?;
 /// let plan = planner.plan_frame(&PlanInputs::new(&view, sun, &forest, &forest))?;
-/// // Keys, rising: what the map of the first split is drawn with.
+/// // Keys, rising, of the casters to draw into the map of the first split.
 /// println!("{:?}", plan.casters(0));
 /// # Ok::<(), umbrage::Error>(())
 /// ```
@@ -99,7 +99,7 @@ impl Caster {
 /// order of their keys, bit for bit. It does not depend on the order of insertion. Its lists
 /// contain keys.
 ///
-/// # What is kept
+/// # Memory per caster
 ///
 /// A static box is kept in 18 bytes: rounded outwards to 2^-14 m (0.06 mm), on a lattice that is as
 /// fine 100 km from the world's origin as there. With handle, key and tree that is 32 bytes per
@@ -109,12 +109,12 @@ impl Caster {
 ///
 /// # Speed
 ///
-/// * [`CasterSet::insert_all`] packs whatever it is given in the best order. Fill a set by it while
-///   a level is loaded, and tile by tile where a world is streamed.
+/// * [`CasterSet::insert_all`] packs all casters that it is given in the best order. Fill a set by
+///   it while a level is loaded, and tile by tile where a world is streamed.
 /// * Casters that come one by one are packed 16,384 at a time, which takes some ten milliseconds.
 ///   [`CasterSet::pack`] puts everything in the best order again.
-/// * Moving a caster costs some tens of nanoseconds, and a part of fitting the tree of all that
-///   move.
+/// * Moving a caster costs some tens of nanoseconds, plus its share of fitting the tree of all
+///   moving casters.
 /// * A static caster that is moved a little is changed in place; one that is moved far is packed
 ///   again later.
 ///
@@ -127,12 +127,13 @@ pub struct CasterSet {
     runs: Vec<Option<Run>>,
     loose: Loose,
     len: usize,
-    /// Who this is, and how often it has changed: two sets that agree in both hold the same.
+    /// Identity of the set, and number of its changes: sets that agree in both have the same
+    /// contents.
     identity: u64,
     revision: u64,
     /// Changes of static casters.
     journal: Journal,
-    /// How often casters have come, gone or changed their motion.
+    /// Number of times that casters have come, gone or changed their motion.
     membership: u64,
 }
 
@@ -179,19 +180,19 @@ impl CasterSet {
         Self::default()
     }
 
-    /// How many casters there are.
+    /// Number of casters.
     #[must_use]
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there is none.
+    /// Returns whether the set has no caster.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// Adds a caster. The handle names it until it is removed.
+    /// Adds a caster and returns its handle, which names it until it is removed.
     ///
     /// # Errors
     /// [`Error::InvalidCaster`] naming its key if its box is inverted, NaN or beyond 10^12 m;
@@ -208,8 +209,8 @@ impl CasterSet {
         Ok(handle)
     }
 
-    /// Adds many casters, and packs the static ones of them together. Returns their handles in the
-    /// same order.
+    /// Adds many casters and packs the static ones together. Returns their handles in the same
+    /// order.
     ///
     /// # Errors
     /// Those of [`CasterSet::insert`]. Nothing has changed then.
@@ -291,7 +292,7 @@ impl CasterSet {
         Ok(())
     }
 
-    /// Says whether a caster is expected to move from now on.
+    /// Sets whether a caster is expected to move from now on.
     ///
     /// # Errors
     /// [`Error::RemovedCaster`].
@@ -330,8 +331,7 @@ impl CasterSet {
         self.revision += 1;
     }
 
-    /// The box that is kept of a caster: the one that was given, rounded outwards by 0.06 mm at
-    /// most.
+    /// The box that is kept for a caster: the given one, rounded outwards by 0.06 mm at most.
     ///
     /// # Errors
     /// [`Error::RemovedCaster`].
@@ -347,7 +347,7 @@ impl CasterSet {
         Ok(self.caster(self.slots.index(handle)?))
     }
 
-    /// Whether a handle names a caster.
+    /// Returns whether a handle names a caster.
     #[must_use]
     pub fn contains(&self, handle: CasterHandle) -> bool {
         self.slots.index(handle).is_ok()
@@ -374,7 +374,7 @@ impl CasterSet {
         self.revision += 1;
     }
 
-    /// Bytes of memory that the set takes.
+    /// Memory of the set in bytes.
     #[must_use]
     pub fn memory(&self) -> usize {
         let runs = self.runs.iter().flatten().map(Run::bytes).sum::<usize>();
@@ -388,7 +388,7 @@ impl CasterSet {
             + self.journal.bytes()
     }
 
-    /// Two sets that agree in this hold the same.
+    /// Stamp of the contents: sets with equal stamps have the same contents.
     pub(crate) fn stamp(&self) -> (u64, u64) {
         (self.identity, self.revision)
     }
@@ -433,7 +433,7 @@ impl CasterSet {
         self.slots.set(slot, Place::Loose(at));
     }
 
-    /// Takes a caster out of where it is kept.
+    /// Removes a caster from the place where it is kept.
     fn unplace(&mut self, slot: u32) {
         match self.slots.get(slot) {
             Place::Loose(at) => {
@@ -451,7 +451,7 @@ impl CasterSet {
         }
     }
 
-    /// After a change: fits and packs what it is time for.
+    /// Called after a change: fits and packs casters if it is time for that.
     fn changed(&mut self) {
         self.revision += 1;
         if self.loose.due >= RUN {
@@ -463,7 +463,7 @@ impl CasterSet {
         }
     }
 
-    /// Tells the slots where the loose casters are.
+    /// Writes the places of the loose casters into the slots.
     fn tell_loose(&mut self) {
         for (at, entry) in self.loose.entries.iter().enumerate() {
             self.slots.set(entry.slot, Place::Loose(at as u32));

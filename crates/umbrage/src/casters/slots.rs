@@ -18,12 +18,12 @@ impl fmt::Display for CasterHandle {
     }
 }
 
-/// Where a caster is kept.
+/// Place where a caster is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
-    /// Among the loose ones.
+    /// Among the loose casters, at this index.
     Loose(u32),
-    /// In a run: its number, leaf and lane in one.
+    /// In a run.
     Packed(PackedPlace),
 }
 
@@ -41,29 +41,28 @@ const LANE_BITS: u32 = 15;
 /// Places in a run, at most.
 pub(super) const MOST_LANES: usize = 1 << LANE_BITS;
 
-/// Runs of a set, at most.
+/// Most runs of a set.
 pub(super) const MOST_RUNS: usize = 1 << (31 - LANE_BITS);
 
-/// Casters of a set, at most: even if none fills a leaf, runs hold as many.
+/// Most casters of a set: even if none fills a leaf, the runs have room for so many.
 const MOST_CASTERS: usize = 1 << 26;
 
 const LOOSE: u32 = 1 << 31;
 const NOBODY: u32 = u32::MAX;
 
-/// From handles to places: five bytes each.
+/// Table from handles to places: five bytes each.
 #[derive(Clone, Debug)]
 pub(super) struct Slots {
-    /// Places; of free slots the next free one.
+    /// Places; for a free slot, the next free one.
     places: Vec<u32>,
-    /// Generations; [`RETIRED`] where all have been used up.
+    /// Generations; [`RETIRED`] for a slot whose generations are used up.
     generations: Vec<u8>,
-    /// One bit for each slot: whether it is taken.
+    /// One bit for each slot, set if the slot is taken.
     taken: Vec<u64>,
     free: u32,
 }
 
-/// A slot of this generation serves nobody any more: its next handle would be one that has been
-/// given out.
+/// Generation of a slot that is used no more: its next handle would be one that has been given out.
 const RETIRED: u8 = u8::MAX;
 
 impl Default for Slots {
@@ -93,13 +92,13 @@ impl Slots {
         Ok(CasterHandle { index, generation: self.generations[index as usize] })
     }
 
-    /// Whether there are handles for so many more.
+    /// Checks that there are handles for `more` more casters.
     pub fn check_room(&self, more: usize) -> Result<()> {
         let room = MOST_CASTERS - self.places.len();
         if more <= room { Ok(()) } else { Err(Error::TooManyCasters) }
     }
 
-    /// The slot of a caster that is there.
+    /// The slot of a caster that has not been removed.
     pub fn index(&self, handle: CasterHandle) -> Result<u32> {
         let index = handle.index as usize;
         let is_there = self.generations.get(index) == Some(&handle.generation) && self.is_taken(handle.index);
@@ -155,7 +154,7 @@ impl Slots {
     }
 }
 
-/// Pushes onto a list that grows by an eighth: by doubling, half of it might be air.
+/// Pushes onto a list that grows by an eighth: doubling would leave up to half of it unused.
 fn grow<T>(list: &mut Vec<T>, value: T) {
     if list.len() == list.capacity() {
         list.reserve_exact(list.len() / 8 + 64);

@@ -1,9 +1,9 @@
-//! Wide trees of boxes, and what all of them are asked.
+//! Wide trees of boxes and their queries.
 //!
-//! Every question is one of three: which boxes pass a test ([`each`]), what the largest of their
-//! measures is ([`most`]), and which come near a convex volume ([`near`]). A test or a measure has
-//! to be *monotone*: what holds of a box holds of any box around it. Nodes are then asked the
-//! question of their boxes, and what a node denies none of its boxes is asked.
+//! Every query is one of three: the boxes that pass a test ([`each`]), the largest measure of any
+//! box ([`most`]), and the boxes that come near a convex volume ([`near`]). A test or a measure has
+//! to be *monotone*: if it holds for a box, it holds for any box around it. A query therefore
+//! starts at the boxes of nodes, and skips all boxes below a node that fails.
 
 use std::cell::Cell;
 
@@ -18,21 +18,21 @@ pub(crate) const WIDE: usize = 16;
 /// Levels of nodes above the leaves, at most: 16^8 boxes and more.
 const MOST_LEVELS: usize = 8;
 
-/// Share of a coordinate by which rounding may move what a test or measure sees of a box, with room
-/// to spare.
+/// Share of a coordinate by which rounding may change the box that a test or measure sees, with
+/// room to spare.
 const ROUNDING: f64 = 1e-13;
 
-/// What questions have cost, whatever machine they ran on.
+/// Cost of queries as counts, independent of the machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Visited {
     /// Nodes that were tested or measured.
     pub nodes: u64,
-    /// Boxes that were.
+    /// Boxes that were tested or measured.
     pub boxes: u64,
 }
 
-/// Counts on the side.
+/// Counter that queries update through a shared reference.
 pub(crate) type Counter = Cell<Visited>;
 
 pub(crate) fn count(counter: &Counter, nodes: usize, boxes: usize) {
@@ -41,19 +41,20 @@ pub(crate) fn count(counter: &Counter, nodes: usize, boxes: usize) {
 }
 
 /// A tree of nodes in groups of up to [`WIDE`]. Group `g` of level 0 has the leaves from `WIDE * g`
-/// on, that of a higher level the groups of the level below; the top level is one group.
+/// on, a group of a higher level the groups of the level below; the top level is one group.
 pub(crate) trait Tree {
     /// Levels of groups; 0 if there is no box.
     fn levels(&self) -> usize;
 
-    /// A node of a group, with a little room for rounding; `None` if nothing is queried.
+    /// A node of a group, with a little room for rounding; `None` if it has no boxes that are
+    /// queried.
     fn node(&self, level: usize, group: usize, lane: usize) -> Option<Placed>;
 
-    /// Calls `each` with the boxes of a leaf that are asked for, by their places in the tree.
+    /// Calls `each` with the boxes of a leaf that are queried, by their places in the tree.
     fn leaf(&self, leaf: usize, each: &mut dyn FnMut(usize, &Placed));
 
     /// Calls `each` with the lanes of a group that come within `margin` of those planes whose bits
-    /// are set in `asked`, and with the planes that still have to be asked inside of them.
+    /// are set in `asked`, and with the planes that still have to be tested for boxes inside.
     fn near_lanes(&self, level: usize, group: usize, ask: &Near<'_>, asked: u32, each: &mut dyn FnMut(usize, u32)) {
         for lane in 0..WIDE {
             if let Some(node) = self.node(level, group, lane)
@@ -64,8 +65,8 @@ pub(crate) trait Tree {
         }
     }
 
-    /// Calls `each` with those boxes of a leaf that are near; the planes of `asked` are to be
-    /// looked at. Says how many it tested.
+    /// Calls `each` with those boxes of a leaf that are near. Only the planes of `asked` are
+    /// tested. Returns the number of boxes tested.
     fn near_boxes(&self, leaf: usize, ask: &Near<'_>, asked: u32, each: &mut dyn FnMut(usize, &Placed)) -> usize {
         let mut tested = 0;
         self.leaf(leaf, &mut |place, placed| {
@@ -78,7 +79,7 @@ pub(crate) trait Tree {
     }
 }
 
-/// A convex volume and the metres around it that count.
+/// A convex volume and a margin around it in metres.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Near<'a> {
     pub planes: &'a [Plane],
@@ -86,14 +87,14 @@ pub(crate) struct Near<'a> {
 }
 
 impl Near<'_> {
-    /// Whether a box comes within the margin of all planes:
+    /// Returns whether a box comes within the margin of all planes:
     /// [`crate::geometry::volume::SweptVolume::meets`].
     pub fn meets(&self, placed: &Placed) -> bool {
         self.planes.iter().all(|plane| plane.nearest(placed.center, placed.half) <= self.margin)
     }
 
-    /// The planes of `asked` that a box inside of a node need not lie behind; `None` if none of
-    /// them can be near.
+    /// Planes of `asked` that still have to be tested for boxes inside a node; `None` if no box
+    /// inside can be near.
     fn left_of(&self, node: &Placed, asked: u32) -> Option<u32> {
         let mut left = 0;
         for (bit, plane) in self.planes.iter().enumerate().filter(|(bit, _)| asked >> bit & 1 == 1) {
@@ -147,8 +148,8 @@ fn each_below(
     }
 }
 
-/// The largest measure of any box and `best`. `bound` has to be at least the measure of every box
-/// inside of the box that it is asked for, but for rounding.
+/// The largest measure of any box and `best`. For a box, `bound` has to be at least the measure of
+/// every box inside it, but for rounding.
 pub(crate) fn most(
     tree: &impl Tree,
     counter: &Counter,
@@ -199,8 +200,8 @@ fn most_below(
     best
 }
 
-/// Calls `visit` with the boxes that come near a volume, leaf by leaf, by their places in the tree;
-/// `end` after each leaf that had any.
+/// Calls `visit` with the boxes that come near a volume, leaf by leaf, by their places in the tree,
+/// and `end` after each leaf.
 pub(crate) fn near(
     tree: &impl Tree,
     counter: &Counter,
@@ -241,27 +242,28 @@ fn near_below(
     }
 }
 
-/// A box that has room for the rounding of tests and measures that are taken `farthest` metres from
-/// the origin.
+/// The box enlarged by room for the rounding of tests and measures that are taken `farthest` metres
+/// from the origin.
 pub(crate) fn with_room(Placed { center, half }: Placed, farthest: f64) -> Placed {
     let room = ROUNDING * ((center.abs() + half).element_sum() + farthest);
     Placed { center, half: half + DVec3::splat(room) }
 }
 
-/// A tree over boxes in the order in which they stand: as good as their order is.
+/// A tree over boxes in the order in which they are given; its quality is that of the order.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BoxTree {
     boxes: Vec<Placed>,
-    /// Nodes, from those of leaves on. All levels but the last have more than [`WIDE`] nodes below.
+    /// Nodes, starting with the level above the leaves. All levels but the last have more than
+    /// [`WIDE`] nodes below.
     levels: Vec<Vec<Placed>>,
-    /// How many of the levels are in use; the others keep their memory.
+    /// Number of levels in use; the others keep their memory.
     height: usize,
-    /// For each leaf the boxes without thickness, one bit each.
+    /// For each leaf a mask of the boxes without thickness, one bit each.
     flats: Vec<u16>,
 }
 
 impl BoxTree {
-    /// Takes other boxes.
+    /// Replaces all boxes.
     pub fn fill(&mut self, boxes: impl Iterator<Item = Placed>) {
         self.boxes.clear();
         self.boxes.extend(boxes);
@@ -287,7 +289,7 @@ impl BoxTree {
         *flats = *flats & !(1 << (at % WIDE)) | u16::from(is_flat) << (at % WIDE);
     }
 
-    /// The edges of all leaves together, metres: how much their boxes overlap.
+    /// Sum of the half extents of all leaves in metres: a measure of how much their boxes overlap.
     pub fn spread(&self) -> f64 {
         self.levels[..self.height.min(1)].iter().flatten().map(|node| node.half.element_sum()).sum()
     }
@@ -367,8 +369,8 @@ impl BoxTree {
         }
     }
 
-    /// Gives every level the nodes that the number of boxes asks for: after a leaf has come or
-    /// gone.
+    /// Adjusts the number of nodes on every level to the number of boxes, after a leaf was added or
+    /// removed.
     fn refit_tail(&mut self) {
         self.height = 0;
         let mut len = self.boxes.len();
@@ -399,12 +401,12 @@ fn around(boxes: &[Placed]) -> Placed {
     with_room(Placed { center: 0.5 * (min + max), half: 0.5 * (max - min) }, 0.0)
 }
 
-/// A [`BoxTree`] for questions that are asked `farthest` metres from the origin.
+/// A [`BoxTree`] with a query that is made `farthest` metres from the origin.
 #[derive(Clone, Copy)]
 pub(crate) struct Asked<'a, F> {
     pub tree: &'a BoxTree,
     pub farthest: f64,
-    /// Which boxes are asked for.
+    /// Tells whether a box is queried.
     pub is_for: F,
 }
 

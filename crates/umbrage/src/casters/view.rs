@@ -1,4 +1,4 @@
-//! What a planner sees of its casters or receivers: a list or a set, asked alike.
+//! One interface to the casters or receivers of a planner, a list or a set.
 
 use glam::DVec3;
 
@@ -25,19 +25,19 @@ enum Boxes<'a> {
 }
 
 impl<'a> Crowd<'a> {
-    /// A list, whose casters are called by their places in it. Tests are taken as seen from `eye`.
+    /// The boxes of a list, named by their places in it. Tests are taken as seen from `eye`.
     pub fn of_list(list: &'a BoxTree, eye: DVec3, counter: &'a Counter) -> Self {
         Self { boxes: Boxes::List(list), farthest: eye.abs().element_sum(), counter }
     }
 
-    /// Those of a set that are asked for, called by their keys.
+    /// The boxes of a set on some of `layers` and with this role, named by their keys.
     pub fn of_set(set: &'a CasterSet, (layers, role): (Layers, Role), eye: DVec3, counter: &'a Counter) -> Self {
         let ask = Ask { layers, role };
         let all = set.parts().2.are_all_for(ask);
         Self { boxes: Boxes::Set { set, ask, all }, farthest: eye.abs().element_sum(), counter }
     }
 
-    /// Calls `visit` with all boxes that pass a monotone test, and what they are called.
+    /// Calls `visit` with the names of all boxes that pass a monotone test, and with the boxes.
     pub fn each(&self, mut test: impl FnMut(&Placed) -> bool, mut visit: impl FnMut(u32, &Placed)) {
         match self.boxes {
             Boxes::List(list) => {
@@ -56,7 +56,7 @@ impl<'a> Crowd<'a> {
         }
     }
 
-    /// [`Crowd::each`] of a set's static casters alone; of a list none.
+    /// [`Crowd::each`] for a set's static casters alone; a list has none.
     pub fn each_static(&self, mut test: impl FnMut(&Placed) -> bool, mut visit: impl FnMut(u32, &Placed)) {
         let Boxes::Set { set, ask, .. } = self.boxes else { return };
         let (runs, loose, kinds) = set.parts();
@@ -73,19 +73,19 @@ impl<'a> Crowd<'a> {
         });
     }
 
-    /// Whether any box passes a monotone test.
+    /// Returns whether any box passes a monotone test.
     pub fn any(&self, test: impl Fn(&Placed) -> bool) -> bool {
         let found = std::cell::Cell::new(false);
         self.each(|placed| !found.get() && test(placed), |_, _| found.set(true));
         found.get()
     }
 
-    /// Whether there is no box.
+    /// Returns whether there is no box.
     pub fn is_empty(&self) -> bool {
         !self.any(|_| true)
     }
 
-    /// Calls `visit` with the boxes without thickness, and what they are called.
+    /// Calls `visit` with the names of the boxes without thickness, and with the boxes.
     pub fn flats(&self, mut visit: impl FnMut(u32, &Placed)) {
         match self.boxes {
             Boxes::List(list) => list.flats().for_each(|(at, placed)| visit(at as u32, placed)),
@@ -98,7 +98,7 @@ impl<'a> Crowd<'a> {
         }
     }
 
-    /// The largest measure, where `bound` is a monotone one that is nowhere less.
+    /// The largest measure of any box. `bound` has to be monotone and nowhere less than `measure`.
     pub fn most_within(&self, bound: impl Fn(&Placed) -> f64, measure: impl Fn(&Placed) -> f64) -> f64 {
         let mut best = f64::NEG_INFINITY;
         match self.boxes {
@@ -164,12 +164,12 @@ impl<'a> Crowd<'a> {
     }
 }
 
-/// Boxes that can be measured without looking at each.
+/// Boxes whose largest measure is found without looking at each.
 pub(crate) trait Most {
-    /// The largest of a monotone measure; −∞ if there is none.
+    /// The largest value of a monotone measure; −∞ if there is no box.
     fn most(&self, measure: impl Fn(&Placed) -> f64) -> f64;
 
-    /// The box around all that pass a monotone test.
+    /// The box around all boxes that pass a monotone test.
     fn bounds(&self, test: impl Fn(&Placed) -> bool) -> Aabb {
         let end = |of: &dyn Fn(&Placed) -> f64| self.most(|it| if test(it) { of(it) } else { f64::NEG_INFINITY });
         let least = |axis: usize| -end(&|it| -(it.center[axis] - it.half[axis]));
@@ -193,15 +193,16 @@ impl Most for Gathered {
     }
 }
 
-/// Boxes that were gathered, in groups of neighbours, with what they are called.
+/// Gathered boxes in groups of neighbours, with their names.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Gathered {
     pub boxes: Vec<Placed>,
     pub names: Vec<u32>,
     pub groups: Vec<Group>,
-    /// Whether names have been put in order.
+    /// True once names have been put in order.
     is_ordered: bool,
-    /// By name: the places of boxes, and the rank of each. Empty where boxes stand in that order.
+    /// Places of boxes sorted by name, and the rank of each. Empty if boxes are already in that
+    /// order.
     order: Vec<(u32, u32)>,
     ranks: Vec<u32>,
     /// Scratch: a bit for each rank.
@@ -213,9 +214,9 @@ pub(crate) struct Gathered {
 /// Boxes that lie beside each other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Group {
-    /// Around all of them, with room for rounding.
+    /// Box around all of them, with room for rounding.
     pub bounds: Placed,
-    /// Around all of them, without.
+    /// Box around all of them, exact.
     pub exact: Aabb,
     pub begin: u32,
     pub end: u32,
@@ -257,14 +258,15 @@ impl Gathered {
         }
     }
 
-    /// Once all are gathered: groups get room for tests that are taken so far from the origin.
+    /// Ends the gathering: enlarges groups for tests that are taken `farthest` metres from the
+    /// origin.
     fn finish(&mut self, farthest: f64) {
         for group in &mut self.groups {
             group.bounds = with_room(group.bounds, farthest);
         }
     }
 
-    /// Puts names in order, once they are asked for.
+    /// Puts names in order when they are first needed.
     fn order(&mut self) {
         if self.is_ordered {
             return;

@@ -1,5 +1,5 @@
-//! From settings as text to a config: a setting that was not given is reset if it excludes one that
-//! was.
+//! Applies settings given as text to a config. A setting that was not given is reset if it excludes
+//! one that was.
 
 use super::given::{Given, Wrong};
 use super::{RULES, Renamed, SETTINGS, ShadowConfig, settings};
@@ -35,7 +35,8 @@ impl ShadowConfig {
         Ok(notes)
     }
 
-    /// All settings of this config as keys and values: what [`ShadowConfig::apply`] reads back.
+    /// All settings of this config as keys and values, in the form that [`ShadowConfig::apply`]
+    /// reads.
     #[must_use]
     pub fn settings(&self) -> Vec<(&'static str, super::Value)> {
         let listed = SETTINGS.iter().filter_map(|setting| Some((setting.key, setting.get(self)?)));

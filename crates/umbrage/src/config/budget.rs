@@ -7,8 +7,8 @@ use super::{Filter, Preset, ShadowConfig};
 use crate::margin::FilterReach;
 use crate::{Error, Result};
 
-/// Edges of maps are multiples of so many texels: devices keep textures in tiles of 8² and larger,
-/// and the rest of a tile would be paid for and not used.
+/// Edges of maps are multiples of so many texels. Devices keep textures in tiles of 8² and larger,
+/// and the rest of a tile would take memory without being used.
 const EDGE_STEP: u32 = 8;
 
 /// The widest map in texels: the widest texture that every WebGPU device has.
@@ -28,7 +28,7 @@ const BYTES: [(&str, u64); 7] = [
 /// Multiples of texels by name.
 const TEXELS: [(&str, u64); 3] = [("Mtexel", 1 << 20), ("Ktexel", 1 << 10), ("texel", 1)];
 
-/// What shadow maps may take: bytes, or texels of all maps together.
+/// Budget of shadow maps: bytes, or texels of all maps together.
 ///
 /// ```
 /// use umbrage::config::Budget;
@@ -38,14 +38,14 @@ const TEXELS: [(&str, u64); 3] = [("Mtexel", 1 << 20), ("Ktexel", 1 << 10), ("te
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Budget {
-    /// Bytes of all maps of one sun.
+    /// Memory of all maps of one sun, in bytes.
     Bytes(u64),
-    /// Texels of all maps of one sun.
+    /// Number of texels of all maps of one sun.
     Texels(u64),
 }
 
 impl Budget {
-    /// Texels that it pays for, each of so many bytes.
+    /// Number of texels that the budget pays for at `texel_bytes` bytes each.
     #[must_use]
     pub const fn texels(self, texel_bytes: u64) -> u64 {
         match self {
@@ -57,8 +57,9 @@ impl Budget {
         }
     }
 
-    /// Edge in texels of the largest square maps, `maps` of them, that it pays for: a multiple of 8
-    /// up to 8192, the widest texture that every WebGPU device has. 0 if it pays for none.
+    /// Edge in texels of the largest square maps of which the budget pays for `maps`: a multiple of
+    /// 8 up to 8192, the widest texture that every WebGPU device has. 0 if the budget pays for
+    /// none.
     #[must_use]
     pub const fn edge(self, maps: usize, texel_bytes: u64) -> u32 {
         if maps == 0 {
@@ -69,14 +70,14 @@ impl Budget {
         edge - edge % EDGE_STEP
     }
 
-    /// Edge in texels of the smallest map that [`Budget::edge`] gives and that a filter works in.
+    /// Edge in texels of the smallest map that [`Budget::edge`] gives and in which a filter works.
     #[must_use]
     pub fn least_edge(filter: &Filter, is_stabilised: bool) -> u32 {
         let margins = FilterReach::from(filter).least_map_size(is_stabilised);
         filter.least_map_size().max(margins).next_multiple_of(EDGE_STEP)
     }
 
-    /// The budget in its own unit that so many texels take.
+    /// The budget that `texels` texels take, in the unit of this one.
     #[must_use]
     pub const fn of_texels(self, texels: u64, texel_bytes: u64) -> Self {
         match self {
@@ -85,7 +86,7 @@ impl Budget {
         }
     }
 
-    /// A share of it, rounded down.
+    /// A share of the budget, from 0 to 1, rounded down.
     #[must_use]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share in 0..=1 of a whole number")]
     pub fn share(self, share: f64) -> Self {
@@ -143,7 +144,7 @@ impl fmt::Display for Budget {
     }
 }
 
-/// From so many texels on, so many splits.
+/// Number of splits and filter from a number of texels on.
 struct Rung {
     texels: u64,
     splits: usize,
@@ -160,8 +161,9 @@ const RUNGS: [Rung; 3] = [
 ];
 
 impl ShadowConfig {
-    /// [`Preset::Balanced`] within a budget: number of splits, sizes of maps and filter. Maps never
-    /// take more than the budget; a larger budget never has fewer texels.
+    /// [`Preset::Balanced`] within a budget, which decides the number of splits, the sizes of maps
+    /// and the filter. Maps never take more than the budget; a larger budget never has fewer
+    /// texels.
     ///
     /// ```
     /// use umbrage::config::{Budget, ShadowConfig};
@@ -172,8 +174,8 @@ impl ShadowConfig {
     /// ```
     ///
     /// # Errors
-    /// [`Error::BudgetTooSmall`] if it does not pay for the map of a single split; it says the
-    /// least that does.
+    /// [`Error::BudgetTooSmall`] if the budget does not pay for the map of a single split. The
+    /// error contains the least budget that does.
     pub fn for_budget(budget: Budget) -> Result<Self> {
         let balanced = Preset::Balanced.config();
         let texel_bytes = balanced.depth_format.texel_bytes();

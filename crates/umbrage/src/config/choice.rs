@@ -1,5 +1,4 @@
-//! The choices that exclude others: whether a config makes them, in which words, and how to take
-//! them back.
+//! Choices that exclude others: whether a config makes them, their words, and how to reset them.
 
 use super::{
     Cache, Coordinates, Crop, DepthFormat, Edges, ExtentSteps, Filter, FitTo, Generation, Layout, LightKind, Range,
@@ -59,11 +58,11 @@ pub enum Choice {
     ExactlyStill,
     /// Maps of another format than 32-bit depth.
     OtherDepth,
-    /// What static casters draw is kept.
+    /// Maps keep the depth drawn by static casters.
     KeptMaps,
-    /// Pixels make the coordinates of maps from the picture's depth.
+    /// Pixels compute the coordinates of maps from the image's depth.
     DeferredCoordinates,
-    /// Vertices make the coordinates of maps.
+    /// Vertex shaders compute the coordinates of maps.
     VertexCoordinates,
     /// More splits than vertex shaders pass coordinates for.
     MoreThanFourSplits,
@@ -117,7 +116,7 @@ impl Choice {
         Self::SliceCrop,
     ];
 
-    /// Whether a config for these lights makes this choice.
+    /// Returns whether a config for these lights makes this choice.
     #[must_use]
     pub fn holds(self, config: &ShadowConfig, lights: &[LightKind]) -> bool {
         match self {
@@ -157,7 +156,7 @@ impl Choice {
         }
     }
 
-    /// The settings that make this choice, the most telling one first.
+    /// Settings that make this choice, the most characteristic one first.
     #[must_use]
     pub const fn keys(self) -> &'static [&'static str] {
         match self {
@@ -208,7 +207,8 @@ impl Choice {
         }
     }
 
-    /// Whether each light's plan makes the choice by itself, and not all maps together.
+    /// Returns whether the choice is made by each light's plan by itself, and not by all maps
+    /// together.
     #[must_use]
     pub const fn is_per_light(self) -> bool {
         matches!(
@@ -222,7 +222,7 @@ impl Choice {
         )
     }
 
-    /// Takes the choice back to what excludes nothing. False where there is no such choice.
+    /// Resets the choice to a value that excludes nothing. Returns false if there is no such value.
     pub fn relax(self, config: &mut ShadowConfig) -> bool {
         match self {
             Self::Warp | Self::AllWarped => config.stability = Stability::tight(),

@@ -1,8 +1,8 @@
-//! What decides where a shadow ends.
+//! Choices of the method that decides where a shadow's edge lies.
 
 use super::names::{Word, unknown};
 
-/// What decides where a shadow ends.
+/// Method that decides where a shadow's edge lies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Edges {
@@ -11,7 +11,7 @@ pub enum Edges {
     Sampled,
     /// The triangles that texels name: an edge is exact where casters can be asked.
     Exact {
-        /// Positions of a pixel that are decided: 1, or 4 or 8 for smooth edges.
+        /// Number of positions of a pixel that are decided: 1, or 4 or 8 for smooth edges.
         samples: u32,
     },
 }
@@ -29,7 +29,7 @@ impl Edges {
         Self::Exact { samples: 1 }
     }
 
-    /// Whether triangles decide, and not the filter.
+    /// Returns whether triangles decide, and not the filter.
     #[must_use]
     pub const fn is_exact(self) -> bool {
         matches!(self, Self::Exact { .. })

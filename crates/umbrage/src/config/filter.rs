@@ -1,10 +1,10 @@
-//! How a map is filtered, and how soft edges become.
+//! Filters of shadow maps, which decide how soft edges become.
 
 use super::names::{Word, named};
 use crate::margin::FilterReach;
 use crate::maths;
 
-/// How a map is filtered.
+/// Filter of a shadow map.
 ///
 /// Widths are full widths across the light in metres, equal in every split; `None` leaves the width
 /// to the filter, in texels.
@@ -30,17 +30,17 @@ pub enum Filter {
         width_m: Option<f64>,
     },
     /// Castaño's kernel of 5×5 texels, 1, 3, 4, 3, 1 per axis, blended linearly between texels
-    /// (\[Castano13\]): that of The Witness. Its width is five texels in every split.
+    /// (\[Castano13\]), as in The Witness. Its width is five texels in every split.
     Castano5,
-    /// A disc of 32 bilinear comparisons, of a radius of 3 texels if no width is given.
+    /// A disc of 32 bilinear comparisons. Its radius is 3 texels if no width is given.
     Disc {
         /// Full width in metres.
         width_m: Option<f64>,
         /// Rotates the kernel per pixel: noise instead of banding.
         rotated: bool,
     },
-    /// Percentage-closer soft shadows: a disc as wide as the sun's penumbra, which a search of 32
-    /// texels for blockers finds.
+    /// Percentage-closer soft shadows: a disc as wide as the sun's penumbra, whose width comes from
+    /// a search of 32 texels for blockers.
     Pcss {
         /// Angular diameter of the sun in degrees, 0 to 90.
         sun_degrees: f64,
@@ -54,21 +54,21 @@ pub enum Filter {
 /// A filter that stores moments of depth and blurs them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moments {
-    /// Which moments.
+    /// Kind of the moments.
     pub kind: MomentKind,
     /// Full width of the blur across the light in metres; `None` for 8 texels of the finest map.
     pub width_m: Option<f64>,
     /// Depth samples per texel, 1 or 4.
     pub samples: u32,
-    /// Share of light that counts as a leak and becomes shadow, 0 to 0.9. More hides leaks and
-    /// widens shadows.
+    /// Share of light that counts as a leak and becomes shadow, 0 to 0.9. A larger share hides more
+    /// leaks and widens shadows.
     pub bleeding: f64,
-    /// How the mip level is found at split borders.
+    /// Source of the derivatives that choose the mip level at split borders.
     pub derivatives: Derivatives,
 }
 
 impl Moments {
-    /// The kind with everything else at its default.
+    /// A filter of this kind with all other values at their defaults.
     #[must_use]
     pub const fn new(kind: MomentKind) -> Self {
         Self { kind, width_m: None, samples: 1, bleeding: 0.2, derivatives: Derivatives::Analytic }
@@ -76,7 +76,7 @@ impl Moments {
 }
 
 named! {
-    /// Which moments of depth a texel stores.
+    /// Moments of depth that a texel stores.
     pub enum MomentKind as "moment filter" {
         /// An exponential of depth: one moment
         Esm = "esm",
@@ -93,7 +93,8 @@ named! {
 }
 
 named! {
-    /// How a moment filter finds the mip level where neighbouring pixels use different splits.
+    /// Source of the derivatives by which a moment filter chooses the mip level where neighbouring
+    /// pixels use different splits.
     #[non_exhaustive]
     pub enum Derivatives as "source of derivatives" {
         /// By the change of position from pixel to pixel, which no border interrupts
@@ -104,10 +105,10 @@ named! {
     }
 }
 
-/// Angular diameter of the sun as seen from the earth, degrees.
+/// Angular diameter of the sun as seen from the earth, in degrees.
 pub const SUN_DEGREES: f64 = 0.53;
 
-/// Texels that a disc of no given width reaches: its radius of 3 and a tap's own.
+/// Reach in texels of a disc without a given width: its radius of 3 and the reach of a tap.
 const DISC_REACH: f64 = 4.0;
 
 /// Metres from a surface within which casters give it the full penumbra of the sun; equal
@@ -115,7 +116,7 @@ const DISC_REACH: f64 = 4.0;
 const MOST_BLOCKER_M: f64 = 200.0;
 
 impl Filter {
-    /// The word of each filter.
+    /// Word and help of each filter.
     pub const WORDS: &'static [Word] = &[
         Word { word: "hard", help: "One nearest texel, one comparison" },
         Word { word: "pcf2", help: "One bilinear comparison of 2×2 texels" },
@@ -165,7 +166,8 @@ impl Filter {
         }
     }
 
-    /// Farthest that the filter reads from the sample, in texels: the margin that every map keeps.
+    /// Reach of the filter in texels: the largest distance from the sample at which it reads. Every
+    /// map keeps a margin of this size.
     #[must_use]
     pub const fn radius_texels(&self) -> f64 {
         match self {
@@ -180,8 +182,8 @@ impl Filter {
         }
     }
 
-    /// Half the width of the filter's kernel in metres, where it is known: maps whose texels are
-    /// large keep a margin of so many metres instead of [`Filter::radius_texels`].
+    /// Half the width of the filter's kernel in metres, if it is known. Maps with large texels keep
+    /// a margin of so many metres instead of [`Filter::radius_texels`].
     #[must_use]
     pub fn radius_m(&self) -> Option<f64> {
         match *self {
@@ -191,7 +193,7 @@ impl Filter {
         }
     }
 
-    /// The full width in metres, for filters that have one to choose.
+    /// The full width in metres, if the filter's width can be chosen and is.
     #[must_use]
     pub const fn width_m(&self) -> Option<f64> {
         match *self {
@@ -202,13 +204,13 @@ impl Filter {
         }
     }
 
-    /// Whether the filter has a width to choose.
+    /// Returns whether the filter's width can be chosen.
     #[must_use]
     pub const fn has_width(&self) -> bool {
         !matches!(self, Self::Hard | Self::Pcf2 | Self::Castano5 | Self::Pcss { .. })
     }
 
-    /// The place of the width, for filters that have one to choose.
+    /// The width for writing, if the filter's width can be chosen.
     pub(crate) fn width_mut(&mut self) -> Option<&mut Option<f64>> {
         match self {
             Self::Pcf3 { width_m } | Self::Pcf5 { width_m } | Self::Pcf7 { width_m } => Some(width_m),
@@ -218,8 +220,8 @@ impl Filter {
         }
     }
 
-    /// What a fragment reads of one map: texels, or one filtered sample of moments. A pixel in a
-    /// blend band reads two maps.
+    /// Number of texels of one map that a fragment reads; 1 for one filtered sample of moments. A
+    /// pixel in a blend band reads two maps.
     #[must_use]
     pub const fn texels_read(&self) -> u32 {
         match self {
@@ -233,7 +235,7 @@ impl Filter {
         }
     }
 
-    /// Edge in texels of the smallest map that holds the filter once.
+    /// Edge in texels of the smallest map in which the filter fits.
     #[must_use]
     pub const fn least_map_size(&self) -> u32 {
         match self {
@@ -246,7 +248,7 @@ impl Filter {
         }
     }
 
-    /// Samples of depth in a texel of the maps that casters are drawn into.
+    /// Number of depth samples in a texel of the maps that casters are drawn into.
     #[must_use]
     pub const fn samples(&self) -> u32 {
         match self {
@@ -255,7 +257,8 @@ impl Filter {
         }
     }
 
-    /// Whether maps are turned into moments between drawing casters and asking for visibility.
+    /// Returns whether maps are converted to moments after casters are drawn and before receivers
+    /// are shaded.
     #[must_use]
     pub const fn is_prefiltered(&self) -> bool {
         matches!(self, Self::Moments(_))

@@ -1,16 +1,16 @@
-//! What each map's rectangle is fitted to, and how it is stabilised.
+//! Fit of each map's rectangle, and its stabilisation.
 
 use super::names::named;
 use crate::Warp;
 
 named! {
-    /// What a map is cropped to. Source: \[GG3-10\] section 10.3.
+    /// Region that a map is cropped to. Source: \[GG3-10\] section 10.3.
     ///
     /// A scene-independent map is cropped to the corners of its slice. Its near plane stays at the
-    /// scene's, so that no caster in between is lost. A scene-dependent one is cropped to the
-    /// receivers in its slice, and there to where casters can cast a shadow on them. Exactly
-    /// stabilised maps have the same rectangle either way: their depth and their list of casters
-    /// depend on the scene.
+    /// scene's, so that no caster in between is lost. A scene-dependent map is cropped to the part
+    /// of the receivers in its slice that casters can cast a shadow on. Exactly stabilised maps
+    /// have the same rectangle either way; only their depth range and list of casters depend on the
+    /// scene.
     #[non_exhaustive]
     pub enum Crop as "crop" {
         /// The slice, its receivers and its casters: scene-dependent
@@ -21,15 +21,15 @@ named! {
     }
 }
 
-/// How still shadows are while the camera moves.
+/// Stability of shadows while the camera moves.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Stability {
     /// The tightest map in every frame; edges crawl when the camera moves.
     Tight {
-        /// How maps spread their texels: empty for evenly, one for all, or one for each split. A
-        /// split gets its plain map where a warp has nothing to gain: with the light along the
-        /// view, or an orthographic camera.
+        /// Warps that spread the texels of maps: none, one for all maps, or one for each split. A
+        /// split gets its plain map where a warp gains nothing: with the light along the view, or
+        /// an orthographic camera.
         warps: Vec<Warp>,
     },
     /// The tight rectangle on axes that are fixed to the light, its extent rounded up to steps and
@@ -41,13 +41,13 @@ pub enum Stability {
         /// The steps of the extent.
         steps: ExtentSteps,
     },
-    /// A rectangle that depends on the lens and the scene's bounds alone, moved in whole texels:
-    /// static shadows do not change at all.
+    /// A rectangle that depends on the lens and the scene's bounds alone, moved in whole texels.
+    /// Static shadows do not change at all.
     Exact,
 }
 
 impl Stability {
-    /// The word of each kind of stability.
+    /// Word and help of each kind of stability.
     pub const WORDS: &'static [super::Word] = &[
         super::Word { word: "exact", help: "Static shadows do not change at all" },
         super::Word { word: "approximate", help: "Static shadows change in rare steps; sharper" },
@@ -60,7 +60,7 @@ impl Stability {
         Self::Tight { warps: Vec::new() }
     }
 
-    /// The word in config files and on the command line.
+    /// The kind's word in config files and on the command line.
     #[must_use]
     pub const fn word(&self) -> &'static str {
         match self {
@@ -78,17 +78,18 @@ impl Stability {
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum ExtentSteps {
-    /// Geometric steps of the extent in metres, this many per doubling: 4 to 64. Ours.
+    /// Geometric steps of the extent in metres, this many per doubling: 4 to 64. Not from a paper.
     ///
     /// 24 are steps of 2^(1/24), which is 2.9 %. A map is kept for one step of hysteresis, and may
-    /// lie along any of 16 directions that are fixed to the light. Finer steps are sharper and
-    /// taken more often.
+    /// lie along any of 16 directions that are fixed to the light. Finer steps make maps sharper
+    /// and are taken more often.
     PerDoubling(u32),
     /// This many equal steps of the unsplit light frustum: 8 to 4096. `s_q = 64 / ceil(64 / s)` for
-    /// 64 of them, as in \[PCSM\], Listing 4.1.2, to compare with.
+    /// 64 of them, as in \[PCSM\], Listing 4.1.2, for comparison.
     ///
     /// A near split of a long range uses only the first few levels. The unsplit frustum has to
-    /// stand still itself; the source does not say how, ours is the sphere around the whole range.
+    /// stand still itself; the source does not say how. Here it is the sphere around the whole
+    /// range.
     Levels(u32),
 }
 
@@ -99,13 +100,13 @@ impl Default for ExtentSteps {
 }
 
 named! {
-    /// What planes and maps are fitted to.
+    /// Geometry that planes and maps are fitted to.
     #[non_exhaustive]
     pub enum FitTo as "what maps are fitted to" {
         /// The boxes of the receivers in view
         #[default]
         Boxes = "boxes",
-        /// What the last frames' depth showed, if it is handed over; the last map serves the rest
+        /// The depth of the last frames, if it is handed over; the last map serves the rest
         Depth = "depth",
     }
 }

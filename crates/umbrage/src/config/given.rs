@@ -1,6 +1,7 @@
-//! Settings as text, as they were given, and why a value was refused.
+//! Settings given as text, and the reason why a value was refused.
 
-/// Settings as they were given: keys and values. A key given twice has its last value.
+/// Settings as keys and values, in the order in which they were given. If a key is given twice, its
+/// last value counts.
 #[derive(Clone, Copy, Debug)]
 pub struct Given<'a>(pub &'a [(String, String)]);
 
@@ -11,14 +12,14 @@ impl<'a> Given<'a> {
         self.0.iter().rev().find(|(given, _)| given == key).map(|(_, value)| value.as_str())
     }
 
-    /// Whether a key was given.
+    /// Returns whether a key was given.
     #[must_use]
     pub fn has(&self, key: &str) -> bool {
         self.value(key).is_some()
     }
 }
 
-/// Why a setting's value was refused.
+/// Reason why a setting's value was refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Wrong {
     /// The setting at fault, if it is not the one whose value is read.

@@ -1,9 +1,9 @@
-//! Where maps are stored, how they are drawn, and what a texel stores.
+//! Storage of maps, the passes that draw them, and the format of a texel.
 
 use super::names::named;
 
 named! {
-    /// What a texel of a map stores.
+    /// Format of a map's texels.
     pub enum DepthFormat as "depth format" {
         /// 32-bit float, 4 bytes
         #[default]
@@ -25,7 +25,8 @@ impl DepthFormat {
         }
     }
 
-    /// Whether maps are colours and not depth: casters then need a fragment shader.
+    /// Returns whether maps are colour textures and not depth textures: casters then need a
+    /// fragment shader.
     #[must_use]
     pub const fn is_colour(self) -> bool {
         matches!(self, Self::R32Float)
@@ -33,7 +34,7 @@ impl DepthFormat {
 }
 
 named! {
-    /// Where maps are stored.
+    /// Storage of maps in textures.
     pub enum Storage as "storage" {
         /// Layers of one texture
         #[default]
@@ -50,7 +51,7 @@ named! {
 }
 
 named! {
-    /// How maps are drawn.
+    /// Passes that draw the maps.
     pub enum Generation as "generation" {
         /// One pass for each split
         #[default]
@@ -67,7 +68,8 @@ named! {
 }
 
 named! {
-    /// Whether what static casters draw into a sun's maps is kept from frame to frame.
+    /// Cache mode of a sun's maps: the depth drawn by static casters may be kept from frame to
+    /// frame.
     #[non_exhaustive]
     pub enum Cache as "cache" {
         /// Every map is drawn again in every frame
@@ -78,7 +80,7 @@ named! {
     }
 }
 
-/// Where maps are stored and how they are drawn: the nine pairs that go together.
+/// Storage of maps and the passes that draw them: the nine pairs that go together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Layout {
@@ -92,7 +94,7 @@ pub enum Layout {
     Separate,
     /// Faces of a cube map, one pass for each split.
     Cube,
-    /// One map for one split after the other, with the picture drawn in between.
+    /// One map for one split after the other; the image is drawn slice by slice in between.
     Reused,
     /// Layers of one texture, several at once by multiview.
     LayeredArray,
@@ -118,7 +120,7 @@ impl Layout {
         Self::MixedArray,
     ];
 
-    /// Where maps are stored.
+    /// The storage of maps.
     #[must_use]
     pub const fn storage(self) -> Storage {
         match self {
@@ -130,7 +132,7 @@ impl Layout {
         }
     }
 
-    /// How maps are drawn.
+    /// The passes that draw the maps.
     #[must_use]
     pub const fn generation(self) -> Generation {
         match self {
@@ -150,18 +152,18 @@ impl Layout {
 }
 
 named! {
-    /// Whether unsupported features are replaced by supported ones.
+    /// Rule for unsupported features.
     pub enum Fallbacks as "rule for fallbacks" {
-        /// It is replaced, and a note says so
+        /// They are replaced by supported ones, and a note says so
         #[default]
         Allow = "allow",
-        /// It is an error
+        /// They are an error
         Forbid = "forbid",
     }
 }
 
 named! {
-    /// Where receivers take the coordinates in a map from.
+    /// Source of the coordinates at which receivers look up a map.
     pub enum Coordinates as "source of coordinates" {
         /// Each pixel makes them from its world position
         #[default]

@@ -2,7 +2,7 @@
 
 use crate::Light;
 
-/// What kind of light casts shadows.
+/// Kind of a light that casts shadows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LightKind {
     /// A sun: parallel light.
@@ -15,7 +15,7 @@ pub enum LightKind {
 }
 
 impl LightKind {
-    /// How many times the maps of [`ShadowConfig::map_sizes`] the light has.
+    /// Number of sets of [`crate::ShadowConfig::map_sizes`] maps: 6 for a point light, otherwise 1.
     #[must_use]
     pub const fn faces(self) -> usize {
         match self {
@@ -24,7 +24,7 @@ impl LightKind {
         }
     }
 
-    /// Whether the light has a position, as spot and point lights do.
+    /// Returns whether the light has a position, as spot and point lights do.
     #[must_use]
     pub const fn is_local(self) -> bool {
         !matches!(self, Self::Directional)

@@ -1,19 +1,20 @@
-//! What a shadow looks like, beside where it falls.
+//! Look of a shadow: everything but its shape.
 
 use super::names::named;
 
-/// What a shadow looks like.
+/// Look of a shadow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
-    /// How dark a shadow is, 0 (not at all) to 1 (no light).
+    /// Darkness of a shadow, 0 (none) to 1 (no light).
     pub strength: f64,
     /// Factor of the light in full shadow: linear red, green and blue, 0 to 1.
     pub colour: [f64; 3],
-    /// How receivers are prevented from shading themselves.
+    /// Method that keeps receivers from shading themselves.
     pub bias: ReceiverBias,
-    /// Whether translucent surfaces cast shadows.
+    /// Rule for shadows of translucent surfaces.
     pub translucent: Translucent,
-    /// Screen-space contact shadows: detail too small for the maps, from the picture's own depth.
+    /// True for screen-space contact shadows: detail too small for the maps, from the image's own
+    /// depth.
     pub contact: bool,
 }
 
@@ -30,8 +31,8 @@ impl Default for Look {
 }
 
 named! {
-    /// How a receiver is prevented from shading itself. Both ways follow from texel, slope and
-    /// filter width in metres and have no number to choose.
+    /// Method that keeps a receiver from shading itself. Both follow from texel, slope and filter
+    /// width in metres and have no parameter.
     pub enum ReceiverBias as "bias" {
         /// Each texel is compared with the surface's own plane
         #[default]
@@ -42,7 +43,7 @@ named! {
 }
 
 named! {
-    /// Whether translucent surfaces (glTF's alpha mode `BLEND`) cast shadows.
+    /// Rule for shadows of translucent surfaces (glTF's alpha mode `BLEND`).
     pub enum Translucent as "rule for translucent surfaces" {
         /// They cast none
         #[default]

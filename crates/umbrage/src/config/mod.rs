@@ -1,4 +1,4 @@
-//! A technique as a value: everything that can be chosen about shadows, in one type.
+//! All choices about shadows as one value.
 //!
 //! [`ShadowConfig`] is plain data. Choices that exclude each other inside one field cannot be
 //! written; the exclusions that are left between fields are [`RULES`]. Each choice also has a
@@ -51,7 +51,7 @@ use crate::bounds::MOST_METRES;
 use crate::margin::FilterReach;
 use crate::{Error, MAX_SPLITS, Result, Warp};
 
-/// Everything that can be chosen about shadows.
+/// All choices about shadows.
 ///
 /// The default is [`Preset::Balanced`]. Lengths are in metres and angles in degrees (elsewhere in
 /// this crate in radians).
@@ -66,49 +66,48 @@ use crate::{Error, MAX_SPLITS, Result, Warp};
 pub struct ShadowConfig {
     /// Edge of each split's map in texels, nearest split first: 1 to [`MAX_SPLITS`] entries.
     pub map_sizes: Vec<u32>,
-    /// Where the planes between splits are.
+    /// Scheme that places the planes between splits.
     pub scheme: SplitScheme,
     /// The view depths that shadows cover.
     pub range: Range,
-    /// Which split a point uses.
+    /// Rule by which a point selects its split.
     pub selection: Selection,
-    /// How neighbouring splits are joined.
+    /// Transition between neighbouring splits.
     pub transition: Transition,
     /// Share of the shadowed range, 0 to 1, over which shadows fade to lit at its far end. There is
-    /// no fade if nothing is visible beyond the range, as where the planner ends it with the
+    /// no fade if nothing is visible beyond the range, for example if the planner ends it with the
     /// receivers ([`Range::Camera`], [`Range::Visible`]).
     pub far_fade: f64,
-    /// What each map is cropped to.
+    /// Region that each map is cropped to.
     pub crop: Crop,
-    /// What planes and maps are fitted to. With [`FitTo::Depth`] and
-    /// [`crate::PlanInputs::seen`] all maps but the last serve what was seen alone: a wall before
-    /// the eye then takes no texels from what it shows. Not for spot and point lights, nor with
-    /// [`Stability::Exact`], whose maps show whole slices of the view.
+    /// Geometry that planes and maps are fitted to. With [`FitTo::Depth`] and
+    /// [`crate::PlanInputs::seen`], all maps but the last serve only the depth that was seen:
+    /// geometry hidden by a wall before the camera then takes no texels from visible geometry. A
+    /// rule excludes spot and point lights, and exactly stabilised maps, which show whole slices.
     pub fit_to: FitTo,
-    /// Whether shadows stand still while the camera moves.
+    /// Stability of shadows while the camera moves.
     pub stability: Stability,
-    /// Whether the maps of a sun omit casters whose whole shadow is smaller than half a texel along
-    /// both axes of the map, split by split. Such a caster covers one texel of the map or none;
-    /// which one changes with every step of the map. A warped map beside plain ones contains all
-    /// casters. Not for spot and point lights, nor where all maps are warped.
+    /// True if the maps of a sun omit casters whose whole shadow is smaller than half a texel along
+    /// both axes of the map, split by split. Such a caster covers one texel of the map or none, and
+    /// the texel changes with every step of the map. A warped map beside plain ones contains
+    /// all casters. A rule excludes spot and point lights, and configs whose maps are all warped.
     pub drop_small_casters: bool,
-    /// How a map is filtered.
+    /// Filter of the maps.
     pub filter: Filter,
-    /// What decides where a shadow ends.
+    /// Method that decides where a shadow's edge lies.
     pub edges: Edges,
-    /// What a texel of a map stores.
+    /// Format of the maps' texels.
     pub depth_format: DepthFormat,
-    /// Where maps are stored and how they are drawn.
+    /// Storage of maps and the passes that draw them.
     pub layout: Layout,
-    /// Whether what static casters draw into the maps is kept. Kept maps take about twice the
-    /// memory and need a [`crate::CasterSet`], which knows what is static; casters of a list are
-    /// drawn again in every frame.
+    /// Cache mode for static casters. Kept maps take about twice the memory and need a
+    /// [`crate::CasterSet`], which marks casters as static; those of lists are drawn every frame.
     pub cache: Cache,
-    /// Whether unsupported features are replaced by supported ones.
+    /// Rule for unsupported features.
     pub fallbacks: Fallbacks,
-    /// Where receivers take the coordinates in a map from.
+    /// Source of the coordinates at which receivers look up a map.
     pub coordinates: Coordinates,
-    /// What a shadow looks like.
+    /// Look of the shadows.
     pub look: Look,
 }
 
@@ -119,20 +118,20 @@ impl Default for ShadowConfig {
 }
 
 impl ShadowConfig {
-    /// The number of splits.
+    /// Number of splits.
     #[must_use]
     pub fn splits(&self) -> usize {
         self.map_sizes.len()
     }
 
-    /// Texels of all maps of one sun or spot light.
+    /// Number of texels of all maps of one sun or spot light.
     #[must_use]
     pub fn texels(&self) -> u64 {
         self.map_sizes.iter().map(|&edge| u64::from(edge) * u64::from(edge)).sum()
     }
 
-    /// Bytes of one texel, without the depth buffer beside a colour texture: its depth, and with
-    /// [`Edges::Exact`] its id, 4 bytes.
+    /// Bytes of one texel: its depth, and with [`Edges::Exact`] an id of 4 bytes. The depth buffer
+    /// beside a colour texture is not counted.
     #[must_use]
     pub const fn texel_bytes(&self) -> u64 {
         let id = match self.edges {
@@ -160,7 +159,7 @@ impl ShadowConfig {
         (0..self.splits()).map(|index| self.warp(index)).find(|warp| *warp != Warp::None)
     }
 
-    /// Whether maps keep their texels while the camera moves, exactly or approximately.
+    /// Returns whether maps keep their texels while the camera moves, exactly or approximately.
     #[must_use]
     pub fn is_stabilised(&self) -> bool {
         !matches!(self.stability, Stability::Tight { .. })
@@ -204,13 +203,12 @@ impl ShadowConfig {
         RULES.iter().find(|rule| rule.is_broken_by(self, lights)).map(|rule| rule.conflict(self))
     }
 
-    /// The first rule that a plan for this kind of light would break by a choice that it makes by
-    /// itself.
+    /// The first rule that a plan for this kind of light would break by its own choices.
     pub(crate) fn conflict_of_plan(&self, kind: LightKind) -> Option<Conflict> {
         Rule::of_plans().find(|rule| rule.is_broken_by(self, &[kind])).map(|rule| rule.conflict(self))
     }
 
-    /// Whether plans by this config are plans by the other, but for how far their filters reach.
+    /// Returns whether plans equal those of the other config, but for the reach of filters.
     pub(crate) fn plans_like(&self, other: &Self) -> bool {
         // All fields are named, so that a new one is asked whether plans depend on it.
         let Self {
@@ -258,9 +256,9 @@ impl ShadowConfig {
         (config, notes)
     }
 
-    /// The config of one light among others: a choice that each light's plan makes by itself, and
-    /// that excludes this kind of light, is replaced by the usual one. The second value names what
-    /// was replaced.
+    /// The config for one light among several. A choice that each light's plan makes by itself, and
+    /// that excludes this kind of light, is replaced by the usual one. The second value names the
+    /// replaced choices.
     #[must_use]
     pub fn for_light(&self, kind: LightKind) -> (Self, Vec<String>) {
         let (mut config, mut notes) = (self.clone(), Vec::new());
@@ -275,8 +273,8 @@ impl ShadowConfig {
         (config, notes)
     }
 
-    /// The config with other maps. What was given for each split, or each plane, and no longer fits
-    /// their number is replaced by the usual choice. The second value names what was replaced.
+    /// The config with other maps. Values given for each split or each plane that no longer fit the
+    /// number of maps are replaced by the usual choice. The second value names the replaced values.
     #[must_use]
     pub fn with_map_sizes(&self, map_sizes: &[u32]) -> (Self, Vec<String>) {
         let (mut config, mut notes) = (Self { map_sizes: map_sizes.to_vec(), ..self.clone() }, Vec::new());
@@ -313,7 +311,7 @@ impl ShadowConfig {
         local.map_or_else(|| self.clone(), |kind| self.for_light(kind).0).validate_for(lights)
     }
 
-    /// What a change from this config to another rebuilds at most, and the setting that requires
+    /// The most that a change from this config to another rebuilds, and the setting that requires
     /// it; `None` between equal configs.
     #[must_use]
     pub fn rebuilds(&self, other: &Self) -> Option<(Rebuilds, &'static str)> {

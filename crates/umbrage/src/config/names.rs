@@ -1,7 +1,7 @@
 //! Words for the values of plain enums: one list has the Rust name, the word and one line of help.
 
-/// Declares an enum without data whose values have a word each, in config files and on the command
-/// line.
+/// Declares an enum without data and a word for each of its values, for config files and the
+/// command line.
 ///
 /// The enum gets `ALL`, `WORDS` (word and help, in order), `word()`, `Display` and `FromStr`.
 macro_rules! named {
@@ -20,7 +20,7 @@ macro_rules! named {
         impl $name {
             /// All values, in the order of their declaration.
             pub const ALL: &'static [Self] = &[$(Self::$value),+];
-            /// The word of each value and what it means.
+            /// Word and help of each value.
             pub const WORDS: &'static [$crate::config::Word] =
                 &[$($crate::config::Word { word: $word, help: concat!($($help),+) }),+];
 
@@ -51,10 +51,10 @@ macro_rules! named {
 }
 pub(crate) use named;
 
-/// A word that a setting can be given, and what it means.
+/// A word that a setting takes as its value, and its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
-    /// As it is written in a config file and on the command line.
+    /// The word in config files and on the command line.
     pub word: &'static str,
     /// One line of explanation.
     pub help: &'static str,

@@ -7,7 +7,7 @@ use super::{
 };
 
 named! {
-    /// A config by name, and what it trades.
+    /// Preset configs by name, each with its trade-off.
     #[non_exhaustive]
     pub enum Preset as "preset" {
         /// Fewest texels and samples: 3 maps of 1024² and 2×2 texels per lookup

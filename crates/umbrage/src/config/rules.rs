@@ -1,5 +1,5 @@
-//! Which choices exclude each other, as data: messages, the documented table and the test of all
-//! pairs come from it.
+//! Pairs of choices that exclude each other, as data: messages, the documented table and the test
+//! of all pairs come from this list.
 
 use std::fmt;
 
@@ -13,9 +13,9 @@ pub struct Rule {
     pub first: Choice,
     /// The other choice.
     pub second: Choice,
-    /// Why they exclude each other.
+    /// Reason why they exclude each other.
     pub reason: &'static str,
-    /// What to do.
+    /// Remedy.
     pub remedy: &'static str,
 }
 
@@ -275,13 +275,13 @@ const fn rule(first: Choice, second: Choice, reason: &'static str, remedy: &'sta
 }
 
 impl Rule {
-    /// Whether a config for these lights makes both choices.
+    /// Returns whether a config for these lights makes both choices.
     #[must_use]
     pub fn is_broken_by(&self, config: &ShadowConfig, lights: &[LightKind]) -> bool {
         self.first.holds(config, lights) && self.second.holds(config, lights)
     }
 
-    /// Whether one of both choices is one of lights, which a config does not hold.
+    /// Returns whether the second choice is about lights, which are not part of a config.
     #[must_use]
     pub const fn is_about_lights(&self) -> bool {
         matches!(self.second, Choice::LocalLight | Choice::SeveralFaces)
@@ -292,7 +292,7 @@ impl Rule {
         RULES.iter().filter(|rule| rule.is_about_lights() && rule.first.is_per_light())
     }
 
-    /// The rule in the words of a config that breaks it.
+    /// The conflict in the words of a config that breaks the rule.
     #[must_use]
     pub fn conflict(&self, config: &ShadowConfig) -> Conflict {
         Conflict { rule: *self, first: self.first.say(config), second: self.second.say(config) }

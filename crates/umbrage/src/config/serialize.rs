@@ -19,7 +19,7 @@ impl Serialize for Value {
 }
 
 impl Serialize for ShadowConfig {
-    /// Every setting that the config has, under its key.
+    /// Writes every setting that the config has, under its key.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let settings = self.settings();
         let mut map = serializer.serialize_map(Some(settings.len()))?;
@@ -31,7 +31,7 @@ impl Serialize for ShadowConfig {
 }
 
 impl<'de> Deserialize<'de> for ShadowConfig {
-    /// Settings over the default, or over the preset that `preset` names.
+    /// Reads settings over the default config, or over the preset that `preset` names.
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_map(Settings)
     }

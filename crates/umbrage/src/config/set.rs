@@ -1,4 +1,4 @@
-//! What each key's value does to a config, beside the other keys that were given.
+//! Effect of each key's value on a config, given all other keys.
 
 use super::given::{Given, Wrong, refuse, refuse_other};
 use super::names::unknown;
@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{MAX_SPLITS, Warp};
 
-/// Share of a split that blends if no other is given.
+/// Share of a split that blends if no share is given.
 const USUAL_BLEND: f64 = 0.1;
 
 /// Checks a word against the list of its key.

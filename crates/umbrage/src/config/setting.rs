@@ -1,4 +1,4 @@
-//! What a setting is: a key, the values that it takes, and what a change of it costs.
+//! Settings: a key, the values that it takes, and the cost of a change.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use super::given::{Given, Wrong};
 use super::names::Word;
 use super::{ShadowConfig, text};
 
-/// One choice of a [`ShadowConfig`].
+/// One choice of a [`ShadowConfig`], as a key with a value.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Setting {
@@ -14,57 +14,55 @@ pub struct Setting {
     pub key: &'static str,
     /// One line of explanation.
     pub help: &'static str,
-    /// What values it takes.
+    /// Kind of values that the setting takes.
     pub kind: Kind,
-    /// What an application rebuilds when the setting changes.
+    /// Resources that an application rebuilds when the setting changes.
     pub rebuilds: Rebuilds,
     pub(super) set: fn(&mut ShadowConfig, &str, &Given<'_>) -> Result<(), Wrong>,
     pub(super) get: fn(&ShadowConfig) -> Option<Value>,
 }
 
 impl Setting {
-    /// The setting's value in a config; `None` where the config's other choices leave no room for
-    /// it.
+    /// The setting's value in a config; `None` if other choices of the config exclude the setting.
     #[must_use]
     pub fn get(&self, config: &ShadowConfig) -> Option<Value> {
         (self.get)(config)
     }
 }
 
-/// What values a setting takes.
+/// Kind of values that a setting takes.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
     /// One of a list of words.
     Words(&'static [Word]),
-    /// Words with commas between, one for all splits or one for each.
+    /// Words separated by commas, one for all splits or one for each.
     WordList(&'static [Word]),
-    /// A number from 0 to the given most.
+    /// A number from 0 to this maximum.
     Share(f64),
     /// Metres, above 0.
     Metres,
-    /// Metres with commas between.
+    /// Lengths in metres, separated by commas.
     MetresList,
     /// Two view depths in metres, `N..F`.
     Range,
-    /// Degrees, from 0 to the given most.
+    /// Degrees, from 0 to this maximum.
     Degrees(f64),
     /// A whole number between two bounds.
     Count(u32, u32),
     /// One of a few whole numbers.
     CountOf(&'static [u32]),
-    /// Texels with commas between, one for all splits or one for each.
+    /// Texels separated by commas, one number for all splits or one for each.
     Texels,
     /// Linear red, green and blue, 0 to 1 each.
     Colour,
-    /// `on` or `off`; `true` and `false` are read too.
+    /// `on` or `off`; `true` and `false` are also read.
     Switch,
 }
 
 impl Kind {
     /// Checks a value alone, without regard to other settings.
     ///
-    /// # Errors
-    /// What is wrong with the value and what to give instead.
+    /// The problem with the value, and the values that are allowed.
     pub fn check(&self, text: &str) -> Result<(), String> {
         let within = |value: f64, most: f64| {
             if (0.0..=most).contains(&value) {
@@ -122,10 +120,10 @@ impl Kind {
     }
 }
 
-/// What a change of a setting rebuilds.
+/// Resources that a change of a setting rebuilds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Rebuilds {
-    /// Nothing: the next frame has it.
+    /// Nothing: the change takes effect with the next frame.
     Nothing,
     /// Textures and bind groups. Pipelines stay valid.
     Maps,

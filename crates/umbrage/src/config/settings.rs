@@ -1,5 +1,5 @@
-//! Every choice of a [`ShadowConfig`] as a setting with a key: what config files, the command line,
-//! reports and a viewer's controls share.
+//! Every choice of a [`ShadowConfig`] as a setting with a key, shared by config files, the command
+//! line, reports and a viewer's controls.
 
 use super::given::Wrong;
 use super::setting::{Kind, Rebuilds, Setting, Value};
@@ -10,7 +10,7 @@ use super::{
 use super::{set, text, words};
 use crate::Warp;
 
-/// The setting of this key.
+/// The setting with this key.
 pub(super) fn find(key: &str) -> Option<&'static Setting> {
     SETTINGS.iter().find(|setting| setting.key == key)
 }

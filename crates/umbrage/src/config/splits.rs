@@ -1,10 +1,10 @@
-//! Where the shadowed range lies, where it is divided, and which split a point uses.
+//! The shadowed range, the planes that divide it, and the rule by which a point selects its split.
 
 use super::names::named;
 use crate::bounds::{LEAST_METRES, MOST_METRES};
 use crate::{Error, Result};
 
-/// Where the planes between splits are.
+/// Scheme that places the planes between splits.
 ///
 /// `n` and `f` are the ends of the shadowed range, `m` is the number of splits. Source: \[PSSM06\]
 /// section 3.
@@ -20,13 +20,13 @@ pub enum SplitScheme {
         /// Share of the logarithmic scheme, 0 to 1.
         lambda: f64,
         /// Metres added to the inner planes `C_1 .. C_{m−1}`: none, one for all, or one for each.
-        /// The source adds δ to all planes, which would move near and far; ours moves the inner
+        /// The source adds δ to all planes, which would move near and far; here it moves the inner
         /// ones.
         delta: Vec<f64>,
     },
-    /// Inner planes `C_1 .. C_{m−1}` as view depths in metres, rising strictly.
+    /// Inner planes `C_1 .. C_{m−1}` as view depths in metres, strictly rising.
     Manual {
-        /// One plane fewer than there are splits.
+        /// The planes: one fewer than there are splits.
         planes: Vec<f64>,
     },
     /// The planes of least predicted error, among some forty depths of the view.
@@ -34,12 +34,13 @@ pub enum SplitScheme {
     /// The prediction uses the boxes of casters and receivers, the map sizes and the crop; it
     /// treats warped maps as plain ones. Stabilised maps keep their planes until a set of planes
     /// with an error a third smaller is found; then all planes move in one frame. Needs a
-    /// directional light and a scene: [`crate::split_planes`] alone cannot place them. Ours.
+    /// directional light and a scene: [`crate::split_planes`] alone cannot place them. Not from a
+    /// paper.
     Optimal,
 }
 
 impl SplitScheme {
-    /// The word of each scheme.
+    /// Word and help of each scheme.
     pub const WORDS: &'static [super::Word] = &[
         super::Word { word: "uniform", help: "Slices of equal depth" },
         super::Word { word: "log", help: "Slices of equal ratio" },
@@ -60,26 +61,27 @@ impl SplitScheme {
         }
     }
 
-    /// The practical scheme at its usual mix, λ = 0.5.
+    /// The practical scheme with the usual mix, λ = 0.5.
     #[must_use]
     pub const fn practical() -> Self {
         Self::Practical { lambda: 0.5, delta: Vec::new() }
     }
 }
 
-/// The view depths that shadows cover.
+/// Range of view depths that shadows cover.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Range {
     /// The camera's near and far planes; far is capped by the receivers and by 1.5 times the depth
     /// of the deepest shadow.
     ///
     /// The near plane of an orthographic camera moves up to the scene. Receivers far beyond all
-    /// others are ignored if together they fill less than 0.01 % of the picture: they are lit.
+    /// others are ignored if they together fill less than 0.01 % of the image: they are lit.
     ///
     /// With [`super::Stability::Exact`] far is capped by distance instead of depth, so that turning
     /// does not change it, and rounded up in steps of 9 % that move the last plane only. The inner
     /// planes follow once a view needs √2 times the depth that they were placed for; the range ends
-    /// at √2 times that depth at most. While the camera stands still, both return to what a new
+    /// at √2 times that depth at most. While the camera stands still, both return to the choice of
+    /// a new planner.
     /// planner would choose.
     Camera,
     /// The view depths between which the view shows receivers, by their boxes clipped to the
@@ -90,17 +92,17 @@ pub enum Range {
     /// hysteresis, and keep them in between. Best with the logarithmic and the optimal scheme
     /// (`docs/notes/fitted-planes.md`).
     Visible,
-    /// View depths in metres. Receivers nearer than the first use split 0; beyond the second they
-    /// are lit.
+    /// View depths in metres. Receivers nearer than the first use split 0; receivers beyond the
+    /// second are lit.
     Metres {
-        /// Where the first split begins.
+        /// Begin of the first split.
         near: f64,
-        /// Where the last split ends.
+        /// End of the last split.
         far: f64,
     },
 }
 
-/// Which split a point uses.
+/// Rule by which a point selects its split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Selection {
     /// Interval-based: the split between whose planes the point lies, as in the papers.
@@ -116,11 +118,10 @@ pub enum Selection {
 }
 
 impl Selection {
-    /// By the planes between splits, which measure view depth.
+    /// Selection by the planes between splits, which measure view depth.
     pub const VIEW_DEPTH: Self = Self::Interval(SplitMetric::ViewDepth);
 
-    /// What the planes between splits are measured in; view depth where maps are chosen by what
-    /// they contain.
+    /// Measure of the planes between splits; view depth for [`Selection::Map`].
     #[must_use]
     pub const fn metric(self) -> SplitMetric {
         match self {
@@ -131,12 +132,12 @@ impl Selection {
 }
 
 named! {
-    /// What the planes between splits are measured in.
+    /// Measure of the planes between splits.
     ///
     /// By distance, a camera that only turns changes no point's split. All depths of the config and
-    /// the plan that are view depths otherwise are then distances, except for
-    /// [`crate::Split::coverage`]. Maps grow by the ratio of distance to
-    /// view depth in the corners of the view. Distance needs a perspective camera.
+    /// the plan that are otherwise view depths are then distances, except for
+    /// [`crate::Split::coverage`]. Maps grow by the ratio of distance to view depth in the corners
+    /// of the view. Distance needs a perspective camera.
     pub enum SplitMetric as "split metric" {
         /// View depth: planes across the line of sight
         #[default]
@@ -146,9 +147,9 @@ named! {
     }
 }
 
-/// How neighbouring splits are joined.
+/// Transition between neighbouring splits.
 ///
-/// The share is of the split's depth, or with [`Selection::Map`] of the map's half edge.
+/// The share refers to the split's depth, or with [`Selection::Map`] to the map's half edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Transition {
     /// No band: each point uses one split.
@@ -158,7 +159,7 @@ pub enum Transition {
         /// Width of the band as a share, above 0 and at most 1.
         share: f64,
     },
-    /// Each pixel of a band samples one of both splits, chosen by noise, for half the samples.
+    /// Each pixel of a band samples only one of the two splits, chosen by noise: half the samples.
     Dither {
         /// Width of the band as a share, above 0 and at most 1.
         share: f64,
@@ -176,7 +177,7 @@ impl Transition {
     }
 }
 
-/// Checks two view depths in metres that shadows are to cover.
+/// Checks the two view depths of a range in metres.
 pub(crate) fn check_range(near: f64, far: f64) -> Result<()> {
     if !(LEAST_METRES..=MOST_METRES).contains(&near) {
         return Err(Error::setting(

@@ -2,28 +2,28 @@
 
 use super::names::unknown;
 
-/// A finite number.
+/// Reads a finite number.
 pub(super) fn number(text: &str) -> Result<f64, String> {
     let value: f64 = text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?;
     if value.is_finite() { Ok(value) } else { Err(format!("{value} is not a finite number")) }
 }
 
-/// Finite numbers with commas between.
+/// Reads finite numbers separated by commas.
 pub(super) fn numbers(text: &str) -> Result<Vec<f64>, String> {
     text.split(',').map(number).collect()
 }
 
-/// A whole number.
+/// Reads a whole number.
 pub(super) fn count(text: &str) -> Result<u32, String> {
     text.trim().parse().map_err(|_| format!("{text:?} is not a whole number"))
 }
 
-/// A choice of whole numbers, `1 or 4`, for a message.
+/// Writes a choice of whole numbers, `1 or 4`, for a message.
 pub(super) fn choice(counts: &[u32]) -> String {
     counts.iter().map(u32::to_string).collect::<Vec<_>>().join(" or ")
 }
 
-/// `on`, `off`, `true` or `false`.
+/// Reads `on`, `off`, `true` or `false`.
 pub(super) fn switch(text: &str) -> Result<bool, String> {
     match text {
         "on" | "true" => Ok(true),
@@ -32,12 +32,12 @@ pub(super) fn switch(text: &str) -> Result<bool, String> {
     }
 }
 
-/// One of a list of words.
+/// Checks that a text is one of a list of words.
 pub(super) fn one_of(text: &str, words: &[super::Word]) -> Result<(), String> {
     if words.iter().any(|word| word.word == text) { Ok(()) } else { Err(unknown("value", text, words)) }
 }
 
-/// Two view depths in metres, `N..F`, rising from above 0.
+/// Reads two view depths in metres, `N..F`, rising from above 0.
 pub(super) fn range(text: &str) -> Result<(f64, f64), String> {
     let (near, far) =
         text.split_once("..").ok_or_else(|| format!("{text:?} is not a range; give N..F in metres, such as 1..800"))?;
@@ -48,7 +48,7 @@ pub(super) fn range(text: &str) -> Result<(f64, f64), String> {
     }
 }
 
-/// Edges of maps in texels.
+/// Reads edges of maps in texels.
 pub(super) fn map_sizes(text: &str) -> Result<Vec<u32>, String> {
     text.split(',')
         .map(|edge| match count(edge) {

@@ -3,7 +3,7 @@
 use super::names::{Word, unknown};
 use super::{Generation, Storage};
 
-/// The words of techniques: splits, or one map with a warp.
+/// Words of techniques: splits, or one map with a warp.
 pub(super) const TECHNIQUES: &[Word] = &[
     Word { word: "pssm", help: "Parallel-split shadow maps" },
     Word { word: "ssm", help: "One map over the whole range" },
@@ -12,26 +12,26 @@ pub(super) const TECHNIQUES: &[Word] = &[
     Word { word: "tsm", help: "One trapezoidal shadow map" },
 ];
 
-/// The words of the range that maps cover.
+/// Words of the shadowed range.
 pub(super) const RANGE_FITS: &[Word] = &[
     Word { word: "camera", help: "The camera's near and far, far capped by the scene" },
     Word { word: "visible", help: "The nearest and the farthest thing in view" },
 ];
 
-/// The words of how a point finds its split.
+/// Words of the rule by which a point selects its split.
 pub(super) const SELECTIONS: &[Word] = &[
     Word { word: "depth", help: "Interval-based: by the planes between splits" },
     Word { word: "map", help: "Map-based: the first map that contains the point" },
 ];
 
-/// The words of the border between splits.
+/// Words of the transition between splits.
 pub(super) const TRANSITIONS: &[Word] = &[
     Word { word: "blend", help: "Both splits are mixed over a band" },
     Word { word: "dither", help: "Each pixel of a band uses one of both splits, by noise" },
     Word { word: "hard", help: "No band" },
 ];
 
-/// The words of how maps are drawn.
+/// Words of the passes that draw maps.
 pub(super) const GENERATIONS: &[Word] = &[
     Word { word: "auto", help: "Whatever suits the storage" },
     Word { word: "multipass", help: "Map and picture slice by slice, one map for all" },
@@ -41,7 +41,7 @@ pub(super) const GENERATIONS: &[Word] = &[
     Word { word: "mixed", help: "All splits at once: tiles in layers" },
 ];
 
-/// The words of how maps are stored.
+/// Words of the storage of maps.
 pub(super) const STORAGES: &[Word] = &[
     Word { word: "auto", help: "Whatever suits the generation" },
     Word { word: "array", help: "Layers of one texture" },

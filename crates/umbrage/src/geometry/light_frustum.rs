@@ -1,4 +1,4 @@
-//! What a local light shines into, and the part of it that a map has to show.
+//! The frustum of a local light, and the part of it that a map has to show.
 
 use glam::{DMat4, DVec2, DVec3};
 
@@ -7,11 +7,11 @@ use crate::bounds::Placed;
 use crate::light::map_axes;
 use crate::{Aabb, PointLight, SpotLight, maths};
 
-/// The least share of a map's longer edge that its shorter one is, for receivers that the light
-/// sees edge-on.
+/// Least ratio of a map's shorter edge to its longer one, for receivers that the light sees
+/// edge-on.
 const LEAST_EDGE: f64 = 1e-3;
 
-/// What a spot light shines into, or one face of a point light: a square pyramid, from `near` to
+/// Frustum of a spot light, or of one face of a point light: a square pyramid, from `near` to
 /// `range` along its axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LightFrustum {
@@ -38,13 +38,13 @@ pub(crate) struct Part {
 }
 
 impl LightFrustum {
-    /// All that a spot light shines into.
+    /// The frustum of a spot light.
     pub fn of_spot(light: &SpotLight) -> Self {
         let slope = maths::tan(light.outer_angle());
         Self::new(light.position(), light.direction(), slope, (light.near(), light.range()))
     }
 
-    /// The part of a point light's surroundings around one of [`Light::FACE_AXES`].
+    /// The frustum of a point light around one of [`Light::FACE_AXES`].
     pub fn of_face(light: &PointLight, axis: DVec3) -> Self {
         Self::new(light.position(), axis, 1.0, (light.near(), light.range()))
     }
@@ -68,8 +68,8 @@ impl LightFrustum {
         self.depth(placed.center) - self.axis.abs().dot(placed.half)
     }
 
-    /// Whether any of a box may lie in the frustum, widened by `margin` metres, from the light's
-    /// very place on.
+    /// Returns whether any part of a box may lie in the frustum, widened by `margin` metres and
+    /// extended to the light's position.
     pub fn may_meet(&self, placed: &Placed, margin: f64) -> bool {
         let nearest = self.position.clamp(placed.center - placed.half, placed.center + placed.half);
         nearest.distance(self.position) <= self.range + margin
@@ -77,14 +77,14 @@ impl LightFrustum {
             && self.depth(placed.center) + self.axis.abs().dot(placed.half) >= 0.0
     }
 
-    /// The place of a point in front of the light.
+    /// Projects a point in front of the light to tangents along u and v.
     fn project(&self, point: DVec3) -> DVec2 {
         let from_light = point - self.position;
         DVec2::new(self.u.dot(from_light), self.v.dot(from_light)) / self.axis.dot(from_light)
     }
 
-    /// What a map shows of a caster: its bounds within those of `part`, and the depth of its first
-    /// point. One that comes nearer than `near` may be anywhere.
+    /// Extent of a caster in a map: its bounds within those of `part`, and the depth of its nearest
+    /// point. A caster that comes nearer than `near` gets all of `part`.
     pub fn seen(&self, caster: &Placed, part: &Part) -> (DVec2, DVec2, f64) {
         let first = self.nearest_depth(caster);
         if first < self.near {
@@ -98,7 +98,7 @@ impl LightFrustum {
         (lo.clamp(part.lo, part.hi), hi.clamp(part.lo, part.hi), first)
     }
 
-    /// All of it, for splits in which nothing is seen.
+    /// The whole frustum, for splits in which nothing is seen.
     pub fn whole(&self) -> Part {
         Part {
             lo: DVec2::splat(-self.slope),
@@ -109,8 +109,8 @@ impl LightFrustum {
         }
     }
 
-    /// To shadow NDC, with w the depth along the axis in metres and `z/w = far/(far − near) − near
-    /// far/((far − near) w)`.
+    /// Matrix to shadow NDC, with w the depth along the axis in metres and `z/w = far/(far − near)
+    /// − near far/((far − near) w)`.
     pub fn shadow_from_world(&self, texel: DVec2, min_texel: DVec2, size: u32, (near, far): (f64, f64)) -> DMat4 {
         let half = 0.5 * f64::from(size);
         let row = |axis: DVec3, constant: f64| axis.extend(constant - axis.dot(self.position));
@@ -138,7 +138,7 @@ impl Part {
         self.far < self.near
     }
 
-    /// Takes a point of the light's frustum.
+    /// Includes a point of the light's frustum.
     pub fn include(&mut self, frustum: &LightFrustum, point: DVec3) {
         // Clipping rounds; the frustum itself ends at `near`.
         let depth = frustum.depth(point).max(0.5 * frustum.near);
@@ -148,7 +148,7 @@ impl Part {
         self.bounds = self.bounds.including(point);
     }
 
-    /// Width and height in units of the tangent; never quite nothing.
+    /// Width and height in units of the tangent; never zero.
     pub fn extent(&self) -> DVec2 {
         let extent = (self.hi - self.lo).max(DVec2::ZERO);
         extent.max(DVec2::splat(LEAST_EDGE * extent.max_element().max(LEAST_EDGE)))

@@ -1,10 +1,10 @@
-//! Where the receivers of a split lie along the light: what has none of them behind it casts no
-//! shadow that anybody sees.
+//! Mask of the receivers of a split along the light. A caster without a receiver behind it casts no
+//! visible shadow.
 //!
 //! Source: Bittner, Mattausch, Silvennoinen and Wimmer, *Shadow Caster Culling for Efficient Shadow
-//! Mapping*, I3D 2011. They draw the receivers into a mask on the GPU and ask it by occlusion
-//! queries; ours is a small grid on the CPU, made from boxes, so that it is known before anything
-//! is drawn.
+//! Mapping*, I3D 2011. They draw the receivers into a mask on the GPU and test it by occlusion
+//! queries. Here it is a small grid on the CPU, made from boxes, so that it is known before
+//! anything is drawn.
 
 use glam::{DVec2, DVec3};
 
@@ -14,37 +14,37 @@ use crate::{Aabb, CasterMask};
 /// Cells along each edge of the grid.
 pub(crate) const CELLS: usize = 64;
 
-/// Steepest receiver, as depth along the light over length across it, whose plane a filter is
-/// followed along beyond the receiver's own box.
+/// Steepest receiver, as depth along the light over length across it, whose plane a filter follows
+/// beyond the receiver's own box.
 const STEEPEST: f64 = 4.0;
 
-/// A world axis that the light crosses is least steep to where its rise over one metre of the axis
-/// is at least this.
+/// Least rise of the light over one metre of a world axis for which the axis may serve as the axis
+/// of heights.
 const LEAST_RISE: f64 = 0.1;
 
-/// A grid across the light that holds, cell by cell, how far down the light the receivers of a
-/// split reach.
+/// A grid across the light that stores in each cell how far down the light the receivers of a split
+/// reach.
 ///
 /// The grid lies in a plane square to a world axis and is looked at along the light, so that a box
 /// that is flat along this axis, a piece of ground, has the same height everywhere: *height* is the
 /// coordinate along that axis, counted towards the light.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct ReceiverMask {
-    /// World axes: the one of heights and those of the grid.
+    /// World axes: that of heights, then those of the grid.
     axes: [usize; 3],
-    /// 1 or −1: height is `sign` times the coordinate.
+    /// Sign, 1 or −1: height is `sign` times the coordinate.
     sign: f64,
-    /// How far a ray of light moves along the grid's axes per unit of height.
+    /// Distance that a ray of light moves along the grid's axes per unit of height.
     slope: DVec2,
     begin: DVec2,
     cell: DVec2,
-    /// The least height of a receiver, row after row; infinite where there is none.
+    /// Least heights of receivers, row after row; infinite for a cell without receivers.
     lowest: Vec<f32>,
 }
 
 impl ReceiverMask {
-    /// The mask of what lies in `slice` of the boxes `parts`; `bounds` is around all of that.
-    /// Filters reach `margin` metres.
+    /// Fills the mask with the parts of the boxes `parts` that lie in `slice`; `bounds` is around
+    /// all of them. Filters reach `margin` metres.
     pub fn fill(&mut self, slice: &Slice, bounds: &Aabb, parts: &[Aabb], direction: DVec3, margin: f64) {
         let extent = bounds.max - bounds.min;
         let crossed_fast = |axis: usize| match direction[axis].abs() {
@@ -111,7 +111,8 @@ impl ReceiverMask {
         }
     }
 
-    /// Whether a receiver lies behind any part of a box (conservatively), as the light sees it.
+    /// Returns whether a receiver lies behind any part of a box as seen from the light
+    /// (conservative).
     pub fn lies_before_some(&self, center: DVec3, half: DVec3) -> bool {
         let (lo, hi) = self.footprint(center, half);
         let Some([columns, mut rows]) = self.cells(lo, hi) else { return false };
@@ -128,7 +129,7 @@ impl ReceiverMask {
         self.sign * point[self.axes[0]]
     }
 
-    /// Where the ray of light through a point crosses height 0.
+    /// The point where the ray of light through `point` crosses height 0.
     fn on_grid(&self, point: DVec3) -> DVec2 {
         DVec2::new(point[self.axes[1]], point[self.axes[2]]) + self.slope * self.height(point)
     }
@@ -157,8 +158,8 @@ impl ReceiverMask {
         (lo - reach, lo + self.cell + reach)
     }
 
-    /// Lowest and highest a box gets over a cell; the first is above the second where it does not
-    /// get there.
+    /// Lowest and highest height of a box over a cell. The first is above the second if the box is
+    /// nowhere over the cell.
     fn heights_of_box(&self, center: DVec3, half: DVec3, column: usize, row: usize, reach: f64) -> (f64, f64) {
         let (lo, hi) = self.rectangle(column, row, reach);
         let (middle, thickness) = (self.height(center), half[self.axes[0]]);

@@ -1,4 +1,4 @@
-//! The part of a map's plane that matters, as bounds along a fan of directions (a k-DOP).
+//! The relevant part of a map's plane, as bounds along a fan of directions (a k-DOP).
 
 use glam::{DVec2, DVec3};
 
@@ -6,15 +6,15 @@ use super::volume::Lies;
 use crate::bounds::Placed;
 use crate::maths;
 
-/// Directions over half a turn. A map's rectangle may stand on any pair that is a quarter turn
-/// apart, so the step between candidate rectangles is 180° / 32 = 5.6°, which costs at most 5 % of
-/// an edge against the smallest rectangle of all.
+/// Number of directions over half a turn. A map's rectangle may stand on any pair that is a quarter
+/// turn apart, so the step between candidate rectangles is 180° / 32 = 5.6°, which costs at most 5
+/// % of an edge against the smallest rectangle of all.
 pub(crate) const DIRECTIONS: usize = 32;
 
 /// Share of a coordinate by which rounding may move the bounds of a box, with room to spare.
 const ROUNDING: f64 = 1e-13;
 
-/// Directions to a quarter turn.
+/// Number of directions in a quarter turn.
 const QUARTER: usize = DIRECTIONS / 2;
 
 /// World vectors in the light's plane, [`DIRECTIONS`] over half a turn, and the light's depth axis.
@@ -26,12 +26,12 @@ pub(crate) struct Fan {
     axes: [[f64; DIRECTIONS]; 3],
 }
 
-/// What a box measures along every direction of a fan.
+/// Extent of a box along every direction of a fan: middles and half lengths.
 type Spans = ([f64; DIRECTIONS], [f64; DIRECTIONS]);
 
 impl Fan {
-    /// The first direction is `first` (a unit vector of the light's plane), the others follow
-    /// towards `first + 90°`.
+    /// A fan whose first direction is `first` (a unit vector of the light's plane). The others
+    /// follow towards `first + 90°`.
     pub fn new(first: DVec3, depth: DVec3) -> Self {
         let second = depth.cross(first);
         let directions = std::array::from_fn(|i| {
@@ -42,8 +42,8 @@ impl Fan {
         Self { directions, depth, axes }
     }
 
-    /// Where the middle of a box lies along every direction, and half of what the box measures
-    /// there.
+    /// Position of a box's centre along every direction, and half the length of the box in that
+    /// direction.
     fn spans(&self, center: DVec3, half: DVec3) -> Spans {
         let [x, y, z] = &self.axes;
         let (mut at, mut reach) = ([0.0; DIRECTIONS], [0.0; DIRECTIONS]);
@@ -108,15 +108,15 @@ impl Region {
         self.depth = (self.depth.0.min(other.depth.0), self.depth.1.max(other.depth.1));
     }
 
-    /// This region with each bound moved into `limits`, depth left as it is.
+    /// This region with each bound clamped to `limits`; depth is unchanged.
     pub fn within(&self, limits: &Self) -> Self {
         let bound = |own: &[f64; DIRECTIONS]| std::array::from_fn(|k| own[k].clamp(limits.lo[k], limits.hi[k]));
         Self { lo: bound(&self.lo), hi: bound(&self.hi), depth: self.depth }
     }
 
-    /// Whether the box lies inside in every direction and in depth, so that including any part of
-    /// it changes nothing. One that touches the bounds does not: rounding might carry a part of it
-    /// over them.
+    /// Returns whether the box lies inside in every direction and in depth, so that including any
+    /// part of it changes nothing. A box that touches the bounds does not lie inside: rounding
+    /// might carry a part of it over them.
     pub fn encloses_box(&self, fan: &Fan, center: DVec3, half: DVec3) -> bool {
         let room = ROUNDING * (center.abs() + half).element_sum();
         let (depth, reach) = (fan.depth.dot(center), fan.depth.abs().dot(half) + room);
@@ -131,8 +131,8 @@ impl Region {
         !(0..DIRECTIONS).fold(false, |any, k| any | sticks_out(k))
     }
 
-    /// Whether a box comes within `margin` metres in the light's plane and does not lie behind
-    /// everything.
+    /// Returns whether a box comes within `margin` metres in the light's plane and does not lie
+    /// behind all of the region.
     pub fn can_be_shadowed_by(&self, fan: &Fan, center: DVec3, half: DVec3, margin: f64) -> bool {
         if fan.depth.dot(center) - fan.depth.abs().dot(half) > self.depth.1 {
             return false;
@@ -145,8 +145,8 @@ impl Region {
         !(0..DIRECTIONS).fold(false, |any, k| any | is_beside(k))
     }
 
-    /// How the boxes in a box lie to what comes within `margin` metres in the light's plane and
-    /// does not lie behind everything: [`Region::can_be_shadowed_by`] for all of them.
+    /// Classifies all boxes inside a box by [`Region::can_be_shadowed_by`]: all pass, none passes,
+    /// or it depends.
     pub fn shadowed_by_all(&self, fan: &Fan, Placed { center, half }: &Placed, margin: f64) -> Lies {
         let room = ROUNDING * (center.abs() + *half).element_sum();
         let (depth, reach) = (fan.depth.dot(*center), fan.depth.abs().dot(*half) + room);
@@ -167,8 +167,8 @@ impl Region {
         }
     }
 
-    /// Whether including what lies of a box in `within`, as [`Region::include_box_within`] does,
-    /// changes nothing of the bounds across the light; or of any box in it.
+    /// Returns whether [`Region::include_box_within`] would leave the bounds across the light
+    /// unchanged for this box and every box inside it.
     pub fn encloses_box_within(&self, fan: &Fan, Placed { center, half }: &Placed, within: &Self) -> bool {
         let room = ROUNDING * (center.abs() + *half).element_sum();
         let (at, reach) = fan.spans(*center, *half);
@@ -199,8 +199,8 @@ impl Region {
             })
     }
 
-    /// Bounds along direction `u` of the fan (of its first half) and along the one a quarter turn
-    /// further.
+    /// Bounds along direction `u` of the fan (in its first half) and along the direction a quarter
+    /// turn further.
     pub fn bounds(&self, u: usize) -> (DVec2, DVec2) {
         let v = u + DIRECTIONS / 2;
         (DVec2::new(self.lo[u], self.lo[v]), DVec2::new(self.hi[u], self.hi[v]))
@@ -211,20 +211,19 @@ impl Region {
         self.lo.iter().zip(&self.hi).map(|(lo, hi)| hi - lo).fold(0.0, f64::max)
     }
 
-    /// The first axis of the rectangle of least area among those that stand on the fan's
+    /// Index of the first axis of the rectangle of least area among those along the fan's
     /// directions.
     pub fn least_direction(&self) -> usize {
         (1..QUARTER).fold(0, |best, k| if self.area(k) < self.area(best) { k } else { best })
     }
 
-    /// Area of the rectangle that stands on direction `u` of the fan (of its first half), square
-    /// metres.
+    /// Area in square metres of the rectangle along direction `u` of the fan (in its first half).
     pub fn area(&self, u: usize) -> f64 {
         (self.hi[u] - self.lo[u]) * (self.hi[u + QUARTER] - self.lo[u + QUARTER])
     }
 
-    /// The rectangle of least area among those that stand on the fan's directions, as (u axis, v
-    /// axis, lo, hi) with u × v = depth.
+    /// The rectangle of least area among those along the fan's directions, as (u axis, v axis, lo,
+    /// hi) with u × v = depth.
     pub fn least_rectangle(&self, fan: &Fan) -> (DVec3, DVec3, DVec2, DVec2) {
         let best = self.least_direction();
         let (lo, hi) = self.bounds(best);

@@ -14,7 +14,7 @@ pub struct Sphere {
 }
 
 /// The smallest sphere around the slice of `frustum` between view depths `a` and `b`. It depends on
-/// the camera's lens alone, never on where the camera stands or looks.
+/// the camera's lens alone, never on the camera's position or direction.
 ///
 /// For a symmetric perspective frustum with `k² = tan²(fov_x/2) + tan²(fov_y/2)`: if `k² ≥ (b −
 /// a)/(b + a)` the far face's circle decides (centre depth b, radius b k); else all eight corners
@@ -47,8 +47,8 @@ pub fn slice_sphere(frustum: &Frustum, a: f64, b: f64) -> Sphere {
     }
 }
 
-/// The smallest sphere around a few points, by brute force over the spheres that two to four of
-/// them span.
+/// The smallest sphere around a few points, by brute force over the spheres that two to four points
+/// span.
 fn smallest_sphere(points: &[DVec3; 8]) -> Sphere {
     let mut best = Sphere { center: DVec3::ZERO, radius: f64::INFINITY };
     let mut consider = |center: DVec3| {

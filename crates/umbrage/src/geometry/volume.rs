@@ -36,8 +36,8 @@ impl Plane {
     }
 }
 
-/// Corner indices of the faces near, far, left, right, bottom, top; corners as
-/// [`View::slice_corners`] has them.
+/// Corner indices of the faces near, far, left, right, bottom, top; corners in the order of
+/// [`View::slice_corners`].
 const FACES: [[usize; 4]; 6] = [[0, 1, 3, 2], [4, 5, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6]];
 
 /// Edges as (corner, corner, face, face).
@@ -64,10 +64,10 @@ pub(crate) struct Slice {
     center: DVec3,
 }
 
-/// Corner indices of a box's faces; corners as [`Aabb::corners`] has them.
+/// Corner indices of a box's faces; corners in the order of [`Aabb::corners`].
 const BOX_FACES: [[usize; 4]; 6] = [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
 
-/// How a box lies to a convex volume.
+/// Position of a box relative to a convex volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Lies {
     Outside,
@@ -80,7 +80,8 @@ impl Slice {
         Self::from_corners(view.slice_corners(from, to), view.forward())
     }
 
-    /// A frustum from its corners, in the order of [`View::slice_corners`], and the way it opens.
+    /// A frustum from its corners, in the order of [`View::slice_corners`], and its opening
+    /// direction.
     pub fn from_corners(corners: [DVec3; 8], forward: DVec3) -> Self {
         let center = corners.iter().sum::<DVec3>() / 8.0;
         let planes = std::array::from_fn(|i| match i {
@@ -163,17 +164,17 @@ impl Slice {
         self.swept(self.planes.map(|plane| plane.normal.dot(direction) >= 0.0), |_| direction)
     }
 
-    /// Everything between the slice and a light at `position`: their common convex hull. The planes
-    /// through the light need no divide, so nothing happens to a slice that straddles the light's
-    /// plane, or that has the light inside.
+    /// The common convex hull of the slice and a light at `position`. The planes through the light
+    /// need no division, so a slice that straddles the light's plane, or that has the light inside,
+    /// is no special case.
     pub fn swept_towards_point(&self, position: DVec3) -> SweptVolume {
         self.swept(self.planes.map(|plane| plane.distance(position) <= 0.0), |corner| {
             (corner - position).normalize_or_zero()
         })
     }
 
-    /// The faces that are turned `away` from the light, and the planes through its outline along
-    /// the light, whose way of travel at a corner is `travel`.
+    /// The faces that are turned `away` from the light, and the planes through the slice's outline
+    /// along the light. `travel` is the light's direction at a corner.
     fn swept(&self, away: [bool; 6], travel: impl Fn(DVec3) -> DVec3) -> SweptVolume {
         let mut swept = SweptVolume::default();
         for (plane, away) in self.planes.iter().zip(away) {
@@ -203,7 +204,7 @@ fn box_planes(bounds: &Aabb) -> [Plane; 6] {
     ]
 }
 
-/// Room for every corner that clipping can make.
+/// Most corners that clipping can make.
 const MOST_CORNERS: usize = 28;
 
 /// A convex volume, open towards the light.
@@ -223,8 +224,8 @@ impl SweptVolume {
         &self.planes[..self.len]
     }
 
-    /// How the boxes in a box lie to what comes within `margin` metres of the volume:
-    /// [`SweptVolume::meets`] for all of them.
+    /// Classifies all boxes inside a box by [`SweptVolume::meets`]: all come within `margin`
+    /// metres, none does, or it depends.
     pub fn met_by_all(&self, Placed { center, half }: &Placed, margin: f64) -> Lies {
         let mut lies = Lies::Inside;
         for plane in self.planes() {
@@ -239,13 +240,13 @@ impl SweptVolume {
         lies
     }
 
-    /// Whether a box comes within `margin` metres of the volume (conservatively).
+    /// Returns whether a box comes within `margin` metres of the volume (conservative).
     pub fn meets(&self, center: DVec3, half: DVec3, margin: f64) -> bool {
         self.planes[..self.len].iter().all(|plane| plane.nearest(center, half) <= margin)
     }
 
     /// Calls `each` with the corners of those parts of the box's faces that come within `margin`
-    /// metres of the volume: of all of the box there, none lies nearer to the light.
+    /// metres of the volume. No part of the box in that range lies nearer to the light.
     pub fn clip_box(&self, bounds: &Aabb, margin: f64, mut each: impl FnMut(DVec3)) {
         let corners = bounds.corners();
         for face in BOX_FACES {
@@ -259,10 +260,10 @@ impl SweptVolume {
     }
 }
 
-/// Whether a box lies, along some world axis, entirely on the far side of everything in `receivers`
-/// as the light sees it: it then has nothing behind it to cast a shadow on. A flat ground under
-/// everything is the case that matters, and touches what stands on it. Anything that is not flat
-/// has to lie `margin` metres beyond: a filter also reads beside its receiver.
+/// Returns whether a box lies, along some world axis, entirely on the far side of all `receivers`
+/// as seen from the light, so that there is nothing behind it to cast a shadow on. The main case is
+/// a flat ground below the whole scene, which touches the objects that stand on it. A box that is
+/// not flat has to lie `margin` metres beyond, because a filter also reads beside its receiver.
 pub(crate) fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction: DVec3, margin: f64) -> bool {
     let slack = rounding(receivers.max - receivers.min);
     (0..3).any(|axis| {
@@ -289,9 +290,9 @@ impl Polygon {
         Self { points, len: 4 }
     }
 
-    /// Sutherland and Hodgman's clipping, plane after plane, each moved outwards by `margin`
-    /// metres. A plane can add one corner, so four and the 18 planes of a swept volume are the most
-    /// there can be.
+    /// Sutherland and Hodgman's clipping by one plane after the other, each moved outwards by
+    /// `margin` metres. A plane can add one corner, so the most corners are four plus the 18 planes
+    /// of a swept volume.
     fn clipped(mut self, planes: &[Plane], margin: f64) -> Self {
         for plane in planes {
             let points = &self.points[..self.len];

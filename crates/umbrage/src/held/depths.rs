@@ -1,20 +1,21 @@
-//! The depth range that still maps share, held so that stored depths do not move with the camera.
+//! The depth range that exactly stabilised maps share, held so that stored depths do not move with
+//! the camera.
 
-/// By how much a held range may exceed what is needed before it is let go of.
+/// Factor by which a held range may exceed the needed one before it is replaced.
 const MOST_EXCESS: f64 = 4.0;
 
-/// Share of a needed range by which a new one exceeds it at either end, so that a walking eye does
-/// not change it at once.
+/// Share of a needed range by which a new one exceeds it at either end, so that a walking camera
+/// does not change it at once.
 const ROOM: f64 = 0.25;
 
-/// Depths along the light, metres.
+/// The held range of depths along the light, in metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HeldDepths {
     held: Option<(f64, f64)>,
 }
 
 impl HeldDepths {
-    /// A range that holds `near..far`; the one of before if that does.
+    /// A range that contains `near..far`; the previous one if it does.
     pub fn hold(&mut self, near: f64, far: f64) -> (f64, f64) {
         let serves =
             |held: &(f64, f64)| held.0 <= near && far <= held.1 && held.1 - held.0 <= MOST_EXCESS * (far - near);

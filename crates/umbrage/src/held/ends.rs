@@ -1,15 +1,15 @@
-//! The ends of the shadowed range, held where maps have to stand still.
+//! The ends of the shadowed range, held so that stabilised maps stand still.
 
 use super::size::HeldSize;
 use crate::maths;
 
-/// The view depths that the planes between splits divide.
+/// The range of view depths that split planes divide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Range {
     /// `C_0`.
     pub near: f64,
-    /// The far end that the inner planes `C_1 .. C_{m-1}` are placed for: `far`, or what it was
-    /// before it was stretched.
+    /// The far end for which the inner planes `C_1 .. C_{m-1}` are placed: `far`, or its value
+    /// before the range was stretched.
     pub inner_far: f64,
     /// `C_m`.
     pub far: f64,
@@ -24,11 +24,12 @@ impl Range {
 /// Steps per doubling of a held end of the range: one step is 2^(1/4), 19 %.
 const STEPS_PER_OCTAVE: f64 = 4.0;
 
-/// Steps that an end may fall short of what it holds before it follows.
+/// Steps that an end may fall short of its held value before it follows.
 const HYSTERESIS: f64 = 2.0;
 
-/// An end of the range on a ladder of geometric steps, so that a moving camera changes it rarely:
-/// rounded up to the next step, and held until it is outgrown or undercut by [`HYSTERESIS`] steps.
+/// An end of the range on a ladder of geometric steps, so that a moving camera changes it rarely.
+/// It is rounded up to the next step and held until it is outgrown, or undercut by [`HYSTERESIS`]
+/// steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct HeldStep {
     held: Option<f64>,
@@ -46,7 +47,7 @@ impl HeldStep {
     }
 }
 
-/// Both ends of a range that is held: the far one is rounded up, the near one down.
+/// Both ends of a held range: the far end is rounded up, the near end down.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HeldRange {
     inverse_near: HeldStep,
@@ -60,22 +61,23 @@ impl HeldRange {
     }
 }
 
-/// By how much the far end of a held range may exceed the depth for which the inner planes were
-/// placed, before they follow: √2.
+/// Factor by which the far end of a held range may exceed the depth for which the inner planes were
+/// placed, before the inner planes follow: √2.
 const MOST_STRETCH: f64 = std::f64::consts::SQRT_2;
 
-/// By how much a range first exceeds the scene, so that an eye that walks away from its far end
-/// takes no step at once: half a step.
+/// Factor by which a range first exceeds the scene, so that a camera that moves away from the
+/// scene's far end takes no step at once: half a step.
 const FIRST_ROOM: f64 = 1.044_273_782_427_413_8;
 
 /// The far end of a range that ends with the scene.
 ///
-/// The scene's deepest point changes as the camera turns, its farthest does not: the range ends
-/// there, in steps of 9 % as the eye walks away from it, and a step moves the last plane only. The
-/// inner planes are placed for the depth that the first view asks for, and again, for any that it
-/// can ask for by turning, where one asks for √2 times as much. A view that looks out of the scene
-/// does not pay for what lies behind it: the range ends at √2 times what the inner planes are
-/// placed for.
+/// The depth of the scene's deepest point changes as the camera turns, the distance of its farthest
+/// point does not. The range therefore ends at that distance, in steps of 9 % as the camera moves
+/// away, and a step moves the last plane only. The inner planes are placed for the depth that the
+/// first view needs. Once a view needs √2 times as much, they are placed again, for any depth that
+/// the camera can need by turning. The range ends at √2 times the depth that the inner planes are
+/// placed for, at most, so that a view that looks out of the scene does not pay for the parts
+/// behind the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HeldFar {
     far: HeldSize,
@@ -85,7 +87,7 @@ pub(crate) struct HeldFar {
 
 impl HeldFar {
     /// The range from `near` for a scene that ends at view depth `deepest`, and `farthest` metres
-    /// from the eye.
+    /// from the camera.
     pub fn hold(&mut self, near: f64, deepest: f64, farthest: f64) -> Range {
         let farthest = farthest.max(deepest);
         if self.inner_far == 0.0 {
@@ -100,22 +102,21 @@ impl HeldFar {
     }
 }
 
-/// Both ways to hold a range: by the scene's far end, or by what the view shows.
+/// Both ways to hold a range: by the scene's far end, or by the receivers in view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HeldEnds {
     pub far: HeldFar,
     pub visible: HeldRange,
-    /// Where the range of an orthographic camera begins that stands off from the scene.
+    /// Near end of the range of an orthographic camera that stands off from the scene.
     near: Option<f64>,
 }
 
-/// Share of a range's length that its beginning leaves free before the scene, and four times as
-/// much at most.
+/// Share of a range's length that its near end leaves free before the scene; at most four times as
+/// much.
 const NEAR_ROOM: f64 = 1.0 / 16.0;
 
 impl HeldEnds {
-    /// A beginning between the camera's near plane and `first`, before a range that ends at
-    /// `deepest`.
+    /// A near end between the camera's near plane and `first`, for a range that ends at `deepest`.
     pub fn hold_near(&mut self, near: f64, first: f64, deepest: f64) -> f64 {
         let room = NEAR_ROOM * (deepest - first).max(1e-3 * deepest.abs());
         let serves = |held: &f64| (near..=first).contains(held) && first - held <= 4.0 * room;

@@ -1,9 +1,9 @@
-//! What stands still, and why: everything that a planner keeps from one frame to the next.
+//! The state that a planner keeps between frames so that shadows stand still.
 //!
 //! A static shadow does not move while its map's texels lie on one grid, which is given by the
-//! map's axes, its texel's size and its offset in whole texels. Axes are the light's. Every plan
-//! rounds offsets to whole texels (`planner/snap.rs`). Sizes follow from the lens, the range, the
-//! planes and what a slice needs, and each of those is held here:
+//! map's axes, the size of its texels and its offset in whole texels. The axes are those of the
+//! light. Every plan rounds offsets to whole texels (`planner/snap.rs`). Sizes follow from the
+//! lens, the range, the planes and the extent of a slice, and each of these is held here:
 //!
 //! | held | until |
 //! |---|---|
@@ -15,7 +15,7 @@
 //! | depth range ([`depths::HeldDepths`]) | a caster or receiver lies outside |
 //! | local maps' sizes ([`Held::local`]) | as map sizes |
 //!
-//! While the camera stands still all of that recovers to what a new planner would choose:
+//! While the camera stands still, all of this recovers to the choice of a new planner:
 //! [`recovery`].
 
 pub(crate) mod depths;
@@ -36,11 +36,11 @@ use size::{HeldExtents, HeldLens, HeldSize};
 /// Faces of a point light's cube.
 const FACES: usize = 6;
 
-/// What a planner holds on to between frames so that shadows stand still: a value, a pure function
-/// of the frames that were planned with it.
+/// State that a planner keeps between frames so that shadows stand still. It is a value: a pure
+/// function of the frames that were planned with it.
 ///
 /// A default one holds nothing: the plan made with it is that of a new planner. Without
-/// stabilisation nothing is held. A frame that the planner refuses leaves it as it was.
+/// stabilisation nothing is held. A frame that the planner refuses leaves the state unchanged.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Held {
     pub(crate) standstill: Standstill,
@@ -68,7 +68,7 @@ impl Default for LocalSizes {
 }
 
 impl Held {
-    /// Takes the view and the light of the next frame, and returns what the camera does.
+    /// Takes the view and the light of the next frame, and returns whether the camera stands still.
     pub(crate) fn begin(&mut self, view: &View, direction: DVec3) -> Standing {
         if self.light_direction.replace(direction) != Some(direction) {
             self.rectangle = Default::default();
@@ -81,13 +81,12 @@ impl Held {
         standing
     }
 
-    /// What a new planner would see: nothing is held of the range and the lens.
+    /// The state of a new planner, as to the range and the lens: nothing is held of either.
     pub(crate) fn released(&self) -> Self {
         Self { standstill: self.standstill, ..Self::default() }
     }
 
-    /// Takes over the range and the lens of `fresh`. Planes and sizes are left to follow step by
-    /// step.
+    /// Takes over the range and the lens of `fresh`. Planes and sizes follow step by step.
     pub(crate) fn adopt(&mut self, fresh: &Self) {
         (self.ends, self.lens, self.whole) = (fresh.ends, fresh.lens, fresh.whole);
     }
@@ -102,7 +101,7 @@ impl Held {
         Some(Row { planes, half, splits })
     }
 
-    /// Holds these planes, placed for `range`, and sizes from now on.
+    /// Holds `row`, whose planes are placed for `range`, from now on.
     pub(crate) fn keep(&mut self, range: Range, row: &Row) {
         self.row = Some((range, row.planes));
         for (held, &half) in self.extents.iter_mut().zip(&row.half).take(row.splits) {

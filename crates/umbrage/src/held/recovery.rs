@@ -1,61 +1,61 @@
-//! How held sizes recover: back to what a new planner would choose, while the camera stands
-//! still.
+//! Recovery of held sizes to the choice of a new planner, while the camera stands still.
 //!
-//! A held size is never smaller than what a frame needs, but it may be larger for as long as the
-//! camera moves: following every change would move every texel. A camera that stands still shows no
-//! reason to wait, and one split's step of a few per cent a frame is not seen as a jump.
+//! A held size is never smaller than a frame needs, but it may be larger while the camera moves, as
+//! following every change would move every texel. A camera that stands still gives no reason to
+//! wait, and one split's step of a few per cent in a frame is not seen as a jump.
 
 use glam::DVec2;
 
 use super::size::ENOUGH;
 use crate::{MAX_SPLITS, View, maths};
 
-/// Frames for which the camera stands before anything recovers: a pause between two steps is not a
-/// standstill.
+/// Frames for which the camera has to stand still before anything recovers. A pause between two
+/// movements does not count as a standstill.
 const PATIENCE: u32 = 10;
 
-/// Frames in which a recovery ends. With [`PATIENCE`] and one round of slack less than 60.
+/// Frames within which a recovery ends. With [`PATIENCE`] and one round of slack less than 60.
 const DURATION: u32 = 42;
 
-/// The step by which one split's size changes, at least: 9 %. Larger only where [`DURATION`] frames
-/// would not do.
+/// Least step by which one split's size changes: 9 %. The step is larger only if [`DURATION`]
+/// frames would not be enough.
 const STEP: f64 = 1.090_507_732_665_257_7;
 
-/// Share of the eye's distance to the first plane, and radians, by which a camera that stands still
-/// may tremble.
+/// Tremor of a camera that counts as standing still: a share of the camera's distance to the first
+/// plane, and an angle in radians.
 const TREMOR: f64 = 1e-5;
 
-/// Relative room for rounding in what a map needs.
+/// Relative room for rounding in the extent that a map needs.
 const ROUNDING: f64 = 1e-12;
 
-/// Share of a slice that is left where a plane is in another one's way.
+/// Share of a slice that is left if one plane is in another one's way.
 const LEAST_GAP: f64 = 0.05;
 
-/// What the camera does.
+/// Motion of the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Standing {
-    /// It moves, or has not stood still for long.
+    /// The camera moves, or has not stood still for long.
     #[default]
     Moving,
-    /// It has just stood still for long enough to look whether anything should recover.
+    /// The camera has just stood still for long enough to check whether anything should recover.
     Due,
-    /// It stands still and sizes recover.
+    /// The camera stands still and sizes recover.
     Recovering,
-    /// It stands still and sizes have recovered.
+    /// The camera stands still and sizes have recovered.
     Settled,
 }
 
-/// Watches the camera.
+/// Detects whether the camera stands still.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Standstill {
-    /// The view that the camera has kept since it stands.
+    /// The view of the camera since it stands still.
     anchor: Option<View>,
     frames: u32,
     standing: Standing,
 }
 
 impl Standstill {
-    /// Takes the view of the next frame. A camera trembles within `reach` metres times [`TREMOR`].
+    /// Takes the view of the next frame. Movements within [`TREMOR`] times `reach` metres are
+    /// ignored.
     pub fn follow(&mut self, view: &View, reach: f64) -> Standing {
         let stands = self.anchor.is_some_and(|anchor| {
             let (a, b) = (anchor.world_from_view_rotation(), view.world_from_view_rotation());
@@ -80,13 +80,13 @@ impl Standstill {
         self.standing = standing;
     }
 
-    /// Frames that are left for a recovery.
+    /// Number of frames left for a recovery.
     pub fn frames_left(&self) -> u32 {
         (PATIENCE + DURATION).saturating_sub(self.frames)
     }
 
-    /// Those of `count` independent sizes whose turn it is in this frame of a recovery, and the
-    /// step that each may take.
+    /// Range of those among `count` independent sizes whose turn it is in this frame of a recovery,
+    /// and the step that each may take.
     pub fn turn(&self, count: usize) -> Option<(std::ops::Range<usize>, f64)> {
         let frame = self.frames.checked_sub(PATIENCE).filter(|frame| *frame < DURATION)? as usize;
         let at_once = count.div_ceil(DURATION as usize);
@@ -98,24 +98,24 @@ impl Standstill {
     }
 }
 
-/// Planes and, for each map, half its edges: what a stabilised plan holds.
+/// The held values of a stabilised plan: planes and, for each map, half its edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Row {
     /// `C_0 ..= C_m`.
     pub planes: [f64; MAX_SPLITS + 1],
-    /// Half the edges of each map along u and v, metres.
+    /// Half the edges of each map along u and v, in metres.
     pub half: [DVec2; MAX_SPLITS],
-    /// The number of splits.
+    /// Number of splits.
     pub splits: usize,
 }
 
 impl Row {
-    /// Whether any map is larger than that of `fresh` by more than is worth holding on to.
+    /// Returns whether any map is larger than that of `fresh` by more than [`ENOUGH`].
     pub fn exceeds(&self, fresh: &Self) -> bool {
         (0..self.splits).any(|i| (self.half[i] / fresh.half[i]).max_element() > ENOUGH)
     }
 
-    /// The largest ratio of any size to that of `target`, either way.
+    /// The largest ratio of any plane or size to that of `target`; for planes in either direction.
     fn ratio(&self, target: &Self) -> f64 {
         let either = |ratio: f64| ratio.max(1.0 / ratio);
         let planes = (1..=self.splits).map(|j| either(self.planes[j] / target.planes[j]));
@@ -123,14 +123,14 @@ impl Row {
         planes.chain(halves).fold(1.0, f64::max)
     }
 
-    /// Whether a plane of `target` lies beyond a neighbour of that plane here.
+    /// Returns whether a plane of `target` lies beyond a neighbour of the same plane here.
     fn is_in_the_way_of(&self, target: &Self) -> bool {
         let passes_before = |j: usize| target.planes[j] <= self.planes[j - 1];
         let passes_behind = |j: usize| j < self.splits && target.planes[j] >= self.planes[j + 1];
         (1..=self.splits).any(|j| passes_before(j) || passes_behind(j))
     }
 
-    /// How far a plane may move towards the eye and away from it without passing its neighbours.
+    /// The lowest depth to which a plane may move without coming too close to the plane before it.
     fn lowest(&self, plane: usize) -> f64 {
         let [before, at] = [self.planes[plane - 1], self.planes[plane]];
         before + LEAST_GAP * (at - before)
@@ -145,28 +145,28 @@ impl Row {
     }
 }
 
-/// A recovery under way: planes move one after the other from the last to the first, each with the
-/// map before it. A map is given room for what the planes before it will do next: no plane moves
-/// without, or two maps would change at once.
+/// A recovery in progress. Planes move one after the other from the last to the first, each
+/// together with the map before it. A map gets room for the next moves of the planes before it. No
+/// plane moves without such room, because two maps would then change at once.
 ///
-/// Where many planes have to go where others are, rounds go back again, from the first plane to the
-/// last: those that move towards the eye then find none in their way.
+/// If many planes have to go where others are, rounds alternate with rounds back, from the first
+/// plane to the last. Planes that move towards the camera then find no other plane in their way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Recovery {
-    /// Planes that are left in this round.
+    /// Number of planes left in this round.
     left: usize,
     goes_back: bool,
     is_way_back: bool,
     step: f64,
-    /// Visits since anything changed.
+    /// Number of visits since the last change.
     idle: usize,
 }
 
 impl Recovery {
-    /// Moves one plane of `row` towards `target`, and the size of the map that ends there, by a
-    /// step. `need` is half the edges that a map needs, by its split and a set of planes. Returns
-    /// the split, also where nothing is left to change if it `visits_all`; `None` once all sizes
-    /// are the target's.
+    /// Moves one plane of `row` towards `target` by a step, and the size of the map that ends
+    /// there. `need` gives half the edges that a map needs for its split and a set of planes.
+    /// Returns the split that was visited, or `None` once all sizes are those of the target. With
+    /// `visits_all`, splits without a change are returned, too.
     pub fn step(
         &mut self,
         row: &mut Row,
@@ -201,7 +201,7 @@ impl Recovery {
         None
     }
 
-    /// Says whether anything changed.
+    /// Moves one plane and its map. Returns whether anything changed.
     fn visit(&self, plane: usize, row: &mut Row, target: &Row, need: impl Fn(usize, &[f64]) -> DVec2) -> bool {
         let before = *row;
         let m = row.splits;

@@ -1,5 +1,5 @@
-//! Tight maps that stand almost still: rectangles whose edges change in steps, on axes that are
-//! fixed to the light.
+//! Rectangles of approximately stabilised maps: their edges change in steps, on axes that are fixed
+//! to the light.
 
 use glam::DVec2;
 
@@ -8,16 +8,16 @@ use crate::config::ExtentSteps;
 use crate::geometry::region::{DIRECTIONS, Region};
 use crate::maths;
 
-/// Relative room for rounding, so that an extent that keeps its value while the camera walks keeps
-/// its step as well.
+/// Relative room for rounding, so that an extent that stays constant while the camera walks also
+/// keeps its step.
 const ROUNDING: f64 = 1e-9;
 
-/// The orientation and the extent of a map that is stabilised approximately.
+/// The orientation and the extent of an approximately stabilised map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rectangle {
     /// Index of the u axis in the fan of directions; v is a quarter turn further.
     pub direction: usize,
-    /// Along u and v, metres.
+    /// Extent along u and v in metres.
     pub extent: DVec2,
 }
 
@@ -26,20 +26,20 @@ impl Rectangle {
         self.extent.x * self.extent.y
     }
 
-    /// Middle of `target` along u and v, metres.
+    /// Centre of `target` along u and v in metres.
     pub fn center(&self, target: &Region) -> DVec2 {
         let (lo, hi) = target.bounds(self.direction);
         0.5 * (lo + hi)
     }
 
-    /// In whole steps, the smallest that stands on `direction`.
+    /// The smallest rectangle along `direction` with edges of whole steps.
     fn around(target: &Region, direction: usize, steps: f64) -> Self {
         let round_up =
             |extent: f64| maths::exp2((steps * maths::log2(extent * (1.0 + ROUNDING))).ceil() / steps).max(extent);
         Self { direction, extent: needed(target, direction).map(round_up) }
     }
 
-    /// This rectangle with those edges longer that are too short.
+    /// This rectangle, with those edges made longer that are too short.
     fn grown_to(&self, target: &Region, steps: f64) -> Self {
         let needed = needed(target, self.direction);
         let around = Self::around(target, self.direction, steps).extent;
@@ -47,21 +47,20 @@ impl Rectangle {
     }
 }
 
-/// Keeps a rectangle from frame to frame for as long as it serves.
+/// Holds a rectangle from frame to frame for as long as it serves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HeldRectangle {
     held: Option<Rectangle>,
 }
 
 impl HeldRectangle {
-    /// The rectangle for `target`; `whole` is the width of the unsplit light frustum in metres,
-    /// which the source's steps are fractions of.
+    /// The rectangle for `target`. `whole` is the width of the unsplit light frustum in metres, of
+    /// which the steps of \[PCSM\] are fractions.
     ///
-    /// Geometric steps: a rectangle grows where it has to and is kept while it is at most one step
-    /// larger along each edge (or two along one) than the one that would be chosen now, which is
-    /// the smallest, in whole steps, of those that stand on the fan's directions. One that `refits`
-    /// has recovered, and is kept only while it is hardly larger. The source's steps have neither
-    /// orientation nor memory.
+    /// With geometric steps a rectangle grows where it has to. It is kept while it is at most one
+    /// step larger along each edge (or two along one) than the best one, which is the smallest in
+    /// whole steps along any of the fan's directions. With `refits` it is kept only while it is
+    /// hardly larger. The steps of the source have neither orientation nor memory.
     pub fn hold(&mut self, target: &Region, steps: ExtentSteps, whole: f64, refits: bool) -> Rectangle {
         let rectangle = match steps {
             ExtentSteps::PerDoubling(count) => {
@@ -84,8 +83,8 @@ impl HeldRectangle {
     }
 }
 
-/// The most that an edge of a held rectangle can measure for a target that is `widest` metres wide:
-/// two steps of rounding and two of hysteresis, should all of them fall to one edge.
+/// The longest possible edge of a held rectangle for a target that is `widest` metres wide: two
+/// steps of rounding and two of hysteresis, if all of them fall on one edge.
 pub(crate) fn longest_edge(steps: ExtentSteps, widest: f64, whole: f64) -> f64 {
     match steps {
         ExtentSteps::PerDoubling(count) => widest * maths::exp2(4.0 / f64::from(count)),
@@ -94,7 +93,7 @@ pub(crate) fn longest_edge(steps: ExtentSteps, widest: f64, whole: f64) -> f64 {
 }
 
 /// The extent of `target` along a direction and across it. A target without width (a wall seen
-/// edge-on by the light) still gets some.
+/// edge-on by the light) still gets a small extent.
 fn needed(target: &Region, direction: usize) -> DVec2 {
     let (lo, hi) = target.bounds(direction);
     let longest = (hi - lo).max_element();

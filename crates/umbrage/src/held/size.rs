@@ -6,7 +6,7 @@ use crate::{Frustum, maths};
 
 /// Rounds a size up to geometric steps, with one step of hysteresis, so that it changes rarely.
 ///
-/// A size that has never changed is kept as it is; once it outgrows the held value or falls two
+/// A size that has never changed is kept as it is. Once it outgrows the held value or falls two
 /// steps below it, the next step above the new size is held.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HeldSize {
@@ -16,16 +16,16 @@ pub(crate) struct HeldSize {
 /// Steps per doubling of a held size: one step is 2^(1/8), 9 %.
 const STEPS_PER_OCTAVE: f64 = 8.0;
 
-/// A size that recovers may exceed what is needed by this factor: a smaller step would be seen and
-/// gain nothing.
+/// Factor by which a recovering size may exceed the needed size. A smaller step would be visible
+/// and gain nothing.
 pub(crate) const ENOUGH: f64 = 1.05;
 
-/// Relative room for rounding, so that a size that comes round again by another way is the same.
+/// Relative room for rounding, so that a size that is reached again in another way is the same.
 const ROUNDING: f64 = 1e-13;
 
 impl HeldSize {
-    /// The held size for `size` of something that recovers: smaller by one step, where that serves
-    /// and is worth it.
+    /// The held size for a `size` that recovers: smaller by one step, if that serves and is worth
+    /// it.
     pub fn shrink(&mut self, size: f64, step: f64) -> f64 {
         let keeps = |held: f64| size <= held && held <= size * ENOUGH;
         let value = self.held.map_or(size, |held| if keeps(held) { held } else { size.max(held / step) });
@@ -38,7 +38,7 @@ impl HeldSize {
         self.hold_in_steps(size, STEPS_PER_OCTAVE)
     }
 
-    /// Holds a size in so many steps to a doubling.
+    /// The held size for `size`, with `steps` steps per doubling.
     pub fn hold_in_steps(&mut self, size: f64, steps: f64) -> f64 {
         let step = |size: f64| maths::exp2((maths::log2(size) * steps).ceil() / steps).max(size);
         let lowest = |held: f64| held * maths::exp2(-2.0 / steps);
@@ -52,18 +52,18 @@ impl HeldSize {
     }
 }
 
-/// Steps per doubling of a held lens: one step is 2^(1/4), 19 %, so that maps follow a lens that
-/// narrows once it has by √2.
+/// Steps per doubling of a held lens: one step is 2^(1/4), 19 %, so that maps follow a lens once it
+/// has narrowed by √2.
 ///
-/// A step changes all texels of all maps at once. With steps of 9 % one of 600 frames of a slow
-/// zoom takes one, and flicker above what is asked; what is given for it is sharpness that the zoom
-/// would have brought.
+/// A step changes all texels of all maps at once. With steps of 9 %, one of 600 frames of a slow
+/// zoom takes one, and flicker exceeds its limit. The price is sharpness that the zoom would have
+/// brought.
 const LENS_STEPS_PER_OCTAVE: f64 = 4.0;
 
-/// The lens that still maps are made for: the camera's own until it zooms, then held.
+/// The lens for which exactly stabilised maps are made: the camera's own until it zooms, then held.
 ///
-/// The lens is held so long, and not the maps' sizes, so that a camera that does not zoom pays
-/// nothing: sizes follow from the range as well.
+/// The lens is held so long, and not the maps' sizes, because sizes follow from the range as well:
+/// a camera that does not zoom pays nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HeldLens {
     width: HeldSize,
@@ -71,7 +71,7 @@ pub(crate) struct HeldLens {
 
 impl HeldLens {
     /// `frustum`, or one around it that is wider by the same factor on all sides on which it may
-    /// grow: one that lies beside the axis is not moved away from it.
+    /// grow. A frustum beside the axis does not move away from it.
     pub fn hold(&mut self, frustum: &Frustum) -> Frustum {
         let width = maths::hypot(frustum.right - frustum.left, frustum.top - frustum.bottom);
         let wider = (self.width.hold_in_steps(width, LENS_STEPS_PER_OCTAVE) / width).max(1.0);
@@ -85,7 +85,7 @@ impl HeldLens {
     }
 }
 
-/// Half the edges of a still map, each held as a [`HeldSize`].
+/// Half the edges of an exactly stabilised map, each held as a [`HeldSize`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HeldExtents {
     u: HeldSize,
@@ -97,7 +97,7 @@ impl HeldExtents {
         DVec2::new(self.u.hold(half.x), self.v.hold(half.y))
     }
 
-    /// What is held, if anything is.
+    /// The held half edges, if there are any.
     pub fn get(&self) -> Option<DVec2> {
         Some(DVec2::new(self.u.held?, self.v.held?))
     }

@@ -1,13 +1,13 @@
-//! Which cells of a grid a texture holds.
+//! Record of the cells of a grid that a texture holds.
 //!
-//! The texture is a torus: a texel of the grid always lies in the same place, its number modulo the
-//! texture's edge. A window that moves uncovers cells at one side, which take the places of those
-//! that it leaves at the other, and nothing is ever copied.
+//! The texture is a torus: a texel of the grid always has the same place, its number modulo the
+//! texture's edge. A window that moves uncovers cells at one side, which take the places of the
+//! cells that it leaves at the other side, and nothing is ever copied.
 
 use super::area::Area;
 
-/// Cells along the edge of a map. More: less is drawn when a window moves, by more draws of the
-/// casters that lie across several cells.
+/// Number of cells along the edge of a map. With more cells less is drawn when a window moves, but
+/// casters that lie across several cells are drawn more often.
 const CELLS: u32 = 8;
 
 /// The cells that the texture of one map holds.
@@ -15,14 +15,15 @@ const CELLS: u32 = 8;
 pub(super) struct Books {
     /// Edge of a cell in texels.
     cell: u32,
-    /// Cells along the texture's edge.
+    /// Number of cells along the texture's edge.
     count: u32,
-    /// For each place the cell whose texels it holds.
+    /// For each place, the cell whose texels it holds.
     held: Vec<Option<[i64; 2]>>,
 }
 
 impl Books {
-    /// Of a map of so many texels: wherever it lies, its texture has room for all cells it meets.
+    /// Record for a map of `map_size` texels. Its texture has room for all cells that the map
+    /// meets, wherever the map lies.
     pub fn new(map_size: u32) -> Self {
         let cell = map_size.div_ceil(CELLS).max(1);
         let count = map_size.div_ceil(cell) + 1;
@@ -34,7 +35,7 @@ impl Books {
         self.cell * self.count
     }
 
-    /// Texels of a cell.
+    /// Number of texels of a cell.
     pub fn cell_texels(&self) -> u64 {
         u64::from(self.cell) * u64::from(self.cell)
     }
@@ -44,7 +45,7 @@ impl Books {
         self.held.fill(None);
     }
 
-    /// The cells that texels lie in.
+    /// The cells in which texels lie.
     pub fn cells(&self, texels: &Area) -> Area {
         let cell = i64::from(self.cell);
         Area { min: texels.min.map(|at| at.div_euclid(cell)), max: texels.max.map(|at| (at - 1).div_euclid(cell) + 1) }
@@ -56,8 +57,8 @@ impl Books {
         Area { min: cells.min.map(|at| at * cell), max: cells.max.map(|at| at * cell) }
     }
 
-    /// How often the texture's edge fits before a cell, along both axes: cells that agree in it lie
-    /// in the texture as they lie in the grid.
+    /// Number of texture edges before a cell, along both axes. Cells with equal numbers lie in the
+    /// texture as they lie in the grid.
     pub fn turn(&self, cell: [i64; 2]) -> [i64; 2] {
         cell.map(|at| at.div_euclid(i64::from(self.count)))
     }
@@ -67,18 +68,18 @@ impl Books {
         y * self.count as usize + x
     }
 
-    /// Whether the texture holds a cell.
+    /// Returns whether the texture holds a cell.
     pub fn holds(&self, cell: [i64; 2]) -> bool {
         self.held[self.place(cell)] == Some(cell)
     }
 
-    /// Takes a cell as drawn.
+    /// Records a cell as drawn.
     pub fn take(&mut self, cell: [i64; 2]) {
         let place = self.place(cell);
         self.held[place] = Some(cell);
     }
 
-    /// Forgets the cells that some texels lie in. Says whether there was any.
+    /// Forgets the cells in which some texels lie. Returns whether there was any.
     pub fn drop(&mut self, texels: &Area) -> bool {
         let cells = self.cells(texels);
         let meets = |[x, y]: [i64; 2]| cells.meets(&Area::square([x, y], 1));

@@ -1,13 +1,13 @@
-//! Splits whose maps are not filled yet: the next one answers for them.
+//! Splits whose maps are not filled yet, and which the next split serves in their place.
 
 use crate::{ShadowPlan, Split};
 
-/// The far end of a slice that no view depth lies in, metres.
+/// Far end in metres of a slice that contains no view depth.
 const NOWHERE: f64 = -1e30;
 
 impl ShadowPlan {
-    /// Lets the next split answer for `split`, too: its slice, and its casters. The next one's map
-    /// has to lie over all that this one's does.
+    /// Lets the next split also serve the slice and the casters of `split`. The next split's map
+    /// has to contain the map of `split`.
     pub(super) fn hand_on(&mut self, split: usize) {
         let begin = self.caster_indices.len();
         let [own, next] = [split, split + 1].map(|at| self.splits[at].casters.clone());
@@ -27,15 +27,15 @@ impl ShadowPlan {
         self.coverage.hand_on(split);
     }
 
-    /// Whether another split answers for this one, as its map was not filled in time: see
-    /// [`crate::Keeper`].
+    /// Returns whether the next split serves the points of `split`, because the map of `split` was
+    /// not filled in time: see [`crate::Keeper`].
     #[must_use]
     pub fn is_handed_on(&self, split: usize) -> bool {
         self.coverage.is_handed_on(split)
     }
 }
 
-/// Depths along the light that either of two splits shows.
+/// Range of depths along the light that either of two splits shows.
 fn both(own: &Split, next: &Split) -> (f64, f64) {
     let ((a, b), (c, d)) = (own.receiver_depths, next.receiver_depths);
     (a.min(c), b.max(d))

@@ -1,10 +1,10 @@
-//! What static casters have drawn into a sun's maps, and what of it still holds: the books of
-//! [`crate::config::Cache::Kept`].
+//! Bookkeeping for [`crate::config::Cache::Kept`]: the parts of a sun's maps that static casters
+//! have been drawn into and that are still valid.
 //!
-//! A kept map is a window of a grid that the light and the size of a texel decide. Cells of the
-//! grid are drawn once, into a texture that is a torus ([`books`]); the window is copied out of it
-//! into the map, and what moves is drawn over it. Which cells have to be drawn follows from what
-//! has changed ([`rest`], [`grid`]) and from where the window has come to ([`regions`]).
+//! A kept map is a window of a grid that the light and the size of a texel determine. Cells of the
+//! grid are drawn once, into a texture that is a torus ([`books`]). The window is copied from there
+//! into the map, and moving casters are drawn over it. The cells to be drawn follow from the
+//! changes of casters ([`rest`], [`grid`]) and from the movement of the window ([`regions`]).
 
 mod area;
 mod books;
@@ -28,34 +28,34 @@ use crate::bounds::Placed;
 use crate::casters::{Counter, Crowd, Role};
 use crate::{Aabb, CasterSet, Layers, ShadowPlan};
 
-/// What is kept of a sun's maps, frame after frame.
+/// Bookkeeping for the kept maps of a sun.
 ///
 /// Each frame: plan, [`Keeper::prepare`], draw every region of [`Keeper::regions`] with its casters
 /// into the texture of its split, copy the windows of [`Keeper::maps`] into the maps and draw
 /// [`Keeper::movers`] over them, [`Keeper::accept`]. `umbrage-wgpu` does so behind
 /// `umbrage_wgpu::Shadows`.
 ///
-/// The texels of a map are then the same, bit for bit, as if all its regions were drawn in every
-/// frame, which [`KeptFrame::redraws`] asks for: as long as a texel of a texture depends on its
-/// place there, its casters and the uniforms of its [`KeptRegion::turn`] alone.
+/// The texels of a map then equal, bit for bit, those of a map whose regions are all drawn in every
+/// frame, as [`KeptFrame::redraws`] does. This requires that a texel of a texture depends only on
+/// its place there, its casters and the uniforms of its [`KeptRegion::turn`].
 ///
-/// # What is drawn anew
+/// # Cells that are drawn again
 ///
-/// All cells, once the light, the size of a texel, the depth range, the frame's origin, the layers
-/// or the set is another. The cells that a caster's shadow may lie over, once it is added, removed,
-/// moved or reshaped. Cells that a window reaches for the first time, or again after others have
-/// taken their place.
+/// * All cells, if the light, the size of a texel, the depth range, the frame's origin, the layers
+///   or the set changes.
+/// * The cells over which a caster's shadow may lie, if it is added, removed, moved or reshaped.
+/// * Cells that a window reaches for the first time, or again after others have taken their place.
 ///
-/// # What moves
+/// # Moving casters
 ///
-/// Casters of [`crate::Motion::Moving`] are drawn in every frame. A static one that moves joins
-/// them at once and is kept again when it has stood still for 60 frames. Casters that share a key
+/// Casters of [`crate::Motion::Moving`] are drawn in every frame. A static caster that moves joins
+/// them at once, and is kept again when it has stood still for 60 frames. Casters that share a key
 /// have to agree in their motion.
 #[derive(Clone, Debug)]
 pub struct Keeper {
     books: Vec<Kept>,
     rest: Rest,
-    /// The set that cells were drawn from, and the number of its next change.
+    /// Identity of the set from which cells were drawn, and the number of its next change.
     set: Option<(u64, u64)>,
     regions: Vec<KeptRegion>,
     maps: Vec<KeptMap>,
@@ -68,84 +68,84 @@ pub struct Keeper {
 struct Kept {
     books: Books,
     grid: Option<Grid>,
-    /// What the split's map shows; `None` if that is not known.
+    /// Contents of the split's map; `None` if they are not known.
     shown: Option<Shown>,
-    /// How often cells were drawn or forgotten.
+    /// Number of times that cells were drawn or forgotten.
     version: u64,
 }
 
-/// A map that needs no drawing while this does not change.
+/// Contents of a map, which needs no drawing while they do not change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shown {
     window: Area,
     version: u64,
 }
 
-/// What a frame is prepared from, beside its plan.
+/// Inputs of a frame beside its plan.
 #[derive(Clone, Copy, Debug)]
 pub struct KeptFrame<'a> {
     /// The casters that were planned for.
     pub set: &'a CasterSet,
-    /// Whose casters were planned for.
+    /// Layers whose casters were planned for.
     pub layers: Layers,
-    /// The world point that vertices are relative to, metres.
+    /// World point in metres to which vertices are relative.
     pub origin: DVec3,
-    /// Texels of kept textures that may be drawn in this frame; `None`: as many as are missing. The
-    /// last split is filled whatever that takes. A split that waits hands its slice on to the next
-    /// one, which is coarser: shadows are blurred and never missing.
+    /// Most texels of kept textures that may be drawn in this frame; `None` for all that are
+    /// missing. The last split is filled in any case. A split that has to wait hands its slice on
+    /// to the next split, which is coarser: shadows are blurred and never missing.
     pub budget: Option<u64>,
-    /// Whether casters are dropped whose shadow is small:
+    /// True if casters with a small shadow are dropped:
     /// [`crate::ShadowConfig::drop_small_casters`].
     pub drops_small: bool,
-    /// Whether all that the maps show is drawn anew, though it is there: to compare with.
+    /// True if all cells that the maps show are drawn again even if they are kept, for comparison.
     pub redraws: bool,
 }
 
-/// A part of a split's kept texture that is to be drawn: cleared, then its casters, cut at its
-/// edge.
+/// A part of a split's kept texture that has to be drawn: it is cleared, then its casters are
+/// drawn, clipped to its edge.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct KeptRegion {
-    /// The split.
+    /// Index of the split.
     pub split: usize,
-    /// How often the texture's edge lies between the grid's origin and the region, along u and v:
-    /// texel `t` of the grid is texel `t - turn · edge` of the texture.
+    /// Number of texture edges between the grid's origin and the region, along u and v: texel `t`
+    /// of the grid is texel `t - turn · edge` of the texture.
     pub turn: [i64; 2],
-    /// Its texels in the grid.
+    /// Texels of the region in the grid.
     pub texels: Area,
-    /// Its texels in the texture.
+    /// Texels of the region in the texture.
     pub place: Area,
     casters: Range<usize>,
     grid: Grid,
 }
 
 impl KeptRegion {
-    /// Whether a part of a caster, by its world box, can leave anything in the region, as
-    /// [`crate::ShadowPlan::casts_into`] says of a whole map.
+    /// Returns whether a part of a caster, given by its world box, can cover any texel of the
+    /// region.
     #[must_use]
     pub fn casts_into(&self, part: &Aabb) -> bool {
         self.grid.footprint(&Placed::from(*part)).meets(&self.texels)
     }
 }
 
-/// How a split's map comes from its kept texture.
+/// Window of a kept texture that becomes a split's map.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct KeptMap {
-    /// Where the map's upper left texel lies in the texture; texels past its edge are at its other
-    /// end.
+    /// Texel of the texture at which the map's upper left texel lies. Texels past the texture's
+    /// edge continue at the opposite edge.
     pub begin: [u32; 2],
     /// Edge of the texture in texels.
     pub edge: u32,
-    /// Whether the map has to be drawn: it shows something else than it did, or something moves.
+    /// True if the map has to be drawn, because its contents have changed or casters move in it.
     pub is_due: bool,
     movers: Range<usize>,
-    /// What it shows once it is drawn, and whether all of that is kept.
+    /// Contents of the map once it is drawn; `None` if moving casters are among them.
     shows: Option<Shown>,
 }
 
 impl Keeper {
-    /// For maps of these edges in texels, nothing of which is drawn yet.
+    /// A keeper for maps of these edges in texels, nothing of which is drawn yet.
     #[must_use]
     pub fn new(map_sizes: &[u32]) -> Self {
         let kept = |&size: &u32| Kept { books: Books::new(size), grid: None, shown: None, version: 0 };
@@ -159,13 +159,14 @@ impl Keeper {
         }
     }
 
-    /// Edge of the texture that a map of `map_size` texels is kept in, texels: an eighth more.
+    /// Edge in texels of the texture in which a map of `map_size` texels is kept: about an eighth
+    /// more.
     #[must_use]
     pub fn texture_edge(map_size: u32) -> u32 {
         Books::new(map_size).edge()
     }
 
-    /// Forgets all that is kept, as if nothing had been drawn yet.
+    /// Forgets everything, as if nothing had been drawn yet.
     pub fn clear(&mut self) {
         self.books.iter_mut().for_each(Kept::clear);
         self.forget_maps();
@@ -175,19 +176,19 @@ impl Keeper {
         self.maps.clear();
     }
 
-    /// Takes maps as drawn over: their textures still hold what they held.
+    /// Marks the contents of maps as lost; the kept textures remain valid.
     pub fn forget_maps(&mut self) {
         self.books.iter_mut().for_each(|kept| kept.shown = None);
     }
 
-    /// Works out what has to be drawn for a plan of a sun, whose maps stand exactly still. Splits
-    /// that cannot be filled in this frame are handed on in the plan
+    /// Determines the regions and maps to be drawn for a plan of a sun, whose maps have to be
+    /// exactly stabilised. Splits that cannot be filled in this frame are handed on in the plan
     /// ([`ShadowPlan::is_handed_on`]).
     ///
-    /// Until [`Keeper::accept`] nothing counts as drawn.
+    /// Nothing counts as drawn until [`Keeper::accept`].
     ///
     /// # Panics
-    /// If the plan has not as many splits as there are maps.
+    /// If the plan does not have as many splits as there are maps.
     pub fn prepare(&mut self, frame: &KeptFrame<'_>, plan: &mut ShadowPlan) {
         assert_eq!(plan.splits.len(), self.books.len(), "a map for each split");
         self.regions.clear();
@@ -202,7 +203,7 @@ impl Keeper {
         self.list_maps(plan);
     }
 
-    /// Takes the regions and maps of the last [`Keeper::prepare`] as drawn.
+    /// Records the regions and maps of the last [`Keeper::prepare`] as drawn.
     pub fn accept(&mut self) {
         for region in &self.regions {
             let kept = &mut self.books[region.split];
@@ -218,31 +219,31 @@ impl Keeper {
         self.rest.advance();
     }
 
-    /// What is to be drawn into kept textures.
+    /// Regions to be drawn into kept textures.
     #[must_use]
     pub fn regions(&self) -> &[KeptRegion] {
         &self.regions
     }
 
-    /// The casters of a region, by their keys, rising.
+    /// Casters of a region by their keys, rising.
     #[must_use]
     pub fn casters(&self, region: &KeptRegion) -> &[u32] {
         &self.casters[region.casters.clone()]
     }
 
-    /// How each split's map comes from its kept texture.
+    /// For each split, the window of its kept texture that becomes its map.
     #[must_use]
     pub fn maps(&self) -> &[KeptMap] {
         &self.maps
     }
 
-    /// The casters of a map that are drawn over what is kept, by their keys, rising.
+    /// Casters of a map that are drawn over the kept depth, by their keys, rising.
     #[must_use]
     pub fn movers(&self, map: &KeptMap) -> &[u32] {
         &self.casters[map.movers.clone()]
     }
 
-    /// Forgets what changes of the set have made wrong.
+    /// Forgets all that changes of the set have made invalid.
     fn follow(&mut self, set: &CasterSet) {
         let Self { books, rest, set: known, .. } = self;
         let identity = set.stamp().0;
@@ -293,8 +294,8 @@ impl Keeper {
         }
     }
 
-    /// Lists regions of the first `most` cells that are missing; if all is drawn anew, of the
-    /// others, too.
+    /// Lists regions of the first `most` cells that are missing, and with `redraws` of all other
+    /// cells.
     fn list_regions(&mut self, split: usize, cells: Area, most: u64, redraws: bool) {
         let Self { books, regions, .. } = self;
         let Kept { books, grid: Some(grid), .. } = &books[split] else { return };
@@ -350,7 +351,7 @@ impl Keeper {
         }
     }
 
-    /// Lists how maps come from what is kept, and what moves in them.
+    /// Lists the maps and their moving casters.
     fn list_maps(&mut self, plan: &ShadowPlan) {
         let Self { books, maps, casters, rest, .. } = self;
         for (index, (kept, split)) in books.iter().zip(&plan.splits).enumerate() {
@@ -373,7 +374,7 @@ impl Kept {
         self.version += 1;
     }
 
-    /// Forgets what was drawn on another grid.
+    /// Forgets all that was drawn on another grid.
     fn stand_on(&mut self, grid: Grid) {
         if self.grid != Some(grid) {
             self.clear();
@@ -381,7 +382,7 @@ impl Kept {
         }
     }
 
-    /// Forgets the cells that the shadow of a box may lie over.
+    /// Forgets the cells over which the shadow of a box may lie.
     fn drop(&mut self, placed: &Placed) {
         if let Some(grid) = &self.grid
             && self.books.drop(&grid.footprint(placed))

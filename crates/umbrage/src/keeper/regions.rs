@@ -1,10 +1,10 @@
-//! Cells that are to be drawn, put together to rectangles.
+//! Cells to be drawn, joined into rectangles.
 
 use super::area::Area;
 use super::books::Books;
 
-/// Calls `each` with rectangles of cells that together are the given ones, each once; `wanted` says
-/// which those within `cells` are. No rectangle lies across the texture's seam.
+/// Calls `each` with rectangles that together cover the `wanted` cells within `cells`, each cell
+/// once. No rectangle crosses the texture's seam.
 pub(super) fn rectangles(
     books: &Books,
     cells: Area,

@@ -1,13 +1,12 @@
-//! Which static casters do not rest, and are drawn in every frame like those that move.
+//! Static casters that have moved lately, and are therefore drawn in every frame like moving ones.
 
 use std::collections::BTreeMap;
 
 use crate::casters::Change;
 use crate::{Aabb, CasterHandle, CasterSet};
 
-/// Frames for which a static caster that has moved has to stand still before it is kept again. At
-/// 60 frames a second one second: a caster that stops and goes on does not change what is kept
-/// twice.
+/// Frames for which a static caster that has moved has to stand still before it is kept again: one
+/// second at 60 frames a second. A caster that stops and goes on does not change kept cells twice.
 pub(super) const FRAMES: u32 = 60;
 
 /// A static caster that has moved.
@@ -17,24 +16,24 @@ struct Restless {
     still: u32,
 }
 
-/// Static casters that have moved lately, and the keys of all that is not kept.
+/// Static casters that have moved lately, and the keys of all casters that are not kept.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rest {
     restless: BTreeMap<CasterHandle, Restless>,
     /// Keys of casters that are drawn in every frame, rising.
     live: Vec<u32>,
-    /// What `live` was made from.
+    /// Set and membership from which `live` was made.
     made_from: Option<(u64, u64)>,
 }
 
 impl Rest {
-    /// Takes all static casters as resting.
+    /// Marks all static casters as resting.
     pub fn clear(&mut self) {
         self.restless.clear();
         self.made_from = None;
     }
 
-    /// Follows a change. `drop` is called with the box of whatever is no longer what was kept.
+    /// Follows a change. `drop` is called with each box whose kept shadow is no longer valid.
     pub fn follow(&mut self, change: &Change, drop: &mut impl FnMut(Aabb)) {
         let &Change { handle, key, old, new } = change;
         let known = self.restless.remove(&handle);
@@ -51,7 +50,7 @@ impl Rest {
         }
     }
 
-    /// Ends the wait of casters that have stood still for long enough.
+    /// Lets casters rest again that have stood still for long enough.
     pub fn settle(&mut self, set: &CasterSet, drop: &mut impl FnMut(Aabb)) {
         let before = self.restless.len();
         self.restless.retain(|handle, it| {
@@ -68,7 +67,7 @@ impl Rest {
         }
     }
 
-    /// A frame was drawn.
+    /// Counts a drawn frame.
     pub fn advance(&mut self) {
         self.restless.values_mut().for_each(|it| it.still += 1);
     }
@@ -86,7 +85,7 @@ impl Rest {
         self.made_from = from;
     }
 
-    /// Whether a caster is drawn in every frame.
+    /// Returns whether a caster is drawn in every frame.
     pub fn is_live(&self, key: u32) -> bool {
         self.live.binary_search(&key).is_ok()
     }

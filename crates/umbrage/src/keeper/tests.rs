@@ -1,4 +1,4 @@
-//! The keeper beside a model that draws: what a texture holds is what is there to be drawn.
+//! The keeper compared with a model that draws: a texture holds what should be drawn there.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -38,17 +38,17 @@ impl Dice {
     }
 }
 
-/// What was drawn: casters by key, each with the version that it had then.
+/// Drawn casters by key, each with its version at that time.
 type Drawn = BTreeMap<u32, u32>;
 
-/// A caster as the model knows it.
+/// A caster of the model.
 #[derive(Clone, Copy, Debug)]
 struct Known {
     key: u32,
     version: u32,
 }
 
-/// A world, its keeper, and the model of what textures hold.
+/// A world, its keeper, and the model of the textures.
 struct Stage {
     dice: Dice,
     set: CasterSet,
@@ -57,15 +57,15 @@ struct Stage {
     planner: Planner,
     plan: ShadowPlan,
     keeper: Keeper,
-    /// By split and place in the texture, in cells.
+    /// Contents by split and place in the texture, in cells.
     textures: BTreeMap<(usize, [i64; 2]), Drawn>,
-    /// What each map shows, cell by cell, and where it lay.
+    /// Contents of each map, cell by cell, and its position.
     maps: BTreeMap<usize, (Area, Vec<Drawn>)>,
     eye: DVec3,
     turn: f64,
     sun: DVec3,
     origin: DVec3,
-    /// Whether a caster's shape changes behind the set's back.
+    /// True if a caster's shape changes without the set being told.
     lies: bool,
     /// All casters of this frame.
     census: Vec<Counted>,
@@ -76,7 +76,7 @@ struct Stage {
 struct Counted {
     known: Known,
     placed: Placed,
-    /// Whether what it draws is kept.
+    /// True if the caster's shadow is kept.
     rests: bool,
 }
 
@@ -125,7 +125,7 @@ impl Stage {
         self.next_key += 1;
     }
 
-    /// Does something to the set.
+    /// Makes a random change to the set.
     fn edit(&mut self) {
         let Some(handle) = self.pick() else { return self.insert() };
         let is_crowded = self.known.len() > 320;
@@ -194,7 +194,7 @@ impl Stage {
         Ok(())
     }
 
-    /// What stands in a cell: static casters that rest, as they are now.
+    /// Contents that a cell should have: static casters that rest, in their present version.
     fn drawn_in(&self, split: usize, cell: [i64; 2], among: Option<&[u32]>) -> Drawn {
         let kept = &self.keeper.books[split];
         let texels = kept.books.texels(&Area::square(cell, 1));
@@ -249,7 +249,7 @@ impl Stage {
         }
     }
 
-    /// What a copy of a split's window would show.
+    /// Contents that a copy of a split's window would have.
     fn shown(&self, split: usize) -> (Area, Vec<Drawn>) {
         let window = super::window(&self.plan.splits[split]);
         let cells = self.keeper.books[split].books.cells(&window).each();
@@ -276,8 +276,8 @@ impl Stage {
         self.check_lists(wanted)
     }
 
-    /// Every caster that a slice asked for is in the list of the split that answers, and drawn over
-    /// its map if it does not rest.
+    /// Checks that every caster that a slice needs is in the list of the split that serves it, and
+    /// is drawn over its map if it does not rest.
     fn check_lists(&self, wanted: &[BTreeSet<u32>]) -> Result<(), String> {
         for (slice, wanted) in wanted.iter().enumerate() {
             let answers = (slice..SIZES.len()).find(|&split| !self.plan.is_handed_on(split));
@@ -301,7 +301,7 @@ impl Stage {
     }
 }
 
-/// Frames of a random life; how often a split was handed on, and how many edits there were.
+/// Runs frames of a random life. Returns how often a split was handed on, and the number of edits.
 fn live(seed: u64, frames: u32, lies: bool) -> Result<(u32, u32), String> {
     let mut stage = Stage::new(seed, lies);
     let (mut handed_on, mut edits) = (0, 0);

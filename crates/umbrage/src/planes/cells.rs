@@ -1,5 +1,5 @@
-//! Thin slices of the view, and what each holds: the bounds of receivers and casters, and how much
-//! shadow edge the picture shows there.
+//! Thin slices of the view, and for each the bounds of its receivers and casters and the amount of
+//! shadow edges that the image shows there.
 
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ use crate::geometry::region::{DIRECTIONS, Fan, Region};
 use crate::geometry::volume::{Lies, Slice, lies_below};
 use crate::{Aabb, Projection, View};
 
-/// What the planner has at hand when planes are placed.
+/// Inputs for the placement of planes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sight<'a> {
     pub view: &'a View,
@@ -18,8 +18,8 @@ pub(crate) struct Sight<'a> {
     pub receivers: &'a Gathered,
     /// The casters that can shade anything in range.
     pub casters: &'a Gathered,
-    /// What the last map shows, whatever its slice: all that may come into view, where `receivers`
-    /// are what was seen. `None`: its slice.
+    /// Region of the last map, if it does not follow from its slice: all geometry that may come
+    /// into view, where `receivers` are only those that were seen.
     pub last_map: Option<Region>,
 }
 
@@ -30,12 +30,12 @@ pub(crate) struct Cell {
     /// The receivers inside, in the light's plane and in the world.
     pub receivers: Region,
     bounds: Aabb,
-    /// The casters that can shade them, whole; empty if there are none.
+    /// Bounds of the whole casters that can shade the receivers; empty if there are none.
     pub casters: Region,
-    /// Expected length of shadow edges in the light's plane, in [`Cells::unit`]: a sum that does
-    /// not depend on its order.
+    /// Expected length of shadow edges in the light's plane, in [`Cells::unit`]: an integer, so
+    /// that the sum does not depend on its order.
     edges: u64,
-    /// [`Region::least_direction`] of the receivers, once they are all there.
+    /// [`Region::least_direction`] of the receivers, once all are included.
     least_direction: usize,
 }
 
@@ -51,26 +51,26 @@ impl Cell {
         }
     }
 
-    /// Takes a point of a box.
+    /// Includes a point of a box.
     fn include(&mut self, fan: &Fan, point: DVec3, of: &Aabb) {
         self.receivers.include_point(fan, point);
         self.bounds = self.bounds.including(point.clamp(of.min, of.max));
     }
 
-    /// Whether nothing of a box can change the cell.
+    /// Returns whether no part of a box can change the cell.
     fn holds(&self, fan: &Fan, bounds: &Aabb, Placed { center, half }: &Placed) -> bool {
         self.bounds.union(*bounds) == self.bounds && self.receivers.encloses_box(fan, *center, *half)
     }
 
-    /// Whether a caster with these bounds can shade the cell's receivers.
+    /// Returns whether a caster with these bounds can shade the cell's receivers.
     fn can_be_shadowed_by(&self, bounds: &Region) -> bool {
         bounds.depth.0 <= self.receivers.depth.1
             && (0..DIRECTIONS).all(|k| bounds.lo[k] <= self.receivers.hi[k] && bounds.hi[k] >= self.receivers.lo[k])
     }
 }
 
-/// The share of a caster's rectangle that lies in `region`, on the axes of the latter's own least
-/// rectangle.
+/// The share of a caster's rectangle that lies in `region`, on the axes of the least rectangle of
+/// `region`.
 fn share(caster: &Region, region: &Region, u: usize) -> f64 {
     [u, u + DIRECTIONS / 2]
         .into_iter()
@@ -82,15 +82,15 @@ fn share(caster: &Region, region: &Region, u: usize) -> f64 {
         .product()
 }
 
-/// Length of a box's outline as the light sees it: two edges along each axis.
+/// Length of a box's outline as seen from the light: two edges along each axis.
 fn outline(half: DVec3, direction: DVec3) -> f64 {
     (0..3).map(|axis| 4.0 * half[axis] * (1.0 - direction[axis] * direction[axis]).max(0.0).sqrt()).sum()
 }
 
-/// A receiver with parts in more cells than this is long.
+/// A receiver with parts in more cells than this counts as long.
 const LONG: usize = 8;
 
-/// Units of the longest outline of a caster.
+/// Number of units in the longest outline of a caster.
 const UNITS: f64 = (1u64 << 32) as f64;
 
 /// All cells between a row of rising view depths.
@@ -98,7 +98,7 @@ const UNITS: f64 = (1u64 << 32) as f64;
 pub(crate) struct Cells {
     pub cells: Vec<Cell>,
     shares: Vec<f64>,
-    /// What edges are counted in, metres.
+    /// Unit in which edges are counted, in metres.
     unit: f64,
 }
 
@@ -140,7 +140,7 @@ impl Cells {
         }
     }
 
-    /// Takes a receiver into the cells that it has a part in.
+    /// Includes a receiver in the cells in which it has a part.
     fn include(
         &mut self,
         (sight, depths): (&Sight, &[f64]),
@@ -205,14 +205,14 @@ impl Cells {
         }
     }
 
-    /// Expected error of each cell's pixels for each metre that a texel measures, as shares of that
-    /// of all cells.
+    /// Weight of each cell: the expected error of its pixels for each metre of a texel's edge, as a
+    /// share of that of all cells.
     ///
-    /// An edge of a shadow is off by a share of a texel, so that the area decided wrongly is the
+    /// An edge of a shadow is off by a share of a texel, so that the wrongly shaded area is the
     /// length of the edges times the texel's edge. Shadows mostly lie on ground, of which a view
-    /// from some height shows 1/z³ pixels to the square metre at depth z. A small part uses the
-    /// pixels alone, for edges that boxes do not tell of: by the rows of pixels that such ground
-    /// fills.
+    /// from some height shows 1/z³ pixels per square metre at depth z. A small part of the weight
+    /// uses pixels alone, for edges that boxes do not represent: the rows of pixels that such
+    /// ground fills.
     pub fn weigh(&self, projection: Projection, depths: &[f64], weights: &mut Vec<f64>) {
         let pixels = |pair: &[f64]| match projection {
             Projection::Perspective => 1.0 / pair[0] - 1.0 / pair[1],

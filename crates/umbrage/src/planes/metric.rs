@@ -1,4 +1,4 @@
-//! What the planes between splits measure: view depth, or distance from the eye.
+//! Measure of the planes between splits: view depth, or distance from the camera.
 
 use glam::DVec3;
 
@@ -6,9 +6,9 @@ use crate::config::SplitMetric;
 use crate::{Error, Projection, Result, View};
 
 impl SplitMetric {
-    /// View depth over what planes measure, at least, of anything that the view shows: for
-    /// distances the cosine of the angle between the line of sight and the farthest corner, which
-    /// need not be opposite to another in an off-axis view.
+    /// Least ratio of view depth to the measure of planes for any point in view. For distances it
+    /// is the cosine of the angle between the line of sight and the farthest corner, which in an
+    /// off-axis view need not have an opposite corner.
     pub(crate) fn least_depth_share(self, view: &View) -> f64 {
         let f = view.frustum();
         match self {
@@ -19,7 +19,7 @@ impl SplitMetric {
         }
     }
 
-    /// Distances need an eye.
+    /// Refuses distances for a camera without an eye.
     pub(crate) fn check_view(self, view: &View) -> Result<()> {
         if self == Self::Distance && view.frustum().projection == Projection::Orthographic {
             return Err(Error::CameraConflict {

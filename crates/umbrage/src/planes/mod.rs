@@ -1,4 +1,4 @@
-//! Where the planes between splits stand.
+//! Placement of the planes between splits.
 
 pub(crate) mod cells;
 pub(crate) mod metric;

@@ -1,12 +1,11 @@
-//! Planes that find themselves: of many candidates those between which the maps are expected to err
-//! least.
+//! Placement of planes by search: the set of candidates with the least predicted error.
 //!
-//! The papers place planes by a formula of near, far and m alone, the optimum for a scene that
-//! fills the view evenly. Scenes do not: a plane in the gap between two rows of casters leaves both
-//! maps small, one through a row makes both as wide as the row. Here the set of planes of least
-//! expected error is found exactly, by dynamic programming over a few dozen candidates. Ours;
-//! *Sample Distribution Shadow Maps* (Lauritzen et al. 2010) place planes by the depths that a
-//! frame shows, which needs the frame.
+//! The papers place planes by a formula of near, far and m alone, which is optimal for a scene that
+//! fills the view evenly. Real scenes do not: a plane in the gap between two rows of casters leaves
+//! both maps small, a plane through a row makes both as wide as the row. Here the set of planes of
+//! least expected error is found exactly, by dynamic programming over a few dozen candidates. This
+//! search is not from a paper; *Sample Distribution Shadow Maps* (Lauritzen et al. 2010) place
+//! planes by the depths that a frame shows, which needs the frame.
 
 use glam::DVec2;
 
@@ -19,37 +18,36 @@ use crate::geometry::sphere::slice_sphere;
 use crate::held::ends::Range;
 use crate::{Error, Frustum, Projection, Result, ShadowConfig, View};
 
-/// Candidates between the ends, besides those of the fixed schemes and those that are held.
+/// Number of candidates between the ends, besides those of the fixed schemes and held planes.
 const CANDIDATES: usize = 32;
 
-/// Depths that show anything are taken for a single one below this ratio of the last to the first.
+/// Ratio of the last to the first visible depth below which both count as a single depth.
 const LEAST_RATIO: f64 = 1.01;
 
-/// By how much the best planes have to beat those that are held, where maps have to stand still:
-/// less than this share of what the held ones cost.
+/// Share of the held planes' cost below which new planes replace them, if maps have to stand still.
 const WORTH_MOVING: f64 = 2.0 / 3.0;
 
-/// How the edge of a map follows from what it has to show.
+/// Values from which the edge of a map follows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Maps<'a> {
     pub config: &'a ShadowConfig,
-    /// Pixels across the picture.
+    /// Size of the image in pixels.
     pub image_size: [u32; 2],
-    /// Texels that each map keeps free around what it serves.
+    /// Texels that each map keeps free around the points that it serves.
     pub margin: f64,
-    /// Across everything that is shadowed, metres: what the source's steps are fractions of.
+    /// Width of the whole shadowed range in metres, of which the steps of \[PCSM\] are fractions.
     pub whole_width: f64,
-    /// Half the edges that no still map exceeds, metres.
+    /// Upper bound in metres of half the edges of any still map.
     pub most_half: DVec2,
 }
 
 impl Maps<'_> {
-    /// Metres across a still map around a sphere, the mean of its edges.
+    /// Metres across a still map around a sphere, as the mean of its edges.
     fn still_edge(&self, radius: f64) -> f64 {
         radius.min(self.most_half.x) + radius.min(self.most_half.y)
     }
 
-    /// Metres across a map that shows a region, the mean of its edges.
+    /// Metres across a map that shows a region, as the mean of its edges.
     fn edge(&self, region: &Region, fan: &Fan) -> f64 {
         let (_, _, lo, hi) = region.least_rectangle(fan);
         let extent = match self.config.stability {
@@ -70,22 +68,22 @@ impl Maps<'_> {
     }
 }
 
-/// What every slice between two candidates would cost.
+/// Costs of every slice between two candidates.
 #[derive(Clone, Debug, Default)]
 struct Costs {
     /// Number of candidates, ends included.
     len: usize,
     /// Metres across the map of slice (i, j), at `i * len + j`.
     edges: Vec<f64>,
-    /// Where the map of the slice from j begins if the one before begins at i: blending and pixel
-    /// quads reach back over the border. The candidate at or before, and the share of the way to
-    /// the next.
+    /// Begin of the map of the slice from j if the slice before begins at i, because blending and
+    /// pixel quads reach back over the border. Given as the candidate at or before it, and the
+    /// share of the way to the next candidate.
     begins: Vec<(usize, f64)>,
     /// Sums of the cells' weights before each candidate.
     weights_before: Vec<f64>,
     /// Texels across each map.
     texels: Vec<f64>,
-    /// Metres across the last map, where that does not follow from its slice.
+    /// Metres across the last map, if that does not follow from its slice.
     last_edge: Option<f64>,
 }
 
@@ -108,8 +106,8 @@ impl Costs {
         self.begins.resize(len * len, (0, 0.0));
     }
 
-    /// Expected error of map `split` over the slice from candidate `j` to `k`; `before` is where
-    /// the slice before it begins.
+    /// Expected error of map `split` over the slice from candidate `j` to `k`; `before` is the
+    /// candidate at which the slice before it begins.
     fn slice(&self, split: usize, before: Option<usize>, j: usize, k: usize) -> f64 {
         let weight = self.weights_before[k] - self.weights_before[j];
         if weight <= 0.0 {
@@ -135,21 +133,21 @@ impl Costs {
     }
 }
 
-/// The best rows of slices, by the two candidates between which the last of them lies.
+/// The best rows of slices, by the two candidates between which their last slice lies.
 #[derive(Clone, Debug, Default)]
 struct Search {
     costs: Vec<f64>,
     costs_before: Vec<f64>,
-    /// Where the slice before the last begins, for each split.
+    /// Begin of the slice before the last, for each split.
     parents: Vec<u8>,
 }
 
 impl Search {
-    /// Writes the candidates of least cost into `planes`, ends included. Needs as many candidates
-    /// as planes, at least.
+    /// Writes the candidates of least cost into `planes`, ends included. Needs at least as many
+    /// candidates as planes.
     ///
-    /// A slice's map reaches back over its border by a share of the slice before, so that what it
-    /// costs depends on three planes: the states are pairs of candidates, the work is m K³ / 6.
+    /// A slice's map reaches back over its border by a share of the slice before, so that its cost
+    /// depends on three planes: the states are pairs of candidates, the work is m K³ / 6.
     fn cheapest(&mut self, costs: &Costs, planes: &mut Vec<usize>) {
         let (n, m) = (costs.len, costs.texels.len());
         let at = |i: usize, j: usize| i * n + j;
@@ -195,7 +193,7 @@ impl Search {
     }
 }
 
-/// Finds planes; keeps its buffers.
+/// Search for planes, with its buffers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Placement {
     candidates: Vec<f64>,
@@ -210,12 +208,12 @@ pub(crate) struct Placement {
 }
 
 impl Placement {
-    /// Writes the `m + 1` planes of a range into `planes`, the last at its inner far end: the inner
-    /// ones that are held, if there are any and none promise an error much smaller, or those that
-    /// promise the least.
+    /// Writes the `m + 1` planes of a range into `planes`, the last at its inner far end. Held
+    /// inner planes are kept, unless others promise a much smaller error; otherwise the planes are
+    /// those of least predicted error.
     ///
     /// # Errors
-    /// [`Error::InvalidSetting`] naming `shadow-range` if it is too short to be divided.
+    /// [`Error::InvalidSetting`] naming `shadow-range` if the range is too short to be divided.
     pub fn place(
         &mut self,
         sight: &Sight,
@@ -268,8 +266,8 @@ impl Placement {
         self.costs.total(&self.best) >= WORTH_MOVING * self.costs.total(&planes[..=m])
     }
 
-    /// Rising depths from near to far: evenly spaced on the picture over the depths that show
-    /// anything, with the planes of the fixed schemes and those that are held among them.
+    /// Chooses rising depths from near to far: evenly spaced on the image over the depths that show
+    /// receivers, together with the planes of the fixed schemes and held planes.
     fn choose_candidates(&mut self, sight: &Sight, (near, far): (f64, f64), m: usize, held: &[f64]) -> Result<()> {
         let scheme = match sight.view.frustum().projection {
             Projection::Perspective => SplitScheme::Logarithmic,
@@ -357,7 +355,7 @@ impl Placement {
     }
 }
 
-/// A symmetric frustum around another: its spheres have a closed form.
+/// A symmetric frustum around another, whose spheres have a closed form.
 fn around(frustum: &Frustum) -> Frustum {
     let (right, top) = (frustum.left.abs().max(frustum.right.abs()), frustum.bottom.abs().max(frustum.top.abs()));
     Frustum { left: -right, right, bottom: -top, top, ..*frustum }
@@ -372,7 +370,7 @@ fn face(view: &View, fan: &Fan, depth: f64) -> Region {
     region
 }
 
-/// Where the map of a slice from candidate `j` begins, if the slice before begins at `i`.
+/// Begin of the map of a slice from candidate `j`, if the slice before begins at `i`.
 fn begin(view: &View, maps: &Maps, candidates: &[f64], i: usize, j: usize) -> (usize, f64) {
     // The far plane has no effect on where a slice begins.
     let planes = [candidates[i], candidates[j], f64::INFINITY];

@@ -1,4 +1,4 @@
-//! Where the planes between splits stand, and which view depths each map has to serve.
+//! Placement of planes by a formula, and the range of view depths that each map has to serve.
 
 use crate::config::{SplitMetric, SplitScheme, check_range};
 use crate::{Error, Result, View, maths};
@@ -7,8 +7,8 @@ use crate::{Error, Result, View, maths};
 /// `planes`.
 ///
 /// `C_i = λ C_i^log + (1 − λ) C_i^uni + δ_i` for the inner planes; `C_0 = near` and `C_m = far`
-/// exactly. Source: *Parallel-Split Shadow Maps* eq. 4 to 7, where δ moves all planes: ours leaves
-/// the ends where they are.
+/// exactly. Source: *Parallel-Split Shadow Maps* eq. 4 to 7, where δ moves all planes; here the
+/// ends stay.
 ///
 /// # Errors
 /// [`Error::InvalidSetting`] naming `shadow-range`, `delta` or `planes` if the planes would not
@@ -52,10 +52,10 @@ pub fn split_planes(scheme: &SplitScheme, near: f64, far: f64, splits: usize, pl
 
 /// View depths `(from, to)` that may sample split `i`'s map: the slice, widened at its near side by
 /// the previous split's blend band and one pixel quad (the pixels of a quad may differ in their
-/// split). Split 0 starts at the camera's near plane, as nearer receivers use it too; the last ends
-/// at the range's or the camera's far plane.
+/// split). Split 0 starts at the camera's near plane, as nearer receivers use it too; the last
+/// split ends at the range's or the camera's far plane.
 ///
-/// Between the distances a and b lie view depths from a cos θ to b, where θ is the angle of the
+/// The points at distances a to b have view depths from a cos θ to b, where θ is the angle of the
 /// view's farthest corner.
 pub(crate) fn coverage(
     view: &View,
@@ -76,7 +76,7 @@ pub(crate) fn coverage(
     (from, planes[i + 1].min(view.frustum().far))
 }
 
-/// View depth at which split `i` begins to blend into the next: its far plane if it does not.
+/// View depth at which split `i` begins to blend into the next; its far plane if it does not blend.
 pub(crate) fn blend_begin(planes: &[f64], i: usize, blend: f64) -> f64 {
     let last = i + 2 == planes.len();
     let band = if last { 0.0 } else { blend * (planes[i + 1] - planes[i]) };

@@ -1,4 +1,4 @@
-//! Blocks on a sun's own axes: what a still map has to show.
+//! Blocks on a sun's own axes: the extent of a still map.
 
 use glam::DVec3;
 
@@ -6,7 +6,7 @@ use crate::DirectionalLight;
 use crate::bounds::Placed;
 use crate::casters::Most;
 
-/// A block on the light's own axes: along the map's two and along the light, metres.
+/// A block on the light's own axes, along the map's two axes and along the light, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Block {
     pub center: DVec3,
@@ -14,12 +14,13 @@ pub(super) struct Block {
 }
 
 impl Block {
-    /// Around a sphere of the world.
+    /// The block around a sphere in the world.
     pub fn around_sphere(center: DVec3, radius: f64, light: &DirectionalLight) -> Self {
         Self { center: axes(light).map(|axis| axis.dot(center)).into(), half: DVec3::splat(radius) }
     }
 
-    /// Around the boxes that pass a monotone test; `None` of none, and of such without any extent.
+    /// The block around the boxes that pass a monotone test; `None` if there are none, or none with
+    /// any extent.
     pub fn around(boxes: &impl Most, test: impl Fn(&Placed) -> bool, light: &DirectionalLight) -> Option<Self> {
         let axes = axes(light);
         let end = |axis: DVec3, sign: f64| {
@@ -35,7 +36,7 @@ impl Block {
         (half.max_element() > 0.0).then(|| Self { center: 0.5 * (lo + hi), half })
     }
 
-    /// This block, along each axis no longer than `other`, whose place it takes there.
+    /// This block, with each axis that is at least as long as that of `other` replaced by it.
     pub fn no_longer_than(self, other: &Self) -> Self {
         let longer = self.half.cmpge(other.half);
         Self {

@@ -1,4 +1,4 @@
-//! Stage 3 of a sun's plan: what a slice serves, and the casters that can shade it.
+//! Stage 3 of a sun's plan: the receivers of a slice, and the casters that can shade them.
 
 use glam::DVec3;
 
@@ -17,18 +17,18 @@ use crate::coverage::CoverageVolume;
 use crate::geometry::region::Region;
 use crate::geometry::volume::{Lies, Slice, lies_below};
 
-/// A slice of the view and what it shows.
+/// A slice of the view with its receivers.
 #[derive(Clone, Debug)]
 pub(super) struct Scene {
     pub ends: SliceEnds,
-    /// The slice's own bounds across the light.
+    /// Bounds of the slice itself across the light.
     pub region: Region,
-    /// Where casters are complete for, once they are listed.
+    /// Volume for which casters are complete, once they are listed.
     pub volume: CoverageVolume,
 }
 
 impl Scene {
-    /// Of one split.
+    /// The scene of one split.
     pub fn of_split(split: &SplitFrame<'_>, in_view: &mut InView) -> Self {
         let SplitFrame { frame, sun, layout, index } = *split;
         let ends_of = |i: usize| SliceEnds::new(frame, layout.planes(), i);
@@ -42,7 +42,8 @@ impl Scene {
         Self::new(frame, sun, ends, (in_view, seen_alone))
     }
 
-    /// Of all splits: what any map may be asked about where maps are chosen by what they contain.
+    /// The scene of all splits: the volume that any map may be asked about with
+    /// [`crate::config::Selection::Map`].
     pub fn of_view(frame: &Frame<'_>, sun: &Sun<'_>, layout: &Layout, in_view: &mut InView) -> Self {
         let frustum = frame.view.frustum();
         let (near, far) = (frustum.near, layout.range.far.min(frustum.far));
@@ -64,23 +65,23 @@ impl Scene {
         Self { ends, region, volume }
     }
 
-    /// The widest extent of what is shown across the light, metres.
+    /// The widest extent of the shown region across the light, in metres.
     pub fn widest(&self) -> f64 {
         self.volume.receivers.as_ref().map_or(&self.region, |(region, _)| region).widest().max(0.0)
     }
 
-    /// Depths along the light of what is shown, metres.
+    /// Range of depths of the shown region along the light, in metres.
     pub fn depths(&self) -> (f64, f64) {
         self.volume.receivers.as_ref().map_or(&self.region, |(region, _)| region).depth
     }
 }
 
-/// What a map with a slice's casters has to show.
+/// The region that a map with a slice's casters has to show.
 #[derive(Clone, Debug)]
 pub(super) struct Listed {
     /// Bounds across the light and in depth.
     pub target: Region,
-    /// Depth of the first caster along the light.
+    /// Depth along the light of the first caster, in metres.
     pub first: f64,
 }
 
@@ -118,7 +119,7 @@ impl Listed {
 }
 
 impl Scene {
-    /// Lists the casters that come no farther away than the scene's margin.
+    /// Lists the casters that reach into the scene or its margin.
     fn pick(&self, sun: &Sun<'_>, casters: &Gathered, listed: &mut Picked) {
         let CoverageVolume { swept, receivers, margin, .. } = &self.volume;
         let (fan, margin) = (&sun.fan, *margin);
@@ -143,8 +144,8 @@ impl Scene {
         }
     }
 
-    /// What a map with these casters has to show, in the light's plane and in depth, and the depth
-    /// of the first caster.
+    /// The region that a map with these casters has to show, in the light's plane and in depth, and
+    /// the depth of the first caster.
     fn target(&self, sun: &Sun<'_>, casters: &Gathered, listed: &Picked) -> (Region, f64) {
         match &self.volume.receivers {
             Some((region, _)) if !listed.is_empty() => {
@@ -165,8 +166,8 @@ impl Scene {
         }
     }
 
-    /// Depth along the light of the first caster, metres: of its part over what is shown where the
-    /// whole would make the depth range too long to be precise.
+    /// Depth along the light of the first caster, in metres. If the whole caster would make the
+    /// depth range too long to be precise, only its part over the shown region counts.
     fn first(&self, sun: &Sun<'_>, casters: &Gathered, listed: &Picked) -> f64 {
         let first = -listed.most(casters, |c| -first_depth(c, sun.direction));
         let (widest, last) = (self.widest() + self.volume.margin, self.depths().1);
@@ -184,6 +185,6 @@ impl Scene {
     }
 }
 
-/// A tight map's depth range is that of its whole casters up to so many times the map's width:
-/// 32-bit depth then resolves a tenth of a texel.
+/// Most widths of a map to which a tight map's depth range may extend for whole casters: 32-bit
+/// depth then resolves a tenth of a texel.
 const MOST_WIDTHS: f64 = 1000.0;

@@ -1,5 +1,5 @@
-//! What a map covers, for maps that are chosen by what they contain: its square along the light,
-//! less what earlier maps take.
+//! The region that a map covers with selection by map: its square along the light, less what
+//! earlier maps cover.
 
 use glam::{DVec2, DVec3};
 
@@ -12,8 +12,8 @@ use crate::coverage::CoverageVolume;
 use crate::geometry::volume::{Lies, lies_below};
 use crate::{ShadowPlan, Split};
 
-/// Texels beyond the filter's reach by which a caster may be off, for the rounding of a sample's
-/// place.
+/// Texels beyond the filter's reach by which a caster may be off, because the position of a sample
+/// is rounded.
 const ROUNDING_TEXELS: f64 = 1.0;
 
 /// The rectangle of a box in a plain map, in texels.
@@ -23,21 +23,21 @@ fn rectangle(split: &Split, center: DVec3, half: DVec3) -> (DVec2, DVec2) {
     (middle - reach, middle + reach)
 }
 
-/// Whether a box can leave a mark on the map.
+/// Returns whether a box can cover any texel of the map.
 fn reaches(split: &Split, center: DVec3, half: DVec3) -> bool {
     let (lo, hi) = rectangle(split, center, half);
     lo.cmple(DVec2::splat(f64::from(split.size) + ROUNDING_TEXELS)).all()
         && hi.cmpge(DVec2::splat(-ROUNDING_TEXELS)).all()
 }
 
-/// What the maps before one take away from it.
+/// The earlier maps, and the margins within which they take points from the planned one.
 struct Taken<'a> {
     earlier: &'a [Split],
-    /// Texels that a filter reaches around a sample of the map that is planned, rounding included.
+    /// Texels that a filter reaches around a sample of the planned map, rounding included.
     margin: f64,
-    /// Share of a map's half edge over which the next map is used too.
+    /// Share of a map's half edge over which the next map is also used.
     blend: f64,
-    /// Metres that the margin measures in the map that is planned.
+    /// The margin in metres, in the planned map.
     reach_m: f64,
 }
 
@@ -47,8 +47,8 @@ impl<'a> Taken<'a> {
         Self { earlier, margin, blend, reach_m: margin * split.texel_m.max_element() }
     }
 
-    /// Whether all points that a box can shade belong to one earlier map, filter and blend band
-    /// included: what shades them lies at the same place of that map.
+    /// Returns whether all points that a box can shade belong to one earlier map, filter and blend
+    /// band included. A point and its casters lie at one position of that map.
     fn holds(&self, center: DVec3, half: DVec3) -> bool {
         self.earlier.iter().filter(|split| !split.casters.is_empty()).any(|split| {
             let (lo, hi) = rectangle(split, center, half);
@@ -62,9 +62,9 @@ impl<'a> Taken<'a> {
     }
 }
 
-/// The split with a list and a depth range for everything that its map covers and no earlier one
-/// takes, and the depth of its first caster. `shown` and its depths are of all that any map may be
-/// asked about.
+/// The split with a list and a depth range for the whole region that its map covers and no earlier
+/// map takes, and the depth of its first caster. `shown` and its depths describe the region that
+/// any map may be asked about.
 pub(super) fn serving_all_it_covers(
     sun: &Sun<'_>,
     (mut split, mut first): (Split, f64),

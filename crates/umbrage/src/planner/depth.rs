@@ -14,18 +14,18 @@ use crate::config::Cache;
 use crate::held::depths::HeldDepths;
 use crate::maths;
 
-/// Depths along the light between which still maps lie whose depth is not clamped, metres; `None`
-/// if nothing says so.
+/// Range of depths along the light of stabilised maps whose depth is not clamped, in metres; `None`
+/// if nothing determines it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WorldDepths(Option<(f64, f64)>);
 
-/// A depth range is the whole world's up to so many times the length of what is shadowed. A longer
-/// one would cost precision: 32-bit depth resolves 1/8,000,000 of the range.
+/// Most lengths of the shadowed region to which a depth range may extend for the whole world. A
+/// longer range would cost precision: 32-bit depth resolves 1/8,000,000 of the range.
 const MOST_LENGTHS: f64 = 16.0;
 
 impl WorldDepths {
-    /// From the first caster to the last receiver: of all, or of those near the eye where the world
-    /// is much larger.
+    /// The range from the first caster to the last receiver: of the whole world, or of the region
+    /// near the camera if the world is much larger.
     pub fn measure(
         frame: &Frame<'_>,
         sun: &Sun<'_>,
@@ -59,17 +59,17 @@ impl WorldDepths {
     }
 }
 
-/// The shaft around all that the view can show in range, whichever way it turns.
+/// The shaft around everything that the view can show in range, whichever way it turns.
 fn around_view(frame: &Frame<'_>, sun: &Sun<'_>, layout: &Layout) -> Shaft {
     let far = layout.planes().last().copied().unwrap_or_default().min(frame.view.frustum().far);
     let corner = layout.lens.frustum().corners_at(far).map(DVec3::length).into_iter().fold(0.0, f64::max);
     Shaft::new(frame.view.eye(), corner, sun.light)
 }
 
-/// The split with its depth range: before the first caster and behind the last receiver, with room
-/// for the bias. Where depth is clamped near lies at the first receiver. A stabilised split takes
-/// the world's bounds (or, clamped, its own block's) in whole steps, so that what it stores does
-/// not depend on where the camera stands.
+/// The split with its depth range: from before the first caster to behind the last receiver, with
+/// room for the bias. If depth is clamped, the range begins at the first receiver. A stabilised
+/// split has the world's bounds (or, clamped, its own block's) in whole steps, so that stored
+/// depths do not depend on the camera's position.
 pub(super) fn ranged(frame: &Frame<'_>, mut split: Split, first: f64, size: &MapSize, world: WorldDepths) -> Split {
     let (texel, radius) = (split.texel_m.max_element(), size.half.max_element());
     let own = (split.depth_near, split.depth_far);

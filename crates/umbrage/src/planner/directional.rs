@@ -1,5 +1,5 @@
-//! A sun's plan, stage by stage: scope → range → planes → casters → fit → snap → depth. Each stage
-//! is a value that the next ones read; nothing goes back.
+//! A sun's plan in stages: scope → range → planes → casters → fit → snap → depth. Each stage is a
+//! value that later stages read; no stage reads a later one.
 
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ use crate::config::{Crop, Range, Selection, SplitMetric};
 use crate::held::Held;
 use crate::{DirectionalLight, Result, ShadowPlan, Split, Warp};
 
-/// Memory of one call that the next one uses again.
+/// Buffers that are reused from call to call.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SunBuffers {
     in_view: InView,
@@ -73,7 +73,7 @@ pub(super) fn plan(
     Ok(())
 }
 
-/// What all splits of a plan share.
+/// Writes the values that all splits of a plan share.
 fn describe(frame: &Frame<'_>, sun: &Sun<'_>, layout: &Layout, plan: &mut ShadowPlan) {
     let (config, view) = (frame.config, frame.view);
     let metric = config.selection.metric();
@@ -90,17 +90,18 @@ fn describe(frame: &Frame<'_>, sun: &Sun<'_>, layout: &Layout, plan: &mut Shadow
     plan.coverage.fan = Some(sun.fan);
 }
 
-/// A caster is small if its shadow is less than this many texels long along both axes of a map.
-/// Below one it covers the centre of one texel at most. Higher: shadows are lost that a filter
+/// Length in texels along both axes of a map below which the shadow of a caster is small. Below one
+/// texel it covers the centre of one texel at most. A higher value loses shadows that a filter
 /// would have shown as a faint dot.
 const SMALL_TEXELS: f64 = 0.5;
 
-/// Whether the whole shadow of a caster is small in a map with these axes, in texels per metre.
+/// Returns whether the whole shadow of a caster is small in a map with these axes, in texels per
+/// metre.
 pub(crate) fn is_small(caster: &Placed, texels_per_m: [DVec3; 2]) -> bool {
     texels_per_m.iter().all(|axis| 2.0 * axis.abs().dot(caster.half) < SMALL_TEXELS)
 }
 
-/// Warps the map of a split that is to be warped and has casters.
+/// Warps the map of a split that has a warp and casters.
 fn warp(
     split: &SplitFrame<'_>,
     scene: &Scene,

@@ -1,5 +1,4 @@
-//! Stage 4 of a sun's plan: how large a split's map has to be, and the margin that its filter
-//! needs.
+//! Stage 4 of a sun's plan: the size of a split's map, and the margin that its filter needs.
 
 use glam::DVec2;
 
@@ -10,16 +9,16 @@ use crate::geometry::sphere::stable_texel;
 use crate::held::rectangle::longest_edge;
 use crate::margin::{EDGE_TEXELS, FilterReach};
 
-/// The size of a still map and how far filters reach in it.
+/// Size of a stabilised map, and the filter's reach in it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MapSize {
-    /// How far the split's filter reaches, by the map's size.
+    /// Reach of the split's filter; the texels depend on the map's size.
     pub reach: FilterReach,
-    /// Half the edges of a still map without its margin, metres.
+    /// Half the edges of a stabilised map without its margin, in metres.
     pub half: DVec2,
-    /// The filter's reach in a still map, texels.
+    /// The filter's reach in a stabilised map, in texels.
     pub still_reach: f64,
-    /// Metres per texel of a still map.
+    /// Metres per texel of a stabilised map.
     pub still_texel: DVec2,
 }
 
@@ -33,8 +32,8 @@ impl MapSize {
         Self { reach, half, still_reach, still_texel: DVec2::new(texel(half.x), texel(half.y)) }
     }
 
-    /// Metres around what the split serves that filters ask about, if that is `widest` metres wide:
-    /// at most.
+    /// Upper bound in metres of the margin that filters read around the served region, if that is
+    /// `widest` metres wide.
     pub fn margin(&self, split: &SplitFrame<'_>, widest: f64) -> f64 {
         let (margin, size) = (split.frame.margin, f64::from(split.size()));
         match split.frame.config.stability {

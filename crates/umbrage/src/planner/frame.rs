@@ -1,4 +1,4 @@
-//! What is the same for all maps of a frame.
+//! Values that all maps of a frame share.
 
 use glam::DVec3;
 
@@ -16,17 +16,17 @@ use crate::{DirectionalLight, Frustum, ShadowConfig, View};
 #[derive(Clone, Copy)]
 pub(super) struct Frame<'a> {
     pub config: &'a ShadowConfig,
-    /// Whether casters before the near plane are flattened onto it.
+    /// True if casters before the near plane are flattened onto it.
     pub depth_clamp: bool,
-    /// How far the filter reads.
+    /// Reach of the filter.
     pub reach: FilterReach,
     pub view: &'a View,
     pub image_size: [u32; 2],
     pub casters: Crowd<'a>,
     pub receivers: Crowd<'a>,
-    /// What an earlier picture showed, where it is known and maps may be fitted to it.
+    /// Geometry that an earlier image showed, if it is known and maps may be fitted to it.
     pub seen: Option<Crowd<'a>>,
-    /// Texels that a map keeps free around what it serves, at most.
+    /// Most texels that a map keeps free around the points that it serves.
     pub margin: f64,
 }
 
@@ -50,19 +50,19 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Whether maps stand still, exactly or almost.
+    /// Returns whether maps are stabilised, exactly or approximately.
     pub fn stands_still(&self) -> bool {
         self.config.is_stabilised()
     }
 
-    /// The largest share of a map's width that its margin can be.
+    /// Upper bound of a map's margin as a share of its width.
     pub fn margin_share(&self) -> f64 {
         let smallest = self.config.map_sizes.iter().copied().min().unwrap_or(1);
         2.0 * self.margin / f64::from(smallest).max(2.0 * self.margin + 2.0)
     }
 }
 
-/// Whether a view may show any of some boxes.
+/// Returns whether a view may show any of some boxes.
 pub(super) fn shows_any(view: &View, boxes: &Crowd<'_>) -> bool {
     let Frustum { near, far, .. } = *view.frustum();
     let distance = |placed: &Placed| ((placed.center - view.eye()).abs() + placed.half).length();
@@ -71,7 +71,7 @@ pub(super) fn shows_any(view: &View, boxes: &Crowd<'_>) -> bool {
     boxes.any(|placed| whole.classify(placed.center, placed.half) != Lies::Outside)
 }
 
-/// A sun, and directions across its light to measure bounds along.
+/// A sun, and the directions across its light along which bounds are measured.
 #[derive(Clone, Copy)]
 pub(super) struct Sun<'a> {
     pub light: &'a DirectionalLight,
@@ -79,13 +79,14 @@ pub(super) struct Sun<'a> {
     pub fan: Fan,
 }
 
-/// A view that looks along the light more closely than this (the sine of the angle between them)
-/// has no direction of its own across the light.
+/// Sine of the angle between view and light below which the view has no direction of its own across
+/// the light.
 const LEAST_SINE: f64 = 1e-3;
 
 impl<'a> Sun<'a> {
-    /// The first direction is the view's across the light, so that tight maps turn with it;
-    /// approximately still ones need a direction that is fixed to the light.
+    /// The sun of a frame. The first direction is that of the view across the light, so that tight
+    /// maps turn with the view; approximately stabilised maps need a direction that is fixed to the
+    /// light.
     pub fn new(light: &'a DirectionalLight, frame: &Frame<'_>) -> Self {
         let direction = light.direction();
         let forward = frame.view.forward();

@@ -1,4 +1,4 @@
-//! What the whole view may show: the boxes that all slices choose from.
+//! Boxes that the whole view may show, from which all slices choose theirs.
 
 use super::frame::{Frame, Sun};
 use crate::bounds::Placed;
@@ -9,16 +9,16 @@ use crate::geometry::volume::{Lies, Slice};
 use crate::held::ends::Range;
 use crate::{Aabb, View};
 
-/// What the whole view may show.
+/// Boxes that the whole view may show.
 #[derive(Clone, Debug, Default)]
 pub(super) struct InView {
     /// Receivers that some slice can contain.
     pub receivers: Gathered,
     /// Casters that some slice's sweep can meet.
     pub casters: Gathered,
-    /// What an earlier picture showed of it.
+    /// The part of them that an earlier image showed.
     seen: Gathered,
-    /// Whether `seen` says where receivers are: it shows something.
+    /// True if `seen` gives the positions of receivers: it is known and not empty.
     pub is_seen: bool,
     /// Receivers that a slice cuts.
     across: Vec<u32>,
@@ -40,13 +40,13 @@ impl InView {
         frame.casters.near(&Near { planes: swept.planes(), margin }, &mut self.casters);
     }
 
-    /// The receivers that planes are placed for.
+    /// The receivers for which planes are placed.
     pub fn sought(&self) -> &Gathered {
         if self.is_seen { &self.seen } else { &self.receivers }
     }
 
-    /// What all receivers in range and the casters over them take up across the light; `None` if
-    /// there are none.
+    /// The region that all receivers in range and the casters over them take up across the light;
+    /// `None` if there are none.
     pub fn shadowed(&mut self, view: &View, sun: &Sun<'_>, range: Range) -> Option<Region> {
         let frustum = view.frustum();
         let slice = Slice::new(view, frustum.near, range.far.min(frustum.far).max(1.01 * frustum.near + 0.01));
@@ -58,11 +58,11 @@ impl InView {
         (!receivers.is_empty() && !casters.is_empty()).then(|| casters.within(&receivers))
     }
 
-    /// The receivers' part of a slice, or the part of what was seen: its bounds in the light's
-    /// plane and in the world.
+    /// The part of a slice that its receivers, or the seen ones among them, take up: its bounds in
+    /// the light's plane and in the world.
     ///
-    /// What lies inside of the bounds of others is passed over: bounds do not depend on the order
-    /// of receivers.
+    /// Receivers inside the bounds of others are skipped: the bounds do not depend on the order of
+    /// receivers.
     pub fn receivers_in(&mut self, slice: &Slice, sun: &Sun<'_>, seen_alone: bool) -> Served {
         let Self { receivers, seen, across, .. } = self;
         let receivers = if seen_alone { seen } else { receivers };
@@ -116,10 +116,10 @@ impl InView {
     }
 }
 
-/// Whether nothing of a box, `own` or a little more, can change the bounds of others.
+/// Returns whether no part of a box can change the bounds; `own` is the box or one slightly larger.
 fn holds(region: &Region, bounds: &Aabb, sun: &Sun<'_>, own: &Aabb, placed: &Placed) -> bool {
     bounds.union(*own) == *bounds && region.encloses_box(&sun.fan, placed.center, placed.half)
 }
 
-/// Share of a slice's length that half of a large receiver measures, at least.
+/// Least half extent of a large receiver, as a share of the slice's length.
 const LARGE: f64 = 0.25;

@@ -1,4 +1,4 @@
-//! What a frame's plan is made from.
+//! Inputs of a frame's plan.
 
 use glam::DVec3;
 
@@ -7,16 +7,16 @@ use crate::bounds::Placed;
 use crate::casters::{BoxTree, Counter, Crowd, Role};
 use crate::{Aabb, CasterSet, Error, Layers, Light, Result, View};
 
-/// The boxes of a plan's casters or receivers: a list of them, which is read again in every
-/// frame, or a set that keeps them.
+/// The boxes of a plan's casters or receivers: a list, which is read again in every frame, or a set
+/// that keeps them.
 ///
-/// Slices, arrays, vectors and sets turn into it by themselves.
+/// Slices, arrays, vectors and sets convert to it.
 #[derive(Clone, Copy, Debug)]
 pub enum Boxes<'a> {
-    /// World boxes. Plans call casters by their places in this list.
+    /// World boxes. Plans name casters by their index in this list.
     List(&'a [Aabb]),
-    /// Those of a set that share a layer with [`PlanInputs::layers`]. Plans call casters by their
-    /// keys.
+    /// The boxes of a set that share a layer with [`PlanInputs::layers`]. Plans name casters by
+    /// their keys.
     Set(&'a CasterSet),
 }
 
@@ -45,7 +45,7 @@ impl<'a> From<&'a CasterSet> for Boxes<'a> {
 }
 
 impl<'a> Boxes<'a> {
-    /// How many entries a list has; 0 for a set, which names its casters by keys.
+    /// Number of entries of a list; 0 for a set, which names its casters by keys.
     pub(super) fn listed(&self) -> usize {
         match self {
             Self::List(list) => list.len(),
@@ -53,7 +53,7 @@ impl<'a> Boxes<'a> {
         }
     }
 
-    /// Whether both are one and the same list.
+    /// Returns whether both are the same list in memory.
     pub(super) fn is_same_list(&self, other: &Self) -> bool {
         matches!((self, other), (Self::List(one), Self::List(other)) if std::ptr::eq(*one, *other))
     }
@@ -67,7 +67,7 @@ impl<'a> Boxes<'a> {
         Ok(())
     }
 
-    /// As the planner reads them.
+    /// The boxes in the form that the planner reads.
     pub(super) fn crowd<'b>(
         &self,
         tree: &'b BoxTree,
@@ -102,30 +102,30 @@ pub struct PlanInputs<'a> {
     pub view: &'a View,
     /// The light.
     pub light: Light,
-    /// World boxes of what casts shadows, as a list or a set. A plan's caster indices refer to
-    /// this list, or are the set's keys.
+    /// World boxes of the casters, as a list or a set. A plan's caster indices refer to this list,
+    /// or are the set's keys.
     pub casters: Boxes<'a>,
-    /// World boxes of what shows shadows, as a list or a set; most objects are in both. Casters
-    /// serve as receivers where there is none here, or none in view.
+    /// World boxes of the receivers, as a list or a set; most objects are both. If there is no
+    /// receiver, or none in view, the casters serve as receivers.
     pub receivers: Boxes<'a>,
-    /// Which casters and receivers of sets take part: those that are on one of these layers. All of
-    /// a list do.
+    /// Layers of the casters and receivers that take part, for sets. All boxes of a list take part.
     pub layers: Layers,
-    /// World boxes that hold all that is drawn of the receivers in view and leave less air than the
-    /// receivers' own: [`crate::ShadowPlan::casts_into`] then rejects parts of casters that have
-    /// none of them behind. `None`: not known. For [`crate::config::Crop::SceneDependent`].
+    /// World boxes that enclose all visible parts of the receivers more tightly than the receivers'
+    /// own boxes. [`crate::ShadowPlan::casts_into`] then also rejects parts of casters that have
+    /// none of these boxes behind them. `None` if not known. For
+    /// [`crate::config::Crop::SceneDependent`].
     pub receiver_clusters: Option<&'a [Aabb]>,
-    /// World boxes that hold all that an earlier picture showed, from its depth. Planes are then
-    /// placed, and all maps but the last fitted, for what was seen instead of for all receivers in
-    /// view; the last map serves whatever has come into view since. `None`: not known. For
-    /// [`crate::config::FitTo::Depth`]; ignored otherwise.
+    /// World boxes that enclose everything that an earlier image showed, from its depth. Planes are
+    /// then placed, and all maps but the last fitted, for the geometry that was seen instead of for
+    /// all receivers in view; the last map serves the geometry that has come into view since.
+    /// `None` if not known. For [`crate::config::FitTo::Depth`]; ignored otherwise.
     pub seen: Option<&'a [Aabb]>,
-    /// Pixels across the picture: a split is widened by one 2×2 pixel quad at its near side.
+    /// Size of the image in pixels: a split is widened by one 2×2 pixel quad at its near side.
     pub image_size: [u32; 2],
 }
 
 impl<'a> PlanInputs<'a> {
-    /// Inputs for a picture of 1920 × 1080 pixels, without receiver clusters, of all layers.
+    /// Inputs for an image of 1920 × 1080 pixels, without receiver clusters, with all layers.
     #[must_use]
     pub fn new(
         view: &'a View,
@@ -145,7 +145,7 @@ impl<'a> PlanInputs<'a> {
         }
     }
 
-    /// Checks what can be wrong with lists and sizes.
+    /// Checks the lists that are not read by the planner's stages, and the image size.
     pub(super) fn check(&self) -> Result<()> {
         check_image_size(self.image_size)?;
         check_boxes(self.seen.unwrap_or_default(), "seen")?;

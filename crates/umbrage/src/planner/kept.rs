@@ -1,11 +1,11 @@
-//! The last plan, for frames in which nothing has changed.
+//! The last plan, which is returned again while its inputs do not change.
 
 use super::inputs::{Boxes, PlanInputs};
 use crate::held::Held;
 use crate::{Layers, Light, ShadowPlan, View};
 
-/// The inputs of a plan that sets tell apart by a number: lists would have to be compared box by
-/// box.
+/// Inputs of a plan made from sets, which a number tells apart. Lists would have to be compared box
+/// by box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Inputs {
     view: View,
@@ -17,7 +17,7 @@ pub(super) struct Inputs {
 }
 
 impl Inputs {
-    /// Those of a plan of sets alone.
+    /// The inputs of a plan that is made from sets alone.
     pub fn of(inputs: &PlanInputs<'_>) -> Option<Self> {
         let &PlanInputs { view, light, image_size, layers, receiver_clusters: None, seen: None, .. } = inputs else {
             return None;
@@ -27,7 +27,7 @@ impl Inputs {
     }
 }
 
-/// A plan and all that it was made from: the same inputs with the same held values give the same
+/// A plan and everything that it was made from: equal inputs and equal held values give an equal
 /// plan.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Kept {
@@ -38,7 +38,8 @@ pub(super) struct Kept {
 }
 
 impl Kept {
-    /// Writes the plan of these inputs, and what is held after it and before it, if it is known.
+    /// Writes the plan of these inputs and the state held after and before it, if they are known.
+    /// Returns whether they are.
     pub fn serve(
         &self,
         inputs: Option<&Inputs>,

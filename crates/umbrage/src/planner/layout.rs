@@ -1,7 +1,7 @@
-//! Stage 2 of a sun's plan: the lens that maps are made for, the planes between splits and the
-//! sizes of still maps.
+//! Stage 2 of a sun's plan: the lens for which maps are made, the planes between splits and the
+//! sizes of stabilised maps.
 //!
-//! All that is held between frames is settled here, but for rectangles and depths.
+//! All held values are settled here, except for rectangles and depths.
 
 use glam::DVec2;
 
@@ -21,29 +21,31 @@ use crate::planes::optimal::{Maps, Placement};
 use crate::planes::scheme::split_planes;
 use crate::{MAX_SPLITS, Result, View, Warp};
 
-/// Where maps begin and end, and how large still ones are.
+/// Planes of the splits and sizes of stabilised maps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layout {
     pub range: Range,
     pub row: Row,
-    /// The view through the lens that maps are made for: the camera's, or one around it.
+    /// The view through the lens for which maps are made: the camera's, or one around it.
     pub lens: View,
-    /// Stabilised: across the sphere around everything that is shadowed, metres. 0 otherwise.
+    /// Diameter in metres of the sphere around the whole shadowed range, for stabilised maps;
+    /// otherwise 0.
     pub whole_width: f64,
-    /// Exactly stabilised: around all receivers, which no map has to exceed along any axis.
+    /// Block around all receivers, which no map has to exceed along any axis, for exactly
+    /// stabilised maps.
     pub around_all: Option<Block>,
-    /// The split whose rectangle may be chosen again in this frame, though the held one would
+    /// The split whose rectangle may be chosen again in this frame although the held one would
     /// serve.
     pub refits: Option<usize>,
 }
 
-/// What the stages of one split share.
+/// Values that the stages of one split share.
 #[derive(Clone, Copy)]
 pub(super) struct SplitFrame<'a> {
     pub frame: &'a Frame<'a>,
     pub sun: &'a Sun<'a>,
     pub layout: &'a Layout,
-    /// The split.
+    /// Index of the split.
     pub index: usize,
 }
 
@@ -57,13 +59,13 @@ impl SplitFrame<'_> {
         self.frame.config.warp(self.index)
     }
 
-    /// What the still map has to show.
+    /// The extent of the split's stabilised map.
     pub fn block(&self) -> Block {
         self.layout.block(self.frame, self.sun, self.layout.planes(), self.index)
     }
 }
 
-/// Memory of the stage.
+/// Buffers of the stage.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LayoutBuffers {
     placement: Placement,
@@ -71,7 +73,7 @@ pub(super) struct LayoutBuffers {
 }
 
 impl Layout {
-    /// `C_0 ..= C_m`.
+    /// Split planes `C_0 ..= C_m`.
     pub fn planes(&self) -> &[f64] {
         &self.row.planes[..=self.row.splits]
     }
@@ -111,7 +113,7 @@ impl Layout {
         Ok(target.approached(frame, sun, row, held))
     }
 
-    /// A layout one step nearer to this one than `row`, which is held from now on.
+    /// A layout that is one step nearer to this one than `row`, and is held from now on.
     fn approached(self, frame: &Frame<'_>, sun: &Sun<'_>, mut row: Row, held: &mut Held) -> Self {
         let need = |i: usize, planes: &[f64]| self.block(frame, sun, planes, i).half.truncate();
         // Rectangles that are almost still are chosen by the stage that places them, one a frame.
@@ -129,8 +131,8 @@ impl Layout {
         Self { row, refits, ..self }
     }
 
-    /// Holds on to whatever serves. `shown` is the view depth up to which casters are looked for,
-    /// at least.
+    /// A layout that keeps every held value that serves. `shown` is the least view depth up to
+    /// which casters are looked for.
     fn holding(
         (frame, sun): (&Frame<'_>, &Sun<'_>),
         scope: &Scope<'_>,
@@ -167,8 +169,8 @@ impl Layout {
         Self { range: Range::new(0.0, 0.0), row, lens: *frame.view, whole_width: 0.0, around_all: None, refits: None }
     }
 
-    /// Writes `C_0 ..= C_m`: those that are held while they were placed for the same range, or new
-    /// ones.
+    /// Writes the planes `C_0 ..= C_m`: the held ones if they were placed for the same range,
+    /// otherwise new ones.
     fn place_planes(
         &mut self,
         frame: &Frame<'_>,
@@ -208,8 +210,8 @@ impl Layout {
         Ok(())
     }
 
-    /// What the still map of split `i` has to show: a block around its slice, and no longer than
-    /// all receivers.
+    /// The extent of the stabilised map of split `i`: a block around its slice, no longer than all
+    /// receivers.
     pub fn block(&self, frame: &Frame<'_>, sun: &Sun<'_>, planes: &[f64], i: usize) -> Block {
         let slice = SliceEnds::new(frame, planes, i);
         // A kept map stands in for those before it, too. A wider lens has wider pixels, and its

@@ -1,12 +1,13 @@
-//! Lights that stand somewhere: parallel splits in the post-perspective space of a spot light, or
-//! of the six faces of a point light.
+//! Plans for local lights: parallel splits in the post-perspective space of a spot light, or of the
+//! six faces of a point light.
 //!
-//! Behind its perspective divide a light's frustum is a cube in which light is parallel: a place is
-//! `(u/w, v/w)` in units of the tangent, `w` the depth along the frustum's axis, and whatever lies
-//! on one ray from the light has one place. There a slice's map is planned in a sun's stages: range
-//! → planes → casters → fit → snap → depth. Everything is clipped to the light's frustum *before*
-//! the divide, slices as well as boxes, as either may straddle the light's plane, where w changes
-//! its sign. What can cast a shadow is asked by planes through the light, which divide by nothing.
+//! After its perspective division a light's frustum is a cube in which light is parallel: a
+//! position is `(u/w, v/w)` in units of the tangent, with `w` the depth along the frustum's axis,
+//! and all points on one ray from the light have one position. There a slice's map is planned in
+//! the stages of a sun: range → planes → casters → fit → snap → depth. Slices and boxes are clipped
+//! to the light's frustum *before* the division, as either may straddle the light's plane, where w
+//! changes its sign. The test of whether a box can cast a shadow uses planes through the light,
+//! which need no division.
 
 use glam::{DVec2, DVec3};
 
@@ -28,16 +29,16 @@ use crate::{Error, Light, Result, ShadowPlan, Split, maths};
 /// for rounding.
 const DEPTH_ROOM: f64 = 1e-3;
 
-/// Share by which the shadowed range goes on behind the last receiver: a wall across the view is
-/// all at that depth.
+/// Share by which the shadowed range extends behind the last receiver, because all of a wall across
+/// the view lies at that depth.
 const RANGE_ROOM: f64 = 1e-3;
 
-/// Memory of one call that the next one uses again.
+/// Buffers that are reused from call to call.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LocalBuffers {
     receivers: Gathered,
     casters: Gathered,
-    /// Casters of a split, as places among those.
+    /// Casters of a split, as indices into `casters`.
     listed: Vec<u32>,
 }
 
@@ -45,9 +46,9 @@ pub(super) struct LocalBuffers {
 #[derive(Clone, Copy)]
 struct LocalSplit<'a> {
     frame: &'a Frame<'a>,
-    /// Within the frustum.
+    /// Index of the split within the frustum.
     index: usize,
-    /// View depths that sample the map.
+    /// Range of view depths that sample the map.
     coverage: (f64, f64),
     volume: LocalVolume,
 }
@@ -85,8 +86,8 @@ pub(super) fn plan(
     Ok(())
 }
 
-/// The maps, of `count`, that may be made smaller in this frame though the held size serves, and
-/// the step that they may take.
+/// The range of those among `count` maps that may shrink in this frame although the held size
+/// serves, and the step that they may take.
 fn recovering(
     frame: &Frame<'_>,
     light: &Light,
@@ -141,8 +142,8 @@ impl<'a> LocalSplit<'a> {
         (f64::from(self.size()) - 2.0 * self.frame.margin).max(2.0)
     }
 
-    /// Lists the casters of a split: boxes that meet the hull of the light and what the map has to
-    /// show. Returns what the map has to show with them.
+    /// Lists the casters of a split: boxes that meet the hull of the light and the part that the
+    /// map has to show. Returns that part for these casters.
     fn list_casters(&self, LocalBuffers { casters, listed, .. }: &mut LocalBuffers) -> Part {
         let LocalVolume { frustum, part, .. } = &self.volume;
         listed.clear();
@@ -167,7 +168,7 @@ impl<'a> LocalSplit<'a> {
         target
     }
 
-    /// Whether a box can shade the part of the frustum that the map shows.
+    /// Returns the test of whether a box can shade the part of the frustum that the map shows.
     fn casts(&self) -> impl Fn(&Placed) -> bool {
         let LocalVolume { swept, frustum, part } = self.volume;
         // A tangent per texel, of the whole part: what the margin around it may be at most.
@@ -196,8 +197,8 @@ impl<'a> LocalSplit<'a> {
         }
     }
 
-    /// Tangents per texel, and the map's corner in texels; `held` holds the size of a map that
-    /// stands still.
+    /// Tangents per texel, and the map's corner in texels. `held` holds the size of a stabilised
+    /// map.
     fn snapped(&self, target: &Part, held: &mut HeldSize, step: Option<f64>) -> (DVec2, DVec2) {
         let (size, texels) = (f64::from(self.size()), self.texels());
         if !self.frame.stands_still() {
@@ -214,7 +215,7 @@ impl<'a> LocalSplit<'a> {
         (texel, (0.5 * (target.lo + target.hi) / texel - 0.5 * size).round())
     }
 
-    /// The split's map.
+    /// Makes the split's map.
     fn map(&self, target: &Part, planes: &[f64], held: &mut HeldSize, step: Option<f64>) -> Split {
         let LocalVolume { frustum, part, .. } = &self.volume;
         let (texel, min_texel) = self.snapped(target, held, step);
@@ -243,7 +244,7 @@ impl<'a> LocalSplit<'a> {
     }
 }
 
-/// What a slice shows of the light's frustum: all of it, or its receivers.
+/// The part of the light's frustum that a slice shows: all of it, or its receivers.
 fn part_in(frame: &Frame<'_>, frustum: &LightFrustum, slice: &Slice, receivers: &Gathered) -> Part {
     let mut part = Part::EMPTY;
     if frame.config.crop == Crop::SceneIndependent {
@@ -261,8 +262,8 @@ fn part_in(frame: &Frame<'_>, frustum: &LightFrustum, slice: &Slice, receivers: 
     part
 }
 
-/// Depths along the axis at 0 and 1: before the first caster and behind the last receiver; in whole
-/// steps where the map is to stand still.
+/// Depths along the axis that are stored as 0 and 1: before the first caster and behind the last
+/// receiver; in whole steps for stabilised maps.
 fn depths(target: &Part, least: f64, stands_still: bool) -> (f64, f64) {
     let far = target.far * (1.0 + DEPTH_ROOM);
     let near = (target.near.max(least) * (1.0 - DEPTH_ROOM)).min(0.5 * far);
@@ -273,9 +274,10 @@ fn depths(target: &Part, least: f64, stands_still: bool) -> (f64, f64) {
     }
 }
 
-/// View depths that shadows cover, `C_0` and `C_m`, and whether they fade at the end: the setting;
-/// or the camera's near and far, far capped by the receivers that the light reaches, both narrowed
-/// to where it reaches. Shadows fade only where they end though the light goes on.
+/// Range of view depths that shadows cover, `C_0` and `C_m`, and whether they fade at its end. The
+/// range is that of the setting; or the camera's near and far, with far capped by the receivers
+/// that the light reaches, both narrowed to the light's range. Shadows fade only if they end
+/// although the light continues.
 fn shadowed_range(frame: &Frame<'_>, light: &Light, position: DVec3) -> (f64, f64, bool) {
     let Frame { config, view, receivers, .. } = *frame;
     let range = light.range();

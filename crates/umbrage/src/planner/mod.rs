@@ -1,8 +1,8 @@
 //! The planner: from a view, a light and bounds to a [`ShadowPlan`].
 //!
-//! [`plan`] is the core: values in, values out, with what is held between frames as a value of its
-//! own. A sun's plan is made in the stages of [`directional`], a local light's in those of
-//! [`local`].
+//! [`plan`] is the core: values in, values out, with the state that is held between frames as a
+//! value of its own. A sun's plan is made in the stages of [`directional`], a local light's in
+//! those of [`local`].
 
 mod block;
 mod casters;
@@ -39,8 +39,8 @@ pub use options::PlannerOptions;
 
 /// Plans shadow maps frame after frame.
 ///
-/// Contains the config, what is held between frames ([`Held`]) and buffers, so that only the first
-/// frame allocates. Use one planner for each light of each view.
+/// Contains the config, the state held between frames ([`Held`]) and buffers, so that only the
+/// first frame allocates. Use one planner for each light of each view.
 #[derive(Clone, Debug)]
 pub struct Planner {
     config: ShadowConfig,
@@ -48,29 +48,29 @@ pub struct Planner {
     held: Held,
     buffers: Buffers,
     plan: ShadowPlan,
-    /// Whether the buffers have what was held before the last frame.
+    /// True if the buffers have the state held before the last frame.
     can_take_back: bool,
 }
 
-/// Memory of one call that the next one uses again. Holds nothing that a plan depends on.
+/// Buffers that are reused from call to call. No plan depends on them.
 #[derive(Clone, Debug, Default)]
 struct Buffers {
-    /// Casters and receivers that come as lists.
+    /// Casters that are given as a list.
     casters: BoxTree,
     receivers: BoxTree,
-    /// What an earlier picture showed.
+    /// Boxes that an earlier image showed.
     seen: BoxTree,
-    /// What the last plan looked at.
+    /// Counts of the boxes that the last plan visited.
     visited: Visited,
     kept: Kept,
     sun: SunBuffers,
     local: LocalBuffers,
-    /// What was held before the last frame that was not refused.
+    /// State held before the last frame that was not refused.
     held: Held,
 }
 
 impl Planner {
-    /// A planner of a config's maps, with the default options.
+    /// A planner for a config, with the default options.
     ///
     /// # Errors
     /// Those of [`Planner::with_options`].
@@ -78,19 +78,19 @@ impl Planner {
         Self::with_options(config, PlannerOptions::default())
     }
 
-    /// A planner of a config's maps.
+    /// A planner for a config and options.
     ///
     /// # Errors
     /// Those of [`ShadowConfig::validate`]; [`crate::Error::InvalidSetting`] naming a field of the
-    /// options that is wrong, or `map-size` for maps that do not hold the options' filter.
+    /// options that is wrong, or `map-size` for maps that are too small for the options' filter.
     pub fn with_options(config: &ShadowConfig, options: PlannerOptions) -> Result<Self> {
         options.check(config)?;
         let (config, held, buffers) = (config.clone(), Held::default(), Buffers::default());
         Ok(Self { config, options, held, buffers, plan: ShadowPlan::default(), can_take_back: false })
     }
 
-    /// Plans by another config and other options from the next frame on. What is held stays held if
-    /// plans do not depend on what has changed, and is let go otherwise.
+    /// Uses another config and other options from the next frame on. The held state is kept if
+    /// plans do not depend on the changes, and dropped otherwise.
     ///
     /// # Errors
     /// Those of [`Planner::with_options`]. Nothing has changed then.
@@ -109,7 +109,7 @@ impl Planner {
         Ok(())
     }
 
-    /// The config that maps are planned by.
+    /// The config by which maps are planned.
     #[must_use]
     pub fn config(&self) -> &ShadowConfig {
         &self.config
@@ -121,22 +121,22 @@ impl Planner {
         self.options
     }
 
-    /// What is held between frames.
+    /// State that is held between frames.
     #[must_use]
     pub fn held(&self) -> &Held {
         &self.held
     }
 
-    /// How many casters and receivers the last plan visited: a measure of its cost that does not
-    /// depend on the machine. All zero if view, light, sets and held state equal those of the last
-    /// plan, which is then returned again.
+    /// Number of casters and receivers that the last plan visited: a measure of its cost that does
+    /// not depend on the machine. All zero if view, light, sets and held state equal those of the
+    /// last plan, which is then returned again.
     #[must_use]
     pub fn visited(&self) -> Visited {
         self.buffers.visited
     }
 
-    /// Replaces what is held between frames: to continue from another frame than the last one, or
-    /// from nothing.
+    /// Replaces the state that is held between frames: to continue from another frame than the last
+    /// one, or from nothing.
     pub fn set_held(&mut self, held: Held) {
         self.held = held;
         self.can_take_back = false;
@@ -150,7 +150,7 @@ impl Planner {
         }
     }
 
-    /// Plans the maps of one frame for one light, for a picture of [`PlannerOptions::image_size`];
+    /// Plans the maps of one frame for one light and an image of [`PlannerOptions::image_size`];
     /// see [`Planner::plan_frame`].
     ///
     /// # Errors
@@ -179,22 +179,22 @@ impl Planner {
     }
 
     /// Plans the maps of one frame for one light into a plan of the caller's, whose buffers are
-    /// used again.
+    /// reused.
     ///
     /// A point light's plan has six times as many splits as the config: those of its first face,
     /// then those of the next ([`Light::FACE_AXES`]). Splits that the light does not reach have no
     /// casters.
     ///
-    /// A local light's default range is narrowed to where it reaches. Its stabilised maps stand on
-    /// whole texels, of a size that changes in steps: between two steps a shadow's texels stay
-    /// where they are.
+    /// A local light's default range is narrowed to the part of the view that the light reaches.
+    /// Its stabilised maps lie on whole texels, of a size that changes in steps: between two steps
+    /// a shadow's texels stay in place.
     ///
     /// # Errors
     /// [`crate::Error::InvalidBounds`] naming a box that is inverted or not finite;
     /// [`crate::Error::InvalidSetting`] if the range or the planes do not fit this camera;
     /// [`crate::Error::Conflict`] for a choice that a local light's plan cannot make, such as a
     /// warp; [`crate::Error::CameraConflict`] for splits by distance with an orthographic camera.
-    /// What is held is left as it was; the plan is of no use.
+    /// The held state is then unchanged, and the plan is of no use.
     pub fn plan_into(&mut self, inputs: &PlanInputs<'_>, plan: &mut ShadowPlan) -> Result<()> {
         self.can_take_back = false;
         plan_with((&self.config, &self.options), inputs, &mut self.held, &mut self.buffers, plan)?;
@@ -203,8 +203,8 @@ impl Planner {
     }
 }
 
-/// One frame's plan: a function of the config, the options, the inputs and what is held from the
-/// frames before. The picture's size is the inputs'.
+/// Plans one frame as a function of the config, the options, the inputs and the state held from the
+/// frames before. The image size is that of the inputs.
 ///
 /// # Errors
 /// As [`Planner::plan_into`], and as [`Planner::with_options`] for config and options.
@@ -220,7 +220,7 @@ pub fn plan(
     Ok(plan)
 }
 
-/// One frame's plan by a checked config, with memory of before.
+/// Plans one frame by a checked config, with reused buffers.
 fn plan_with(
     technique: (&ShadowConfig, &PlannerOptions),
     inputs: &PlanInputs<'_>,

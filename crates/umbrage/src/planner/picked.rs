@@ -1,19 +1,20 @@
-//! Which of the gathered casters a split draws.
+//! The gathered casters that a split draws.
 
 use crate::bounds::Placed;
 use crate::casters::{Gathered, Group};
 
-/// Casters of a split, as places among those that were gathered, in the groups in which they were.
+/// Casters of a split, as indices into the gathered ones, in the groups in which they were
+/// gathered.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Picked {
     places: Vec<u32>,
     pub parts: Vec<Part>,
 }
 
-/// What was picked of a group.
+/// The picked casters of a group.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
-    /// Around the whole group.
+    /// Bounds of the whole group.
     pub bounds: Placed,
     begin: u32,
     end: u32,
@@ -37,7 +38,7 @@ impl Picked {
         self.places.is_empty()
     }
 
-    /// Takes the boxes of a group that pass a test.
+    /// Picks the boxes of a group that pass a test.
     pub fn pick(&mut self, casters: &Gathered, group: &Group, test: impl Fn(&Placed) -> bool) {
         let begin = self.places.len();
         self.places.extend(group.range().filter(|&at| test(&casters.boxes[at])).map(|at| at as u32));
@@ -46,7 +47,7 @@ impl Picked {
         }
     }
 
-    /// Leaves out the boxes that fail a test. Says how many.
+    /// Removes the boxes that fail a test. Returns their number.
     pub fn retain(&mut self, casters: &Gathered, test: impl Fn(&Placed) -> bool) -> u32 {
         let (before, mut kept) = (self.places.len(), 0);
         for part in &mut self.parts {
@@ -64,12 +65,12 @@ impl Picked {
         (before - kept) as u32
     }
 
-    /// What was picked of a group.
+    /// The picked boxes of a group.
     pub fn boxes<'a>(&'a self, casters: &'a Gathered, part: &Part) -> impl Iterator<Item = &'a Placed> {
         self.places[part.begin as usize..part.end as usize].iter().map(|&at| &casters.boxes[at as usize])
     }
 
-    /// The largest of a monotone measure; −∞ if there is none.
+    /// The largest value of a monotone measure; −∞ if there is no box.
     pub fn most(&self, casters: &Gathered, measure: impl Fn(&Placed) -> f64) -> f64 {
         self.parts.iter().fold(f64::NEG_INFINITY, |best, part| match measure(&part.bounds) > best {
             true => self.boxes(casters, part).map(&measure).fold(best, f64::max),

@@ -8,16 +8,16 @@ use crate::held::ends::{HeldEnds, Range};
 use crate::planes::visible::visible_range;
 use crate::{Projection, Result, maths};
 
-/// The least length of a range that is fitted to what is visible, as a share of its far end.
+/// The least length of a range that is fitted to visible receivers, as a share of its far end.
 const LEAST_RANGE: f64 = 0.01;
 
-/// A range that is fitted to what is visible and this many times as long as it begins far away ends
-/// with the shadows, too. Lower: the range of ordinary views follows their casters. Higher: grounds
-/// of kilometres take texels and depth from what stands on them.
+/// Ratio of far to near above which a range that is fitted to visible receivers ends with the
+/// shadows, too. With a lower value the range of ordinary views follows their casters; with a
+/// higher one grounds of kilometres take texels and depth from the objects on them.
 const MOST_OF_FIRST: f64 = 300.0;
 
 /// The range of a frame: the setting; the view depths of the visible receivers; or the camera's
-/// near and far, far capped by what matters of the scene. Held where maps have to stand still.
+/// near and far, with far capped by the relevant scene. Held if maps have to stand still.
 ///
 /// # Errors
 /// [`crate::Error::InvalidSetting`] naming `shadow-range` if it is empty for this camera, even with
@@ -78,9 +78,8 @@ fn held_range(frame: &Frame<'_>, scope: &Scope<'_>, held: &mut HeldEnds) -> Rang
     Range { near, inner_far: range.inner_far.min(camera_far), far: range.far.min(camera_far) }
 }
 
-/// Where the range begins: with the camera; or, where that is orthographic, with the scene, as far
-/// as turning cannot bring it nearer. How far such a camera stands off changes nothing of its
-/// picture.
+/// Begin of the range: with the camera; or, for an orthographic camera, with the scene, as near as
+/// turning can bring it. The distance of such a camera does not change its image.
 fn first_shown(frame: &Frame<'_>, extent: &Extent, deepest: f64, held: &mut HeldEnds) -> f64 {
     let frustum = frame.view.frustum();
     if frustum.projection == Projection::Perspective {

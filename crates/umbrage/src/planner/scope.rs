@@ -1,9 +1,10 @@
-//! Stage 0 of a sun's plan: how far the shadows reach that a frame can show, whichever way the
+//! Stage 0 of a sun's plan: the extent of the shadows that a frame can show, whichever way the
 //! camera turns.
 //!
-//! A range that ends with the scene wastes its splits where the scene is a few boxes on a ground of
-//! a thousand kilometres, or where one hut stands beyond the horizon. What counts is where shadows
-//! fall: each caster's box, swept along the light through the box around all receivers.
+//! A range that ends with the scene wastes its splits if the scene is a few boxes on a ground of a
+//! thousand kilometres, or if one hut stands beyond the horizon. The range therefore follows from
+//! where shadows fall: each caster's box, swept along the light through the box around all
+//! receivers.
 
 use glam::{DVec2, DVec3};
 
@@ -13,46 +14,46 @@ use crate::casters::Most;
 use crate::geometry::volume::lies_below;
 use crate::{Aabb, Projection, View, maths};
 
-/// Receivers that fill less than this share of the picture together, and lie beyond all others,
-/// are ignored in the range.
+/// Receivers that together fill less than this share of the image, and lie beyond all others, are
+/// ignored in the range.
 const LEAST_SHARE: f64 = 1e-4;
 
-/// Receivers beyond are ignored only where the range would be this many times as long with them.
+/// Receivers beyond are ignored only if the range would be this many times as long with them.
 const MUCH_FARTHER: f64 = 4.0;
 
-/// The range ends at this many times the depth of the deepest shadow, at most. Lower: sharper, but
-/// the range follows the casters. Higher: blurred.
+/// Most multiples of the depth of the deepest shadow at which the range ends. With a lower value
+/// shadows are sharper, but the range follows the casters; with a higher one they are blurred.
 const SLACK: f64 = 1.5;
 
-/// A view that looks away from all shadows has this share of their greatest distance for its range.
+/// Range of a view that looks away from all shadows, as a share of their greatest distance.
 const LOOKING_AWAY: f64 = 0.5;
 
-/// Classes of distance, one for each doubling, from 2^-[`NEAREST`] m on.
+/// Number of classes of distance, one for each doubling, from 2^-[`NEAREST`] m on.
 const CLASSES: usize = 96;
 const NEAREST: i32 = 32;
 
-/// Casters without thickness whose shadows are looked for receiver by receiver; more are taken for
-/// the worst.
+/// Most casters without thickness whose shadows are looked for receiver by receiver; more are
+/// assumed to be the worst case.
 const MOST_SHEETS: usize = 8;
 
-/// What of the scene matters to a frame. Measured as far as it is asked for.
+/// The relevant part of the scene for a frame. It is measured when it is needed.
 #[derive(Clone, Copy)]
 pub(super) struct Scope<'a> {
     frame: &'a Frame<'a>,
     direction: DVec3,
-    /// Metres from the eye beyond which no receiver matters.
+    /// Distance from the camera in metres beyond which no receiver is relevant.
     distance: f64,
 }
 
-/// How far what matters goes.
+/// Extent of the relevant part of the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extent {
-    /// View depth of the deepest receiver that matters, or of the deepest shadow with [`SLACK`],
+    /// View depth of the deepest relevant receiver, or of the deepest shadow with [`SLACK`],
     /// whichever is less.
     pub deepest: f64,
-    /// Distance from the eye of the farthest of both, metres.
+    /// Distance from the camera in metres of the farthest of both.
     pub farthest: f64,
-    /// Metres from the eye to the box around all receivers.
+    /// Distance from the camera in metres of the box around all receivers.
     pub nearest: f64,
 }
 
@@ -61,17 +62,17 @@ impl<'a> Scope<'a> {
         Self { frame, direction: sun.direction, distance: visible_distance(frame) }
     }
 
-    /// Whether a receiver, or any in a box, matters.
+    /// Returns whether a receiver, or any receiver in a box, is relevant.
     pub fn matters(&self, receiver: &Placed) -> bool {
         receiver.distance_to(self.frame.view.eye()) <= self.distance
     }
 
-    /// View depth of the deepest receiver of all.
+    /// View depth of the deepest of all receivers.
     pub fn deepest_receiver(&self) -> f64 {
         self.frame.receivers.most(|receiver| deepest(self.frame.view, receiver))
     }
 
-    /// How far what matters goes.
+    /// Measures the extent of the relevant part of the scene.
     pub fn extent(&self) -> Extent {
         let &Self { frame, direction, distance } = self;
         let matters = |receiver: &Placed| self.matters(receiver);
@@ -95,13 +96,13 @@ struct Reach {
     farthest: f64,
 }
 
-/// What a box measures of which nothing is asked.
+/// Measure of a box that does not count.
 const NOTHING: f64 = f64::NEG_INFINITY;
 
 impl Reach {
     const NONE: Self = Self { deepest: NOTHING, farthest: 0.0 };
 
-    /// Of some boxes, whose largest measure `most` finds.
+    /// The reach of some boxes, whose largest measure `most` finds.
     fn most(view: &View, most: impl Fn(&dyn Fn(&Placed) -> f64) -> f64) -> Self {
         let eye = view.eye();
         Self { deepest: most(&|it| deepest(view, it)), farthest: most(&|it| farthest(eye, it)).max(0.0) }
@@ -118,12 +119,12 @@ fn deepest(view: &View, placed: &Placed) -> f64 {
     forward.dot(placed.center - view.eye()) + forward.abs().dot(placed.half)
 }
 
-/// Metres from the eye to the farthest point of a box.
+/// Distance from the camera to the farthest point of a box in metres.
 fn farthest(eye: DVec3, placed: &Placed) -> f64 {
     ((placed.center - eye).abs() + placed.half).length()
 }
 
-/// Metres from the eye beyond which the picture shows nothing, or next to nothing.
+/// Distance from the camera in metres beyond which the image shows nothing, or almost nothing.
 fn visible_distance(frame: &Frame<'_>) -> f64 {
     let (eye, frustum) = (frame.view.eye(), frame.view.frustum());
     let side = DVec2::new(frustum.left.abs().max(frustum.right.abs()), frustum.bottom.abs().max(frustum.top.abs()));
@@ -143,18 +144,18 @@ fn visible_distance(frame: &Frame<'_>) -> f64 {
     if reach(most).min(most) > MUCH_FARTHER * reach(end).min(most) { end } else { most }
 }
 
-/// Which shares of the picture receivers fill, by their distance.
+/// Shares of the image that receivers fill, by their distance.
 struct Shares<'a> {
     frame: &'a Frame<'a>,
-    /// Metres from the eye beyond which the camera shows none.
+    /// Distance in metres beyond which the camera shows nothing.
     most: f64,
-    /// The picture, in tangents squared.
+    /// Area of the image in tangents squared.
     picture: f64,
 }
 
 impl Shares<'_> {
-    /// The distance beyond which everything together is next to nothing; `None` if that leaves
-    /// nothing out.
+    /// The distance beyond which all receivers together are almost nothing; `None` if that leaves
+    /// none out.
     fn kept(&self) -> Option<f64> {
         // From the farthest class to the nearest, as long as all that is left out is next to
         // nothing. Shares are summed as whole numbers, in any order: the sum does not depend on it.
@@ -186,7 +187,7 @@ impl Shares<'_> {
         (class > NOTHING).then_some(class as usize)
     }
 
-    /// Adds the shares of a class, up to what is enough.
+    /// Adds the shares of a class, until the sum is large enough.
     fn add(&self, of: usize, sum: &mut u64) {
         let eye = self.frame.view.eye();
         let (begin, end) = (begin_of(of), begin_of(of + 1));
@@ -212,18 +213,18 @@ fn class(distance: f64) -> usize {
     (maths::doubling(distance) + NEAREST).clamp(0, CLASSES as i32 - 1) as usize
 }
 
-/// Where a class begins, metres.
+/// Begin of a class in metres.
 fn begin_of(class: usize) -> f64 {
     maths::exp2(class as f64 - f64::from(NEAREST))
 }
 
-/// The whole picture in whole numbers.
+/// The whole image as a whole number of units.
 const UNITS: f64 = (1u64 << 40) as f64;
 
-/// [`LEAST_SHARE`] in those.
+/// [`LEAST_SHARE`] in [`UNITS`].
 const LEAST_UNITS: u64 = (LEAST_SHARE * UNITS) as u64;
 
-/// Where the shadows of a frame fall.
+/// The shadows of a frame.
 struct Shadows<'a> {
     frame: &'a Frame<'a>,
     direction: DVec3,
@@ -261,7 +262,7 @@ impl Shadows<'_> {
         reach
     }
 
-    /// The first casters, by name, that have no thickness and lie above something.
+    /// The first casters, by name, that have no thickness and lie above some receiver.
     fn sheets(&self, bounds: &Aabb) -> [Option<(u32, Placed)>; MOST_SHEETS] {
         let mut sheets = [None; MOST_SHEETS];
         self.frame.casters.flats(|name, caster| {
@@ -277,8 +278,8 @@ impl Shadows<'_> {
         sheets
     }
 
-    /// The part of `within` that a caster, or any in a box, can shade; `None` if that is nothing,
-    /// or too far away to matter.
+    /// The part of `within` that a caster, or any caster in a box, can shade; `None` if that is
+    /// empty, or too far away to be relevant.
     fn shadow(&self, caster: &Placed, within: &Aabb) -> Option<Placed> {
         let (enter, leave) = self.passage(caster, within)?;
         let (begin, end) = (caster.center + enter * self.direction, caster.center + leave * self.direction);
@@ -288,8 +289,8 @@ impl Shadows<'_> {
         (shadow.distance_to(self.frame.view.eye()) <= self.distance).then_some(shadow)
     }
 
-    /// Between how many metres of travel along the light a caster's box meets another; `None` if it
-    /// never does.
+    /// Interval of travel along the light, in metres, in which a caster's box meets another box;
+    /// `None` if it never does.
     fn passage(&self, caster: &Placed, within: &Aabb) -> Option<(f64, f64)> {
         let (lo, hi) = (within.min - caster.half - caster.center, within.max + caster.half - caster.center);
         let (mut enter, mut leave) = (0.0f64, f64::INFINITY);

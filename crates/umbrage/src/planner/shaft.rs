@@ -1,4 +1,4 @@
-//! What lies over a place along the light: parts of boxes in a shaft.
+//! Shafts along the light, and the parts of boxes inside.
 
 use glam::DVec3;
 
@@ -10,26 +10,26 @@ use crate::bounds::Placed;
 pub(super) struct Shaft {
     center: DVec3,
     direction: DVec3,
-    /// Half the extent of the shaft's box around its square along each world axis, metres.
+    /// Half the extent along each world axis of the box around the shaft's square, in metres.
     aside: DVec3,
-    /// Half its width, metres.
+    /// Half the shaft's width in metres.
     pub half: f64,
 }
 
 impl Shaft {
-    /// A shaft of half the width `half` around the light's ray through `center`.
+    /// A shaft of half width `half` around the ray of light through `center`.
     pub fn new(center: DVec3, half: f64, light: &DirectionalLight) -> Self {
         let (u, v) = light.map_axes();
         Self { center, direction: light.direction(), aside: half * (u.abs() + v.abs()), half }
     }
 
-    /// Metres along the light of what lies `along` metres behind the centre.
+    /// Depth along the light, in metres, of a point `along` metres behind the centre.
     pub fn depth(&self, along: f64) -> f64 {
         self.direction.dot(self.center) + along
     }
 
-    /// Between which depths along the light a box lies in the shaft (conservatively); `None` if it
-    /// does not.
+    /// Interval of depths along the light in which a box lies in the shaft (conservative); `None`
+    /// if it does not.
     pub fn passage(&self, placed: &Placed) -> Option<(f64, f64)> {
         let reach = placed.half + self.aside;
         let (lo, hi) = (placed.center - reach - self.center, placed.center + reach - self.center);
@@ -50,7 +50,7 @@ impl Shaft {
     }
 }
 
-/// Where a box begins along the light, metres.
+/// Depth along the light at which a box begins, in metres.
 pub(super) fn first_depth(placed: &Placed, direction: DVec3) -> f64 {
     direction.dot(placed.center) - direction.abs().dot(placed.half)
 }

@@ -1,4 +1,4 @@
-//! Stage 5 of a sun's plan: where a plain map lies; tight, held or still.
+//! Stage 5 of a sun's plan: the position of a plain map, tight or stabilised.
 
 use glam::{DVec2, DVec3};
 
@@ -13,8 +13,8 @@ use crate::margin::{EDGE_TEXELS, FilterReach};
 use crate::planes::scheme::blend_begin;
 use crate::{DirectionalLight, Split};
 
-/// The map of a split: its axes, its texels and where they lie. Depths are those of what it shows,
-/// until the next stage.
+/// The map of a split: its axes, and the size and position of its texels. Until the next stage its
+/// depths are those of the shown region.
 pub(super) fn placed(
     split: &SplitFrame<'_>,
     scene: &Scene,
@@ -74,7 +74,7 @@ fn fitted(mut split: Split, target: &Region, fan: &Fan, reach: FilterReach) -> S
     split
 }
 
-/// A rectangle that is held, moved to whole texels of a grid that is fixed to the light.
+/// A held rectangle, moved to whole texels of a grid that is fixed to the light.
 fn stepped(
     mut split: Split,
     target: &Region,

@@ -1,4 +1,4 @@
-//! From a split's receivers and casters to its warp.
+//! Computes a split's warp from its receivers and casters.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
@@ -8,15 +8,15 @@ use crate::geometry::volume::{Lies, Slice, SweptVolume};
 use crate::{Split, View, Warp, WarpTarget};
 
 /// Share of the depth range that a warped map keeps free before its first caster and behind its
-/// last receiver: for rounding on the way to `f32`, and for the bias.
+/// last receiver, for rounding to `f32` and for the bias.
 const DEPTH_ROOM: f64 = 1e-3;
 
-/// The least share of a map that its casters' crop leaves, so that a wall seen edge-on by the light
-/// still gets texels of some size.
+/// Least share of a map to which its casters' crop may shrink it, so that a wall seen edge-on by
+/// the light still gets texels of some size.
 const LEAST_CROP: f64 = 1e-3;
 
-/// World points whose convex hulls hold what a warped map has to show. Kept from split to split and
-/// frame to frame.
+/// World points whose convex hulls contain everything that a warped map has to show. Buffers are
+/// reused from split to split and frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct WarpPoints {
     receivers: Vec<DVec3>,
@@ -24,7 +24,7 @@ pub(crate) struct WarpPoints {
 }
 
 impl WarpPoints {
-    /// Takes the receivers: the parts of those boxes that lie inside the slice, or the slice's
+    /// Sets the receivers: those parts of the boxes that lie inside the slice, or the slice's
     /// corners.
     pub fn receivers_of<'a>(&mut self, slice: &Slice, boxes: Option<impl Iterator<Item = &'a Placed>>) {
         let points = &mut self.receivers;
@@ -44,8 +44,7 @@ impl WarpPoints {
         }
     }
 
-    /// Takes the casters' parts that come within `margin` metres of the slice swept towards the
-    /// light.
+    /// Sets the casters: their parts within `margin` metres of the slice swept towards the light.
     pub fn casters_of<'a>(&mut self, swept: &SweptVolume, margin: f64, casters: impl Iterator<Item = &'a Placed>) {
         let points = &mut self.casters;
         points.clear();
@@ -54,8 +53,8 @@ impl WarpPoints {
         }
     }
 
-    /// Gives the split its warp, which leaves `margin` texels free all round. The split stays plain
-    /// if the warp changes nothing.
+    /// Gives the split its warp, which leaves `margin` texels free on all sides. The split stays
+    /// plain if the warp changes nothing.
     pub fn warp(&self, split: &mut Split, warp: Warp, view: &View, margin: f64, crop: Crop) {
         let depths = self.receivers.iter().map(|&point| view.view_depth(point));
         let slice = depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), d| (lo.min(d), hi.max(d)));
@@ -80,8 +79,8 @@ impl WarpPoints {
         split.texel_m = split.texel_size_m(middle);
     }
 
-    /// The map cut down to where there are casters; `inside` is the half edge that points may take.
-    /// A map that reaches behind its projection centre for one of its casters is left as it is.
+    /// The map cropped to its casters; `inside` is the half edge that points may take. A map with a
+    /// caster behind its projection centre is unchanged.
     fn cropped(&self, matrix: DMat4, inside: f64) -> DMat4 {
         let (mut lo, mut hi) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for caster in &self.casters {

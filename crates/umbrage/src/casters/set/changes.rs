@@ -1,17 +1,18 @@
-//! What a set says of its static casters' changes to those who keep what these have drawn.
+//! Changes of a set's static casters, for keepers of maps drawn with these casters.
 
 use super::CasterSet;
 use crate::casters::journal::Change;
 use crate::casters::slots::{CasterHandle, Place};
 use crate::{Aabb, Result};
 
-/// Of casters that come together, so many are noted one by one; more make all count as changed.
+/// Most casters inserted together that are noted one by one; with more, all casters count as
+/// changed.
 const MOST_NOTED: usize = 1024;
 
 impl CasterSet {
-    /// Says that a caster has another shape within the box that it has: what is kept of its
-    /// shadow ([`crate::config::Cache::Kept`]) is drawn anew. A caster whose shape changes in many
-    /// frames is a [`crate::Motion::Moving`] one.
+    /// Declares that the shape of a caster has changed within its box: the kept parts of its shadow
+    /// ([`crate::config::Cache::Kept`]) are drawn again. A caster whose shape changes in many
+    /// frames should be a [`crate::Motion::Moving`] one.
     ///
     /// # Errors
     /// [`crate::Error::RemovedCaster`].
@@ -23,13 +24,13 @@ impl CasterSet {
         Ok(())
     }
 
-    /// Changes of static casters from a number on, `None` if they are no longer known, and the
-    /// number to go on from.
+    /// Changes of static casters from a number on, and the number to continue from. The changes are
+    /// `None` if they are no longer known.
     pub(crate) fn changes_since(&self, number: u64) -> (Option<impl Iterator<Item = &Change>>, u64) {
         (self.journal.since(number), self.journal.next())
     }
 
-    /// Changes with every caster that comes, goes or changes its motion.
+    /// A number that changes with every caster that comes, goes or changes its motion.
     pub(crate) fn membership(&self) -> u64 {
         self.membership
     }
@@ -39,7 +40,7 @@ impl CasterSet {
         self.loose.entries.iter().filter(|entry| entry.moves).map(|entry| entry.key)
     }
 
-    /// The box of a static caster that throws shadows.
+    /// The box of a static caster that casts shadows.
     pub(super) fn static_bounds(&self, slot: u32) -> Option<Aabb> {
         if let Place::Loose(at) = self.slots.get(slot)
             && self.loose.entries[at as usize].moves
@@ -49,7 +50,7 @@ impl CasterSet {
         Some(self.caster(slot)).filter(|caster| caster.casts).map(|caster| caster.bounds)
     }
 
-    /// Notes that casters have come, after they did.
+    /// Notes that casters have been added, after the fact.
     pub(super) fn note_all(&mut self, handles: &[CasterHandle]) {
         if handles.len() > MOST_NOTED {
             self.journal.note_too_many();
@@ -63,7 +64,7 @@ impl CasterSet {
         }
     }
 
-    /// Notes that a caster goes, before it does.
+    /// Notes that a caster is removed, before the fact.
     pub(super) fn note_end(&mut self, slot: u32) {
         if let Some(old) = self.static_bounds(slot) {
             let (handle, key) = (self.slots.handle(slot), self.about(slot).0);
@@ -72,13 +73,13 @@ impl CasterSet {
         self.membership += 1;
     }
 
-    /// Notes that a caster has come or changed its motion, after it did.
+    /// Notes that a caster was added or changed its motion, after the fact.
     pub(super) fn note(&mut self, slot: u32, before: Option<Aabb>) {
         self.membership += 1;
         self.note_static(slot, before);
     }
 
-    /// Notes a change of a static caster's box or shape, after it was made.
+    /// Notes a change of a static caster's box or shape, after the fact.
     pub(super) fn note_static(&mut self, slot: u32, old: Option<Aabb>) {
         let new = self.static_bounds(slot);
         if old.is_some() || new.is_some() {

@@ -1,4 +1,4 @@
-//! Packing: casters that are kept one by one, or nowhere yet, become runs.
+//! Packing: casters that are kept one by one, or not yet kept, become runs.
 
 use super::CasterSet;
 use crate::Aabb;
@@ -9,7 +9,7 @@ use crate::casters::packed::{Packing, RUN, Run};
 use crate::casters::slots::{MOST_LANES, MOST_RUNS, PackedPlace, Place};
 
 impl CasterSet {
-    /// Packs what is left of a run again.
+    /// Packs the remaining casters of a run again.
     pub(super) fn pack_rest(&mut self, number: u32) {
         let Some(run) = self.runs[number as usize].take() else { return };
         let rest = |lane: u32| {
@@ -31,7 +31,7 @@ impl CasterSet {
         self.pack_entries(&rest);
     }
 
-    /// Packs casters that are nowhere.
+    /// Packs casters that are kept nowhere yet.
     pub(super) fn pack_entries(&mut self, entries: &[Entry]) {
         let bounds = entries.iter().fold(Aabb::EMPTY, |all, entry| all.including(entry.bounds.center()));
         let curve = Curve::through(bounds);

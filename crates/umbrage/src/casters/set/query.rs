@@ -1,4 +1,4 @@
-//! What an application may ask of a set: its members in a part of the world.
+//! Queries by an application: the members of a set in a part of the world.
 
 use std::cell::Cell;
 
@@ -12,10 +12,10 @@ use crate::casters::view::Crowd;
 
 impl CasterSet {
     /// Calls `visit` with key and kept box of every member that shows shadows, is on one of
-    /// `layers` and passes `test`: what a view has to draw, for example.
+    /// `layers` and passes `test`: the objects that a view has to draw, for example.
     ///
-    /// The test is asked of groups of neighbours first, so it has to pass for every box that
-    /// contains one for which it passes. The order is that of the set's tree.
+    /// The test is first applied to boxes around groups of neighbours, so it has to pass for every
+    /// box that contains one for which it passes. The order of calls is that of the set's tree.
     ///
     /// ```
     /// # use umbrage::{Aabb, Caster, CasterSet, Layers};
