@@ -145,7 +145,7 @@ fn shadow_options_that_say_nonsense() {
         ("--technique tsm --tsm-focus 0", &["--tsm-focus"]),
         ("--technique tsm --tsm-focus nan", &["--tsm-focus"]),
         ("--scheme magic", &["--scheme", "uniform", "log", "practical", "manual", "optimal"]),
-        ("--scheme fitted", &["--scheme `fitted` is now called `optimal`"]),
+        ("--scheme fitted", &["--scheme fitted", "`fitted` is now called `optimal`"]),
         ("--scheme optimal --lambda 0.5", &["--lambda", "practical", "optimal"]),
         ("--scheme log --lambda 0.5", &["--lambda", "practical", "log"]),
         ("--scheme uniform --delta 1", &["--delta", "practical", "uniform"]),

@@ -103,7 +103,7 @@ fn an_old_word_is_refused_by_the_new_one() {
         assert!(refused.contains(&message), "{refused}");
         assert_eq!(config.apply(&new).map(|_| ()), Ok(()), "{row:?}");
         let setting = SETTINGS.iter().find(|setting| setting.key == row.key).unwrap();
-        assert!(setting.kind.check(row.new).is_ok() && setting.kind.check(row.old).is_err(), "{row:?}");
+        assert_eq!((setting.check(row.new), setting.check(row.old)), (Ok(()), Err(message)), "{row:?}");
     }
     assert!(Renamed::find("scheme", "optimal").is_none() && Renamed::find("filter", "fitted").is_none());
 }
@@ -336,12 +336,12 @@ fn a_value_is_checked_alone_before_it_is_applied() {
     ];
     for (key, value) in bad {
         let setting = SETTINGS.iter().find(|setting| setting.key == key).unwrap();
-        assert!(setting.kind.check(value).is_err(), "{key} {value}");
+        assert!(setting.check(value).is_err(), "{key} {value}");
     }
     for preset in Preset::ALL {
         for (key, value) in preset.config().settings() {
             let setting = SETTINGS.iter().find(|setting| setting.key == key).unwrap();
-            assert_eq!(setting.kind.check(&value.to_string()), Ok(()), "{key} {value}");
+            assert_eq!(setting.check(&value.to_string()), Ok(()), "{key} {value}");
         }
     }
 }
