@@ -24,6 +24,7 @@ pub mod truth;
 pub mod tune;
 #[cfg(feature = "view")]
 pub mod view;
+mod words;
 pub mod world_args;
 pub mod worlds;
 

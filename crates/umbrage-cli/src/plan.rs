@@ -2,10 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
 use serde::Serialize;
 use umbrage::config::{ExtentSteps, Stability};
-use umbrage::{Aabb, Planner, PlannerOptions, ShadowPlan, Split};
+use umbrage::{Aabb, DepthConvention, Planner, PlannerOptions, ShadowPlan, Split};
 use umbrage_lab::{
     failure::Result,
     output::{self, Staged, numbered_file},
@@ -20,6 +19,7 @@ use crate::{
     print::print,
     scene_options::{Asked, SceneOptions},
     shadow_args::ShadowArgs,
+    words,
 };
 
 /// `umbrage plan`.
@@ -31,23 +31,13 @@ pub struct PlanArgs {
     /// Shadows.
     #[command(flatten)]
     pub shadows: ShadowArgs,
-    /// Depth range of the normalised device coordinates of the matrices
-    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    /// What the graphics interface that reads the matrices takes for granted
+    #[arg(long, value_name = "WORD", value_parser = words::parser::<DepthConvention>(DepthConvention::WORDS), default_value_t, help_heading = "Output")]
     pub depth_convention: DepthConvention,
     /// Write the plan here (JSON) instead of printing it; with --frames, NAME.json becomes
     /// NAME.0000.json and so on
     #[arg(short = 'o', long = "output", value_name = "JSON", help_heading = "Output")]
     pub output: Option<PathBuf>,
-}
-
-/// `--depth-convention`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum DepthConvention {
-    /// wgpu, Direct3D, Metal, Vulkan: NDC z in 0..1, v down
-    #[default]
-    ZeroToOne,
-    /// OpenGL: NDC z in [−1,1], v up
-    MinusOneToOne,
 }
 
 /// Report of the plan of one frame.
@@ -61,7 +51,7 @@ struct PlanReport {
     stabilize: String,
     /// Steps of the extents of approximately stabilised maps; absent for others.
     #[serde(skip_serializing_if = "Option::is_none")]
-    extent_steps: Option<ExtentStepsReport>,
+    extent_steps: Option<ExtentSteps>,
     /// Metric of depths: `planar` if all depths of this report are view depths; `radial` if all but
     /// `coverage_m` are distances to the eye.
     bands: String,
@@ -85,14 +75,6 @@ struct PlanReport {
     notes: Vec<String>,
 }
 
-/// Steps as `{"per_doubling": 8}` or `{"levels": 64}`.
-#[derive(Debug, Serialize)]
-#[serde(rename_all = "snake_case")]
-enum ExtentStepsReport {
-    PerDoubling(u32),
-    Levels(u32),
-}
-
 /// Report of one split.
 #[derive(Debug, Serialize)]
 struct SplitPlan {
@@ -108,8 +90,8 @@ struct SplitPlan {
     warped: bool,
     /// Matrix to normalised device coordinates, x right, y up, column after column. Divide by w.
     shadow_from_world: [[f64; 4]; 4],
-    /// Matrix to texture coordinates (u right, v down, in 0..1) and stored depth in 0..1, column
-    /// after column. Divide by w.
+    /// Matrix to texture coordinates (u right, v as the depth convention has it, in 0..1) and
+    /// stored depth in 0..1, column after column. Divide by w.
     texture_from_world: [[f64; 4]; 4],
     /// Casters that are drawn into the map. If empty, nothing casts a shadow here.
     casters: Vec<u32>,
@@ -177,16 +159,13 @@ fn report(
         fit: shadows.word("fit"),
         stabilize: shadows.word("stabilize"),
         extent_steps: match shadows.config.stability {
-            Stability::Approximate { steps: ExtentSteps::PerDoubling(count) } => {
-                Some(ExtentStepsReport::PerDoubling(count))
-            }
-            Stability::Approximate { steps: ExtentSteps::Levels(count) } => Some(ExtentStepsReport::Levels(count)),
-            Stability::Tight { .. } | Stability::Exact => None,
+            Stability::Approximate { steps } => Some(steps),
+            _ => None,
         },
         bands: shadows.config.selection.metric().to_string(),
         scheme: shadows.word("scheme"),
         warp: warps(&shadows.config),
-        depth_convention: convention.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default(),
+        depth_convention: convention.to_string(),
         planes_m: plan.planes.clone(),
         view_depth_plane: plan.view_depth_plane.to_array(),
         fade_begin_m: plan.fade_begin,
@@ -204,10 +183,6 @@ fn report(
 
 fn split(plan: &ShadowPlan, index: usize, convention: DepthConvention) -> SplitPlan {
     let split: &Split = &plan.splits[index];
-    let convention = match convention {
-        DepthConvention::ZeroToOne => umbrage::DepthConvention::ZeroToOne,
-        DepthConvention::MinusOneToOne => umbrage::DepthConvention::MinusOneToOne,
-    };
     SplitPlan {
         near_m: split.near,
         far_m: split.far,

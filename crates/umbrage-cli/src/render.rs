@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use umbrage::config::{Edges, SplitMetric};
+use umbrage::config::SplitMetric;
 use umbrage_lab::{
     failure::{Failure, Result},
     notes,
@@ -110,7 +110,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
 
 /// Refuses outputs that are impossible for several views, or for splits by distance.
 fn check_views(args: &RenderArgs, setup: &SceneSetup, shadows: &ShadowRequest) -> Result<()> {
-    if args.edge_counts.is_some() && shadows.config.edges != Edges::Exact {
+    if args.edge_counts.is_some() && !shadows.config.edges.is_exact() {
         return Err(Failure::input("--edge-counts shows what exact edges do; give --edges exact"));
     }
     let has_several = setup.shots.iter().any(|shot| !shot.beside.is_empty());

@@ -2,17 +2,19 @@
 
 use std::path::PathBuf;
 
+use clap::builder::TypedValueParser;
 use glam::DVec3;
 use umbrage::SteppedSun;
+use umbrage::config::Word;
 use umbrage_lab::{
     failure::{Failure, Result},
     parse,
     scene_request::{CameraChoice, DEFAULT_SUN_FADE, LightChoice, SceneRequest, SunTravel},
 };
 use umbrage_scene::procedural::World;
-use umbrage_scene::{EXTENSIONS, GltfOptions, HeightMapOptions, OpenOptions};
+use umbrage_scene::{EXTENSIONS, GltfOptions, HeightEncoding, HeightMapOptions, OpenOptions};
 
-use crate::{switch::Switch, world_args::WorldArgs};
+use crate::{switch::Switch, words, world_args::WorldArgs};
 
 /// Scene, picture size, camera, light and time.
 #[derive(Clone, Debug, clap::Args)]
@@ -30,8 +32,8 @@ pub struct SceneArgs {
     #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true, help_heading = "Scene")]
     pub height_offset: Option<f64>,
     /// Height map: how a picture encodes heights, if its values do not show it
-    #[arg(long, value_enum, default_value_t, help_heading = "Scene")]
-    pub height_encoding: HeightEncoding,
+    #[arg(long, value_name = "WORD", value_parser = height_encoding(), default_value = "auto", help_heading = "Scene")]
+    pub height_encoding: NamedEncoding,
     /// glTF: memory limit for textures in MiB; beyond it they are scaled down, with a note
     #[arg(long, value_name = "MIB", default_value = "512", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Scene")]
     pub texture_memory: u32,
@@ -129,30 +131,14 @@ fn scene_help() -> String {
     )
 }
 
-/// `--height-encoding`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-pub enum HeightEncoding {
-    /// Whichever fits its values
-    #[default]
-    Auto,
-    /// Grey
-    Grey,
-    /// Metres in colours: red · 256 + green + blue / 256 − 32768
-    Terrarium,
-    /// Metres in colours: (red · 65536 + green · 256 + blue) / 10 − 10000
-    Mapbox,
-}
+/// An encoding that was named; `None` for the one that fits the picture's values.
+type NamedEncoding = Option<HeightEncoding>;
 
-impl HeightEncoding {
-    /// Returns the encoding, if one was named.
-    fn named(self) -> Option<umbrage_scene::HeightEncoding> {
-        match self {
-            Self::Auto => None,
-            Self::Grey => Some(umbrage_scene::HeightEncoding::Grey),
-            Self::Terrarium => Some(umbrage_scene::HeightEncoding::Terrarium),
-            Self::Mapbox => Some(umbrage_scene::HeightEncoding::Mapbox),
-        }
-    }
+/// `--height-encoding`: the words of the encodings, and `auto`.
+fn height_encoding() -> impl TypedValueParser<Value = NamedEncoding> {
+    const AUTO: Word = Word { word: "auto", help: "Whichever fits its values" };
+    words::offered([&AUTO].into_iter().chain(HeightEncoding::WORDS))
+        .try_map(|word| if word == AUTO.word { Ok(None) } else { word.parse::<HeightEncoding>().map(Some) })
 }
 
 impl SceneArgs {
@@ -168,7 +154,7 @@ impl SceneArgs {
                     metres_per_post: self.metres_per_post,
                     metres_per_unit: self.metres_per_unit,
                     height_offset: self.height_offset,
-                    encoding: self.height_encoding.named(),
+                    encoding: self.height_encoding,
                 },
                 gltf: GltfOptions {
                     texture_bytes: u64::from(self.texture_memory) << 20,

@@ -1,13 +1,16 @@
 //! The options of shadows: one for each setting of `umbrage::config::SETTINGS`, and the config that
 //! they override.
 
+use std::ffi::OsStr;
 use std::path::PathBuf;
 
-use clap::builder::PossibleValue;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgMatches, Command, FromArgMatches};
-use umbrage::config::{Kind, Preset, SETTINGS, Setting};
+use umbrage::config::{Kind, Preset, Renamed, SETTINGS, Setting};
 
 use umbrage_lab::technique::ShadowOptions;
+
+use crate::words;
 
 /// Heading of these options in the help.
 const HEADING: &str = "Shadows";
@@ -63,10 +66,7 @@ fn option(setting: &'static Setting) -> Arg {
         .help(format!("{}{}", setting.help, default.unwrap_or_default()))
         .allow_hyphen_values(true);
     match setting.kind {
-        Kind::Words(words) => {
-            let values = words.iter().map(|word| PossibleValue::new(word.word).help(word.help));
-            arg.value_parser(clap::builder::PossibleValuesParser::new(values))
-        }
+        Kind::Words(words) => arg.value_parser(Words { key: setting.key, offered: words::offered(words) }),
         // The option alone means `on`.
         Kind::Switch => arg
             .value_parser([PossibleValue::new("on").alias("true"), PossibleValue::new("off").alias("false")])
@@ -78,16 +78,35 @@ fn option(setting: &'static Setting) -> Arg {
     }
 }
 
+/// Reads one of a setting's words. Old words pass: [`umbrage::ShadowConfig::apply`] refuses them by
+/// a message that names the new one, which the parser's own would not.
+#[derive(Clone, Debug)]
+struct Words {
+    key: &'static str,
+    offered: PossibleValuesParser,
+}
+
+impl TypedValueParser for Words {
+    type Value = String;
+
+    fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<String, clap::Error> {
+        match value.to_str().and_then(|word| Renamed::find(self.key, word)) {
+            Some(renamed) => Ok(renamed.old.to_owned()),
+            None => self.offered.parse_ref(command, arg, value),
+        }
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        self.offered.possible_values()
+    }
+}
+
 fn preset() -> Arg {
-    let values = Preset::WORDS.iter().map(|word| PossibleValue::new(word.word).help(word.help));
-    let parser = clap::builder::PossibleValuesParser::new(values);
     Arg::new("preset")
         .long("preset")
         .value_name("NAME")
         .help("Settings by name; single options override them [default: balanced]")
-        .value_parser(clap::builder::TypedValueParser::map(parser, |word: String| {
-            word.parse::<Preset>().unwrap_or_default()
-        }))
+        .value_parser(words::parser::<Preset>(Preset::WORDS))
 }
 
 fn config() -> Arg {

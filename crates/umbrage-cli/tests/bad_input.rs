@@ -144,8 +144,9 @@ fn shadow_options_that_say_nonsense() {
         ("--tsm-focus 0.5", &["--tsm-focus", "tsm"]),
         ("--technique tsm --tsm-focus 0", &["--tsm-focus"]),
         ("--technique tsm --tsm-focus nan", &["--tsm-focus"]),
-        ("--scheme magic", &["--scheme", "uniform", "log", "practical", "manual", "fitted"]),
-        ("--scheme fitted --lambda 0.5", &["--lambda", "practical", "fitted"]),
+        ("--scheme magic", &["--scheme", "uniform", "log", "practical", "manual", "optimal"]),
+        ("--scheme fitted", &["--scheme fitted", "`fitted` is now called `optimal`"]),
+        ("--scheme optimal --lambda 0.5", &["--lambda", "practical", "optimal"]),
         ("--scheme log --lambda 0.5", &["--lambda", "practical", "log"]),
         ("--scheme uniform --delta 1", &["--delta", "practical", "uniform"]),
         ("--lambda 1.1", &["--lambda"]),
@@ -190,6 +191,9 @@ fn shadow_options_that_say_nonsense() {
         ("--generation multipass --selection map", &["--selection map", "--generation multipass", "--storage reused"]),
         ("--generation multipass --bands radial", &["--bands radial", "--generation multipass", "--storage reused"]),
         ("--bands radial --selection map", &["--bands radial", "--selection map"]),
+        ("--fit-to depth --stabilize exact", &["--fit-to depth", "--stabilize exact"]),
+        ("--drop-small-casters --warp tsm", &["--drop-small-casters on", "--warp tsm"]),
+        ("--edge-samples 4", &["--edge-samples 4", "--edges exact"]),
         ("--bands radial --range-fit visible", &["--bands radial", "--range-fit visible"]),
         ("--bands round", &["--bands", "planar", "radial"]),
         ("--storage cube --splits 7", &["--storage cube", "--splits 7"]),
@@ -204,7 +208,10 @@ fn shadow_options_that_say_nonsense() {
         folder.refuse(&format!("render tiny.glb -o out.png {options}"), culprits);
         folder.refuse(&format!("plan tiny.glb -o out.json {options}"), culprits);
     }
-    folder.refuse("plan tiny.glb --depth-convention backwards", &["--depth-convention", "zero-to-one"]);
+    folder.refuse(
+        "plan tiny.glb --depth-convention backwards",
+        &["--depth-convention", "zero-to-one", "zero-to-one-y-down", "minus-one-to-one"],
+    );
     folder.refuse("plan missing.glb", &["missing.glb"]);
     folder.refuse("plan tiny.glb -o tiny.glb", &["tiny.glb", "input"]);
 }

@@ -278,7 +278,7 @@ fn techniques_schemes_and_formats() {
         ("--technique ssm --splits 1", 1),
         ("--scheme uniform --splits 3 --map-size 64", 3),
         ("--scheme log --splits 8 --map-size 64", 8),
-        ("--scheme fitted --splits 3 --map-size 64", 3),
+        ("--scheme optimal --splits 3 --map-size 64", 3),
         ("--planes 5,10 --map-size 64 --shadow-range 1..60", 3),
         ("--map-size 128,64 --delta 0.5", 2),
         ("--depth-format d16 --filter pcf5 --map-size 128", 4),

@@ -43,6 +43,7 @@ impl Failure {
                 })
             }
             umbrage::Error::Conflict(conflict) => Self::Input(in_options(&conflict.to_string())),
+            umbrage::Error::RenamedWord(renamed) => Self::Input(format!("--{renamed}")),
             umbrage::Error::UnknownSetting { key } => {
                 let keys: Vec<&str> = SETTINGS.iter().map(|setting| setting.key).collect();
                 Self::Input(format!("there is no setting {key}; there are {}", keys.join(", ")))
@@ -72,6 +73,7 @@ impl From<umbrage::Error> for Failure {
         let option = match &error {
             umbrage::Error::InvalidSetting { .. }
             | umbrage::Error::Conflict(_)
+            | umbrage::Error::RenamedWord(_)
             | umbrage::Error::UnknownSetting { .. } => return Self::of_settings(&error, &[]),
             umbrage::Error::CameraConflict { .. } => "--bands, --camera",
             umbrage::Error::InvalidCamera { field, .. } => match *field {

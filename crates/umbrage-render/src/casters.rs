@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use umbrage::config::{Edges, Translucent};
+use umbrage::config::Translucent;
 use umbrage_scene::AlphaMode;
 use umbrage_wgpu::ShadowMaps;
 
@@ -25,7 +25,7 @@ impl Casters {
                 source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
             })
         };
-        let is_named = maps.edges() == Edges::Exact;
+        let is_named = maps.edges().is_exact();
         let opaque = module(match is_named {
             true => shaders::named_casters(&maps.caster_wgsl(0)),
             false => shaders::casters(&maps.caster_wgsl(0)),

@@ -185,9 +185,9 @@ impl Forward {
         let device = &gpu.device;
         let (library, coordinates): (String, Coordinates) = match shadows {
             Shading::WithShadows => {
-                let runs = match maps.edges() {
-                    Edges::Exact => umbrage_wgpu::stored_runs_wgsl(0, Names::BINDING),
-                    Edges::Sampled => String::new(),
+                let runs = match maps.edges().is_exact() {
+                    true => umbrage_wgpu::stored_runs_wgsl(0, Names::BINDING),
+                    false => String::new(),
                 };
                 (maps.receiver_wgsl(2) + &runs, maps.config().coordinates)
             }
@@ -233,7 +233,7 @@ impl Forward {
             label: Some("Forward::depth_shader"),
             source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::depth())),
         });
-        let counts = (shadows == Shading::WithShadows && maps.edges() == Edges::Exact).then(|| {
+        let counts = (shadows == Shading::WithShadows && maps.edges().is_exact()).then(|| {
             let library = maps.counting_receiver_wgsl(2) + &umbrage_wgpu::stored_runs_wgsl(0, Names::BINDING);
             shaders::edge_counts(&library, coordinates)
         });
@@ -408,7 +408,7 @@ fn frame_layout(device: &wgpu::Device, edges: Edges) -> wgpu::BindGroupLayout {
         },
         count: None,
     }];
-    if edges == Edges::Exact {
+    if edges.is_exact() {
         entries.extend(Names::layout(Names::BINDING));
     }
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {

@@ -147,9 +147,9 @@ impl Geometry {
             }
             uploaded.clusters = clusters(&primitive.positions, &primitive.indices, uploaded.shadow_indices.start);
         }
-        let named = match edges {
-            Edges::Sampled => None,
-            Edges::Exact => {
+        let named = match edges.is_exact() {
+            false => None,
+            true => {
                 let mut runs = vec![0; positions.len()];
                 let named = |primitive: &Primitive| matter(primitive) == Matter::Solid;
                 let of_meshes = name(meshes, &mut ranges, (&mut positions, &mut runs, &mut indices), named);

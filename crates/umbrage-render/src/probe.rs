@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 
 use glam::DVec3;
-use umbrage::config::Edges;
 use umbrage_wgpu::ShadowMaps;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 
@@ -67,7 +66,7 @@ impl Probe {
 
     pub fn new(gpu: &Gpu, maps: &ShadowMaps) -> Self {
         let device = &gpu.device;
-        let is_exact = maps.edges() == Edges::Exact;
+        let is_exact = maps.edges().is_exact();
         let runs = if is_exact { umbrage_wgpu::stored_runs_wgsl(0, Self::NAMES) } else { String::new() };
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("Probe::shader"),

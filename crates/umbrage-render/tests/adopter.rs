@@ -12,7 +12,8 @@ use umbrage::config::{
 use umbrage::{Aabb, Light, View};
 use umbrage_render::{Gpu, RenderSettings};
 use umbrage_scene::{Pose, Scene};
-use umbrage_wgpu::{CasterPipeline, Inputs, Shadows};
+use umbrage_shaders::layout::RUN_TRIANGLES;
+use umbrage_wgpu::{CasterPipeline, Inputs, Shadows, StoredSlot, stored_runs, stored_runs_layout, stored_runs_wgsl};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 const SHADER: &str = "
@@ -50,6 +51,66 @@ struct App<'a> {
     /// Where each object's vertices begin, and where the last one's end.
     begins: Vec<u32>,
     bounds: Vec<Aabb>,
+    /// For exact edges.
+    named: Option<Named>,
+}
+
+/// What exact edges ask of an application: which run of triangles a texel shows, and where its
+/// corners are.
+struct Named {
+    /// The id of each vertex's run. Vertices belong to one triangle each.
+    ids: wgpu::Buffer,
+    layout: wgpu::BindGroupLayout,
+    group: wgpu::BindGroup,
+}
+
+const NAMED_CASTER: &str = "
+@vertex fn vertex(@location(0) position: vec3f, @location(1) id: u32, instance: UmbrageInstance) -> UmbrageCast {
+    return umbrage_named(umbrage_cast(position, instance), id);
+}";
+
+impl Named {
+    /// Triangles whose corners are the positions in their order.
+    fn new(device: &wgpu::Device, shadows: &mut Shadows, positions: &[[f32; 3]], begins: &[u32]) -> Self {
+        let indices: Vec<u32> = (0..positions.len() as u32).collect();
+        let (mut ids, mut runs, mut slots) = (Vec::new(), Vec::new(), Vec::new());
+        for range in begins.windows(2).map(|pair| pair[0]..pair[1]) {
+            let own = &indices[range.start as usize..range.end as usize];
+            let of_object = stored_runs(positions, own, range.start);
+            let occluder = shadows.occluders().insert(of_object.len() as u32).expect("there are ids");
+            ids.extend((0..own.len() as u32).map(|corner| occluder.first_id() + corner / (3 * RUN_TRIANGLES)));
+            for (slot, run) in occluder.runs_of_slots() {
+                slots.resize(slots.len().max(slot as usize + 1), StoredSlot::default());
+                let row = |axis: usize| std::array::from_fn(|i| f32::from(i == axis));
+                slots[slot as usize] = StoredSlot {
+                    row_x: row(0),
+                    row_y: row(1),
+                    row_z: row(2),
+                    first_run: runs.len() as u32 + run,
+                    ..StoredSlot::default()
+                };
+            }
+            runs.extend(of_object);
+        }
+        let buffer =
+            |contents, usage| device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
+        let stored = |contents| buffer(contents, wgpu::BufferUsages::STORAGE);
+        let buffers = [
+            stored(bytemuck::cast_slice(&slots)),
+            stored(bytemuck::cast_slice(&runs)),
+            stored(bytemuck::cast_slice(&indices)),
+            stored(bytemuck::cast_slice(positions)),
+        ];
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: None,
+            entries: &stored_runs_layout(0, wgpu::ShaderStages::FRAGMENT),
+        });
+        let entries =
+            [0, 1, 2, 3].map(|i| wgpu::BindGroupEntry { binding: i as u32, resource: buffers[i].as_entire_binding() });
+        let group =
+            device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
+        Self { ids: buffer(bytemuck::cast_slice(&ids), wgpu::BufferUsages::VERTEX), layout, group }
+    }
 }
 
 impl<'a> App<'a> {
@@ -62,8 +123,16 @@ impl<'a> App<'a> {
             }
             begins.push(positions.len() as u32);
         }
-        let shadows = Shadows::new(device, config).expect("valid");
-        let casters = shadows.caster_pipeline(&CasterPipeline::default()).expect("a pipeline");
+        let mut shadows = Shadows::new(device, config).expect("valid");
+        let is_exact = config.edges.is_exact();
+        let named = is_exact.then(|| Named::new(device, &mut shadows, &positions, &begins));
+        let id = wgpu::vertex_attr_array![1 => Uint32];
+        let buffers = [CasterPipeline::default().buffers[0].clone(), Some(CasterPipeline::positions(4, &id))];
+        let casters = shadows.caster_pipeline(&match named {
+            Some(_) => CasterPipeline { wgsl: NAMED_CASTER, buffers: &buffers, ..CasterPipeline::default() },
+            None => CasterPipeline::default(),
+        });
+        let casters = casters.expect("a pipeline");
         let camera = device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             size: 80,
@@ -85,12 +154,18 @@ impl<'a> App<'a> {
             layout: &camera_layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: camera.as_entire_binding() }],
         });
+        let runs = if is_exact { stored_runs_wgsl(2, 0) } else { String::new() };
+        let receiver = shadows.receiver_wgsl(1) + &runs;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: None,
-            source: wgpu::ShaderSource::Wgsl((shadows.receiver_wgsl(1) + SHADER).into()),
+            source: wgpu::ShaderSource::Wgsl((receiver + SHADER).into()),
         });
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            bind_group_layouts: &[Some(&camera_layout), Some(shadows.bind_group_layout())],
+            bind_group_layouts: &[
+                Some(&camera_layout),
+                Some(shadows.bind_group_layout()),
+                named.as_ref().map(|named| &named.layout),
+            ],
             ..Default::default()
         });
         let surfaces = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -126,7 +201,7 @@ impl<'a> App<'a> {
             usage: wgpu::BufferUsages::VERTEX,
         });
         let bounds = pose.objects.iter().map(|object| object.bounds).collect();
-        Self { gpu, shadows, casters, surfaces, camera, camera_group, vertices, begins, bounds }
+        Self { gpu, shadows, casters, surfaces, camera, camera_group, vertices, begins, bounds, named }
     }
 
     /// Visibility and hit of each pixel.
@@ -142,6 +217,9 @@ impl<'a> App<'a> {
             pass.set_pipeline(&self.casters);
             pass.set_bind_group(0, map.bind_group(), &[]);
             pass.set_vertex_buffer(0, self.vertices.slice(..));
+            if let Some(named) = &self.named {
+                pass.set_vertex_buffer(1, named.ids.slice(..));
+            }
             for (caster, instances) in map.casters() {
                 let caster = caster as usize;
                 pass.draw(self.begins[caster]..self.begins[caster + 1], instances);
@@ -188,6 +266,9 @@ impl<'a> App<'a> {
             pass.set_pipeline(&self.surfaces);
             pass.set_bind_group(0, &self.camera_group, &[]);
             pass.set_bind_group(1, self.shadows.bind_group(), &[]);
+            if let Some(named) = &self.named {
+                pass.set_bind_group(2, &named.group, &[]);
+            }
             pass.set_vertex_buffer(0, self.vertices.slice(..));
             pass.draw(0..self.begins[self.begins.len() - 1], 0..1);
         }
@@ -270,6 +351,21 @@ fn an_adopter_gets_what_the_renderer_draws() {
     // The comparison can say no: of an adopter with somewhat smaller maps.
     let smaller = ShadowConfig { map_sizes: vec![500; 3], ..papers.clone() };
     assert!(different(&gpu, &papers, &smaller).0 > 50);
+}
+
+/// What the presets choose beside the papers' settings, and exact edges as an application has them.
+#[test]
+fn an_adopter_gets_what_the_renderer_draws_by_every_preset() {
+    let Some(gpu) = gpu() else { return };
+    for preset in Preset::ALL {
+        let config = preset.config();
+        let (different, dark) = different(&gpu, &config, &config);
+        assert!(dark > 1000, "{preset}: {dark} pixels are in shadow");
+        assert_eq!(different, 0, "{preset}: pixels differ");
+    }
+    let [exact, sampled] = [Preset::Exact.config(), Preset::Balanced.config()];
+    let sampled = ShadowConfig { map_sizes: exact.map_sizes.clone(), ..sampled };
+    assert!(different(&gpu, &exact, &sampled).0 > 50, "edges are not asked for");
 }
 
 /// The defaults of both are one value.

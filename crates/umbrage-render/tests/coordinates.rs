@@ -85,8 +85,8 @@ fn so_they_do_with_every_way_to_choose_and_to_filter() {
     let vsm = Filter::Moments(Moments::new(MomentKind::Vsm));
     for (filter, selection, stability, transition, layout) in [
         (Filter::Pcf5 { width_m: None }, Selection::Map, Stability::Exact, blend, Layout::Array),
-        (vsm, Selection::default(), Stability::tight(), blend, Layout::Array),
-        (Filter::Hard, Selection::default(), Stability::Exact, Transition::Hard, Layout::Reused),
+        (vsm, Selection::VIEW_DEPTH, Stability::tight(), blend, Layout::Array),
+        (Filter::Hard, Selection::VIEW_DEPTH, Stability::Exact, Transition::Hard, Layout::Reused),
     ] {
         let [of_fragments, of_vertices] = [Coordinates::World, Coordinates::Vertex].map(|coordinates| {
             let plain = with_splits(3, coordinates).config;

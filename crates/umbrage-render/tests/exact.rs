@@ -76,7 +76,7 @@ fn boxes_on_the_ground_throw_the_shadows_that_they_have() {
     let of = |edges, layout| wrong(&mask(&mut Stage::new(&gpu, &scene, &coarse(edges, layout))), &boxes);
     let [sampled, all] = of(Edges::Sampled, Layout::Array);
     for layout in [Layout::Array, Layout::InstancedAtlas, Layout::LayeredArray, Layout::Reused] {
-        let [exact, asked] = of(Edges::Exact, layout);
+        let [exact, asked] = of(Edges::exact(), layout);
         assert!(asked == all && all > 8000, "{asked} and {all}");
         // What may be left is where a caster passes between nine texels' centres.
         assert!(exact <= 2 && sampled > 20, "{layout:?}: {exact} and sampled {sampled} of {all}");
@@ -88,7 +88,7 @@ fn boxes_on_the_ground_throw_the_shadows_that_they_have() {
 fn deferred_masks_are_exact() {
     let Some(gpu) = gpu() else { return };
     let (scene, boxes) = town();
-    let mut settings = coarse(Edges::Exact, Layout::Array);
+    let mut settings = coarse(Edges::exact(), Layout::Array);
     let whole = mask(&mut Stage::new(&gpu, &scene, &settings));
     settings.config.coordinates = Coordinates::Deferred;
     let deferred = mask(&mut Stage::new(&gpu, &scene, &settings));
@@ -104,7 +104,7 @@ fn deferred_masks_are_exact() {
 fn lamps_and_separate_textures_have_exact_edges() {
     let Some(gpu) = gpu() else { return };
     let (scene, boxes) = town();
-    let [exact, asked] = wrong(&mask(&mut Stage::new(&gpu, &scene, &coarse(Edges::Exact, Layout::Separate))), &boxes);
+    let [exact, asked] = wrong(&mask(&mut Stage::new(&gpu, &scene, &coarse(Edges::exact(), Layout::Separate))), &boxes);
     assert!(exact <= 2 && asked > 8000, "{exact} of {asked}");
     let lamp = DVec3::new(-5.0, 7.0, -3.0);
     let spot: Light = SpotLight::new(lamp, DVec3::new(0.6, -0.8, 0.3), 1.1, 40.0).expect("a spot light").into();
@@ -120,7 +120,7 @@ fn lamps_and_separate_textures_have_exact_edges() {
             let rendered = stage.renderer.render(&frame, Outputs { mask: true, ..Default::default() });
             wrong_under(&rendered.expect("a frame").mask.expect("a mask"), &boxes, |at| lamp - at)
         };
-        let ([sampled, all], [exact, asked]) = (of(Edges::Sampled), of(Edges::Exact));
+        let ([sampled, all], [exact, asked]) = (of(Edges::Sampled), of(Edges::exact()));
         assert!(asked == all && all > 5000, "{asked} and {all}");
         assert!(exact <= 4 && sampled > 10, "{light:?}: {exact} and sampled {sampled} of {all}");
     }
@@ -137,7 +137,7 @@ fn tests_of_triangles_are_counted() {
         stage.render(&from_above(), sun(LIGHT), Outputs { mask: true, edges: true, ..Default::default() })
     };
     assert_eq!(counts(Edges::Sampled, Layout::Array).edges, None);
-    let counted = counts(Edges::Exact, Layout::Array);
+    let counted = counts(Edges::exact(), Layout::Array);
     let edges = counted.edges.expect("edges are exact");
     let sums = edges.sums();
     assert_eq!(edges.size(), SIZE);
@@ -157,7 +157,7 @@ fn tests_of_triangles_are_counted() {
         // Not asked: turned away from the light, or no map covers it.
         assert!((pixel.0[0] < 128) == dark || count.cause == EdgeCause::NotAsked, "{pixel:?}, {count:?}");
     }
-    let of_slices = counts(Edges::Exact, Layout::Reused).edges.expect("edges are exact").sums();
+    let of_slices = counts(Edges::exact(), Layout::Reused).edges.expect("edges are exact").sums();
     assert_eq!(of_slices, sums);
 }
 
@@ -167,8 +167,8 @@ fn several_samples_smooth_an_edge_over_one_pixel() {
     let Some(gpu) = gpu() else { return };
     let (scene, _) = town();
     let of = |samples| {
-        let mut settings = coarse(Edges::Exact, Layout::Array);
-        settings.config.edge_samples = samples;
+        let mut settings = coarse(Edges::exact(), Layout::Array);
+        settings.config.edges = Edges::Exact { samples };
         mask(&mut Stage::new(&gpu, &scene, &settings))
     };
     let (hard, smooth) = (of(1), of(8));
@@ -196,7 +196,7 @@ fn several_samples_smooth_an_edge_over_one_pixel() {
 fn names_come_and_go_with_objects() {
     let Some(gpu) = gpu() else { return };
     let (scene, boxes) = town();
-    let mut stage = Stage::new(&gpu, &scene, &coarse(Edges::Exact, Layout::Array));
+    let mut stage = Stage::new(&gpu, &scene, &coarse(Edges::exact(), Layout::Array));
     let whole = mask(&mut stage);
     let all: Pose = stage.pose.clone();
     // The first box goes; ids of those that follow are given anew.
@@ -225,5 +225,5 @@ fn bytes_count_the_ids() {
         let mut stage = Stage::new(&gpu, &scene, &coarse(edges, Layout::Array));
         stage.render(&from_above(), sun(LIGHT), Outputs { mask: true, ..Default::default() }).stats.bytes
     };
-    assert_eq!((bytes(Edges::Sampled), bytes(Edges::Exact)), (2 * 24 * 24 * 4, 2 * 24 * 24 * 8));
+    assert_eq!((bytes(Edges::Sampled), bytes(Edges::exact())), (2 * 24 * 24 * 4, 2 * 24 * 24 * 8));
 }

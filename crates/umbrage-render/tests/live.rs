@@ -47,7 +47,7 @@ fn configs() -> Vec<ShadowConfig> {
         ShadowConfig { filter: Filter::Moments(Moments::new(MomentKind::Evsm2)), ..config() },
         ShadowConfig { layout: Layout::Reused, depth_format: DepthFormat::R32Float, ..config() },
         ShadowConfig { coordinates: Coordinates::Vertex, ..config() },
-        ShadowConfig { edges: Edges::Exact, filter: Filter::Pcf3 { width_m: None }, ..config() },
+        ShadowConfig { edges: Edges::exact(), filter: Filter::Pcf3 { width_m: None }, ..config() },
         ShadowConfig {
             look: Look { contact: true, translucent: Translucent::Dithered, ..Look::default() },
             fallbacks: Fallbacks::Allow,

@@ -77,7 +77,7 @@ fn decisions_differ_at_edges_alone_and_get_no_worse() {
         for (fit, stabilize, blend) in
             [(Crop::SceneIndependent, Stability::tight(), 0.3), (Crop::SceneDependent, Stability::Exact, 0.0)]
         {
-            let [by_depth, by_map] = [Selection::default(), Selection::Map].map(|selection| {
+            let [by_depth, by_map] = [Selection::VIEW_DEPTH, Selection::Map].map(|selection| {
                 wrong(&mask(&gpu, &chosen(selection, fit, stabilize.clone(), blend), &view, light), &truth, 2)
             });
             let case =

@@ -1,4 +1,10 @@
 //! Structs that WGSL and Rust share, member by member as in `shaders/lib/layout.wesl`.
+//!
+//! The enums are numbers that the shaders compare, and say which code a text of receivers needs.
+//! They are no second config: they have no data, no words and no default. The choices of an
+//! application are `umbrage::config`, which this crate does not depend on, so that other renderers
+//! can use the WGSL without the planner. Only `options.rs` of `umbrage-wgpu` turns one into the
+//! other.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -185,7 +191,7 @@ pub struct Split {
     /// at its near plane and 1 at its far one, instead of `A − B/w`.
     pub is_linear: u32,
     /// Texels around a sample that the filter may read.
-    pub filter_reach: f32,
+    pub filter_radius_texels: f32,
 }
 
 /// Uniform of a pass that draws several splits at once.

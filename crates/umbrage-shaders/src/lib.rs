@@ -129,7 +129,7 @@ pub enum MomentMaps {
     /// anisotropic one.
     Taps,
     /// Without a sampler: the shader weights texels itself.
-    ByHand,
+    Manual,
 }
 
 /// Instancing of casters into the maps of several splits in one pass. With neither, each pass draws

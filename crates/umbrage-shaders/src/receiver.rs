@@ -251,7 +251,7 @@ pub fn receiver(group: u32, text: impl Into<ReceiverText>) -> String {
     let maps = match (maps.moments, maps.bound, maps.r32f, loads) {
         (Some(MomentMaps::Sampled), ..) => text!("moments"),
         (Some(MomentMaps::Taps), ..) => text!("moments_by_taps"),
-        (Some(MomentMaps::ByHand), ..) => text!("moments_by_hand"),
+        (Some(MomentMaps::Manual), ..) => text!("moments_by_hand"),
         (None, Bound::Array, true, _) => text!("array_r32f"),
         (None, Bound::Array, false, true) => text!("array"),
         (None, Bound::Array, false, false) => text!("array_without_loads"),

@@ -45,7 +45,7 @@ macro_rules! in_rust {
 
 fn split_in_rust() -> (usize, Vec<Member>) {
     in_rust!(Split: u_row, v_row, depth_row, w_row, texel_offset, texel_m, size, far, blend_begin, depth_range_m, depth_step_m,
-        is_empty, viewport_texels, guard_texels, corner, layer_texels, layer, depth_offset, is_linear, filter_reach)
+        is_empty, viewport_texels, guard_texels, corner, layer_texels, layer, depth_offset, is_linear, filter_radius_texels)
 }
 
 fn frame_in_rust() -> (usize, Vec<Member>) {

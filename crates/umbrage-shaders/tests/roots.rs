@@ -28,7 +28,7 @@ fn all_maps() -> Vec<Maps> {
             })
         })
         .chain(
-            [MomentMaps::Sampled, MomentMaps::Taps, MomentMaps::ByHand]
+            [MomentMaps::Sampled, MomentMaps::Taps, MomentMaps::Manual]
                 .map(|moments| Maps { moments: Some(moments), ..Maps::default() }),
         )
         .collect()
@@ -43,7 +43,7 @@ const MOMENTS: Maps = Maps {
     coordinates: false,
 };
 const MOMENTS_BY_TAPS: Maps = Maps { moments: Some(MomentMaps::Taps), ..MOMENTS };
-const MOMENTS_BY_HAND: Maps = Maps { moments: Some(MomentMaps::ByHand), ..MOMENTS };
+const MOMENTS_MANUAL: Maps = Maps { moments: Some(MomentMaps::Manual), ..MOMENTS };
 
 fn validated(source: &str) -> (naga::Module, ModuleInfo) {
     let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
@@ -141,7 +141,7 @@ fn roots_are_valid_wgsl_in_any_bind_group() {
             fragment_shader_without_loads(group),
             fragment_shader_of_moments(group, MOMENTS),
             fragment_shader_of_moments(group, MOMENTS_BY_TAPS),
-            fragment_shader_of_moments(group, MOMENTS_BY_HAND),
+            fragment_shader_of_moments(group, MOMENTS_MANUAL),
             compute_shader_of_moments(group),
             contact_shader(group),
         ];

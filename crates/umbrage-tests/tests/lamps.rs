@@ -124,7 +124,7 @@ fn exact_edges_of_lamps_are_truer() {
             }
             all
         };
-        let (sampled, exact) = (error(Edges::Sampled), error(Edges::Exact));
+        let (sampled, exact) = (error(Edges::Sampled), error(Edges::exact()));
         eprintln!("{name}: sampled {:.5} ({sampled:?}), exact {:.5} ({exact:?})", sampled.rate(), exact.rate());
         assert!(exact.rate() < 0.5 * sampled.rate(), "{name}");
     }

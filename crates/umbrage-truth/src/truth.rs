@@ -216,7 +216,8 @@ impl Truth {
     pub(crate) fn is_lit(&self, seen: &Seen, point: DVec3, light: &Light, stack: &mut Vec<u32>) -> bool {
         let to_light = light.to_light(point);
         let distance = light.position().map_or(f64::INFINITY, |position| position.distance(point));
-        seen.normal.dot(to_light) > 0.0 && (!light.reaches(point) || self.sees_light(seen, to_light, distance, stack))
+        seen.normal.dot(to_light) > 0.0
+            && (!light.illuminates(point) || self.sees_light(seen, to_light, distance, stack))
     }
 
     /// Returns whether nothing stands between a point and a light `distance` metres away.

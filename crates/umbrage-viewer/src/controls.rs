@@ -112,7 +112,7 @@ pub fn choose(
     value: &str,
 ) -> Result<(ShadowConfig, Vec<String>), String> {
     let value = value.trim();
-    setting.kind.check(value)?;
+    setting.check(value)?;
     let mut chosen = config.clone();
     let notes = chosen.apply(&[(setting.key.to_owned(), value.to_owned())]).map_err(|error| match error {
         umbrage::Error::InvalidSetting { field, reason } if field == setting.key => reason,

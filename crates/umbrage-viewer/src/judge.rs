@@ -335,7 +335,7 @@ fn map_look(truth: &Truth, index: usize, split: &Split, hit: &Hit) -> Result<Map
     Ok(MapLook {
         split: index,
         texel,
-        texel_m: split.texel_edges(hit.position),
+        texel_m: split.texel_size_m(hit.position),
         bias: split.bias_at(hit.position, bias_normal),
         stored: first.map(|first| (first.object as usize, plane - first.depth)),
     })
@@ -345,7 +345,7 @@ fn map_look(truth: &Truth, index: usize, split: &Split, hit: &Hit) -> Result<Map
 #[must_use]
 pub fn answering(plan: &ShadowPlan, point: DVec3) -> Option<&Split> {
     match plan.selection {
-        Selection::Map => plan.splits.iter().find(|split| split.contains(point, split.filter_reach)),
+        Selection::Map => plan.splits.iter().find(|split| split.contains(point, split.filter_radius_texels)),
         Selection::Interval(_) => {
             let depth = plan.depth_at(point);
             let faces = plan.faces();
@@ -358,8 +358,8 @@ pub fn answering(plan: &ShadowPlan, point: DVec3) -> Option<&Split> {
 
 fn gradient(plan: &ShadowPlan, point: DVec3) -> Option<TexelGradient> {
     let split = answering(plan, point)?;
-    let [u, v] = split.texel_gradients(point);
-    Some(TexelGradient { u, v, width: split.texel_edges(point).max_element() })
+    let [u, v] = split.texel_jacobian(point);
+    Some(TexelGradient { u, v, width: split.texel_size_m(point).max_element() })
 }
 
 /// Colour of a number of texels per pixel, on a scale of doublings below and above 1.

@@ -1,7 +1,5 @@
 //! A pipeline that draws casters, for the common case.
 
-use umbrage::config::Edges;
-
 use crate::device::made;
 use crate::{Error, Result, ShadowMaps, Shadows};
 
@@ -110,7 +108,7 @@ impl Shadows {
     pub fn caster_pipeline(&self, options: &CasterPipeline<'_>) -> Result<wgpu::RenderPipeline> {
         let maps = self.maps();
         // wgpu takes a fragment shader that leaves a target as it was.
-        if options.discards && maps.edges() == Edges::Exact && !options.wgsl.contains("UmbrageTexel") {
+        if options.discards && maps.edges().is_exact() && !options.wgsl.contains("UmbrageTexel") {
             return Err(Error::CasterWithoutId { label: options.label.unwrap_or("casters").to_owned() });
         }
         made(maps.device(), "making a pipeline for casters", || Ok(pipeline(maps, options)))
@@ -121,7 +119,7 @@ fn pipeline(maps: &ShadowMaps, options: &CasterPipeline<'_>) -> wgpu::RenderPipe
     let device = maps.device();
     let own_fragment = match () {
         () if options.discards || maps.caster_targets().is_empty() => "",
-        () if maps.edges() == Edges::Exact => ID,
+        () if maps.edges().is_exact() => ID,
         () => DEPTH,
     };
     let text = maps.caster_wgsl_with(0, options.members) + options.wgsl + own_fragment;

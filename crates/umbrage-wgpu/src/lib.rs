@@ -62,9 +62,8 @@
 //!    buffers of the application ([`stored_runs_layout`], [`stored_runs`]), or two functions of
 //!    your own.
 //!
-//! Exact edges work for all lights and storages. With
-//! [`umbrage::config::ShadowConfig::edge_samples`] of 4 or 8 so many positions of a pixel are
-//! decided, and edges are smooth; the query then has to contain its pixel
+//! Exact edges work for all lights and storages. With `samples` of 4 or 8 so many positions of a
+//! pixel are decided, and edges are smooth; the query then has to contain its pixel
 //! (`umbrage_fragment_query`). Deferred masks use [`ShadowMask::with_runs`].
 //! [`ShadowMaps::counting_receiver_wgsl`] counts the tests, for debug views.
 //!

@@ -1,5 +1,7 @@
 //! Local lights: the uniforms of their maps, and the list of frames that several lights share.
 
+use std::borrow::Borrow;
+
 use glam::{DMat4, DVec3, DVec4};
 use umbrage::{Light, ShadowPlan};
 use umbrage_shaders::layout;
@@ -65,12 +67,12 @@ pub(crate) fn place_light(frame: &mut layout::Frame, plan: &ShadowPlan, origin: 
 }
 
 /// Numbers the frames of several lights, so that a shader finds the frames of each light.
-pub(crate) fn number(frames: &mut [layout::Frame], slots: &[Slot], plans: &[&ShadowPlan]) {
+pub(crate) fn number(frames: &mut [layout::Frame], slots: &[Slot], plans: &[impl Borrow<ShadowPlan>]) {
     for (light, (slot, plan)) in slots.iter().zip(plans).enumerate() {
         let first = slot.first_frame;
         frames[light].first_frame = first as u32;
         let own = frames[first..first + slot.kind.faces()].iter_mut();
-        own.for_each(|frame| frame.face_count = plan.faces() as u32);
+        own.for_each(|frame| frame.face_count = plan.borrow().faces() as u32);
     }
 }
 
@@ -127,7 +129,7 @@ mod tests {
                 let exact = planned.map_from_world(origin + relative.as_dvec3());
                 // Sums of terms near 400 m lose some 1e-4 m, over a texel of so many metres here;
                 // twice for w.
-                let texel = planned.texel_edges(point).min_element();
+                let texel = planned.texel_size_m(point).min_element();
                 let texels = 3e-4 * (1.0 + exact.truncate().length() / 1024.0) / texel + 1e-3;
                 prop_assert!((found[0] - exact.x).abs() < texels && (found[1] - exact.y).abs() < texels, "{found:?} instead of {exact}");
                 let near = planned.depth_near - axis.dot(center);

@@ -8,7 +8,9 @@ use std::borrow::Cow;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, DVec3};
-use umbrage::config::{Coordinates, Edges, ShadowConfig};
+#[cfg(doc)]
+use umbrage::config::Edges;
+use umbrage::config::{Coordinates, ShadowConfig};
 
 use umbrage_shaders::MaskText;
 
@@ -104,10 +106,10 @@ impl ShadowMask {
         format: wgpu::TextureFormat,
         normals: MaskNormals,
     ) -> Result<Self> {
-        match maps.edges() {
-            Edges::Exact => Err(Error::MaskNeedsRuns),
-            Edges::Sampled => Self::with(device, maps, (format, None), normals, None),
+        if maps.edges().is_exact() {
+            return Err(Error::MaskNeedsRuns);
         }
+        Self::with(device, maps, (format, None), normals, None)
     }
 
     /// [`ShadowMask::new`] for a pass that has a depth target too, of `depth_format` and cleared to
@@ -128,11 +130,13 @@ impl ShadowMask {
         normals: MaskNormals,
         depth_format: wgpu::TextureFormat,
     ) -> Result<Self> {
-        match maps.edges() {
-            Edges::Exact => Err(Error::MaskNeedsRuns),
-            Edges::Sampled if !depth_format.has_depth_aspect() => Err(Error::MaskDepth { format: depth_format }),
-            Edges::Sampled => Self::with(device, maps, (format, Some(depth_format)), normals, None),
+        if maps.edges().is_exact() {
+            return Err(Error::MaskNeedsRuns);
         }
+        if !depth_format.has_depth_aspect() {
+            return Err(Error::MaskDepth { format: depth_format });
+        }
+        Self::with(device, maps, (format, Some(depth_format)), normals, None)
     }
 
     /// [`ShadowMask::new`] for exact edges: set bind group 2 in the pass before
@@ -147,7 +151,7 @@ impl ShadowMask {
         normals: MaskNormals,
         runs: MaskRuns<'_>,
     ) -> Result<Self> {
-        Self::with(device, maps, (format, None), normals, (maps.edges() == Edges::Exact).then_some(runs))
+        Self::with(device, maps, (format, None), normals, maps.edges().is_exact().then_some(runs))
     }
 
     fn with(
@@ -191,7 +195,7 @@ impl ShadowMask {
             label: Some("ShadowMask::layout"),
             entries: &entries,
         });
-        let footprint = runs.is_some() && maps.config().edge_samples > 1;
+        let footprint = runs.is_some() && maps.edges().samples().is_some_and(|samples| samples > 1);
         let choices = MaskText { normals: normals == MaskNormals::Texture, footprint, bounds: false };
         let whole = maps.receiver_wgsl(1) + runs.map_or("", |runs| runs.wgsl) + &umbrage_shaders::mask(0, choices);
         let first = maps.bounds_receiver_wgsl(1).filter(|_| depth_format.is_some());

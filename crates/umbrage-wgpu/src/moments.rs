@@ -11,6 +11,7 @@ use crate::{Error, Filter, Result, device};
 
 /// Number format of moments: the best that the device supports, chosen when the maps are created.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum MomentStorage {
     /// 32-bit floats, filtered by the hardware's sampler: needs `FLOAT32_FILTERABLE` (see
     /// [`crate::optional_features`]).
@@ -245,7 +246,7 @@ impl Moments {
     /// The part of the receiver text that reads these moments.
     pub fn maps(&self) -> MomentMaps {
         match (self.storage, self.own_taps) {
-            (MomentStorage::F32Manual, _) => MomentMaps::ByHand,
+            (MomentStorage::F32Manual, _) => MomentMaps::Manual,
             (_, true) => MomentMaps::Taps,
             (_, false) => MomentMaps::Sampled,
         }

@@ -1,8 +1,8 @@
 //! Options of a frame, and the config's choices as values for wgpu and for the shaders.
 
 use glam::DVec3;
-use umbrage::config::{DepthFormat, Filter, LightKind, MomentKind, ReceiverBias, Transition};
-use umbrage_shaders::layout::{BiasKind, FilterKind, TransitionKind};
+use umbrage::config::{DepthFormat, Filter, LightKind, MomentKind, ReceiverBias, Selection, SplitMetric, Transition};
+use umbrage_shaders::layout::{BiasKind, FilterKind, MetricKind, SelectionKind, TransitionKind};
 
 use crate::{Error, Result};
 
@@ -70,6 +70,22 @@ pub(crate) fn transition_kind(transition: Transition) -> TransitionKind {
         Transition::Blend { .. } => TransitionKind::Blend,
         Transition::Dither { .. } => TransitionKind::Dither,
         Transition::Hard => TransitionKind::Hard,
+    }
+}
+
+/// The selection as the shaders' enum.
+pub(crate) fn selection_kind(selection: Selection) -> SelectionKind {
+    match selection {
+        Selection::Interval(_) => SelectionKind::Depth,
+        Selection::Map => SelectionKind::Map,
+    }
+}
+
+/// The measure of splits as the shaders' enum.
+pub(crate) fn metric_kind(metric: SplitMetric) -> MetricKind {
+    match metric {
+        SplitMetric::ViewDepth => MetricKind::ViewDepth,
+        SplitMetric::Distance => MetricKind::Distance,
     }
 }
 

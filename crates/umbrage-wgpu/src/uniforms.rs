@@ -1,21 +1,22 @@
 //! Conversion of a plan in `f64` world metres to uniforms in `f32` relative to the frame's origin.
 
+use std::borrow::Borrow;
 use std::f32::consts::TAU;
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use umbrage::ShadowPlan;
 use umbrage::config::{Filter, LightKind, Selection, ShadowConfig, SplitMetric};
-use umbrage_shaders::layout::{self, SelectionKind};
+use umbrage_shaders::layout;
 
 use crate::maps::place::Place;
 use crate::maps::slot::Slot;
-use crate::options::{bias_kind, depth_step, filter_kind, reach_within, transition_kind};
+use crate::options::{bias_kind, depth_step, filter_kind, reach_within, selection_kind, transition_kind};
 use crate::{Error, FrameOptions, LightMaps, Result, local};
 
 /// The uniform that receivers read: the frames of each light's slot. Their splits are the uniforms
 /// of casters. `places` are those of all maps.
 pub(crate) fn frames(
-    plans: &[&ShadowPlan],
+    plans: &[impl Borrow<ShadowPlan>],
     config: &ShadowConfig,
     slots: &[Slot],
     places: &[Place],
@@ -26,7 +27,7 @@ pub(crate) fn frames(
         return Err(Error::LightCount { plans: plans.len(), lights: slots.len() });
     }
     let mut frames = Vec::new();
-    for (light, (plan, slot)) in plans.iter().zip(slots).enumerate() {
+    for (light, (plan, slot)) in plans.iter().map(Borrow::borrow).zip(slots).enumerate() {
         let given = plan.light.map_or(LightKind::Directional, LightKind::from);
         LightMaps::from(slot.kind).check(light, given)?;
         for face in 0..slot.kind.faces() {
@@ -105,10 +106,7 @@ fn frame(
         turn_per_pixel: if rotated { TAU } else { 0.0 },
         transition: transition_kind(config.transition) as u32,
         slice: layout::EVERY_SLICE,
-        selection: match plan.selection {
-            Selection::Interval(_) => SelectionKind::Depth,
-            Selection::Map => SelectionKind::Map,
-        } as u32,
+        selection: selection_kind(plan.selection) as u32,
         map_blend: plan.blend as f32,
         bias_kind: bias_kind(look.bias) as u32,
         shadow_colour: look.colour.map(|part| part as f32),
@@ -121,7 +119,7 @@ fn frame(
     let splits = plan.splits.iter().enumerate().skip(first);
     for ((uniform, (index, split)), place) in frame.splits.iter_mut().zip(splits).zip(places) {
         *uniform = self::split(index, split, depth_step(config.depth_format), *place, options.origin)?;
-        uniform.filter_reach = reach_within(filter, split.filter_reach) as f32;
+        uniform.filter_radius_texels = reach_within(filter, split.filter_radius_texels) as f32;
         uniform.is_linear = (config.depth_format.is_colour() && split.light_position.is_some()).into();
     }
     Ok(frame)
@@ -265,8 +263,8 @@ fn check(index: usize, split: &umbrage::Split) -> Result<()> {
     if !split.far.is_finite() {
         return bad("far", split.far, "a finite view depth");
     }
-    if !(split.filter_reach >= 0.0 && split.filter_reach.is_finite()) {
-        return bad("filter_reach", split.filter_reach, "finite texels, 0 or more");
+    if !(split.filter_radius_texels >= 0.0 && split.filter_radius_texels.is_finite()) {
+        return bad("filter_radius_texels", split.filter_radius_texels, "finite texels, 0 or more");
     }
     if !split.blend_begin.is_finite() || split.blend_begin > split.far {
         return bad("blend_begin", split.blend_begin, "a finite view depth no greater than far");
@@ -308,25 +306,16 @@ mod tests {
         let (u_axis, v_axis) = light.map_axes();
         let depth_axis = light.direction();
         let at = DVec2::new(u_axis.dot(center), v_axis.dot(center)) / texel;
-        umbrage::Split {
-            near: 1.0,
-            far: 10.0,
-            blend_begin: 9.0,
-            coverage: (1.0, 10.0),
-            size,
-            u_axis,
-            v_axis,
-            depth_axis,
-            texel_m: DVec2::splat(texel),
-            min_texel: (at - 0.5 * f64::from(size)).round(),
-            depth_near: depth_axis.dot(center) - 50.0,
-            depth_far: depth_axis.dot(center) + 50.0,
-            receiver_depths: (depth_axis.dot(center) - 50.0, depth_axis.dot(center) + 50.0),
-            filter_reach: 1.5,
-            warp: None,
-            light_position: None,
-            casters: 0..1,
-        }
+        let mut split = umbrage::Split::default();
+        (split.near, split.far, split.blend_begin, split.coverage) = (1.0, 10.0, 9.0, (1.0, 10.0));
+        (split.size, split.texel_m) = (size, DVec2::splat(texel));
+        (split.u_axis, split.v_axis, split.depth_axis) = (u_axis, v_axis, depth_axis);
+        split.min_texel = (at - 0.5 * f64::from(size)).round();
+        (split.depth_near, split.depth_far) = (depth_axis.dot(center) - 50.0, depth_axis.dot(center) + 50.0);
+        split.receiver_depths = (split.depth_near, split.depth_far);
+        split.filter_radius_texels = 1.5;
+        split.casters = 0..1;
+        split
     }
 
     fn unit() -> impl Strategy<Value = DVec3> {

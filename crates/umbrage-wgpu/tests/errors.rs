@@ -103,7 +103,7 @@ fn plans_and_frames_that_make_no_sense() {
         ("far", |p| p.splits[1].far = f64::NAN),
         ("blend_begin", |p| p.splits[1].blend_begin = p.splits[1].far + 1.0),
         ("near", |p| p.splits[1].near = f64::NAN),
-        ("filter_reach", |p| p.splits[1].filter_reach = f64::NAN),
+        ("filter_radius_texels", |p| p.splits[1].filter_radius_texels = f64::NAN),
         ("planes", |p| p.planes[1] = f64::NAN),
         ("blend", |p| p.blend = f64::NAN),
         ("blend", |p| p.blend = -0.5),

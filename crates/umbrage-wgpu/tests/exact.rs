@@ -53,10 +53,10 @@ fn umbrage_corner(run: UmbrageRun, corner: u32) -> vec3f {
 }";
 
 fn answers(world: &World, triangles: &[Vec3], shift: u8, asks: &[Ask]) -> Vec<Answer> {
-    let source = match world.maps.edges() {
-        Edges::Exact => world.maps.receiver_wgsl(1) + ASK,
-        Edges::Sampled => return world.ask(asks),
-    };
+    if !world.maps.edges().is_exact() {
+        return world.ask(asks);
+    }
+    let source = world.maps.receiver_wgsl(1) + ASK;
     let corners = triangles.iter().take(3 * NAMED).map(|corner| ask(*corner, Vec3::Y));
     let mut all: Vec<Ask> = asks.iter().copied().chain(corners).collect();
     let [count, shift] = [(all.len() - asks.len()) as f32, f32::from(shift)];
@@ -361,7 +361,7 @@ fn what_does_not_go_with_ids_is_refused_by_name() {
     let Some(gpu) = Gpu::new() else { return };
     let asked = config(&[64], PCF3, "edges=exact");
     let shadows = Shadows::new(&gpu.device, &asked).expect("shadows");
-    assert_eq!(shadows.maps().edges(), Edges::Exact);
+    assert_eq!(shadows.maps().edges(), Edges::exact());
     let discarding = |wgsl, label| CasterPipeline { wgsl, discards: true, label: Some(label), ..Default::default() };
     let with_fragment = |fragment: &str| {
         format!(

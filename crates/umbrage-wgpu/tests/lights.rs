@@ -107,14 +107,14 @@ fn a_lamp_throws_shadows_as_large_as_similar_triangles_say() {
         let plan = planned(&world.maps, light);
         world.draw(&plan, &FrameOptions::default(), &triangles());
         let asks = ground_asks();
-        let texel = plan.splits.iter().map(|s| s.texel_edges(DVec3::ZERO).max_element()).filter(|t| t.is_finite());
+        let texel = plan.splits.iter().map(|s| s.texel_size_m(DVec3::ZERO).max_element()).filter(|t| t.is_finite());
         let unsure = reach * texel.fold(0.0, f64::max) as f32;
         assert!(unsure < 0.5, "{unsure} m leave nothing to look at");
         let mut counted = [0; 2];
         for (it, answer) in asks.iter().zip(world.ask(&asks)) {
             let point = it.position();
-            let reached = light.reaches(point.as_dvec3());
-            let near_rim = [0.97, 1.03].iter().any(|&s| light.reaches((point * s).as_dvec3()) != reached);
+            let reached = light.illuminates(point.as_dvec3());
+            let near_rim = [0.97, 1.03].iter().any(|&s| light.illuminates((point * s).as_dvec3()) != reached);
             let Some(lit) = lit_by_lamp(point, unsure).filter(|_| !near_rim) else { continue };
             let lit = lit || !reached;
             let wrong = (answer.visibility - f32::from(u8::from(lit))).abs();
@@ -168,7 +168,7 @@ fn a_light_that_grazes_a_wall_makes_no_stripes() {
         let asks: Vec<_> = steps(0.3, 4.7, 60)
             .flat_map(|y| steps(-1.5, 1.5, 60).map(move |z| ask(Vec3::new(5.0, y, z), Vec3::NEG_X)))
             .collect();
-        let reached = |it: &Ask| light.reaches(it.position().as_dvec3());
+        let reached = |it: &Ask| light.illuminates(it.position().as_dvec3());
         let answers = world.ask(&asks);
         let (all, wrong) = asks
             .iter()

@@ -49,7 +49,8 @@ fn a_lost_device_is_an_error_of_its_own() {
     assert_eq!(maps.prepare(&gpu.queue, &plan, &FrameOptions::default()), Err(Error::DeviceLost));
     assert_eq!(Shadows::new(&gpu.device, &ShadowConfig::default()).err(), Some(Error::DeviceLost));
     // What is wrong with a plan is still said first.
-    let spoilt = umbrage::ShadowPlan { fade_begin: f64::NAN, ..plan.clone() };
+    let mut spoilt = plan.clone();
+    spoilt.fade_begin = f64::NAN;
     let refused = maps.prepare(&gpu.queue, &spoilt, &FrameOptions::default());
     assert!(matches!(refused, Err(Error::InvalidPlan { .. })), "{refused:?}");
     assert_eq!(complaints.load(Ordering::Relaxed), 0, "nothing is complained of behind the application's back");

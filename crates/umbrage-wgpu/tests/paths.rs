@@ -144,7 +144,7 @@ fn filters_never_see_a_neighbour() {
                     + split.v_axis.dot(DVec3::X * 1000.0 * i as f64) / split.texel_m.y * glam::DVec2::Y;
             }
             // A disc as wide as it gets, and one that was planned to be narrow.
-            plan.splits[2].filter_reach = 5.0;
+            plan.splits[2].filter_radius_texels = 5.0;
             let mut triangles = ground(5000.0);
             for x in [1000.0, 3000.0] {
                 let corner = |dx: f32, dz: f32| Vec3::new(x + dx, 90.0, dz);

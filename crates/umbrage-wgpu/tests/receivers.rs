@@ -197,7 +197,7 @@ fn check_own_corner(filter: Filter, reach: f64) {
     let softness = if matches!(filter, Filter::Pcss { .. }) { "sun-angle=28.65" } else { "filter-width=60" };
     let mut world = World::new(gpu, &config(&[256, 128], filter, softness));
     let mut plan = two_splits();
-    plan.splits[1].filter_reach = reach;
+    plan.splits[1].filter_radius_texels = reach;
     plan.planes = vec![1.0, 2.0, 400.0];
     (plan.splits[0].far, plan.splits[0].blend_begin, plan.splits[1].near, plan.splits[1].far) = (2.0, 2.0, 2.0, 400.0);
     (plan.splits[1].blend_begin, plan.fade_begin) = (400.0, 400.0);

@@ -79,7 +79,7 @@ fn plan(filter: &Filter, boxes: &[Aabb]) -> ShadowPlan {
     let frustum = Frustum::perspective(2.0, 1.0, RANGE.0, RANGE.1).expect("a lens");
     let view = View::look_at(eye, eye + DVec3::X, DVec3::Y, frustum).expect("a view");
     let ground = Aabb::new(DVec3::new(0.0, -0.01, -150.0), DVec3::new(160.0, 0.0, 150.0));
-    let reach = FilterReach { radius_texels: filter.radius_texels(), half_width_m: None };
+    let reach = FilterReach { radius_texels: filter.radius_texels(), radius_m: None };
     let options = PlannerOptions { filter_reach: Some(reach), image_size: [SIZE; 2], ..PlannerOptions::default() };
     let mut planner = Planner::with_options(&settings, options).expect("valid settings");
     planner.plan(&view, &DirectionalLight::new(TRAVEL).expect("a direction"), boxes, &[ground]).expect("a plan").clone()

@@ -39,7 +39,7 @@ fn may_differ(all: &ShadowPlan, fewer: &ShadowPlan, split: usize, casters: &[Aab
     let at = map.map_from_world(point);
     let near = |bounds: &Aabb| {
         let middle = map.map_from_world(0.5 * (bounds.min + bounds.max));
-        let reach = map.filter_reach + 0.5 + 1.0 + 0.25;
+        let reach = map.filter_radius_texels + 0.5 + 1.0 + 0.25;
         (at.x - middle.x).abs() < reach && (at.y - middle.y).abs() < reach
     };
     let dropped = all.casters(split).iter().filter(|caster| !fewer.casters(split).contains(caster));

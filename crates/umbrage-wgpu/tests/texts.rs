@@ -47,9 +47,9 @@ fn answers(gpu: Gpu, config: &ShadowConfig, lights: &[LightKind], plan: &ShadowP
 #[test]
 fn a_text_for_suns_answers_as_a_text_for_any_single_light() {
     for (filter, selection, settings) in [
-        ("hard", Selection::default(), "transition=hard"),
+        ("hard", Selection::VIEW_DEPTH, "transition=hard"),
         ("pcf2", Selection::Map, "selection=map blend=0.2"),
-        ("pcf3", Selection::default(), "blend=0.2"),
+        ("pcf3", Selection::VIEW_DEPTH, "blend=0.2"),
         ("pcf5", RADIAL, "bands=radial transition=dither bias=slope"),
     ] {
         let plan = planned(selection);
@@ -88,6 +88,6 @@ fn a_plan_of_other_choices_is_refused() {
         let error = maps.prepare(&gpu.queue, &plan, &FrameOptions::default()).expect_err(name);
         assert!(matches!(error, Error::PlanOfOtherConfig { setting, .. } if setting == name), "{error}");
     }
-    let right = planned(Selection::default());
+    let right = planned(Selection::VIEW_DEPTH);
     assert_eq!(maps.prepare(&gpu.queue, &right, &FrameOptions::default()), Ok(()));
 }

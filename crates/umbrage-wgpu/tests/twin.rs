@@ -171,7 +171,7 @@ fn selection_agrees_at_and_around_every_border() {
 /// Discs keep free as many texels as they have without a width, and metres where those say more.
 #[test]
 fn discs_say_how_many_metres_they_reach() {
-    let reach = |filter: Filter| (filter.radius_texels(), filter.half_width_m());
+    let reach = |filter: Filter| (filter.radius_texels(), filter.radius_m());
     // A tap reaches one texel past its place.
     assert_eq!(reach(DISC), (f64::from(twin::DISC_RADIUS) + 1.0, None));
     let (texels, metres) = reach(Filter::Disc { width_m: Some(0.8), rotated: false });

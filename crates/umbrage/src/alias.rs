@@ -18,7 +18,7 @@ impl Split {
         let f = view.frustum();
         let texel = match self.warp {
             None => self.texel_m,
-            Some(_) => self.texel_edges(view.eye() + view.forward() * d),
+            Some(_) => self.texel_size_m(view.eye() + view.forward() * d),
         };
         texel.max_element() * f64::from(image_height) / ((f.top - f.bottom) * f.scale_at(d))
     }
@@ -41,7 +41,7 @@ impl Split {
             Projection::Orthographic => view.forward(),
         };
         let on_plane = |step: DVec3| step - ray * (normal.dot(step) / normal.dot(ray));
-        let [u, v] = self.texel_gradients(point);
+        let [u, v] = self.texel_jacobian(point);
         let texel = |step: DVec3| DVec2::new(u.dot(step), v.dot(step));
         let texel_from_pixel =
             DMat2::from_cols(texel(on_plane(rotation.x_axis * pixel.x)), texel(on_plane(rotation.y_axis * pixel.y)));

@@ -15,6 +15,7 @@ use crate::Split;
 /// but far behind the receiver's plane, it continues the texel's own surface to the receiver
 /// (`meets_receiver` in `bias.wesl`).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Bias {
     /// Metres of depth per texel along u and v on the receiver's plane.
     pub depth_per_texel: DVec2,
@@ -70,8 +71,8 @@ impl Split {
         if self.warp.is_none() {
             return self.bias(normal);
         }
-        let [u, v] = self.texel_steps(point);
-        bias(normal, self.travel_at(point), u, v)
+        let [u, v] = self.texel_axes_m(point);
+        bias(normal, self.light_direction_at(point), u, v)
     }
 }
 

@@ -26,6 +26,7 @@ const LEVEL: f32 = 1e-9;
 /// ([`CasterTest::mask`]). Every test leaves room for rounding: a box that
 /// [`ShadowPlan::casts_into`] accepts passes, and drawing one more never changes a visible pixel.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct CasterTest {
     /// Half spaces `normal · p <= w` with outward unit normals. `w` is in metres and includes the
     /// filter's reach.
@@ -38,6 +39,7 @@ pub struct CasterTest {
 
 /// Test that rejects a box lying wholly below all receivers: it casts no visible shadow.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct BelowTest {
     /// Direction in which light travels.
     pub direction: Vec3,

@@ -18,6 +18,12 @@ pub enum Error {
         /// Values that are allowed.
         expected: &'static str,
     },
+    /// The matrices of an orthographic camera do not say which way it looks.
+    #[error(
+        "orthographic matrices do not say which way a camera looks: a left-handed or mirrored one shares them with a \
+         reversed one; use View::from_orthographic, which takes the direction"
+    )]
+    OrthographicDirection,
     /// A parameter of a light is out of range.
     #[error("light {field}: {reason}")]
     InvalidLight {
@@ -52,6 +58,9 @@ pub enum Error {
         /// The key as given.
         key: String,
     },
+    /// A setting was given a word of a former version.
+    #[error("shadow setting {0}")]
+    RenamedWord(crate::config::Renamed),
     /// A budget cannot be read.
     #[error("budget {text:?}: {reason}")]
     InvalidBudget {

@@ -34,6 +34,8 @@
 //! opt-level = 3
 //! [profile.dev.package.glam]
 //! opt-level = 3
+//! [profile.dev.package.libm]
+//! opt-level = 3
 //! ```
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

@@ -228,7 +228,7 @@ impl Light {
     /// Returns whether a world point lies within the light's range and cone. No map is sampled for
     /// points outside.
     #[must_use]
-    pub fn reaches(&self, point: DVec3) -> bool {
+    pub fn illuminates(&self, point: DVec3) -> bool {
         match self {
             Self::Directional(_) => true,
             Self::Spot(light) => {

@@ -22,20 +22,20 @@ pub struct FilterReach {
     pub radius_texels: f64,
     /// Half the width of the filter's kernel in metres, up to 1000 km, if it is known. Splits in
     /// which this is less than `radius_texels` keep a margin of as many metres, and of at least 4
-    /// texels ([`crate::Split::filter_reach`]). With `None` all splits keep `radius_texels`. Warped
-    /// maps and those of local lights always do.
-    pub half_width_m: Option<f64>,
+    /// texels ([`crate::Split::filter_radius_texels`]). With `None` all splits keep `radius_texels`.
+    /// Warped maps and those of local lights always do.
+    pub radius_m: Option<f64>,
 }
 
 impl FilterReach {
     /// Checks the values, and that maps of these edges in texels have room for the margins.
     pub(crate) fn check(self, map_sizes: &[u32], is_stabilised: bool) -> Result<()> {
-        let Self { radius_texels: radius, half_width_m } = self;
+        let Self { radius_texels: radius, radius_m } = self;
         if !(0.0..=64.0).contains(&radius) {
             return Err(Error::setting("radius_texels", format!("{radius} texels; give 0 to 64")));
         }
-        if let Some(half_width) = half_width_m.filter(|metres| !(0.0..=1e6).contains(metres)) {
-            return Err(Error::setting("half_width_m", format!("{half_width} m; give 0 to 1000 km")));
+        if let Some(radius) = radius_m.filter(|metres| !(0.0..=1e6).contains(metres)) {
+            return Err(Error::setting("radius_m", format!("{radius} m; give 0 to 1000 km")));
         }
         let least = self.least_map_size(is_stabilised);
         match map_sizes.iter().position(|&size| size < least) {
@@ -58,19 +58,19 @@ impl FilterReach {
 
     /// The reach for maps whose texels differ in size: the largest.
     pub(crate) fn most(self) -> Self {
-        Self { half_width_m: None, ..self }
+        Self { radius_m: None, ..self }
     }
 
     /// Reach in texels in a map of `size` texels whose shorter edge has to show `edge` metres;
     /// `spare` texels of that edge serve neither.
     ///
-    /// With a kernel of half width h the edge takes e + 2 h metres and 2 + spare texels. A texel is
-    /// thus (e + 2 h) / (size − 2 − spare), and the reach 1 + h / texel. If that exceeds
+    /// With a kernel of radius r the edge takes e + 2 r metres and 2 + spare texels. A texel is
+    /// thus (e + 2 r) / (size − 2 − spare), and the reach 1 + r / texel. If that exceeds
     /// `radius_texels`, the reach is `radius_texels` and the filter is narrower than given.
     pub(crate) fn texels(self, edge: f64, size: u32, spare: f64) -> f64 {
-        let Some(half_width) = self.half_width_m else { return self.radius_texels };
-        let texel = (edge + 2.0 * half_width) / (f64::from(size) - 2.0 * TAP - spare);
-        (half_width / texel + TAP).max(LEAST_REACH).min(self.radius_texels)
+        let Some(radius) = self.radius_m else { return self.radius_texels };
+        let texel = (edge + 2.0 * radius) / (f64::from(size) - 2.0 * TAP - spare);
+        (radius / texel + TAP).max(LEAST_REACH).min(self.radius_texels)
     }
 }
 
@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn a_known_width_takes_as_many_texels_as_it_is_wide() {
-        let reach = FilterReach { radius_texels: 16.0, half_width_m: Some(0.5) };
+        let reach = FilterReach { radius_texels: 16.0, radius_m: Some(0.5) };
         for edge in [1.0, 20.0, 37.0, 80.0, 300.0, 1e5] {
             let texels = reach.texels(edge, 512, 3.0);
             let texel = edge / (512.0 - 2.0 * texels - 3.0);
@@ -92,7 +92,7 @@ mod tests {
                 "{edge}: {wanted}"
             );
         }
-        assert_eq!(FilterReach { radius_texels: 16.0, half_width_m: None }.texels(20.0, 512, 3.0), 16.0);
-        assert_eq!(FilterReach { radius_texels: 1.5, half_width_m: Some(0.5) }.texels(20.0, 512, 3.0), 1.5);
+        assert_eq!(FilterReach { radius_texels: 16.0, radius_m: None }.texels(20.0, 512, 3.0), 16.0);
+        assert_eq!(FilterReach { radius_texels: 1.5, radius_m: Some(0.5) }.texels(20.0, 512, 3.0), 1.5);
     }
 }

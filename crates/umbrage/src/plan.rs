@@ -14,7 +14,8 @@ pub const MAX_SPLITS: usize = 8;
 ///
 /// All positions are `f64` world metres; a renderer subtracts its own origin before it converts
 /// them to `f32`.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ShadowPlan {
     /// The splits, nearest first. For a point light, the splits of its first face, then those of
     /// the next.
@@ -54,6 +55,27 @@ pub struct ShadowPlan {
     pub coverage: PlanCoverage,
 }
 
+impl Default for ShadowPlan {
+    /// A plan without splits.
+    fn default() -> Self {
+        Self {
+            splits: Vec::new(),
+            planes: Vec::new(),
+            view_depth_plane: DVec4::ZERO,
+            eye: DVec3::ZERO,
+            light_direction: DVec3::ZERO,
+            light: None,
+            fade_begin: 0.0,
+            selection: Selection::VIEW_DEPTH,
+            blend: 0.0,
+            caster_indices: Vec::new(),
+            dropped_casters: Vec::new(),
+            split_range: Vec::new(),
+            coverage: PlanCoverage::default(),
+        }
+    }
+}
+
 impl ShadowPlan {
     /// Empties the plan for a frame.
     pub(crate) fn begin(&mut self, view: &View, light: Light) {
@@ -65,7 +87,7 @@ impl ShadowPlan {
             Light::Point(_) => DVec3::NEG_Y,
         };
         self.light = Some(light);
-        self.selection = Selection::default();
+        self.selection = Selection::VIEW_DEPTH;
         self.blend = 0.0;
         self.planes.clear();
         self.caster_indices.clear();
@@ -149,7 +171,7 @@ impl ShadowPlan {
     /// serves the point.
     #[must_use]
     pub fn covering_split(&self, point: DVec3) -> Option<usize> {
-        let in_map = |split: &Split| split.contains(point, split.filter_reach);
+        let in_map = |split: &Split| split.contains(point, split.filter_radius_texels);
         if let Some(light) = self.light.filter(|light| light.position().is_some()) {
             let m = self.coverage.local.len() / light.faces();
             let first = light.face_of(point) * m;
@@ -157,7 +179,7 @@ impl ShadowPlan {
                 let split = &self.splits[i];
                 self.coverage.contains_local(i, point) && (split.casters.is_empty() || in_map(split))
             };
-            return (first..first + m).find(covers).filter(|_| light.reaches(point));
+            return (first..first + m).find(covers).filter(|_| light.illuminates(point));
         }
         let mut covering = self.splits.iter().enumerate().filter(|(i, _)| self.coverage.contains(*i, point));
         match self.selection {
@@ -166,7 +188,7 @@ impl ShadowPlan {
             // to answer or nobody does. It does not answer for points before its depth range, where
             // nobody looked for casters.
             Selection::Map => covering
-                .find(|(_, split)| !split.casters.is_empty() && split.lies_over(point, split.filter_reach))
+                .find(|(_, split)| !split.casters.is_empty() && split.lies_over(point, split.filter_radius_texels))
                 .filter(|(_, split)| in_map(split)),
         }
         .map(|(i, _)| i)
@@ -202,7 +224,8 @@ impl ShadowPlan {
 /// The map of a local light is a perspective image from [`Split::light_position`] along
 /// [`Split::depth_axis`], also projected by [`Split::warp`]: w is the depth along that axis in
 /// metres, and the stored depth is `A − B/w`, 0 at `depth_near` and 1 at `depth_far`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Split {
     /// Start of the slice, `C_i`: a view depth in metres; with radial bands a distance to the
     /// eye, see [`ShadowPlan::metric`].
@@ -224,7 +247,7 @@ pub struct Split {
     /// viewing direction of a local light's map.
     pub depth_axis: DVec3,
     /// Metres per texel along u and v. In a warped map or that of a local light, texels have this
-    /// size only in the middle of their receivers; see [`Split::texel_edges`].
+    /// size only in the middle of their receivers; see [`Split::texel_size_m`].
     pub texel_m: DVec2,
     /// The map's upper left corner in texels of the light's plane (for a local light: from the
     /// axis); whole numbers if the split is stabilised.
@@ -240,7 +263,7 @@ pub struct Split {
     /// Texels around a sample that a filter may read: points on screen lie at least this far inside
     /// the map. [`crate::FilterReach::radius_texels`], or less if the filter's width is known in
     /// metres.
-    pub filter_reach: f64,
+    pub filter_radius_texels: f64,
     /// Matrix from world to shadow NDC (x, y in [−1,1], y up, z in \[0,1\]), to be divided by w;
     /// `None` for a plain map. w is positive at every receiver, and does not change along parallel
     /// light.
@@ -272,7 +295,7 @@ impl Split {
 
     /// Direction in which light travels at a world point, a unit vector.
     #[must_use]
-    pub fn travel_at(&self, point: DVec3) -> DVec3 {
+    pub fn light_direction_at(&self, point: DVec3) -> DVec3 {
         self.light_position.map_or(self.depth_axis, |light| (point - light).try_normalize().unwrap_or(self.depth_axis))
     }
 
@@ -366,10 +389,11 @@ impl Split {
         inside.contains(&at.x) && inside.contains(&at.y)
     }
 
-    /// Gradients of u and v in the world around a point, in texels per metre. Both vectors lie
-    /// across the light. They are equal everywhere in a plain map.
+    /// Jacobian of the map's coordinates: its rows are the gradients of u and v by the position in
+    /// the world, in texels per metre. Both lie across the light. They are equal everywhere in a
+    /// plain map.
     #[must_use]
-    pub fn texel_gradients(&self, point: DVec3) -> [DVec3; 2] {
+    pub fn texel_jacobian(&self, point: DVec3) -> [DVec3; 2] {
         let Some(shadow_from_world) = self.warp else {
             return [self.u_axis / self.texel_m.x, self.v_axis / self.texel_m.y];
         };
@@ -382,17 +406,17 @@ impl Split {
     /// Edges of a texel along u and v at a world point, as vectors across the light in metres: the
     /// steps that change u alone and v alone, by one.
     #[must_use]
-    pub fn texel_steps(&self, point: DVec3) -> [DVec3; 2] {
-        let [u, v] = self.texel_gradients(point);
-        let travel = self.travel_at(point);
+    pub fn texel_axes_m(&self, point: DVec3) -> [DVec3; 2] {
+        let [u, v] = self.texel_jacobian(point);
+        let travel = self.light_direction_at(point);
         let (along_u, along_v) = (v.cross(travel), travel.cross(u));
         [along_u / u.dot(along_u), along_v / v.dot(along_v)]
     }
 
     /// Lengths of a texel's edges along u and v at a world point, in metres.
     #[must_use]
-    pub fn texel_edges(&self, point: DVec3) -> DVec2 {
-        let [u, v] = self.texel_steps(point);
+    pub fn texel_size_m(&self, point: DVec3) -> DVec2 {
+        let [u, v] = self.texel_axes_m(point);
         DVec2::new(u.length(), v.length())
     }
 }

@@ -59,12 +59,12 @@ fn settings() {
 
 #[test]
 fn options() {
-    let reach = |radius_texels, half_width_m| Some(FilterReach { radius_texels, half_width_m });
+    let reach = |radius_texels, radius_m| Some(FilterReach { radius_texels, radius_m });
     for radius in [f64::NAN, -1.0, 65.0] {
         assert_eq!(refused_option(|o| o.filter_reach = reach(radius, None)), "radius_texels");
     }
     for width in [-0.1, f64::NAN, f64::INFINITY] {
-        assert_eq!(refused_option(|o| o.filter_reach = reach(1.5, Some(width))), "half_width_m");
+        assert_eq!(refused_option(|o| o.filter_reach = reach(1.5, Some(width))), "radius_m");
     }
     assert_eq!(refused_option(|o| o.image_size = [0, 600]), "image_size");
     // A filter of the engine's own asks for its own margins: 2 · 4 + 5.

@@ -26,7 +26,7 @@ fn first_texel(config: &ShadowConfig) -> f64 {
         .collect();
     let mut planner = Planner::new(config).expect("a planner");
     let plan = planner.plan(&view, &sun, &boxes, &boxes).expect("a plan");
-    plan.splits[0].texel_edges(DVec3::new(0.0, 0.0, -2.0)).max_element()
+    plan.splits[0].texel_size_m(DVec3::new(0.0, 0.0, -2.0)).max_element()
 }
 
 proptest! {

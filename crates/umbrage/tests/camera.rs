@@ -1,6 +1,6 @@
 //! Cameras: labelled points pushed through whole matrices, and matrices read back.
 
-use glam::{DMat4, DVec3, DVec4, EulerRot};
+use glam::{DMat4, DVec3, DVec4, EulerRot, dcamera};
 use proptest::prelude::*;
 use umbrage::{DepthConvention, Error, Frustum, Projection, View};
 
@@ -133,6 +133,9 @@ struct Engine {
     world_from_view: DMat4,
     clip_from_view: DMat4,
     convention: DepthConvention,
+    is_left_handed: bool,
+    /// Where it looks, in the world.
+    forward: DVec3,
 }
 
 /// Off-axis, reversed, endless, orthographic, left-handed and mirrored cameras.
@@ -187,6 +190,8 @@ fn engines() -> impl Strategy<Value = Engine> {
                 world_from_view: world_from_view * side * other,
                 clip_from_view: clip_from_view * side,
                 convention,
+                is_left_handed: left_handed,
+                forward: world_from_view.transform_vector3(DVec3::NEG_Z),
             }
         },
     )
@@ -208,17 +213,27 @@ proptest! {
     ) {
         let clip_from_world = engine.clip_from_view * engine.world_from_view.inverse();
         let perspective = engine.clip_from_view.row(3).w == 0.0;
-        let is_left_handed = engine.clip_from_view.row(3).z > 0.0;
-        let mut views = vec![if single {
-            View::from_clip_from_world(clip_from_world.as_mat4().to_cols_array(), engine.convention)
+        let is_left_handed = engine.is_left_handed;
+        let read = |matrix: umbrage::Matrix| if perspective {
+            View::from_clip_from_world(matrix, engine.convention)
         } else {
-            View::from_clip_from_world(clip_from_world.to_cols_array_2d(), engine.convention)
-        }];
-        if perspective {
-            views.push(View::from_matrices(engine.world_from_view, engine.clip_from_view, engine.convention));
-        }
+            let alone = View::from_clip_from_world(matrix, engine.convention);
+            assert_eq!(alone, Err(Error::OrthographicDirection));
+            // Any vector that is roughly ahead says the side.
+            let aside = engine.forward.any_orthonormal_vector();
+            let across = View::from_orthographic(matrix, 1e-9 * engine.forward + aside, engine.convention);
+            assert!(matches!(across, Err(Error::InvalidCamera { field: "forward", .. })), "{across:?}");
+            View::from_orthographic(matrix, engine.forward + 2.0 * aside, engine.convention)
+        };
+        let views = [
+            if single { read(clip_from_world.as_mat4().into()) } else { read(clip_from_world.into()) },
+            View::from_matrices(engine.world_from_view, engine.clip_from_view, engine.convention),
+        ];
         for view in views {
             let view = view?;
+            // Where view depth grows: splits are counted along it.
+            let ahead = view.forward().dot(engine.forward);
+            prop_assert!((ahead - 1.0).abs() < 1e-5, "{} instead of {}", view.forward(), engine.forward);
             let rotation = view.world_from_view_rotation();
             prop_assert!((rotation.determinant() - 1.0).abs() < 1e-6, "{rotation}");
             for &[x, y, share] in &points {
@@ -234,7 +249,7 @@ proptest! {
                 }
             }
         }
-        if is_left_handed && perspective {
+        if is_left_handed {
             let error = Frustum::from_projection_matrix(engine.clip_from_view, engine.convention).expect_err("left-handed");
             prop_assert!(error.to_string().contains("left-handed"), "{error}");
         }
@@ -255,11 +270,46 @@ proptest! {
     }
 }
 
+/// An orthographic range that begins behind the eye leaves open which way a camera looks.
+#[test]
+fn orthographic_ranges_on_both_sides_of_the_eye_are_refused() {
+    let depth = DepthConvention::ZeroToOne;
+    let at = DVec3::new(3.0, 4.0, 5.0);
+    let ahead = DVec3::new(1.0, -0.5, 2.0).normalize();
+    let left_handed = dcamera::lh::view::look_to_mat4(at, ahead, DVec3::Y);
+    let right_handed = dcamera::rh::view::look_to_mat4(at, ahead, DVec3::Y);
+    for (near, far) in [(0.0, 50.0), (2.0, 50.0), (-10.0, 50.0)] {
+        for (world_to_view, lens) in [
+            (left_handed, dcamera::lh::proj::directx::orthographic(-4.0, 4.0, -3.0, 3.0, near, far)),
+            (left_handed, dcamera::lh::proj::directx::orthographic(-4.0, 4.0, -3.0, 3.0, far, near)),
+            (right_handed, dcamera::rh::proj::directx::orthographic(-4.0, 4.0, -3.0, 3.0, near, far)),
+            (right_handed, dcamera::rh::proj::directx::orthographic(-4.0, 4.0, -3.0, 3.0, far, near)),
+        ] {
+            let view = View::from_matrices(world_to_view.inverse(), lens, depth);
+            let view = if near < 0.0 {
+                let error = view.expect_err("either way");
+                assert_eq!(error, Error::OrthographicDirection);
+                assert!(error.to_string().contains("left-handed"), "{error}");
+                View::from_orthographic(lens * world_to_view, ahead, depth).expect("a view")
+            } else {
+                let view = view.expect("a view");
+                assert!(view.eye().distance(at) < 1e-9);
+                view
+            };
+            assert!(view.forward().distance(ahead) < 1e-9, "{view:?}");
+            let [first, last] = [near, far].map(|metres| view.view_depth(at + metres * ahead));
+            assert!((first - view.frustum().near).abs() < 1e-9 && (last - view.frustum().far).abs() < 1e-9);
+        }
+    }
+}
+
 #[test]
 fn matrices_that_are_no_camera_are_refused() {
     let skewed = DMat4::from_cols(DVec4::X, DVec4::new(0.7, 1.0, 0.0, 0.0), DVec4::Z, DVec4::W);
     for matrix in [DMat4::ZERO, DMat4::from_diagonal(DVec4::new(1.0, 1.0, 0.0, 1.0)), skewed, DMat4::NAN] {
-        let error = View::from_clip_from_world(matrix, DepthConvention::ZeroToOne).expect_err("no camera");
+        let error = View::from_orthographic(matrix, DVec3::Z, DepthConvention::ZeroToOne).expect_err("no camera");
         assert!(error.to_string().contains("view-projection"), "{error}");
+        let error = View::from_clip_from_world(matrix, DepthConvention::ZeroToOne).expect_err("no camera");
+        assert!(error == Error::OrthographicDirection || error.to_string().contains("view-projection"), "{error}");
     }
 }

@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use umbrage::config::{
-    Choice, Kind, LightKind, Preset, RULES, Range, Rebuilds, SETTINGS, Setting, Stability, Transition,
+    Choice, Kind, LightKind, Preset, RENAMED, RULES, Range, Rebuilds, Renamed, SETTINGS, Setting, Stability, Transition,
 };
 use umbrage::{Error, ShadowConfig};
 
@@ -88,11 +88,33 @@ fn a_refused_setting_changes_nothing() {
     assert!(matches!(config.apply(&given("no-such-thing=1")), Err(Error::UnknownSetting { .. })));
 }
 
+#[test]
+fn an_old_word_is_refused_by_the_new_one() {
+    for row in RENAMED {
+        let old = [(row.key.to_owned(), row.old.to_owned())];
+        let new = [(row.key.to_owned(), row.new.to_owned())];
+        let mut config = Preset::Papers.config();
+        let error = config.apply(&old).unwrap_err();
+        assert!(matches!(error, Error::RenamedWord(renamed) if renamed == *row), "{row:?}: {error:?}");
+        let message = format!("{} `{}` is now called `{}`", row.key, row.old, row.new);
+        assert!(error.to_string().contains(&message), "{error}");
+        let json = format!("{{\"{}\": \"{}\"}}", row.key, row.old);
+        let refused = serde_json::from_str::<ShadowConfig>(&json).unwrap_err().to_string();
+        assert!(refused.contains(&message), "{refused}");
+        assert_eq!(config.apply(&new).map(|_| ()), Ok(()), "{row:?}");
+        let setting = SETTINGS.iter().find(|setting| setting.key == row.key).unwrap();
+        assert_eq!((setting.check(row.new), setting.check(row.old)), (Ok(()), Err(message)), "{row:?}");
+    }
+    assert!(Renamed::find("scheme", "optimal").is_none() && Renamed::find("filter", "fitted").is_none());
+}
+
 /// Makes a choice without breaking any rule of its own making.
 fn choose(choice: Choice) -> (&'static str, &'static [LightKind]) {
     let sun = &[LightKind::Directional];
     match choice {
         Choice::Warp => ("warp=tsm", sun),
+        Choice::AllWarped => ("warp=lispsm", sun),
+        Choice::SmallCasters => ("drop-small-casters=on", sun),
         Choice::MapSelection => ("selection=map", sun),
         Choice::DistanceMetric => ("bands=radial", sun),
         Choice::VisibleRange => ("range-fit=visible", sun),
@@ -112,6 +134,7 @@ fn choose(choice: Choice) -> (&'static str, &'static [LightKind]) {
         Choice::MoreThanSixSplits => ("splits=7", sun),
         Choice::UnequalSizes => ("map-size=1024,512,512,256", sun),
         Choice::NotStill => ("stabilize=none", sun),
+        Choice::ExactlyStill => ("stabilize=exact", sun),
         Choice::OtherDepth => ("depth-format=d16", sun),
         Choice::KeptMaps => ("cache=kept", sun),
         Choice::DeferredCoordinates => ("coordinates=deferred", sun),
@@ -122,6 +145,7 @@ fn choose(choice: Choice) -> (&'static str, &'static [LightKind]) {
         Choice::FitToDepth => ("fit-to=depth", sun),
         Choice::IntervalSelection => ("selection=depth", sun),
         Choice::SliceCrop => ("fit=independent", sun),
+        other => panic!("{other:?} is not chosen by anything here"),
     }
 }
 
@@ -149,27 +173,30 @@ fn every_pair_of_choices_is_refused_exactly_where_a_rule_says_so() {
             let ruled = RULES.iter().any(|rule| {
                 (rule.first == first && rule.second == second) || (rule.first == second && rule.second == first)
             });
-            let by_type = matches!(
-                (first, second),
-                (Choice::MapSelection | Choice::FitToDepth, Choice::DistanceMetric)
-                    | (Choice::DistanceMetric, Choice::MapSelection | Choice::FitToDepth)
-                    | (
-                        Choice::OneMap | Choice::NotLayers | Choice::CubeFaces,
-                        Choice::NotPerSplit | Choice::TiledLayers
-                    )
-                    | (
-                        Choice::NotPerSplit | Choice::TiledLayers,
-                        Choice::OneMap | Choice::NotLayers | Choice::CubeFaces
-                    )
-                    | (Choice::MoreThanSixSplits | Choice::MoreThanFourSplits, Choice::UnequalSizes)
-                    | (Choice::UnequalSizes, Choice::MoreThanSixSplits | Choice::MoreThanFourSplits)
-            );
+            let is_by_type = |first, second| {
+                matches!(
+                    (first, second),
+                    (Choice::MapSelection | Choice::FitToDepth, Choice::DistanceMetric)
+                        | (Choice::OneMap | Choice::NotLayers, Choice::NotPerSplit | Choice::TiledLayers)
+                        | (Choice::CubeFaces, Choice::TiledLayers)
+                        | (Choice::Warp | Choice::AllWarped, Choice::ExactlyStill)
+                        | (Choice::MoreThanSixSplits | Choice::MoreThanFourSplits, Choice::UnequalSizes)
+                )
+            };
+            let by_type = is_by_type(first, second) || is_by_type(second, first);
             if ruled {
                 let error = told.clone().unwrap_or_else(|| panic!("{a} {b} {lights:?} is accepted"));
                 let text = error.to_string();
                 assert!(holds(first) && holds(second), "{first:?} {second:?}: {text}");
                 assert!(text.contains(" exclude each other: "), "{text}");
-            } else if !by_type {
+            } else if by_type {
+                // No value makes both choices: who asks for both is told, and gets neither.
+                let error = told.clone().unwrap_or_else(|| panic!("{a} {b} {lights:?} is accepted"));
+                assert!(config == Preset::Papers.config(), "{first:?} {second:?}: {error}");
+                let keys =
+                    [first, second].map(|choice| choice.keys().iter().any(|key| error.to_string().contains(key)));
+                assert_eq!(keys, [true; 2], "{first:?} {second:?}: {error}");
+            } else {
                 let implied = |choice: Choice, other: Choice| {
                     RULES.iter().any(|rule| {
                         let (one, two) = (rule.first, rule.second);
@@ -309,12 +336,12 @@ fn a_value_is_checked_alone_before_it_is_applied() {
     ];
     for (key, value) in bad {
         let setting = SETTINGS.iter().find(|setting| setting.key == key).unwrap();
-        assert!(setting.kind.check(value).is_err(), "{key} {value}");
+        assert!(setting.check(value).is_err(), "{key} {value}");
     }
     for preset in Preset::ALL {
         for (key, value) in preset.config().settings() {
             let setting = SETTINGS.iter().find(|setting| setting.key == key).unwrap();
-            assert_eq!(setting.kind.check(&value.to_string()), Ok(()), "{key} {value}");
+            assert_eq!(setting.check(&value.to_string()), Ok(()), "{key} {value}");
         }
     }
 }

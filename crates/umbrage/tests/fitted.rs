@@ -196,8 +196,8 @@ fn any_case() -> impl Strategy<Value = Case> {
     ];
     let crop = prop_oneof![Just(Crop::SceneDependent), Just(Crop::SceneIndependent)];
     let way = prop_oneof![
-        Just((Range::Camera, Selection::default())),
-        Just((Range::Visible, Selection::default())),
+        Just((Range::Camera, Selection::VIEW_DEPTH)),
+        Just((Range::Visible, Selection::VIEW_DEPTH)),
         Just((Range::Visible, Selection::Map)),
         Just((Range::Camera, Selection::Interval(SplitMetric::Distance))),
     ];
@@ -234,9 +234,9 @@ fn any_case() -> impl Strategy<Value = Case> {
             )| {
                 let orthographic = frustum.projection == umbrage::Projection::Orthographic;
                 if orthographic && selection != Selection::Map {
-                    selection = Selection::default();
+                    selection = Selection::VIEW_DEPTH;
                 }
-                if warp && selection == Selection::default() && stability == Stability::tight() {
+                if warp && selection == Selection::VIEW_DEPTH && stability == Stability::tight() {
                     stability = Stability::Tight { warps: vec![Warp::Lispsm] };
                 }
                 let scheme = SplitScheme::Optimal;

@@ -63,6 +63,7 @@ fn settings() -> impl Strategy<Value = (ShadowConfig, PlannerOptions)> {
     (1usize..=8, scheme, stability, way, range, share, any::<[bool; 3]>(), 0.5..4.0f64).prop_map(
         |(m, scheme, stability, selection, range, share, [dependent, depth_clamp, visible], radius_texels)| {
             let fits = visible && range == Range::Camera && selection.metric() == SplitMetric::ViewDepth;
+            let fits_to_depth = dependent && selection == Selection::Map && stability != Stability::Exact;
             let config = ShadowConfig {
                 map_sizes: vec![256; m],
                 scheme,
@@ -71,10 +72,10 @@ fn settings() -> impl Strategy<Value = (ShadowConfig, PlannerOptions)> {
                 range: if fits { Range::Visible } else { range },
                 transition: Transition::Blend { share },
                 crop: if dependent { Crop::SceneDependent } else { Crop::SceneIndependent },
-                fit_to: if dependent && selection == Selection::Map { FitTo::Depth } else { FitTo::Boxes },
+                fit_to: if fits_to_depth { FitTo::Depth } else { FitTo::Boxes },
                 ..Preset::Papers.config()
             };
-            let reach = FilterReach { radius_texels, half_width_m: None };
+            let reach = FilterReach { radius_texels, radius_m: None };
             (config, PlannerOptions { depth_clamp, filter_reach: Some(reach), ..PlannerOptions::default() })
         },
     )
@@ -154,7 +155,7 @@ fn any_case() -> impl Strategy<Value = Case> {
                 }
                 let is_radial = settings.selection.metric() == SplitMetric::Distance;
                 if is_radial && lens.projection == Projection::Orthographic {
-                    settings.selection = Selection::default();
+                    settings.selection = Selection::VIEW_DEPTH;
                 }
                 let seen = parts.map(|parts| seen(&boxes, &parts.map(|part| part % 16)));
                 Case { settings, options, views, sun, boxes, seen, probes }
@@ -219,7 +220,7 @@ fn asked(plan: &ShadowPlan, point: DVec3) -> Option<Vec<usize>> {
     if plan.selection == Selection::Map {
         let holds = |i: &usize| {
             let split = &plan.splits[*i];
-            !split.casters.is_empty() && split.contains(point, split.filter_reach)
+            !split.casters.is_empty() && split.contains(point, split.filter_radius_texels)
         };
         return Some((0..plan.splits.len()).find(holds).into_iter().collect());
     }
@@ -268,7 +269,7 @@ fn check(case: &Case, view: &View, plan: &ShadowPlan) -> Result<(), TestCaseErro
             for split in splits {
                 let map = &plan.splits[split];
                 // Planes may reach as far as it does, while maps end with what can be seen.
-                if is_tiny && !map.contains(point, map.filter_reach) {
+                if is_tiny && !map.contains(point, map.filter_radius_texels) {
                     continue;
                 }
                 prop_assert!(
@@ -276,7 +277,7 @@ fn check(case: &Case, view: &View, plan: &ShadowPlan) -> Result<(), TestCaseErro
                     "split {split} lacks {index}, which shades {point}"
                 );
                 prop_assert!(
-                    map.contains(point, map.filter_reach),
+                    map.contains(point, map.filter_radius_texels),
                     "{point} lies at {} of split {split}",
                     map.map_from_world(point)
                 );

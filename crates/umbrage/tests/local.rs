@@ -142,7 +142,7 @@ fn lit_points(case: &Case, plan: &ShadowPlan) -> Vec<(usize, DVec3, f64)> {
                             Light::Spot(light) => light.direction().dot(at - light.position()) > near,
                             _ => case.light.position().is_some_and(|p| (at - p).abs().max_element() > near),
                         };
-                        if shown && beyond_near && case.light.reaches(at) {
+                        if shown && beyond_near && case.light.illuminates(at) {
                             points.push((owner, at, depth));
                         }
                     }
@@ -184,7 +184,7 @@ fn splits_of(case: &Case, plan: &ShadowPlan, point: DVec3, depth: f64) -> Vec<us
 }
 
 fn planner(case: &Case) -> umbrage::Result<Planner> {
-    let reach = FilterReach { radius_texels: case.radius_texels, half_width_m: None };
+    let reach = FilterReach { radius_texels: case.radius_texels, radius_m: None };
     Planner::with_options(&case.settings, PlannerOptions { filter_reach: Some(reach), ..PlannerOptions::default() })
 }
 
@@ -328,10 +328,10 @@ proptest! {
             let depth = aside.2 * case.light.range();
             let point = light + depth * (split.depth_axis + aside.0 * split.u_axis + aside.1 * split.v_axis);
             let at = split.map_from_world(point);
-            let [u, v] = split.texel_steps(point);
+            let [u, v] = split.texel_axes_m(point);
             // A thousandth of a texel, so that what is left of second order vanishes.
             for (step, across) in [(u, DVec3::X), (v, DVec3::Y)] {
-                prop_assert!(step.dot(split.travel_at(point)).abs() <= 1e-9 * step.length(), "a step lies across the light");
+                prop_assert!(step.dot(split.light_direction_at(point)).abs() <= 1e-9 * step.length(), "a step lies across the light");
                 let moved = split.map_from_world(point + 1e-3 * step) - at;
                 let error = (moved.truncate() - 1e-3 * across.truncate()).length();
                 prop_assert!(error < 2e-5 + 1e-11 * at.truncate().length() * light.length(), "{moved} for {across} at {at}");
@@ -424,7 +424,7 @@ fn a_stabilised_spot_light_keeps_its_texels_while_the_camera_moves() {
                 let (before, after) = (a.map_from_world(point), b.map_from_world(point));
                 let by = after - before;
                 let whole = (by - by.round()).truncate().abs().max_element() < 1e-6;
-                let texel = a.texel_edges(point) / b.texel_edges(point);
+                let texel = a.texel_size_m(point) / b.texel_size_m(point);
                 if (texel.x - 1.0).abs() < 1e-9 {
                     assert!(whole, "frame {k}: moved by {by} texels");
                     compared += 1;
@@ -478,8 +478,8 @@ fn faces_are_chosen_by_the_longest_axis() {
         assert_eq!(lamp.face_of(DVec3::new(1.0, 2.0, 3.0) + 2.0 * axis + DVec3::splat(0.3)), face);
     }
     assert_eq!(lamp.to_light(DVec3::new(1.0, 2.0, 8.0)), DVec3::NEG_Z);
-    assert!(lamp.reaches(DVec3::new(1.0, 2.0, 8.0)) && !lamp.reaches(DVec3::new(1.0, 2.0, 8.1)));
+    assert!(lamp.illuminates(DVec3::new(1.0, 2.0, 8.0)) && !lamp.illuminates(DVec3::new(1.0, 2.0, 8.1)));
     let spot = Light::from(SpotLight::new(DVec3::ZERO, DVec3::NEG_Y, 0.5, 5.0).expect("valid"));
-    assert!(spot.reaches(DVec3::new(0.5, -1.0, 0.0)) && !spot.reaches(DVec3::new(0.6, -1.0, 0.0)));
-    assert!(!spot.reaches(DVec3::new(0.0, 1.0, 0.0)), "behind it");
+    assert!(spot.illuminates(DVec3::new(0.5, -1.0, 0.0)) && !spot.illuminates(DVec3::new(0.6, -1.0, 0.0)));
+    assert!(!spot.illuminates(DVec3::new(0.0, 1.0, 0.0)), "behind it");
 }

@@ -39,7 +39,7 @@ fn plan(settings: &ShadowConfig, view: &View, boxes: &[Aabb]) -> ShadowPlan {
 /// metres.
 fn texel_at(plan: &ShadowPlan, point: DVec3) -> (f64, f64) {
     let split = plan.splits.iter().find(|split| plan.depth_at(point) < split.far).expect("the point is in range");
-    assert!(split.contains(point, split.filter_reach) || split.casters.is_empty(), "{point} in {split:?}");
+    assert!(split.contains(point, split.filter_radius_texels) || split.casters.is_empty(), "{point} in {split:?}");
     (split.texel_m.max_element(), split.depth_far - split.depth_near)
 }
 
@@ -161,7 +161,7 @@ fn a_map_without_casters_does_not_answer_for_a_later_one() {
     // The only caster stands far away: the first split has none.
     let caster = Aabb::new(DVec3::new(-3.0, 4.0, -103.0), DVec3::new(3.0, 8.0, -97.0));
     let shaded = DVec3::new(1.5, 0.0, -100.0);
-    for selection in [Selection::default(), Selection::Map] {
+    for selection in [Selection::VIEW_DEPTH, Selection::Map] {
         let settings = ShadowConfig { selection, ..Preset::Papers.config() };
         let mut planner = Planner::new(&settings).expect("settings");
         let plan = planner.plan(&view, &sun, &[caster], &[ground]).expect("a plan");

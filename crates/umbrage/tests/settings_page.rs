@@ -22,10 +22,9 @@ variants of one enum. `ShadowConfig::apply` takes keys and values as listed here
 (textures and bind groups), or the pipelines.
 ";
 
-/// Words as a list; former words are read, but not offered.
+/// Words as a list.
 fn listed(words: &[Word]) -> String {
-    let offered = words.iter().filter(|word| !word.help.starts_with("Old name"));
-    offered.map(|word| format!("`{}`", word.word)).collect::<Vec<_>>().join(", ")
+    words.iter().map(|word| format!("`{}`", word.word)).collect::<Vec<_>>().join(", ")
 }
 
 fn values(kind: Kind) -> String {
@@ -95,6 +94,8 @@ fn page() -> String {
 const fn name(choice: Choice) -> &'static str {
     match choice {
         Choice::Warp => "`warp` other than `none`",
+        Choice::AllWarped => "`warp` other than `none` for every map",
+        Choice::SmallCasters => "`drop-small-casters on`",
         Choice::MapSelection => "`selection map`",
         Choice::DistanceMetric => "`bands radial`",
         Choice::VisibleRange => "`range-fit visible`",
@@ -114,6 +115,7 @@ const fn name(choice: Choice) -> &'static str {
         Choice::MoreThanSixSplits => "more than 6 `splits`",
         Choice::UnequalSizes => "different sizes in `map-size`",
         Choice::NotStill => "`stabilize` other than `exact`",
+        Choice::ExactlyStill => "`stabilize exact`",
         Choice::OtherDepth => "`depth-format` other than `d32f`",
         Choice::KeptMaps => "`cache kept`",
         Choice::DeferredCoordinates => "`coordinates deferred`",
@@ -124,6 +126,7 @@ const fn name(choice: Choice) -> &'static str {
         Choice::FitToDepth => "`fit-to depth`",
         Choice::IntervalSelection => "`selection depth`",
         Choice::SliceCrop => "`fit independent`",
+        _ => panic!("a choice has no words here"),
     }
 }
 

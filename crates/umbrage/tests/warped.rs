@@ -39,7 +39,7 @@ fn plan(settings: ShadowConfig, bearing: f64, up: f64) -> (View, ShadowPlan) {
 /// Largest over smallest texel along the ground before the eye.
 fn spread(view: &View, plan: &ShadowPlan) -> f64 {
     let split = &plan.splits[0];
-    let at = |d: f64| split.texel_edges(DVec3::new(view.eye().x, 0.0, view.eye().z - d)).max_element();
+    let at = |d: f64| split.texel_size_m(DVec3::new(view.eye().x, 0.0, view.eye().z - d)).max_element();
     at(250.0) / at(30.0)
 }
 
@@ -99,8 +99,8 @@ fn gradients_are_those_of_the_map() {
         let (view, plan) = plan(settings(&[warp], 2), 60.0, 40.0);
         for split in &plan.splits {
             let point = view.eye() + view.forward() * (0.5 * (split.near + split.far)) - DVec3::Y;
-            let [u, v] = split.texel_gradients(point);
-            let [along_u, along_v] = split.texel_steps(point);
+            let [u, v] = split.texel_jacobian(point);
+            let [along_u, along_v] = split.texel_axes_m(point);
             assert!(u.dot(split.depth_axis).abs() < 1e-6 && v.dot(split.depth_axis).abs() < 1e-6, "{warp:?}");
             for (axis, direction) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
                 let h = 1e-3;

@@ -87,25 +87,14 @@ mod tests {
     fn split(texel_m: DVec2) -> Split {
         let depth_axis = DVec3::new(0.4, -0.8, 0.3).normalize();
         let u_axis = depth_axis.cross(DVec3::Y).normalize();
-        Split {
-            near: 1.0,
-            far: 30.0,
-            blend_begin: 27.0,
-            coverage: (0.9, 30.0),
-            size: 1024,
-            u_axis,
-            v_axis: depth_axis.cross(u_axis),
-            depth_axis,
-            texel_m,
-            min_texel: DVec2::new(-700.0, 213.0),
-            depth_near: -12.0,
-            depth_far: 40.0,
-            receiver_depths: (-10.0, 38.0),
-            filter_reach: 3.0,
-            warp: None,
-            light_position: None,
-            casters: 0..0,
-        }
+        let mut split = Split::default();
+        (split.near, split.far, split.blend_begin, split.coverage) = (1.0, 30.0, 27.0, (0.9, 30.0));
+        (split.size, split.texel_m) = (1024, texel_m);
+        (split.u_axis, split.v_axis, split.depth_axis) = (u_axis, depth_axis.cross(u_axis), depth_axis);
+        split.min_texel = DVec2::new(-700.0, 213.0);
+        (split.depth_near, split.depth_far, split.receiver_depths) = (-12.0, 40.0, (-10.0, 38.0));
+        split.filter_radius_texels = 3.0;
+        split
     }
 
     const OFFSET: ReceiverOffset = ReceiverOffset { normal_texels: 2.5, depth_m: 0.02 };
@@ -179,7 +168,8 @@ mod tests {
         let corner = widened(&split).1;
         assert_eq!(corner.fract(), DVec2::ZERO);
         // Moving the map by whole texels of the plan moves it by whole texels of its own.
-        let moved = Split { min_texel: split.min_texel + DVec2::new(5.0, 0.0), ..split.clone() };
+        let mut moved = split.clone();
+        moved.min_texel.x += 5.0;
         assert_eq!(widened(&moved).1.fract(), DVec2::ZERO);
         assert_eq!(widened(&moved).0, widened(&split).0);
     }

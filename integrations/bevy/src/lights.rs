@@ -232,7 +232,7 @@ fn options(method: ShadowFilteringMethod, offset: ReceiverOffset) -> PlannerOpti
         ShadowFilteringMethod::Temporal => 8.0,
     };
     let radius_texels = (filter + offset.normal_texels * MOST_STRETCH + SNAP).min(64.0);
-    let filter_reach = Some(FilterReach { radius_texels, half_width_m: None });
+    let filter_reach = Some(FilterReach { radius_texels, radius_m: None });
     // Bevy's shadow pass does not clip depth, by hardware or by its shader.
     PlannerOptions { depth_clamp: true, filter_reach, ..PlannerOptions::default() }
 }

@@ -350,8 +350,8 @@ fn split_at(plan: &ShadowPlan, point: DVec3) -> Option<&Split> {
 /// Returns the texel gradient at a point of the map that covers it.
 fn texel_gradient(plan: &ShadowPlan, point: DVec3) -> Option<TexelGradient> {
     let split = split_at(plan, point)?;
-    let [u, v] = split.texel_gradients(point);
-    Some(TexelGradient { u, v, width: split.texel_edges(point).max_element() })
+    let [u, v] = split.texel_jacobian(point);
+    Some(TexelGradient { u, v, width: split.texel_size_m(point).max_element() })
 }
 
 fn footprint(judged: &ViewTruth, plan: &ShadowPlan) -> Result<Option<TexelPixels>> {

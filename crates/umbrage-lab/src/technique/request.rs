@@ -46,7 +46,7 @@ impl ShadowRequest {
     pub fn new(options: ShadowOptions) -> Result<Self> {
         for (key, value) in &options.given {
             let setting = SETTINGS.iter().find(|setting| setting.key == key);
-            let checked = setting.map_or(Ok(()), |setting| setting.kind.check(value.trim()));
+            let checked = setting.map_or(Ok(()), |setting| setting.check(value.trim()));
             checked.map_err(|why| Failure::input(format!("--{key} {value}: {why}")))?;
         }
         let mut config = match (&options.file, options.preset) {

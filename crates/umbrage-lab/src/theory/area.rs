@@ -84,7 +84,7 @@ fn least_areas(setting: &Setting, view: &View, light: &DirectionalLight, planes:
         ..Preset::Papers.config()
     };
     let everything = setting.surroundings();
-    let reach = FilterReach { radius_texels: 0.0, half_width_m: None };
+    let reach = FilterReach { radius_texels: 0.0, radius_m: None };
     let options = PlannerOptions { filter_reach: Some(reach), image_size: [FINE; 2], ..PlannerOptions::default() };
     let mut planner = Planner::with_options(&settings, options)?;
     let plan = planner.plan(view, light, &[everything], &[everything])?;

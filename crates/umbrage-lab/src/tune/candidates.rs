@@ -54,7 +54,7 @@ pub fn axis(text: &str) -> std::result::Result<Axis, Error> {
             _ => Err(format!("{value:?} is not a share of the budget; give a number above 0, up to 1")),
         },
         (PRESET, _) => value.parse::<Preset>().map(|_| ()),
-        (_, Some(setting)) => setting.kind.check(value),
+        (_, Some(setting)) => setting.check(value),
         (_, None) => {
             let keys = SETTINGS.iter().map(|setting| setting.key);
             let keys: Vec<&str> = keys.filter(|key| NOT_TRIED.iter().all(|(not, _)| not != key)).collect();

@@ -80,7 +80,7 @@ impl Renderer {
 
     /// Chooses the split that answers for a point.
     fn responder(&self, frame: &Frame<'_>, plan: &ShadowPlan, point: DVec3) -> Responder {
-        if !frame.light.light.reaches(point) {
+        if !frame.light.light.illuminates(point) {
             return Responder::Nobody;
         }
         let in_range = plan.planes.last().is_some_and(|&far| plan.depth_at(point) < far);

@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use glam::DVec3;
 use umbrage::Aabb;
-use umbrage::config::Edges;
 use umbrage_scene::{Object, Pose};
 use umbrage_wgpu::{MapPass, ShadowMap};
 
@@ -48,7 +47,7 @@ impl Renderer {
     ) -> Vec<Vec<Run>> {
         let pose = frame.pose;
         // Texels that name triangles name those of the shape that is seen.
-        let names_casters = self.shadows.maps().edges() == Edges::Exact;
+        let names_casters = self.shadows.maps().edges().is_exact();
         // Of several lights or faces, objects are drawn whole.
         let is_one_light = self.shadows.maps().map_count() == self.shadows.maps().splits();
         let shown = self.shadows.frame();
@@ -121,7 +120,7 @@ fn has_parts(object: &Object, meshes: &[Vec<GpuPrimitive>]) -> bool {
 /// Returns, for each primitive, the ranges of indices that reach a map; `None` if the object is
 /// better drawn whole.
 fn parts_in(map: &ShadowMap<'_>, object: &Object, primitives: &[GpuPrimitive]) -> Option<Parts> {
-    let reaches = |node: &Cluster| map.is_reached_by(&node.bounds().transformed(&object.world_from_local));
+    let reaches = |node: &Cluster| map.casts_into(&node.bounds().transformed(&object.world_from_local));
     let mut spared = 0;
     let parts: Parts = primitives
         .iter()

@@ -52,7 +52,7 @@ impl Renderer {
         gpu.guarded("changing the config", || {
             self.shadows.set_config(config)?;
             let (maps, size) = (self.shadows.maps(), self.size);
-            if maps.edges() != before_edges {
+            if maps.edges().is_exact() != before_edges.is_exact() {
                 self.scene = Geometry::of_scene(&gpu, scene, maps.edges())?;
                 self.skinned = SkinnedGeometry::of(&gpu, maps.edges())?;
             }

@@ -21,7 +21,7 @@ use std::sync::OnceLock;
 use glam::DVec3;
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
 use umbrage::View;
-use umbrage::config::{Coordinates, Edges, FitTo, Layout, LightKind, ShadowConfig, Translucent};
+use umbrage::config::{Coordinates, FitTo, Layout, LightKind, ShadowConfig, Translucent};
 use umbrage_scene::{Pose, Scene};
 use umbrage_wgpu::{LightMaps, MaskNormals, MaskRuns, ShadowMask, Shadows};
 
@@ -368,7 +368,7 @@ impl Renderer {
         if outputs.mask && self.is_deferred() && self.shadow_mask.is_none() {
             self.shadow_mask = Some(self.new_shadow_mask()?);
         }
-        match outputs.edges && self.shadows.maps().edges() == Edges::Exact {
+        match outputs.edges && self.shadows.maps().edges().is_exact() {
             true if self.counts.is_none() => self.counts = Some(MaskTarget::new(&self.gpu, self.size, COUNTS_FORMAT)),
             true => {}
             false => self.counts = None,

@@ -10,6 +10,7 @@ use std::path::Path;
 
 use glam::DVec2;
 use serde::Deserialize;
+use umbrage::config::Word;
 
 use crate::error::read_file;
 use crate::{Error, Result, Scene};
@@ -41,6 +42,30 @@ pub enum HeightEncoding {
     Terrarium,
     /// Heights in metres as 24 bits of colour: (red · 65536 + green · 256 + blue) / 10 − 10000.
     Mapbox,
+}
+
+impl HeightEncoding {
+    /// All encodings, in the order of [`HeightEncoding::WORDS`].
+    pub const ALL: [Self; 3] = [Self::Grey, Self::Terrarium, Self::Mapbox];
+
+    /// The word of each encoding on the command line.
+    pub const WORDS: &'static [Word] = &[
+        Word { word: "grey", help: "Grey" },
+        Word { word: "terrarium", help: "Metres in colours: red · 256 + green + blue / 256 − 32768" },
+        Word { word: "mapbox", help: "Metres in colours: (red · 65536 + green · 256 + blue) / 10 − 10000" },
+    ];
+}
+
+impl std::str::FromStr for HeightEncoding {
+    type Err = String;
+
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
+        let named = Self::WORDS.iter().zip(Self::ALL).find(|(word, _)| word.word == text);
+        named.map(|(_, encoding)| encoding).ok_or_else(|| {
+            let words: Vec<&str> = Self::WORDS.iter().map(|word| word.word).collect();
+            format!("{text:?} is not a known height encoding; give one of {}", words.join(", "))
+        })
+    }
 }
 
 /// JSON beside a map, `name.json` for `name.png`. Other keys are ignored.

@@ -67,7 +67,7 @@ struct UmbrageSplit {
     layer: u32,
     depth_offset: f32,
     is_linear: u32,
-    filter_reach: f32
+    filter_radius_texels: f32
 }
 
 struct UmbrageCasterPass {

@@ -330,7 +330,7 @@ struct UmbrageSplit {
     layer: u32,
     depth_offset: f32,
     is_linear: u32,
-    filter_reach: f32
+    filter_radius_texels: f32
 }
 
 struct UmbrageFrame {
@@ -628,7 +628,7 @@ fn umbrage_select_choose_by_map(frame: u32, point: UmbragePoint) -> UmbrageChoic
 fn umbrage_select_inside(frame: u32, index: u32, point: UmbragePoint) -> f32 {
     let split = umbrage_frames[frame].splits[index];
     let at = umbrage_select_place_in_map(split, index, point);
-    let margin = split.filter_reach;
+    let margin = split.filter_radius_texels;
     let room = min(at.xy - margin, split.size - margin - at.xy);
     return select(min(room.x, room.y), -1.0, (split.is_empty != 0u) | (at.z > 1.0));
 }

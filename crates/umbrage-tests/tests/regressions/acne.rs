@@ -79,8 +79,8 @@ fn scores(
 
 fn texel_gradient(plan: &ShadowPlan, point: DVec3, depth: f64) -> Option<TexelGradient> {
     let split = plan.splits.iter().find(|split| depth <= split.far).filter(|split| !split.casters.is_empty())?;
-    let [u, v] = split.texel_gradients(point);
-    Some(TexelGradient { u, v, width: split.texel_edges(point).max_element() })
+    let [u, v] = split.texel_jacobian(point);
+    Some(TexelGradient { u, v, width: split.texel_size_m(point).max_element() })
 }
 
 fn moved_aside(mask: &GrayAlphaImage) -> GrayAlphaImage {

@@ -77,7 +77,7 @@ fn a_room_of_slabs_is_dark() {
 /// The triangles of walls stand in light's way however near it starts.
 #[test]
 fn exact_edges_leave_rooms_dark() {
-    let config = ShadowConfig { edges: Edges::Exact, ..sized(1024) };
+    let config = ShadowConfig { edges: Edges::Exact { samples: 1 }, ..sized(1024) };
     let mut lit = Vec::new();
     for walls in [Walls::Thin, Walls::Shell(0.01), Walls::Shell(0.05), Walls::Slabs(0.02), Walls::Slabs(0.2)] {
         let Some(light) = light(walls, &config) else { return };

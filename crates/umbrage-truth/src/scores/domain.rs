@@ -51,7 +51,7 @@ impl Domain {
         for (pixel, hit) in mask.hits().iter().enumerate() {
             let Some(hit) = hit else { continue };
             let facing = hit.normal.dot(mask.light().to_light(hit.position));
-            if facing > LEAST_FACING && mask.light().reaches(hit.position) && (near..=far).contains(&hit.depth) {
+            if facing > LEAST_FACING && mask.light().illuminates(hit.position) && (near..=far).contains(&hit.depth) {
                 domain.depth[pixel] = hit.depth;
                 domain.lit[pixel] = hit.lit;
                 domain.pixels.push(pixel);

@@ -229,7 +229,7 @@ fn a_lamp_throws_shadows_as_large_as_similar_triangles_say() {
         for hit in mask.hits().iter().flatten().filter(|hit| hit.position.y.abs() < 1e-6) {
             let p = hit.position;
             let shaded = p.x.abs().max(p.z.abs()) < 1.0;
-            let reached = light.reaches(p);
+            let reached = light.illuminates(p);
             // Where it does not reach nothing is shadowed, the plate's shadow included.
             assert_eq!(hit.lit, !shaded || !reached, "{p}");
             seen[usize::from(shaded) + usize::from(!reached)] += 1;
@@ -237,7 +237,7 @@ fn a_lamp_throws_shadows_as_large_as_similar_triangles_say() {
         assert!(seen[0] > 100 && seen[1] > 100, "lit, shaded or out of reach: {seen:?}");
         let domain = crate::scores::Domain::new(&mask, (0.1, 100.0)).unwrap();
         let scored = domain.points(&mask).unwrap();
-        assert!(scored.iter().all(|(p, n)| light.reaches(*p) && n.dot(light.to_light(*p)) > 0.02));
+        assert!(scored.iter().all(|(p, n)| light.illuminates(*p) && n.dot(light.to_light(*p)) > 0.02));
         // The plate over the lamp is lit from below only.
         let above = [(DVec3::new(0.2, 5.0, 0.1), DVec3::Y), (DVec3::new(0.2, 5.0, 0.1), DVec3::NEG_Y)];
         assert_eq!(truth.visibility_under(&above, &light).unwrap(), [0.0, 1.0]);

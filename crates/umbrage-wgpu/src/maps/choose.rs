@@ -55,7 +55,7 @@ pub(crate) fn choose(config: &ShadowConfig, abilities: Abilities) -> Result<Chos
     let (layout, generation) = (config.layout, config.layout.generation());
     let mut notes = Vec::new();
     let mut edges = config.edges;
-    if edges == Edges::Exact && !abilities.depth_loads {
+    if edges.is_exact() && !abilities.depth_loads {
         if config.fallbacks == Fallbacks::Forbid {
             return Err(Error::NoExactEdges);
         }
@@ -79,10 +79,10 @@ mod tests {
 
     #[test]
     fn exact_edges_need_loads_from_depth() {
-        let asked = ShadowConfig { edges: Edges::Exact, ..ShadowConfig::default() };
+        let asked = ShadowConfig { edges: Edges::exact(), ..ShadowConfig::default() };
         let with_loads = Abilities { depth_loads: true, ..Abilities::default() };
         let chosen = choose(&asked, with_loads).expect("there is always a way");
-        assert_eq!((chosen.edges, chosen.notes.len()), (Edges::Exact, 0));
+        assert_eq!((chosen.edges, chosen.notes.len()), (Edges::exact(), 0));
         let chosen = choose(&asked, Abilities::default()).expect("there is always a way");
         assert!(chosen.edges == Edges::Sampled && chosen.notes[0].contains("edges are sampled"), "{chosen:?}");
         let strict = ShadowConfig { fallbacks: Fallbacks::Forbid, ..asked };

@@ -114,7 +114,8 @@ impl KeptMaps {
             let kept = &self.textures[region.split];
             let edge = kept.texture.width();
             let corner = DVec2::from(region.turn.map(|turn| (turn * i64::from(edge)) as f64));
-            let whole = umbrage::Split { size: edge, min_texel: corner, ..plan.splits[region.split].clone() };
+            let mut whole = plan.splits[region.split].clone();
+            (whole.size, whole.min_texel) = (edge, corner);
             let step = depth_step(DepthFormat::D32Float);
             let uniform = uniforms::split(region.split, &whole, step, kept.place, options.origin)?;
             self.casters.write(queue, group, &[uniform])?;

@@ -1,5 +1,7 @@
 //! Several lights in one texture and one bind group.
 
+use std::borrow::Borrow;
+
 use umbrage::ShadowPlan;
 use umbrage::config::{Filter, Layout};
 use umbrage_shaders::layout;
@@ -19,15 +21,25 @@ impl ShadowMaps {
     /// Those of [`ShadowMaps::prepare`]; [`crate::Error::LightCount`] if there is not one plan for
     /// each light, [`crate::Error::LightKind`] if a light's maps were made for another kind of
     /// light than its plan's. Nothing has been written then.
-    pub fn prepare_lights(&mut self, queue: &wgpu::Queue, plans: &[&ShadowPlan], options: &FrameOptions) -> Result<()> {
+    pub fn prepare_lights(
+        &mut self,
+        queue: &wgpu::Queue,
+        plans: &[impl Borrow<ShadowPlan>],
+        options: &FrameOptions,
+    ) -> Result<()> {
         let frames = uniforms::frames(plans, &self.config, &self.slots, &self.places, options)?;
         let device = self.device.clone();
         device::guarded(&device, "preparing a frame", || self.write(queue, plans, &frames))
     }
 
-    fn write(&mut self, queue: &wgpu::Queue, plans: &[&ShadowPlan], frames: &[layout::Frame]) -> Result<()> {
+    fn write(
+        &mut self,
+        queue: &wgpu::Queue,
+        plans: &[impl Borrow<ShadowPlan>],
+        frames: &[layout::Frame],
+    ) -> Result<()> {
         if let (Some(moments), [plan], Filter::Moments(filter)) = (&mut self.moments, plans, &self.config.filter) {
-            moments.prepare(queue, plan, filter)?;
+            moments.prepare(queue, plan.borrow(), filter)?;
         }
         self.receivers.write(queue, 0, frames)?;
         if self.layout == Layout::Reused {

@@ -21,7 +21,7 @@ pub(super) fn check_limits(
     }
     let (maps, limit) = (arrangement.tiles.len(), limits.max_sampled_textures_per_shader_stage);
     // Ids lie beside each map.
-    let count = if edges == Edges::Exact { 2 * maps } else { maps };
+    let count = if edges.is_exact() { 2 * maps } else { maps };
     if storage == Storage::Separate && count > limit as usize {
         return Err(Error::TooManyTextures { maps, count, limit });
     }

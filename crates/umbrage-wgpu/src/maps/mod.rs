@@ -331,7 +331,7 @@ impl ShadowMaps {
             Generation::Instanced => (false, true),
             Generation::Mixed => (true, true),
         };
-        umbrage_shaders::caster(group, Casters { views, tiles, ids: self.edges == Edges::Exact }, members)
+        umbrage_shaders::caster(group, Casters { views, tiles, ids: self.edges.is_exact() }, members)
     }
 
     /// The config of the maps.
@@ -438,8 +438,8 @@ impl ShadowMaps {
 
 /// Format of the colour target of casters' fragments, if they write more than depth.
 fn colour_format(config: &ShadowConfig, edges: Edges) -> Option<wgpu::TextureFormat> {
-    match edges {
-        Edges::Exact => Some(targets::ID_FORMAT),
-        Edges::Sampled => config.depth_format.is_colour().then(|| texture_format(config.depth_format)),
+    if edges.is_exact() {
+        return Some(targets::ID_FORMAT);
     }
+    config.depth_format.is_colour().then(|| texture_format(config.depth_format))
 }

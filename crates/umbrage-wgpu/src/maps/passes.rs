@@ -10,6 +10,7 @@ use super::choose::Abilities;
 /// One pass that draws casters into the maps of one split or of several; see
 /// [`crate::ShadowMaps::passes`].
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct MapPass {
     splits: Range<usize>,
     /// Number of layers drawn at once: split `splits.start + t · views + v` is tile `t` of layer

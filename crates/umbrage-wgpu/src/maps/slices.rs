@@ -9,6 +9,7 @@ use umbrage::{ShadowPlan, View};
 /// \[GG3-10\]'s Listing 10-3 gives that range in view depths where clip depths are needed. Depth is
 /// reversed, so a slice from `C_i` to `C_{i+1}` has `[z(C_{i+1}), z(C_i)]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Slice {
     /// Index of the split whose map the slice reads.
     pub split: usize,

@@ -65,7 +65,7 @@ impl Targets {
             let texels = [map.width(), map.height()];
             texture(device, "ShadowMaps::ids", ID_FORMAT, texels, [map.depth_or_array_layers(), 1], read)
         };
-        let ids: Vec<wgpu::Texture> = if edges == Edges::Exact { maps.iter().map(id).collect() } else { Vec::new() };
+        let ids: Vec<wgpu::Texture> = if edges.is_exact() { maps.iter().map(id).collect() } else { Vec::new() };
         // Passes follow each other, so that those of one size share a depth buffer.
         let mut depths: Vec<wgpu::Texture> = Vec::new();
         let attachments = passes

@@ -1,14 +1,13 @@
 //! WGSL texts that applications put before the shaders of receivers.
 
+use umbrage::config::{Coordinates, Filter, LightKind, Storage};
 #[cfg(doc)]
-use umbrage::config::DepthFormat;
-use umbrage::config::{Coordinates, Edges, Filter, LightKind, Selection, SplitMetric, Storage};
-use umbrage_shaders::layout::{MetricKind, SelectionKind};
+use umbrage::config::{DepthFormat, Edges};
 use umbrage_shaders::{Bound, ExactEdges, Lights, Maps, Projection, ReceiverText};
 
 use super::ShadowMaps;
 use crate::moments::Moments;
-use crate::options::{filter_kind, transition_kind};
+use crate::options::{filter_kind, metric_kind, selection_kind, transition_kind};
 
 impl ShadowMaps {
     /// WGSL that a shader needs to compute visibility; `group` is the index at which the
@@ -56,15 +55,10 @@ impl ShadowMaps {
         };
         // Splits of local lights are chosen by view depth, whatever a sun's are chosen by.
         let of_suns = lights == Lights::Suns;
-        let (selection, metric) = match config.selection {
-            Selection::Map => (SelectionKind::Map, None),
-            Selection::Interval(SplitMetric::ViewDepth) => (SelectionKind::Depth, Some(MetricKind::ViewDepth)),
-            Selection::Interval(SplitMetric::Distance) => (SelectionKind::Depth, Some(MetricKind::Distance)),
-        };
         ReceiverText {
             filter: Some(filter_kind(&config.filter)),
-            selection: of_suns.then_some(selection),
-            metric: metric.filter(|_| of_suns).or((of_suns).then_some(MetricKind::ViewDepth)),
+            selection: of_suns.then(|| selection_kind(config.selection)),
+            metric: of_suns.then(|| metric_kind(config.selection.metric())),
             transition: Some(transition_kind(config.transition)),
             // Part of the look, which changes from frame to frame.
             bias: None,
@@ -72,8 +66,7 @@ impl ShadowMaps {
             projection: if config.first_warp().is_some() { Projection::Any } else { Projection::Plain },
             lights,
             sliced: self.layout.storage() == Storage::Reused,
-            exact: (self.edges == Edges::Exact)
-                .then_some(ExactEdges { positions: config.edge_samples, counted: false }),
+            exact: self.edges.samples().map(|positions| ExactEdges { positions, counted: false }),
             ..self.receiver_maps().into()
         }
     }

@@ -1,6 +1,7 @@
 //! Casters to draw into each map.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use umbrage::{Keeper, ShadowPlan};
 
@@ -19,7 +20,7 @@ pub(super) struct Draws {
 
 impl Draws {
     /// Lists a frame's casters; none if shadows are disabled.
-    pub fn list(&mut self, maps: &ShadowMaps, plans: &[&ShadowPlan], enabled: bool) {
+    pub fn list(&mut self, maps: &ShadowMaps, plans: &[Arc<ShadowPlan>], enabled: bool) {
         self.clear();
         if !enabled {
             return;
@@ -28,7 +29,7 @@ impl Draws {
         for (index, pass) in maps.passes().iter().enumerate() {
             let begin = self.list.len();
             if alone {
-                pass.list(plans[0], &mut self.list);
+                pass.list(&plans[0], &mut self.list);
             } else {
                 let (light, split) = maps.light_of_map(index);
                 // A sun in a point light's place leaves maps over.

@@ -59,7 +59,7 @@ impl<'a> ShadowFrame<'a> {
     /// If there is no such light, or no frame was prepared.
     #[must_use]
     pub fn plan(&self, light: usize) -> &'a ShadowPlan {
-        &self.shadows.plans[light]
+        &self.shadows.planning.plans()[light]
     }
 
     /// [`ShadowFrame::plan`] as a shared pointer, to keep beyond the frame.
@@ -68,7 +68,7 @@ impl<'a> ShadowFrame<'a> {
     /// If there is no such light, or no frame was prepared.
     #[must_use]
     pub fn shared_plan(&self, light: usize) -> Arc<ShadowPlan> {
-        Arc::clone(&self.shadows.plans[light])
+        Arc::clone(&self.shadows.planning.plans()[light])
     }
 
     /// The slices in which the image is drawn if one map is used for one split after the other
@@ -84,6 +84,7 @@ impl<'a> ShadowFrame<'a> {
 
 /// Casters of a map that are drawn with one shape.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ShapeDraw<S> {
     /// The chosen shape.
     pub shape: S,
@@ -134,7 +135,7 @@ impl<'a> ShadowMap<'a> {
     /// ([`ShadowMap::shapes`]).
     #[must_use]
     pub fn texel_m(&self) -> f64 {
-        let splits = &self.shadows.plans[self.light()].splits;
+        let splits = &self.shadows.planning.plans()[self.light()].splits;
         let texels = splits.iter().take(self.splits().end).skip(self.splits().start);
         texels.map(|split| split.texel_m.max_element()).fold(f64::INFINITY, f64::min)
     }
@@ -146,14 +147,13 @@ impl<'a> ShadowMap<'a> {
     }
 
     /// Returns whether a part of one of the casters, given by its world box, has to be drawn: in a
-    /// region, whether the part can touch the region; in a map of one split,
-    /// [`ShadowPlan::casts_into`]. Skipping what it rejects never changes a visible pixel or a kept
-    /// texel.
+    /// region by [`umbrage::KeptRegion::casts_into`], in a map by [`ShadowPlan::casts_into`]. Skipping
+    /// what it rejects never changes a visible pixel or a kept texel.
     #[must_use]
-    pub fn is_reached_by(&self, part: &Aabb) -> bool {
+    pub fn casts_into(&self, part: &Aabb) -> bool {
         match self.region() {
-            Some(region) => region.is_reached_by(part),
-            None => self.splits().any(|split| self.shadows.plans[self.light()].casts_into(split, part)),
+            Some(region) => region.casts_into(part),
+            None => self.splits().any(|split| self.shadows.planning.plans()[self.light()].casts_into(split, part)),
         }
     }
 

@@ -3,16 +3,15 @@
 mod draws;
 mod frame;
 mod inputs;
-
-use std::collections::BTreeMap;
-use std::sync::Arc;
+mod planning;
 
 use umbrage::config::{LightKind, Rebuilds, ShadowConfig};
-use umbrage::{Held, Keeper, KeptFrame, KeptRegion, PlanInputs, Planner, PlannerOptions, ShadowPlan};
+use umbrage::{Keeper, KeptFrame, KeptRegion, PlannerOptions};
 
 use draws::Draws;
 pub use frame::{ShadowFrame, ShadowMap, ShapeDraw};
 pub use inputs::Inputs;
+use planning::Planning;
 
 use crate::{Error, FrameOptions, LightMaps, Occluders, Result, ShadowMaps};
 
@@ -71,13 +70,7 @@ pub struct Shadows {
     /// Config with which each light is planned.
     planned: Vec<ShadowConfig>,
     notes: Vec<String>,
-    /// Planners of each view's maps, one for each light.
-    planners: BTreeMap<u32, Vec<Planner>>,
-    /// State that the planners held before the frame that is planned.
-    held: Vec<Held>,
-    /// Plans of the last frame, one for each light. Their buffers are reused for the next frame
-    /// once no other owner holds them.
-    plans: Vec<Arc<ShadowPlan>>,
+    planning: Planning,
     enabled: bool,
     draws: Draws,
     /// Bookkeeping for the kept maps, if maps are kept.
@@ -122,9 +115,7 @@ impl Shadows {
             maps,
             planned,
             notes,
-            planners: BTreeMap::new(),
-            held: Vec::new(),
-            plans: Vec::new(),
+            planning: Planning::default(),
             enabled: true,
             draws: Draws::default(),
             occluders: Occluders::default(),
@@ -141,22 +132,12 @@ impl Shadows {
     /// [`Error::DeviceLost`]. A refused frame does not change the next.
     pub fn prepare(&mut self, queue: &wgpu::Queue, inputs: &Inputs<'_>) -> Result<ShadowFrame<'_>> {
         self.check(inputs)?;
-        let slot = inputs.view_slot;
-        if !self.planners.contains_key(&slot) {
-            let options = planner_options(&self.maps);
-            let fresh = self.planned.iter().map(|config| Planner::with_options(config, options));
-            let fresh = fresh.collect::<Result<_, _>>()?;
-            self.planners.insert(slot, fresh);
-        }
-        let planners = self.planners.get(&slot).map_or(&[][..], Vec::as_slice);
-        self.held.clear();
-        self.held.extend(planners.iter().map(|planner| planner.held().clone()));
         self.draws.clear();
-        let result = self.plan(queue, inputs);
+        self.planning.plan(&self.planned, planner_options(&self.maps), inputs)?;
+        let result = self.hand_over(queue, inputs);
         // What stabilised maps hold belongs to frames that were shown with shadows.
         if result.is_err() || !inputs.enabled {
-            let planners = self.planners.get_mut(&slot).map_or(&mut [][..], Vec::as_mut_slice);
-            planners.iter_mut().zip(self.held.drain(..)).for_each(|(planner, held)| planner.set_held(held));
+            self.planning.take_back(inputs.view_slot);
         }
         result?;
         self.occluders.recycle();
@@ -164,39 +145,21 @@ impl Shadows {
         Ok(self.frame())
     }
 
-    /// Plans a frame, writes it to the GPU and lists the maps to draw.
-    fn plan(&mut self, queue: &wgpu::Queue, inputs: &Inputs<'_>) -> Result<()> {
-        let [casters, receivers] = inputs.boxes()?;
-        let planners = self.planners.get_mut(&inputs.view_slot).map_or(&mut [][..], Vec::as_mut_slice);
-        self.plans.resize_with(planners.len(), Arc::default);
-        for ((planner, plan), light) in planners.iter_mut().zip(&mut self.plans).zip(inputs.lights) {
-            let of_light = PlanInputs {
-                receiver_clusters: inputs.receiver_clusters,
-                seen: inputs.seen,
-                layers: inputs.layers,
-                image_size: inputs.image_size,
-                ..PlanInputs::new(inputs.view, *light, casters, receivers)
-            };
-            if Arc::get_mut(plan).is_none() {
-                *plan = Arc::default();
-            }
-            if let Some(plan) = Arc::get_mut(plan) {
-                planner.plan_into(&of_light, plan)?;
-            }
-        }
+    /// Writes a planned frame to the GPU and lists the maps to draw.
+    fn hand_over(&mut self, queue: &wgpu::Queue, inputs: &Inputs<'_>) -> Result<()> {
         let options = FrameOptions { origin: inputs.origin, enabled: inputs.enabled, tint: inputs.tint };
         // An origin that is none would be another grid, and all that is kept of no use.
         options.validate()?;
         self.is_kept = inputs.enabled && self.keep(inputs);
-        let plans: Vec<&ShadowPlan> = self.plans.iter().map(|plan| &**plan).collect();
-        self.maps.prepare_lights(queue, &plans, &options)?;
+        let plans = self.planning.plans();
+        self.maps.prepare_lights(queue, plans, &options)?;
         match &mut self.keeper {
             Some(keeper) if self.is_kept => {
-                self.maps.prepare_kept(queue, plans[0], keeper, &options)?;
+                self.maps.prepare_kept(queue, &plans[0], keeper, &options)?;
                 self.draws.list_kept(keeper);
                 keeper.accept();
             }
-            _ => self.draws.list(&self.maps, &plans, inputs.enabled),
+            _ => self.draws.list(&self.maps, plans, inputs.enabled),
         }
         Ok(())
     }
@@ -204,8 +167,8 @@ impl Shadows {
     /// Determines the parts of kept maps to draw. Returns false if nothing is kept: casters of a
     /// list are neither marked as static nor identified from frame to frame.
     fn keep(&mut self, inputs: &Inputs<'_>) -> bool {
-        let (Some(keeper), [plan]) = (&mut self.keeper, &mut self.plans[..]) else { return false };
-        let (Some(set), Some(plan)) = (inputs.set, Arc::get_mut(plan)) else {
+        let Some(keeper) = &mut self.keeper else { return false };
+        let (Some(set), Some(plan)) = (inputs.set, self.planning.sole_plan()) else {
             keeper.forget_maps();
             return false;
         };
@@ -355,18 +318,9 @@ impl Shadows {
                 if keeps_pipelines { Rebuilds::Maps } else { Rebuilds::Pipelines }
             }
         };
-        for planners in self.planners.values_mut() {
-            planners.truncate(planned.len());
-            for (light, config) in planned.iter().enumerate() {
-                match planners.get_mut(light) {
-                    Some(planner) => planner.set_config(config, planner_options(&self.maps))?,
-                    None => planners.push(Planner::with_options(config, planner_options(&self.maps))?),
-                }
-            }
-        }
+        self.planning.set_configs(&planned, planner_options(&self.maps))?;
         self.is_kept = false;
         (self.config, self.lights, self.planned, self.notes) = (config, lights, planned, notes);
-        self.plans.clear();
         self.draws.clear();
         Ok(rebuilt)
     }
@@ -374,15 +328,14 @@ impl Shadows {
     /// Forgets the held state of stabilised maps, as if nothing had been drawn yet: for views that
     /// do not follow each other.
     pub fn restart(&mut self) {
-        self.planners.clear();
-        self.plans.clear();
+        self.planning.restart();
         self.forget_kept();
     }
 
     /// [`Shadows::restart`] for one view, [`Inputs::view_slot`], as after a cut. Other views and
     /// kept maps are unchanged.
     pub fn restart_view(&mut self, view_slot: u32) {
-        self.planners.remove(&view_slot);
+        self.planning.restart_view(view_slot);
     }
 
     /// Forgets kept maps, for an application that has prepared a frame and not drawn all of its
@@ -397,15 +350,13 @@ impl Shadows {
 
     /// Gives the held state of view `from` to view `to`, and forgets `from`.
     pub fn move_view(&mut self, from: u32, to: u32) {
-        if let Some(planners) = self.planners.remove(&from) {
-            self.planners.insert(to, planners);
-        }
+        self.planning.move_view(from, to);
     }
 
     /// Returns whether any state is held for a view.
     #[must_use]
     pub fn holds_view(&self, view_slot: u32) -> bool {
-        self.planners.contains_key(&view_slot)
+        self.planning.holds_view(view_slot)
     }
 }
 

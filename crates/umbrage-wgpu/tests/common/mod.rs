@@ -7,7 +7,7 @@ mod world;
 
 use bytemuck::Pod;
 use glam::{DVec2, DVec3, DVec4, Vec3};
-use umbrage::config::{Filter, LightKind, MomentKind, Moments, Preset, Selection, ShadowConfig};
+use umbrage::config::{Filter, LightKind, MomentKind, Moments, Preset, ShadowConfig};
 use umbrage::{DirectionalLight, ShadowPlan, Split};
 use umbrage_wgpu::{ShadowMaps, optional_features};
 pub use world::*;
@@ -320,41 +320,27 @@ pub fn plan(light: DVec3, center: DVec3, sizes: &[u32], planes: &[f64], widths: 
         .map(|i| {
             let texel = widths[i] / f64::from(sizes[i]);
             let at = DVec2::new(u.dot(center), v.dot(center)) / texel;
-            Split {
-                near: planes[i],
-                far: planes[i + 1],
-                blend_begin: planes[i + 1],
-                coverage: (planes[i], planes[i + 1]),
-                size: sizes[i],
-                u_axis: u,
-                v_axis: v,
-                depth_axis: depth,
-                texel_m: DVec2::splat(texel),
-                min_texel: (at - 0.5 * f64::from(sizes[i])).round(),
-                depth_near: depth.dot(center) - 100.0,
-                depth_far: depth.dot(center) + 100.0,
-                receiver_depths: (depth.dot(center) - 100.0, depth.dot(center) + 100.0),
-                filter_reach: 16.0,
-                warp: None,
-                light_position: None,
-                casters: i..i + 1,
-            }
+            let (begin, end) = (depth.dot(center) - 100.0, depth.dot(center) + 100.0);
+            let mut split = Split::default();
+            (split.near, split.far, split.blend_begin) = (planes[i], planes[i + 1], planes[i + 1]);
+            split.coverage = (planes[i], planes[i + 1]);
+            (split.size, split.texel_m) = (sizes[i], DVec2::splat(texel));
+            (split.u_axis, split.v_axis, split.depth_axis) = (u, v, depth);
+            split.min_texel = (at - 0.5 * f64::from(sizes[i])).round();
+            (split.depth_near, split.depth_far, split.receiver_depths) = (begin, end, (begin, end));
+            split.filter_radius_texels = 16.0;
+            split.casters = i..i + 1;
+            split
         })
         .collect();
-    ShadowPlan {
-        splits,
-        planes: planes.to_vec(),
-        view_depth_plane: DVec4::new(1.0, 0.0, 0.0, 0.0),
-        eye: DVec3::ZERO,
-        light_direction: depth,
-        light: None,
-        fade_begin: planes[sizes.len()],
-        selection: Selection::default(),
-        blend: 0.0,
-        caster_indices: vec![0; sizes.len()],
-        split_range: vec![Some((0, sizes.len() as u8 - 1))],
-        ..ShadowPlan::default()
-    }
+    let mut plan = ShadowPlan::default();
+    (plan.splits, plan.planes) = (splits, planes.to_vec());
+    plan.view_depth_plane = DVec4::new(1.0, 0.0, 0.0, 0.0);
+    plan.light_direction = depth;
+    plan.fade_begin = planes[sizes.len()];
+    plan.caster_indices = vec![0; sizes.len()];
+    plan.split_range = vec![Some((0, sizes.len() as u8 - 1))];
+    plan
 }
 
 /// Two triangles: the corners of a quad in order around it.

@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use umbrage::ShadowPlan;
-use umbrage::config::{Edges, ShadowConfig};
+use umbrage::config::ShadowConfig;
 use umbrage_wgpu::{FrameOptions, LightMaps, ShadowMaps};
 
 use super::{Gpu, SUN, with};
@@ -112,7 +112,7 @@ impl World {
     pub fn of_lights<L: Clone + Into<LightMaps>>(gpu: Gpu, config: &ShadowConfig, lights: &[L]) -> Self {
         let (maps, pipeline) = gpu.checked(|| {
             let maps = ShadowMaps::new(&gpu.device, config, lights).expect("a valid config");
-            let source = maps.caster_wgsl(0) + if maps.edges() == Edges::Exact { NAMED_CASTER } else { CASTER };
+            let source = maps.caster_wgsl(0) + if maps.edges().is_exact() { NAMED_CASTER } else { CASTER };
             let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("Test::caster"),
                 source: wgpu::ShaderSource::Wgsl(source.into()),

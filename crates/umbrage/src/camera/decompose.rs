@@ -18,7 +18,12 @@ const ASIDE: f64 = 1e-3;
 const STANDOFF: f64 = 0.01;
 
 /// The eye, the camera's right, up and back, and the frustum from a view-projection matrix.
-pub(super) fn camera(matrix: Matrix, depth: DepthConvention) -> Result<(DVec3, DMat3, Frustum)> {
+/// `forward` says which way an orthographic camera looks, which its matrix does not.
+pub(super) fn camera(
+    matrix: Matrix,
+    forward: Option<DVec3>,
+    depth: DepthConvention,
+) -> Result<(DVec3, DMat3, Frustum)> {
     let rows = [0, 1, 2, 3].map(|i| matrix.0.row(i));
     let foreign = || {
         let expected = "a perspective or orthographic projection of a rotated and moved camera";
@@ -34,7 +39,16 @@ pub(super) fn camera(matrix: Matrix, depth: DepthConvention) -> Result<(DVec3, D
         return Err(foreign());
     }
     let [x, y, z, w] = rows.map(|row| row / scale);
-    if is_perspective { perspective(x, y, z, w, depth) } else { orthographic(x, y, z, depth) }.ok_or_else(foreign)
+    if is_perspective {
+        return perspective(x, y, z, w, depth).ok_or_else(foreign);
+    }
+    let sight = z.truncate().try_normalize().ok_or_else(foreign)?;
+    let along = sight.dot(forward.ok_or(Error::OrthographicDirection)?.normalize_or_zero());
+    // Not finite is not greater either.
+    if !(along.abs() > SKEW) {
+        return Err(Error::camera("forward", along, "a finite vector that is not across the line of sight"));
+    }
+    orthographic(x, y, z, sight * along.signum(), depth).ok_or_else(foreign)
 }
 
 /// The camera's axes for a direction of sight. The flag is true if the frustum's own x runs the
@@ -84,11 +98,11 @@ fn perspective(x: DVec4, y: DVec4, z: DVec4, w: DVec4, depth: DepthConvention) -
     Some((eye, axes, if is_mirrored { frustum.mirrored() } else { frustum }))
 }
 
-/// The camera from rows that are scaled so that w is 1. It looks along the direction that makes it
-/// right-handed; a mirrored camera shows the same part of the world from the other side.
-fn orthographic(x: DVec4, y: DVec4, z: DVec4, depth: DepthConvention) -> Option<(DVec3, DMat3, Frustum)> {
-    let forward = y.truncate().cross(x.truncate()).try_normalize()?;
-    let (axes, _) = axes(x.truncate(), y.truncate(), forward)?;
+/// The camera from rows that are scaled so that w is 1, and the line of sight. The eye lies in the middle, so
+/// that a mirrored camera has the sides of one that is not.
+fn orthographic(x: DVec4, y: DVec4, z: DVec4, sight: DVec3, depth: DepthConvention) -> Option<(DVec3, DMat3, Frustum)> {
+    let (axes, _) = axes(x.truncate(), y.truncate(), sight)?;
+    let forward = -axes.z_axis;
     let a = z.truncate().dot(forward);
     if a == 0.0 || (z.truncate() - a * forward).length() > ASIDE * a.abs() {
         return None;

@@ -2,28 +2,35 @@
 
 use glam::{DMat4, DVec3, DVec4};
 
-use super::matrix::Matrix;
+use super::matrix::{Matrix, ROUNDING};
 use crate::bounds::{LEAST_METRES, MOST_METRES};
+use crate::config::named;
 use crate::{Error, Result, maths};
 
 /// The largest tangent between a perspective camera's axis and a side of its view.
 const WIDEST: f64 = 1e6;
 
+/// Requirement on projection matrices, for errors.
+const RIGHT_HANDED: &str = "right-handed, looking down −Z; View::from_matrices takes left-handed ones";
+
 /// The least width and height of a view, as tangents or in metres.
 const NARROWEST: f64 = 1e-9;
 
-/// Depth range and axis directions of a graphics API. They are needed to read near and far from a
-/// camera's projection, and to hand maps to an engine ([`crate::Split::shadow_from_world_in`],
-/// [`crate::Split::texture_from_world`]).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DepthConvention {
-    /// NDC y up and depth in \[0,1\], textures' v down: wgpu, Direct3D, Metal, Vulkan with a
-    /// negative viewport height. A camera's depth may run either way (reversed or not).
-    ZeroToOne,
-    /// NDC y down and depth in \[0,1\], textures' v down: Vulkan with a positive viewport height.
-    ZeroToOneYDown,
-    /// NDC depth in [−1,1], textures' v up: OpenGL.
-    MinusOneToOne,
+named! {
+    /// Depth range and axis directions of a graphics API. They are needed to read near and far from
+    /// a camera's projection, and to hand maps to an engine
+    /// ([`crate::Split::shadow_from_world_in`], [`crate::Split::texture_from_world`]).
+    ///
+    /// v is that of textures. A camera's depth may run either way (reversed or not).
+    pub enum DepthConvention as "depth convention" {
+        /// NDC y up, z 0 to 1; v down: wgpu, Direct3D, Metal, Vulkan of negative viewport height
+        #[default]
+        ZeroToOne = "zero-to-one",
+        /// NDC y down, z 0 to 1; v down: Vulkan of positive viewport height
+        ZeroToOneYDown = "zero-to-one-y-down",
+        /// NDC y up, z −1 to 1; v up: OpenGL
+        MinusOneToOne = "minus-one-to-one",
+    }
 }
 
 impl DepthConvention {
@@ -57,6 +64,17 @@ pub struct Frustum {
     pub top: f64,
     pub near: f64,
     pub far: f64,
+}
+
+/// On which side of the eye a range lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RangeSide {
+    /// The side to which a right-handed camera looks.
+    Ahead,
+    /// The side to which a left-handed camera looks.
+    Behind,
+    /// Both sides, which only orthographic cameras see.
+    Both,
 }
 
 impl Frustum {
@@ -101,9 +119,20 @@ impl Frustum {
     ///
     /// # Errors
     /// [`Error::InvalidCamera`] if the matrix is singular, holds NaN, looks down +Z (left-handed;
-    /// [`crate::View::from_matrices`] takes such cameras), or projects in some other way.
+    /// [`crate::View::from_matrices`] takes such cameras), or projects in some other way. An
+    /// orthographic range on both sides of the eye is taken as one of a right-handed camera.
     pub fn from_projection_matrix(clip_from_view: impl Into<Matrix>, depth: DepthConvention) -> Result<Self> {
-        let m = clip_from_view.into().without_rounding();
+        let frustum = Self::read(clip_from_view.into(), depth)?;
+        match frustum.range_side() {
+            RangeSide::Behind => Err(Error::camera("projection matrix", frustum.far, RIGHT_HANDED)),
+            RangeSide::Ahead | RangeSide::Both => Ok(frustum),
+        }
+    }
+
+    /// The frustum of a projection matrix that looks down −Z, or an orthographic one that may look
+    /// down +Z: its near and far are less than 0 then.
+    pub(super) fn read(clip_from_view: Matrix, depth: DepthConvention) -> Result<Self> {
+        let m = clip_from_view.without_rounding();
         if !m.is_finite() {
             return Err(Error::camera("projection matrix", f64::NAN, "finite numbers only"));
         }
@@ -120,8 +149,7 @@ impl Frustum {
         let depth_at = |ndc: f64| (z.w - ndc * w.w) / (z.z - ndc * w.z);
         if perspective {
             if w.z > 0.0 {
-                let expected = "right-handed, looking down −Z; View::from_matrices takes left-handed ones";
-                return Err(Error::camera("projection matrix", w.z, expected));
+                return Err(Error::camera("projection matrix", w.z, RIGHT_HANDED));
             }
             if w.w != 0.0 || x.w != 0.0 || y.w != 0.0 {
                 return Err(foreign());
@@ -195,6 +223,16 @@ impl Frustum {
             return Err(Error::camera("far", self.far, expected));
         }
         Ok(self)
+    }
+
+    /// The side of the eye on which the range lies, but for rounding.
+    pub(super) fn range_side(&self) -> RangeSide {
+        let rounding = ROUNDING * (self.far - self.near);
+        match (self.near >= -rounding, self.far <= rounding) {
+            (true, _) => RangeSide::Ahead,
+            (false, true) => RangeSide::Behind,
+            (false, false) => RangeSide::Both,
+        }
     }
 
     /// The frustum of a camera whose x axis is reversed.

@@ -4,10 +4,11 @@ mod decompose;
 mod frustum;
 mod matrix;
 
-use glam::{DMat3, DMat4, DVec3};
+use glam::{DMat3, DMat4, DVec3, DVec4};
 
 use crate::bounds::MOST_METRES;
 use crate::{Error, Result};
+use frustum::RangeSide;
 pub use frustum::{DepthConvention, Frustum, Projection};
 pub use matrix::Matrix;
 
@@ -74,10 +75,12 @@ impl View {
     }
 
     /// A view from the two matrices that engines have. Left-handed and mirrored cameras are
-    /// accepted.
+    /// accepted. An orthographic camera looks to the side of its eye on which its range lies.
     ///
     /// # Errors
-    /// As [`View::from_world_from_view`] and [`Frustum::from_projection_matrix`].
+    /// As [`View::from_world_from_view`] and [`Frustum::from_projection_matrix`];
+    /// [`Error::OrthographicDirection`] for an orthographic camera whose range lies on both sides of
+    /// its eye: a left-handed one has the matrices of a reversed one then.
     pub fn from_matrices(
         world_from_view: impl Into<Matrix>,
         clip_from_view: impl Into<Matrix>,
@@ -88,21 +91,49 @@ impl View {
         if clip_from_view.without_rounding().row(3).z > 0.0 {
             return Self::from_clip_from_world(clip_from_view.0 * world_from_view.0.inverse(), depth);
         }
-        Self::from_world_from_view(world_from_view.0, Frustum::from_projection_matrix(clip_from_view, depth)?)
+        let frustum = Frustum::read(clip_from_view, depth)?;
+        match frustum.range_side() {
+            RangeSide::Ahead => Self::from_world_from_view(world_from_view.0, frustum),
+            RangeSide::Behind => {
+                let turned = DMat4::from_diagonal(DVec4::new(1.0, 1.0, -1.0, 1.0));
+                let frustum = Frustum::read(Matrix(clip_from_view.0 * turned), depth)?;
+                Self::from_world_from_view(world_from_view.0 * turned, frustum)
+            }
+            RangeSide::Both => Err(Error::OrthographicDirection),
+        }
     }
 
-    /// A view from its view-projection matrix alone: perspective or orthographic, right- or
-    /// left-handed, reversed or not, with a finite or infinite far plane, symmetric or off-axis,
-    /// mirrored or not.
-    ///
-    /// The matrix of an orthographic camera does not contain the eye, which is therefore placed
-    /// before near by a hundredth of the range's length.
+    /// A view from the view-projection matrix of a perspective camera alone: right- or left-handed,
+    /// reversed or not, with a finite or infinite far plane, symmetric or off-axis, mirrored or not.
     ///
     /// # Errors
     /// [`Error::InvalidCamera`] if the matrix is singular, holds NaN, or is no projection of a
-    /// rotated camera.
+    /// rotated camera; [`Error::OrthographicDirection`] for an orthographic one, which
+    /// [`View::from_orthographic`] takes.
     pub fn from_clip_from_world(clip_from_world: impl Into<Matrix>, depth: DepthConvention) -> Result<Self> {
-        let (eye, axes, frustum) = decompose::camera(clip_from_world.into(), depth)?;
+        Self::from_matrix(clip_from_world.into(), None, depth)
+    }
+
+    /// A view from the view-projection matrix of an orthographic camera: right- or left-handed,
+    /// reversed or not, symmetric or off-axis, mirrored or not. The matrix alone does not say which
+    /// way the camera looks: `forward` does, any world vector within a right angle of it.
+    ///
+    /// The eye is not in the matrix either: it is put a hundredth of the range's length before near.
+    ///
+    /// # Errors
+    /// As [`View::from_clip_from_world`], and [`Error::InvalidCamera`] for a `forward` that is across
+    /// the line of sight or not finite. A perspective matrix has a direction, and `forward` is not
+    /// asked for.
+    pub fn from_orthographic(
+        clip_from_world: impl Into<Matrix>,
+        forward: DVec3,
+        depth: DepthConvention,
+    ) -> Result<Self> {
+        Self::from_matrix(clip_from_world.into(), Some(forward), depth)
+    }
+
+    fn from_matrix(clip_from_world: Matrix, forward: Option<DVec3>, depth: DepthConvention) -> Result<Self> {
+        let (eye, axes, frustum) = decompose::camera(clip_from_world, forward, depth)?;
         Ok(Self { eye: check_eye(eye)?, world_from_view: axes, frustum: frustum.validated()? })
     }
 

@@ -24,6 +24,7 @@ const ROUNDING: f64 = 1e-13;
 
 /// Cost of queries as counts, independent of the machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Visited {
     /// Nodes that were tested or measured.
     pub nodes: u64,

@@ -2,7 +2,7 @@
 //! one that was.
 
 use super::given::{Given, Wrong};
-use super::{RULES, SETTINGS, ShadowConfig, settings};
+use super::{RULES, Renamed, SETTINGS, ShadowConfig, settings};
 use crate::{Error, Result as UmbrageResult};
 
 impl ShadowConfig {
@@ -10,13 +10,17 @@ impl ShadowConfig {
     /// reset; the notes name it.
     ///
     /// # Errors
-    /// [`Error::InvalidSetting`] naming a key that does not exist or whose value is wrong,
+    /// [`Error::UnknownSetting`] naming a key that does not exist, [`Error::RenamedWord`] for a word
+    /// of [`super::RENAMED`], [`Error::InvalidSetting`] naming a key whose value is wrong,
     /// [`Error::Conflict`] naming two settings that exclude each other. The config is then
     /// unchanged.
     pub fn apply(&mut self, given: &[(String, String)]) -> UmbrageResult<Vec<String>> {
         let given = Given(given);
         if let Some((key, _)) = given.0.iter().find(|(key, _)| settings::find(key).is_none()) {
             return Err(Error::UnknownSetting { key: key.clone() });
+        }
+        if let Some(renamed) = given.0.iter().find_map(|(key, value)| Renamed::find(key, value)) {
+            return Err(Error::RenamedWord(*renamed));
         }
         let mut config = self.clone();
         for setting in SETTINGS {

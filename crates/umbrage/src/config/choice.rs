@@ -1,8 +1,8 @@
 //! Choices that exclude others: whether a config makes them, their words, and how to reset them.
 
 use super::{
-    Cache, Choice, Coordinates, Crop, DepthFormat, Edges, Filter, FitTo, Generation, Layout, LightKind, Range,
-    Selection, ShadowConfig, SplitMetric, SplitScheme, Stability, Storage, Transition,
+    Cache, Choice, Coordinates, Crop, DepthFormat, Edges, ExtentSteps, Filter, FitTo, Generation, Layout, LightKind,
+    Range, Selection, ShadowConfig, SplitMetric, SplitScheme, Stability, Storage, Transition,
 };
 use crate::Warp;
 
@@ -12,6 +12,8 @@ impl Choice {
     pub fn holds(self, config: &ShadowConfig, lights: &[LightKind]) -> bool {
         match self {
             Self::Warp => config.first_warp().is_some(),
+            Self::AllWarped => (0..config.splits()).all(|index| config.warp(index) != Warp::None),
+            Self::SmallCasters => config.drop_small_casters,
             Self::MapSelection => config.selection == Selection::Map,
             Self::DistanceMetric => config.selection == Selection::Interval(SplitMetric::Distance),
             Self::VisibleRange => config.range == Range::Visible,
@@ -20,7 +22,7 @@ impl Choice {
             Self::MomentFilter => config.filter.is_prefiltered(),
             Self::SunFilter => config.filter.is_prefiltered() || matches!(config.filter, Filter::Pcss { .. }),
             Self::OtherThanPcf3 => !matches!(config.filter, Filter::Pcf3 { .. }),
-            Self::ExactEdges => config.edges == Edges::Exact,
+            Self::ExactEdges => config.edges.is_exact(),
             Self::SeveralSamples => config.filter.samples() > 1,
             Self::ColourMaps => config.depth_format.is_colour(),
             Self::TiledLayers => config.layout == Layout::MixedArray,
@@ -31,6 +33,7 @@ impl Choice {
             Self::MoreThanSixSplits => config.splits() > 6,
             Self::UnequalSizes => config.map_sizes.windows(2).any(|pair| pair[0] != pair[1]),
             Self::NotStill => config.stability != Stability::Exact,
+            Self::ExactlyStill => config.stability == Stability::Exact,
             Self::OtherDepth => config.depth_format != DepthFormat::D32Float,
             Self::KeptMaps => config.cache == Cache::Kept,
             Self::DeferredCoordinates => config.coordinates == Coordinates::Deferred,
@@ -48,7 +51,8 @@ impl Choice {
     #[must_use]
     pub const fn keys(self) -> &'static [&'static str] {
         match self {
-            Self::Warp => &["warp", "technique", "tsm-focus"],
+            Self::Warp | Self::AllWarped => &["warp", "technique", "tsm-focus"],
+            Self::SmallCasters => &["drop-small-casters"],
             Self::MapSelection => &["selection"],
             Self::DistanceMetric => &["bands"],
             Self::VisibleRange => &["range-fit"],
@@ -64,6 +68,7 @@ impl Choice {
             Self::MoreThanSixSplits | Self::MoreThanFourSplits => &["splits", "map-size", "planes"],
             Self::UnequalSizes => &["map-size"],
             Self::NotStill => &["stabilize", "extent-steps", "extent-levels", "warp", "tsm-focus"],
+            Self::ExactlyStill => &["stabilize"],
             Self::KeptMaps => &["cache"],
             Self::DeferredCoordinates | Self::VertexCoordinates => &["coordinates"],
             Self::LocalLight | Self::SeveralFaces => &["light"],
@@ -80,7 +85,9 @@ impl Choice {
             Self::LocalLight => "light spot or point".to_owned(),
             Self::SeveralFaces => "several lights or faces".to_owned(),
             Self::OneMap => "storage reused (generation multipass)".to_owned(),
-            Self::Warp => format!("warp {}", config.first_warp().map_or("none", Warp::word)),
+            Self::Warp | Self::AllWarped => format!("warp {}", config.first_warp().map_or("none", Warp::word)),
+            // Named by what was chosen: splits of the eye's distance are intervals, too.
+            Self::IntervalSelection if Self::DistanceMetric.holds(config, &[]) => Self::DistanceMetric.say(config),
             _ => {
                 let key = self.keys()[0];
                 match super::settings::find(key).and_then(|setting| setting.get(config)) {
@@ -95,21 +102,30 @@ impl Choice {
     /// together.
     #[must_use]
     pub const fn is_per_light(self) -> bool {
-        matches!(self, Self::Warp | Self::MapSelection | Self::DistanceMetric | Self::OptimalScheme)
+        matches!(
+            self,
+            Self::Warp
+                | Self::MapSelection
+                | Self::DistanceMetric
+                | Self::OptimalScheme
+                | Self::FitToDepth
+                | Self::SmallCasters
+        )
     }
 
     /// Resets the choice to a value that excludes nothing. Returns false if there is no such value.
     pub fn relax(self, config: &mut ShadowConfig) -> bool {
         match self {
-            Self::Warp => config.stability = Stability::tight(),
-            Self::MapSelection | Self::DistanceMetric => config.selection = Selection::default(),
+            Self::Warp | Self::AllWarped => config.stability = Stability::tight(),
+            Self::SmallCasters => config.drop_small_casters = false,
+            Self::MapSelection | Self::DistanceMetric => config.selection = Selection::VIEW_DEPTH,
             Self::VisibleRange => config.range = Range::Camera,
             Self::OptimalScheme => config.scheme = SplitScheme::practical(),
             Self::Band => config.transition = Transition::Hard,
             Self::MomentFilter | Self::SunFilter | Self::OtherThanPcf3 => {
                 config.filter = Filter::Pcf3 { width_m: None };
             }
-            Self::ExactEdges => (config.edges, config.edge_samples) = (Edges::Sampled, 1),
+            Self::ExactEdges => config.edges = Edges::Sampled,
             Self::SeveralSamples => {
                 if let Filter::Moments(moments) = &mut config.filter {
                     moments.samples = 1;
@@ -117,6 +133,7 @@ impl Choice {
             }
             Self::ColourMaps | Self::OtherDepth => config.depth_format = DepthFormat::default(),
             Self::NotStill => config.stability = Stability::Exact,
+            Self::ExactlyStill => config.stability = Stability::Approximate { steps: ExtentSteps::default() },
             Self::KeptMaps => config.cache = Cache::Off,
             Self::FitToDepth => config.fit_to = FitTo::Boxes,
             Self::IntervalSelection => config.selection = Selection::Map,

@@ -4,9 +4,14 @@ use std::fmt;
 
 /// A choice that excludes others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Choice {
     /// A map that spreads its texels unevenly.
     Warp,
+    /// No map that spreads its texels evenly.
+    AllWarped,
+    /// Maps omit small casters.
+    SmallCasters,
     /// A point uses the first map that contains it.
     MapSelection,
     /// Split planes measure the distance from the eye.
@@ -45,6 +50,8 @@ pub enum Choice {
     UnequalSizes,
     /// Maps that do not stand exactly still.
     NotStill,
+    /// Maps that stand exactly still.
+    ExactlyStill,
     /// Maps of another format than 32-bit depth.
     OtherDepth,
     /// Maps keep the depth drawn by static casters.
@@ -69,8 +76,10 @@ pub enum Choice {
 
 impl Choice {
     /// All choices that a rule may name.
-    pub const ALL: [Self; 30] = [
+    pub const ALL: [Self; 33] = [
         Self::Warp,
+        Self::AllWarped,
+        Self::SmallCasters,
         Self::MapSelection,
         Self::DistanceMetric,
         Self::VisibleRange,
@@ -90,6 +99,7 @@ impl Choice {
         Self::MoreThanSixSplits,
         Self::UnequalSizes,
         Self::NotStill,
+        Self::ExactlyStill,
         Self::OtherDepth,
         Self::KeptMaps,
         Self::DeferredCoordinates,
@@ -105,6 +115,7 @@ impl Choice {
 
 /// Two choices that exclude each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Rule {
     /// The choice that is reset if neither was given.
     pub first: Choice,
@@ -118,6 +129,7 @@ pub struct Rule {
 
 /// Two settings that exclude each other.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Conflict {
     /// The rule that is broken.
     pub rule: Rule,

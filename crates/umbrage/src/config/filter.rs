@@ -95,6 +95,7 @@ named! {
 named! {
     /// Source of the derivatives by which a moment filter chooses the mip level where neighbouring
     /// pixels use different splits.
+    #[non_exhaustive]
     pub enum Derivatives as "source of derivatives" {
         /// By the change of position from pixel to pixel, which no border interrupts
         #[default]
@@ -184,7 +185,7 @@ impl Filter {
     /// Half the width of the filter's kernel in metres, if it is known. Maps with large texels keep
     /// a margin of so many metres instead of [`Filter::radius_texels`].
     #[must_use]
-    pub fn half_width_m(&self) -> Option<f64> {
+    pub fn radius_m(&self) -> Option<f64> {
         match *self {
             Self::Disc { width_m, .. } => width_m.map(|width| 0.5 * width),
             Self::Pcss { sun_degrees, .. } => Some(maths::tan((0.5 * sun_degrees).to_radians()) * MOST_BLOCKER_M),
@@ -278,6 +279,6 @@ impl std::str::FromStr for Filter {
 
 impl From<&Filter> for FilterReach {
     fn from(filter: &Filter) -> Self {
-        Self { radius_texels: filter.radius_texels(), half_width_m: filter.half_width_m() }
+        Self { radius_texels: filter.radius_texels(), radius_m: filter.radius_m() }
     }
 }

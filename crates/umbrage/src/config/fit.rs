@@ -11,6 +11,7 @@ named! {
     /// of the receivers in its slice that casters can cast a shadow on. Exactly stabilised maps
     /// have the same rectangle either way; only their depth range and list of casters depend on the
     /// scene.
+    #[non_exhaustive]
     pub enum Crop as "crop" {
         /// The slice, its receivers and its casters: scene-dependent
         #[default]
@@ -22,6 +23,7 @@ named! {
 
 /// Stability of shadows while the camera moves.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Stability {
     /// The tightest map in every frame; edges crawl when the camera moves.
     Tight {
@@ -70,7 +72,11 @@ impl Stability {
 }
 
 /// The steps in which an approximately stabilised map changes its extent.
+///
+/// Serialised as `{"per_doubling": 24}` or `{"levels": 64}`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
+#[non_exhaustive]
 pub enum ExtentSteps {
     /// Geometric steps of the extent in metres, this many per doubling: 4 to 64. Not from a paper.
     ///
@@ -95,6 +101,7 @@ impl Default for ExtentSteps {
 
 named! {
     /// Geometry that planes and maps are fitted to.
+    #[non_exhaustive]
     pub enum FitTo as "what maps are fitted to" {
         /// The boxes of the receivers in view
         #[default]

@@ -70,6 +70,7 @@ named! {
 named! {
     /// Cache mode of a sun's maps: the depth drawn by static casters may be kept from frame to
     /// frame.
+    #[non_exhaustive]
     pub enum Cache as "cache" {
         /// Every map is drawn again in every frame
         #[default]
@@ -81,6 +82,7 @@ named! {
 
 /// Storage of maps and the passes that draw them: the nine pairs that go together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Layout {
     /// Layers of one texture, one pass for each split.
     #[default]

@@ -14,9 +14,11 @@ mod filter;
 mod fit;
 mod given;
 mod layout;
+mod light_kind;
 mod look;
 mod names;
 mod presets;
+mod renamed;
 mod rules;
 #[cfg(feature = "serde")]
 mod serialize;
@@ -34,10 +36,12 @@ pub use filter::{Derivatives, Filter, MomentKind, Moments, SUN_DEGREES};
 pub use fit::{Crop, ExtentSteps, FitTo, Stability};
 pub use given::Given;
 pub use layout::{Cache, Coordinates, DepthFormat, Fallbacks, Generation, Layout, Storage};
+pub use light_kind::LightKind;
 pub use look::{Look, ReceiverBias, Translucent};
 pub use names::Word;
-pub(crate) use names::unknown;
+pub(crate) use names::{named, unknown};
 pub use presets::Preset;
+pub use renamed::{RENAMED, Renamed};
 pub use rules::RULES;
 pub use setting::{Kind, Rebuilds, Setting, Value};
 pub use settings::SETTINGS;
@@ -46,46 +50,7 @@ pub use splits::{Range, Selection, SplitMetric, SplitScheme, Transition};
 
 use crate::bounds::MOST_METRES;
 use crate::margin::FilterReach;
-use crate::{Error, Light, MAX_SPLITS, Result, Warp};
-
-/// Kind of a light that casts shadows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum LightKind {
-    /// A sun: parallel light.
-    #[default]
-    Directional,
-    /// A cone of light from a point.
-    Spot,
-    /// Light from a point in all directions: six faces of a cube.
-    Point,
-}
-
-impl LightKind {
-    /// Number of sets of [`ShadowConfig::map_sizes`] maps: 6 for a point light, otherwise 1.
-    #[must_use]
-    pub const fn faces(self) -> usize {
-        match self {
-            Self::Directional | Self::Spot => 1,
-            Self::Point => 6,
-        }
-    }
-
-    /// Returns whether the light has a position, as spot and point lights do.
-    #[must_use]
-    pub const fn is_local(self) -> bool {
-        !matches!(self, Self::Directional)
-    }
-}
-
-impl From<Light> for LightKind {
-    fn from(light: Light) -> Self {
-        match light {
-            Light::Directional(_) => Self::Directional,
-            Light::Spot(_) => Self::Spot,
-            Light::Point(_) => Self::Point,
-        }
-    }
-}
+use crate::{Error, MAX_SPLITS, Result, Warp};
 
 /// All choices about shadows.
 ///
@@ -118,22 +83,20 @@ pub struct ShadowConfig {
     pub crop: Crop,
     /// Geometry that planes and maps are fitted to. With [`FitTo::Depth`] and
     /// [`crate::PlanInputs::seen`], all maps but the last serve only the depth that was seen:
-    /// geometry hidden by a wall before the camera then takes no texels from visible geometry. Spot
-    /// and point lights ignore this field, as do exactly stabilised maps, which show whole slices.
+    /// geometry hidden by a wall before the camera then takes no texels from visible geometry. A
+    /// rule excludes spot and point lights, and exactly stabilised maps, which show whole slices.
     pub fit_to: FitTo,
     /// Stability of shadows while the camera moves.
     pub stability: Stability,
     /// True if the maps of a sun omit casters whose whole shadow is smaller than half a texel along
     /// both axes of the map, split by split. Such a caster covers one texel of the map or none, and
-    /// the texel changes with every step of the map. Warped maps, and those of spot and point
-    /// lights, contain all casters.
+    /// the texel changes with every step of the map. A warped map beside plain ones contains
+    /// all casters. A rule excludes spot and point lights, and configs whose maps are all warped.
     pub drop_small_casters: bool,
     /// Filter of the maps.
     pub filter: Filter,
     /// Method that decides where a shadow's edge lies.
     pub edges: Edges,
-    /// Number of positions in a pixel that [`Edges::Exact`] decides, for smooth edges: 1, 4 or 8.
-    pub edge_samples: u32,
     /// Format of the maps' texels.
     pub depth_format: DepthFormat,
     /// Storage of maps and the passes that draw them.
@@ -173,7 +136,7 @@ impl ShadowConfig {
     #[must_use]
     pub const fn texel_bytes(&self) -> u64 {
         let id = match self.edges {
-            Edges::Exact => 4,
+            Edges::Exact { .. } => 4,
             Edges::Sampled => 0,
         };
         self.depth_format.texel_bytes() + id
@@ -262,7 +225,6 @@ impl ShadowConfig {
             drop_small_casters,
             filter: _,
             edges: _,
-            edge_samples: _,
             depth_format: _,
             layout: _,
             cache,
@@ -447,8 +409,7 @@ impl ShadowConfig {
     }
 
     fn check_filter(&self) -> Result<()> {
-        if !matches!(self.edge_samples, 1 | 4 | 8) {
-            let samples = self.edge_samples;
+        if let Some(samples) = self.edges.samples().filter(|samples| !matches!(samples, 1 | 4 | 8)) {
             return Err(Error::setting("edge-samples", format!("{samples} samples are not supported; give 1, 4 or 8")));
         }
         if let Some(width) = self.filter.width_m()

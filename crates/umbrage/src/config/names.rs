@@ -43,7 +43,7 @@ macro_rules! named {
             fn from_str(text: &str) -> Result<Self, String> {
                 match text {
                     $($word => Ok(Self::$value),)+
-                    _ => Err($crate::config::names::unknown($what, text, Self::WORDS)),
+                    _ => Err($crate::config::unknown($what, text, Self::WORDS)),
                 }
             }
         }

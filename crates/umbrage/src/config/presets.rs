@@ -8,6 +8,7 @@ use super::{
 
 named! {
     /// Preset configs by name, each with its trade-off.
+    #[non_exhaustive]
     pub enum Preset as "preset" {
         /// Fewest texels and samples: 3 maps of 1024² and 2×2 texels per lookup
         Fast = "fast",
@@ -33,7 +34,7 @@ impl Preset {
             map_sizes: vec![1024; 4],
             scheme: SplitScheme::practical(),
             range: Range::Camera,
-            selection: Selection::default(),
+            selection: Selection::VIEW_DEPTH,
             transition: Transition::Blend { share: 0.1 },
             far_fade: 0.1,
             crop: Crop::SceneDependent,
@@ -42,7 +43,6 @@ impl Preset {
             drop_small_casters: false,
             filter: Filter::Pcf3 { width_m: None },
             edges: Edges::Sampled,
-            edge_samples: 1,
             depth_format: DepthFormat::D32Float,
             layout: Layout::Array,
             cache: Cache::Off,
@@ -65,7 +65,7 @@ impl Preset {
             Self::Balanced => balanced,
             Self::Fast => ShadowConfig { map_sizes: vec![1024; 3], filter: Filter::Pcf2, ..balanced },
             // Depth and id of 720² texels are the bytes of 1,018² depths.
-            Self::Exact => ShadowConfig { map_sizes: vec![720; 4], edges: Edges::Exact, ..balanced },
+            Self::Exact => ShadowConfig { map_sizes: vec![720; 4], edges: Edges::exact(), ..balanced },
             Self::Sharp => ShadowConfig { stability: Stability::tight(), ..balanced },
             // A range that follows the view would move its maps with it.
             Self::Still => ShadowConfig { stability: Stability::Exact, range: Range::Camera, ..balanced },

@@ -78,6 +78,18 @@ pub const RULES: &[Rule] = &[
         "use fit dependent, or fit-to boxes",
     ),
     rule(
+        Choice::FitToDepth,
+        Choice::ExactlyStill,
+        "maps that stand exactly still show whole slices of the view, whatever was seen",
+        "use stabilize approximate, or fit-to boxes",
+    ),
+    rule(
+        Choice::SmallCasters,
+        Choice::AllWarped,
+        "texels of a warped map have no one size that a shadow could be smaller than",
+        "use no warp, or drop-small-casters off",
+    ),
+    rule(
         Choice::OtherThanPcf3,
         Choice::ExactEdges,
         "exact edges look at three texels by three, and ask a filter of that size where casters have no name",
@@ -168,6 +180,18 @@ pub const RULES: &[Rule] = &[
         "use cache off, or edges sampled",
     ),
     rule(Choice::KeptMaps, Choice::SeveralFaces, "maps are kept for one sun", "use cache off, or one sun"),
+    rule(
+        Choice::FitToDepth,
+        Choice::LocalLight,
+        "maps of a local light are fitted to all receivers that it reaches",
+        "use fit-to boxes, or a directional light",
+    ),
+    rule(
+        Choice::SmallCasters,
+        Choice::LocalLight,
+        "texels of a local light grow with the distance, and with them what is small",
+        "use drop-small-casters off, or a directional light",
+    ),
     rule(
         Choice::Warp,
         Choice::LocalLight,

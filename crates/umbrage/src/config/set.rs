@@ -104,7 +104,7 @@ pub(super) fn scheme(config: &mut ShadowConfig, text: &str, given: &Given<'_>) -
         "uniform" => SplitScheme::Uniform,
         "log" => SplitScheme::Logarithmic,
         "practical" => SplitScheme::practical(),
-        "optimal" | "fitted" => SplitScheme::Optimal,
+        "optimal" => SplitScheme::Optimal,
         "manual" if given.has("planes") || config.splits() == 1 => SplitScheme::Manual { planes: Vec::new() },
         "manual" => {
             let (inner, splits) = (config.splits() - 1, config.splits());
@@ -188,7 +188,7 @@ pub(super) fn selection(config: &mut ShadowConfig, text: &str, _: &Given<'_>) ->
     known("selection", text)?;
     match (text, config.selection) {
         ("map", _) => config.selection = Selection::Map,
-        (_, Selection::Map) => config.selection = Selection::default(),
+        (_, Selection::Map) => config.selection = Selection::VIEW_DEPTH,
         (_, Selection::Interval(_)) => {}
     }
     Ok(())
@@ -330,19 +330,20 @@ pub(super) fn moments<'a>(config: &'a mut ShadowConfig, key: &str) -> Result<&'a
 }
 
 pub(super) fn edges(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
-    config.edges = text.parse()?;
-    if config.edges != Edges::Exact {
-        config.edge_samples = 1;
+    if config.edges.word() != text {
+        config.edges = text.parse()?;
     }
     Ok(())
 }
 
 pub(super) fn edge_samples(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {
-    if config.edges != Edges::Exact {
-        return refuse("edge-samples applies to edges exact only; omit it, or use edges exact".to_owned());
+    match &mut config.edges {
+        Edges::Exact { samples } => {
+            *samples = count(text)?;
+            Ok(())
+        }
+        Edges::Sampled => refuse("applies to edges exact only, but edges is sampled; omit it, or use edges exact"),
     }
-    config.edge_samples = count(text)?;
-    Ok(())
 }
 
 pub(super) fn transition(config: &mut ShadowConfig, text: &str, _: &Given<'_>) -> Result<(), Wrong> {

@@ -4,10 +4,11 @@ use std::fmt;
 
 use super::given::{Given, Wrong};
 use super::names::Word;
-use super::{ShadowConfig, text};
+use super::{Renamed, ShadowConfig, text};
 
 /// One choice of a [`ShadowConfig`], as a key with a value.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Setting {
     /// The key in config files; the command's option is the key behind two dashes.
     pub key: &'static str,
@@ -22,6 +23,18 @@ pub struct Setting {
 }
 
 impl Setting {
+    /// Checks a value alone, without regard to other settings.
+    ///
+    /// # Errors
+    /// A message that says what is wrong and what to give instead; of a word of a former version,
+    /// the word that replaces it.
+    pub fn check(&self, text: &str) -> Result<(), String> {
+        match Renamed::find(self.key, text) {
+            Some(renamed) => Err(renamed.to_string()),
+            None => self.kind.check(text),
+        }
+    }
+
     /// The setting's value in a config; `None` if other choices of the config exclude the setting.
     #[must_use]
     pub fn get(&self, config: &ShadowConfig) -> Option<Value> {

@@ -117,7 +117,7 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "fit",
-        help: "What each map is cropped to",
+        help: "What each map is cropped to; with stabilize exact its depth range and casters alone",
         kind: Kind::Words(Crop::WORDS),
         rebuilds: Rebuilds::Nothing,
         set: |config, text, _| text.parse().map(|crop| config.crop = crop).map_err(Wrong::from),
@@ -314,7 +314,7 @@ pub const SETTINGS: &[Setting] = &[
         kind: Kind::CountOf(&[1, 4, 8]),
         rebuilds: Rebuilds::Pipelines,
         set: set::edge_samples,
-        get: |config| (config.edges == Edges::Exact).then_some(Value::Count(config.edge_samples)),
+        get: |config| config.edges.samples().map(Value::Count),
     },
     Setting {
         key: "fallbacks",

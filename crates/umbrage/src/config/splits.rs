@@ -9,6 +9,7 @@ use crate::{Error, Result};
 /// `n` and `f` are the ends of the shadowed range, `m` is the number of splits. Source: \[PSSM06\]
 /// section 3.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum SplitScheme {
     /// `C_i = n + (f − n) i/m`: slices of equal depth.
     Uniform,
@@ -46,7 +47,6 @@ impl SplitScheme {
         super::Word { word: "practical", help: "A mix of both, by lambda" },
         super::Word { word: "manual", help: "The planes that are given" },
         super::Word { word: "optimal", help: "The planes of least predicted error" },
-        super::Word { word: "fitted", help: "Old name of optimal" },
     ];
 
     /// The scheme's word in config files and on the command line.
@@ -69,11 +69,10 @@ impl SplitScheme {
 }
 
 /// Range of view depths that shadows cover.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Range {
     /// The camera's near and far planes; far is capped by the receivers and by 1.5 times the depth
-    /// of the deepest shadow. The default of this enum, not of [`super::ShadowConfig`], which has
-    /// [`Range::Visible`].
+    /// of the deepest shadow.
     ///
     /// The near plane of an orthographic camera moves up to the scene. Receivers far beyond all
     /// others are ignored if they together fill less than 0.01 % of the image: they are lit.
@@ -84,7 +83,6 @@ pub enum Range {
     /// at √2 times that depth at most. While the camera stands still, both return to the choice of
     /// a new planner.
     /// planner would choose.
-    #[default]
     Camera,
     /// The view depths between which the view shows receivers, by their boxes clipped to the
     /// frustum.
@@ -120,6 +118,9 @@ pub enum Selection {
 }
 
 impl Selection {
+    /// Selection by the planes between splits, which measure view depth.
+    pub const VIEW_DEPTH: Self = Self::Interval(SplitMetric::ViewDepth);
+
     /// Measure of the planes between splits; view depth for [`Selection::Map`].
     #[must_use]
     pub const fn metric(self) -> SplitMetric {
@@ -127,12 +128,6 @@ impl Selection {
             Self::Interval(metric) => metric,
             Self::Map => SplitMetric::ViewDepth,
         }
-    }
-}
-
-impl Default for Selection {
-    fn default() -> Self {
-        Self::Interval(SplitMetric::ViewDepth)
     }
 }
 

@@ -104,6 +104,7 @@ pub struct KeptFrame<'a> {
 /// A part of a split's kept texture that has to be drawn: it is cleared, then its casters are
 /// drawn, clipped to its edge.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct KeptRegion {
     /// Index of the split.
     pub split: usize,
@@ -122,13 +123,14 @@ impl KeptRegion {
     /// Returns whether a part of a caster, given by its world box, can cover any texel of the
     /// region.
     #[must_use]
-    pub fn is_reached_by(&self, part: &Aabb) -> bool {
+    pub fn casts_into(&self, part: &Aabb) -> bool {
         self.grid.footprint(&Placed::from(*part)).meets(&self.texels)
     }
 }
 
 /// Window of a kept texture that becomes a split's map.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct KeptMap {
     /// Texel of the texture at which the map's upper left texel lies. Texels past the texture's
     /// edge continue at the opposite edge.

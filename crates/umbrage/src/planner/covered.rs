@@ -43,7 +43,7 @@ struct Taken<'a> {
 
 impl<'a> Taken<'a> {
     fn new(split: &Split, earlier: &'a [Split], blend: f64) -> Self {
-        let margin = split.filter_reach + ROUNDING_TEXELS;
+        let margin = split.filter_radius_texels + ROUNDING_TEXELS;
         Self { earlier, margin, blend, reach_m: margin * split.texel_m.max_element() }
     }
 
@@ -53,7 +53,7 @@ impl<'a> Taken<'a> {
         self.earlier.iter().filter(|split| !split.casters.is_empty()).any(|split| {
             let (lo, hi) = rectangle(split, center, half);
             let size = f64::from(split.size);
-            let room = split.filter_reach
+            let room = split.filter_radius_texels
                 + ROUNDING_TEXELS
                 + 0.5 * self.blend * size
                 + self.reach_m / split.texel_m.min_element();

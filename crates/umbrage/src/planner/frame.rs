@@ -45,8 +45,7 @@ impl<'a> Frame<'a> {
             image_size: inputs.image_size,
             casters,
             receivers,
-            // Maps that stand exactly still show whole slices of the view, whatever was seen.
-            seen: seen.filter(|_| config.fit_to == FitTo::Depth && config.stability != Stability::Exact),
+            seen: seen.filter(|_| config.fit_to == FitTo::Depth),
             margin: reach.radius_texels + EDGE_TEXELS,
         }
     }

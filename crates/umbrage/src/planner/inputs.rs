@@ -118,8 +118,7 @@ pub struct PlanInputs<'a> {
     /// World boxes that enclose everything that an earlier image showed, from its depth. Planes are
     /// then placed, and all maps but the last fitted, for the geometry that was seen instead of for
     /// all receivers in view; the last map serves the geometry that has come into view since.
-    /// `None` if not known. For [`crate::config::FitTo::Depth`]; ignored otherwise, by local
-    /// lights, and with [`crate::config::Stability::Exact`].
+    /// `None` if not known. For [`crate::config::FitTo::Depth`]; ignored otherwise.
     pub seen: Option<&'a [Aabb]>,
     /// Size of the image in pixels: a split is widened by one 2×2 pixel quad at its near side.
     pub image_size: [u32; 2],

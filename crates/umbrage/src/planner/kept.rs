@@ -38,12 +38,18 @@ pub(super) struct Kept {
 }
 
 impl Kept {
-    /// Writes the plan of these inputs and the state held after it, if they are known. Returns
-    /// whether they are.
-    pub fn serve(&self, inputs: Option<&Inputs>, held: &mut Held, plan: &mut ShadowPlan) -> bool {
+    /// Writes the plan of these inputs and the state held after and before it, if they are known.
+    /// Returns whether they are.
+    pub fn serve(
+        &self,
+        inputs: Option<&Inputs>,
+        (held, before): (&mut Held, &mut Held),
+        plan: &mut ShadowPlan,
+    ) -> bool {
         let is_known = inputs.is_some() && self.inputs.as_ref() == inputs && self.before == *held;
         if is_known {
             plan.copy_from(&self.plan);
+            before.clone_from(&self.before);
             held.clone_from(&self.after);
         }
         is_known

@@ -236,7 +236,7 @@ impl<'a> LocalSplit<'a> {
             depth_near: depths.0,
             depth_far: depths.1,
             receiver_depths: depths,
-            filter_reach: self.frame.reach.radius_texels,
+            filter_radius_texels: self.frame.reach.radius_texels,
             warp: Some(frustum.shadow_from_world(texel, min_texel, size, (w_near, w_far))),
             light_position: Some(frustum.position),
             casters: 0..0,

@@ -48,6 +48,8 @@ pub struct Planner {
     held: Held,
     buffers: Buffers,
     plan: ShadowPlan,
+    /// True if the buffers have the state held before the last frame.
+    can_take_back: bool,
 }
 
 /// Buffers that are reused from call to call. No plan depends on them.
@@ -63,6 +65,7 @@ struct Buffers {
     kept: Kept,
     sun: SunBuffers,
     local: LocalBuffers,
+    /// State held before the last frame that was not refused.
     held: Held,
 }
 
@@ -83,7 +86,7 @@ impl Planner {
     pub fn with_options(config: &ShadowConfig, options: PlannerOptions) -> Result<Self> {
         options.check(config)?;
         let (config, held, buffers) = (config.clone(), Held::default(), Buffers::default());
-        Ok(Self { config, options, held, buffers, plan: ShadowPlan::default() })
+        Ok(Self { config, options, held, buffers, plan: ShadowPlan::default(), can_take_back: false })
     }
 
     /// Uses another config and other options from the next frame on. The held state is kept if
@@ -100,6 +103,7 @@ impl Planner {
         if !is_alike {
             self.held = Held::default();
         }
+        self.can_take_back = false;
         self.buffers.kept.clear();
         (self.config, self.options) = (config.clone(), options);
         Ok(())
@@ -135,6 +139,15 @@ impl Planner {
     /// one, or from nothing.
     pub fn set_held(&mut self, held: Held) {
         self.held = held;
+        self.can_take_back = false;
+    }
+
+    /// Takes the last frame back, which is not shown: what is held is what it was before. Does
+    /// nothing if that frame was refused, or taken back already.
+    pub fn take_back(&mut self) {
+        if std::mem::take(&mut self.can_take_back) {
+            std::mem::swap(&mut self.held, &mut self.buffers.held);
+        }
     }
 
     /// Plans the maps of one frame for one light and an image of [`PlannerOptions::image_size`];
@@ -183,7 +196,10 @@ impl Planner {
     /// warp; [`crate::Error::CameraConflict`] for splits by distance with an orthographic camera.
     /// The held state is then unchanged, and the plan is of no use.
     pub fn plan_into(&mut self, inputs: &PlanInputs<'_>, plan: &mut ShadowPlan) -> Result<()> {
-        plan_with((&self.config, &self.options), inputs, &mut self.held, &mut self.buffers, plan)
+        self.can_take_back = false;
+        plan_with((&self.config, &self.options), inputs, &mut self.held, &mut self.buffers, plan)?;
+        self.can_take_back = true;
+        Ok(())
     }
 }
 
@@ -214,7 +230,7 @@ fn plan_with(
 ) -> Result<()> {
     inputs.check()?;
     let known = kept::Inputs::of(inputs);
-    if buffers.kept.serve(known.as_ref(), held, plan) {
+    if buffers.kept.serve(known.as_ref(), (held, &mut buffers.held), plan) {
         buffers.visited = Visited::default();
         return Ok(());
     }

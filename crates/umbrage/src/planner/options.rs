@@ -10,7 +10,7 @@ use crate::{Error, Result, ShadowConfig};
 /// use umbrage::{FilterReach, Planner, PlannerOptions, ShadowConfig};
 ///
 /// // An engine with a filter of its own, which reads texels up to 2 away from the sample.
-/// let reach = FilterReach { radius_texels: 2.0, half_width_m: None };
+/// let reach = FilterReach { radius_texels: 2.0, radius_m: None };
 /// let options = PlannerOptions { filter_reach: Some(reach), ..PlannerOptions::default() };
 /// let planner = Planner::with_options(&ShadowConfig::default(), options)?;
 /// # Ok::<(), umbrage::Error>(())

@@ -39,7 +39,7 @@ pub(super) fn placed(
         depth_near: listed.target.depth.0,
         depth_far: listed.target.depth.1,
         receiver_depths: listed.target.depth,
-        filter_reach: size.still_reach,
+        filter_radius_texels: size.still_reach,
         warp: None,
         light_position: None,
         casters: 0..0,
@@ -68,8 +68,8 @@ fn fitted(mut split: Split, target: &Region, fan: &Fan, reach: FilterReach) -> S
     let longest = (hi - lo).max_element();
     // A target without width (a wall seen edge-on by the light) still gets texels of some size.
     let extent = (hi - lo).max(DVec2::splat(1e-3 * longest.max(1e-3)));
-    split.filter_reach = reach.texels(extent.min_element(), split.size, 2.0 * EDGE_TEXELS);
-    split.texel_m = extent / (f64::from(split.size) - 2.0 * (split.filter_reach + EDGE_TEXELS));
+    split.filter_radius_texels = reach.texels(extent.min_element(), split.size, 2.0 * EDGE_TEXELS);
+    split.texel_m = extent / (f64::from(split.size) - 2.0 * (split.filter_radius_texels + EDGE_TEXELS));
     split.min_texel = 0.5 * (lo + hi) / split.texel_m - 0.5 * f64::from(split.size);
     split
 }
@@ -85,8 +85,8 @@ fn stepped(
 ) -> Split {
     (split.u_axis, split.v_axis) = fan.axes(held.direction);
     let size = f64::from(split.size);
-    split.filter_reach = reach.texels(held.extent.min_element(), split.size, 2.0 * EDGE_TEXELS + 1.0);
-    split.texel_m = held.extent / (size - 2.0 * (split.filter_reach + EDGE_TEXELS) - 1.0);
+    split.filter_radius_texels = reach.texels(held.extent.min_element(), split.size, 2.0 * EDGE_TEXELS + 1.0);
+    split.texel_m = held.extent / (size - 2.0 * (split.filter_radius_texels + EDGE_TEXELS) - 1.0);
     split.min_texel = (held.center(target) / split.texel_m - 0.5 * size).round();
     (split.depth_near, split.depth_far) = depth;
     split

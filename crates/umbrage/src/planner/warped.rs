@@ -76,7 +76,7 @@ impl WarpPoints {
         };
         split.warp = Some(with_depth_room(matrix));
         let middle = self.receivers.iter().sum::<DVec3>() / self.receivers.len() as f64;
-        split.texel_m = split.texel_edges(middle);
+        split.texel_m = split.texel_size_m(middle);
     }
 
     /// The map cropped to its casters; `inside` is the half edge that points may take. A map with a

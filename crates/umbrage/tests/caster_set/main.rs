@@ -23,8 +23,10 @@ fn list(set: &CasterSet, layers: Layers, is_asked: impl Fn(&Caster) -> bool) -> 
 
 /// The plan of a list with the keys of a set.
 fn renamed(plan: &ShadowPlan, keys: &[u32]) -> ShadowPlan {
-    let caster_indices = plan.caster_indices.iter().map(|&index| keys[index as usize]).collect();
-    ShadowPlan { caster_indices, split_range: Vec::new(), ..plan.clone() }
+    let mut renamed = plan.clone();
+    renamed.caster_indices.iter_mut().for_each(|index| *index = keys[*index as usize]);
+    renamed.split_range.clear();
+    renamed
 }
 
 /// A technique: a config and what a device says.

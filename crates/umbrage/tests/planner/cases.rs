@@ -58,8 +58,8 @@ pub fn settings() -> impl Strategy<Value = (ShadowConfig, PlannerOptions)> {
     ];
     let warps = prop_oneof![Just(vec![]), prop::collection::vec(warp.clone(), 1), prop::collection::vec(warp, 8)];
     let filter = prop_oneof![
-        2 => (0.5..3.0f64).prop_map(|texels| FilterReach { radius_texels: texels, half_width_m: None }),
-        1 => prop_oneof![Just(0.0), 0.0..0.5f64, 0.5..40.0f64].prop_map(|metres| FilterReach { radius_texels: 16.0, half_width_m: Some(metres) })
+        2 => (0.5..3.0f64).prop_map(|texels| FilterReach { radius_texels: texels, radius_m: None }),
+        1 => prop_oneof![Just(0.0), 0.0..0.5f64, 0.5..40.0f64].prop_map(|metres| FilterReach { radius_texels: 16.0, radius_m: Some(metres) })
     ];
     (1usize..=8, scheme, range, any::<[bool; 3]>(), stability, prop_oneof![Just(0.0), 0.0..0.5f64], filter, warps)
         .prop_map(|(m, scheme, range, [dependent, depth_clamp, visible], stability, share, filter_reach, mut warps)| {

@@ -92,7 +92,7 @@ proptest! {
                 let s = &plan.splits[split];
                 if let Some(warp) = s.warp {
                     prop_assert!((warp * point.extend(1.0)).w > 0.0, "{point} at {depth} m lies behind the warp of split {split}");
-                    let inside = case.settings.crop == Crop::SceneDependent || s.contains(point, s.filter_reach);
+                    let inside = case.settings.crop == Crop::SceneDependent || s.contains(point, s.filter_radius_texels);
                     prop_assert!(inside, "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
                 }
                 for (index, bounds) in case.boxes.iter().enumerate() {
@@ -103,7 +103,7 @@ proptest! {
                     let (at, reach) = (point - direction * end, 0.02 * (bounds.max - bounds.min));
                     let part = Aabb::new((at - reach).max(bounds.min), (at + reach).min(bounds.max));
                     prop_assert!(!part.is_valid() || plan.casts_into(split, &part), "split {split} leaves out {part:?} of caster {index}, which shades {point}");
-                    prop_assert!(s.contains(point, s.filter_reach), "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
+                    prop_assert!(s.contains(point, s.filter_radius_texels), "{point} at {depth} m lies at {} in split {split}", s.map_from_world(point));
                     let along = s.depth_axis.dot(point);
                     prop_assert!((s.receiver_depths.0..=s.receiver_depths.1).contains(&along), "{point} at {along} m along the light, outside {:?}", s.receiver_depths);
                     let caster_begin = direction.dot(point - direction * end);
@@ -131,9 +131,9 @@ proptest! {
             // A kernel of known width has its room, and no map gives away more.
             let reach = case.options.filter_reach.expect("a reach");
             let most = reach.radius_texels;
-            let asked = reach.half_width_m.map_or(most, |m| m / split.texel_m.min_element() + 1.0);
+            let asked = reach.radius_m.map_or(most, |m| m / split.texel_m.min_element() + 1.0);
             let reach = if split.warp.is_some() { most } else { asked.max(4.0).min(most) };
-            prop_assert!((split.filter_reach - reach).abs() < 1e-6 * reach || split.warp.is_none() && split.filter_reach == most, "{} for {asked}", split.filter_reach);
+            prop_assert!((split.filter_radius_texels - reach).abs() < 1e-6 * reach || split.warp.is_none() && split.filter_radius_texels == most, "{} for {asked}", split.filter_radius_texels);
             prop_assert!(split.u_axis.cross(split.v_axis).abs_diff_eq(split.depth_axis, 1e-9), "the axes are no right-handed frame");
             for &caster in plan.casters(i) {
                 listed[caster as usize].push(i);
@@ -181,12 +181,12 @@ proptest! {
         let direction = case.light.direction();
         for (owner, point, depth) in visible_points(&case, plan.planes[plan.splits.len()]) {
             let holders: Vec<usize> = (0..plan.splits.len())
-                .filter(|&i| !plan.splits[i].casters.is_empty() && plan.splits[i].contains(point, plan.splits[i].filter_reach))
+                .filter(|&i| !plan.splits[i].casters.is_empty() && plan.splits[i].contains(point, plan.splits[i].filter_radius_texels))
                 .collect();
             // Along a map's edge the next one is asked too.
             let in_band = holders.first().is_some_and(|&first| {
                 let band = 0.5 * plan.blend * f64::from(plan.splits[first].size);
-                !plan.splits[first].contains(point, plan.splits[first].filter_reach + band)
+                !plan.splits[first].contains(point, plan.splits[first].filter_radius_texels + band)
             });
             let asked = if in_band { 2 } else { 1 };
             for (index, bounds) in case.boxes.iter().enumerate() {
@@ -347,20 +347,23 @@ fn a_range_without_end_stops_at_the_scene() {
 }
 
 #[test]
-fn maps_that_stand_exactly_still_take_nothing_from_what_was_seen() {
+fn what_was_seen_counts_for_maps_that_are_fitted_to_it_alone() {
     let boxes = robots(2000);
     let seen: Vec<Aabb> = boxes.iter().step_by(3).map(|it| Aabb::new(it.min, 0.5 * (it.min + it.max))).collect();
     let lens = Frustum::perspective(1.0, 4.0 / 3.0, 0.1, 500.0).unwrap();
     let view = View::look_at_upright(DVec3::new(-5.0, 2.0, -8.0), DVec3::new(20.0, 0.0, 30.0), lens).unwrap();
     let sun = DirectionalLight::new(DVec3::new(0.3, -0.6, 0.5)).unwrap();
-    let plan = |stability, seen| {
-        let config = ShadowConfig { stability, fit_to: FitTo::Depth, ..ShadowConfig::default() };
+    let plan = |fit_to, seen| {
+        let config = ShadowConfig { fit_to, ..ShadowConfig::default() };
         let inputs = PlanInputs { seen, ..PlanInputs::new(&view, sun, &boxes, &boxes) };
         Planner::new(&config).unwrap().plan_frame(&inputs).unwrap().clone()
     };
-    assert!(plan(Stability::Exact, Some(&seen)) == plan(Stability::Exact, None));
-    // Others do take something from it.
-    assert!(plan(ShadowConfig::default().stability, Some(&seen)) != plan(ShadowConfig::default().stability, None));
+    assert!(plan(FitTo::Boxes, Some(&seen)) == plan(FitTo::Boxes, None));
+    assert!(plan(FitTo::Depth, Some(&seen)) != plan(FitTo::Depth, None));
+    // Maps that stand exactly still show whole slices, so they cannot be asked to be fitted to it.
+    let still = ShadowConfig { fit_to: FitTo::Depth, ..Preset::Still.config() };
+    let told = Planner::new(&still).unwrap_err().to_string();
+    assert!(told.contains("fit-to depth") && told.contains("stabilize exact"), "{told}");
 }
 
 /// A flat box that the sun runs along, before an eye that looks into the sun: no slice has a cost.
@@ -385,7 +388,7 @@ fn optimal_planes_rise_where_nothing_tells_them_apart() {
         ..Preset::Papers.config()
     };
     let options = umbrage::PlannerOptions {
-        filter_reach: Some(umbrage::FilterReach { radius_texels: 0.5, half_width_m: None }),
+        filter_reach: Some(umbrage::FilterReach { radius_texels: 0.5, radius_m: None }),
         ..Default::default()
     };
     let mut planner = Planner::with_options(&config, options).unwrap();
