@@ -1,6 +1,7 @@
 //! Planners of each view and light: the part of a frame that needs no GPU.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
 use umbrage::{PlanInputs, Planner, PlannerOptions, ShadowConfig, ShadowPlan};
@@ -35,12 +36,13 @@ impl Planning {
     /// Plans a frame: each light by its config. A refused frame leaves what is held as it was.
     pub fn plan(&mut self, configs: &[ShadowConfig], options: PlannerOptions, inputs: &Inputs<'_>) -> Result<()> {
         let [casters, receivers] = inputs.boxes()?;
-        let slot = inputs.view_slot;
-        if !self.views.contains_key(&slot) {
-            let fresh = configs.iter().map(|config| Planner::with_options(config, options));
-            self.views.insert(slot, fresh.collect::<Result<_, _>>()?);
-        }
-        let planners = self.views.get_mut(&slot).map_or(&mut [][..], Vec::as_mut_slice);
+        let planners = match self.views.entry(inputs.view_slot) {
+            Entry::Occupied(there) => there.into_mut(),
+            Entry::Vacant(place) => {
+                let fresh = configs.iter().map(|config| Planner::with_options(config, options));
+                place.insert(fresh.collect::<Result<_, _>>()?)
+            }
+        };
         self.plans.resize_with(planners.len(), Arc::default);
         for (light, &given) in inputs.lights.iter().enumerate().take(planners.len()) {
             let of_light = PlanInputs {

@@ -44,8 +44,7 @@ pub(super) fn camera(
     }
     let sight = z.truncate().try_normalize().ok_or_else(foreign)?;
     let along = sight.dot(forward.ok_or(Error::OrthographicDirection)?.normalize_or_zero());
-    // Not finite is not greater either.
-    if !(along.abs() > SKEW) {
+    if along.is_nan() || along.abs() <= SKEW {
         return Err(Error::camera("forward", along, "a finite vector that is not across the line of sight"));
     }
     orthographic(x, y, z, sight * along.signum(), depth).ok_or_else(foreign)
