@@ -22,8 +22,8 @@ pub struct FilterReach {
     pub radius_texels: f64,
     /// Half the width of the filter's kernel in metres, up to 1000 km, if it is known. Splits in
     /// which this is less than `radius_texels` keep a margin of as many metres, and of at least 4
-    /// texels ([`crate::Split::filter_radius_texels`]). With `None` all splits keep `radius_texels`.
-    /// Warped maps and those of local lights always do.
+    /// texels ([`crate::Split::filter_radius_texels`]). With `None` all splits keep
+    /// `radius_texels`. Warped maps and those of local lights always do.
     pub radius_m: Option<f64>,
 }
 

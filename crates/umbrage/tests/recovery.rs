@@ -55,8 +55,8 @@ fn either(ratio: f64) -> f64 {
 }
 
 /// The step of a recovery from one plan to another in so many frames: 9 %, or the step that takes
-/// each map and plane all the way in the rounds that are left. With five planes and more, rounds may
-/// go back again.
+/// each map and plane all the way in the rounds that are left. With five planes and more, rounds
+/// may go back again.
 fn step(from: &ShadowPlan, to: &ShadowPlan, frames: usize) -> f64 {
     let splits = from.splits.len();
     let planes = from.planes.iter().zip(&to.planes).skip(1).map(|(from, to)| either(from / to));
@@ -192,9 +192,9 @@ proptest! {
         prop_assert!(left <= 1.1, "{} times a fresh planner's texels, planes {:?} for {:?}", left, plans[FRAMES].planes, fresh.planes);
     }
 
-    /// Maps that stand almost still are fitted to what their slices show, which changes by more than
-    /// a step where a plane passes something, and on both sides of it. They recover as far, in few
-    /// frames, and then stand.
+    /// Maps that stand almost still are fitted to what their slices show, which changes by more
+    /// than a step where a plane passes something, and on both sides of it. They recover as far, in
+    /// few frames, and then stand.
     #[test]
     fn almost_still_maps_recover_and_stand(config in almost_still(), walk in walk()) {
         let (plans, fresh) = stand(&config, &walk, FRAMES + 20)?;

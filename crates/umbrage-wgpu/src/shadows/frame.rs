@@ -147,8 +147,8 @@ impl<'a> ShadowMap<'a> {
     }
 
     /// Returns whether a part of one of the casters, given by its world box, has to be drawn: in a
-    /// region by [`umbrage::KeptRegion::casts_into`], in a map by [`ShadowPlan::casts_into`]. Skipping
-    /// what it rejects never changes a visible pixel or a kept texel.
+    /// region by [`umbrage::KeptRegion::casts_into`], in a map by [`ShadowPlan::casts_into`].
+    /// Skipping what it rejects never changes a visible pixel or a kept texel.
     #[must_use]
     pub fn casts_into(&self, part: &Aabb) -> bool {
         match self.region() {

@@ -97,8 +97,8 @@ fn perspective(x: DVec4, y: DVec4, z: DVec4, w: DVec4, depth: DepthConvention) -
     Some((eye, axes, if is_mirrored { frustum.mirrored() } else { frustum }))
 }
 
-/// The camera from rows that are scaled so that w is 1, and the line of sight. The eye lies in the middle, so
-/// that a mirrored camera has the sides of one that is not.
+/// The camera from rows that are scaled so that w is 1, and the line of sight. The eye lies in the
+/// middle, so that a mirrored camera has the sides of one that is not.
 fn orthographic(x: DVec4, y: DVec4, z: DVec4, sight: DVec3, depth: DepthConvention) -> Option<(DVec3, DMat3, Frustum)> {
     let (axes, _) = axes(x.truncate(), y.truncate(), sight)?;
     let forward = -axes.z_axis;

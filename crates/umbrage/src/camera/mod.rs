@@ -79,8 +79,8 @@ impl View {
     ///
     /// # Errors
     /// As [`View::from_world_from_view`] and [`Frustum::from_projection_matrix`];
-    /// [`Error::OrthographicDirection`] for an orthographic camera whose range lies on both sides of
-    /// its eye: a left-handed one has the matrices of a reversed one then.
+    /// [`Error::OrthographicDirection`] for an orthographic camera whose range lies on both sides
+    /// of its eye: a left-handed one has the matrices of a reversed one then.
     pub fn from_matrices(
         world_from_view: impl Into<Matrix>,
         clip_from_view: impl Into<Matrix>,
@@ -104,7 +104,8 @@ impl View {
     }
 
     /// A view from the view-projection matrix of a perspective camera alone: right- or left-handed,
-    /// reversed or not, with a finite or infinite far plane, symmetric or off-axis, mirrored or not.
+    /// reversed or not, with a finite or infinite far plane, symmetric or off-axis, mirrored or
+    /// not.
     ///
     /// # Errors
     /// [`Error::InvalidCamera`] if the matrix is singular, holds NaN, or is no projection of a
@@ -118,12 +119,13 @@ impl View {
     /// reversed or not, symmetric or off-axis, mirrored or not. The matrix alone does not say which
     /// way the camera looks: `forward` does, any world vector within a right angle of it.
     ///
-    /// The eye is not in the matrix either: it is put a hundredth of the range's length before near.
+    /// The eye is not in the matrix either: it is put a hundredth of the range's length before
+    /// near.
     ///
     /// # Errors
-    /// As [`View::from_clip_from_world`], and [`Error::InvalidCamera`] for a `forward` that is across
-    /// the line of sight or not finite. A perspective matrix has a direction, and `forward` is not
-    /// asked for.
+    /// As [`View::from_clip_from_world`], and [`Error::InvalidCamera`] for a `forward` that is
+    /// across the line of sight or not finite. A perspective matrix has a direction, and `forward`
+    /// is not asked for.
     pub fn from_orthographic(
         clip_from_world: impl Into<Matrix>,
         forward: DVec3,
