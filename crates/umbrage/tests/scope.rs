@@ -206,3 +206,27 @@ fn without_receivers_in_view_casters_show_shadows() {
         assert_eq!(plan.splits, all.splits);
     }
 }
+
+/// What is very far away is left out by where it begins, and not by how far a shadow falls on what
+/// begins near: a roof's shadow on a wide ground, with and without a tiny box far below.
+#[test]
+fn a_far_object_takes_no_shadow_from_a_ground_that_begins_near() {
+    let slope = 0.5939694531055459_f64.atan2(0.8044875939239204).tan();
+    let direction = DVec3::new(slope, -1.0, 0.0).normalize();
+    let sun = DirectionalLight::new(direction).expect("a sun");
+    let lens = Frustum::perspective(2.0, 1.2, 0.01, f64::INFINITY).expect("a lens");
+    let eye = DVec3::new(-6.6, 29.6, 11.8);
+    let view = View::look_at_upright(eye, eye + direction, lens).expect("a view");
+    let roof = Aabb::new(DVec3::new(0.0, 4.4, 29.6), DVec3::new(69.0, 4.4, 84.7));
+    let ground = Aabb::new(DVec3::new(-17_700.0, 0.0, -17_700.0), DVec3::new(17_700.0, 0.0, 17_700.0));
+    let far = Aabb::new(DVec3::new(-162.0, -164_600.0, -162.0), DVec3::new(162.0, -164_270.0, 162.0));
+    // Its shadow lies near, and the range follows the shadows.
+    let post = Aabb::new(DVec3::new(-25.45, 0.0, 0.0), DVec3::new(-25.4, 10.0, 0.05));
+    let point = DVec3::new(53.4, 0.0, 71.8);
+    for boxes in [vec![roof, ground, post], vec![roof, ground, post, far]] {
+        let mut planner = Planner::new(&Preset::Papers.config()).expect("settings");
+        let plan = planner.plan(&view, &sun, &boxes, &boxes).expect("a plan");
+        let (depth, end) = (plan.depth_at(point), plan.planes[plan.splits.len()]);
+        assert!(depth < end, "{} boxes: the range ends at {end} m, the roof's shadow lies {depth} m deep", boxes.len());
+    }
+}

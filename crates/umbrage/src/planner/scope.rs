@@ -41,8 +41,12 @@ const MOST_SHEETS: usize = 8;
 pub(super) struct Scope<'a> {
     frame: &'a Frame<'a>,
     direction: DVec3,
-    /// Distance from the camera in metres beyond which no receiver is relevant.
+    /// Distance from the camera in metres beyond which no receiver is relevant: one that begins
+    /// there or farther.
     distance: f64,
+    /// Distance from the camera in metres beyond which no shadow is relevant: where the relevant
+    /// receivers end.
+    shadow_distance: f64,
 }
 
 /// Extent of the relevant part of the scene.
@@ -59,7 +63,8 @@ pub(super) struct Extent {
 
 impl<'a> Scope<'a> {
     pub fn new(frame: &'a Frame<'a>, sun: &Sun<'_>) -> Self {
-        Self { frame, direction: sun.direction, distance: visible_distance(frame) }
+        let [distance, shadow_distance] = visible_distances(frame);
+        Self { frame, direction: sun.direction, distance, shadow_distance }
     }
 
     /// Returns whether a receiver, or any receiver in a box, is relevant.
@@ -74,12 +79,12 @@ impl<'a> Scope<'a> {
 
     /// Measures the extent of the relevant part of the scene.
     pub fn extent(&self) -> Extent {
-        let &Self { frame, direction, distance } = self;
+        let &Self { frame, direction, shadow_distance, .. } = self;
         let matters = |receiver: &Placed| self.matters(receiver);
         let bounds = frame.receivers.bounds(matters);
         let all = Reach::most(frame.view, |of| frame.receivers.most(|r| if matters(r) { of(r) } else { NOTHING }));
         let nearest = if bounds.is_empty() { 0.0 } else { Placed::from(bounds).distance_to(frame.view.eye()) };
-        let shadows = Shadows { frame, direction, distance }.reach(&bounds);
+        let shadows = Shadows { frame, direction, distance: shadow_distance }.reach(&bounds);
         let (mut deepest, mut farthest) = (all.deepest, all.farthest);
         if shadows.farthest > 0.0 {
             let ahead = (SLACK * shadows.deepest).max(LOOKING_AWAY * shadows.farthest);
@@ -124,8 +129,9 @@ fn farthest(eye: DVec3, placed: &Placed) -> f64 {
     ((placed.center - eye).abs() + placed.half).length()
 }
 
-/// Distance from the camera in metres beyond which the image shows nothing, or almost nothing.
-fn visible_distance(frame: &Frame<'_>) -> f64 {
+/// Distances from the camera in metres beyond which the image shows nothing, or almost nothing:
+/// where receivers begin, and where those end that begin nearer.
+fn visible_distances(frame: &Frame<'_>) -> [f64; 2] {
     let (eye, frustum) = (frame.view.eye(), frame.view.frustum());
     let side = DVec2::new(frustum.left.abs().max(frustum.right.abs()), frustum.bottom.abs().max(frustum.top.abs()));
     let most = match frustum.projection {
@@ -133,15 +139,16 @@ fn visible_distance(frame: &Frame<'_>) -> f64 {
         Projection::Orthographic => maths::hypot(frustum.far.abs().max(frustum.near.abs()), side.length()),
     };
     if frustum.projection == Projection::Orthographic {
-        return most;
+        return [most; 2];
     }
     let picture = (frustum.right - frustum.left) * (frustum.top - frustum.bottom);
-    let Some(end) = Shares { frame, most, picture }.kept() else { return most };
+    let Some(end) = Shares { frame, most, picture }.kept() else { return [most; 2] };
     let reach = |within: f64| {
         let measure = |r: &Placed| if r.distance_to(eye) <= within { farthest(eye, r) } else { NOTHING };
         frame.receivers.most(measure).max(0.0)
     };
-    if reach(most).min(most) > MUCH_FARTHER * reach(end).min(most) { end } else { most }
+    let kept = reach(end).min(most);
+    if reach(most).min(most) > MUCH_FARTHER * kept { [end, kept] } else { [most; 2] }
 }
 
 /// Shares of the image that receivers fill, by their distance.
