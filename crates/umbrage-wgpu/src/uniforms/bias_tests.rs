@@ -60,7 +60,7 @@ fn lookups() -> impl Strategy<Value = Lookup> {
         2 => Just(None),
     ];
     let texels = |most: f64| (-most..most, -most..most).prop_map(DVec2::from);
-    let gap = (0.02..0.5f64, any::<bool>()).prop_map(|(gap, behind)| if behind { gap } else { -gap });
+    let gap = (0.1..0.5f64, any::<bool>()).prop_map(|(gap, behind)| if behind { gap } else { -gap });
     let at = [0.05..0.95f64, 0.05..0.95, 0.05..0.95];
     (direction, normal, kind, 0..3_usize, at, texels(4.0), texels(3.0), gap).prop_filter_map(
         "the light shines on the point",

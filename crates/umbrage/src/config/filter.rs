@@ -16,17 +16,17 @@ pub enum Filter {
     Pcf2,
     /// A tent of three texels.
     Pcf3 {
-        /// Full width in metres.
+        /// Full width in metres, of at most 3 texels of each split's map.
         width_m: Option<f64>,
     },
     /// A tent of five texels.
     Pcf5 {
-        /// Full width in metres.
+        /// Full width in metres, of at most 5 texels of each split's map.
         width_m: Option<f64>,
     },
     /// A tent of seven texels.
     Pcf7 {
-        /// Full width in metres.
+        /// Full width in metres, of at most 7 texels of each split's map.
         width_m: Option<f64>,
     },
     /// Castaño's kernel of 5×5 texels, 1, 3, 4, 3, 1 per axis, blended linearly between texels
@@ -34,7 +34,7 @@ pub enum Filter {
     Castano5,
     /// A disc of 32 bilinear comparisons. Its radius is 3 texels if no width is given.
     Disc {
-        /// Full width in metres.
+        /// Full width in metres, of at most 30 texels of each split's map.
         width_m: Option<f64>,
         /// Rotates the kernel per pixel: noise instead of banding.
         rotated: bool,
@@ -56,7 +56,8 @@ pub enum Filter {
 pub struct Moments {
     /// Kind of the moments.
     pub kind: MomentKind,
-    /// Full width of the blur across the light in metres; `None` for 8 texels of the finest map.
+    /// Full width of the blur across the light in metres, of at most 30 texels of each split's map;
+    /// `None` for 8 texels of the finest map.
     pub width_m: Option<f64>,
     /// Depth samples per texel, 1 or 4.
     pub samples: u32,

@@ -220,7 +220,7 @@ pub const RULES: &[Rule] = &[
         Choice::SunFilter,
         Choice::LocalLight,
         "the filter needs depth that is linear in metres, which only a directional light has",
-        "use another filter, such as pcf5, or a directional light",
+        "use another filter, such as disc, or a directional light",
     ),
     rule(
         Choice::VertexCoordinates,

@@ -82,7 +82,6 @@ pub enum Range {
     /// planes follow once a view needs √2 times the depth that they were placed for; the range ends
     /// at √2 times that depth at most. While the camera stands still, both return to the choice of
     /// a new planner.
-    /// planner would choose.
     Camera,
     /// The view depths between which the view shows receivers, by their boxes clipped to the
     /// frustum.
