@@ -60,7 +60,7 @@ fn lookups() -> impl Strategy<Value = Lookup> {
         2 => Just(None),
     ];
     let texels = |most: f64| (-most..most, -most..most).prop_map(DVec2::from);
-    let gap = (0.1..0.5f64, any::<bool>()).prop_map(|(gap, behind)| if behind { gap } else { -gap });
+    let gap = (0.02..0.5f64, any::<bool>()).prop_map(|(gap, behind)| if behind { gap } else { -gap });
     let at = [0.05..0.95f64, 0.05..0.95, 0.05..0.95];
     (direction, normal, kind, 0..3_usize, at, texels(4.0), texels(3.0), gap).prop_filter_map(
         "the light shines on the point",
@@ -127,6 +127,10 @@ fn agree(bias: &Bias, receiver: &Receiver, depth: f32, more: f64, offset: DVec2,
     let offset = offset.as_vec2().to_array();
     let level = depth + receiver.tilt[0] * offset[0] + receiver.tilt[1] * offset[1];
     let stored = (f64::from(level) + (edge_m + gap) / f64::from(receiver.range_m)) as f32;
+    // No map stores such a depth.
+    if !(0.0..=1.0).contains(&stored) {
+        return true;
+    }
     let beyond = [0, 1].map(|axis| stored + receiver.tilt[axis] * offset[axis].signum());
     receiver.is_shaded(offset, stored, beyond) == (gap < 0.0)
 }
@@ -146,11 +150,12 @@ proptest! {
         prop_assert!((more - own).abs() < 1e-3 * longer, "{more} m instead of {own} m");
         prop_assert!((longer - lookup.split().texel_size_m(lookup.point()).max_element()).abs() < 1e-4 * longer);
         let depth = receiver.depth + receiver.tolerance.constant;
-        let gap = lookup.gap * longer;
-        prop_assert!(agree(&bias, &receiver, depth, more, lookup.offset, gap), "{bias:?} {receiver:?}");
+        // Steep surfaces have a bias of metres, of which f32 knows a thousandth.
+        let gap = |bias: &Bias| lookup.gap.signum() * (lookup.gap.abs() * longer).max(0.01 * bias.constant_m);
+        prop_assert!(agree(&bias, &receiver, depth, more, lookup.offset, gap(&bias)), "{bias:?} {receiver:?}");
         let (flat, flat_twin) =
             (bias.without_plane(lookup.reach), receiver.without_plane(lookup.reach.as_vec2().to_array()));
-        prop_assert!(agree(&flat, &flat_twin, depth, more, lookup.offset, gap), "{flat:?} {flat_twin:?}");
+        prop_assert!(agree(&flat, &flat_twin, depth, more, lookup.offset, gap(&flat)), "{flat:?} {flat_twin:?}");
     }
 }
 
