@@ -6,6 +6,7 @@
 
 mod jobs;
 mod kept;
+mod quoted;
 mod render;
 mod table;
 
@@ -22,6 +23,7 @@ use serde::{Serialize, de::DeserializeOwned};
 use self::{
     jobs::{JOBS, Job, Kind, Scale},
     kept::{Bench, Build, Comparison, Kept},
+    render::Figures,
 };
 use crate::{
     adapter,
@@ -53,8 +55,11 @@ pub fn results(ask: Ask) -> Result<()> {
         fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
         measure(&folder, scale, ask == Ask::Resume)?;
     }
-    let text = render::page(&folder, scale)?;
-    fs::write(&page, text).with_context(|| format!("cannot write {}", page.display()))?;
+    let figures = Figures::read(&folder)?;
+    fs::write(&page, render::page(&figures, scale)?).with_context(|| format!("cannot write {}", page.display()))?;
+    if scale == Scale::Full {
+        quoted::write(&root(), &figures)?;
+    }
     eprintln!("xtask: wrote {}", page.display());
     Ok(())
 }

@@ -24,18 +24,17 @@ if its true shadow has enough edges. Decisions and what was tried: [notes](notes
 [papers.md](papers.md).";
 
 /// All kept results of one build.
-struct Figures {
+pub struct Figures {
     build: Build,
     comparisons: HashMap<&'static str, Kept<Comparison>>,
     benches: HashMap<&'static str, Kept<Bench>>,
 }
 
-/// Renders the page from the files in `folder`.
-pub fn page(folder: &Path, scale: Scale) -> Result<String> {
-    let figures = Figures::read(folder)?;
+/// Renders the page.
+pub fn page(figures: &Figures, scale: Scale) -> Result<String> {
     let mut page = figures.head(scale);
     for section in [presets, error, figure8, dueling, ladder, acne_and_leaks, stillness, filters, cost] {
-        page.push_str(&section(&figures)?);
+        page.push_str(&section(figures)?);
     }
     page.push_str(PICTURES);
     let lines = page.lines().count();
@@ -47,7 +46,7 @@ pub fn page(folder: &Path, scale: Scale) -> Result<String> {
 
 impl Figures {
     /// Reads all files, which must belong to one build.
-    fn read(folder: &Path) -> Result<Self> {
+    pub fn read(folder: &Path) -> Result<Self> {
         let mut comparisons = HashMap::new();
         let mut benches = HashMap::new();
         let mut builds: Vec<(&str, Build)> = Vec::new();
@@ -72,7 +71,8 @@ impl Figures {
         Ok(Self { build, comparisons, benches })
     }
 
-    fn comparison(&self, name: &str) -> Result<&Comparison> {
+    /// Returns the results of a job that compares.
+    pub fn comparison(&self, name: &str) -> Result<&Comparison> {
         Ok(&self.comparisons.get(name).with_context(|| format!("no job {name} compares"))?.figures)
     }
 

@@ -259,14 +259,14 @@ impl ShadowConfig {
 
     /// The config for one light among several. A choice that each light's plan makes by itself, and
     /// that excludes this kind of light, is replaced by the usual one. The second value names the
-    /// replaced choices.
+    /// replaced choices that differ from the default's: the others were made by nobody.
     #[must_use]
     pub fn for_light(&self, kind: LightKind) -> (Self, Vec<String>) {
-        let (mut config, mut notes) = (self.clone(), Vec::new());
+        let (mut config, mut notes, default) = (self.clone(), Vec::new(), Self::default());
         for rule in Rule::of_plans() {
             if rule.is_broken_by(&config, &[kind]) {
                 let said = rule.first.say(&config);
-                if rule.first.relax(&mut config) {
+                if rule.first.relax(&mut config) && said != rule.first.say(&default) {
                     notes.push(format!("{said} is ignored for a spot or point light: {}", rule.reason));
                 }
             }

@@ -29,10 +29,14 @@ fn example() -> tempfile::TempDir {
     folder
 }
 
+fn rendered(folder: &Path, scale: Scale) -> Result<String> {
+    page(&Figures::read(folder)?, scale)
+}
+
 #[test]
 fn the_page_has_every_section_and_every_command() {
     let folder = example();
-    let page = page(folder.path(), Scale::Tiny).unwrap_or_else(|error| panic!("{error:#}"));
+    let page = rendered(folder.path(), Scale::Tiny).unwrap_or_else(|error| panic!("{error:#}"));
     for heading in ["Presets", "Error", "Dueling frusta", "Acne and leaks", "Stillness", "Filters", "Pictures"] {
         assert!(page.contains(&format!("\n## {heading}\n")), "{heading}\n{page}");
     }
@@ -59,7 +63,7 @@ fn a_page_without_a_figure_is_refused() {
             });
             object.as_object_mut().expect("keys are in objects").remove(last);
             fs::write(&file, compact(&less)).expect("the folder can be written");
-            let error = page(folder.path(), Scale::Tiny).err();
+            let error = rendered(folder.path(), Scale::Tiny).err();
             let error = format!("{:#}", error.unwrap_or_else(|| panic!("{}: without {path:?}", job.name)));
             assert!(error.contains(last.as_str()) || error.contains("soft"), "{path:?}: {error}");
             removed += 1;
@@ -67,7 +71,7 @@ fn a_page_without_a_figure_is_refused() {
         fs::write(&file, compact(&whole)).expect("the folder can be written");
     }
     assert!(removed > 200, "{removed} keys");
-    page(folder.path(), Scale::Tiny).expect("whole again");
+    rendered(folder.path(), Scale::Tiny).expect("whole again");
 }
 
 /// Returns the paths of all keys, of the first item of each array.
@@ -91,7 +95,7 @@ fn figures_of_two_builds_make_no_page() {
     let mut other: Value = read(&file).expect("the example is JSON");
     other["build"]["commit"] = "another".into();
     fs::write(&file, compact(&other)).expect("the folder can be written");
-    let error = page(folder.path(), Scale::Tiny).expect_err("two builds").to_string();
+    let error = rendered(folder.path(), Scale::Tiny).expect_err("two builds").to_string();
     assert!(error.contains("another") && error.contains(JOBS[3].name), "{error}");
 }
 
@@ -99,7 +103,7 @@ fn figures_of_two_builds_make_no_page() {
 fn the_page_in_the_documents_is_that_of_the_kept_figures() {
     let there = fs::read_to_string(page_file()).expect("docs/results.md");
     let expected = if file_of(&kept_folder(), &JOBS[0]).exists() {
-        page(&kept_folder(), Scale::Full).unwrap_or_else(|error| panic!("{error:#}"))
+        rendered(&kept_folder(), Scale::Full).unwrap_or_else(|error| panic!("{error:#}"))
     } else {
         UNMEASURED.to_owned()
     };
