@@ -208,7 +208,8 @@ pub struct MaskText {
 
 /// WGSL of a whole pass to put after a [`receiver`]: the entry points `umbrage_mask_vertex` and
 /// `umbrage_mask_fragment` convert an image's depth, and its normals where there are some, to a
-/// mask of visibility.
+/// mask of visibility. The uniform of binding 0 is read by vertices alone, what else there is by
+/// fragments.
 #[must_use]
 pub fn mask(group: u32, choices: MaskText) -> String {
     let MaskText { normals, footprint, bounds } = choices;

@@ -167,19 +167,16 @@ impl ShadowMask {
         // Where one map is used again and again, all but the last are gone when the picture's depth
         // is complete.
         ShadowConfig { coordinates: Coordinates::Deferred, ..maps.config().clone() }.validate()?;
-        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty,
-            count: None,
-        };
+        let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
         let texture = |binding, sample_type| {
             let view_dimension = wgpu::TextureViewDimension::D2;
-            entry(binding, wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false })
+            let ty = wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false };
+            entry(binding, wgpu::ShaderStages::FRAGMENT, ty)
         };
         let mut entries = vec![
             entry(
                 0,
+                wgpu::ShaderStages::VERTEX,
                 wgpu::BindingType::Buffer {
                     ty: wgpu::BufferBindingType::Uniform,
                     has_dynamic_offset: false,

@@ -1036,20 +1036,25 @@ fn umbrage_select_choose_by_depth(frame: u32, depth: f32, slice: u32) -> Umbrage
 @if(by_map)
 fn umbrage_select_choose_by_map(frame: u32, point: UmbragePoint) -> UmbrageChoice {
     let split_count = umbrage_frames[frame].split_count + umbrage_zero(point.position.x);
-    var index = split_count;
-    var next = split_count;
-    var depth_inside = 0.0;
-    for (var i = 0u; i < UMBRAGE_SPLITS; i++) {
-        let it = UMBRAGE_SPLITS - 1u - i;
-        let within = umbrage_select_inside(frame, it, point);
-        let contains = (within >= 0.0) & (it < split_count);
-        next = select(next, index, contains);
-        index = select(index, it, contains);
-        depth_inside = select(depth_inside, within, contains);
+    let map_blend = umbrage_frames[frame].map_blend;
+    var choice = UmbrageChoice(split_count, split_count, 0.0);
+    var i = 0u;
+    loop {
+        let within = umbrage_select_inside(frame, i, point);
+        let contains = (within >= 0.0) & (i < split_count);
+        let is_first = contains & (choice.index == split_count);
+        let band = 0.5 * map_blend * umbrage_frames[frame].splits[i].size;
+        choice.next = select(choice.next, i, contains & (choice.index < i));
+        choice.share = select(choice.share, select(1.0 - within / band, 0.0, within >= band), is_first);
+        choice.index = select(choice.index, i, is_first);
+        i++;
+        let is_alone = (choice.index < i) & (choice.share == 0.0);
+        if is_alone | (choice.next < i) | (i >= split_count) {
+            break;
+        }
     }
-    let band = 0.5 * umbrage_frames[frame].map_blend * umbrage_frames[frame].splits[min(index, 7u)].size;
-    let is_inner = (next == split_count) | (depth_inside >= band);
-    return UmbrageChoice(index, next, select(1.0 - depth_inside / band, 0.0, is_inner));
+    choice.share = select(choice.share, 0.0, choice.next == split_count);
+    return choice;
 }
 
 @if(by_map)
