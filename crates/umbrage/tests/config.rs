@@ -248,11 +248,10 @@ fn a_lamp_beside_a_sun_leaves_the_suns_choices_alone() {
     assert!(of_sun == sharp && none.is_empty());
     let (of_lamp, notes) = sharp.for_light(LightKind::Point);
     assert_eq!(of_lamp.validate_for(&[LightKind::Point]), Ok(()));
-    // Sharp's own choice is named; its planes are the default's.
-    assert!(matches!(&notes[..], [one] if one.contains("spot or point light")), "{notes:?}");
-    // The default's choices were made by nobody, so that no note names them.
-    let (of_lamp, notes) = ShadowConfig::default().for_light(LightKind::Spot);
-    assert!(of_lamp != ShadowConfig::default() && notes.is_empty(), "{notes:?}");
+    // Sharp's planes and selection are the default's, and the default's choices were made by nobody.
+    assert!(of_lamp != sharp && notes.is_empty(), "{notes:?}");
+    let (_, notes) = config("warp=tsm").unwrap().for_light(LightKind::Point);
+    assert!(matches!(&notes[..], [one] if one.contains("is ignored for a spot or point light")), "{notes:?}");
     // What all maps share is no light's own.
     for shared in ["filter=pcss", "filter=vsm", "storage=atlas", "coordinates=split"] {
         let told = config(shared).unwrap().validate_shared(&lights);
