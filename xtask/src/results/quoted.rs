@@ -74,7 +74,9 @@ fn read(root: &Path, file: &str) -> Result<String> {
 fn with_figure(text: &str, quote: &Quote, figure: &str) -> Result<String> {
     let Quote { file, after, .. } = quote;
     let [before, rest] = text.split(after).collect::<Vec<_>>()[..] else {
-        bail!("{file} does not have \"{after}\" once; change the list in xtask/src/results/quoted.rs with the document");
+        bail!(
+            "{file} does not have \"{after}\" once; change the list in xtask/src/results/quoted.rs with the document"
+        );
     };
     let end = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
     if end == 0 {
@@ -187,7 +189,8 @@ mod tests {
     #[test]
     fn a_number_is_replaced_and_nothing_else() {
         let quote = Quote { file: "a.md", after: "it is **", figure: |_| Ok(String::new()) };
-        let changed = with_figure("First 1.0, then it is **0.25 %**, not 3.", &quote, "0.3").expect("the text is there");
+        let changed =
+            with_figure("First 1.0, then it is **0.25 %**, not 3.", &quote, "0.3").expect("the text is there");
         assert_eq!(changed, "First 1.0, then it is **0.3 %**, not 3.");
         for text in ["nothing", "it is **1** and it is **2**", "it is **no number"] {
             let error = with_figure(text, &quote, "0.3").expect_err(text).to_string();

@@ -479,13 +479,13 @@ fn umbrage_disc_vogel(i: u32, count: u32, turn: f32) -> vec2f {
 @if(disc)
 fn umbrage_disc_shares(layer: UmbrageLayer, at: UmbrageReceiver, centre: vec2f, wide: vec2f, turn: f32) -> vec3f {
     let spread = sqrt(max(wide * wide - UMBRAGE_DISC_TAP_SPREAD, vec2f(0.0)));
-    var seen = vec3f(0.0);
+    var seen = vec4f(0.0);
     for (var i = 0u; i < UMBRAGE_DISC_DISC_TAPS; i++) {
         let texel = centre + spread * umbrage_disc_vogel(i, UMBRAGE_DISC_DISC_TAPS, turn);
         let first = floor(texel - 0.5);
         seen += umbrage_texel_four(layer, at, first, texel - 0.5 - first);
     }
-    return seen / f32(UMBRAGE_DISC_DISC_TAPS);
+    return seen.xyz / max(seen.w, 1.0);
 }
 
 @if(pcss)
@@ -1100,6 +1100,9 @@ fn umbrage_texel_compare(layer: UmbrageLayer, texel: vec2f, depth: f32) -> f32 {
     return umbrage_map_compare(layer.index, texel + layer.offset, layer.texels, depth);
 }
 
+@if(disc)
+const UMBRAGE_TEXEL_TELLING_TEXELS: f32 = 2.0;
+
 fn umbrage_texel_of_comparison(lit: f32) -> vec3f {
     return vec3f(lit, lit, 0.0);
 }
@@ -1152,10 +1155,19 @@ fn umbrage_texel_with_crease(layer: UmbrageLayer, at: UmbrageReceiver, is_asked:
 }
 
 @if(disc)
-fn umbrage_texel_four(layer: UmbrageLayer, at: UmbrageReceiver, first: vec2f, second: vec2f) -> vec3f {
-    let upper = mix(umbrage_texel_texel_seen(layer, at, first), umbrage_texel_texel_seen(layer, at, first + vec2f(1.0, 0.0)), second.x);
-    let lower = mix(umbrage_texel_texel_seen(layer, at, first + vec2f(0.0, 1.0)), umbrage_texel_texel_seen(layer, at, first + 1.0), second.x);
+fn umbrage_texel_four(layer: UmbrageLayer, at: UmbrageReceiver, first: vec2f, second: vec2f) -> vec4f {
+    let upper = mix(umbrage_texel_texel_told(layer, at, first), umbrage_texel_texel_told(layer, at, first + vec2f(1.0, 0.0)), second.x);
+    let lower = mix(umbrage_texel_texel_told(layer, at, first + vec2f(0.0, 1.0)), umbrage_texel_texel_told(layer, at, first + 1.0), second.x);
     return mix(upper, lower, second.y);
+}
+
+@if(disc)
+fn umbrage_texel_texel_told(layer: UmbrageLayer, at: UmbrageReceiver, first: vec2f) -> vec4f {
+    let offset = first + 0.5 - at.texel;
+    let stored = umbrage_map_load(layer.index, vec2i(floor(first + 0.5 + layer.offset)));
+    let is_far = dot(offset, offset) > UMBRAGE_TEXEL_TELLING_TEXELS * UMBRAGE_TEXEL_TELLING_TEXELS;
+    let is_silent = is_far && umbrage_bias_is_past(at, offset, stored) && !umbrage_bias_lies_behind(at, offset, stored);
+    return select(vec4f(umbrage_texel_texel_seen(layer, at, first), 1.0), vec4f(0.0), is_silent);
 }
 
 fn umbrage_tint_of_split(index: u32) -> vec3f {

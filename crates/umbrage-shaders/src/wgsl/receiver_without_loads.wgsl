@@ -382,13 +382,13 @@ fn umbrage_disc_vogel(i: u32, count: u32, turn: f32) -> vec2f {
 @if(disc)
 fn umbrage_disc_shares(layer: UmbrageLayer, at: UmbrageReceiver, centre: vec2f, wide: vec2f, turn: f32) -> vec3f {
     let spread = sqrt(max(wide * wide - UMBRAGE_DISC_TAP_SPREAD, vec2f(0.0)));
-    var seen = vec3f(0.0);
+    var seen = vec4f(0.0);
     for (var i = 0u; i < UMBRAGE_DISC_DISC_TAPS; i++) {
         let texel = centre + spread * umbrage_disc_vogel(i, UMBRAGE_DISC_DISC_TAPS, turn);
         let first = floor(texel - 0.5);
         seen += umbrage_texel_four(layer, at, first, texel - 0.5 - first);
     }
-    return seen / f32(UMBRAGE_DISC_DISC_TAPS);
+    return seen.xyz / max(seen.w, 1.0);
 }
 
 @if(pcss)
@@ -941,7 +941,7 @@ fn umbrage_square_shares(layer: UmbrageLayer, kind: u32, softness: UmbrageSoftne
         for (var i = 0; i < taps; i++) {
             let first = texels.corner + 2.0 * vec2f(f32(i), f32(j));
             let tap = umbrage_kernel_pair(kind, first, centre, texels.half);
-            seen += tap.weight.x * tap.weight.y * umbrage_texel_four(layer, at, first, tap.texel - 0.5 - first);
+            seen += tap.weight.x * tap.weight.y * umbrage_texel_four(layer, at, first, tap.texel - 0.5 - first).xyz;
         }
     }
     return seen;
@@ -964,8 +964,9 @@ fn umbrage_texel_of_comparison(lit: f32) -> vec3f {
 }
 
 @if(texels)
-fn umbrage_texel_four(layer: UmbrageLayer, at: UmbrageReceiver, first: vec2f, second: vec2f) -> vec3f {
-    return umbrage_texel_of_comparison(umbrage_texel_compare(layer, first + 0.5 + second, umbrage_bias_reference(at, first + 1.0 - at.texel, vec2f(0.5))));
+fn umbrage_texel_four(layer: UmbrageLayer, at: UmbrageReceiver, first: vec2f, second: vec2f) -> vec4f {
+    let lit = umbrage_texel_compare(layer, first + 0.5 + second, umbrage_bias_reference(at, first + 1.0 - at.texel, vec2f(0.5)));
+    return vec4f(umbrage_texel_of_comparison(lit), 1.0);
 }
 
 fn umbrage_tint_of_split(index: u32) -> vec3f {

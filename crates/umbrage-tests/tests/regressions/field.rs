@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 use image::GrayAlphaImage;
+use umbrage::config::Filter;
 use umbrage::{DirectionalLight, Frustum, View};
 use umbrage_render::{Frame, Outputs, RenderSettings, Renderer};
 use umbrage_scene::{Primitive, Scene};
@@ -18,13 +19,23 @@ fn look(eye: [f64; 3], target: [f64; 3], fov: f64, near: f64) -> View {
     View::look_at_upright(eye.into(), target.into(), frustum).expect("a view")
 }
 
-/// Masks at the defaults with maps of an edge, and the truth about each pixel.
-fn judged(scene: &Scene, views: &[View], sun: DVec3, edge: u32) -> Option<Vec<(GrayAlphaImage, Vec<Option<Hit>>)>> {
+/// A mask, and the truth about each of its pixels.
+type Judged = (GrayAlphaImage, Vec<Option<Hit>>);
+
+/// Masks at the defaults with maps of an edge, and the truth.
+fn judged(scene: &Scene, views: &[View], sun: DVec3, edge: u32) -> Option<Vec<Judged>> {
+    let filter = Technique::default().settings.config.filter;
+    judged_by(filter, scene, views, sun, edge)
+}
+
+/// Masks by a filter, and the truth.
+fn judged_by(filter: Filter, scene: &Scene, views: &[View], sun: DVec3, edge: u32) -> Option<Vec<Judged>> {
     let gpu = gpu()?;
     let settings = Technique::default().settings;
     let config = umbrage::ShadowConfig {
         map_sizes: vec![edge; 4],
         range: umbrage::config::Range::Camera,
+        filter,
         ..settings.config.clone()
     };
     let settings = RenderSettings { size: SIZE, config, ..settings };
@@ -119,6 +130,40 @@ fn narrow_lenses_show_lit_walls_lit() {
         let greyed = lit_walls.filter(|(pixel, _)| pixel.0[0] < 250).count();
         eprintln!("view {i}: {light} false light, {shadow} false shadow of {all}, {greyed} grey");
         assert!(shadow * 200 <= all && light * 200 <= all, "view {i}: {light} and {shadow} of {all}");
+    }
+}
+
+/// The roof that ends a wall is nearer to the light than the wall and does not shade it, however
+/// wide the kernel that finds both.
+#[test]
+fn wide_discs_leave_lit_walls_lit_along_their_edges() {
+    let mut scene = scene();
+    add(&mut scene, ground(0.0, 30.0));
+    let mut blocks = Primitive::default();
+    for ([x, z], size) in
+        [([-1.0, -1.0], [2.0, 2.0, 2.0]), ([4.0, -1.0], [0.6, 3.0, 0.6]), ([-5.0, -2.0], [2.0, 1.0, 4.0])]
+    {
+        cuboid(&mut blocks, DVec3::new(x, 0.0, z), size.into());
+    }
+    add(&mut scene, blocks);
+    let views = [look([5.0, 4.0, 7.0], [0.0, 1.0, 0.0], 60.0, 0.1), look([2.5, 2.5, 3.5], [0.0, 1.5, 0.0], 60.0, 0.1)];
+    let sun = DVec3::new(-0.25, -0.95, -0.12);
+    for width in [0.2, 0.4, 0.6] {
+        let filter = Filter::Disc { width_m: Some(width), rotated: false };
+        let Some(judged) = judged_by(filter, &scene, &views, sun, 1024) else { return };
+        for (i, (mask, hits)) in judged.iter().enumerate() {
+            let is_wall = |hit: &Hit| hit.lit && hit.normal.y < 0.5;
+            let shares = mask.pixels().zip(hits).filter(|(_, hit)| hit.as_ref().is_some_and(is_wall));
+            let shares: Vec<u8> = shares.map(|(pixel, _)| pixel.0[0]).collect();
+            let greyed = shares.iter().filter(|&&share| share < 240).count();
+            // Before such texels said nothing, 371 to 514 of the nearer cube's 5,070 were.
+            eprintln!("view {i}, {width} m: {greyed} of {}", shares.len());
+            assert!(
+                shares.len() > 1000 && greyed * 500 <= shares.len(),
+                "view {i}, {width} m: {greyed} of {}",
+                shares.len()
+            );
+        }
     }
 }
 
