@@ -114,7 +114,8 @@ impl ThroughMask {
 
 /// The mask of a device, and whether it takes two draws: on a GPU one is less work.
 fn mask(gpu: &Gpu, shadows: &Shadows) -> Result<(ShadowMask, bool)> {
-    let (device, maps, normals) = (&gpu.device, shadows.maps(), MaskNormals::Texture);
+    // Bent normals may be turned away from the eye.
+    let (device, maps, normals) = (&gpu.device, shadows.maps(), MaskNormals::TextureAsIs);
     let in_two_draws = is_software(gpu);
     let mask = match in_two_draws {
         true => ShadowMask::in_two_draws(device, maps, LIT_FORMAT, normals, MARK_FORMAT)?,

@@ -189,7 +189,7 @@ impl ShadowMask {
             ),
             texture(1, wgpu::TextureSampleType::Depth),
         ];
-        if normals == MaskNormals::Texture {
+        if normals.has_texture() {
             entries.push(texture(2, wgpu::TextureSampleType::Float { filterable: false }));
         }
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -197,7 +197,8 @@ impl ShadowMask {
             entries: &entries,
         });
         let footprint = runs.is_some() && maps.edges().samples().is_some_and(|samples| samples > 1);
-        let choices = MaskText { normals: normals == MaskNormals::Texture, footprint, bounds: false };
+        let turns = normals == MaskNormals::Texture;
+        let choices = MaskText { normals: normals.has_texture(), turns, footprint, bounds: false };
         let whole = maps.receiver_wgsl(1) + runs.map_or("", |runs| runs.wgsl) + &umbrage_shaders::mask(0, choices);
         let first = maps.bounds_receiver_wgsl(1).filter(|_| depth_format.is_some());
         let first = first.map(|text| text + &umbrage_shaders::mask(0, MaskText { bounds: true, ..choices }));
@@ -238,7 +239,7 @@ impl ShadowMask {
     }
 
     /// The bind group for [`ShadowMask::draw`]: the image's depth and, with
-    /// [`MaskNormals::Texture`], its normals.
+    /// [`MaskNormals::Texture`] or [`MaskNormals::TextureAsIs`], its normals.
     ///
     /// # Errors
     /// [`Error::MaskNormals`] if normals are missing or not needed.
@@ -248,7 +249,7 @@ impl ShadowMask {
         depth: &wgpu::TextureView,
         normals: Option<&wgpu::TextureView>,
     ) -> Result<wgpu::BindGroup> {
-        if normals.is_some() != (self.normals == MaskNormals::Texture) {
+        if normals.is_some() != self.normals.has_texture() {
             return Err(Error::MaskNormals { normals: self.normals, given: normals.is_some() });
         }
         let mut entries = vec![
