@@ -250,8 +250,8 @@ impl Forward {
             constants: vec![("LEAST_COVERAGE", samples.least_coverage())],
             ..Recipe::new(gpu, depth_layout, depth_module)
         };
-        // With several samples lavapipe seems to shade hidden pixels all the same: a depth pass did
-        // not help (docs/notes/cost.md).
+        // With several samples lavapipe shades hidden pixels all the same: a depth pass does not
+        // help. Most such pictures go through a G-buffer instead (docs/notes/cost.md).
         let is_software = gpu.adapter_info.device_type == wgpu::DeviceType::Cpu;
         let early = !(sliced || is_software && samples != Samples::One);
         let shading_pictures = Recipe { depth: if early { Depth::Found } else { Depth::Drawn }, ..shading.clone() };
