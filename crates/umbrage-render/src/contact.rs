@@ -5,6 +5,7 @@ use umbrage::{ShadowConfig, View};
 use umbrage_wgpu::{ContactFrame, ContactOptions, ContactShadows};
 
 use crate::formats::DEPTH_FORMAT;
+use crate::targets::{drawn_depth, read_later};
 use crate::{Gpu, Result};
 
 /// GPU objects of contact shadows.
@@ -27,16 +28,7 @@ impl Contact {
     /// Makes the contact shadows of pictures of `size` pixels.
     pub fn new(gpu: &Gpu, size: [u32; 2], options: ContactOptions) -> Self {
         let shadows = ContactShadows::new(&gpu.device);
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("Contact::depth"),
-            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: DEPTH_FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
+        let texture = read_later(gpu, "Contact::depth", (size, 1), DEPTH_FORMAT, 1);
         let depth = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let bind_group = shadows.bind_group(&gpu.device, &depth);
         Self { shadows, bind_group, options, depth, height: size[1] }
@@ -63,11 +55,7 @@ impl Contact {
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("Contact::pass"),
             color_attachments: &[],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
-                stencil_ops: None,
-            }),
+            depth_stencil_attachment: Some(drawn_depth(&self.depth, 0.0)),
             timestamp_writes,
             occlusion_query_set: None,
             multiview_mask: None,

@@ -306,15 +306,11 @@ impl Drawable<'_> {
                     Show::Surfaces | Show::Visible => &primitive.indices,
                     Show::Shadows => &primitive.caster_indices,
                 };
-                // Triangles stand in all lists in one order.
-                let moved = |part: &Range<u32>| {
-                    let first = whole.start + (part.start - primitive.shadow_indices.start);
-                    first..first + (part.end - part.start)
-                };
                 match &run.parts {
                     None => self.draw_ranges(pass, &mut bound, run, primitive, pipeline, [whole.clone()]),
                     Some(parts) => {
-                        self.draw_ranges(pass, &mut bound, run, primitive, pipeline, parts[i].iter().map(moved));
+                        let ranges = parts[i].iter().map(|part| moved(whole, primitive, part));
+                        self.draw_ranges(pass, &mut bound, run, primitive, pipeline, ranges);
                     }
                 }
             }
@@ -322,11 +318,12 @@ impl Drawable<'_> {
         bound.drawn
     }
 
-    /// Draws the shadow indices of pieces, in the order given.
+    /// Draws the indices `what` of pieces, in the order given.
     pub fn draw_pieces<'p>(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         pieces: &[Piece],
+        what: Show,
         pipeline_for: impl Fn(&GpuMaterial, bool) -> Option<&'p wgpu::RenderPipeline>,
     ) -> Drawn {
         let mut bound = Bound::default();
@@ -339,7 +336,11 @@ impl Drawable<'_> {
                     instances: piece.instances.clone(),
                     parts: None,
                 };
-                self.draw_ranges(pass, &mut bound, &run, primitive, pipeline, [piece.indices.clone()]);
+                let indices = match what {
+                    Show::Surfaces | Show::Visible => moved(&primitive.indices, primitive, &piece.indices),
+                    Show::Shadows => piece.indices.clone(),
+                };
+                self.draw_ranges(pass, &mut bound, &run, primitive, pipeline, [indices]);
             }
         }
         bound.drawn
@@ -389,6 +390,13 @@ impl Drawable<'_> {
             bound.drawn.triangles += u64::from((indices.end - indices.start) / 3 * count);
         }
     }
+}
+
+/// Returns the range of a list of a primitive's indices that has the triangles of a part of its
+/// shadow indices: triangles stand in all lists in one order.
+fn moved(whole: &Range<u32>, primitive: &GpuPrimitive, part: &Range<u32>) -> Range<u32> {
+    let first = whole.start + (part.start - primitive.shadow_indices.start);
+    first..first + (part.end - part.start)
 }
 
 /// Buffers and groups that a pass has bound, and numbers of what it has drawn.

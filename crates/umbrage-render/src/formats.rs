@@ -8,6 +8,10 @@ pub(crate) const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Unor
 pub(crate) const NORMALS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 /// Format of the mask that a picture takes its shadows from: red is visibility.
 pub(crate) const LIT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
+/// Format of light in the G-buffer of a picture with several samples per pixel.
+pub(crate) const LIGHT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Format of the G-buffer's questions: a normal and the bits of a depth.
+pub(crate) const QUESTION_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Uint;
 /// Format of the depth target in which such a mask marks the pixels that are decided.
 pub(crate) const MARK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 /// Format of the eye's depth: reversed, 0 infinitely far away.

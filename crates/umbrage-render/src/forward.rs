@@ -250,8 +250,8 @@ impl Forward {
             constants: vec![("LEAST_COVERAGE", samples.least_coverage())],
             ..Recipe::new(gpu, depth_layout, depth_module)
         };
-        // With several samples lavapipe seems to shade hidden pixels all the same: a depth pass did
-        // not help (docs/notes/cost.md).
+        // With several samples lavapipe shades hidden pixels all the same: a depth pass does not
+        // help. Most such pictures go through a G-buffer instead (docs/notes/cost.md).
         let is_software = gpu.adapter_info.device_type == wgpu::DeviceType::Cpu;
         let early = !(sliced || is_software && samples != Samples::One);
         let shading_pictures = Recipe { depth: if early { Depth::Found } else { Depth::Drawn }, ..shading.clone() };
@@ -328,7 +328,7 @@ impl Forward {
     /// Draws the depth of all solid surfaces, for contact shadows.
     pub fn draw_depth(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &Drawable<'_>, solid: &ViewList) -> Drawn {
         pass.set_bind_group(0, self.bind_group(0), &[]);
-        pick_pieces(pass, drawable, solid, &self.depth)
+        draw_pieces(pass, drawable, (solid, Show::Shadows), &self.depth)
     }
 
     /// Draws all solid surfaces.
@@ -451,25 +451,36 @@ fn draw_visible(
     (depth, shading): (Option<&SurfacePipelines>, &SurfacePipelines),
 ) -> Drawn {
     bind(pass, bindings);
-    let mut drawn = depth.map_or_else(Drawn::default, |depth| pick_pieces(pass, drawable, solid, depth));
-    let pick = |material: &GpuMaterial, mirrored: bool| {
-        (material.alpha != AlphaMode::Blend).then(|| shading.of(material, mirrored))
-    };
-    drawn += match depth {
-        Some(_) => drawable.draw(pass, &solid.runs, Show::Visible, pick),
-        None => drawable.draw(pass, solid.runs.iter().rev(), Show::Surfaces, pick),
-    };
+    let show = |depth| draw_pieces(pass, drawable, (solid, Show::Shadows), depth);
+    let mut drawn = depth.map_or_else(Drawn::default, show);
+    drawn += shade(pass, drawable, solid, (if depth.is_some() { Show::Visible } else { Show::Surfaces }, shading));
     drawn
 }
 
-/// Draws what has a depth: materials that are not translucent.
-pub(crate) fn pick_pieces(
+/// Shades what is not translucent: over its depth with [`Show::Visible`], or with depth.
+pub(crate) fn shade(
     pass: &mut wgpu::RenderPass<'_>,
     drawable: &Drawable<'_>,
     solid: &ViewList,
+    (what, shading): (Show, &SurfacePipelines),
+) -> Drawn {
+    let pick = |material: &GpuMaterial, mirrored: bool| {
+        (material.alpha != AlphaMode::Blend).then(|| shading.of(material, mirrored))
+    };
+    match what {
+        Show::Visible => drawable.draw(pass, &solid.runs, what, pick),
+        Show::Surfaces | Show::Shadows => drawable.draw(pass, solid.runs.iter().rev(), what, pick),
+    }
+}
+
+/// Draws what has a depth, near parts first: materials that are not translucent.
+pub(crate) fn draw_pieces(
+    pass: &mut wgpu::RenderPass<'_>,
+    drawable: &Drawable<'_>,
+    (solid, what): (&ViewList, Show),
     pipelines: &SurfacePipelines,
 ) -> Drawn {
-    drawable.draw_pieces(pass, &solid.pieces, |material, mirrored| {
+    drawable.draw_pieces(pass, &solid.pieces, what, |material, mirrored| {
         (material.alpha != AlphaMode::Blend).then(|| pipelines.of(material, mirrored))
     })
 }

@@ -21,6 +21,7 @@ mod forward;
 mod geometry;
 mod gpu;
 mod lamps;
+mod layouts;
 mod maps;
 mod materials;
 mod mipmaps;

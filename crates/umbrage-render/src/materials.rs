@@ -8,7 +8,7 @@ use umbrage_scene::{AlphaMode, Material, Scene, Texture, TextureFilter, Wrap};
 use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
 
 use crate::mipmaps::{self, Alpha};
-use crate::{Error, Gpu, Result};
+use crate::{Error, Gpu, Result, layouts};
 
 /// Material parameters as the shaders see them, `Material` in `scene.wgsl`.
 #[repr(C)]
@@ -44,7 +44,7 @@ impl Materials {
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("Materials::layout"),
             entries: &[
-                layout_entry(
+                layouts::fragment(
                     0,
                     wgpu::BindingType::Buffer {
                         ty: wgpu::BufferBindingType::Uniform,
@@ -52,17 +52,10 @@ impl Materials {
                         min_binding_size: wgpu::BufferSize::new(size_of::<MaterialUniform>() as u64),
                     },
                 ),
-                layout_entry(
-                    1,
-                    wgpu::BindingType::Texture {
-                        sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                        view_dimension: wgpu::TextureViewDimension::D2,
-                        multisampled: false,
-                    },
-                ),
-                layout_entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-                layout_entry(3, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-                layout_entry(4, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+                layouts::texture(1, wgpu::TextureSampleType::Float { filterable: true }),
+                layouts::fragment(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+                layouts::fragment(3, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+                layouts::fragment(4, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
             ],
         });
         // Those too that no material names: a scene is right or it is not.
@@ -111,10 +104,6 @@ fn use_of_alpha(material: &Material) -> Alpha {
         AlphaMode::Opaque => Alpha::Ignored,
         AlphaMode::Mask { .. } | AlphaMode::Blend => Alpha::Used,
     }
-}
-
-fn layout_entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None }
 }
 
 /// Refuses a texture without pixels, with the wrong number of bytes, or larger than the device

@@ -8,6 +8,7 @@ use wgpu::util::{DeviceExt, TextureDataOrder};
 
 use crate::capture::Capture;
 use crate::formats::{ANSWERS_FORMAT, POINTS_FORMAT};
+use crate::layouts::{self, UNFILTERED};
 use crate::names::Names;
 use crate::{Error, Gpu, Result, shaders};
 
@@ -72,17 +73,7 @@ impl Probe {
             label: Some("Probe::shader"),
             source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::probe(&(maps.receiver_wgsl(1) + &runs)))),
         });
-        let entry = |binding| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
-        };
-        let mut entries = vec![entry(0), entry(1)];
+        let mut entries = vec![layouts::texture(0, UNFILTERED), layouts::texture(1, UNFILTERED)];
         if is_exact {
             entries.extend(Names::layout(Self::NAMES));
         }

@@ -74,6 +74,12 @@ pub(crate) fn facing() -> String {
     [SCENE, VIEW, NORMALS, include_str!("shaders/facing.wgsl")].join("\n")
 }
 
+/// WGSL of pictures whose shadows come from masks of a G-buffer. Bind group 0 is the frame, 1 the
+/// material of surfaces, 2 what has been drawn.
+pub(crate) fn g_buffer() -> String {
+    forward(WITHOUT_SHADOWS, Coordinates::World, false) + include_str!("shaders/g_buffer.wgsl")
+}
+
 /// WGSL of probes. Bind group 0 is the points, 1 what [`umbrage_wgpu::ShadowMaps::receiver_wgsl`]
 /// declares.
 pub(crate) fn probe(library: &str) -> String {
@@ -144,6 +150,7 @@ mod tests {
                 forward(LIT, Coordinates::World, false),
                 depth(),
                 facing(),
+                g_buffer(),
                 probe(&receiver(1, maps)),
                 probe(&receiver(1, Maps { coordinates: true, ..maps })),
             ] {

@@ -59,6 +59,8 @@ pub(crate) struct Surface {
     pub vertex: Vertices,
     pub fragment_entry: Option<&'static str>,
     pub format: Option<wgpu::TextureFormat>,
+    /// Formats of further targets.
+    pub more: &'static [wgpu::TextureFormat],
     /// True if the colour is written.
     pub writes: bool,
     pub samples: u32,
@@ -72,6 +74,7 @@ impl Default for Surface {
             vertex: Vertices::default(),
             fragment_entry: None,
             format: None,
+            more: &[],
             writes: true,
             samples: 1,
             alpha_to_coverage: false,
@@ -178,11 +181,13 @@ impl Recipe {
             Some(PICTURE_FORMAT) => wgpu::ColorWrites::COLOR,
             _ => wgpu::ColorWrites::ALL,
         };
-        let targets = [surface.format.map(|format| wgpu::ColorTargetState {
+        let first = surface.format.map(|format| wgpu::ColorTargetState {
             format,
             blend: surface.blend.then_some(wgpu::BlendState::ALPHA_BLENDING),
             write_mask,
-        })];
+        });
+        let more = surface.more.iter().map(|&format| format.into());
+        let targets: Vec<Option<wgpu::ColorTargetState>> = first.into_iter().chain(more).map(Some).collect();
         self.gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(label),
             layout: Some(&self.layout),
@@ -212,7 +217,7 @@ impl Recipe {
                     constants: &self.constants,
                     ..Default::default()
                 },
-                targets: &targets[..usize::from(surface.format.is_some())],
+                targets: &targets,
             }),
             multiview_mask: None,
             cache: None,

@@ -4,8 +4,9 @@ use crate::capture::read_buffer;
 use crate::{Gpu, Result};
 
 /// Number of passes of a frame beside those of its maps: the depth for contact shadows, the mask,
-/// and the picture, which may be three: its normals, a mask of them and itself.
-const VIEW_PASSES: u32 = 5;
+/// and the picture, which may be ten: its surfaces, for each of four samples the questions and
+/// their mask, and itself.
+const VIEW_PASSES: u32 = 12;
 /// Most passes for each map. Drawn slice by slice, a map's pass is followed by those of the mask
 /// and the picture; for translucent surfaces the map and the picture are drawn once more.
 const PASSES_OF_A_MAP: u32 = 5;

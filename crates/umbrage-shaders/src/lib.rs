@@ -199,6 +199,8 @@ pub fn seen(samples: bool) -> &'static str {
 pub struct MaskText {
     /// True if there is a texture of normals beside the depth.
     pub normals: bool,
+    /// True if normals of the texture are turned towards the camera.
+    pub turns: bool,
     /// True if queries contain their pixel's footprint, for [`ExactEdges`] of several positions.
     pub footprint: bool,
     /// True if pixels that bounds do not decide are discarded, for a second draw; the receiver's
@@ -212,9 +214,10 @@ pub struct MaskText {
 /// fragments.
 #[must_use]
 pub fn mask(group: u32, choices: MaskText) -> String {
-    let MaskText { normals, footprint, bounds } = choices;
+    let MaskText { normals, turns, footprint, bounds } = choices;
     let text = variant::resolved(if normals { text!("mask_with_normals") } else { text!("mask") }, |_| bounds);
-    format!("const UMBRAGE_MASK_GROUP = {group}u;\nconst UMBRAGE_MASK_FOOTPRINT = {footprint};\n{text}\n")
+    let turned = if normals { format!("const UMBRAGE_MASK_TURNS = {turns};\n") } else { String::new() };
+    format!("const UMBRAGE_MASK_GROUP = {group}u;\nconst UMBRAGE_MASK_FOOTPRINT = {footprint};\n{turned}{text}\n")
 }
 
 /// WGSL to put before a shader that computes contact shadows: `fn

@@ -288,7 +288,7 @@ fn every_name_is_in_our_namespace() {
 fn deferred_masks_stand_behind_receivers() {
     for (normals, bounds) in [(false, false), (true, false), (false, true), (true, true)] {
         let text = ReceiverText { bounds, ..ReceiverText::default() };
-        let own = umbrage_shaders::mask(0, MaskText { normals, footprint: normals, bounds });
+        let own = umbrage_shaders::mask(0, MaskText { normals, turns: !bounds, footprint: normals, bounds });
         validated(&(umbrage_shaders::receiver(1, text) + &own));
     }
 }

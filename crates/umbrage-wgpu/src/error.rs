@@ -49,7 +49,7 @@ pub enum Error {
         reason: String,
     },
     /// A mask was given normals for which it was not made, or none although it needs them.
-    #[error("a mask with normals {normals:?} was {}; give a texture of normals with MaskNormals::Texture and with nothing else", if *.given { "given a texture of them" } else { "given none" })]
+    #[error("a mask with normals {normals:?} was {}; give a texture of normals with MaskNormals::Texture or TextureAsIs and with nothing else", if *.given { "given a texture of them" } else { "given none" })]
     MaskNormals {
         /// Source of normals for which the mask was made.
         normals: crate::MaskNormals,

@@ -113,7 +113,8 @@ impl ShadowMask {
     }
 
     /// [`ShadowMask::new`] for a pass that has a depth target too, of `depth_format` and cleared to
-    /// 1, which nothing else uses. The answers are equal.
+    /// 1. The answers are equal. Pixels whose depth in that target is 0 are left as they are:
+    /// applications may draw their own answers first, and mark them there.
     ///
     /// A first draw answers the pixels that bounds over the filter's kernel decide, which are most,
     /// and marks them in depth. The early depth test then keeps the second draw, which has the
@@ -185,7 +186,7 @@ impl ShadowMask {
             ),
             texture(1, wgpu::TextureSampleType::Depth),
         ];
-        if normals == MaskNormals::Texture {
+        if normals.has_texture() {
             entries.push(texture(2, wgpu::TextureSampleType::Float { filterable: false }));
         }
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -193,7 +194,8 @@ impl ShadowMask {
             entries: &entries,
         });
         let footprint = runs.is_some() && maps.edges().samples().is_some_and(|samples| samples > 1);
-        let choices = MaskText { normals: normals == MaskNormals::Texture, footprint, bounds: false };
+        let turns = normals == MaskNormals::Texture;
+        let choices = MaskText { normals: normals.has_texture(), turns, footprint, bounds: false };
         let whole = maps.receiver_wgsl(1) + runs.map_or("", |runs| runs.wgsl) + &umbrage_shaders::mask(0, choices);
         let first = maps.bounds_receiver_wgsl(1).filter(|_| depth_format.is_some());
         let first = first.map(|text| text + &umbrage_shaders::mask(0, MaskText { bounds: true, ..choices }));
@@ -203,19 +205,18 @@ impl ShadowMask {
                 [..if runs.is_some() { 3 } else { 2 }],
             immediate_size: 0,
         });
-        // Depth is 1 where nobody has answered, and 0, that of the triangle, where the first did.
-        let pipeline = |text, depth_compare| {
+        // Depth is 1 where nobody has answered, and 0, that of the triangle, where somebody has.
+        let pipeline = |text| {
             let depth_stencil = depth_format.map(|format| wgpu::DepthStencilState {
                 format,
                 depth_write_enabled: Some(true),
-                depth_compare: Some(depth_compare),
+                depth_compare: Some(wgpu::CompareFunction::Less),
                 stencil: wgpu::StencilState::default(),
                 bias: wgpu::DepthBiasState::default(),
             });
             pipeline(device, text, &pipeline_layout, format, depth_stencil)
         };
-        let first = first.map(|text| pipeline(text, wgpu::CompareFunction::Always));
-        let pipelines = first.into_iter().chain([pipeline(whole, wgpu::CompareFunction::Less)]).collect();
+        let pipelines = first.into_iter().chain([whole]).map(pipeline).collect();
         let uniform = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("ShadowMask::uniform"),
             size: size_of::<Uniform>() as u64,
@@ -235,7 +236,7 @@ impl ShadowMask {
     }
 
     /// The bind group for [`ShadowMask::draw`]: the image's depth and, with
-    /// [`MaskNormals::Texture`], its normals.
+    /// [`MaskNormals::Texture`] or [`MaskNormals::TextureAsIs`], its normals.
     ///
     /// # Errors
     /// [`Error::MaskNormals`] if normals are missing or not needed.
@@ -245,7 +246,7 @@ impl ShadowMask {
         depth: &wgpu::TextureView,
         normals: Option<&wgpu::TextureView>,
     ) -> Result<wgpu::BindGroup> {
-        if normals.is_some() != (self.normals == MaskNormals::Texture) {
+        if normals.is_some() != self.normals.has_texture() {
             return Err(Error::MaskNormals { normals: self.normals, given: normals.is_some() });
         }
         let mut entries = vec![
@@ -262,7 +263,8 @@ impl ShadowMask {
         }))
     }
 
-    /// Draws the mask into a pass with one colour target and no depth. Changes bind groups 0 and 1;
+    /// Draws the mask into a pass with one colour target and, with [`ShadowMask::in_two_draws`]
+    /// alone, a depth target. Changes bind groups 0 and 1;
     /// with [`MaskRuns`] the application sets group 2.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, maps: &ShadowMaps, group: &wgpu::BindGroup) {
         pass.set_bind_group(0, group, &[]);

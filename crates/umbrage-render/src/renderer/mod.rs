@@ -64,7 +64,8 @@ pub struct RenderSettings {
     pub lights: Vec<LightMaps>,
     /// Pictures may take the first light's shadows from a mask that is made of their depth and
     /// normals, which asks once per pixel however small triangles are. It is done where nothing is
-    /// lost by it: one light, one sample per pixel. `false`: every fragment asks for itself.
+    /// lost by it: one light, and one sample per pixel or a software driver, where each surface of
+    /// a pixel is asked for. `false`: every fragment asks for itself.
     pub through_mask: bool,
 }
 

@@ -38,7 +38,7 @@ fn fs_exact(in: Outline) {
 // The picture's: alpha decides how many samples are covered.
 @fragment
 fn fs_coverage(in: Outline) -> @location(0) vec4f {
-    let coverage = coverage_of(in.uv, in.alpha);
+    let coverage = coverage_of(tested_color(in.uv, vec4f(in.alpha)).a);
     if coverage <= LEAST_COVERAGE {
         discard;
     }

@@ -32,7 +32,7 @@ fn fs_facing(in: Facing, @builtin(front_facing) front: bool) -> @location(0) vec
 
 @fragment
 fn fs_facing_masked(in: Facing, @builtin(front_facing) front: bool) -> @location(0) vec4f {
-    let coverage = coverage_of(in.uv, in.alpha);
+    let coverage = coverage_of(tested_color(in.uv, vec4f(in.alpha)).a);
     let normal = facing_of(in, front);
     if coverage <= LEAST_COVERAGE {
         discard;
@@ -42,6 +42,6 @@ fn fs_facing_masked(in: Facing, @builtin(front_facing) front: bool) -> @location
 
 fn facing_of(in: Facing, front: bool) -> vec4f {
     let geometric = geometric_normal(in.from_eye);
-    let smooth_normal = normalize(select(-in.normal, in.normal, front));
+    let smooth_normal = shading_normal(in.normal, front);
     return vec4f(lookup_normal(geometric, smooth_normal, towards(frame.lamps[0], in.position)), 0.0);
 }

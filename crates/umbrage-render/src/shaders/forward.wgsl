@@ -68,8 +68,8 @@ fn fs_picture_opaque(in: Surface, @builtin(front_facing) front: bool) -> @locati
 // through, the other one is seen.
 @fragment
 fn fs_picture_masked(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
-    let color = base_color(in);
-    let coverage = coverage_of(in.uv, in.color.a);
+    let color = tested_color(in.uv, in.color);
+    let coverage = coverage_of(color.a);
     let geometric = geometric_normal(in.from_eye);
     let query = query_of(in, geometric);
     if coverage <= LEAST_COVERAGE || !is_drawn(in) {
@@ -104,10 +104,22 @@ fn falloff(lamp: Lamp, position: vec3f) -> f32 {
     return select(1.0, cone * window * window / (1.0 + share * share / 0.09), lamp.range > 0.0);
 }
 
-// Lambert's law for each light, a sky from above and light from the ground below. Display light, tone mapped.
+// A light on a surface that nothing shades, by Lambert's law.
+fn direct_light(lamp: Lamp, position: vec3f, to_light: vec3f, smooth_normal: vec3f) -> vec3f {
+    return SUN * lamp.color * (max(dot(smooth_normal, to_light), 0.0) * falloff(lamp, position));
+}
+
+// A sky from above and light from the ground below.
+fn ambient_light(smooth_normal: vec3f) -> vec3f {
+    // Brighter on the sun's side of the sky, so that corners can be told apart in the shade.
+    let side = 1.0 + 0.15 * dot(smooth_normal, frame.to_sun);
+    return frame.daylight * side * mix(GROUND_AMBIENT, SKY_AMBIENT, 0.5 * smooth_normal.y + 0.5);
+}
+
+// Every light, sky and ground. Display light, tone mapped.
 fn shaded(in: Surface, front: bool, base: vec4f, asked: UmbrageQuery) -> vec3f {
     let geometric = asked.normal;
-    let smooth_normal = normalize(select(-in.normal, in.normal, front));
+    let smooth_normal = shading_normal(in.normal, front);
     var light = vec3f(0.0);
     var tint = vec3f(1.0);
     let first = towards(frame.lamps[0], in.position);
@@ -119,15 +131,11 @@ fn shaded(in: Surface, front: bool, base: vec4f, asked: UmbrageQuery) -> vec3f {
         query.light = i;
         query.normal = lookup_normal(geometric, smooth_normal, to_light);
         let shadow = shadow_of(in, query);
-        let facing = max(dot(smooth_normal, to_light), 0.0) * falloff(lamp, in.position);
         let visibility = min(shadow.visibility, select(1.0, contact, i == 0u));
-        light += SUN * lamp.color * facing * umbrage_light_of(i, visibility);
+        light += direct_light(lamp, in.position, to_light, smooth_normal) * umbrage_light_of(i, visibility);
         tint = select(tint, shadow.tint, i == 0u);
     }
-    // Brighter on the sun's side of the sky, so that corners can be told apart in the shade.
-    let side = 1.0 + 0.15 * dot(smooth_normal, frame.to_sun);
-    let ambient = frame.daylight * side * mix(GROUND_AMBIENT, SKY_AMBIENT, 0.5 * smooth_normal.y + 0.5);
-    return tone_mapped((base.rgb * (light + ambient) + material.emissive) * tint);
+    return tone_mapped((base.rgb * (light + ambient_light(smooth_normal)) + material.emissive) * tint);
 }
 
 struct SkyPixel {

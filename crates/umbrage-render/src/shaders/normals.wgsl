@@ -13,6 +13,11 @@ fn geometric_normal(from_eye: vec3f) -> vec3f {
     return normalize(turned / largest);
 }
 
+// The vertices' unit normal, on the side that is seen.
+fn shading_normal(normal: vec3f, front: bool) -> vec3f {
+    return normalize(select(-normal, normal, front));
+}
+
 // The unit vector from a position towards a light.
 fn towards(lamp: Lamp, position: vec3f) -> vec3f {
     let way = lamp.position - position;

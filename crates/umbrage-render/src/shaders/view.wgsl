@@ -9,8 +9,12 @@ fn clip_of(from_eye: vec3f) -> vec4f {
 // Least coverage that is drawn: with several samples coverage decides how many, with one it is all or nothing, 0.5.
 override LEAST_COVERAGE: f32 = 0.0;
 
+// The colour of an alpha-tested surface, with alpha as its coverage sees it. Call in uniform control flow.
+fn tested_color(uv: vec2f, vertex_color: vec4f) -> vec4f {
+    return material.base_color * vertex_color * textureSample(base_color_texture, coverage_sampler, uv);
+}
+
 // Alpha as coverage: a step one pixel wide around the cutoff. Call in uniform control flow.
-fn coverage_of(uv: vec2f, vertex_alpha: f32) -> f32 {
-    let alpha = material.base_color.a * vertex_alpha * textureSample(base_color_texture, coverage_sampler, uv).a;
+fn coverage_of(alpha: f32) -> f32 {
     return (alpha - material.alpha_cutoff) / max(fwidth(alpha), 1e-4) + 0.5;
 }

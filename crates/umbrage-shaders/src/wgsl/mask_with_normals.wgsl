@@ -76,7 +76,11 @@ fn umbrage_mask_position(pixel: vec2i) -> vec3f {
 }
 
 fn umbrage_mask_normal(pixel: vec2i, from_eye: vec3f) -> vec3f {
-    return umbrage_mask_towards_eye(textureLoad(umbrage_mask_normals, pixel, 0).xyz, from_eye);
+    let normal = textureLoad(umbrage_mask_normals, pixel, 0).xyz;
+    if UMBRAGE_MASK_TURNS {
+        return umbrage_mask_towards_eye(normal, from_eye);
+    }
+    return normal;
 }
 
 fn umbrage_mask_step(pixel: vec2i, from_eye: vec3f, direction: vec2i) -> vec3f {
