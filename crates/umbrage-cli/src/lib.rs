@@ -7,9 +7,11 @@ mod adapter;
 pub mod args;
 pub mod bench;
 pub mod compare;
+pub mod completions;
 pub mod environment;
 pub mod failure;
 pub mod gallery;
+pub mod man;
 pub mod plan;
 mod print;
 pub mod probe;
@@ -50,6 +52,8 @@ pub fn run(args: &Args) -> Result<()> {
         #[cfg(feature = "view")]
         Command::View(args) => view::run(args),
         Command::Worlds { command } => worlds::run(command),
+        Command::Completions(args) => completions::run(args),
+        Command::Man(args) => man::run(args),
         Command::Adapter => adapter::run(),
     }
 }
