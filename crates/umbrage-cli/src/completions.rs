@@ -1,10 +1,10 @@
 //! `umbrage completions`: the script by which a shell completes command lines of `umbrage`.
 
-use clap::CommandFactory;
+use clap::Command;
 use clap_complete::Shell;
 use umbrage_lab::failure::{Failure, Result};
 
-use crate::{args::Args, print::print};
+use crate::print::print;
 
 /// `umbrage completions`.
 #[derive(Debug, clap::Args)]
@@ -14,18 +14,17 @@ pub struct CompletionsArgs {
     pub shell: Shell,
 }
 
-/// Runs the subcommand.
-pub fn run(args: &CompletionsArgs) -> Result<()> {
-    print(&script(args.shell)?)
+/// Runs the subcommand; `command` is the whole one.
+pub fn run(args: &CompletionsArgs, command: Command) -> Result<()> {
+    print(&script(args.shell, command)?)
 }
 
-/// Returns the script of a shell: every subcommand that the help lists, its options, and the words
-/// that they take.
+/// Returns the script by which a shell completes `command`: every subcommand that the help lists,
+/// its options, and the words that they take.
 ///
 /// # Errors
 /// [`Failure::Other`] if the script is no text.
-pub fn script(shell: Shell) -> Result<String> {
-    let mut command = Args::command();
+pub fn script(shell: Shell, mut command: Command) -> Result<String> {
     let name = command.get_name().to_owned();
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut command, name, &mut script);

@@ -31,6 +31,7 @@ pub mod world_args;
 pub mod worlds;
 
 use args::{Args, Command};
+use clap::CommandFactory as _;
 use umbrage_lab::failure::Result;
 
 /// Runs the subcommand.
@@ -52,8 +53,8 @@ pub fn run(args: &Args) -> Result<()> {
         #[cfg(feature = "view")]
         Command::View(args) => view::run(args),
         Command::Worlds { command } => worlds::run(command),
-        Command::Completions(args) => completions::run(args),
-        Command::Man(args) => man::run(args),
+        Command::Completions(args) => completions::run(args, Args::command()),
+        Command::Man(args) => man::run(args, Args::command()),
         Command::Adapter => adapter::run(),
     }
 }

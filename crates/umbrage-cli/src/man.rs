@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use clap::{Command, CommandFactory};
+use clap::Command;
 use clap_mangen::Man;
 use umbrage_lab::{
     failure::{Failure, Result},
     output::{self, Staged},
 };
 
-use crate::{args::Args, print::print};
+use crate::print::print;
 
 /// `umbrage man`.
 #[derive(Debug, clap::Args)]
@@ -20,9 +20,9 @@ pub struct ManArgs {
     pub folder: Option<PathBuf>,
 }
 
-/// Runs the subcommand.
-pub fn run(args: &ManArgs) -> Result<()> {
-    let pages = pages()?;
+/// Runs the subcommand; `command` is the whole one.
+pub fn run(args: &ManArgs, command: Command) -> Result<()> {
+    let pages = pages(command)?;
     match (&args.folder, pages.first()) {
         (Some(folder), _) => {
             output::check(&[], &[folder], &[])?;
@@ -45,13 +45,13 @@ pub struct Page {
     pub text: String,
 }
 
-/// Returns the page of the command, then those of the subcommands that the help lists.
+/// Returns the page of `command`, then those of the subcommands that the help lists.
 ///
 /// # Errors
 /// [`Failure::Other`] if a page is no text.
-pub fn pages() -> Result<Vec<Page>> {
+pub fn pages(command: Command) -> Result<Vec<Page>> {
     // `umbrage help SUBCOMMAND` would get pages that say nothing.
-    let mut command = Args::command().disable_help_subcommand(true);
+    let mut command = command.disable_help_subcommand(true);
     command.build();
     let mut pages = Vec::new();
     add(&command, &mut pages)?;

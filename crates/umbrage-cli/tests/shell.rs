@@ -96,7 +96,7 @@ fn lacking(shell: Shell, script: &str) -> Vec<String> {
 #[test]
 fn completions_have_every_subcommand_and_option() {
     for &shell in Shell::value_variants() {
-        let script = script(shell).expect("a script");
+        let script = script(shell, Args::command()).expect("a script");
         assert_eq!(lacking(shell, &script), [""; 0]);
         // And the words of a setting, where scripts have more than options.
         let has_words = !matches!(shell, Shell::PowerShell | Shell::Elvish);
@@ -107,7 +107,7 @@ fn completions_have_every_subcommand_and_option() {
 #[test]
 fn a_script_without_an_option_is_seen() {
     for &shell in Shell::value_variants() {
-        let whole = script(shell).expect("a script");
+        let whole = script(shell, Args::command()).expect("a script");
         let option = if shell == Shell::Fish { "-l splits " } else { "--splits" };
         let less = whole.replacen(option, "-x ", 1);
         assert_ne!(less, whole, "{shell}");
@@ -125,7 +125,7 @@ fn refusal(shell: Shell, program: &str, option: &str) -> Option<String> {
         eprintln!("SKIPPED: no {program}, which would read its completions");
         return None;
     };
-    let script = script(shell).expect("a script");
+    let script = script(shell, Args::command()).expect("a script");
     // A shell that has found an error reads no further.
     drop(child.stdin.take().expect("a pipe").write_all(script.as_bytes()));
     let output = child.wait_with_output().expect("it ends");
@@ -149,7 +149,7 @@ fn shells_take_their_scripts() {
 
 /// What bash offers after these words.
 fn offered(words: &[&str], begun: &str) -> Option<Vec<String>> {
-    let script = script(Shell::Bash).expect("a script");
+    let script = script(Shell::Bash, Args::command()).expect("a script");
     let before = words.last().copied().unwrap_or_default();
     let ask = format!(
         "{script}\nCOMP_WORDS=({} {begun})\nCOMP_CWORD={}\n_umbrage umbrage '{begun}' '{before}'\nprintf '%s\\n' \"${{COMPREPLY[@]}}\"\n",
@@ -203,7 +203,7 @@ fn lacking_of_pages(pages: &[Page]) -> Vec<String> {
 
 #[test]
 fn man_pages_have_every_subcommand_and_option() {
-    let pages = pages().expect("pages");
+    let pages = pages(Args::command()).expect("pages");
     assert_eq!(lacking_of_pages(&pages), [""; 0]);
     assert_eq!(pages.len(), listed().len(), "one for each");
     let first = plain(&pages[0]);
@@ -227,12 +227,12 @@ fn the_command_prints_and_writes_them() {
     for &shell in Shell::value_variants() {
         let output = folder.run(&format!("completions {shell}"));
         assert!(output.status.success(), "{}", common::stderr(&output));
-        assert_eq!(String::from_utf8_lossy(&output.stdout), script(shell).expect("a script"));
+        assert_eq!(String::from_utf8_lossy(&output.stdout), script(shell, Args::command()).expect("a script"));
     }
     folder.refuse("completions cmd", &["cmd", "bash"]);
     folder.refuse("completions", &["SHELL"]);
 
-    let pages = pages().expect("pages");
+    let pages = pages(Args::command()).expect("pages");
     let output = folder.run("man");
     assert_eq!(String::from_utf8_lossy(&output.stdout), pages[0].text);
     folder.refuse("man tiny.glb", &["tiny.glb", "not a folder"]);
