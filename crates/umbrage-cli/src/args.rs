@@ -7,8 +7,9 @@
 use clap::{Parser, Subcommand};
 
 use crate::{
-    bench::BenchArgs, compare::CompareArgs, gallery::GalleryArgs, plan::PlanArgs, probe::ProbeArgs, render::RenderArgs,
-    theory::TheoryArgs, truth::TruthArgs, tune::TuneArgs, worlds::WorldsCommand,
+    bench::BenchArgs, compare::CompareArgs, completions::CompletionsArgs, gallery::GalleryArgs, man::ManArgs,
+    plan::PlanArgs, probe::ProbeArgs, render::RenderArgs, theory::TheoryArgs, truth::TruthArgs, tune::TuneArgs,
+    worlds::WorldsCommand,
 };
 
 /// Sunlight and its shadows over large worlds: pictures, visibility masks, probes, and the exact
@@ -57,6 +58,10 @@ pub enum Command {
         #[command(subcommand)]
         command: WorldsCommand,
     },
+    /// Print the script by which a shell completes command lines of umbrage
+    Completions(CompletionsArgs),
+    /// Print or write the manual as man pages
+    Man(ManArgs),
     /// Print which graphics adapter would be used, or fail if there is none
     #[command(hide = true)]
     Adapter,

@@ -7,9 +7,11 @@ mod adapter;
 pub mod args;
 pub mod bench;
 pub mod compare;
+pub mod completions;
 pub mod environment;
 pub mod failure;
 pub mod gallery;
+pub mod man;
 pub mod plan;
 mod print;
 pub mod probe;
@@ -29,6 +31,7 @@ pub mod world_args;
 pub mod worlds;
 
 use args::{Args, Command};
+use clap::CommandFactory as _;
 use umbrage_lab::failure::Result;
 
 /// Runs the subcommand.
@@ -50,6 +53,8 @@ pub fn run(args: &Args) -> Result<()> {
         #[cfg(feature = "view")]
         Command::View(args) => view::run(args),
         Command::Worlds { command } => worlds::run(command),
+        Command::Completions(args) => completions::run(args, Args::command()),
+        Command::Man(args) => man::run(args, Args::command()),
         Command::Adapter => adapter::run(),
     }
 }

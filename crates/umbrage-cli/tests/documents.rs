@@ -42,7 +42,8 @@ fn command_lines(text: &str) -> Vec<(usize, String)> {
             is_shell = language.trim() == "sh";
             continue;
         }
-        let command = line.split(" #").next().unwrap_or_default().trim();
+        // Neither remarks nor files of the shell are the command's.
+        let command = line.split(" #").next().and_then(|line| line.split(" > ").next()).unwrap_or_default().trim();
         let command = command.strip_prefix("target/release/").unwrap_or(command);
         if is_shell && command.starts_with("umbrage ") {
             found.push((number, command.to_owned()));

@@ -47,13 +47,20 @@ impl CameraPath {
     /// [`Error::Read`], [`Error::Malformed`] if it is not such JSON, and as [`CameraPath::new`] and
     /// [`CameraPath::with_targets`].
     pub fn load(path: &Path) -> Result<Self> {
-        let file = path.display().to_string();
-        let json: PathFile = serde_json::from_slice(&read_file(path)?).map_err(|error| Error::Malformed {
-            file: file.clone(),
+        Self::from_slice(&path.display().to_string(), &read_file(path)?)
+    }
+
+    /// Reads a path from memory. `name` stands for the file.
+    ///
+    /// # Errors
+    /// As [`CameraPath::load`], but for [`Error::Read`].
+    pub fn from_slice(name: &str, bytes: &[u8]) -> Result<Self> {
+        let json: PathFile = serde_json::from_slice(bytes).map_err(|error| Error::Malformed {
+            file: name.to_owned(),
             reason: format!("is not a camera path: {error}"),
         })?;
         let sun = json.sun_direction_to_light.map(DVec3::from);
-        let path = Self::new(&file, json.points.into_iter().map(DVec3::from).collect(), json.closed, sun)?;
+        let path = Self::new(name, json.points.into_iter().map(DVec3::from).collect(), json.closed, sun)?;
         if json.targets.is_empty() {
             return Ok(path);
         }
@@ -184,8 +191,8 @@ impl CameraPath {
     ///
     /// # Errors
     /// [`Error::NoSuchElement`] if the frame is not below `frames`; [`Error::CameraPath`] if
-    /// `eye_height` is not finite or the point 20 m further on is the very same (a closed path of
-    /// 20 m, for one).
+    /// `eye_height` is not finite, the point 20 m further on is the very same (a closed path of 20
+    /// m, for one), or either lies too far away for a number.
     pub fn pose_at(&self, frame: usize, frames: usize, eye_height: f64) -> Result<(DVec3, DVec3)> {
         if frame >= frames {
             return Err(Error::NoSuchElement { kind: "frame", index: frame, count: frames });
@@ -202,6 +209,10 @@ impl CameraPath {
             targets => self.between(targets, distance),
         };
         let (eye, target) = (self.point_at(distance) + above, seen + above);
+        if !(eye.is_finite() && target.is_finite()) {
+            let reason = "its eye or its target lies too far away for a number".to_owned();
+            return Err(wrong(format!("frame {frame}"), reason));
+        }
         if eye.distance(target) < 1e-9 * (1.0 + eye.length()) {
             let reason = match &self.targets[..] {
                 [] => format!("the point {LOOK_AHEAD_M} m further on is the same, so the eye has nowhere to look"),

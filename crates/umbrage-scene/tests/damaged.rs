@@ -3,7 +3,8 @@
 
 mod common;
 
-use common::rich::{exercise, rich};
+use common::exercise::exercise;
+use common::rich::rich;
 use common::*;
 use proptest::prelude::*;
 use serde_json::json;

@@ -7,7 +7,8 @@
 mod common;
 
 use common::Glb;
-use common::rich::{exercise, rich};
+use common::exercise::exercise;
+use common::rich::rich;
 use serde_json::Value;
 
 /// Files of a run in CI.

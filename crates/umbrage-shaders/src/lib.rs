@@ -153,12 +153,12 @@ pub struct Casters {
 /// code: u32)`, which needs no built-in. With [`Casters::views`] it is `umbrage_cast_at(position,
 /// code, view: u32)`, and `view` is the shader's own `@builtin(view_index)`.
 ///
-/// With [`Casters::ids`] the struct has `@location(15) @interpolate(flat, first) id: u32`, which is
-/// 0 until `umbrage_named(drawn: UmbrageCast, id: u32) -> UmbrageCast` sets it;
-/// `umbrage_caster_id(first: u32, run: u32)` computes an id from a caster's first one. Without ids
-/// both functions exist, too, and do nothing. A fragment shader returns `UmbrageTexel`, which
-/// `umbrage_caster_texel(position: vec4f, id: u32)` computes from its `@builtin(position)` and the
-/// id, 0 for a caster whose triangles cannot be tested.
+/// With [`Casters::ids`] the struct has `@location(14) @interpolate(flat, first) id: u32`, the last
+/// location that weak devices have, which is 0 until `umbrage_named(drawn: UmbrageCast, id: u32) ->
+/// UmbrageCast` sets it; `umbrage_caster_id(first: u32, run: u32)` computes an id from a caster's
+/// first one. Without ids both functions exist, too, and do nothing. A fragment shader returns
+/// `UmbrageTexel`, which `umbrage_caster_texel(position: vec4f, id: u32)` computes from its
+/// `@builtin(position)` and the id, 0 for a caster whose triangles cannot be tested.
 #[must_use]
 pub fn caster(group: u32, casters: Casters, members: &str) -> String {
     let Casters { views, tiles, ids } = casters;
@@ -166,7 +166,7 @@ pub fn caster(group: u32, casters: Casters, members: &str) -> String {
     let view = if views { "    @builtin(view_index) view: u32,\n" } else { "" };
     let distances = if tiles { "    @builtin(clip_distances) clip_distances: array<f32, 4>,\n" } else { "" };
     let (id, named, texel, of_texel) = match ids {
-        true => ("    @location(15) @interpolate(flat, first) id: u32,\n", "result.id = id; ", "u32", "id"),
+        true => ("    @location(14) @interpolate(flat, first) id: u32,\n", "result.id = id; ", "u32", "id"),
         false => ("", "", "f32", "umbrage_caster_depth(position)"),
     };
     let root = match (views, tiles) {

@@ -62,7 +62,7 @@ const DEPTH: &str = "
 /// Fragment shader that writes ids, for casters that discard nothing: 0 unless the vertex shader
 /// has set one.
 const ID: &str = "
-@fragment fn fragment(@location(15) @interpolate(flat, first) id: u32) -> @location(0) u32 {
+@fragment fn fragment(@location(14) @interpolate(flat, first) id: u32) -> @location(0) u32 {
     return id;
 }";
 

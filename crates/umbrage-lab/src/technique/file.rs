@@ -36,7 +36,11 @@ impl ConfigFile {
         Self::parse(&text).map_err(|why| Failure::input(format!("--config {}: {why}", path.display())))
     }
 
-    fn parse(text: &str) -> std::result::Result<Self, String> {
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn parse(text: &str) -> std::result::Result<Self, String> {
         if !text.trim_start().starts_with('{') {
             let config = toml::from_str(text).map_err(|error| error.to_string())?;
             return Ok(Self { config, drawn: None });

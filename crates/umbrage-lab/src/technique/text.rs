@@ -185,7 +185,11 @@ pub fn load(path: &Path) -> Result<(Settings, Vec<TechniqueSource>)> {
     parse_file(&path.display().to_string(), &text)
 }
 
-fn parse_file(file: &str, text: &str) -> Result<(Settings, Vec<TechniqueSource>)> {
+/// Reads the text of such a file; `file` stands for it in messages.
+///
+/// # Errors
+/// As [`load`].
+pub fn parse_file(file: &str, text: &str) -> Result<(Settings, Vec<TechniqueSource>)> {
     let wrong = |what: String| Failure::input(format!("{file}: {what}"));
     let mut root: Table =
         text.parse().map_err(|error: toml::de::Error| wrong(format!("is not valid TOML: {error}")))?;

@@ -14,6 +14,6 @@ fn vs_named(
 }
 
 @fragment
-fn fs_named(@builtin(position) at: vec4f, @location(15) @interpolate(flat, first) id: u32) -> @location(0) UmbrageTexel {
+fn fs_named(@builtin(position) at: vec4f, @location(14) @interpolate(flat, first) id: u32) -> @location(0) UmbrageTexel {
     return umbrage_caster_texel(at, id);
 }

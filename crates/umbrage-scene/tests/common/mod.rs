@@ -1,6 +1,7 @@
 //! Small glTF files made by hand, for tests that bend them.
 #![expect(dead_code, reason = "each test binary uses a part of this")]
 
+pub mod exercise;
 pub mod rich;
 
 use serde_json::{Value, json};

@@ -62,6 +62,11 @@ impl Gpu {
     }
 
     pub fn without(withheld: wgpu::Features) -> Option<Self> {
+        Self::limited(withheld, None)
+    }
+
+    /// Without some features, and with these limits instead of the adapter's.
+    pub fn limited(withheld: wgpu::Features, limits: Option<wgpu::Limits>) -> Option<Self> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         let adapter = match pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) {
             Ok(adapter) => adapter,
@@ -75,10 +80,10 @@ impl Gpu {
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("Test::device"),
             required_features: (adapter.features() & optional_features()).difference(withheld),
-            required_limits: adapter.limits(),
+            required_limits: limits.unwrap_or_else(|| adapter.limits()),
             ..Default::default()
         }))
-        .expect("an adapter gives a device with features that it has");
+        .expect("an adapter gives a device with features and limits that it has");
         Some(Self { device, queue })
     }
 

@@ -92,7 +92,7 @@ const NAMED_CASTER: &str = "
 }
 @fragment fn fragment(
     @builtin(position) at: vec4f,
-    @location(15) @interpolate(flat, first) id: u32,
+    @location(14) @interpolate(flat, first) id: u32,
 ) -> @location(0) UmbrageTexel {
     return umbrage_caster_texel(at, id);
 }";

@@ -1,0 +1,5 @@
+//! libFuzzer's target of `umbrage_fuzz::Body::Techniques`.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| umbrage_fuzz::Body::Techniques.run(bytes));
