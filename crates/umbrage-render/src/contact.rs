@@ -4,8 +4,8 @@ use glam::DVec3;
 use umbrage::{ShadowConfig, View};
 use umbrage_wgpu::{ContactFrame, ContactOptions, ContactShadows};
 
+use crate::attachments::{drawn_depth, read_later};
 use crate::formats::DEPTH_FORMAT;
-use crate::targets::{drawn_depth, read_later};
 use crate::{Gpu, Result};
 
 /// GPU objects of contact shadows.

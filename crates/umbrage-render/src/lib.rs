@@ -5,6 +5,7 @@
 //! [`Frame`]s of it: pictures, visibility masks, depth maps and answers at given points, with
 //! [`FrameStats`] beside them.
 
+mod attachments;
 mod capture;
 mod casters;
 mod coarser;

@@ -28,9 +28,9 @@ const MOST_PIXELS: u64 = 1 << 22;
 /// Pipelines, and the textures that they draw to.
 pub(crate) enum ThroughMask {
     /// One sample per pixel.
-    PerPixel(PerPixel),
+    PerPixel(Box<PerPixel>),
     /// Several samples per pixel.
-    GBuffer(GBuffer),
+    GBuffer(Box<GBuffer>),
 }
 
 /// Whether pictures can take the first light's shadows from a mask and lose nothing by it: one
@@ -73,8 +73,8 @@ impl ThroughMask {
         samples: Samples,
     ) -> Result<Self> {
         Ok(match samples {
-            Samples::One => Self::PerPixel(PerPixel::new(gpu, shadows, forward, materials)?),
-            Samples::Four => Self::GBuffer(GBuffer::new(gpu, shadows, (forward, materials), samples)?),
+            Samples::One => Self::PerPixel(Box::new(PerPixel::new(gpu, shadows, forward, materials)?)),
+            Samples::Four => Self::GBuffer(Box::new(GBuffer::new(gpu, shadows, (forward, materials), samples)?)),
         })
     }
 

@@ -112,9 +112,9 @@ impl ShadowMask {
         Self::with(device, maps, (format, None), normals, None)
     }
 
-    /// [`ShadowMask::new`] for a pass that has a depth target too, of `depth_format` and cleared to
-    /// 1. The answers are equal. Pixels whose depth in that target is 0 are left as they are:
-    /// applications may draw their own answers first, and mark them there.
+    /// [`ShadowMask::new`] for a pass that also has a depth target, of `depth_format`. The answers
+    /// are equal. Clear that depth to 1. Pixels in which the application then draws a depth of 0
+    /// keep the answers that it drew with it.
     ///
     /// A first draw answers the pixels that bounds over the filter's kernel decide, which are most,
     /// and marks them in depth. The early depth test then keeps the second draw, which has the
@@ -264,8 +264,8 @@ impl ShadowMask {
     }
 
     /// Draws the mask into a pass with one colour target and, with [`ShadowMask::in_two_draws`]
-    /// alone, a depth target. Changes bind groups 0 and 1;
-    /// with [`MaskRuns`] the application sets group 2.
+    /// alone, a depth target. Changes bind groups 0 and 1; with [`MaskRuns`] the application sets
+    /// group 2.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, maps: &ShadowMaps, group: &wgpu::BindGroup) {
         pass.set_bind_group(0, group, &[]);
         pass.set_bind_group(1, maps.receiver_bind_group(), &[]);

@@ -104,18 +104,10 @@ fn fs_answered(in: EachSample) -> @location(0) vec4f {
     return vec4f(answer);
 }
 
-// Whether two samples of a pixel show one surface: nearly the same plane, by its normal and by its depth at the pixel's
-// centre. Lower bounds ask more often, higher ones give a sample its neighbour's shadow.
+// Whether two samples of a pixel ask one question: they show one triangle. Triangles whose normals differ by a few degrees
+// have shadows of their own under a low sun.
 fn is_one_surface(a: vec4u, b: vec4u) -> bool {
-    const LEAST_COSINE: f32 = 0.99;
-    // In widths of a pixel.
-    const MOST_APART: f32 = 0.25;
-    let depths = vec2f(depth_of(a), depth_of(b));
-    // Reversed depth falls with distance, so that a share of the one is a share of the other.
-    let height = f32(textureDimensions(questions).y);
-    let apart = MOST_APART * 2.0 * length(frame.ray_up) / (height * length(frame.ray_center));
-    let is_near = abs(depths.x - depths.y) <= apart * min(depths.x, depths.y) && frame.is_orthographic < 0.5;
-    return all(a == b) || (is_near && dot(normal_of(a), normal_of(b)) >= LEAST_COSINE);
+    return all(a == b);
 }
 
 @group(2) @binding(1) var kept_light: texture_multisampled_2d<f32>;

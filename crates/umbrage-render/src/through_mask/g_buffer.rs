@@ -5,6 +5,7 @@ use std::borrow::Cow;
 
 use umbrage_wgpu::{MaskFrame, ShadowMask, Shadows};
 
+use crate::attachments::{drawn, drawn_depth, read_later};
 use crate::draw_list::{Drawable, Drawn, Show};
 use crate::formats::{
     DEPTH_FORMAT, LIGHT_FORMAT, LIT_FORMAT, MARK_FORMAT, NORMALS_FORMAT, PICTURE_FORMAT, QUESTION_FORMAT,
@@ -13,7 +14,7 @@ use crate::forward::{Bindings, Forward, Samples, shade};
 use crate::layouts::{self, UNFILTERED};
 use crate::materials::Materials;
 use crate::surfaces::{Depth, Recipe, Surface, SurfacePipelines};
-use crate::targets::{PictureTarget, drawn, drawn_depth, read_later};
+use crate::targets::PictureTarget;
 use crate::view_list::ViewList;
 use crate::{Gpu, Result, shaders};
 

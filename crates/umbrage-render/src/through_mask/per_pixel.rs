@@ -5,13 +5,14 @@ use std::borrow::Cow;
 use umbrage::config::Coordinates;
 use umbrage_wgpu::{MaskFrame, ShadowMask, Shadows};
 
+use crate::attachments::{drawn, drawn_depth, read_later};
 use crate::draw_list::{Drawable, Drawn, Show};
 use crate::formats::{LIT_FORMAT, MARK_FORMAT, NORMALS_FORMAT, PICTURE_FORMAT};
 use crate::forward::{Bindings, Forward, Samples, bind, draw_pieces, shade};
 use crate::layouts::{self, UNFILTERED};
 use crate::materials::Materials;
 use crate::surfaces::{Depth, Recipe, Surface, SurfacePipelines, Vertices};
-use crate::targets::{PictureTarget, drawn, drawn_depth, read_later};
+use crate::targets::PictureTarget;
 use crate::view_list::ViewList;
 use crate::{Gpu, Result, shaders};
 
