@@ -2,12 +2,12 @@
 
 use std::{env, process::Command};
 
-use anyhow::{Context, Result};
-use serde::Deserialize;
+use anyhow::Result;
 
 use crate::{
-    adapter,
-    run::{build_umbrage, cargo, output, root, run, succeeds},
+    adapter, deny, msrv,
+    packages::packages,
+    run::{build_umbrage, cargo, root, run, succeeds},
     web,
 };
 
@@ -23,6 +23,11 @@ const SHADERS_JOIN: &str = "umbrage-shaders-join";
 /// Folder of the plugin for Bevy: a workspace of its own, so that its versions stay apart from
 /// ours.
 const BEVY: &str = "integrations/bevy";
+/// Folder of the test that composes our WGSL with `naga_oil`: a workspace of its own, because
+/// `naga_oil` asks for features of naga that would build every user of naga anew.
+const NAGA_OIL: &str = "integrations/naga_oil";
+/// Folder of the targets of libFuzzer: a workspace of its own, which needs a nightly compiler.
+const FUZZ: &str = "fuzz";
 /// Features that build C++. They are checked where there is a compiler for it.
 const CPP_FEATURES: [&str; 1] = ["flip"];
 
@@ -30,6 +35,9 @@ const CPP_FEATURES: [&str; 1] = ["flip"];
 /// all tests.
 pub fn test() -> Result<()> {
     run(cargo().args(["fmt", "--all", "--check"]))?;
+    for folder in [NAGA_OIL, FUZZ] {
+        run(cargo().current_dir(root().join(folder)).args(["fmt", "--check"]))?;
+    }
     // Before anything is built of texts that are out of date.
     run(cargo().args(["test", "--package", SHADERS_JOIN]))?;
     run(cargo().args(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
@@ -37,6 +45,9 @@ pub fn test() -> Result<()> {
     run(cargo().args(["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))?;
     check_features()?;
     check_packages()?;
+    deny::check()?;
+    msrv::check()?;
+    check_composed()?;
     let has_adapter = has_adapter()?;
     // Documentation's examples are among the tests.
     let mut tests = cargo();
@@ -94,6 +105,7 @@ pub fn fuzz() -> Result<()> {
         ("umbrage", "fuzz", "UMBRAGE_FUZZ_CASES", "1000000"),
         ("umbrage-scene", "mutated", "UMBRAGE_FUZZ_FILES", "100000"),
         ("umbrage-shaders", "soups", "UMBRAGE_FUZZ_SOUPS", "1000000"),
+        ("umbrage-fuzz", "corpora", "UMBRAGE_FUZZ_RUNS", "100000"),
     ] {
         let mut tests = cargo();
         tests.args(["test", "--release", "--package", package, "--test", test, "--", "--nocapture"]);
@@ -103,6 +115,33 @@ pub fn fuzz() -> Result<()> {
         run(&mut tests)?;
     }
     Ok(())
+}
+
+/// Plans and draws for as many frames as a player sees in a while, and checks that memory stays
+/// flat.
+pub fn soak() -> Result<()> {
+    adapter::ensure(&build_umbrage(false)?)?;
+    const FRAMES: &str = "UMBRAGE_SOAK_FRAMES";
+    let test = |package, test: &str, frames: &str, options: &[&str]| {
+        let mut tests = cargo();
+        tests.args(["test", "--package", package, "--test", test, "--", "--nocapture"]).args(options);
+        tests.env(REQUIRE_GPU, "1");
+        if !is_set(FRAMES) {
+            tests.env(FRAMES, frames);
+        }
+        run(&mut tests)
+    };
+    test("umbrage", "soak", "100000", &[])?;
+    // Its number of frames is in its name.
+    test("umbrage-wgpu", "memory", "10000", &["--ignored"])?;
+    test("umbrage-render", "soak", "10000", &[])
+}
+
+/// Composes our WGSL with `naga_oil`.
+fn check_composed() -> Result<()> {
+    let mut tests = cargo();
+    tests.current_dir(root().join(NAGA_OIL)).args(["test", "--locked", "--quiet"]);
+    run(&mut tests)
 }
 
 /// Returns whether there is an adapter, after trying to install one. Its lack is an error if the
@@ -166,31 +205,6 @@ fn check_features() -> Result<()> {
         run(cargo().args(["test", "--package", "umbrage-truth", "--features", "flip", "--lib", "scores"]))?;
     }
     Ok(())
-}
-
-/// A crate of the workspace, as in `cargo metadata`.
-#[derive(Deserialize)]
-struct Package {
-    name: String,
-    features: std::collections::BTreeMap<String, Vec<String>>,
-    /// Registries that the crate may be published to; all if there is no list.
-    publish: Option<Vec<String>>,
-}
-
-impl Package {
-    fn is_published(&self) -> bool {
-        self.publish.as_ref().is_none_or(|registries| !registries.is_empty())
-    }
-}
-
-fn packages() -> Result<Vec<Package>> {
-    #[derive(Deserialize)]
-    struct Metadata {
-        packages: Vec<Package>,
-    }
-    let text = output(cargo().args(["metadata", "--no-deps", "--format-version", "1"]))?;
-    let metadata: Metadata = serde_json::from_str(&text).context("cargo metadata says something unknown")?;
-    Ok(metadata.packages)
 }
 
 /// Returns options that choose crates.

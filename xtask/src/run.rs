@@ -63,6 +63,11 @@ fn shown(command: &Command) -> String {
     words.map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
 }
 
+/// Returns the folder of build artefacts.
+pub fn target() -> PathBuf {
+    env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |folder| root().join(folder))
+}
+
 /// Builds the command `umbrage` and returns its path.
 pub fn build_umbrage(release: bool) -> Result<PathBuf> {
     let mut build = cargo();
@@ -73,9 +78,8 @@ pub fn build_umbrage(release: bool) -> Result<PathBuf> {
         false => build.args(["test", "--workspace", "--no-run", "--quiet"]),
     };
     run(&mut build)?;
-    let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |dir| root().join(dir));
     let binary =
-        target.join(if release { "release" } else { "debug" }).join(format!("umbrage{}", env::consts::EXE_SUFFIX));
+        target().join(if release { "release" } else { "debug" }).join(format!("umbrage{}", env::consts::EXE_SUFFIX));
     if !binary.is_file() {
         bail!("{} was not built", binary.display());
     }
