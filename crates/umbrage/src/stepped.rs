@@ -106,7 +106,7 @@ impl SteppedSun {
         Ok(if elapsed < self.duration { elapsed / self.duration } else { 1.0 })
     }
 
-    /// Advances a fade by a share of it, or begins one at weight `begin` if the sun is a step ahead.
+    /// Advances a fade by a share of it; begins one at weight `begin` if the sun is a step ahead.
     fn advance(&mut self, sun: &DirectionalLight, passed: f64, begin: f64) -> SunFade {
         let mut fade = self.fade.unwrap_or(SunFade { from: *sun, to: *sun, weight: 1.0 });
         if fade.is_fading() {

@@ -3,10 +3,23 @@
 use glam::DVec3;
 
 use super::tree::with_room;
-use super::view::Most;
 use crate::Aabb;
 use crate::bounds::Placed;
 use crate::geometry::region::{Fan, Hull, greater, lesser};
+
+/// Boxes whose largest measure is found without looking at each.
+pub(crate) trait Most {
+    /// The largest value of a monotone measure; −∞ if there is no box.
+    fn most(&self, measure: impl Fn(&Placed) -> f64) -> f64;
+
+    /// The box around all boxes that pass a monotone test.
+    fn bounds(&self, test: impl Fn(&Placed) -> bool) -> Aabb {
+        let end = |of: &dyn Fn(&Placed) -> f64| self.most(|it| if test(it) { of(it) } else { f64::NEG_INFINITY });
+        let least = |axis: usize| -end(&|it| -(it.center[axis] - it.half[axis]));
+        let most = |axis: usize| end(&|it| it.center[axis] + it.half[axis]);
+        Aabb::new(DVec3::new(least(0), least(1), least(2)), DVec3::new(most(0), most(1), most(2)))
+    }
+}
 
 /// Gathered boxes in groups of neighbours, with their names.
 #[derive(Clone, Debug, Default)]

@@ -13,7 +13,7 @@ mod slots;
 pub(crate) mod tree;
 mod view;
 
-pub(crate) use gathered::{Gathered, Group, spread};
+pub(crate) use gathered::{Gathered, Group, Most, spread};
 pub use handle::CasterHandle;
 pub(crate) use journal::Change;
 pub use kind::Layers;
@@ -22,4 +22,4 @@ pub(crate) use ordered_list::OrderedList;
 pub use set::{Caster, CasterSet, Motion};
 pub use tree::Visited;
 pub(crate) use tree::{Counter, Near, WIDE};
-pub(crate) use view::{Crowd, Most};
+pub(crate) use view::Crowd;

@@ -4,11 +4,9 @@
 //! its kept form depends on nothing else. Its six coordinates are 24-bit numbers of steps from its
 //! leaf's origin, so that the lattice is as fine 100 km from the world's origin as there.
 
-mod asked;
+pub(super) mod asked;
 
 use glam::DVec3;
-
-pub(super) use asked::AskedRun;
 
 use super::kind::{Kinds, Layers};
 use super::slots::MOST_LANES;

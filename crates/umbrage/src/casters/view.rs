@@ -2,13 +2,12 @@
 
 use glam::DVec3;
 
-use super::gathered::Gathered;
+use super::gathered::{Gathered, Most};
 use super::kind::{Ask, Layers, Role};
 use super::ordered_list::OrderedList;
-use super::packed::AskedRun;
+use super::packed::asked::AskedRun;
 use super::set::CasterSet;
 use super::tree::{self, Asked, Collect, Counter, Near};
-use crate::Aabb;
 use crate::bounds::Placed;
 
 /// Casters or receivers of a frame.
@@ -181,20 +180,6 @@ impl<F: Fn(usize) -> u32> Collect for Naming<'_, F> {
 
     fn end(&mut self) {
         self.out.end_group();
-    }
-}
-
-/// Boxes whose largest measure is found without looking at each.
-pub(crate) trait Most {
-    /// The largest value of a monotone measure; −∞ if there is no box.
-    fn most(&self, measure: impl Fn(&Placed) -> f64) -> f64;
-
-    /// The box around all boxes that pass a monotone test.
-    fn bounds(&self, test: impl Fn(&Placed) -> bool) -> Aabb {
-        let end = |of: &dyn Fn(&Placed) -> f64| self.most(|it| if test(it) { of(it) } else { f64::NEG_INFINITY });
-        let least = |axis: usize| -end(&|it| -(it.center[axis] - it.half[axis]));
-        let most = |axis: usize| end(&|it| it.center[axis] + it.half[axis]);
-        Aabb::new(DVec3::new(least(0), least(1), least(2)), DVec3::new(most(0), most(1), most(2)))
     }
 }
 

@@ -66,8 +66,8 @@ impl Limits {
         }
     }
 
-    /// Those of the bounds `among` that parts of a box inside the slice may change, of a region and
-    /// of the box around it; `None` if no part changes any. `own` is around the box.
+    /// Bounds among `among` that parts of a box inside the slice may change, of a region and of the
+    /// box around it; `None` if no part changes any. `own` is around the box.
     pub fn widened(
         &self,
         fan: &Fan,

@@ -278,7 +278,7 @@ impl Region {
         !(0..DIRECTIONS).fold(false, |any, k| any | is_beside(k))
     }
 
-    /// What has to be asked of boxes inside a hull to answer [`Region::can_be_shadowed_by`]; `None`
+    /// Bounds to ask about for boxes inside a hull to answer [`Region::can_be_shadowed_by`]; `None`
     /// if no such box can be shadowed.
     pub fn undecided_in(&self, &Hull { region: ref hull, room }: &Hull, margin: f64) -> Option<Undecided> {
         if hull.depth.0 > self.depth.1 {

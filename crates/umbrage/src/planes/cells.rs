@@ -1,15 +1,16 @@
 //! Thin slices of the view, and for each the bounds of its receivers and casters and the amount of
 //! shadow edges that the image shows there.
 
+mod cell;
 mod shaded;
 
 use glam::DVec3;
 
+pub(crate) use cell::Cell;
 use shaded::{Lanes, Question, across, outline};
 
 use crate::bounds::Placed;
 use crate::casters::{Gathered, Group, Most, WIDE, spread};
-use crate::geometry::limits::Limits;
 use crate::geometry::region::{Fan, Hull, Region, Undecided, greater};
 use crate::geometry::volume::{Lies, Slice};
 use crate::{Aabb, Projection, View};
@@ -26,52 +27,6 @@ pub(crate) struct Sight<'a> {
     /// Region of the last map, if it does not follow from its slice: all geometry that may come
     /// into view, where `receivers` are only those that were seen.
     pub last_map: Option<Region>,
-}
-
-/// The part of the view between two candidate planes.
-#[derive(Clone, Debug)]
-pub(crate) struct Cell {
-    slice: Slice,
-    limits: Limits,
-    /// The receivers inside, in the light's plane and in the world.
-    pub receivers: Region,
-    bounds: Aabb,
-    /// Bounds of the whole casters that can shade the receivers; empty if there are none.
-    pub casters: Region,
-    /// Expected length of shadow edges in the light's plane, in [`Cells::unit`]: an integer, so
-    /// that the sum does not depend on its order.
-    edges: u64,
-    /// [`Region::least_direction`] of the receivers, once all are included.
-    least_direction: usize,
-}
-
-impl Cell {
-    fn new(slice: Slice, fan: &Fan) -> Self {
-        Self {
-            limits: Limits::new(&slice, fan),
-            slice,
-            receivers: Region::EMPTY,
-            bounds: Aabb::EMPTY,
-            casters: Region::EMPTY,
-            edges: 0,
-            least_direction: 0,
-        }
-    }
-
-    /// Includes a point of a box that can change these bounds alone.
-    fn include(&mut self, fan: &Fan, point: DVec3, (of, widened): (&Aabb, Undecided)) {
-        self.receivers.include_point_in(fan, point, widened);
-        self.bounds = self.bounds.including(point.clamp(of.min, of.max));
-    }
-
-    /// Those of the bounds `among` that parts of a box inside the slice may change; `None` if no
-    /// part changes any, nor the bounds in the world.
-    fn widened(&self, fan: &Fan, (placed, own): (&Placed, &Aabb), among: Undecided) -> Option<Undecided> {
-        if among.is_nothing() && self.bounds.union(*own) == self.bounds {
-            return None;
-        }
-        self.limits.widened(fan, (placed, own), (&self.receivers, &self.bounds), among)
-    }
 }
 
 /// A receiver with parts in more cells than this counts as long.

@@ -12,10 +12,10 @@ pub(super) struct Picked {
     pub parts: Vec<Part>,
 }
 
-/// Which boxes of a group are picked.
+/// Choice of boxes of a group.
 pub(super) enum Asked<T> {
     All,
-    /// Those that pass a test.
+    /// Boxes that pass a test.
     Each(T),
 }
 

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::Cell;
+use super::cell::Cell;
 use crate::Aabb;
 use crate::bounds::Placed;
 use crate::casters::WIDE;
@@ -32,12 +32,12 @@ impl Cell {
     }
 }
 
-/// What has to be asked of the casters of a group about a cell.
+/// A question about a cell for the casters of a group.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Question {
     /// Bounds of the receivers on which it depends whether a caster can shade them.
     shading: Undecided,
-    /// Whether a caster may lie below all receivers.
+    /// True if a caster may lie below all receivers.
     may_be_below: bool,
     /// Bounds of the casters that one of them may change.
     pub widened: Undecided,
