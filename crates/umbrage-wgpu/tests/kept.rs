@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use common::painter::{Painted, Painter};
 use common::{Gpu, PCF3, config};
 use glam::DVec3;
-use umbrage::{Aabb, Caster, CasterHandle, CasterSet, DirectionalLight, Frustum, Light, Motion, View};
+use umbrage::{Aabb, Caster, CasterHandle, CasterSet, DirectionalLight, Frustum, Light, Motion, SteppedSun, View};
 use umbrage_wgpu::{Inputs, ShadowConfig};
 
 const SETTINGS: &str = "shadow-range=0.5..90 cache=kept";
@@ -235,4 +235,66 @@ fn standing_costs_nothing_walking_and_turning_little() {
     let (turning, all) = triangles(&gpu, 240, |world| world.heading += 90f64.to_radians() / 60.0);
     eprintln!("turning: {turning} of {all} triangles, {:.2} %", 100.0 * turning as f64 / all as f64);
     assert!(100 * turning <= 15 * all, "{turning} of {all} triangles turning");
+}
+
+/// Frames of a fade.
+const FADE: f64 = 10.0;
+
+/// The most that a point's visibility changes from one frame to the next while the sun makes three
+/// steps over kept maps with a budget, and the frames in which some of the shown maps waited.
+fn sun_steps(gpu: &Gpu, waits: bool) -> (f32, usize) {
+    let mut world = World::new();
+    let mut painters = [0, 1].map(|_| Painter::new(gpu, &kept(&[256; 3])));
+    let mut stepped = SteppedSun::new(0.04, FADE).expect("a step");
+    let (mut before, mut jump, mut blurred): (Option<Vec<f32>>, f32, usize) = (None, 0.0, 0);
+    let (mut shown, mut is_filled, mut steps) = (None, true, 0);
+    for frame in 0..160 {
+        let sun = DirectionalLight::new(DVec3::new(0.5 - 0.0012 * f64::from(frame), -1.0, 0.35)).expect("a sun");
+        let fade = match waits {
+            true => stepped.follow_filled(&sun, 1.0, is_filled).expect("a time"),
+            false => stepped.follow(&sun, 1.0).expect("a time"),
+        };
+        if shown.is_some_and(|to| to != fade.to) {
+            painters.swap(0, 1);
+            steps += 1;
+        }
+        shown = Some(fade.to);
+        let mut paint = |painter: usize, sun: DirectionalLight| {
+            world.sun = sun.direction();
+            // The first maps are there at once.
+            world.paint(gpu, &mut painters[painter], false, (frame > 0).then_some(9_000))
+        };
+        let to = paint(1, fade.to);
+        is_filled = !to.handed_on.contains(&true);
+        let mut mask = to.mask;
+        if fade.is_fading() {
+            let from = paint(0, fade.from);
+            assert!(from.triangles == 0 && !from.handed_on.contains(&true), "the maps before stand");
+            let mix = |(to, from): (&f32, &f32)| fade.mix(f64::from(*from), f64::from(*to)) as f32;
+            mask = mask.iter().zip(&from.mask).map(mix).collect();
+        }
+        blurred += usize::from(!is_filled && fade.weight > 0.0);
+        if let Some(before) = before {
+            jump = mask.iter().zip(&before).map(|(a, b)| (a - b).abs()).fold(jump, f32::max);
+        }
+        before = Some(mask);
+    }
+    assert!(steps >= 3, "{steps} steps");
+    (jump, blurred)
+}
+
+#[test]
+fn a_step_of_the_sun_is_faded_in_once_its_maps_are_filled() {
+    let Some(gpu) = Gpu::new() else { return };
+    let (jump, blurred) = sun_steps(&gpu, true);
+    assert_eq!(blurred, 0, "frames that show maps of which some wait");
+    assert!(jump > 0.0 && f64::from(jump) <= 1.0 / FADE + 1e-5, "a jump by {jump}");
+}
+
+/// The test can say no: without waiting, finer maps take over from coarser ones in the fade.
+#[test]
+fn a_step_that_does_not_wait_is_seen() {
+    let Some(gpu) = Gpu::new() else { return };
+    let (jump, blurred) = sun_steps(&gpu, false);
+    assert!(blurred > 0 && f64::from(jump) > 1.5 / FADE, "a jump by {jump}, {blurred} frames");
 }

@@ -81,19 +81,44 @@ impl SteppedSun {
     /// # Errors
     /// [`Error::InvalidLight`] if `elapsed` is negative or not finite.
     pub fn follow(&mut self, sun: &DirectionalLight, elapsed: f64) -> Result<SunFade> {
+        let passed = self.passed(elapsed)?;
+        Ok(self.advance(sun, passed, passed))
+    }
+
+    /// [`SteppedSun::follow`] for maps that are filled over several frames: kept maps with a budget
+    /// of texels ([`crate::KeptFrame::budget`]). `is_filled` tells whether the last frame's maps
+    /// for [`SunFade::to`] were filled ([`crate::ShadowPlan::is_filled`]).
+    ///
+    /// A fade begins with a weight of 0, and its time passes only while maps are filled. Until then
+    /// the maps of the sun before are shown alone, which cost nothing while they stand, and the new
+    /// ones are to be drawn without being shown.
+    ///
+    /// # Errors
+    /// Those of [`SteppedSun::follow`].
+    pub fn follow_filled(&mut self, sun: &DirectionalLight, elapsed: f64, is_filled: bool) -> Result<SunFade> {
+        let passed = self.passed(elapsed)?;
+        Ok(self.advance(sun, if is_filled { passed } else { 0.0 }, 0.0))
+    }
+
+    /// The share of a fade that passes in a time.
+    fn passed(&self, elapsed: f64) -> Result<f64> {
         check_duration("elapsed", elapsed)?;
+        Ok(if elapsed < self.duration { elapsed / self.duration } else { 1.0 })
+    }
+
+    /// Advances a fade by a share of it; begins one at weight `begin` if the sun is a step ahead.
+    fn advance(&mut self, sun: &DirectionalLight, passed: f64, begin: f64) -> SunFade {
         let mut fade = self.fade.unwrap_or(SunFade { from: *sun, to: *sun, weight: 1.0 });
-        let passed = if elapsed < self.duration { elapsed / self.duration } else { 1.0 };
         if fade.is_fading() {
             fade.weight = (fade.weight + passed).min(1.0);
         } else if maths::angle_between(fade.to.direction(), sun.direction()) >= self.step {
-            fade = SunFade { from: fade.to, to: *sun, weight: passed };
+            fade = SunFade { from: fade.to, to: *sun, weight: begin };
         }
         if !fade.is_fading() {
             fade.from = fade.to;
         }
         self.fade = Some(fade);
-        Ok(fade)
+        fade
     }
 }
 

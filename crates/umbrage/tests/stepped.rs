@@ -44,6 +44,35 @@ fn a_fade_that_is_not_given_time_stays_where_it_is() {
 }
 
 #[test]
+fn a_fade_waits_until_its_maps_are_filled() {
+    let mut stepped = SteppedSun::new(0.01, 4.0).expect("valid");
+    let mut at = |angle, is_filled| {
+        let fade = stepped.follow_filled(&sun(angle), 1.0, is_filled).expect("valid");
+        (fade.from, fade.to, fade.weight)
+    };
+    assert_eq!(at(0.0, false), (sun(0.0), sun(0.0), 1.0), "the first has none to wait for");
+    assert_eq!(at(0.013, true), (sun(0.0), sun(0.013), 0.0), "filled are the maps before the step");
+    assert_eq!(at(0.014, false), (sun(0.0), sun(0.013), 0.0));
+    assert_eq!(at(0.015, true), (sun(0.0), sun(0.013), 0.25));
+    assert_eq!(at(0.016, false), (sun(0.0), sun(0.013), 0.25), "a gap opens again");
+    for weight in [0.5, 0.75] {
+        assert_eq!(at(0.017, true), (sun(0.0), sun(0.013), weight));
+    }
+    assert_eq!(at(0.018, true), (sun(0.013), sun(0.013), 1.0));
+}
+
+#[test]
+fn a_sudden_step_waits_too() {
+    let mut stepped = SteppedSun::new(0.01, 0.0).expect("valid");
+    let mut at = |angle, is_filled| stepped.follow_filled(&sun(angle), 1.0, is_filled).expect("valid");
+    at(0.0, true);
+    let waiting = SunFade { from: sun(0.0), to: sun(0.02), weight: 0.0 };
+    assert_eq!(at(0.02, true), waiting);
+    assert_eq!(at(0.02, false), waiting);
+    assert_eq!(at(0.02, true), SunFade { from: sun(0.02), to: sun(0.02), weight: 1.0 });
+}
+
+#[test]
 fn mixing() {
     let fade = SunFade { from: sun(0.0), to: sun(0.1), weight: 0.25 };
     assert_eq!((fade.mix(1.0, 0.0), fade.mix(0.0, 1.0), fade.mix(0.3, 0.3)), (0.75, 0.25, 0.3));

@@ -53,6 +53,14 @@ impl<'a> ShadowFrame<'a> {
         self.shadows.is_kept
     }
 
+    /// Returns whether all maps are filled. With a budget ([`crate::Inputs::kept_texels`]) coarser
+    /// kept maps may answer for others for some frames, as after a step of the sun: see
+    /// [`umbrage::SteppedSun::follow_filled`].
+    #[must_use]
+    pub fn is_filled(&self) -> bool {
+        self.shadows.planning.plans().iter().all(|plan| plan.is_filled())
+    }
+
     /// The plan of a light.
     ///
     /// # Panics

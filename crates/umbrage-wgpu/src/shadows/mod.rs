@@ -43,6 +43,13 @@ use crate::{Error, FrameOptions, LightMaps, Occluders, Result, ShadowMaps};
 /// have to be drawn; otherwise call [`Shadows::forget_kept`]. Views that take turns overwrite each
 /// other's kept maps: give each a `Shadows` of its own.
 ///
+/// A sun that moves in steps ([`umbrage::SteppedSun`]) has another grid after each step, on which
+/// nothing is drawn yet. To fade from step to step without a visible jump, make two `Shadows`, one
+/// for either sun of [`umbrage::SunFade`], which take turns: the old sun's maps stand and cost
+/// nothing while the new ones are filled within [`Inputs::kept_texels`]. Give
+/// [`ShadowFrame::is_filled`] of the new ones to [`umbrage::SteppedSun::follow_filled`], and the
+/// fade begins once they are filled.
+///
 /// # Several views
 ///
 /// Views share the maps, one after the other: prepare, draw and submit one view before the next is

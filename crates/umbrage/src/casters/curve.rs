@@ -11,6 +11,9 @@ use crate::Aabb;
 /// Bits of a code, at most: two or three coordinates of as many as go into 63.
 const BITS: u32 = 63;
 
+/// Bits of a coarse code: a thousand cells along either axis of a plane.
+const COARSE_BITS: u32 = 22;
+
 /// A world that is this many times as long as it is high is ordered as a plane.
 const FLAT: f64 = 4.0;
 
@@ -35,20 +38,29 @@ impl Curve {
 
     /// Code of a point of the box.
     pub fn code(&self, point: DVec3) -> u64 {
+        self.code_of(point, BITS)
+    }
+
+    /// Code of a point of the box along a curve of fewer cells.
+    pub fn coarse_code(&self, point: DVec3) -> u32 {
+        self.code_of(point, COARSE_BITS) as u32
+    }
+
+    fn code_of(&self, point: DVec3, bits: u32) -> u64 {
         let share = |axis: usize| match self.extent > 0.0 {
             true => ((point[axis] - self.origin[axis]) / self.extent).clamp(0.0, 1.0),
             false => 0.0,
         };
         match self.left_out {
-            Some(axis) => along([(axis + 1) % 3, (axis + 2) % 3].map(share)),
-            None => along([0, 1, 2].map(share)),
+            Some(axis) => along([(axis + 1) % 3, (axis + 2) % 3].map(share), bits),
+            None => along([0, 1, 2].map(share), bits),
         }
     }
 }
 
 /// The place along a Hilbert curve through the unit cube.
-fn along<const N: usize>(shares: [f64; N]) -> u64 {
-    let bits = BITS / N as u32;
+fn along<const N: usize>(shares: [f64; N], bits: u32) -> u64 {
+    let bits = bits / N as u32;
     along_cells(shares.map(|share| (share * ((1u64 << bits) - 1) as f64) as u64), bits)
 }
 

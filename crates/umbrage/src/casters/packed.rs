@@ -4,11 +4,13 @@
 //! its kept form depends on nothing else. Its six coordinates are 24-bit numbers of steps from its
 //! leaf's origin, so that the lattice is as fine 100 km from the world's origin as there.
 
+pub(super) mod asked;
+
 use glam::DVec3;
 
-use super::kind::{Ask, Kinds, Layers};
+use super::kind::{Kinds, Layers};
 use super::slots::MOST_LANES;
-use super::tree::{Near, Tree, WIDE, with_room};
+use super::tree::WIDE;
 use crate::Aabb;
 use crate::bounds::Placed;
 
@@ -113,6 +115,9 @@ pub(super) struct Run {
     /// The numbers of the run's kinds.
     palette: Vec<u16>,
     levels: Vec<Vec<Nodes>>,
+    /// Box around all nodes of the top level, and the layers of any caster.
+    whole: Aabb,
+    layers: u32,
     /// Upper bound of the sum of the three coordinates' magnitudes, in metres.
     farthest: f64,
     /// Number of casters: those left, and those that the run was built with.
@@ -133,6 +138,8 @@ impl Run {
             keys: Vec::with_capacity(leaves),
             kinds: Vec::with_capacity(leaves),
             levels: Vec::new(),
+            whole: Aabb::EMPTY,
+            layers: 0,
             farthest: 0.0,
             live: casters.len(),
             built: casters.len(),
@@ -225,12 +232,24 @@ impl Run {
                 }
             }
         }
+        (self.whole, self.layers) = (Aabb::EMPTY, 0);
+        for top in self.levels.iter().rev().take(1).flatten() {
+            for lane in (0..WIDE).filter(|&lane| top.layers[lane] != 0) {
+                self.whole = self.whole.union(top.bounds(lane));
+                self.layers |= top.layers[lane];
+            }
+        }
     }
 
     /// The key and kind of a caster.
     pub fn about(&self, place: u32) -> (u32, u16) {
         let (leaf, lane) = split(place);
         (self.keys[leaf][lane], self.kind(leaf, lane))
+    }
+
+    /// The key of a caster.
+    pub fn key(&self, place: usize) -> u32 {
+        self.keys[place / WIDE][place % WIDE]
     }
 
     /// The box of a caster.
@@ -257,9 +276,14 @@ impl Run {
         self.write(leaf, lane, bounds);
         let mut index = leaf;
         for level in &mut self.levels {
-            level[index / WIDE].include(index % WIDE, bounds, layers.bits());
+            let nodes = &mut level[index / WIDE];
+            nodes.include(index % WIDE, bounds, layers.bits());
+            if nodes.layers[index % WIDE] != 0 {
+                self.whole = self.whole.union(nodes.bounds(index % WIDE));
+            }
             index /= WIDE;
         }
+        self.layers |= layers.bits();
         true
     }
 
@@ -289,6 +313,39 @@ impl Run {
         Aabb::new(corner(0), corner(3))
     }
 
+    /// All boxes of a leaf; those of lanes without a caster mean nothing.
+    fn read_all(&self, leaf: usize) -> [Placed; WIDE] {
+        let (Boxes { low, high }, origin) = (&self.boxes[leaf], self.origin(leaf));
+        let (mut center, mut half) = ([[0.0f64; WIDE]; 3], [[0.0f64; WIDE]; 3]);
+        for axis in 0..3 {
+            // Axis by axis, which processors do for several boxes at a time; through an i32 for the
+            // same reason.
+            let ends = [axis, axis + 3].map(|k| {
+                let (low, high, mut steps) = (&low[k], &high[k], [0i32; WIDE]);
+                for lane in 0..WIDE {
+                    steps[lane] = i32::from(low[lane]) | i32::from(high[lane]) << 16;
+                }
+                let mut ends = [0.0f64; WIDE];
+                for lane in 0..WIDE {
+                    ends[lane] = origin[axis] + f64::from(steps[lane]) * STEP;
+                }
+                ends
+            });
+            // [`Aabb::center`] and [`Aabb::half_extent`].
+            for lane in 0..WIDE {
+                let (min, max) = (0.5 * ends[0][lane], 0.5 * ends[1][lane]);
+                center[axis][lane] = min + max;
+                half[axis][lane] = max - min;
+            }
+        }
+        let mut boxes = [Placed { center: DVec3::ZERO, half: DVec3::ZERO }; WIDE];
+        for (lane, placed) in boxes.iter_mut().enumerate() {
+            placed.center = DVec3::new(center[0][lane], center[1][lane], center[2][lane]);
+            placed.half = DVec3::new(half[0][lane], half[1][lane], half[2][lane]);
+        }
+        boxes
+    }
+
     pub fn bytes(&self) -> usize {
         self.boxes.capacity() * size_of::<Boxes>()
             + self.origins.capacity() * size_of::<[i32; 3]>()
@@ -311,123 +368,10 @@ fn spans(bounds: Aabb) -> bool {
     (bounds.max - origin).max_element() < SPAN
 }
 
-fn lanes(live: u16) -> impl Iterator<Item = usize> {
-    (0..WIDE).filter(move |lane| live >> lane & 1 == 1)
-}
-
-/// A run with a query.
-#[derive(Clone, Copy)]
-pub(super) struct AskedRun<'a> {
-    pub run: &'a Run,
-    /// Metres from the world's origin at which tests are taken.
-    pub farthest: f64,
-    pub ask: Ask,
-    /// The kinds to look up, unless all are queried.
-    pub kinds: Option<&'a Kinds>,
-}
-
-impl AskedRun<'_> {
-    /// The lanes of a leaf that are queried.
-    fn asked_lanes(&self, leaf: usize) -> u16 {
-        let live = self.run.live_lanes[leaf];
-        let Some(kinds) = self.kinds else { return live };
-        lanes(live)
-            .filter(|&lane| self.ask.is_for(kinds.get(self.run.kind(leaf, lane))))
-            .fold(0, |mask, lane| mask | 1 << lane)
-    }
-}
-
-impl Tree for AskedRun<'_> {
-    fn levels(&self) -> usize {
-        self.run.levels.len()
-    }
-
-    fn node(&self, level: usize, group: usize, lane: usize) -> Option<Placed> {
-        let nodes = &self.run.levels[level][group];
-        let is_asked = nodes.layers[lane] & self.ask.layers.bits() != 0;
-        is_asked.then(|| with_room(nodes.bounds(lane).into(), self.farthest))
-    }
-
-    fn leaf(&self, leaf: usize, each: &mut dyn FnMut(usize, &Placed)) {
-        for lane in lanes(self.asked_lanes(leaf)) {
-            each(WIDE * leaf + lane, &self.run.read(leaf, lane).into());
-        }
-    }
-
-    fn near_lanes(&self, level: usize, group: usize, ask: &Near<'_>, asked: u32, each: &mut dyn FnMut(usize, u32)) {
-        let nodes = &self.run.levels[level][group];
-        let (mut is_in, mut left) = ([true; WIDE], [0u32; WIDE]);
-        for (bit, plane) in ask.planes.iter().enumerate().filter(|(bit, _)| asked >> bit & 1 == 1) {
-            // Each axis is nearest at one end of the box and farthest at the other.
-            let ends = |axis: usize| match plane.normal[axis] >= 0.0 {
-                true => (&nodes.min[axis], &nodes.max[axis]),
-                false => (&nodes.max[axis], &nodes.min[axis]),
-            };
-            let ([(x0, x1), (y0, y1), (z0, z1)], [nx, ny, nz]) = ([ends(0), ends(1), ends(2)], plane.normal.to_array());
-            let bound = plane.offset + ask.margin;
-            // A run lies within a few times this of the origin.
-            let room = 1e-12 * (bound.abs() + self.run.farthest);
-            for lane in 0..WIDE {
-                let at = |x: &[f32; WIDE], y: &[f32; WIDE], z: &[f32; WIDE]| {
-                    nx * f64::from(x[lane]) + ny * f64::from(y[lane]) + nz * f64::from(z[lane]) - bound
-                };
-                is_in[lane] &= at(x0, y0, z0) <= room;
-                left[lane] |= u32::from(at(x1, y1, z1) > -room) << bit;
-            }
-        }
-        for lane in 0..WIDE {
-            if is_in[lane] && nodes.layers[lane] & self.ask.layers.bits() != 0 {
-                each(lane, left[lane]);
-            }
-        }
-    }
-
-    fn near_boxes(&self, leaf: usize, ask: &Near<'_>, asked: u32, each: &mut dyn FnMut(usize, &Placed)) -> usize {
-        let mut lanes_in = self.asked_lanes(leaf);
-        let tested = if asked == 0 { 0 } else { lanes_in.count_ones() as usize };
-        let mut unsure = 0;
-        if asked != 0 {
-            (lanes_in, unsure) = self.run.sieve(leaf, ask, asked, lanes_in);
-        }
-        for lane in lanes(lanes_in) {
-            let placed = self.run.read(leaf, lane).into();
-            if unsure >> lane & 1 == 0 || ask.meets(&placed) {
-                each(WIDE * leaf + lane, &placed);
-            }
-        }
-        tested
-    }
-}
-
-impl Run {
-    /// The boxes of a leaf, among `asked`, that may come near the planes, and those of them for
-    /// which `f32` leaves this undecided.
-    fn sieve(&self, leaf: usize, ask: &Near<'_>, planes: u32, asked: u16) -> (u16, u16) {
-        let boxes = &self.boxes[leaf];
-        let mut ends = [[0.0f32; WIDE]; 6];
-        for (k, ends) in ends.iter_mut().enumerate() {
-            for (end, (&low, &high)) in ends.iter_mut().zip(boxes.low[k].iter().zip(&boxes.high[k])) {
-                *end = (u32::from(low) | u32::from(high) << 16) as i32 as f32 * STEP as f32;
-            }
-        }
-        let origin = self.origin(leaf);
-        let (mut out, mut unsure) = ([false; WIDE], [false; WIDE]);
-        for plane in ask.planes.iter().enumerate().filter(|(bit, _)| planes >> bit & 1 == 1).map(|(_, plane)| plane) {
-            let bound = plane.offset + ask.margin - plane.normal.dot(origin);
-            let nearest = |axis: usize| &ends[if plane.normal[axis] >= 0.0 { axis } else { axis + 3 }];
-            let ([x, y, z], [nx, ny, nz]) = ([nearest(0), nearest(1), nearest(2)], plane.normal.as_vec3().to_array());
-            // What f32 can be off by, and f64 for the origin.
-            let room =
-                (1e-6 * (3.0 * SPAN + bound.abs()) + 1e-12 * (plane.offset.abs() + origin.abs().element_sum())) as f32;
-            let bound = bound as f32;
-            for lane in 0..WIDE {
-                let at = nx * x[lane] + ny * y[lane] + nz * z[lane] - bound;
-                out[lane] |= at > room;
-                unsure[lane] |= at > -room;
-            }
-        }
-        let mask = |of: [bool; WIDE]| (0..WIDE).fold(0u16, |mask, lane| mask | u16::from(of[lane]) << lane);
-        let lanes_in = asked & !mask(out);
-        (lanes_in, lanes_in & mask(unsure))
-    }
+fn lanes(mut live: u16) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = (live != 0).then(|| live.trailing_zeros() as usize);
+        live &= live.wrapping_sub(1);
+        lane
+    })
 }

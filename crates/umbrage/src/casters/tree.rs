@@ -50,12 +50,17 @@ pub(crate) trait Tree {
     /// queried.
     fn node(&self, level: usize, group: usize, lane: usize) -> Option<Placed>;
 
+    /// A box around all boxes, with a little room for rounding, where one is kept.
+    fn whole(&self) -> Option<Placed> {
+        None
+    }
+
     /// Calls `each` with the boxes of a leaf that are queried, by their places in the tree.
-    fn leaf(&self, leaf: usize, each: &mut dyn FnMut(usize, &Placed));
+    fn leaf(&self, leaf: usize, each: &mut impl FnMut(usize, &Placed));
 
     /// Calls `each` with the lanes of a group that come within `margin` of those planes whose bits
     /// are set in `asked`, and with the planes that still have to be tested for boxes inside.
-    fn near_lanes(&self, level: usize, group: usize, ask: &Near<'_>, asked: u32, each: &mut dyn FnMut(usize, u32)) {
+    fn near_lanes(&self, level: usize, group: usize, ask: &Near<'_>, asked: u32, each: &mut impl FnMut(usize, u32)) {
         for lane in 0..WIDE {
             if let Some(node) = self.node(level, group, lane)
                 && let Some(left) = ask.left_of(&node, asked)
@@ -65,18 +70,32 @@ pub(crate) trait Tree {
         }
     }
 
-    /// Calls `each` with those boxes of a leaf that are near. Only the planes of `asked` are
+    /// Hands `collector` those boxes of a leaf that are near. Only the planes of `asked` are
     /// tested. Returns the number of boxes tested.
-    fn near_boxes(&self, leaf: usize, ask: &Near<'_>, asked: u32, each: &mut dyn FnMut(usize, &Placed)) -> usize {
+    fn near_boxes(&self, leaf: usize, ask: &Near<'_>, asked: u32, collector: &mut impl Collect) -> usize {
         let mut tested = 0;
         self.leaf(leaf, &mut |place, placed| {
             tested += usize::from(asked != 0);
             if asked == 0 || ask.meets(placed) {
-                each(place, placed);
+                collector.take(place, placed);
             }
         });
         tested
     }
+}
+
+/// Takes boxes leaf by leaf.
+pub(crate) trait Collect {
+    /// Takes a box, by its place in the tree.
+    fn take(&mut self, place: usize, placed: &Placed);
+
+    /// Takes boxes whose places follow each other.
+    fn take_all(&mut self, first: usize, boxes: &[Placed]) {
+        boxes.iter().zip(first..).for_each(|(placed, place)| self.take(place, placed));
+    }
+
+    /// Ends a leaf.
+    fn end(&mut self);
 }
 
 /// A convex volume and a margin around it in metres.
@@ -116,9 +135,14 @@ pub(crate) fn each(
     test: &mut impl FnMut(&Placed) -> bool,
     visit: &mut impl FnMut(usize, &Placed),
 ) {
-    if let Some(top) = tree.levels().checked_sub(1) {
-        each_below(tree, counter, (top, 0), test, visit);
+    let Some(top) = tree.levels().checked_sub(1) else { return };
+    if let Some(whole) = tree.whole() {
+        count(counter, 1, 0);
+        if !test(&whole) {
+            return;
+        }
     }
+    each_below(tree, counter, (top, 0), test, visit);
 }
 
 fn each_below(
@@ -156,10 +180,14 @@ pub(crate) fn most(
     best: f64,
     (bound, measure): (&impl Fn(&Placed) -> f64, &impl Fn(&Placed) -> f64),
 ) -> f64 {
-    match tree.levels().checked_sub(1) {
-        Some(top) => most_below(tree, counter, (top, 0), best, (bound, measure)),
-        None => best,
+    let Some(top) = tree.levels().checked_sub(1) else { return best };
+    if let Some(whole) = tree.whole() {
+        count(counter, 1, 0);
+        if bound(&whole) <= best {
+            return best;
+        }
     }
+    most_below(tree, counter, (top, 0), best, (bound, measure))
 }
 
 fn most_below(
@@ -200,20 +228,16 @@ fn most_below(
     best
 }
 
-/// Calls `visit` with the boxes that come near a volume, leaf by leaf, by their places in the tree,
-/// and `end` after each leaf.
-pub(crate) fn near(
-    tree: &impl Tree,
-    counter: &Counter,
-    ask: &Near<'_>,
-    visit: &mut dyn FnMut(usize, &Placed),
-    end: &mut dyn FnMut(),
-) {
-    if let Some(top) = tree.levels().checked_sub(1) {
-        let asked = ((1u64 << ask.planes.len()) - 1) as u32;
-        // Both are called through one value, as `visit` and `end` share what they fill.
-        near_below(tree, counter, (top, 0), (ask, asked), visit, end);
+/// Hands `collector` the boxes that come near a volume, leaf by leaf.
+pub(crate) fn near(tree: &impl Tree, counter: &Counter, ask: &Near<'_>, collector: &mut impl Collect) {
+    let Some(top) = tree.levels().checked_sub(1) else { return };
+    let mut asked = ((1u64 << ask.planes.len()) - 1) as u32;
+    if let Some(whole) = tree.whole() {
+        count(counter, 1, 0);
+        let Some(left) = ask.left_of(&whole, asked) else { return };
+        asked = left;
     }
+    near_below(tree, counter, (top, 0), (ask, asked), collector);
 }
 
 fn near_below(
@@ -221,8 +245,7 @@ fn near_below(
     counter: &Counter,
     (level, group): (usize, usize),
     (ask, asked): (&Near<'_>, u32),
-    visit: &mut dyn FnMut(usize, &Placed),
-    end: &mut dyn FnMut(),
+    collector: &mut impl Collect,
 ) {
     debug_assert!(level < MOST_LEVELS, "sixteen to the eighth is more than there can be");
     count(counter, WIDE, 0);
@@ -233,12 +256,12 @@ fn near_below(
     for &(lane, left) in &lanes[..len] {
         let child = WIDE * group + lane;
         if level > 0 {
-            near_below(tree, counter, (level - 1, child), (ask, left), visit, end);
+            near_below(tree, counter, (level - 1, child), (ask, left), collector);
             continue;
         }
-        let tested = tree.near_boxes(child, ask, left, visit);
+        let tested = tree.near_boxes(child, ask, left, collector);
         count(counter, 0, tested);
-        end();
+        collector.end();
     }
 }
 
@@ -419,7 +442,7 @@ impl<F: Fn(usize) -> bool> Tree for Asked<'_, F> {
         self.tree.levels[level].get(WIDE * group + lane).map(|&node| with_room(node, self.farthest))
     }
 
-    fn leaf(&self, leaf: usize, each: &mut dyn FnMut(usize, &Placed)) {
+    fn leaf(&self, leaf: usize, each: &mut impl FnMut(usize, &Placed)) {
         let begin = WIDE * leaf;
         for (place, placed) in self.tree.boxes.iter().enumerate().skip(begin).take(WIDE) {
             if (self.is_for)(place) {

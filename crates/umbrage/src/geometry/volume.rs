@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::region::bits;
 use crate::bounds::{Placed, rounding};
 use crate::{Aabb, View};
 
@@ -116,26 +117,38 @@ impl Slice {
     pub fn clip_box(&self, bounds: &Aabb, mut each: impl FnMut(DVec3)) -> bool {
         let corners = bounds.corners();
         let box_planes = box_planes(bounds);
-        let mut any = false;
-        let mut emit = |polygon: &Polygon| {
-            any |= polygon.len > 0;
-            polygon.points[..polygon.len].iter().for_each(|&point| each(point));
-        };
-        for face in BOX_FACES {
-            emit(&Polygon::new(face.map(|i| corners[i])).clipped(&self.planes, 0.0));
+        let (mut any, mut clipper) = (false, Clipper::new());
+        // Planes that lie beyond the box neither cut it nor have a part in it.
+        let (center, half) = (bounds.center(), bounds.half_extent());
+        let room = |plane: &Plane| BEYOND * ((center.abs() + half).element_sum() + plane.offset.abs());
+        let is_near = self.planes.map(|plane| {
+            let is_beyond = plane.farthest(center, half) < -room(&plane);
+            !is_beyond
+        });
+        let (mut planes, mut len) = ([Plane::default(); 6], 0);
+        for (plane, _) in self.planes.iter().zip(is_near).filter(|(_, is_near)| *is_near) {
+            (planes[len], len) = (*plane, len + 1);
         }
-        for face in FACES {
-            emit(&Polygon::new(face.map(|i| self.corners[i])).clipped(&box_planes, 0.0));
+        for face in BOX_FACES {
+            let part = clipper.clip(face.map(|i| corners[i]), &planes[..len], 0.0);
+            any |= !part.is_empty();
+            part.iter().for_each(|&point| each(point));
+        }
+        for (face, _) in FACES.iter().zip(is_near).filter(|(_, is_near)| *is_near) {
+            let part = clipper.clip(face.map(|i| self.corners[i]), &box_planes, 0.0);
+            any |= !part.is_empty();
+            part.iter().for_each(|&point| each(point));
         }
         any
     }
 
     /// Calls `each` with points whose convex hull is the part of the slice inside another one.
     pub fn clip_slice(&self, other: &Self, mut each: impl FnMut(DVec3)) {
+        let mut clipper = Clipper::new();
         for (one, by) in [(self, other), (other, self)] {
             for face in FACES {
-                let part = Polygon::new(face.map(|i| one.corners[i])).clipped(&by.planes, 0.0);
-                part.points[..part.len].iter().for_each(|&point| each(point));
+                let part = clipper.clip(face.map(|i| one.corners[i]), &by.planes, 0.0);
+                part.iter().for_each(|&point| each(point));
             }
         }
     }
@@ -145,16 +158,17 @@ impl Slice {
     pub fn clip_box_with(&self, other: &Self, bounds: &Aabb, mut each: impl FnMut(DVec3)) {
         let corners = bounds.corners();
         let box_planes = box_planes(bounds);
-        let mut emit = |polygon: Polygon, by: [&[Plane]; 2]| {
-            let part = polygon.clipped(by[0], 0.0).clipped(by[1], 0.0);
-            part.points[..part.len].iter().for_each(|&point| each(point));
+        let mut clipper = Clipper::new();
+        let mut emit = |corners: [DVec3; 4], by: [&[Plane]; 2]| {
+            let part = clipper.clip(corners, by[0].iter().chain(by[1]), 0.0);
+            part.iter().for_each(|&point| each(point));
         };
         for face in BOX_FACES {
-            emit(Polygon::new(face.map(|i| corners[i])), [&self.planes, &other.planes]);
+            emit(face.map(|i| corners[i]), [&self.planes, &other.planes]);
         }
         for (one, by) in [(self, other), (other, self)] {
             for face in FACES {
-                emit(Polygon::new(face.map(|i| one.corners[i])), [&box_planes, &by.planes]);
+                emit(face.map(|i| one.corners[i]), [&box_planes, &by.planes]);
             }
         }
     }
@@ -193,6 +207,10 @@ impl Slice {
     }
 }
 
+/// Share of a coordinate by which a plane that is not near a box lies beyond it at least: much more
+/// than rounding.
+pub(super) const BEYOND: f64 = 1e-9;
+
 fn box_planes(bounds: &Aabb) -> [Plane; 6] {
     [
         Plane { normal: DVec3::NEG_X, offset: -bounds.min.x },
@@ -224,20 +242,23 @@ impl SweptVolume {
         &self.planes[..self.len]
     }
 
-    /// Classifies all boxes inside a box by [`SweptVolume::meets`]: all come within `margin`
-    /// metres, none does, or it depends.
-    pub fn met_by_all(&self, Placed { center, half }: &Placed, margin: f64) -> Lies {
-        let mut lies = Lies::Inside;
-        for plane in self.planes() {
+    /// The planes that have to be tested for boxes inside a box to answer [`SweptVolume::meets`], a
+    /// bit each; `None` if no such box comes within `margin` metres.
+    pub fn undecided_in(&self, Placed { center, half }: &Placed, margin: f64) -> Option<u32> {
+        let mut left = 0;
+        for (bit, plane) in self.planes().iter().enumerate() {
             let (distance, reach) = (plane.distance(*center), plane.normal.abs().dot(*half));
             if distance - reach > margin {
-                return Lies::Outside;
+                return None;
             }
-            if distance + reach > margin {
-                lies = Lies::Across;
-            }
+            left |= u32::from(distance + reach > margin) << bit;
         }
-        lies
+        Some(left)
+    }
+
+    /// [`SweptVolume::meets`] for some of the planes.
+    pub fn meets_some(&self, planes: u32, Placed { center, half }: &Placed, margin: f64) -> bool {
+        bits(planes).all(|bit| self.planes[bit].nearest(*center, *half) <= margin)
     }
 
     /// Returns whether a box comes within `margin` metres of the volume (conservative).
@@ -248,10 +269,10 @@ impl SweptVolume {
     /// Calls `each` with the corners of those parts of the box's faces that come within `margin`
     /// metres of the volume. No part of the box in that range lies nearer to the light.
     pub fn clip_box(&self, bounds: &Aabb, margin: f64, mut each: impl FnMut(DVec3)) {
-        let corners = bounds.corners();
+        let (corners, mut clipper) = (bounds.corners(), Clipper::new());
         for face in BOX_FACES {
-            let part = Polygon::new(face.map(|i| corners[i])).clipped(&self.planes[..self.len], margin);
-            part.points[..part.len].iter().for_each(|&point| each(point));
+            let part = clipper.clip(face.map(|i| corners[i]), &self.planes[..self.len], margin);
+            part.iter().for_each(|&point| each(point));
         }
     }
 
@@ -277,45 +298,55 @@ pub(crate) fn lies_below(center: DVec3, half: DVec3, receivers: &Aabb, direction
     })
 }
 
-/// A convex polygon of a few corners, on the stack.
-struct Polygon {
-    points: [DVec3; MOST_CORNERS],
-    len: usize,
+/// Returns whether [`lies_below`] may hold for a box among some, of which `core` has the greatest
+/// lower corner and the least upper one.
+pub(crate) fn some_lies_below(core: &Aabb, receivers: &Aabb, direction: DVec3) -> bool {
+    let slack = rounding(receivers.max - receivers.min);
+    (0..3).any(|axis| {
+        let beyond = match direction[axis] {
+            along if along < -1e-9 => receivers.min[axis] - core.max[axis],
+            along if along > 1e-9 => core.min[axis] - receivers.max[axis],
+            _ => f64::NEG_INFINITY,
+        };
+        beyond >= -slack
+    })
 }
 
-impl Polygon {
-    fn new(corners: [DVec3; 4]) -> Self {
-        let mut points = [DVec3::ZERO; MOST_CORNERS];
-        points[..4].copy_from_slice(&corners);
-        Self { points, len: 4 }
+/// Clips convex polygons of a few corners, on the stack.
+struct Clipper([[DVec3; MOST_CORNERS]; 2]);
+
+impl Clipper {
+    fn new() -> Self {
+        Self([[DVec3::ZERO; MOST_CORNERS]; 2])
     }
 
     /// Sutherland and Hodgman's clipping by one plane after the other, each moved outwards by
     /// `margin` metres. A plane can add one corner, so the most corners are four plus the 18 planes
     /// of a swept volume.
-    fn clipped(mut self, planes: &[Plane], margin: f64) -> Self {
+    fn clip<'a>(&mut self, corners: [DVec3; 4], planes: impl IntoIterator<Item = &'a Plane>, margin: f64) -> &[DVec3] {
+        let [mut points, mut kept] = self.0.each_mut();
+        points[..4].copy_from_slice(&corners);
+        let mut len = 4;
         for plane in planes {
-            let points = &self.points[..self.len];
-            let outside = points.iter().filter(|&&point| plane.distance(point) - margin > 0.0).count();
-            if outside == self.len {
-                self.len = 0;
-                break;
+            let outside = points[..len].iter().filter(|&&point| plane.distance(point) - margin > 0.0).count();
+            if outside == len {
+                return &[];
             }
             if outside == 0 {
                 continue;
             }
-            let mut kept = Self { points: [DVec3::ZERO; MOST_CORNERS], len: 0 };
+            let mut kept_len = 0;
             let mut push = |point| {
                 // A concave corner cannot arise; rounding may repeat a point, which the bound
                 // leaves room for.
-                if kept.len < kept.points.len() {
-                    kept.points[kept.len] = point;
-                    kept.len += 1;
+                if kept_len < kept.len() {
+                    kept[kept_len] = point;
+                    kept_len += 1;
                 }
             };
-            let mut previous = self.points[self.len - 1];
+            let mut previous = points[len - 1];
             let mut previous_distance = plane.distance(previous) - margin;
-            for &point in &self.points[..self.len] {
+            for &point in &points[..len] {
                 let distance = plane.distance(point) - margin;
                 if (distance > 0.0) != (previous_distance > 0.0) {
                     let t = previous_distance / (previous_distance - distance);
@@ -326,8 +357,9 @@ impl Polygon {
                 }
                 (previous, previous_distance) = (point, distance);
             }
-            self = kept;
+            len = kept_len;
+            std::mem::swap(&mut points, &mut kept);
         }
-        self
+        &points[..len]
     }
 }

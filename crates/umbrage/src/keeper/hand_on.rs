@@ -33,6 +33,13 @@ impl ShadowPlan {
     pub fn is_handed_on(&self, split: usize) -> bool {
         self.coverage.is_handed_on(split)
     }
+
+    /// Returns whether every split serves its own slice, so that shadows are as sharp as they get.
+    /// False if the maps of some were not filled in time: see [`crate::Keeper`].
+    #[must_use]
+    pub fn is_filled(&self) -> bool {
+        !(0..self.splits.len()).any(|split| self.is_handed_on(split))
+    }
 }
 
 /// Range of depths along the light that either of two splits shows.

@@ -1,12 +1,18 @@
 //! Thin slices of the view, and for each the bounds of its receivers and casters and the amount of
 //! shadow edges that the image shows there.
 
+mod cell;
+mod shaded;
+
 use glam::DVec3;
 
+pub(crate) use cell::Cell;
+use shaded::{Lanes, Question, across, outline};
+
 use crate::bounds::Placed;
-use crate::casters::{Gathered, Group, Most};
-use crate::geometry::region::{DIRECTIONS, Fan, Region};
-use crate::geometry::volume::{Lies, Slice, lies_below};
+use crate::casters::{Gathered, Group, Most, WIDE, spread};
+use crate::geometry::region::{Fan, Hull, Region, Undecided, greater};
+use crate::geometry::volume::{Lies, Slice};
 use crate::{Aabb, Projection, View};
 
 /// Inputs for the placement of planes.
@@ -23,70 +29,6 @@ pub(crate) struct Sight<'a> {
     pub last_map: Option<Region>,
 }
 
-/// The part of the view between two candidate planes.
-#[derive(Clone, Debug)]
-pub(crate) struct Cell {
-    slice: Slice,
-    /// The receivers inside, in the light's plane and in the world.
-    pub receivers: Region,
-    bounds: Aabb,
-    /// Bounds of the whole casters that can shade the receivers; empty if there are none.
-    pub casters: Region,
-    /// Expected length of shadow edges in the light's plane, in [`Cells::unit`]: an integer, so
-    /// that the sum does not depend on its order.
-    edges: u64,
-    /// [`Region::least_direction`] of the receivers, once all are included.
-    least_direction: usize,
-}
-
-impl Cell {
-    fn new(slice: Slice) -> Self {
-        Self {
-            slice,
-            receivers: Region::EMPTY,
-            bounds: Aabb::EMPTY,
-            casters: Region::EMPTY,
-            edges: 0,
-            least_direction: 0,
-        }
-    }
-
-    /// Includes a point of a box.
-    fn include(&mut self, fan: &Fan, point: DVec3, of: &Aabb) {
-        self.receivers.include_point(fan, point);
-        self.bounds = self.bounds.including(point.clamp(of.min, of.max));
-    }
-
-    /// Returns whether no part of a box can change the cell.
-    fn holds(&self, fan: &Fan, bounds: &Aabb, Placed { center, half }: &Placed) -> bool {
-        self.bounds.union(*bounds) == self.bounds && self.receivers.encloses_box(fan, *center, *half)
-    }
-
-    /// Returns whether a caster with these bounds can shade the cell's receivers.
-    fn can_be_shadowed_by(&self, bounds: &Region) -> bool {
-        bounds.depth.0 <= self.receivers.depth.1
-            && (0..DIRECTIONS).all(|k| bounds.lo[k] <= self.receivers.hi[k] && bounds.hi[k] >= self.receivers.lo[k])
-    }
-}
-
-/// The share of a caster's rectangle that lies in `region`, on the axes of the least rectangle of
-/// `region`.
-fn share(caster: &Region, region: &Region, u: usize) -> f64 {
-    [u, u + DIRECTIONS / 2]
-        .into_iter()
-        .map(|k| {
-            let width = caster.hi[k] - caster.lo[k];
-            let common = caster.hi[k].min(region.hi[k]) - caster.lo[k].max(region.lo[k]);
-            if width > 0.0 { (common / width).clamp(0.0, 1.0) } else { 1.0 }
-        })
-        .product()
-}
-
-/// Length of a box's outline as seen from the light: two edges along each axis.
-fn outline(half: DVec3, direction: DVec3) -> f64 {
-    (0..3).map(|axis| 4.0 * half[axis] * (1.0 - direction[axis] * direction[axis]).max(0.0).sqrt()).sum()
-}
-
 /// A receiver with parts in more cells than this counts as long.
 const LONG: usize = 8;
 
@@ -97,7 +39,13 @@ const UNITS: f64 = (1u64 << 32) as f64;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cells {
     pub cells: Vec<Cell>,
-    shares: Vec<f64>,
+    /// Scratch: bounds of each cell that the receivers of a group may change; `None` if they change
+    /// none.
+    widened: Vec<Option<Undecided>>,
+    /// Scratch: the questions about a group of casters, and the cells that they are about.
+    questions: Vec<(usize, Question)>,
+    /// Scratch: the shares of the casters in each of these cells.
+    shares: Vec<[f64; WIDE]>,
     /// Unit in which edges are counted, in metres.
     unit: f64,
 }
@@ -106,7 +54,7 @@ impl Cells {
     /// Fills the cells between `depths`.
     pub fn gather(&mut self, sight: &Sight, depths: &[f64]) {
         self.cells.clear();
-        self.cells.extend(depths.windows(2).map(|pair| Cell::new(Slice::new(sight.view, pair[0], pair[1]))));
+        self.cells.extend(depths.windows(2).map(|pair| Cell::new(Slice::new(sight.view, pair[0], pair[1]), sight.fan)));
         self.gather_receivers(sight, depths);
         self.cells.iter_mut().for_each(|cell| cell.least_direction = cell.receivers.least_direction());
         self.gather_casters(sight, depths);
@@ -123,46 +71,53 @@ impl Cells {
         let groups = &sight.receivers.groups;
         let boxes = |group: &Group| &sight.receivers.boxes[group.range()];
         let is_long = |placed: &Placed| extent(placed).len() > LONG;
+        let mut widened = std::mem::take(&mut self.widened);
+        widened.clear();
+        widened.resize(self.cells.len(), Some(Undecided::ALL));
         // Few boxes make most of the bounds: those that are long, a ground above all.
         for group in groups.iter().filter(|group| is_long(&group.bounds)) {
             for placed in boxes(group).iter().filter(|it| is_long(it)) {
-                self.include((sight, depths), &whole, placed, extent(placed));
+                self.include((sight, depths), (&whole, &widened), placed, extent(placed));
             }
         }
-        for group in groups {
-            let holds = |i: usize| self.cells[i].holds(fan, &group.exact, &group.bounds);
-            if extent(&group.bounds).all(holds) {
-                continue;
+        for group in spread(groups) {
+            let (hull, cells) = (Hull::new(fan, &group.bounds), extent(&group.bounds));
+            let mut any = false;
+            for (cell, asked) in self.cells[cells.clone()].iter().zip(&mut widened[cells]) {
+                let among = cell.receivers.widened_by(&hull);
+                *asked = cell.widened(fan, (&group.bounds, &group.exact), among);
+                any |= asked.is_some();
             }
-            for placed in boxes(group).iter().filter(|it| !is_long(it)) {
-                self.include((sight, depths), &whole, placed, extent(placed));
+            if any {
+                for placed in boxes(group).iter().filter(|it| !is_long(it)) {
+                    self.include((sight, depths), (&whole, &widened), placed, extent(placed));
+                }
             }
         }
+        self.widened = widened;
     }
 
-    /// Includes a receiver in the cells in which it has a part.
+    /// Includes a receiver in the cells in which it has a part and whose bounds it may change.
     fn include(
         &mut self,
         (sight, depths): (&Sight, &[f64]),
-        whole: &Slice,
+        (whole, widened): (&Slice, &[Option<Undecided>]),
         placed: &Placed,
         cells: std::ops::Range<usize>,
     ) {
-        let lies = whole.classify(placed.center, placed.half);
-        if lies == Lies::Outside {
-            return;
-        }
+        let mut lies = None;
         let bounds = placed.bounds();
         for i in cells {
             let cell = &mut self.cells[i];
-            if cell.holds(sight.fan, &bounds, placed) {
+            let Some(widened) = widened[i].and_then(|among| cell.widened(sight.fan, (placed, &bounds), among)) else {
                 continue;
-            }
+            };
             let slice = cell.slice;
-            let include = |point| cell.include(sight.fan, point, &bounds);
-            match lies {
+            let include = |point| cell.include(sight.fan, point, (&bounds, widened));
+            match lies.get_or_insert_with(|| whole.classify(placed.center, placed.half)) {
+                Lies::Outside => return,
                 Lies::Inside => between_depths(sight.view, &bounds, depths[i], depths[i + 1], include),
-                _ => {
+                Lies::Across => {
                     slice.clip_box(&bounds, include);
                 }
             }
@@ -171,36 +126,60 @@ impl Cells {
 
     fn gather_casters(&mut self, sight: &Sight, depths: &[f64]) {
         let &Sight { view, fan, .. } = sight;
-        let forward = view.forward();
-        let direction = fan.depth;
-        let longest = sight.casters.most(|caster| outline(caster.half, direction));
+        let (forward, direction) = (view.forward(), fan.depth);
+        let (slope, across) = (direction.dot(forward), across(direction));
+        let longest = sight.casters.most(|caster| outline(caster.half, across));
         self.unit = longest.max(f64::MIN_POSITIVE) / UNITS;
         let deepest = self.cells.iter().map(|cell| cell.receivers.depth.1).fold(f64::NEG_INFINITY, f64::max);
-        for &Placed { center, half } in &sight.casters.boxes {
-            let mut bounds = Region::EMPTY;
-            bounds.include_box(fan, center, half);
-            // The shadow leaves the box along the light until it is below all receivers.
-            let (depth, reach) = (view.view_depth(center), forward.abs().dot(half));
-            let travel = direction.dot(forward) * (deepest - bounds.depth.0).max(0.0);
-            let from = depth - reach + travel.min(0.0);
-            let to = depth + reach + travel.max(0.0);
+        // View depths between which a shadow lies: it leaves its box along the light until it is
+        // below all receivers.
+        let shadow = |placed: &Placed, first: f64| {
+            let (depth, reach) = (view.view_depth(placed.center), forward.abs().dot(placed.half));
+            let travel = slope * (deepest - first).max(0.0);
+            (depth - reach + travel.min(0.0), depth + reach + travel.max(0.0))
+        };
+        let Self { cells, questions, shares, unit, .. } = self;
+        let mut casters = Lanes::new();
+        for (group, hull) in sight.casters.blocks().flat_map(|(block, _)| sight.casters.groups_of(block)) {
+            let own;
+            let hull = match hull {
+                Some(hull) => hull,
+                None => {
+                    own = Hull::new(fan, &group.bounds);
+                    &own
+                }
+            };
+            let (from, to) = shadow(&group.bounds, hull.region.depth.0);
             let reached = cells_between(depths, from, to);
-            self.shares.clear();
-            self.shares.extend(self.cells[reached.clone()].iter().map(|cell| {
-                let shaded = !cell.receivers.is_empty()
-                    && cell.can_be_shadowed_by(&bounds)
-                    && !lies_below(center, half, &cell.bounds, direction, 0.0);
-                if shaded { share(&bounds, &cell.receivers, cell.least_direction) } else { -1.0 }
-            }));
+            questions.clear();
+            questions
+                .extend(reached.filter_map(|i| Some((i, Question::new(&cells[i], &group.core, hull, direction)?))));
+            if questions.is_empty() {
+                continue;
+            }
+            let asked = questions.iter().fold(0, |asked, (_, it)| asked | it.directions);
+            casters.fill(&sight.casters.boxes[group.range()], (fan, asked), shadow, across);
+            let mut held = [0.0; WIDE];
+            shares.clear();
+            for (i, question) in questions.iter() {
+                let own = question.shares(&cells[*i], &casters, (depths[*i], depths[*i + 1]), direction);
+                for lane in 0..WIDE {
+                    held[lane] += greater(own[lane], 0.0);
+                }
+                shares.push(own);
+            }
             // A shadow lies in one place: where boxes are high, several cells seem to hold the same
             // piece of it.
-            let held: f64 = self.shares.iter().map(|share| share.max(0.0)).sum();
-            let length = outline(half, direction) / held.max(1.0);
-            for (cell, &share) in self.cells[reached].iter_mut().zip(&self.shares) {
-                if share >= 0.0 {
-                    cell.casters.include_region(&bounds);
-                    cell.edges += (share * length / self.unit) as u64;
+            let mut length = [0.0; WIDE];
+            for lane in 0..WIDE {
+                length[lane] = casters.outline[lane] / greater(held[lane], 1.0);
+            }
+            for ((i, question), own) in questions.iter().zip(shares.iter()) {
+                let cell = &mut cells[*i];
+                for lane in (0..WIDE).filter(|&lane| own[lane] >= 0.0) {
+                    cell.edges += (own[lane] * length[lane] / *unit) as u64;
                 }
+                cell.include_casters(&casters, own, question.widened);
             }
         }
     }
@@ -289,6 +268,16 @@ mod tests {
     }
 
     #[test]
+    fn a_cell_meets_an_interval_that_meets_its_depths() {
+        let depths = [1.0, 2.0, 4.0, 8.0, 16.0];
+        let ends = [-1.0, 0.5, 1.0, 1.5, 2.0, 3.0, 8.0, 9.0, 16.0, 20.0];
+        for (from, to) in ends.iter().flat_map(|&from| ends.map(|to| (from, to))).filter(|(from, to)| from <= to) {
+            let meets = |&i: &usize| depths[i + 1] > from && depths[i] < to;
+            assert!(cells_between(&depths, from, to).eq((0..4).filter(meets)), "{from} {to}");
+        }
+    }
+
+    #[test]
     fn a_box_between_two_depths_keeps_its_sides_and_loses_its_ends() {
         let frustum = Frustum::perspective(1.0, 1.0, 1.0, 100.0).expect("valid");
         let view = View::look_at_upright(DVec3::ZERO, DVec3::NEG_Z, frustum).expect("valid");
@@ -301,6 +290,6 @@ mod tests {
 
     #[test]
     fn the_outline_of_a_cube_seen_along_an_axis_is_its_square() {
-        assert!((outline(DVec3::splat(0.5), DVec3::NEG_Y) - 4.0).abs() < 1e-12);
+        assert!((outline(DVec3::splat(0.5), across(DVec3::NEG_Y)) - 4.0).abs() < 1e-12);
     }
 }

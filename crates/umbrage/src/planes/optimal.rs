@@ -13,7 +13,7 @@ use super::cells::{Cells, Sight};
 use super::scheme::{coverage, split_planes};
 use super::visible::visible_range;
 use crate::config::{Crop, ExtentSteps, SplitScheme, Stability};
-use crate::geometry::region::{Fan, Region};
+use crate::geometry::region::{Fan, Region, Widths};
 use crate::geometry::sphere::slice_sphere;
 use crate::held::ends::Range;
 use crate::{Error, Frustum, Projection, Result, ShadowConfig, View};
@@ -48,15 +48,20 @@ impl Maps<'_> {
     }
 
     /// Metres across a map that shows a region, as the mean of its edges.
-    fn edge(&self, region: &Region, fan: &Fan) -> f64 {
-        let (_, _, lo, hi) = region.least_rectangle(fan);
+    fn edge(&self, region: &Region) -> f64 {
+        self.edge_across(&region.widths())
+    }
+
+    /// [`Maps::edge`] for a region of these widths.
+    fn edge_across(&self, widths: &Widths) -> f64 {
+        let widths = widths.least_rectangle();
         let extent = match self.config.stability {
             Stability::Approximate { steps: ExtentSteps::Levels(count) } => {
                 let level = self.whole_width / f64::from(count);
-                ((hi - lo) / level).ceil().max(DVec2::ONE) * level
+                (widths / level).ceil().max(DVec2::ONE) * level
             }
             // Steps of equal ratio add the same share to all on average.
-            _ => hi - lo,
+            _ => widths,
         };
         0.5 * (extent.x + extent.y)
     }
@@ -125,6 +130,23 @@ impl Costs {
         weight * edge / self.texels[split]
     }
 
+    /// A lower bound of [`Costs::slice`] for whichever slice before it that `begins` allows: the
+    /// first candidate at which a map may begin.
+    fn slice_bound(&self, split: usize, first: usize, j: usize, k: usize) -> f64 {
+        let weight = self.weights_before[k] - self.weights_before[j];
+        let least = match self.last_edge.filter(|_| split + 1 == self.texels.len()) {
+            Some(edge) => edge,
+            None => (first..=j).map(|i| self.edges[i * self.len + k]).fold(f64::INFINITY, f64::min),
+        };
+        // Rounding in between two edges may lead below both.
+        (1.0 - 1e-9) * (weight.max(0.0) * least / self.texels[split])
+    }
+
+    /// The first candidate at which the map of a slice from candidate `j` may begin.
+    fn first_begin(&self, j: usize) -> usize {
+        (0..j).map(|i| self.begins[i * self.len + j].0).min().unwrap_or(j)
+    }
+
     /// Expected error with planes at these candidates, ends included.
     fn total(&self, planes: &[usize]) -> f64 {
         (0..planes.len() - 1)
@@ -147,10 +169,11 @@ impl Search {
     /// candidates as planes.
     ///
     /// A slice's map reaches back over its border by a share of the slice before, so that its cost
-    /// depends on three planes: the states are pairs of candidates, the work is m K³ / 6.
+    /// depends on three planes: the states are pairs of candidates, and there are m K³ / 6 ways
+    /// from pair to pair. Of equal ones the first is taken.
     fn cheapest(&mut self, costs: &Costs, planes: &mut Vec<usize>) {
         let (n, m) = (costs.len, costs.texels.len());
-        let at = |i: usize, j: usize| i * n + j;
+        let at = |i: usize, j: usize| j * n + i;
         self.costs.clear();
         self.costs.resize(n * n, f64::INFINITY);
         self.parents.clear();
@@ -163,19 +186,25 @@ impl Search {
             self.costs.clear();
             self.costs.resize(n * n, f64::INFINITY);
             for j in split..n {
+                let before = &self.costs_before[at(0, j)..at(j, j)];
+                let first = costs.first_begin(j);
+                // The best way to the last end is a good way to the next one, and leaves few others
+                // to look at.
+                let mut parent = 0;
                 for k in j + 1..n {
-                    let (mut best, mut parent) = (f64::INFINITY, 0);
-                    for i in 0..j {
-                        let before = self.costs_before[at(i, j)];
-                        if before < best {
-                            let cost = before + costs.slice(split, Some(i), j, k);
-                            if cost < best {
+                    let bound = costs.slice_bound(split, first, j, k);
+                    let cost = |i: usize| before[i] + costs.slice(split, Some(i), j, k);
+                    let mut best = cost(parent);
+                    for (i, &before) in before.iter().enumerate() {
+                        if before + bound <= best && i != parent {
+                            let cost = cost(i);
+                            if cost < best || cost == best && i < parent {
                                 (best, parent) = (cost, i);
                             }
                         }
                     }
                     self.costs[at(j, k)] = best;
-                    self.parents[split * n * n + at(j, k)] = parent as u8;
+                    self.parents[split * n * n + at(j, k)] = if best < f64::INFINITY { parent as u8 } else { 0 };
                 }
             }
         }
@@ -306,7 +335,7 @@ impl Placement {
         let config = maps.config;
         let n = candidates.len();
         costs.reset(n, (0..config.splits()).map(|i| maps.texels(i)), weights);
-        costs.last_edge = sight.last_map.as_ref().map(|region| maps.edge(region, sight.fan));
+        costs.last_edge = sight.last_map.as_ref().map(|region| maps.edge(region));
         for i in 0..n {
             for j in i + 1..n {
                 costs.begins[i * n + j] = begin(sight.view, maps, candidates, i, j);
@@ -331,7 +360,7 @@ impl Placement {
                     for (j, at) in edges(i) {
                         let mut region = faces[i];
                         region.include_region(&faces[j]);
-                        costs.edges[at] = maps.edge(&region, sight.fan);
+                        costs.edges[at] = maps.edge(&region);
                     }
                 }
             }
@@ -344,7 +373,7 @@ impl Placement {
                             receivers.include_region(&cell.receivers);
                             casters.include_region(&cell.casters);
                             if !casters.is_empty() {
-                                edge = maps.edge(&casters.within(&receivers), sight.fan);
+                                edge = maps.edge_across(&casters.widths_within(&receivers));
                             }
                         }
                         costs.edges[at] = edge;

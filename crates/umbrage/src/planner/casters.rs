@@ -6,16 +6,16 @@ use super::fit::MapSize;
 use super::frame::{Frame, Sun};
 use super::in_view::InView;
 use super::layout::{Layout, SplitFrame};
-use super::picked::Picked;
+use super::picked::{Asked, Picked};
 use super::shaft::{Shaft, first_depth};
 use super::slice_ends::SliceEnds;
 use crate::Warp;
 use crate::bounds::Placed;
-use crate::casters::Gathered;
+use crate::casters::{Gathered, Group, spread};
 use crate::config::Crop;
 use crate::coverage::CoverageVolume;
-use crate::geometry::region::Region;
-use crate::geometry::volume::{Lies, Slice, lies_below};
+use crate::geometry::region::{Hull, Region, Undecided};
+use crate::geometry::volume::{Slice, lies_below, some_lies_below};
 
 /// A slice of the view with its receivers.
 #[derive(Clone, Debug)]
@@ -99,7 +99,7 @@ impl Listed {
         let is_shown = scene.volume.receivers.is_none_or(|(region, _)| !region.is_empty());
         listed.clear();
         if scene.ends.is_visible && is_shown {
-            scene.pick(sun, casters, listed);
+            listed.pick(casters, |group, hull| scene.ask(sun, (group, hull)));
         }
         let (mut target, mut first) = scene.target(sun, casters, listed);
         // Casters leave a map with smaller texels than its receivers alone, and with those its
@@ -108,7 +108,7 @@ impl Listed {
             let before = (scene.volume.margin, listed.len());
             scene.volume.margin = size.margin(split, target.widest());
             if scene.volume.margin < before.0 {
-                scene.pick(sun, casters, listed);
+                listed.narrow(casters, |group, hull| scene.ask(sun, (group, hull)));
             }
             if listed.len() < before.1 {
                 (target, first) = scene.target(sun, casters, listed);
@@ -119,29 +119,34 @@ impl Listed {
 }
 
 impl Scene {
-    /// Lists the casters that reach into the scene or its margin.
-    fn pick(&self, sun: &Sun<'_>, casters: &Gathered, listed: &mut Picked) {
+    /// The test of [`CoverageVolume::is_shaded_by`] for the casters of a group, of which only that
+    /// is tested that does not hold for all of them; `None` if no caster passes.
+    fn ask<'a>(
+        &'a self,
+        sun: &'a Sun<'a>,
+        (group, hull): (&Group, Option<&Hull>),
+    ) -> Option<Asked<impl Fn(&Placed) -> bool + use<'a>>> {
         let CoverageVolume { swept, receivers, margin, .. } = &self.volume;
         let (fan, margin) = (&sun.fan, *margin);
-        listed.clear();
-        for group in &casters.groups {
-            let bounds = &group.bounds;
-            let (met, served) = (swept.met_by_all(bounds, margin), receivers.as_ref());
-            if met == Lies::Outside {
-                continue;
-            }
-            let shadowed = served.map_or(Lies::Inside, |(region, _)| region.shadowed_by_all(fan, bounds, margin));
-            if shadowed == Lies::Outside {
-                continue;
-            }
-            listed.pick(casters, group, |Placed { center, half }| {
-                (met == Lies::Inside || swept.meets(*center, *half, margin))
-                    && served.is_none_or(|(region, bounds)| {
-                        !lies_below(*center, *half, bounds, fan.depth, margin)
-                            && (shadowed == Lies::Inside || region.can_be_shadowed_by(fan, *center, *half, margin))
-                    })
-            });
+        let planes = swept.undecided_in(&group.bounds, margin)?;
+        let (mut shadowed, mut may_be_below) = (Undecided::default(), false);
+        if let Some((region, bounds)) = receivers {
+            shadowed = match hull {
+                Some(hull) => region.undecided_in(hull, margin)?,
+                None => Undecided::ALL,
+            };
+            may_be_below = some_lies_below(&group.core, bounds, fan.depth);
         }
+        if planes == 0 && shadowed.is_nothing() && !may_be_below {
+            return Some(Asked::All);
+        }
+        Some(Asked::Each(move |caster: &Placed| {
+            swept.meets_some(planes, caster, margin)
+                && receivers.as_ref().is_none_or(|(region, bounds)| {
+                    !(may_be_below && lies_below(caster.center, caster.half, bounds, fan.depth, margin))
+                        && region.can_be_shadowed_along(fan, caster, margin, shadowed)
+                })
+        }))
     }
 
     /// The region that a map with these casters has to show, in the light's plane and in depth, and
@@ -150,13 +155,10 @@ impl Scene {
         match &self.volume.receivers {
             Some((region, _)) if !listed.is_empty() => {
                 let mut target = Region::EMPTY;
-                for part in &listed.parts {
-                    if target.encloses_box_within(&sun.fan, &part.bounds, region) {
-                        continue;
-                    }
-                    for caster in listed.boxes(casters, part) {
-                        target.include_box_within(&sun.fan, caster.center, caster.half, region);
-                    }
+                for part in spread(&listed.parts) {
+                    let hull = listed.hull(casters, part);
+                    let widened = hull.map_or(u32::MAX, |hull| target.widened_within(hull, region));
+                    target.include_boxes_within(&sun.fan, listed.boxes(casters, part), widened, region);
                 }
                 target.depth = region.depth;
                 (target, self.first(sun, casters, listed))

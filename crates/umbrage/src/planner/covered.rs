@@ -4,12 +4,13 @@
 use glam::{DVec2, DVec3};
 
 use super::frame::Sun;
-use super::picked::Picked;
+use super::picked::{Asked, Picked};
 use super::shaft::first_depth;
 use crate::bounds::Placed;
 use crate::casters::Gathered;
 use crate::coverage::CoverageVolume;
-use crate::geometry::volume::{Lies, lies_below};
+use crate::geometry::region::Undecided;
+use crate::geometry::volume::{lies_below, some_lies_below};
 use crate::{ShadowPlan, Split};
 
 /// Texels beyond the filter's reach by which a caster may be off, because the position of a sample
@@ -76,26 +77,29 @@ pub(super) fn serving_all_it_covers(
     let taken = Taken::new(&split, &plan.splits, plan.blend);
     let margin = taken.margin * split.texel_m.max_element();
     let (volume, depths) = shown;
-    listed.clear();
-    for group in &casters.groups {
-        let bounds = &group.bounds;
+    let served = volume.receivers.as_ref();
+    listed.pick(casters, |group, hull| {
         // What no box of a group can do, or all of them do.
-        if !reaches(&split, bounds.center, bounds.half) || taken.holds(bounds.center, bounds.half) {
-            continue;
+        let all = &group.bounds;
+        if !reaches(&split, all.center, all.half) || taken.holds(all.center, all.half) {
+            return None;
         }
-        let served = volume.receivers.as_ref();
-        let shadowed = served.map_or(Lies::Inside, |(region, _)| region.shadowed_by_all(&sun.fan, bounds, margin));
-        if shadowed == Lies::Outside {
-            continue;
-        }
-        listed.pick(casters, group, |&Placed { center, half }| {
-            reaches(&split, center, half)
-                && served.is_none_or(|(_, bounds)| !lies_below(center, half, bounds, direction, margin))
+        let shadowed = match (served, hull) {
+            (Some((region, _)), Some(hull)) => region.undecided_in(hull, margin)?,
+            _ => Undecided::ALL,
+        };
+        let may_be_below = served.is_some_and(|(_, bounds)| some_lies_below(&group.core, bounds, direction));
+        let (split, taken) = (&split, &taken);
+        Some(Asked::Each(move |caster: &Placed| {
+            let &Placed { center, half } = caster;
+            reaches(split, center, half)
+                && served.is_none_or(|(region, bounds)| {
+                    !(may_be_below && lies_below(center, half, bounds, direction, margin))
+                        && region.can_be_shadowed_along(&sun.fan, caster, margin, shadowed)
+                })
                 && !taken.holds(center, half)
-                && (shadowed == Lies::Inside
-                    || served.is_none_or(|(region, _)| region.can_be_shadowed_by(&sun.fan, center, half, margin)))
-        });
-    }
+        }))
+    });
     first = first.min(-listed.most(casters, |c| -first_depth(c, direction)));
     split.depth_near = split.depth_near.min(depths.0);
     split.depth_far = split.depth_far.max(depths.1);

@@ -2,9 +2,11 @@
 
 use super::frame::{Frame, Sun};
 use crate::bounds::Placed;
-use crate::casters::{Gathered, Near};
+use crate::casters::{Gathered, Near, spread};
+use crate::config::Crop;
 use crate::coverage::Served;
-use crate::geometry::region::Region;
+use crate::geometry::limits::Limits;
+use crate::geometry::region::{Hull, Region, Undecided};
 use crate::geometry::volume::{Lies, Slice};
 use crate::held::ends::Range;
 use crate::{Aabb, View};
@@ -38,6 +40,9 @@ impl InView {
         let across = whole.corners[4].distance(whole.corners[7]).max(whole.corners[0].distance(whole.corners[7]));
         let margin = frame.margin_share() * across.max(whole_width);
         frame.casters.near(&Near { planes: swept.planes(), margin }, &mut self.casters);
+        if frame.config.crop == Crop::SceneDependent {
+            self.casters.measure(&sun.fan);
+        }
     }
 
     /// The receivers for which planes are placed.
@@ -52,8 +57,9 @@ impl InView {
         let slice = Slice::new(view, frustum.near, range.far.min(frustum.far).max(1.01 * frustum.near + 0.01));
         let (receivers, _) = self.receivers_in(&slice, sun, false);
         let mut casters = Region::EMPTY;
-        for &Placed { center, half } in &self.casters.boxes {
-            casters.include_box(&sun.fan, center, half);
+        for group in spread(&self.casters.groups) {
+            let widened = casters.widened_by(&Hull::new(&sun.fan, &group.bounds));
+            casters.include_boxes(&sun.fan, self.casters.boxes[group.range()].iter(), widened);
         }
         (!receivers.is_empty() && !casters.is_empty()).then(|| casters.within(&receivers))
     }
@@ -72,10 +78,21 @@ impl InView {
         // Few boxes make most of the bounds: those that are large, a ground above all.
         let large = LARGE * slice.corners[0].distance(slice.corners[7]);
         let of_large = |part: &Placed| part.half.max_element() > large;
-        let include = |region: &mut Region, bounds: &mut Aabb, receiver: &Placed| {
+        let limits = Limits::new(slice, fan);
+        // Asked for each group and box anew, as bounds that have grown hold more.
+        let widened = |region: &Region, bounds: &Aabb, own: &Aabb, placed: &Placed, lies: Lies| {
+            let widened = region.widened_by(&Hull::new(fan, placed));
+            let is_held = widened.is_nothing() && bounds.union(*own) == *bounds;
+            match lies {
+                _ if is_held => None,
+                Lies::Across => limits.widened(fan, (placed, own), (region, bounds), widened),
+                Lies::Inside | Lies::Outside => Some(widened),
+            }
+        };
+        let include = |region: &mut Region, bounds: &mut Aabb, receiver: &Placed, widened: Undecided| {
             let own = receiver.bounds();
             slice.clip_box(&own, |point| {
-                region.include_point(fan, point);
+                region.include_point_in(fan, point, widened);
                 // Rounding leads no part out of its box.
                 *bounds = bounds.including(point.clamp(own.min, own.max));
             });
@@ -83,42 +100,52 @@ impl InView {
         for group in receivers.groups.iter().filter(|group| of_large(&group.bounds)) {
             for receiver in receivers.boxes[group.range()].iter().filter(|it| of_large(it)) {
                 match slice.classify(receiver.center, receiver.half) {
-                    Lies::Across => include(&mut region, &mut bounds, receiver),
+                    Lies::Across => include(&mut region, &mut bounds, receiver, Undecided::ALL),
                     // One inside is taken below.
                     Lies::Inside | Lies::Outside => {}
                 }
             }
         }
         across.clear();
-        for group in &receivers.groups {
-            let lies = slice.classify(group.bounds.center, group.bounds.half);
-            if lies == Lies::Outside || holds(&region, &bounds, sun, &group.exact, &group.bounds) {
+        for block in spread(&receivers.blocks) {
+            let around = slice.classify(block.bounds.center, block.bounds.half);
+            if around == Lies::Outside || widened(&region, &bounds, &block.exact, &block.bounds, around).is_none() {
                 continue;
             }
-            for at in group.range() {
-                let receiver = &receivers.boxes[at];
-                match if lies == Lies::Inside { lies } else { slice.classify(receiver.center, receiver.half) } {
-                    Lies::Outside => {}
-                    Lies::Inside => {
-                        region.include_box(fan, receiver.center, receiver.half);
-                        bounds = bounds.union(receiver.bounds());
+            for group in &receivers.groups[block.range()] {
+                let lies = match around {
+                    Lies::Inside => around,
+                    _ => slice.classify(group.bounds.center, group.bounds.half),
+                };
+                if lies == Lies::Outside {
+                    continue;
+                }
+                let Some(widened) = widened(&region, &bounds, &group.exact, &group.bounds, lies) else { continue };
+                let boxes = &receivers.boxes[group.range()];
+                if lies == Lies::Inside {
+                    region.include_boxes(fan, boxes.iter(), widened);
+                    bounds = bounds.union(group.exact);
+                    continue;
+                }
+                for (receiver, at) in boxes.iter().zip(group.begin..) {
+                    match slice.classify(receiver.center, receiver.half) {
+                        Lies::Outside => {}
+                        Lies::Inside => {
+                            region.include_boxes(fan, std::iter::once(receiver), widened);
+                            bounds = bounds.union(receiver.bounds());
+                        }
+                        Lies::Across => across.push(at),
                     }
-                    Lies::Across => across.push(at as u32),
                 }
             }
         }
-        for receiver in across.iter().map(|&at| &receivers.boxes[at as usize]) {
-            if !holds(&region, &bounds, sun, &receiver.bounds(), receiver) && !of_large(receiver) {
-                include(&mut region, &mut bounds, receiver);
+        for receiver in across.iter().map(|&at| &receivers.boxes[at as usize]).filter(|it| !of_large(it)) {
+            if let Some(widened) = widened(&region, &bounds, &receiver.bounds(), receiver, Lies::Across) {
+                include(&mut region, &mut bounds, receiver, widened);
             }
         }
         (region, bounds)
     }
-}
-
-/// Returns whether no part of a box can change the bounds; `own` is the box or one slightly larger.
-fn holds(region: &Region, bounds: &Aabb, sun: &Sun<'_>, own: &Aabb, placed: &Placed) -> bool {
-    bounds.union(*own) == *bounds && region.encloses_box(&sun.fan, placed.center, placed.half)
 }
 
 /// Least half extent of a large receiver, as a share of the slice's length.

@@ -3,8 +3,7 @@
 use glam::DVec3;
 
 use super::options::check_image_size;
-use crate::bounds::Placed;
-use crate::casters::{BoxTree, Counter, Crowd, Role};
+use crate::casters::{Counter, Crowd, OrderedList, Role};
 use crate::{Aabb, CasterSet, Error, Layers, Light, Result, View};
 
 /// The boxes of a plan's casters or receivers: a list, which is read again in every frame, or a set
@@ -59,10 +58,10 @@ impl<'a> Boxes<'a> {
     }
 
     /// Checks a list and copies it into a tree.
-    pub(super) fn place(&self, name: &'static str, tree: &mut BoxTree) -> Result<()> {
+    pub(super) fn place(&self, name: &'static str, tree: &mut OrderedList) -> Result<()> {
         if let Self::List(list) = self {
             check_boxes(list, name)?;
-            tree.fill(list.iter().map(|&bounds| Placed::from(bounds)));
+            tree.fill(list);
         }
         Ok(())
     }
@@ -70,7 +69,7 @@ impl<'a> Boxes<'a> {
     /// The boxes in the form that the planner reads.
     pub(super) fn crowd<'b>(
         &self,
-        tree: &'b BoxTree,
+        tree: &'b OrderedList,
         asks: (Layers, Role),
         eye: DVec3,
         counter: &'b Counter,

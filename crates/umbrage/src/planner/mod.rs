@@ -25,7 +25,7 @@ mod slice_ends;
 mod snap;
 mod warped;
 
-use crate::casters::{BoxTree, Counter, Crowd, Role, Visited};
+use crate::casters::{Counter, Crowd, OrderedList, Role, Visited};
 use crate::geometry::light_frustum::LightFrustum;
 use crate::held::Held;
 use crate::{Light, Result, ShadowConfig, ShadowPlan, View};
@@ -56,10 +56,10 @@ pub struct Planner {
 #[derive(Clone, Debug, Default)]
 struct Buffers {
     /// Casters that are given as a list.
-    casters: BoxTree,
-    receivers: BoxTree,
+    casters: OrderedList,
+    receivers: OrderedList,
     /// Boxes that an earlier image showed.
-    seen: BoxTree,
+    seen: OrderedList,
     /// Counts of the boxes that the last plan visited.
     visited: Visited,
     kept: Kept,
@@ -239,7 +239,7 @@ fn plan_with(
     if !is_one {
         inputs.receivers.place("receivers", &mut buffers.receivers)?;
     }
-    buffers.seen.fill(inputs.seen.unwrap_or_default().iter().map(|&bounds| crate::bounds::Placed::from(bounds)));
+    buffers.seen.fill_as_given(inputs.seen.unwrap_or_default());
     plan.begin(inputs.view, inputs.light);
     plan.split_range.resize(inputs.casters.listed(), None);
     // A frame that is refused leaves what is held as it was.
