@@ -23,8 +23,8 @@ const GEOGRAPHIC: u32 = 2;
 pub(super) fn read(bytes: &[u8]) -> Result<Raster, String> {
     let broken = |error: tiff::TiffError| format!("cannot be decoded as TIFF: {error}");
     let mut limits = Limits::default();
-    limits.decoding_buffer_size = 1 << 30;
-    limits.intermediate_buffer_size = 256 << 20;
+    limits.decoding_buffer_size = most_decoded(bytes.len());
+    limits.intermediate_buffer_size = limits.decoding_buffer_size.min(256 << 20);
     let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(broken)?.with_limits(limits);
     let (width, height) = decoder.dimensions().map_err(broken)?;
     let (width, height) = (width as usize, height as usize);
@@ -60,6 +60,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, String> {
         }
     }
     Ok(Raster { width, height, values, metres: Some(Metres { unit, offset: 0.0 }), cell, notes })
+}
+
+/// Returns the bytes that a file may take while it is decoded: eight for each post that
+/// [`check_size`] allows it, and four bands of them. A small file that claims thousands of bands
+/// cannot fill the memory.
+fn most_decoded(bytes: usize) -> usize {
+    bytes.saturating_mul(4 * 8 * 4).saturating_add(4 * 8 << 20).min(1 << 30)
 }
 
 /// Returns the value that stands for missing data.
