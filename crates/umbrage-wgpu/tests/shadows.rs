@@ -248,12 +248,12 @@ fn views_hold_their_maps_apart() {
 #[test]
 fn a_lamp_beside_a_sun_has_maps_of_its_own() {
     let Some(gpu) = Gpu::new() else { return };
-    // A warp and a choice by map are the sun's alone.
-    let asked = config(&[128; 4], PCF3, "selection=map stabilize=exact");
+    // Bands by distance instead of depth are the sun's alone.
+    let asked = config(&[128; 4], PCF3, "bands=radial range-fit=camera stabilize=exact");
     let lights = [LightMaps::from(LightKind::Directional), LightMaps::with_sizes(LightKind::Point, &[64])];
     let mut shadows = Shadows::with_lights(&gpu.device, &asked, &lights).expect("valid");
     assert_eq!(shadows.maps().map_count(), 4 + 6);
-    assert!(shadows.notes().iter().any(|note| note.contains("selection map")), "{:?}", shadows.notes());
+    assert!(shadows.notes().iter().any(|note| note.contains("bands radial")), "{:?}", shadows.notes());
     let (casters, receivers, view, both) = (casters(), receivers(), view(0), [sun(), lamp()]);
     let inputs = Inputs { casters: &casters, receivers: &receivers, ..Inputs::new(&view, &both) };
     let frame = shadows.prepare(&gpu.queue, &inputs).expect("a frame");

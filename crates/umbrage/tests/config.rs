@@ -248,10 +248,12 @@ fn a_lamp_beside_a_sun_leaves_the_suns_choices_alone() {
     assert!(of_sun == sharp && none.is_empty());
     let (of_lamp, notes) = sharp.for_light(LightKind::Point);
     assert_eq!(of_lamp.validate_for(&[LightKind::Point]), Ok(()));
-    // Sharp's planes and selection are the default's, and the default's choices were made by nobody.
+    // Sharp's planes and selection are the default's, and what the default chose was chosen by
+    // nobody.
     assert!(of_lamp != sharp && notes.is_empty(), "{notes:?}");
     let (_, notes) = config("warp=tsm").unwrap().for_light(LightKind::Point);
-    assert!(matches!(&notes[..], [one] if one.contains("is ignored for a spot or point light")), "{notes:?}");
+    let [note] = &notes[..] else { panic!("{notes:?}") };
+    assert!(note.contains("is ignored for a spot or point light"), "{note}");
     // What all maps share is no light's own.
     for shared in ["filter=pcss", "filter=vsm", "storage=atlas", "coordinates=split"] {
         let told = config(shared).unwrap().validate_shared(&lights);

@@ -221,7 +221,8 @@ proptest! {
         let has_shadows = points.iter().any(|&(owner, point, _)| is_shaded(owner, point));
         for (owner, point, depth) in points {
             let ends = !has_shadows || last > 100.0 * first && !is_shaded(owner, point);
-            // The deepest corner of all lies at the range's very end, on either side of it by rounding.
+            // The deepest corner of all lies at the range's very end, on either side of it by
+            // rounding.
             let is_end = (depth - last).abs() <= 1e-12 * last;
             let is_held = (first..=last).contains(&depth) || is_end || depth > last && ends;
             prop_assert!(is_held, "{first}..{last} leaves out {point} at {depth}");
