@@ -66,7 +66,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, String> {
 /// [`check_size`] allows it, and four bands of them. A small file that claims thousands of bands
 /// cannot fill the memory.
 fn most_decoded(bytes: usize) -> usize {
-    bytes.saturating_mul(4 * 8 * 4).saturating_add(4 * 8 << 20).min(1 << 30)
+    bytes.saturating_mul(4 * 8 * 4).saturating_add(32 << 20).min(1 << 30)
 }
 
 /// Returns the value that stands for missing data.
