@@ -64,8 +64,8 @@ pub fn quick() -> Result<()> {
     run(cargo().arg("test").args(of(&QUICK_CRATES)))
 }
 
-/// Checks formatting, lints and documentation of the plugin for Bevy, and runs its tests, which
-/// need no adapter.
+/// Checks formatting, lints and documentation of the plugin for Bevy, runs its tests, which need no
+/// adapter, and draws a scene with and without it if there is one.
 pub fn bevy() -> Result<()> {
     let folder = root().join(BEVY);
     let in_folder = |arguments: &[&str]| {
@@ -76,7 +76,8 @@ pub fn bevy() -> Result<()> {
     run(&mut in_folder(&["fmt", "--all", "--check"]))?;
     run(&mut in_folder(&["clippy", "--all-targets", "--locked", "--", "-D", "warnings"]))?;
     run(in_folder(&["doc", "--no-deps", "--locked"]).env("RUSTDOCFLAGS", "-D warnings"))?;
-    run(&mut in_folder(&["test", "--locked"]))
+    run(&mut in_folder(&["test", "--locked"]))?;
+    run(&mut in_folder(&["run", "--locked", "--quiet", "--example", "before_after", "--", "short"]))
 }
 
 /// Writes the joined WGSL again.
