@@ -15,9 +15,10 @@
 //! | depth range ([`depths::HeldDepths`]) | a caster or receiver lies outside |
 //! | local maps' sizes ([`Held::local`]) | as map sizes |
 //!
-//! While the camera stands still, all of this recovers to the choice of a new planner:
-//! [`recovery`].
+//! While the camera stands still, all of this recovers to the choice of a new planner: exactly
+//! still maps by [`recovery`], almost still ones by [`approach`].
 
+pub(crate) mod approach;
 pub(crate) mod depths;
 pub(crate) mod ends;
 pub(crate) mod recovery;
@@ -27,6 +28,7 @@ pub(crate) mod size;
 use glam::{DVec2, DVec3};
 
 use crate::{MAX_SPLITS, View};
+use approach::Approach;
 use depths::HeldDepths;
 use ends::{HeldEnds, Range};
 use recovery::{Recovery, Row, Standing, Standstill};
@@ -45,6 +47,7 @@ const FACES: usize = 6;
 pub struct Held {
     pub(crate) standstill: Standstill,
     pub(crate) recovery: Recovery,
+    pub(crate) approach: Approach,
     pub(crate) light_direction: Option<DVec3>,
     pub(crate) ends: HeldEnds,
     pub(crate) lens: HeldLens,
@@ -76,7 +79,7 @@ impl Held {
         let reach = self.row.map_or(view.frustum().near.abs(), |(_, planes)| planes[1]);
         let standing = self.standstill.follow(view, reach);
         if standing == Standing::Moving {
-            self.recovery = Recovery::default();
+            (self.recovery, self.approach) = Default::default();
         }
         standing
     }
