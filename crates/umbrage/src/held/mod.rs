@@ -9,7 +9,7 @@
 //! |---|---|
 //! | lens ([`size::HeldLens`]) | the camera's is wider, or narrower by √2 |
 //! | range ([`ends::HeldEnds`]) | the scene ends elsewhere by a step |
-//! | split planes of the last frame ([`Held::row`]) | the range changes; optimal ones: until a set of planes with an error a third smaller is found |
+//! | split planes of the last frame ([`Held::row`]) | the range changes; optimal ones: until a set of planes with an error a third smaller is found, for which [`pace::Pace`] searches now and then |
 //! | map sizes, as half extents ([`size::HeldExtents`]) | a slice needs more, or less by two steps of 9 % |
 //! | rectangles ([`rectangle::HeldRectangle`]) | as map sizes, in steps of the setting |
 //! | depth range ([`depths::HeldDepths`]) | a caster or receiver lies outside |
@@ -21,6 +21,7 @@
 pub(crate) mod approach;
 pub(crate) mod depths;
 pub(crate) mod ends;
+pub(crate) mod pace;
 pub(crate) mod recovery;
 pub(crate) mod rectangle;
 pub(crate) mod size;
@@ -31,6 +32,7 @@ use crate::{MAX_SPLITS, View};
 use approach::Approach;
 use depths::HeldDepths;
 use ends::{HeldEnds, Range};
+use pace::Pace;
 use recovery::{Recovery, Row, Standing, Standstill};
 use rectangle::HeldRectangle;
 use size::{HeldExtents, HeldLens, HeldSize};
@@ -54,6 +56,8 @@ pub struct Held {
     pub(crate) whole: HeldSize,
     /// The planes of the last frame and the range that they were placed for.
     pub(crate) row: Option<(Range, [f64; MAX_SPLITS + 1])>,
+    /// When optimal planes are searched for.
+    pub(crate) pace: Pace,
     pub(crate) extents: [HeldExtents; MAX_SPLITS],
     pub(crate) rectangle: [HeldRectangle; MAX_SPLITS],
     pub(crate) depths: HeldDepths,

@@ -233,14 +233,26 @@ impl Layout {
         let is_optimal = config.scheme == SplitScheme::Optimal;
         let LayoutBuffers { placement, planes } = buffers;
         if is_optimal {
-            let last_map = if in_view.is_seen { in_view.shadowed(frame.view, sun, range) } else { None };
-            let (view, fan) = (frame.view, &sun.fan);
-            let sight = Sight { view, fan, receivers: in_view.sought(), casters: &in_view.casters, last_map };
-            let most_half = self.around_all.map_or(DVec2::INFINITY, |all| all.half.truncate());
-            let (margin, whole_width, image_size) = (frame.margin, self.whole_width, frame.image_size);
-            let maps = Maps { config, image_size, margin, whole_width, most_half };
             let inner = held.row.as_ref().map(|(_, planes)| &planes[1..m]);
-            placement.place(&sight, &maps, range, inner, planes)?;
+            let reach = inner.and_then(|inner| inner.first()).copied().unwrap_or(range.near);
+            let is_due = held.pace.is_due(frame.view, range, reach);
+            match inner.filter(|_| !is_due && m > 1) {
+                Some(inner) => {
+                    planes.clear();
+                    planes.push(range.near);
+                    planes.extend_from_slice(inner);
+                    planes.push(range.inner_far);
+                }
+                None => {
+                    let last_map = if in_view.is_seen { in_view.shadowed(frame.view, sun, range) } else { None };
+                    let (view, fan) = (frame.view, &sun.fan);
+                    let sight = Sight { view, fan, receivers: in_view.sought(), casters: &in_view.casters, last_map };
+                    let most_half = self.around_all.map_or(DVec2::INFINITY, |all| all.half.truncate());
+                    let (margin, whole_width, image_size) = (frame.margin, self.whole_width, frame.image_size);
+                    let maps = Maps { config, image_size, margin, whole_width, most_half };
+                    placement.place(&sight, &maps, range, inner, planes)?;
+                }
+            }
             if inner != Some(&planes[1..m]) {
                 // Other slices have other sizes: none is worth holding on to.
                 held.extents = Default::default();
