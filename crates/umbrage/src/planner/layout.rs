@@ -157,6 +157,10 @@ impl Layout {
             }
             (Some(turn.flatten()), None)
         };
+        // Things that move while the camera stands may need a longer range.
+        let last = row.splits;
+        row.planes[0] = row.planes[0].min(target.planes[0]);
+        row.planes[last] = row.planes[last].max(target.planes[last]);
         row.half = target.half;
         Self { approach, next, ..self.held_from_now_on((frame, sun), row, held) }
     }
