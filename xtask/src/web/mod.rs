@@ -2,9 +2,12 @@
 
 mod browser;
 mod check;
+mod events;
+mod memory;
 mod pictures;
 mod serve;
 mod toolchain;
+mod visit;
 
 use std::{
     fs,
