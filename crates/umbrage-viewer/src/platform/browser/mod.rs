@@ -10,6 +10,7 @@ use std::time::Duration;
 use umbrage::{Light, View};
 use umbrage_lab::failure::Failure;
 use umbrage_lab::scene_request::SceneRequest;
+use umbrage_render::Gpu;
 use umbrage_scene::Scene;
 use umbrage_scene::procedural::World;
 use umbrage_truth::{Truth, TruthMask};
@@ -23,7 +24,7 @@ use winit::window::{Window, WindowAttributes};
 pub(crate) use self::outside::Outside;
 pub(crate) use self::page::{first_address, give_up, link, save, take_copies, tell};
 pub use self::tasks::Movable;
-pub(crate) use self::tasks::{finish, pause, spawn};
+pub(crate) use self::tasks::{finish, pause, sleep, spawn};
 use crate::{Error, Result};
 
 /// True if the renderer of the scene uses the window's device.
@@ -79,6 +80,12 @@ fn fonts() -> egui::FontDefinitions {
     fonts.families.insert(Monospace, vec![code.clone(), letters.clone(), icons.clone()]);
     fonts.families.insert(Proportional, vec![letters, code, icons]);
     fonts
+}
+
+/// Returns whether pipelines are worth making before they are needed: browsers check and translate
+/// what they are given for WebGPU before a driver compiles it.
+pub(crate) fn makes_pipelines_slowly(gpu: &Gpu) -> bool {
+    gpu.adapter_info.backend == wgpu::Backend::BrowserWebGpu
 }
 
 /// Opens the scene of a request: a world, bytes that were dropped, or an address of the page's own
