@@ -64,21 +64,18 @@ pub(crate) fn adapt(ctx: &egui::Context) {
     ctx.set_os(egui::os::OperatingSystem::from_user_agent(&agent.unwrap_or_default()));
 }
 
-/// Returns the fonts of the controls: each family falls back on the other's face.
+/// Returns the fonts of the controls: one face for letters, code among them, and one for signs. A
+/// face of its own for code is 150 kB to load, for one field.
 fn fonts() -> egui::FontDefinitions {
-    use egui::FontFamily::{Monospace, Proportional};
-    let faces = [
-        ("Ubuntu-Light", epaint_default_fonts::UBUNTU_LIGHT),
-        ("Hack", epaint_default_fonts::HACK_REGULAR),
-        ("egui-icons", epaint_default_fonts::EGUI_ICONS),
-    ];
+    let faces =
+        [("Ubuntu-Light", epaint_default_fonts::UBUNTU_LIGHT), ("egui-icons", epaint_default_fonts::EGUI_ICONS)];
     let mut fonts = egui::FontDefinitions::empty();
     for (name, bytes) in faces {
         fonts.font_data.insert(name.to_owned(), Arc::new(egui::FontData::from_static(bytes)));
     }
-    let [letters, code, icons] = faces.map(|(name, _)| name.to_owned());
-    fonts.families.insert(Monospace, vec![code.clone(), letters.clone(), icons.clone()]);
-    fonts.families.insert(Proportional, vec![letters, code, icons]);
+    for family in [egui::FontFamily::Proportional, egui::FontFamily::Monospace] {
+        fonts.families.insert(family, faces.map(|(name, _)| name.to_owned()).to_vec());
+    }
     fonts
 }
 
