@@ -1,7 +1,10 @@
 //! What may happen to a page: files are dropped on it, its tab is hidden, its graphics are taken
 //! away.
 
-use std::{fs, time::Instant};
+use std::{
+    fs, thread,
+    time::{Duration, Instant},
+};
 
 use anyhow::{Context, Result, ensure};
 use base64::{Engine as _, prelude::BASE64_STANDARD};
@@ -13,6 +16,8 @@ use super::{
 };
 use crate::run::root;
 
+/// Time for which a hand rests between two changes: the page makes pipelines ahead meanwhile.
+const REST: Duration = Duration::from_secs(4);
 /// Scene that is dropped, and its name on the page.
 const DROPPED: (&str, &str) = ("assets/city_candela.glb", "dropped-city.glb");
 /// Name of a dropped file that is no scene.
@@ -41,6 +46,7 @@ impl Visit<'_> {
         self.open("chessboard")?;
         self.wait("the chessboard")?;
         for filter in ["pcf7", "disc", "pcf3", "pcf7"] {
+            thread::sleep(REST);
             let before = self.browser.data("command")?;
             self.browser.text(&format!(
                 "(() => {{
