@@ -247,6 +247,23 @@ impl Receiver {
         stored >= 1.0 || !self.lies_before(offset, stored, self.tolerance.own) && !self.is_past(offset, stored)
     }
 
+    /// `bias::goes_on`: returns whether a surface goes on in parallel to the receiver's plane from
+    /// one texel to the next, which lie `before` and `next` in front of it.
+    #[must_use]
+    pub fn goes_on(&self, before: f32, next: f32) -> bool {
+        (next - before).abs() <= self.tolerance.bend + self.tolerance.rounding
+    }
+
+    /// `bias::is_straight`: returns whether three texels in a row store depths that lie on a line,
+    /// along u and along v.
+    #[must_use]
+    pub fn is_straight(&self, first: [f32; 2], second: [f32; 2], third: [f32; 2]) -> [bool; 2] {
+        [0, 1].map(|i| {
+            let unsure = self.tolerance.rounding + SNAP_TEXELS * (second[i] - first[i]).abs();
+            (first[i] - 2.0 * second[i] + third[i]).abs() <= 2.0 * unsure
+        })
+    }
+
     /// Returns whether the depth in a texel, `offset` texels from the receiver, shades it: the
     /// whole decision. `beyond` is the depth in the next texels on u and on v, away from the
     /// receiver.

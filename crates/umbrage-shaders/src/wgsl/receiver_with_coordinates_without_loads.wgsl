@@ -607,7 +607,11 @@ fn umbrage_edges_is_before(corners: array<vec3f, 3>, surface: UmbrageSurface, sh
 
 const UMBRAGE_FILTER_LEAST_LIGHT: f32 = 0.05;
 
+const UMBRAGE_FILTER_LEAST_LIGHT_SHUT: f32 = 0.2;
+
 const UMBRAGE_FILTER_DOUBTED_LIGHT: f32 = 0.5;
+
+const UMBRAGE_FILTER_SHUT: f32 = 0.6;
 
 const UMBRAGE_FILTER_LEAST_OWN: f32 = 0.02;
 
@@ -635,8 +639,13 @@ fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSof
             break;
         }
     }
-    let is_lit = seen.x >= select(0.0, UMBRAGE_FILTER_LEAST_LIGHT, umbrage_crease_is_there(asked.crease));
-    let is_seen_lit = seen.z == 0.0 || seen.x > UMBRAGE_FILTER_DOUBTED_LIGHT || seen.y >= UMBRAGE_FILTER_LEAST_OWN;
+    let is_shut = seen.z >= UMBRAGE_FILTER_SHUT;
+    let is_behind = umbrage_crease_is_there(asked.crease);
+    let least = select(UMBRAGE_FILTER_LEAST_LIGHT, UMBRAGE_FILTER_LEAST_LIGHT_SHUT, is_shut);
+    let is_lit = seen.x >= select(0.0, least, is_behind);
+    let is_doubted = seen.z > 0.0 && (seen.x <= UMBRAGE_FILTER_DOUBTED_LIGHT || (is_behind && is_shut));
+    var has_own = seen.y >= UMBRAGE_FILTER_LEAST_OWN;
+    let is_seen_lit = !is_doubted || has_own;
     return select(select(0.0, min(lit, 1.0), is_lit && is_seen_lit), plain, plain != UMBRAGE_KERNEL_UNSURE);
 }
 
