@@ -325,8 +325,18 @@ fn umbrage_bias_is_own(at: UmbrageReceiver, offset: vec2f, stored: f32) -> bool 
 }
 
 @if(texels)
-fn umbrage_bias_goes_on(at: UmbrageReceiver, before: f32, next: f32) -> bool {
-    return abs(next - before) <= at.tolerance.bend + at.tolerance.rounding;
+fn umbrage_bias_beyond_before_plane(at: UmbrageReceiver, offset: vec2f, steps: f32, beyond: vec2f) -> vec2f {
+    let side = select(vec2f(-steps), vec2f(steps), offset >= vec2f(0.0));
+    @if(warped)
+    let along = (at.tilt + at.slope) * side;
+    @if(!warped)
+    let along = at.slope * side;
+    return umbrage_bias_plane_at(at, offset) + along - beyond;
+}
+
+@if(texels)
+fn umbrage_bias_goes_on(at: UmbrageReceiver, before: f32, next: vec2f) -> vec2<bool> {
+    return abs(next - before) <= vec2f(at.tolerance.bend + at.tolerance.rounding);
 }
 
 @if(texels)
@@ -730,9 +740,7 @@ fn umbrage_edges_is_before(corners: array<vec3f, 3>, surface: UmbrageSurface, sh
     return metres > select(UMBRAGE_EDGES_LEAST_M, 0.0, rises) && metres < bounds.x;
 }
 
-const UMBRAGE_FILTER_LEAST_LIGHT: f32 = 0.05;
-
-const UMBRAGE_FILTER_LEAST_LIGHT_SHUT: f32 = 0.2;
+const UMBRAGE_FILTER_LEAST_LIGHT: f32 = 0.2;
 
 const UMBRAGE_FILTER_DOUBTED_LIGHT: f32 = 0.5;
 
@@ -758,6 +766,7 @@ fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSof
     var asked = at;
     var seen = vec3f(0.0);
     var lit = 0.0;
+    var is_behind = false;
     @if(square)
     let plain = umbrage_square_plain(layer, kind, softness, at, centre);
     @if(!square)
@@ -774,15 +783,15 @@ fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSof
         {
             asked = umbrage_texel_with_crease(layer, at, !is_done);
         }
+        is_behind = is_behind || umbrage_crease_is_there(asked.crease);
         if is_done || !umbrage_crease_is_there(asked.crease) {
             break;
         }
     }
     let is_shut = seen.z >= UMBRAGE_FILTER_SHUT;
-    let is_behind = umbrage_crease_is_there(asked.crease);
-    let least = select(UMBRAGE_FILTER_LEAST_LIGHT, UMBRAGE_FILTER_LEAST_LIGHT_SHUT, is_shut);
-    let is_lit = seen.x >= select(0.0, least, is_behind);
-    let is_doubted = seen.z > 0.0 && (seen.x <= UMBRAGE_FILTER_DOUBTED_LIGHT || (is_behind && is_shut));
+    let is_corner = is_behind && is_shut;
+    let is_lit = seen.x >= select(0.0, UMBRAGE_FILTER_LEAST_LIGHT, is_corner);
+    let is_doubted = seen.z > 0.0 && (seen.x <= UMBRAGE_FILTER_DOUBTED_LIGHT || is_corner);
     var has_own = seen.y >= UMBRAGE_FILTER_LEAST_OWN;
     @if(texels)
     {
@@ -1096,18 +1105,17 @@ fn umbrage_texel_forget_own() {
 
 @if(texels)
 fn umbrage_texel_own_goes_on(layer: UmbrageLayer, at: UmbrageReceiver, is_asked: bool) -> bool {
-    var is_level = vec2<bool>(umbrage_texel_nearest_own.z == UMBRAGE_TEXEL_NONE || umbrage_texel_nearest_own.w == UMBRAGE_TEXEL_NONE || at.linear.y > 0.0);
-    let count = select(4, 0, !is_asked || is_level.x);
+    let offset = umbrage_texel_nearest_own.xy + 0.5 - at.texel;
+    let texel = vec2i(floor(umbrage_texel_nearest_own.xy + 0.5 + layer.offset));
+    let is_sure = umbrage_texel_nearest_own.z == UMBRAGE_TEXEL_NONE || umbrage_texel_nearest_own.w == UMBRAGE_TEXEL_NONE || at.linear.y > 0.0;
+    var is_level = vec2<bool>(is_sure || !is_asked);
+    let count = select(2, 0, is_level.x);
     for (var i = 0; i < count; i++) {
-        let is_u = i < 2;
-        let step = select(vec2f(0.0, 1.0), vec2f(1.0, 0.0), is_u) * select(-1.0, 1.0, (i & 1) == 0);
-        let next = umbrage_texel_nearest_own.xy + 0.5 + step;
-        let texel = clamp(vec2i(floor(next + layer.offset)), layer.first, layer.last);
-        let height = umbrage_bias_before_plane(at, next - at.texel, umbrage_map_load(layer.index, texel));
-        let goes = umbrage_bias_goes_on(at, umbrage_texel_nearest_own.z, height);
-        is_level = is_level | vec2<bool>(goes && is_u, goes && !is_u);
+        let steps = 2 * i - 1;
+        let next = umbrage_texel_beyond(layer, texel, offset, steps);
+        is_level = is_level | umbrage_bias_goes_on(at, umbrage_texel_nearest_own.z, umbrage_bias_beyond_before_plane(at, offset, f32(steps), next));
     }
-    return count == 0 || all(is_level);
+    return all(is_level);
 }
 
 @if(texels)
@@ -1127,17 +1135,19 @@ fn umbrage_texel_with_crease(layer: UmbrageLayer, at: UmbrageReceiver, is_asked:
         let offset = centre - at.texel;
         let texel = clamp(vec2i(floor(centre + layer.offset)), layer.first, layer.last);
         let stored = umbrage_map_load(layer.index, texel);
-        var next = umbrage_texel_beyond(layer, texel, offset, 1);
-        var farther = umbrage_texel_beyond(layer, texel, offset, 2);
-        let side = select(vec2f(-1.0), vec2f(1.0), offset >= vec2f(0.0));
-        let ends = vec2<bool>(umbrage_bias_is_past(at, offset + vec2f(side.x, 0.0), next.x), umbrage_bias_is_past(at, offset + vec2f(0.0, side.y), next.y));
-        let rounds = select(0, 1, any(ends));
+        var next = vec2f(0.0);
+        var farther = vec2f(0.0);
+        var rounds = 1;
+        var ends = vec2<bool>(true);
         for (var j = 0; j < rounds; j++) {
-            let nearer = umbrage_texel_beyond(layer, texel, offset, -1);
-            let nearest = umbrage_texel_beyond(layer, texel, offset, -2);
-            let continues = ends & umbrage_bias_is_straight(at, vec2f(stored), nearer, nearest);
-            next = select(next, 2.0 * stored - nearer, continues);
-            farther = select(farther, 2.0 * stored - nearest, continues);
+            let steps = 1 - 2 * j;
+            let first = umbrage_texel_beyond(layer, texel, offset, steps);
+            let second = umbrage_texel_beyond(layer, texel, offset, 2 * steps);
+            let continues = ends & (vec2<bool>(j == 0) | umbrage_bias_is_straight(at, vec2f(stored), first, second));
+            next = select(next, select(2.0 * stored - first, first, j == 0), continues);
+            farther = select(farther, select(2.0 * stored - second, second, j == 0), continues);
+            ends = umbrage_bias_beyond_before_plane(at, offset, 1.0, next) < vec2f(-at.tolerance.past);
+            rounds = select(1, 2, any(ends));
         }
         let crease = umbrage_bias_crease_at(at, offset, stored, next, farther);
         is_flat = is_flat && umbrage_bias_before_plane(at, offset, stored) <= at.tolerance.rounding;
