@@ -1177,6 +1177,8 @@ fn umbrage_texel_forget_own() {
     umbrage_texel_nearest_own = vec4f(0.0, 0.0, 0.0, UMBRAGE_TEXEL_NONE);
 }
 
+const UMBRAGE_TEXEL_FALL: f32 = 3.0;
+
 @if(texels)
 fn umbrage_texel_own_goes_on(layer: UmbrageLayer, at: UmbrageReceiver, is_asked: bool) -> bool {
     let offset = umbrage_texel_nearest_own.xy + 0.5 - at.texel;
@@ -1184,12 +1186,14 @@ fn umbrage_texel_own_goes_on(layer: UmbrageLayer, at: UmbrageReceiver, is_asked:
     let is_sure = umbrage_texel_nearest_own.z == UMBRAGE_TEXEL_NONE || umbrage_texel_nearest_own.w == UMBRAGE_TEXEL_NONE || at.linear.y > 0.0;
     var is_level = vec2<bool>(is_sure || !is_asked);
     let count = select(2, 0, is_level.x);
+    var lowest = UMBRAGE_TEXEL_NONE;
     for (var i = 0; i < count; i++) {
         let steps = 2 * i - 1;
-        let next = umbrage_texel_beyond(layer, texel, offset, steps);
-        is_level = is_level | umbrage_bias_goes_on(at, umbrage_texel_nearest_own.z, umbrage_bias_beyond_before_plane(at, offset, f32(steps), next));
+        let next = umbrage_bias_beyond_before_plane(at, offset, f32(steps), umbrage_texel_beyond(layer, texel, offset, steps));
+        is_level = is_level | umbrage_bias_goes_on(at, umbrage_texel_nearest_own.z, next);
+        lowest = min(lowest, min(next.x, next.y));
     }
-    return all(is_level);
+    return all(is_level) || lowest >= umbrage_texel_nearest_own.z - UMBRAGE_TEXEL_FALL * at.tolerance.bend;
 }
 
 @if(texels)
