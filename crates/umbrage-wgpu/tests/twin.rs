@@ -212,9 +212,8 @@ struct BiasAnswer {
     range_m: f32,
     tolerance: [f32; 4],
     reference: f32,
-    /// Bits: behind, the same surface, meets the receiver, makes a crease, lies across it, own, before
-    /// the plane, goes on along u and v, straight
-    /// along u and v.
+    /// Bits: behind, the same surface, meets the receiver, makes a crease, lies across it, own,
+    /// before the plane, goes on along u and v, straight along u and v.
     decided: u32,
     padding: [u32; 2],
     /// Height and rise of the crease, and what is unsure.

@@ -258,9 +258,9 @@ impl Receiver {
         })
     }
 
-    /// `bias::goes_on`: returns whether a surface goes on in parallel to the receiver's plane from a
-    /// texel to the next ones on u and on v. `before` and `next` are their distances in front of the
-    /// plane.
+    /// `bias::goes_on`: returns whether a surface goes on in parallel to the receiver's plane from
+    /// a texel to the next ones on u and on v. `before` and `next` are their distances in front of
+    /// the plane.
     #[must_use]
     pub fn goes_on(&self, before: f32, next: [f32; 2]) -> [bool; 2] {
         next.map(|next| (next - before).abs() <= self.tolerance.bend + self.tolerance.rounding)
