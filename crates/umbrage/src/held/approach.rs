@@ -12,7 +12,7 @@ use crate::maths;
 /// Growth in which no step is worth taking: rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// What decides which map answers for a point.
+/// Decision on the map that answers for a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Decides {
     /// The first map that contains the point.

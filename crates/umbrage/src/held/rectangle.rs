@@ -68,13 +68,13 @@ impl Rectangle {
             ExtentSteps::Levels(_) => 1,
         };
         (1..directions).map(around).fold(around(0), |best, other| {
-            // Steps make ties of rectangles that differ by rounding only; those stay with the first.
+            // Steps make ties of rectangles that differ by rounding only; the first stays.
             if other.area() < best.area() * (1.0 - ROUNDING) { other } else { best }
         })
     }
 }
 
-/// What a rectangle grows to before planes move.
+/// Goal of a rectangle that grows before planes move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Goal {
     rectangle: Rectangle,
@@ -86,7 +86,7 @@ struct Goal {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HeldRectangle {
     held: Option<Rectangle>,
-    /// What it grows to before planes move, while the camera stands still.
+    /// Its goal before planes move, while the camera stands still.
     goal: Option<Goal>,
     /// Factor by which edges were too long at the last frame; 1 if that is not worth a step.
     excess: f64,
@@ -225,7 +225,7 @@ enum Aim {
     Turned,
 }
 
-/// How a rectangle may change in a frame of a camera that stands still.
+/// Change of a rectangle in a frame of a camera that stands still.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Stride {
     Stay,
@@ -258,8 +258,8 @@ impl Rectangle {
         Self { center, extent, ..*self }
     }
 
-    /// What to shrink to for `target`, of which `best` is the least rectangle: along these axes if
-    /// that is hardly larger.
+    /// Aim of a rectangle that shrinks to `target`, of which `best` is the least rectangle: along
+    /// these axes if that is hardly larger.
     fn aim(&self, target: &Region, best: &Self, (steps, whole): (ExtentSteps, f64)) -> Aim {
         let own = Self::around(target, self.direction, steps, whole);
         if own.area() <= best.area() * worth_keeping(steps) { Aim::Same(own) } else { Aim::Turned }
@@ -402,7 +402,7 @@ mod tests {
         }
     }
 
-    /// Whether a rectangle shows all of a target.
+    /// Returns whether a rectangle shows all of a target.
     fn shows(rectangle: &Rectangle, target: &Region) -> bool {
         let (lo, hi) = target.bounds(rectangle.direction);
         let reach = 0.5 * rectangle.extent * (1.0 + 1e-9);

@@ -63,7 +63,7 @@ impl SplitFrame<'_> {
         self.frame.config.warp(self.index)
     }
 
-    /// The change of the split's rectangle in this frame of an approach; `None` while there is none.
+    /// The change of the split's rectangle in this frame of an approach; `None` without one.
     pub fn stride(&self) -> Option<Stride> {
         let turn = self.layout.approach?;
         Some(turn.filter(|(map, _)| *map == self.index).map_or(Stride::Stay, |(_, stride)| stride))
