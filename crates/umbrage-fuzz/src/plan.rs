@@ -161,5 +161,7 @@ fn case(choices: &mut Choices<'_>) -> Option<Case> {
     }
     let seen = choices.rarely(2).then(|| seen(&boxes, &[(); 8].map(|()| choices.byte() % 16)));
     let probes = (0..12).map(|_| choices.point([-120.0, -2.0, -120.0], [120.0, 20.0, 120.0])).collect();
-    Some(Case { settings, options, views, sun, boxes, seen, probes })
+    let standing = if choices.rarely(8) { 60 } else { 0 };
+    let moves = if choices.rarely(2) { choices.point([-0.5; 3], [0.5; 3]) } else { DVec3::ZERO };
+    Some(Case { settings, options, views, standing, moves, sun, boxes, seen, probes })
 }

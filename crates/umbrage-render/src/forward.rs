@@ -173,7 +173,7 @@ pub(crate) struct Forward {
 
 impl Forward {
     /// Makes the pipelines. `named` are the buffers of [`Names::entries`]; empty without exact
-    /// edges.
+    /// edges. With `any_filter` they serve every filter that compares depth.
     pub fn new(
         gpu: &Gpu,
         maps: &ShadowMaps,
@@ -181,6 +181,7 @@ impl Forward {
         samples: Samples,
         (contact, named): (Option<&Contact>, &[wgpu::BindGroupEntry<'_>]),
         shadows: Shading,
+        any_filter: bool,
     ) -> Self {
         let device = &gpu.device;
         let (library, coordinates): (String, Coordinates) = match shadows {
@@ -189,14 +190,16 @@ impl Forward {
                     true => umbrage_wgpu::stored_runs_wgsl(0, Names::BINDING),
                     false => String::new(),
                 };
-                (maps.receiver_wgsl(2) + &runs, maps.config().coordinates)
+                let any = any_filter.then(|| maps.any_filter_receiver_wgsl(2)).flatten();
+                (any.unwrap_or_else(|| maps.receiver_wgsl(2)) + &runs, maps.config().coordinates)
             }
             Shading::WithoutShadows => (shaders::WITHOUT_SHADOWS.to_owned(), Coordinates::World),
         };
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("Forward::shader"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::forward(&library, coordinates, contact.is_some()))),
-        });
+        let module = |label, text| {
+            let source = wgpu::ShaderSource::Wgsl(Cow::Owned(text));
+            device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source })
+        };
+        let shader = module("Forward::shader", shaders::forward(&library, coordinates, contact.is_some()));
         let frame_layout = frame_layout(device, maps.edges());
         let sliced = maps.layout() == Layout::Reused;
         let count = if sliced { 1 + maps.splits() } else { 1 };
@@ -229,10 +232,8 @@ impl Forward {
             bind_group_layouts: &[Some(&frame_layout)],
             immediate_size: 0,
         });
-        let depth_module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("Forward::depth_shader"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(shaders::depth())),
-        });
+        let depth_shader = module("Forward::depth_shader", shaders::depth());
+        let sky_shader = module("Forward::sky_shader", shaders::sky());
         let counts = (shadows == Shading::WithShadows && maps.edges().is_exact()).then(|| {
             let library = maps.counting_receiver_wgsl(2) + &umbrage_wgpu::stored_runs_wgsl(0, Names::BINDING);
             shaders::edge_counts(&library, coordinates)
@@ -244,11 +245,13 @@ impl Forward {
             // A slice has no depth pass: which pixels belong to it is known only where they are
             // shaded.
             depth: if sliced { Depth::Drawn } else { Depth::Found },
-            ..Recipe::new(gpu, surface_layout, module)
+            ..Recipe::new(gpu, surface_layout, shader)
         };
+        let unclipped_depth = shading.unclipped_depth;
+        let sky = Recipe { unclipped_depth, ..Recipe::new(gpu, sky_layout, sky_shader) };
         let drawn_first = Recipe {
             constants: vec![("LEAST_COVERAGE", samples.least_coverage())],
-            ..Recipe::new(gpu, depth_layout, depth_module)
+            ..Recipe::new(gpu, depth_layout, depth_shader)
         };
         // With several samples lavapipe shades hidden pixels all the same: a depth pass does not
         // help. Most such pictures go through a G-buffer instead (docs/notes/cost.md).
@@ -300,7 +303,7 @@ impl Forward {
                 .pipelines("Forward::mask", [mask("fs_mask_opaque"), mask("fs_mask_masked"), mask("fs_mask_opaque")]),
             depth: drawn_first.pipelines("Forward::depth", before("fs_exact", None, 1)),
             counts: counts.map(|text| (text, Recipe { depth: Depth::Drawn, ..shading.clone() }, OnceLock::new())),
-            sky: Sky::new(Recipe { layout: sky_layout, depth: Depth::Drawn, ..shading }, samples_per_pixel),
+            sky: Sky::new(sky, samples_per_pixel),
         }
     }
 

@@ -1,14 +1,14 @@
 //! Meshes whose triangles maps can name, for exact edges. Every triangle's first corner tells its
-//! run of eight triangles, and buffers hold the corners of the runs.
+//! run, and buffers hold the corners of the runs.
 
 use std::collections::HashMap;
 
-use umbrage_wgpu::StoredRun;
+use umbrage_wgpu::{RUN_TRIANGLES, StoredRun};
 
 use crate::{Gpu, Result};
 
-/// Number of triangles in a run, as in [`umbrage_wgpu::stored_runs`].
-const RUN: usize = 8;
+/// Number of triangles in a run.
+const RUN: usize = RUN_TRIANGLES as usize;
 
 /// Triangles each of whose first corners belongs to one run.
 pub(crate) struct Named {

@@ -5,6 +5,7 @@ use umbrage::config::Coordinates;
 const SCENE: &str = include_str!("shaders/scene.wgsl");
 const VIEW: &str = include_str!("shaders/view.wgsl");
 const NORMALS: &str = include_str!("shaders/normals.wgsl");
+const TONE: &str = include_str!("shaders/tone.wgsl");
 
 /// WGSL of casters. Bind group 0 is what [`umbrage_wgpu::ShadowMaps::caster_wgsl`] declares, 1 the
 /// material.
@@ -48,7 +49,7 @@ pub(crate) fn forward(library: &str, coordinates: Coordinates, contact: bool) ->
         Coordinates::World | Coordinates::Deferred => include_str!("shaders/surface.wgsl"),
         Coordinates::Vertex => include_str!("shaders/surface_with_coordinates.wgsl"),
     };
-    [library, &contact, SCENE, VIEW, NORMALS, include_str!("shaders/forward.wgsl"), surface].join("\n")
+    [library, &contact, SCENE, VIEW, NORMALS, TONE, include_str!("shaders/forward.wgsl"), surface].join("\n")
 }
 
 /// WGSL of the view with counts of exact edges. The library's text is one that counts.
@@ -62,6 +63,12 @@ pub(crate) const WITHOUT_SHADOWS: &str = include_str!("shaders/without_shadows.w
 /// Text in place of the library's for pictures that take the first light's shadows from a mask, the
 /// texture of bind group 2.
 pub(crate) const LIT: &str = include_str!("shaders/lit.wgsl");
+
+/// WGSL of the sky. Bind group 0 is the frame. Its own text, because drivers read all of a text for
+/// each pipeline.
+pub(crate) fn sky() -> String {
+    [SCENE, VIEW, TONE, include_str!("shaders/sky.wgsl")].join("\n")
+}
 
 /// WGSL of depth passes. Bind group 0 is the frame, 1 the material. No shadow is looked up.
 pub(crate) fn depth() -> String {
@@ -148,6 +155,7 @@ mod tests {
                 forward(&with_coordinates, Coordinates::Vertex, true),
                 forward(WITHOUT_SHADOWS, Coordinates::World, false),
                 forward(LIT, Coordinates::World, false),
+                sky(),
                 depth(),
                 facing(),
                 g_buffer(),

@@ -31,8 +31,16 @@ pub enum Error {
     #[error("The viewer has stopped because of a defect. Please report it: {0}")]
     Defect(String),
     /// The window's device was lost, and no other one can be opened.
-    #[error("the window's graphics device was lost and does not come back ({0}); start again, or reload the page")]
-    Lost(String),
+    #[error(
+        "The window's graphics device was lost and does not come back ({why}). {} shows the same again: {again}",
+        if cfg!(target_arch = "wasm32") { "Reloading this page" } else { "This command" }
+    )]
+    Lost {
+        /// Reason of the loss, or why no device can be opened.
+        why: String,
+        /// Command that shows the scene, view and settings again.
+        again: String,
+    },
     /// The scene of a screenshot could not be shown.
     #[error("{0}")]
     NotShown(String),

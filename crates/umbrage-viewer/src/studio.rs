@@ -2,8 +2,12 @@
 //! device of its own, so that the window goes on however long a picture takes. It opens another
 //! device if that one is lost. In a browser it is a task that draws with the window's device.
 
+use std::future::poll_fn;
+use std::pin::pin;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::task::Poll;
+use std::time::Duration;
 
 use futures_channel::mpsc::{UnboundedReceiver, UnboundedSender, unbounded};
 use image::{GrayAlphaImage, GrayImage, RgbaImage};
@@ -18,6 +22,9 @@ use web_time::Instant;
 
 use crate::platform::{self, Movable};
 use crate::stage::Stage;
+
+/// Time without an order after which pipelines are made that a later order may need.
+const IDLE: Duration = Duration::from_millis(1_000);
 
 /// All inputs that a picture depends on.
 #[derive(Clone, Debug, PartialEq)]
@@ -229,6 +236,7 @@ async fn with_scene(
     };
     loop {
         let shot = order.shot.clone();
+        let again = Order { wants: Wants::default(), ..order.clone() };
         match set.draw(order, tell, gpu).await {
             Ok(drawn) => tell.say(News::Drawn(Box::new(drawn))),
             Err(failure) => {
@@ -239,11 +247,33 @@ async fn with_scene(
                 tell.say(News::Failed { shot: Box::new(shot), why: failure.why });
             }
         }
-        order = latest(inbox).await?;
+        let is_slow = gpu.as_ref().is_some_and(platform::makes_pipelines_slowly);
+        let soon = if is_slow { within(IDLE, inbox).await } else { None };
+        order = match soon {
+            Some(order) => order,
+            None => {
+                if is_slow && set.make_any_filter() {
+                    // A driver makes pipelines when they first draw. What fails here fails again
+                    // when somebody asks for it.
+                    drop(set.draw(again, tell, gpu).await);
+                }
+                latest(inbox).await?
+            }
+        };
         if order.stage.id != stage.id {
             return Some(order);
         }
     }
+}
+
+/// Returns the last waiting order, or one that arrives within some time.
+async fn within(time: Duration, inbox: &mut UnboundedReceiver<Order>) -> Option<Order> {
+    let (mut order, mut timer) = (pin!(latest(inbox)), pin!(platform::sleep(time)));
+    poll_fn(|context| match order.as_mut().poll(context) {
+        Poll::Ready(order) => Poll::Ready(order),
+        Poll::Pending => timer.as_mut().poll(context).map(|()| None),
+    })
+    .await
 }
 
 struct Failure {
@@ -274,6 +304,12 @@ struct Booth {
 }
 
 impl Set<'_> {
+    /// Makes pipelines for every filter, if there are none yet. Returns whether there were none.
+    fn make_any_filter(&mut self) -> bool {
+        let made = |booth: &mut Booth| booth.renderer.make_any_filter().unwrap_or(false);
+        self.booths.iter_mut().map(made).fold(false, |any, is_new| any | is_new)
+    }
+
     async fn draw(&mut self, order: Order, tell: &Tell<impl Fn()>, gpu: &mut Option<Gpu>) -> Result<Drawn, Failure> {
         let begun = Instant::now();
         let Order { shot, wants, gpu: shared, .. } = order;

@@ -132,5 +132,5 @@ pub use seen::SeenDepth;
 pub use shadows::{Inputs, ShadowFrame, ShadowMap, Shadows, ShapeDraw};
 pub use umbrage;
 pub use umbrage::config::{Filter, LightKind, ShadowConfig};
-pub use umbrage_shaders::layout::{CullBox, CullDraw, MAX_COORDINATES, StoredRun, StoredSlot};
+pub use umbrage_shaders::layout::{CullBox, CullDraw, MAX_COORDINATES, RUN_TRIANGLES, StoredRun, StoredSlot};
 pub use wgpu;

@@ -86,6 +86,7 @@ fn bounds_over_a_kernel_change_no_answer() {
         let asks = receivers(&triangles, &mut next);
         let sizes = [128, 96];
         let mut world = World::new(gpu, &config(&sizes, filter, settings));
+        let mut seen = 0;
         for light in [DVec3::new(0.3, -1.0, 0.2), DVec3::new(1.0, -0.12, 0.4)] {
             let plan = plan(light.normalize(), DVec3::ZERO, &sizes, &[1.0, 5.0, 100.0], &[60.0, 70.0]);
             world.draw(&plan, &FrameOptions::default(), &triangles);
@@ -93,8 +94,8 @@ fn bounds_over_a_kernel_change_no_answer() {
             let (differ, partly) = differences(&all, &answers(&world, &asks, CALL));
             assert_eq!(differ, 0, "{filter:?} {settings} {light}: of {}", asks.len());
             assert!(40 * partly > asks.len(), "{partly} of {} are on edges", asks.len());
-            let (differ, _) = differences(&all, &answers(&world, &asks, NARROW));
-            assert!(differ > 20, "the comparison sees bounds that are too narrow: {differ}");
+            seen += differences(&all, &answers(&world, &asks, NARROW)).0;
         }
+        assert!(seen > 20, "the comparison sees bounds that are too narrow: {seen}");
     }
 }

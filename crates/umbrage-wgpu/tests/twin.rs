@@ -212,7 +212,8 @@ struct BiasAnswer {
     range_m: f32,
     tolerance: [f32; 4],
     reference: f32,
-    /// Bits: behind, the same surface, meets the receiver, makes a crease, lies across it.
+    /// Bits: behind, the same surface, meets the receiver, makes a crease, lies across it, own,
+    /// before the plane, goes on along u and v, straight along u and v.
     decided: u32,
     padding: [u32; 2],
     /// Height and rise of the crease, and what is unsure.
@@ -247,10 +248,15 @@ struct BiasAnswer {
     let own = umbrage_bias_is_own(at, it.tap.xy, it.tap.z);
     let nearer = umbrage_bias_lies_before(at, it.tap.xy, it.tap.z, at.tolerance.rounding);
     let of_plane = vec2u(vec2<bool>(own, nearer)) << vec2u(5u, 6u);
+    let nexts = umbrage_bias_beyond_before_plane(at, it.tap.xy, -1.0, it.beyond.xy);
+    let goes_on = umbrage_bias_goes_on(at, umbrage_bias_before_plane(at, it.tap.xy, it.tap.z), nexts);
+    let straight = umbrage_bias_is_straight(at, vec2f(it.tap.z), it.beyond.xy, farther);
+    let of_row = vec4u(vec4<bool>(goes_on, straight)) << vec4u(7u, 8u, 9u, 10u);
     let tolerance = vec4f(at.tolerance.bend, at.tolerance.past, at.tolerance.steep, at.tolerance.arrival);
     answers[id.x] = BiasAnswer(at.texel, at.slope, at.tilt, at.texel_m, at.linear, at.depth, at.range_m, tolerance,
         umbrage_bias_reference(at, it.tap.xy, vec2f(0.5)),
-        bits.x | bits.y | bits.z | of_crease.x | of_crease.y | of_plane.x | of_plane.y, vec4f(crease.height, crease.rise, crease.unsure));
+        bits.x | bits.y | bits.z | of_crease.x | of_crease.y | of_plane.x | of_plane.y | of_row.x | of_row.y | of_row.z | of_row.w,
+        vec4f(crease.height, crease.rise, crease.unsure));
 }";
 
 /// A plain map, a warped one, or a local light's of either kind of depth, around a point before it.
@@ -339,8 +345,12 @@ fn bias_receiver(ask: &BiasAsk) -> twin::bias::Receiver {
 /// What the twin decides: the same bits.
 fn bias_decided(at: &twin::bias::Receiver, ask: &BiasAsk, stored: f32) -> u32 {
     let (offset, beyond) = ([ask.tap[0], ask.tap[1]], [ask.beyond[0], ask.beyond[1]]);
-    let crease = at.crease_at(offset, stored, beyond, [beyond[0] + ask.farther[0], beyond[1] + ask.farther[1]]);
+    let farther = [beyond[0] + ask.farther[0], beyond[1] + ask.farther[1]];
+    let crease = at.crease_at(offset, stored, beyond, farther);
     let other = [ask.beyond[2], ask.beyond[3]];
+    let nexts = at.beyond_before_plane(offset, -1.0, beyond);
+    let goes_on = at.goes_on(at.before_plane(offset, stored), nexts).map(u32::from);
+    let straight = at.is_straight([stored; 2], beyond, farther).map(u32::from);
     u32::from(at.lies_behind(offset, stored))
         | u32::from(at.same_surface(offset, stored)) << 1
         | u32::from(at.meets_receiver(offset, stored, beyond)) << 2
@@ -348,6 +358,10 @@ fn bias_decided(at: &twin::bias::Receiver, ask: &BiasAsk, stored: f32) -> u32 {
         | u32::from(crease.is_across(other, at.before_plane(other, stored))) << 4
         | u32::from(at.is_own(offset, stored)) << 5
         | u32::from(at.lies_before(offset, stored, at.tolerance.rounding)) << 6
+        | goes_on[0] << 7
+        | goes_on[1] << 8
+        | straight[0] << 9
+        | straight[1] << 10
 }
 
 /// Decisions of the twin that hold a little nearer and a little farther, and how many of them the
@@ -386,7 +400,7 @@ fn bias_agrees_in_every_kind_of_map() {
     let mut next = random();
     let asks: Vec<BiasAsk> = (0..20_000).map(|i| bias_ask(&mut next, i % 4)).collect();
     let answers: Vec<BiasAnswer> = gpu.compute(&source, &asks, None);
-    let mut seen = [[0; 2]; 7];
+    let mut seen = [[0; 2]; 11];
     for (ask, answer) in asks.iter().zip(&answers) {
         let at = bias_receiver(ask);
         let close = |found: f32, twin: f32, scale: f32| {
@@ -406,7 +420,7 @@ fn bias_agrees_in_every_kind_of_map() {
         // The tangent of a grazed surface is a quotient of small numbers.
         (0..4)
             .for_each(|i| close(answer.tolerance[i], tolerance[i], 5.0 * tolerance[i].abs() + 1.0 / at.range_m * 0.1));
-        (0..7).for_each(|bit| seen[bit][(answer.decided >> bit & 1) as usize] += 1);
+        (0..11).for_each(|bit| seen[bit][(answer.decided >> bit & 1) as usize] += 1);
     }
     let [sure, wrong] = bias_disagreements(&asks, &answers, bias_receiver);
     assert_eq!(wrong, 0, "of {sure}");

@@ -42,9 +42,9 @@ fn excess(plan: &ShadowPlan, fresh: &ShadowPlan) -> f64 {
 }
 
 /// Splits whose maps do not stand still, and by what factor their texels differ at most. A map
-/// without casters says nothing.
+/// without casters says nothing: other maps answer for it.
 fn changes(a: &ShadowPlan, b: &ShadowPlan) -> (usize, f64) {
-    let speak = |(a, b): &(&Split, &Split)| !(a.casters.is_empty() && b.casters.is_empty());
+    let speak = |(a, b): &(&Split, &Split)| !(a.casters.is_empty() || b.casters.is_empty());
     let changed = a.splits.iter().zip(&b.splits).filter(speak).filter(|(a, b)| b.texels_moved_since(a).is_none());
     changed.fold((0, 1.0), |(count, most), (a, b)| (count + 1, either(texel(a) / texel(b)).max(most)))
 }
@@ -98,6 +98,22 @@ fn a_walk_of_300_m_leaves_no_coarse_maps_behind() {
     for _ in 0..FRAMES {
         assert_eq!(&before, planner.plan(&last, &sun(), &world, &world).expect("a plan"));
     }
+}
+
+/// A walk through the town and a turn, by the default: maps follow by 9 % a frame.
+#[test]
+fn the_default_follows_a_walk_in_steps_of_9_per_cent() {
+    let walk = Walk { at: [0.0, 2.0, 150.0], yaw: 0.0, legs: vec![([0.0, 0.0, -1.4], 0.004, 0.0, 80)] };
+    let (plans, fresh) = stand(&ShadowConfig::default(), &walk, FRAMES + 20).expect("plans");
+    let (mut steps, mut largest) = (0, 1.0f64);
+    for (frame, count, ratio) in changing(&plans) {
+        assert!(count <= 1 && ratio < 1.0906, "frame {frame}: {count} maps change, by {ratio}");
+        (steps, largest) = (steps + count, largest.max(ratio));
+    }
+    // A comparison that finds nothing says nothing.
+    assert!(steps >= 3 && largest > 1.02, "{steps} steps of {largest} at most");
+    assert!(excess(&plans[0], &fresh) > 1.1 && excess(&plans[FRAMES], &fresh) <= 1.1);
+    assert!(plans[FRAMES..].windows(2).all(|pair| pair[0] == pair[1]), "and then they stand");
 }
 
 /// Maps that stand exactly still.
@@ -195,16 +211,20 @@ proptest! {
         prop_assert!(left <= 1.1, "{} times a fresh planner's texels, planes {:?} for {:?}", left, plans[FRAMES].planes, fresh.planes);
     }
 
-    /// Maps that stand almost still are fitted to what their slices show, which changes by more
-    /// than a step where a plane passes something, and on both sides of it. They recover as far, in
-    /// few frames, and then stand.
+    /// Maps that stand almost still are fitted to what their slices show, which changes at once
+    /// where a plane passes something. They grow and shrink all the same, one in a frame.
     #[test]
-    fn almost_still_maps_recover_and_stand(config in almost_still(), walk in walk()) {
+    fn almost_still_maps_recover_one_step_of_one_split_a_frame(config in almost_still(), walk in walk()) {
         let (plans, fresh) = stand(&config, &walk, FRAMES + 20)?;
+        for (frame, count, ratio) in changing(&plans) {
+            prop_assert!(count <= 1, "frame {}: {} maps change", frame, count);
+            // A step of 9 % is not enough within 60 frames where a map shows a wall alone that the
+            // sun runs along: 2.1 was the largest one of 2,500 walks.
+            prop_assert!(ratio < 4.0, "frame {}: a step of {}", frame, ratio);
+        }
         let left = excess(&plans[FRAMES], &fresh);
         prop_assert!(left <= 1.1, "{} times a fresh planner's texels, planes {:?} for {:?}", left, plans[FRAMES].planes, fresh.planes);
-        let frames: Vec<usize> = changing(&plans).filter(|(_, count, _)| *count > 0).map(|(frame, ..)| frame).collect();
-        prop_assert!(frames.len() <= FRAMES / 2 && frames.iter().all(|frame| *frame < FRAMES), "{frames:?}");
+        prop_assert!(plans[FRAMES..].windows(2).all(|pair| pair[0] == pair[1]), "it stands");
     }
 
     /// Without stabilisation nothing is held, so there is nothing to recover from.

@@ -135,6 +135,25 @@ impl Browser {
         }
     }
 
+    /// Runs a script in every page that is opened from now on, before the page's own.
+    pub fn run_before_pages(&mut self, script: &str) -> Result<()> {
+        self.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": script })).map(drop)
+    }
+
+    /// Returns the resident bytes of the process that draws; 0 on systems without `/proc`.
+    pub fn graphics_memory(&mut self) -> Result<u64> {
+        let session = std::mem::take(&mut self.session);
+        let told = self.call("SystemInfo.getProcessInfo", json!({}));
+        self.session = session;
+        let told = told?;
+        let processes = told["processInfo"].as_array().map_or(&[][..], Vec::as_slice);
+        let graphics = processes.iter().find(|process| process["type"] == "GPU").map(|process| process["id"].clone());
+        let Some(id) = graphics else { return Ok(0) };
+        let Ok(status) = std::fs::read_to_string(format!("/proc/{id}/status")) else { return Ok(0) };
+        let kilobytes = status.lines().find_map(|line| line.strip_prefix("VmRSS:")?.split_whitespace().next());
+        Ok(1024 * kilobytes.and_then(|number| number.parse::<u64>().ok()).unwrap_or(0))
+    }
+
     /// Opens an address afresh.
     pub fn open(&mut self, address: &str) -> Result<()> {
         self.call("Page.navigate", json!({ "url": "about:blank" }))?;
@@ -163,14 +182,29 @@ impl Browser {
         limit: Duration,
         mut is_there: impl FnMut(&mut Self) -> Result<bool>,
     ) -> Result<()> {
+        self.wait_despite(what, limit, |browser| {
+            if is_there(browser)? {
+                return Ok(true);
+            }
+            let message =
+                browser.text("document.getElementById('message')?.hidden === false ? message.textContent : ''")?;
+            let errors = browser.data("errors")?;
+            if !(message.is_empty() && errors.is_empty()) {
+                bail!("{what}: the page says: {message}{errors}\n{}", browser.complaints.join("\n"));
+            }
+            Ok(false)
+        })
+    }
+
+    /// Waits until the page's state is as wanted, whatever errors it reports.
+    pub fn wait_despite(
+        &mut self,
+        what: &str,
+        limit: Duration,
+        mut is_there: impl FnMut(&mut Self) -> Result<bool>,
+    ) -> Result<()> {
         let begun = Instant::now();
         while !is_there(self)? {
-            let message =
-                self.text("document.getElementById('message')?.hidden === false ? message.textContent : ''")?;
-            let errors = self.data("errors")?;
-            if !(message.is_empty() && errors.is_empty()) {
-                bail!("{what}: the page says: {message}{errors}\n{}", self.complaints.join("\n"));
-            }
             if begun.elapsed() > limit {
                 bail!("{what}: not within {} s\n{}", limit.as_secs(), self.complaints.join("\n"));
             }

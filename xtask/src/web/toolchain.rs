@@ -20,6 +20,8 @@ pub const PROFILE: &str = "web";
 const PACKAGES: [&str; 3] = ["rustc-web", "libstd-rust-web-dev", "rust-web-src"];
 /// Prefixes of the names of packages that these need to run.
 const NEEDED: [&str; 2] = ["libstd-rust-web-", "libllvm"];
+/// Debian's package of `wasm-opt`, 26 MB.
+const BINARYEN: [&str; 1] = ["binaryen"];
 
 /// A way to compile for a browser.
 pub enum Way {
@@ -39,19 +41,39 @@ pub fn find() -> Result<Option<Way>> {
     if has_target() {
         return Ok(Some(Way::Target));
     }
-    let is_debian =
-        succeeds(Command::new("apt-get").arg("--version")) && succeeds(Command::new("dpkg").arg("--version"));
-    let Some(linker) = linker().filter(|_| is_debian) else {
+    let Some(linker) = linker().filter(|_| is_debian()) else {
         eprintln!("xtask: SKIPPED: the compiler has no {TARGET}; `rustup target add {TARGET}` adds it");
         return Ok(None);
     };
     let root = folder().join("root");
     if !compiler(&root).is_file() {
-        unpack(&root)?;
+        unpack(&root, &PACKAGES)?;
     }
     let way = Way::Source { root, linker };
     way.check_version()?;
     Ok(Some(way))
+}
+
+/// Returns `wasm-opt`, which makes programs smaller: the installed one, or Debian's, unpacked
+/// below `target`; `None` where there is neither.
+pub fn wasm_opt() -> Result<Option<PathBuf>> {
+    let installed = PathBuf::from("wasm-opt");
+    if succeeds(Command::new(&installed).arg("--version")) {
+        return Ok(Some(installed));
+    }
+    if !is_debian() {
+        return Ok(None);
+    }
+    let root = folder().join("binaryen");
+    let program = root.join("usr/bin/wasm-opt");
+    if !program.is_file() {
+        unpack(&root, &BINARYEN)?;
+    }
+    Ok(Some(program))
+}
+
+fn is_debian() -> bool {
+    succeeds(Command::new("apt-get").arg("--version")) && succeeds(Command::new("dpkg").arg("--version"))
 }
 
 /// Returns the folder of the unpacked compiler.
@@ -130,13 +152,13 @@ fn linker() -> Option<PathBuf> {
     linker.is_file().then_some(linker)
 }
 
-/// Downloads Debian's compiler and unpacks it.
-fn unpack(root: &Path) -> Result<()> {
+/// Downloads Debian's packages and those that they need, and unpacks them.
+fn unpack(root: &Path, packages: &[&str]) -> Result<()> {
     // Lists of an older day name an older compiler. Where they may not be renewed they have to do.
     if !succeeds(Command::new("apt-get").arg("update")) {
         eprintln!("xtask: the lists of packages are those of the last `apt-get update`");
     }
-    let mut packages: Vec<String> = PACKAGES.map(str::to_owned).to_vec();
+    let mut packages: Vec<String> = packages.iter().map(|&name| name.to_owned()).collect();
     let mut known = 0;
     while known < packages.len() {
         let needs = output(Command::new("apt-cache").args(["depends", &packages[known]]))?;

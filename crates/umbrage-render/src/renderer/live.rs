@@ -9,7 +9,7 @@ use umbrage_scene::{Pose, Scene};
 use super::{Renderer, dithered_nodes, notes_of};
 use crate::casters::Casters;
 use crate::contact::Contact;
-use crate::forward::Forward;
+use crate::forward::{Forward, Shading};
 use crate::geometry::{Geometry, SkinnedGeometry};
 use crate::names::Names;
 use crate::timing::Timer;
@@ -64,10 +64,15 @@ impl Renderer {
             }
             if rebuilds == Rebuilds::Pipelines {
                 let (materials, samples) = (&self.materials, self.samples);
-                self.casters = Casters::new(&gpu, maps, materials, config.look.translucent);
-                let named = self.names.entries(&self.scene, Names::BINDING);
-                let with = (self.contact.as_ref(), &named[..]);
-                self.forward = Forward::new(&gpu, maps, materials, samples, with, self.shading);
+                if !self.casters.suits(maps, config.look.translucent) {
+                    self.casters = Casters::new(&gpu, maps, materials, config.look.translucent);
+                }
+                if !(self.has_any_filter && differ_in_depth_filter(&before, config)) {
+                    let named = self.names.entries(&self.scene, Names::BINDING);
+                    let with = (self.contact.as_ref(), &named[..]);
+                    self.forward = Forward::new(&gpu, maps, materials, samples, with, self.shading, false);
+                    self.has_any_filter = false;
+                }
                 self.probe = OnceLock::new();
                 self.shadow_mask = None;
                 self.through_mask = None;
@@ -76,6 +81,28 @@ impl Renderer {
             self.notes = notes_of(&self.shadows, self.contact.as_ref(), &self.timer);
             Ok(rebuilds)
         })
+    }
+
+    /// Makes the pipelines of pictures anew for every filter that compares depth, so that no later
+    /// change among these filters has to make pipelines. They take longer to make and to run.
+    /// Returns whether there is anything to make: with a filter of moments, or with exact edges,
+    /// there is not.
+    ///
+    /// # Errors
+    /// [`Error::Device`] or [`Error::OutOfMemory`] if the device fails.
+    pub fn make_any_filter(&mut self) -> Result<bool> {
+        let maps = self.shadows.maps();
+        let is_made = self.has_any_filter || self.shading == Shading::WithoutShadows;
+        if is_made || maps.any_filter_receiver_wgsl(2).is_none() {
+            return Ok(false);
+        }
+        let named = self.names.entries(&self.scene, Names::BINDING);
+        let with = (self.contact.as_ref(), &named[..]);
+        self.forward = self.gpu.guarded("making pipelines", || {
+            Ok(Forward::new(&self.gpu, maps, &self.materials, self.samples, with, self.shading, true))
+        })?;
+        self.has_any_filter = true;
+        Ok(true)
     }
 
     /// Changes the picture's size in pixels. Maps and their stabilisation state stay.
@@ -113,5 +140,28 @@ impl Renderer {
         }
         self.planned_for = view;
         Ok(())
+    }
+}
+
+/// Returns whether two configs differ in a filter that compares depth, and in nothing else.
+fn differ_in_depth_filter(a: &ShadowConfig, b: &ShadowConfig) -> bool {
+    let compares = |config: &ShadowConfig| !config.filter.is_prefiltered();
+    compares(a) && compares(b) && ShadowConfig { filter: a.filter, ..b.clone() } == *a
+}
+
+#[cfg(test)]
+mod tests {
+    use umbrage::config::{Filter, MomentKind, Moments};
+
+    use super::*;
+
+    #[test]
+    fn only_filters_that_compare_depth_share_pipelines() {
+        let with = |filter| ShadowConfig { filter, ..ShadowConfig::default() };
+        let (hard, tent) = (with(Filter::Hard), with(Filter::Pcf7 { width_m: None }));
+        assert!(differ_in_depth_filter(&hard, &tent) && differ_in_depth_filter(&tent, &tent));
+        assert!(!differ_in_depth_filter(&hard, &ShadowConfig { far_fade: 0.3, ..tent.clone() }));
+        let moments = with(Filter::Moments(Moments::new(MomentKind::Vsm)));
+        assert!(!differ_in_depth_filter(&hard, &moments) && !differ_in_depth_filter(&moments, &hard));
     }
 }

@@ -153,6 +153,8 @@ pub struct Renderer {
     pub(crate) names: Names,
     pub(crate) casters: Casters,
     pub(crate) forward: Forward,
+    /// True if the pipelines of pictures serve every filter that compares depth.
+    has_any_filter: bool,
     pub(crate) contact: Option<Contact>,
     /// True for each node of the scene whose translucent surfaces cast shadows; empty if none do.
     pub(crate) dithered_nodes: Vec<bool>,
@@ -216,7 +218,8 @@ impl Renderer {
             let notes = notes_of(&shadows, contact.as_ref(), &timer);
             let (geometry, names) = (Geometry::of_scene(gpu, scene, maps.edges())?, Names::new(gpu));
             let named = names.entries(&geometry, Names::BINDING);
-            let forward = Forward::new(gpu, maps, &materials, settings.samples, (contact.as_ref(), &named), shading);
+            let with = (contact.as_ref(), &named[..]);
+            let forward = Forward::new(gpu, maps, &materials, settings.samples, with, shading, false);
             Ok(Self {
                 size: settings.size,
                 view_slot: 0,
@@ -226,6 +229,7 @@ impl Renderer {
                 instances: Instances::new(gpu),
                 casters: Casters::new(gpu, maps, &materials, config.look.translucent),
                 forward,
+                has_any_filter: false,
                 scene: geometry,
                 names,
                 contact,

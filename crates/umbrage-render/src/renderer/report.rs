@@ -1,7 +1,7 @@
 //! Statistics of a frame, from what was recorded and measured.
 
-use umbrage::ShadowPlan;
-use umbrage::config::Translucent;
+use umbrage::config::{Filter, Translucent};
+use umbrage::{ShadowPlan, Split};
 use umbrage_scene::AlphaMode;
 
 use super::prepare::Prepared;
@@ -59,7 +59,7 @@ impl Renderer {
             bytes: maps.bytes(),
             generation: maps.layout().generation().word(),
             storage: maps.layout().storage().word(),
-            notes: self.notes.clone(),
+            notes: self.notes.iter().cloned().chain(narrowed(&maps.config().filter, &shown.shared_plan(0))).collect(),
             plan: shown.shared_plan(0),
         }
     }
@@ -127,5 +127,45 @@ impl Renderer {
             }
         };
         plan.splits.iter().enumerate().map(stats).collect()
+    }
+}
+
+/// The note of splits in which a filter is narrower than its width, by more than a tenth.
+fn narrowed(filter: &Filter, plan: &ShadowPlan) -> Option<String> {
+    let width = filter.width_m()?;
+    let narrow = |(index, split): (usize, &Split)| {
+        let there = filter.width_in(split).filter(|there| *there < 0.9 * width)?;
+        (!split.casters.is_empty()).then(|| format!("{there:.3} m in split {index}"))
+    };
+    let splits: Vec<_> = plan.splits.iter().enumerate().filter_map(narrow).collect();
+    let word = filter.word();
+    (!splits.is_empty()).then(|| {
+        format!("a filter {word} of {width} m takes more texels than it reads: it is as wide as {}", splits.join(", "))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use umbrage::config::Filter;
+    use umbrage::{Aabb, DirectionalLight, Frustum, Planner, ShadowConfig, View};
+
+    use super::narrowed;
+
+    #[test]
+    fn a_filter_that_is_too_wide_for_a_map_says_so() {
+        let lens = Frustum::perspective(1.0, 1.0, 0.1, 100.0).expect("a lens");
+        let view = View::look_at_upright(DVec3::new(0.0, 2.0, 8.0), DVec3::ZERO, lens).expect("a view");
+        let boxes =
+            [Aabb::new(DVec3::new(-8.0, -0.1, -8.0), DVec3::new(8.0, 0.0, 8.0)), Aabb::new(DVec3::ZERO, DVec3::ONE)];
+        let sun = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).expect("a direction");
+        let config = ShadowConfig { map_sizes: vec![512], ..ShadowConfig::default() };
+        let plan = Planner::new(&config).expect("settings").plan(&view, &sun, &boxes, &boxes).expect("a plan").clone();
+        let disc = |width_m| Filter::Disc { width_m, rotated: false };
+        assert_eq!(narrowed(&disc(None), &plan), None);
+        let texel = plan.splits[0].texel_m.min_element();
+        assert_eq!(narrowed(&disc(Some(29.0 * texel)), &plan), None);
+        let note = narrowed(&disc(Some(60.0 * texel)), &plan).expect("a note");
+        assert!(note.contains(&format!("{:.3} m in split 0", 30.0 * texel)), "{note}");
     }
 }

@@ -247,6 +247,35 @@ impl Receiver {
         stored >= 1.0 || !self.lies_before(offset, stored, self.tolerance.own) && !self.is_past(offset, stored)
     }
 
+    /// `bias::beyond_before_plane`: distance in front of the receiver's plane of the next texels on
+    /// u and on v, `steps` texels farther from the receiver than the texel at `offset`. `beyond` is
+    /// what they store.
+    #[must_use]
+    pub fn beyond_before_plane(&self, offset: [f32; 2], steps: f32, beyond: [f32; 2]) -> [f32; 2] {
+        [0, 1].map(|i| {
+            let side = if offset[i] >= 0.0 { steps } else { -steps };
+            self.plane_at(offset) + (self.tilt[i] + self.slope[i]) * side - beyond[i]
+        })
+    }
+
+    /// `bias::goes_on`: returns whether a surface goes on in parallel to the receiver's plane from
+    /// a texel to the next ones on u and on v. `before` and `next` are their distances in front of
+    /// the plane.
+    #[must_use]
+    pub fn goes_on(&self, before: f32, next: [f32; 2]) -> [bool; 2] {
+        next.map(|next| (next - before).abs() <= self.tolerance.bend + self.tolerance.rounding)
+    }
+
+    /// `bias::is_straight`: returns whether three texels in a row store depths that lie on a line,
+    /// along u and along v.
+    #[must_use]
+    pub fn is_straight(&self, first: [f32; 2], second: [f32; 2], third: [f32; 2]) -> [bool; 2] {
+        [0, 1].map(|i| {
+            let unsure = self.tolerance.rounding + SNAP_TEXELS * (second[i] - first[i]).abs();
+            (first[i] - 2.0 * second[i] + third[i]).abs() <= 2.0 * unsure
+        })
+    }
+
     /// Returns whether the depth in a texel, `offset` texels from the receiver, shades it: the
     /// whole decision. `beyond` is the depth in the next texels on u and on v, away from the
     /// receiver.

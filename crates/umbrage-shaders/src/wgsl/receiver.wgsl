@@ -364,6 +364,27 @@ fn umbrage_bias_is_own(at: UmbrageReceiver, offset: vec2f, stored: f32) -> bool 
 }
 
 @if(texels)
+fn umbrage_bias_beyond_before_plane(at: UmbrageReceiver, offset: vec2f, steps: f32, beyond: vec2f) -> vec2f {
+    let side = select(vec2f(-steps), vec2f(steps), offset >= vec2f(0.0));
+    @if(warped)
+    let along = (at.tilt + at.slope) * side;
+    @if(!warped)
+    let along = at.slope * side;
+    return umbrage_bias_plane_at(at, offset) + along - beyond;
+}
+
+@if(texels)
+fn umbrage_bias_goes_on(at: UmbrageReceiver, before: f32, next: vec2f) -> vec2<bool> {
+    return abs(next - before) <= vec2f(at.tolerance.bend + at.tolerance.rounding);
+}
+
+@if(texels)
+fn umbrage_bias_is_straight(at: UmbrageReceiver, first: vec2f, second: vec2f, third: vec2f) -> vec2<bool> {
+    let unsure = at.tolerance.rounding + UMBRAGE_BIAS_SNAP_TEXELS * abs(second - first);
+    return abs(first - 2.0 * second + third) <= 2.0 * unsure;
+}
+
+@if(texels)
 fn umbrage_bias_lies_behind(at: UmbrageReceiver, offset: vec2f, stored: f32) -> bool {
     return stored >= umbrage_bias_as_stored(at, umbrage_bias_level(at, offset));
 }
@@ -758,9 +779,11 @@ fn umbrage_edges_is_before(corners: array<vec3f, 3>, surface: UmbrageSurface, sh
     return metres > select(UMBRAGE_EDGES_LEAST_M, 0.0, rises) && metres < bounds.x;
 }
 
-const UMBRAGE_FILTER_LEAST_LIGHT: f32 = 0.05;
+const UMBRAGE_FILTER_LEAST_LIGHT: f32 = 0.2;
 
 const UMBRAGE_FILTER_DOUBTED_LIGHT: f32 = 0.5;
+
+const UMBRAGE_FILTER_SHUT: f32 = 0.6;
 
 const UMBRAGE_FILTER_LEAST_OWN: f32 = 0.02;
 
@@ -782,11 +805,16 @@ fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSof
     var asked = at;
     var seen = vec3f(0.0);
     var lit = 0.0;
+    var is_behind = false;
     @if(square)
     let plain = umbrage_square_plain(layer, kind, softness, at, centre);
     @if(!square)
     let plain = UMBRAGE_KERNEL_UNSURE;
     for (var i = 0; i < 2; i++) {
+        @if(texels)
+        {
+            umbrage_texel_forget_own();
+        }
         seen = umbrage_filter_share_of_kernel(layer, kind, softness, asked, centre, plain == UMBRAGE_KERNEL_UNSURE);
         lit = select(lit, seen.x, i == 0);
         let is_done = i == 1 || seen.x == 0.0 || seen.z == 0.0;
@@ -794,12 +822,22 @@ fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSof
         {
             asked = umbrage_texel_with_crease(layer, at, !is_done);
         }
+        is_behind = is_behind || umbrage_crease_is_there(asked.crease);
         if is_done || !umbrage_crease_is_there(asked.crease) {
             break;
         }
     }
-    let is_lit = seen.x >= select(0.0, UMBRAGE_FILTER_LEAST_LIGHT, umbrage_crease_is_there(asked.crease));
-    let is_seen_lit = seen.z == 0.0 || seen.x > UMBRAGE_FILTER_DOUBTED_LIGHT || seen.y >= UMBRAGE_FILTER_LEAST_OWN;
+    let is_shut = seen.z >= UMBRAGE_FILTER_SHUT;
+    let is_corner = is_behind && is_shut;
+    let is_lit = seen.x >= select(0.0, UMBRAGE_FILTER_LEAST_LIGHT, is_corner);
+    let is_doubted = seen.z > 0.0 && (seen.x <= UMBRAGE_FILTER_DOUBTED_LIGHT || is_corner);
+    var has_own = seen.y >= UMBRAGE_FILTER_LEAST_OWN;
+    @if(texels)
+    {
+        let is_asked = is_doubted && is_lit && has_own && (lit <= UMBRAGE_FILTER_DOUBTED_LIGHT || is_shut);
+        has_own = has_own && umbrage_texel_own_goes_on(layer, at, is_asked);
+    }
+    let is_seen_lit = !is_doubted || has_own;
     return select(select(0.0, min(lit, 1.0), is_lit && is_seen_lit), plain, plain != UMBRAGE_KERNEL_UNSURE);
 }
 
@@ -1103,6 +1141,11 @@ fn umbrage_texel_compare(layer: UmbrageLayer, texel: vec2f, depth: f32) -> f32 {
 @if(disc)
 const UMBRAGE_TEXEL_TELLING_TEXELS: f32 = 2.0;
 
+@if(texels)
+var<private> umbrage_texel_nearest_own: vec4f;
+
+const UMBRAGE_TEXEL_NONE: f32 = 1e30;
+
 fn umbrage_texel_of_comparison(lit: f32) -> vec3f {
     return vec3f(lit, lit, 0.0);
 }
@@ -1117,10 +1160,40 @@ fn umbrage_texel_texel_seen(layer: UmbrageLayer, at: UmbrageReceiver, first: vec
         return vec3f(0.0, 0.0, before);
     }
     if umbrage_bias_lies_behind(at, offset, stored) || umbrage_bias_same_surface(at, offset, stored) {
-        return vec3f(1.0, select(0.0, 1.0, umbrage_bias_is_own(at, offset, stored)), before);
+        let own = umbrage_bias_is_own(at, offset, stored);
+        let distance = dot(offset, offset);
+        if own && distance < umbrage_texel_nearest_own.w {
+            let height = select(umbrage_bias_before_plane(at, offset, stored), UMBRAGE_TEXEL_NONE, stored >= 1.0);
+            umbrage_texel_nearest_own = vec4f(first, height, distance);
+        }
+        return vec3f(1.0, select(0.0, 1.0, own), before);
     }
     let lit = umbrage_bias_meets_receiver(at, offset, stored, umbrage_texel_beyond(layer, texel, offset, 1));
     return vec3f(select(0.0, 1.0, lit), 0.0, before);
+}
+
+@if(texels)
+fn umbrage_texel_forget_own() {
+    umbrage_texel_nearest_own = vec4f(0.0, 0.0, 0.0, UMBRAGE_TEXEL_NONE);
+}
+
+const UMBRAGE_TEXEL_FALL: f32 = 3.0;
+
+@if(texels)
+fn umbrage_texel_own_goes_on(layer: UmbrageLayer, at: UmbrageReceiver, is_asked: bool) -> bool {
+    let offset = umbrage_texel_nearest_own.xy + 0.5 - at.texel;
+    let texel = vec2i(floor(umbrage_texel_nearest_own.xy + 0.5 + layer.offset));
+    let is_sure = umbrage_texel_nearest_own.z == UMBRAGE_TEXEL_NONE || umbrage_texel_nearest_own.w == UMBRAGE_TEXEL_NONE || at.linear.y > 0.0;
+    var is_level = vec2<bool>(is_sure || !is_asked);
+    let count = select(2, 0, is_level.x);
+    var lowest = UMBRAGE_TEXEL_NONE;
+    for (var i = 0; i < count; i++) {
+        let steps = 2 * i - 1;
+        let next = umbrage_bias_beyond_before_plane(at, offset, f32(steps), umbrage_texel_beyond(layer, texel, offset, steps));
+        is_level = is_level | umbrage_bias_goes_on(at, umbrage_texel_nearest_own.z, next);
+        lowest = min(lowest, min(next.x, next.y));
+    }
+    return all(is_level) || lowest >= umbrage_texel_nearest_own.z - UMBRAGE_TEXEL_FALL * at.tolerance.bend;
 }
 
 @if(texels)
@@ -1140,8 +1213,21 @@ fn umbrage_texel_with_crease(layer: UmbrageLayer, at: UmbrageReceiver, is_asked:
         let offset = centre - at.texel;
         let texel = clamp(vec2i(floor(centre + layer.offset)), layer.first, layer.last);
         let stored = umbrage_map_load(layer.index, texel);
-        let next = umbrage_texel_beyond(layer, texel, offset, 1);
-        let crease = umbrage_bias_crease_at(at, offset, stored, next, umbrage_texel_beyond(layer, texel, offset, 2));
+        var next = vec2f(0.0);
+        var farther = vec2f(0.0);
+        var rounds = 1;
+        var ends = vec2<bool>(true);
+        for (var j = 0; j < rounds; j++) {
+            let steps = 1 - 2 * j;
+            let first = umbrage_texel_beyond(layer, texel, offset, steps);
+            let second = umbrage_texel_beyond(layer, texel, offset, 2 * steps);
+            let continues = ends & (vec2<bool>(j == 0) | umbrage_bias_is_straight(at, vec2f(stored), first, second));
+            next = select(next, select(2.0 * stored - first, first, j == 0), continues);
+            farther = select(farther, select(2.0 * stored - second, second, j == 0), continues);
+            ends = umbrage_bias_beyond_before_plane(at, offset, 1.0, next) < vec2f(-at.tolerance.past);
+            rounds = select(1, 2, any(ends));
+        }
+        let crease = umbrage_bias_crease_at(at, offset, stored, next, farther);
         is_flat = is_flat && umbrage_bias_before_plane(at, offset, stored) <= at.tolerance.rounding;
         if !umbrage_crease_is_there(found) && umbrage_crease_is_there(crease) {
             found = crease;

@@ -644,9 +644,11 @@ fn umbrage_edges_is_before(corners: array<vec3f, 3>, surface: UmbrageSurface, sh
     return metres > select(UMBRAGE_EDGES_LEAST_M, 0.0, rises) && metres < bounds.x;
 }
 
-const UMBRAGE_FILTER_LEAST_LIGHT: f32 = 0.05;
+const UMBRAGE_FILTER_LEAST_LIGHT: f32 = 0.2;
 
 const UMBRAGE_FILTER_DOUBTED_LIGHT: f32 = 0.5;
+
+const UMBRAGE_FILTER_SHUT: f32 = 0.6;
 
 const UMBRAGE_FILTER_LEAST_OWN: f32 = 0.02;
 
@@ -665,17 +667,23 @@ fn umbrage_filter_lit_share(layer: UmbrageLayer, kind: u32, softness: UmbrageSof
     var asked = at;
     var seen = vec3f(0.0);
     var lit = 0.0;
+    var is_behind = false;
     let plain = UMBRAGE_KERNEL_UNSURE;
     for (var i = 0; i < 2; i++) {
         seen = umbrage_filter_share_of_kernel(layer, kind, softness, asked, centre, plain == UMBRAGE_KERNEL_UNSURE);
         lit = select(lit, seen.x, i == 0);
         let is_done = i == 1 || seen.x == 0.0 || seen.z == 0.0;
+        is_behind = is_behind || umbrage_crease_is_there(asked.crease);
         if is_done || !umbrage_crease_is_there(asked.crease) {
             break;
         }
     }
-    let is_lit = seen.x >= select(0.0, UMBRAGE_FILTER_LEAST_LIGHT, umbrage_crease_is_there(asked.crease));
-    let is_seen_lit = seen.z == 0.0 || seen.x > UMBRAGE_FILTER_DOUBTED_LIGHT || seen.y >= UMBRAGE_FILTER_LEAST_OWN;
+    let is_shut = seen.z >= UMBRAGE_FILTER_SHUT;
+    let is_corner = is_behind && is_shut;
+    let is_lit = seen.x >= select(0.0, UMBRAGE_FILTER_LEAST_LIGHT, is_corner);
+    let is_doubted = seen.z > 0.0 && (seen.x <= UMBRAGE_FILTER_DOUBTED_LIGHT || is_corner);
+    var has_own = seen.y >= UMBRAGE_FILTER_LEAST_OWN;
+    let is_seen_lit = !is_doubted || has_own;
     return select(select(0.0, min(lit, 1.0), is_lit && is_seen_lit), plain, plain != UMBRAGE_KERNEL_UNSURE);
 }
 

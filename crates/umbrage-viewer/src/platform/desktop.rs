@@ -3,10 +3,12 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 use umbrage::{Light, View};
 use umbrage_lab::failure::Failure;
 use umbrage_lab::scene_request::SceneRequest;
+use umbrage_render::Gpu;
 use umbrage_scene::Scene;
 use umbrage_truth::{Truth, TruthMask};
 use winit::application::ApplicationHandler;
@@ -40,6 +42,11 @@ pub(crate) fn finish(future: impl Future<Output = ()> + 'static) {
 /// Lets other tasks run. Threads do so by themselves.
 pub(crate) async fn pause() {}
 
+/// Waits for some time, in which other threads go on.
+pub(crate) async fn sleep(time: Duration) {
+    std::thread::sleep(time);
+}
+
 /// Opens the graphics interface for a display.
 pub(crate) async fn instance(display: OwnedDisplayHandle) -> wgpu::Instance {
     wgpu::Instance::new(wgpu::InstanceDescriptor::new_with_display_handle_from_env(Box::new(display)))
@@ -57,6 +64,11 @@ pub(crate) fn no_graphics(reason: String) -> Error {
 
 /// Adapts the controls to the platform; a desktop needs no adaptation.
 pub(crate) fn adapt(_: &egui::Context) {}
+
+/// Returns false: the studio's thread makes pipelines beside the window.
+pub(crate) fn makes_pipelines_slowly(_: &Gpu) -> bool {
+    false
+}
 
 /// Opens the scene of a request: a world or a file. `bytes` are never given here.
 ///

@@ -3,9 +3,10 @@
 //!
 //! | | desktop | browser |
 //! |---|---|---|
-//! | `spawn`, `pause`, `finish` | threads, which may block | tasks of the page, which must not |
+//! | `spawn`, `pause`, `sleep`, `finish` | threads, which may block | tasks of the page, which must not |
 //! | `SHARES_DEVICE` | the renderer has its own device | one device for all: WebGL2 has no other |
 //! | `instance`, `attributes` | by `WGPU_BACKEND`; a window | WebGPU, else WebGL2; the page's canvas |
+//! | `makes_pipelines_slowly` | no: they are made beside the window | on WebGPU: they are made ahead |
 //! | `mask` | on every core | a few rows at a time |
 //! | `scene`, `shipped` | files | addresses of the page's own server |
 //! | `save`, `link`, `take_copies` | the working folder, the desktop's clipboard | downloads, the page's address and clipboard |

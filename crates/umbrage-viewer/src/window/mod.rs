@@ -129,9 +129,19 @@ impl Viewer {
     }
 
     fn fail(&mut self, events: &ActiveEventLoop, error: Error) {
+        // The page's address shows the same again.
+        if self.app.session.stage.is_some() {
+            self.app.link();
+        }
         platform::give_up(&error);
         self.failure = Some(error);
         events.exit();
+    }
+
+    /// Ends because there is no device any more, with the command that shows the same again.
+    fn fail_lost(&mut self, events: &ActiveEventLoop, why: &str) {
+        let again = self.app.command_line();
+        self.fail(events, Error::Lost { why: why.to_owned(), again });
     }
 
     /// Opens a device for the window, and the window if there is none.
@@ -168,7 +178,7 @@ impl Viewer {
                 shown.window.request_redraw();
                 self.shown = Some(shown);
             }
-            Some(Err(error)) if self.devices > 0 => self.fail(events, Error::Lost(error.to_string())),
+            Some(Err(error)) if self.devices > 0 => self.fail_lost(events, &error.to_string()),
             Some(Err(error)) => self.fail(events, error),
         }
         for (purpose, picture) in pictures {
@@ -192,7 +202,7 @@ impl Viewer {
         let complete = self.is_complete();
         let arrivals = self.outside.arrivals();
         if let Some(Arrival::Lost(why)) = arrivals.iter().find(|arrival| matches!(arrival, Arrival::Lost(_))) {
-            return self.fail(events, Error::Lost(why.clone()));
+            return self.fail_lost(events, why);
         }
         let Some(shown) = &mut self.shown else { return };
         if let Some(stage) = self.app.session.stage.as_ref().filter(|stage| Some(stage.id) != self.titled) {
@@ -250,9 +260,7 @@ impl Viewer {
         self.devices += 1;
         let window = self.shown.take().map(|shown| shown.window);
         if self.devices > MOST_DEVICES {
-            let again = self.app.command_line();
-            let why = format!("it was lost {MOST_DEVICES} times; this shows the same again: {again}");
-            return self.fail(events, Error::Lost(why));
+            return self.fail_lost(events, &format!("it was lost {MOST_DEVICES} times"));
         }
         self.app.session.say(false, "the window's graphics device was lost and opened again");
         // What was passed to the former device has to be passed again.

@@ -21,6 +21,16 @@ impl ShadowMaps {
         umbrage_shaders::receiver(group, self.receiver_text())
     }
 
+    /// [`ShadowMaps::receiver_wgsl`] with every filter that compares depth, one of which each frame
+    /// chooses: it fits all configs that differ in nothing but such a filter. It takes longer to
+    /// compile and to run. `None` if the config's filter is of moments, or if edges are exact.
+    #[must_use]
+    pub fn any_filter_receiver_wgsl(&self, group: u32) -> Option<String> {
+        let has_one = self.config.filter.is_prefiltered() || self.edges.is_exact();
+        let text = ReceiverText { filter: None, ..self.receiver_text() };
+        (!has_one).then(|| umbrage_shaders::receiver(group, text))
+    }
+
     /// [`ShadowMaps::receiver_wgsl`] that counts the work of exact edges, for a debug view. With
     /// [`Edges::Exact`] it has `umbrage_edge_counts() -> vec4u` for all queries of an invocation:
     /// the farthest cause (0 no query, 1 no texel is dark, 2 all texels that count are dark, 3

@@ -205,6 +205,21 @@ impl Filter {
         }
     }
 
+    /// The most texels of a map that the filter's width may take, if the width can be chosen.
+    const fn most_texels(&self) -> f64 {
+        match self {
+            Self::Disc { .. } | Self::Moments(_) => 30.0,
+            _ => 2.0 * self.radius_texels(),
+        }
+    }
+
+    /// The full width in metres that the filter has in a split's map: the chosen one, or as much of
+    /// it as the filter reads along the shorter edge of a texel. `None` if no width is chosen.
+    #[must_use]
+    pub fn width_in(&self, split: &crate::Split) -> Option<f64> {
+        self.width_m().map(|width| width.min(self.most_texels() * split.texel_m.min_element()))
+    }
+
     /// Returns whether the filter's width can be chosen.
     #[must_use]
     pub const fn has_width(&self) -> bool {

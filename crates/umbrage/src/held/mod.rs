@@ -9,17 +9,19 @@
 //! |---|---|
 //! | lens ([`size::HeldLens`]) | the camera's is wider, or narrower by √2 |
 //! | range ([`ends::HeldEnds`]) | the scene ends elsewhere by a step |
-//! | split planes of the last frame ([`Held::row`]) | the range changes; optimal ones: until a set of planes with an error a third smaller is found |
+//! | split planes of the last frame ([`Held::row`]) | the range changes; optimal ones: until a set of planes with an error a third smaller is found, for which [`pace::Pace`] searches now and then |
 //! | map sizes, as half extents ([`size::HeldExtents`]) | a slice needs more, or less by two steps of 9 % |
 //! | rectangles ([`rectangle::HeldRectangle`]) | as map sizes, in steps of the setting |
 //! | depth range ([`depths::HeldDepths`]) | a caster or receiver lies outside |
 //! | local maps' sizes ([`Held::local`]) | as map sizes |
 //!
-//! While the camera stands still, all of this recovers to the choice of a new planner:
-//! [`recovery`].
+//! While the camera stands still, all of this recovers to the choice of a new planner: exactly
+//! still maps by [`recovery`], almost still ones by [`approach`].
 
+pub(crate) mod approach;
 pub(crate) mod depths;
 pub(crate) mod ends;
+pub(crate) mod pace;
 pub(crate) mod recovery;
 pub(crate) mod rectangle;
 pub(crate) mod size;
@@ -27,8 +29,10 @@ pub(crate) mod size;
 use glam::{DVec2, DVec3};
 
 use crate::{MAX_SPLITS, View};
+use approach::Approach;
 use depths::HeldDepths;
 use ends::{HeldEnds, Range};
+use pace::Pace;
 use recovery::{Recovery, Row, Standing, Standstill};
 use rectangle::HeldRectangle;
 use size::{HeldExtents, HeldLens, HeldSize};
@@ -45,12 +49,15 @@ const FACES: usize = 6;
 pub struct Held {
     pub(crate) standstill: Standstill,
     pub(crate) recovery: Recovery,
+    pub(crate) approach: Approach,
     pub(crate) light_direction: Option<DVec3>,
     pub(crate) ends: HeldEnds,
     pub(crate) lens: HeldLens,
     pub(crate) whole: HeldSize,
     /// The planes of the last frame and the range that they were placed for.
     pub(crate) row: Option<(Range, [f64; MAX_SPLITS + 1])>,
+    /// When optimal planes are searched for.
+    pub(crate) pace: Pace,
     pub(crate) extents: [HeldExtents; MAX_SPLITS],
     pub(crate) rectangle: [HeldRectangle; MAX_SPLITS],
     pub(crate) depths: HeldDepths,
@@ -76,7 +83,7 @@ impl Held {
         let reach = self.row.map_or(view.frustum().near.abs(), |(_, planes)| planes[1]);
         let standing = self.standstill.follow(view, reach);
         if standing == Standing::Moving {
-            self.recovery = Recovery::default();
+            (self.recovery, self.approach) = Default::default();
         }
         standing
     }

@@ -18,7 +18,7 @@ const DURATION: u32 = 42;
 
 /// Least step by which one split's size changes: 9 %. The step is larger only if [`DURATION`]
 /// frames would not be enough.
-const STEP: f64 = 1.090_507_732_665_257_7;
+pub(crate) const STEP: f64 = 1.090_507_732_665_257_7;
 
 /// Tremor of a camera that counts as standing still: a share of the camera's distance to the first
 /// plane, and an angle in radians.
@@ -165,15 +165,14 @@ pub(crate) struct Recovery {
 impl Recovery {
     /// Moves one plane of `row` towards `target` by a step, and the size of the map that ends
     /// there. `need` gives half the edges that a map needs for its split and a set of planes.
-    /// Returns the split that was visited, or `None` once all sizes are those of the target. With
-    /// `visits_all`, splits without a change are returned, too.
+    /// Returns whether anything has changed: false once all sizes are those of the target.
     pub fn step(
         &mut self,
         row: &mut Row,
         target: &Row,
-        (frames_left, visits_all): (u32, bool),
+        frames_left: u32,
         need: impl Fn(usize, &[f64]) -> DVec2,
-    ) -> Option<usize> {
+    ) -> bool {
         while self.idle < 2 * row.splits {
             if self.left == 0 {
                 self.left = row.splits;
@@ -191,14 +190,11 @@ impl Recovery {
             self.left -= 1;
             if self.visit(plane, row, target, &need) {
                 self.idle = 0;
-                return Some(plane - 1);
+                return true;
             }
             self.idle += 1;
-            if visits_all {
-                return Some(plane - 1);
-            }
         }
-        None
+        false
     }
 
     /// Moves one plane and its map. Returns whether anything changed.

@@ -16,6 +16,7 @@ use crate::config::Crop;
 use crate::coverage::CoverageVolume;
 use crate::geometry::region::{Hull, Region, Undecided};
 use crate::geometry::volume::{Slice, lies_below, some_lies_below};
+use crate::held::recovery::Row;
 
 /// A slice of the view with its receivers.
 #[derive(Clone, Debug)]
@@ -30,16 +31,22 @@ pub(super) struct Scene {
 impl Scene {
     /// The scene of one split.
     pub fn of_split(split: &SplitFrame<'_>, in_view: &mut InView) -> Self {
-        let SplitFrame { frame, sun, layout, index } = *split;
-        let ends_of = |i: usize| SliceEnds::new(frame, layout.planes(), i);
-        let mut ends = ends_of(index);
-        let is_last = (index + 1..frame.config.splits()).all(|i| !ends_of(i).is_visible);
-        if in_view.is_seen && is_last && ends.is_visible {
-            // It serves whatever the maps before it do not: they show what was seen alone.
-            ends.from = ends.from.min(ends_of(0).from);
-        }
-        let seen_alone = in_view.is_seen && !is_last;
-        Self::new(frame, sun, ends, (in_view, seen_alone))
+        let (ends, seen_alone) = ends_of_split(split, split.layout.planes(), in_view);
+        Self::new(split.frame, split.sun, ends, (in_view, seen_alone))
+    }
+
+    /// The scenes of one split by `next` planes, and by these and its own.
+    pub fn of_next_and_both(split: &SplitFrame<'_>, next: &Row, in_view: &mut InView) -> [Self; 2] {
+        let SplitFrame { frame, sun, layout, .. } = *split;
+        let (now, seen_alone_now) = ends_of_split(split, layout.planes(), in_view);
+        let (then, seen_alone_then) = ends_of_split(split, &next.planes[..=next.splits], in_view);
+        let both = match (now.is_visible, then.is_visible) {
+            (false, true) => then,
+            (true, true) => SliceEnds { from: now.from.min(then.from), to: now.to.max(then.to), ..now },
+            _ => now,
+        };
+        let next = Self::new(frame, sun, then, (in_view, seen_alone_then));
+        [next, Self::new(frame, sun, both, (in_view, seen_alone_now && seen_alone_then))]
     }
 
     /// The scene of all splits: the volume that any map may be asked about with
@@ -74,6 +81,19 @@ impl Scene {
     pub fn depths(&self) -> (f64, f64) {
         self.volume.receivers.as_ref().map_or(&self.region, |(region, _)| region).depth
     }
+}
+
+/// Depths that a split serves between `planes`, and whether that is what was seen alone.
+fn ends_of_split(split: &SplitFrame<'_>, planes: &[f64], in_view: &InView) -> (SliceEnds, bool) {
+    let SplitFrame { frame, index, .. } = *split;
+    let ends_of = |i: usize| SliceEnds::new(frame, planes, i);
+    let mut ends = ends_of(index);
+    let is_last = (index + 1..frame.config.splits()).all(|i| !ends_of(i).is_visible);
+    if in_view.is_seen && is_last && ends.is_visible {
+        // It serves whatever the maps before it do not: they show what was seen alone.
+        ends.from = ends.from.min(ends_of(0).from);
+    }
+    (ends, in_view.is_seen && !is_last)
 }
 
 /// The region that a map with a slice's casters has to show.

@@ -8,6 +8,7 @@ use super::covered;
 use super::depth::{self, WorldDepths};
 use super::fit::MapSize;
 use super::frame::{Frame, Sun};
+use super::goals::{self, Goals};
 use super::in_view::InView;
 use super::layout::{Layout, LayoutBuffers, SplitFrame};
 use super::picked::Picked;
@@ -47,11 +48,15 @@ pub(super) fn plan(
     let shown = by_map.then(|| Scene::of_view(frame, &sun, &layout, in_view));
     for index in 0..frame.config.splits() {
         let split = SplitFrame { frame, sun: &sun, layout: &layout, index };
+        let size = MapSize::new(&split, &held.rectangle[index]);
+        let goals = Goals::measure(&split, &size, (in_view, casters));
         let mut scene = Scene::of_split(&split, in_view);
-        let size = MapSize::new(&split);
         let listed = Listed::new(&split, &size, &mut scene, &in_view.casters, casters);
         let has_casters = !casters.is_empty();
         let map = snap::placed(&split, &scene, &size, (&listed, has_casters), &mut held.rectangle[index]);
+        if let Some(goals) = &goals {
+            goals.set(&split, has_casters, &mut held.rectangle[index]);
+        }
         let (map, first) = match &shown {
             Some(all) if has_casters => {
                 let all = (&all.volume, all.depths());
@@ -69,6 +74,7 @@ pub(super) fn plan(
         plan.add_listed(map, &mut in_view.casters, casters.places());
         plan.coverage.volumes.push(scene.volume);
     }
+    goals::limit((frame, &sun), &layout, &mut held.rectangle);
     plan.coverage.shown = shown.map(|scene| scene.volume);
     Ok(())
 }

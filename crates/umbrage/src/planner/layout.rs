@@ -11,11 +11,13 @@ use super::in_view::InView;
 use super::range;
 use super::scope::Scope;
 use super::slice_ends::{SliceEnds, covered};
-use crate::config::{Cache, SplitScheme, Stability};
+use crate::config::{Cache, Selection, SplitScheme, Stability};
 use crate::geometry::sphere::slice_sphere;
 use crate::held::Held;
+use crate::held::approach::{Decides, Turn};
 use crate::held::ends::Range;
 use crate::held::recovery::{Row, Standing};
+use crate::held::rectangle::Stride;
 use crate::planes::cells::Sight;
 use crate::planes::optimal::{Maps, Placement};
 use crate::planes::scheme::split_planes;
@@ -34,9 +36,11 @@ pub(super) struct Layout {
     /// Block around all receivers, which no map has to exceed along any axis, for exactly
     /// stabilised maps.
     pub around_all: Option<Block>,
-    /// The split whose rectangle may be chosen again in this frame although the held one would
-    /// serve.
-    pub refits: Option<usize>,
+    /// The change of rectangles in this frame of an approach to the choice of a new planner;
+    /// `None` while there is none.
+    pub approach: Option<Turn>,
+    /// The planes that an approach has just begun to lead to.
+    pub next: Option<Row>,
 }
 
 /// Values that the stages of one split share.
@@ -57,6 +61,12 @@ impl SplitFrame<'_> {
 
     pub fn warp(&self) -> Warp {
         self.frame.config.warp(self.index)
+    }
+
+    /// The change of the split's rectangle in this frame of an approach; `None` without one.
+    pub fn stride(&self) -> Option<Stride> {
+        let turn = self.layout.approach?;
+        Some(turn.filter(|(map, _)| *map == self.index).map_or(Stride::Stay, |(_, stride)| stride))
     }
 
     /// The extent of the split's stabilised map.
@@ -101,8 +111,8 @@ impl Layout {
         }
         let shown = row.planes[row.splits];
         let target = Self::holding((frame, sun), scope, (&mut fresh, shown), in_view, buffers)?;
+        let is_exact = frame.config.stability == Stability::Exact;
         if standing == Standing::Due {
-            let is_exact = frame.config.stability == Stability::Exact;
             if is_exact && !row.exceeds(&target.row) {
                 held.standstill.set(Standing::Settled);
                 return Self::holding((frame, sun), scope, (held, 0.0), in_view, buffers);
@@ -110,25 +120,60 @@ impl Layout {
             held.adopt(&fresh);
             held.standstill.set(Standing::Recovering);
         }
-        Ok(target.approached(frame, sun, row, held))
+        Ok(if is_exact {
+            target.recovered((frame, sun), row, held)
+        } else {
+            target.approached((frame, sun), (row, standing), held)
+        })
     }
 
-    /// A layout that is one step nearer to this one than `row`, and is held from now on.
-    fn approached(self, frame: &Frame<'_>, sun: &Sun<'_>, mut row: Row, held: &mut Held) -> Self {
+    /// A layout of exactly still maps that is one step nearer to this one than `row`, and is held
+    /// from now on.
+    fn recovered(self, (frame, sun): (&Frame<'_>, &Sun<'_>), mut row: Row, held: &mut Held) -> Self {
         let need = |i: usize, planes: &[f64]| self.block(frame, sun, planes, i).half.truncate();
-        // Rectangles that are almost still are chosen by the stage that places them, one a frame.
-        let has_rectangles = frame.config.stability != Stability::Exact;
-        let pace = (held.standstill.frames_left(), has_rectangles);
-        let refits = held.recovery.step(&mut row, &self.row, pace, need);
-        if refits.is_none() {
+        if !held.recovery.step(&mut row, &self.row, held.standstill.frames_left(), need) {
             held.standstill.set(Standing::Settled);
         }
+        self.held_from_now_on((frame, sun), row, held)
+    }
+
+    /// A layout of almost still maps that is one step nearer to this one than `row`, and is held
+    /// from now on. Their rectangles follow in the stage that places them.
+    fn approached(
+        self,
+        (frame, sun): (&Frame<'_>, &Sun<'_>),
+        (mut row, standing): (Row, Standing),
+        held: &mut Held,
+    ) -> Self {
+        let target = self.row;
+        let (approach, next) = if standing == Standing::Due {
+            (Some(None), Some(target))
+        } else {
+            let decides = if frame.config.selection == Selection::Map { Decides::Map } else { Decides::Planes };
+            let pace = (decides, held.standstill.frames_left());
+            let turn = held.approach.step(&mut row, &target, pace, &mut held.rectangle);
+            if turn.is_none() {
+                held.standstill.set(Standing::Settled);
+            }
+            (Some(turn.flatten()), None)
+        };
+        // Things that move while the camera stands may need a longer range.
+        let last = row.splits;
+        row.planes[0] = row.planes[0].min(target.planes[0]);
+        row.planes[last] = row.planes[last].max(target.planes[last]);
+        row.half = target.half;
+        Self { approach, next, ..self.held_from_now_on((frame, sun), row, held) }
+    }
+
+    /// This layout with the planes and sizes of `row`, which are held from now on.
+    fn held_from_now_on(self, (frame, sun): (&Frame<'_>, &Sun<'_>), mut row: Row, held: &mut Held) -> Self {
+        let need = |i: usize, planes: &[f64]| self.block(frame, sun, planes, i).half.truncate();
         // Things that move while the camera stands may need more.
         for i in 0..row.splits {
             row.half[i] = row.half[i].max(need(i, &row.planes[..=row.splits]));
         }
         held.keep(self.range, &row);
-        Self { row, refits, ..self }
+        Self { row, ..self }
     }
 
     /// A layout that keeps every held value that serves. `shown` is the least view depth up to
@@ -166,7 +211,15 @@ impl Layout {
     fn empty(frame: &Frame<'_>) -> Self {
         let splits = frame.config.splits();
         let row = Row { planes: [0.0; MAX_SPLITS + 1], half: [DVec2::ONE; MAX_SPLITS], splits };
-        Self { range: Range::new(0.0, 0.0), row, lens: *frame.view, whole_width: 0.0, around_all: None, refits: None }
+        Self {
+            range: Range::new(0.0, 0.0),
+            row,
+            lens: *frame.view,
+            whole_width: 0.0,
+            around_all: None,
+            approach: None,
+            next: None,
+        }
     }
 
     /// Writes the planes `C_0 ..= C_m`: the held ones if they were placed for the same range,
@@ -184,14 +237,26 @@ impl Layout {
         let is_optimal = config.scheme == SplitScheme::Optimal;
         let LayoutBuffers { placement, planes } = buffers;
         if is_optimal {
-            let last_map = if in_view.is_seen { in_view.shadowed(frame.view, sun, range) } else { None };
-            let (view, fan) = (frame.view, &sun.fan);
-            let sight = Sight { view, fan, receivers: in_view.sought(), casters: &in_view.casters, last_map };
-            let most_half = self.around_all.map_or(DVec2::INFINITY, |all| all.half.truncate());
-            let (margin, whole_width, image_size) = (frame.margin, self.whole_width, frame.image_size);
-            let maps = Maps { config, image_size, margin, whole_width, most_half };
             let inner = held.row.as_ref().map(|(_, planes)| &planes[1..m]);
-            placement.place(&sight, &maps, range, inner, planes)?;
+            let reach = inner.and_then(|inner| inner.first()).copied().unwrap_or(range.near);
+            let is_due = held.pace.is_due(frame.view, range, reach);
+            match inner.filter(|_| !is_due && m > 1) {
+                Some(inner) => {
+                    planes.clear();
+                    planes.push(range.near);
+                    planes.extend_from_slice(inner);
+                    planes.push(range.inner_far);
+                }
+                None => {
+                    let last_map = if in_view.is_seen { in_view.shadowed(frame.view, sun, range) } else { None };
+                    let (view, fan) = (frame.view, &sun.fan);
+                    let sight = Sight { view, fan, receivers: in_view.sought(), casters: &in_view.casters, last_map };
+                    let most_half = self.around_all.map_or(DVec2::INFINITY, |all| all.half.truncate());
+                    let (margin, whole_width, image_size) = (frame.margin, self.whole_width, frame.image_size);
+                    let maps = Maps { config, image_size, margin, whole_width, most_half };
+                    placement.place(&sight, &maps, range, inner, planes)?;
+                }
+            }
             if inner != Some(&planes[1..m]) {
                 // Other slices have other sizes: none is worth holding on to.
                 held.extents = Default::default();

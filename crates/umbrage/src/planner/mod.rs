@@ -11,6 +11,7 @@ mod depth;
 mod directional;
 mod fit;
 mod frame;
+mod goals;
 mod in_view;
 mod inputs;
 mod kept;

@@ -24,7 +24,7 @@ pub(super) fn placed(
 ) -> Split {
     let SplitFrame { frame, sun, layout, index: i } = *split;
     let planes = layout.planes();
-    let block = split.block();
+    let (block, stride) = (split.block(), split.stride());
     let split = Split {
         near: planes[i],
         far: planes[i + 1],
@@ -48,15 +48,22 @@ pub(super) fn placed(
         Stability::Tight { .. } => fitted(split, &listed.target, &sun.fan, size.reach),
         Stability::Exact => snapped(split, sun.light, &block, size.still_texel),
         Stability::Approximate { steps } => {
-            // A split without casters is lit, whatever its rectangle; it changes nothing that is
-            // held.
+            let (target, whole) = (&listed.target, layout.whole_width);
+            // A split without casters is lit, whatever its rectangle.
             let mut unheld = HeldRectangle::default();
-            let held = if has_casters { held } else { &mut unheld };
-            let refits = layout.refits == Some(i);
-            let rectangle = held.hold(&listed.target, steps, layout.whole_width, refits);
+            let rectangle = match stride {
+                None if has_casters => held.hold(target, steps, whole),
+                Some(stride) if has_casters => held.approach(target, (steps, whole), stride),
+                // Nothing that is held changes while the camera moves.
+                None => unheld.hold(target, steps, whole),
+                Some(_) => {
+                    held.rest();
+                    unheld.hold(target, steps, whole)
+                }
+            };
             let radius = size.half.max_element();
             let depth = (block.center.z - radius, block.center.z + radius);
-            stepped(split, &listed.target, &sun.fan, size.reach, rectangle, depth)
+            stepped(split, &sun.fan, size.reach, rectangle, depth)
         }
     }
 }
@@ -75,19 +82,12 @@ fn fitted(mut split: Split, target: &Region, fan: &Fan, reach: FilterReach) -> S
 }
 
 /// A held rectangle, moved to whole texels of a grid that is fixed to the light.
-fn stepped(
-    mut split: Split,
-    target: &Region,
-    fan: &Fan,
-    reach: FilterReach,
-    held: Rectangle,
-    depth: (f64, f64),
-) -> Split {
+fn stepped(mut split: Split, fan: &Fan, reach: FilterReach, held: Rectangle, depth: (f64, f64)) -> Split {
     (split.u_axis, split.v_axis) = fan.axes(held.direction);
     let size = f64::from(split.size);
     split.filter_radius_texels = reach.texels(held.extent.min_element(), split.size, 2.0 * EDGE_TEXELS + 1.0);
     split.texel_m = held.extent / (size - 2.0 * (split.filter_radius_texels + EDGE_TEXELS) - 1.0);
-    split.min_texel = (held.center(target) / split.texel_m - 0.5 * size).round();
+    split.min_texel = (held.center / split.texel_m - 0.5 * size).round();
     (split.depth_near, split.depth_far) = depth;
     split
 }

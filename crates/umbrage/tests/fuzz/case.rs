@@ -15,6 +15,10 @@ pub struct Case {
     pub options: PlannerOptions,
     /// A view for each frame.
     pub views: Vec<View>,
+    /// Number of further frames of the last view, in which what is held recovers.
+    pub standing: u32,
+    /// Metres by which the first box moves in each of these frames.
+    pub moves: DVec3,
     /// The light.
     pub sun: DirectionalLight,
     /// Casters and receivers.
@@ -102,7 +106,7 @@ fn asked(plan: &ShadowPlan, point: DVec3) -> Option<Vec<usize>> {
     Some((own..=own + usize::from(blends)).collect())
 }
 
-fn check(case: &Case, view: &View, plan: &ShadowPlan) -> Result<(), TestCaseError> {
+fn check(case: &Case, (view, boxes): (&View, &[Aabb]), plan: &ShadowPlan) -> Result<(), TestCaseError> {
     let direction = case.sun.direction();
     prop_assert_eq!(plan.splits.len(), case.settings.splits());
     prop_assert!(plan.planes.windows(2).all(|pair| pair[0] < pair[1]), "{:?}", plan.planes);
@@ -120,14 +124,14 @@ fn check(case: &Case, view: &View, plan: &ShadowPlan) -> Result<(), TestCaseErro
             prop_assert_eq!(split.min_texel.fract(), DVec2::ZERO);
         }
     }
-    for (owner, point) in shown(view, &case.boxes) {
+    for (owner, point) in shown(view, boxes) {
         // The deepest corner of all lies at the range's very end, on either side of it by rounding.
         let end = plan.planes[plan.splits.len()];
         if (plan.depth_at(point) - end).abs() <= 1e-12 * end {
             continue;
         }
-        let is_tiny = case.boxes[owner].half_extent().length() < 0.1 * view.eye().distance(point);
-        for (index, bounds) in case.boxes.iter().enumerate() {
+        let is_tiny = boxes[owner].half_extent().length() < 0.1 * view.eye().distance(point);
+        for (index, bounds) in boxes.iter().enumerate() {
             let Some(hit) = shaded_from(bounds, point, direction).filter(|_| index != owner) else { continue };
             // What is too small and too far away to be seen may have no range.
             let Some(splits) = asked(plan, point) else {
@@ -171,7 +175,7 @@ fn check(case: &Case, view: &View, plan: &ShadowPlan) -> Result<(), TestCaseErro
     }
     for &point in &case.probes {
         let Some(split) = plan.covering_split(point) else { continue };
-        for (index, bounds) in case.boxes.iter().enumerate() {
+        for (index, bounds) in boxes.iter().enumerate() {
             if shaded_from(bounds, point, direction).is_some() {
                 let listed = plan.casters(split).contains(&(index as u32));
                 prop_assert!(listed, "split {split} answers for {point} without {index}");
@@ -187,9 +191,14 @@ fn check(case: &Case, view: &View, plan: &ShadowPlan) -> Result<(), TestCaseErro
 /// The first promise that is broken.
 pub fn keeps_its_promises(case: &Case) -> Result<(), TestCaseError> {
     let mut planner = Planner::with_options(&case.settings, case.options)?;
-    for view in &case.views {
+    let mut boxes = case.boxes.clone();
+    let standing = case.views.last().into_iter().cycle().take(case.standing as usize);
+    for (frame, view) in case.views.iter().chain(standing).enumerate() {
+        if let Some(first) = boxes.first_mut().filter(|_| frame >= case.views.len()) {
+            *first = Aabb::new(first.min + case.moves, first.max + case.moves);
+        }
         let seen = case.seen.as_deref();
-        let inputs = PlanInputs { seen, ..PlanInputs::new(view, case.sun, &case.boxes, &case.boxes) };
+        let inputs = PlanInputs { seen, ..PlanInputs::new(view, case.sun, &boxes, &boxes) };
         let before = planner.held().clone();
         let plan = match planner.plan_frame(&inputs) {
             Ok(plan) => plan.clone(),
@@ -200,7 +209,7 @@ pub fn keeps_its_promises(case: &Case) -> Result<(), TestCaseError> {
             }
             Err(other) => return Err(TestCaseError::fail(other.to_string())),
         };
-        check(case, view, &plan)?;
+        check(case, (view, &boxes), &plan)?;
         // A plan is a function of its inputs and of what is held.
         let (mut held, after) = (before, planner.held().clone());
         let again = umbrage::plan(&case.settings, case.options, &inputs, &mut held)?;

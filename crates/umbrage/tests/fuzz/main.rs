@@ -107,6 +107,8 @@ fn any_case() -> impl Strategy<Value = Case> {
     let off = prop_oneof![Just(0.0), Just(1e-15), Just(1e-9), Just(1e-6), Just(1e-3), Just(1.0)];
     let steps = prop::collection::vec((prop_oneof![Just(0.0), 0.0..3.0f64], -0.3..0.3f64), 0..4);
     let eye = [-40.0..40.0f64, 0.2..30.0, -40.0..40.0];
+    let standing = prop_oneof![7 => Just(0u32), 1 => 20..60u32];
+    let moves = prop_oneof![Just(DVec3::ZERO), [-0.5..0.5f64, -0.1..0.1, -0.5..0.5].prop_map(DVec3::from)];
     let probe = [-120.0..120.0f64, -2.0..20.0, -120.0..120.0].prop_map(DVec3::from);
     (
         settings(),
@@ -114,11 +116,19 @@ fn any_case() -> impl Strategy<Value = Case> {
         direction(),
         lens(),
         (eye, direction(), off, any::<bool>()),
-        steps,
+        (steps, standing, moves),
         (prop::collection::vec(probe, 12), prop::option::of(any::<[u8; 8]>())),
     )
         .prop_map(
-            |((mut settings, options), boxes, sun, lens, (eye, look, off, against), steps, (probes, parts))| {
+            |(
+                (mut settings, options),
+                boxes,
+                sun,
+                lens,
+                (eye, look, off, against),
+                (steps, standing, moves),
+                (probes, parts),
+            )| {
                 let sun = DirectionalLight::new(sun).expect("a direction");
                 let along = if against { -sun.direction() } else { sun.direction() };
                 let ahead = (along + off * look).try_normalize().unwrap_or(along);
@@ -136,7 +146,7 @@ fn any_case() -> impl Strategy<Value = Case> {
                     settings.selection = Selection::VIEW_DEPTH;
                 }
                 let seen = parts.map(|parts| seen(&boxes, &parts.map(|part| part % 16)));
-                Case { settings, options, views, sun, boxes, seen, probes }
+                Case { settings, options, views, standing, moves, sun, boxes, seen, probes }
             },
         )
 }

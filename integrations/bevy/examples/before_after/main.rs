@@ -31,7 +31,7 @@ pub fn say(line: impl std::fmt::Display) {
 fn main() -> Result<ExitCode, Failure> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let number = |word: &str| word.parse().map_err(|_| format!("`{word}` is no number"));
+    let number = |word: &str| word.parse::<u32>().map_err(|_| format!("`{word}` is no number"));
     match words[..] {
         ["pictures", folder] => pictures::draw(Path::new(folder), "")?,
         ["pictures", folder, wanted] => pictures::draw(Path::new(folder), wanted)?,
@@ -39,7 +39,7 @@ fn main() -> Result<ExitCode, Failure> {
         ["scores", folder, wanted] => scores::print(Path::new(folder), wanted)?,
         ["cost"] => cost::print(160, 24)?,
         ["cost", robots] => cost::print(number(robots)?, 24)?,
-        ["cost", robots, frames] => cost::print(number(robots)?, number(frames)?)?,
+        ["cost", robots, frames] => cost::print(number(robots)?, number(frames)? as usize)?,
         ["short"] => return short::check(),
         _ => {
             return Err(

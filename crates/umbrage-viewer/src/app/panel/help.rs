@@ -19,7 +19,7 @@ const KEYS: &[(&str, &str)] = &[
     ("T", "each split in a colour"),
     ("L", "frusta of splits and of their maps, as lines"),
     ("F", "hold the maps of this view and fly on: see what they cover"),
-    ("O", "overlay: none, texels per pixel, errors"),
+    ("O", "overlay: none, texels per pixel, errors, tests of triangles"),
     ("1 2 3 4", "maps, planes, times, casters below the picture"),
     ("H", "hide the panels"),
     ("Ctrl + C, Ctrl + V", "copy the command that shows this; paste settings (Rust, TOML, a command)"),
@@ -32,7 +32,7 @@ const KEYS: &[(&str, &str)] = &[
 pub fn help(app: &mut App, ui: &mut Ui) {
     let mut open = app.help;
     let room = ui.ctx().content_rect().size();
-    Window::new("What can be done here").open(&mut open).collapsible(false).vscroll(true).default_width((0.7 * room.x).min(640.0)).max_height(0.8 * room.y).show(ui.ctx(), |ui| {
+    Window::new("What can be done here").open(&mut open).collapsible(false).vscroll(true).default_width((0.7 * room.x).min(640.0)).default_height(0.75 * room.y).max_height(0.8 * room.y).show(ui.ctx(), |ui| {
         ui.label(
             "umbrage draws sunlight shadows over large worlds with a few shadow maps, each for one split (slice) of the \
              view. Everything about them can be changed on the right while you look; what the picture is made of can be seen \

@@ -18,6 +18,8 @@ pub(super) fn picked(app: &mut App, ui: &mut Ui) {
         .collapsible(true)
         .resizable(false)
         .default_pos(app.fields.card_at)
+        // It covers none of the controls around the picture.
+        .constrain_to(ui.max_rect())
         .default_width(300.0)
         .show(ui.ctx(), |ui| match &picked.surface {
             None => {

@@ -10,6 +10,7 @@ use std::time::Duration;
 use umbrage::{Light, View};
 use umbrage_lab::failure::Failure;
 use umbrage_lab::scene_request::SceneRequest;
+use umbrage_render::Gpu;
 use umbrage_scene::Scene;
 use umbrage_scene::procedural::World;
 use umbrage_truth::{Truth, TruthMask};
@@ -23,7 +24,7 @@ use winit::window::{Window, WindowAttributes};
 pub(crate) use self::outside::Outside;
 pub(crate) use self::page::{first_address, give_up, link, save, take_copies, tell};
 pub use self::tasks::Movable;
-pub(crate) use self::tasks::{finish, pause, spawn};
+pub(crate) use self::tasks::{finish, pause, sleep, spawn};
 use crate::{Error, Result};
 
 /// True if the renderer of the scene uses the window's device.
@@ -63,22 +64,25 @@ pub(crate) fn adapt(ctx: &egui::Context) {
     ctx.set_os(egui::os::OperatingSystem::from_user_agent(&agent.unwrap_or_default()));
 }
 
-/// Returns the fonts of the controls: each family falls back on the other's face.
+/// Returns the fonts of the controls: one face for letters, code among them, and one for signs. A
+/// face of its own for code is 150 kB to load, for one field.
 fn fonts() -> egui::FontDefinitions {
-    use egui::FontFamily::{Monospace, Proportional};
-    let faces = [
-        ("Ubuntu-Light", epaint_default_fonts::UBUNTU_LIGHT),
-        ("Hack", epaint_default_fonts::HACK_REGULAR),
-        ("egui-icons", epaint_default_fonts::EGUI_ICONS),
-    ];
+    let faces =
+        [("Ubuntu-Light", epaint_default_fonts::UBUNTU_LIGHT), ("egui-icons", epaint_default_fonts::EGUI_ICONS)];
     let mut fonts = egui::FontDefinitions::empty();
     for (name, bytes) in faces {
         fonts.font_data.insert(name.to_owned(), Arc::new(egui::FontData::from_static(bytes)));
     }
-    let [letters, code, icons] = faces.map(|(name, _)| name.to_owned());
-    fonts.families.insert(Monospace, vec![code.clone(), letters.clone(), icons.clone()]);
-    fonts.families.insert(Proportional, vec![letters, code, icons]);
+    for family in [egui::FontFamily::Proportional, egui::FontFamily::Monospace] {
+        fonts.families.insert(family, faces.map(|(name, _)| name.to_owned()).to_vec());
+    }
     fonts
+}
+
+/// Returns whether pipelines are worth making before they are needed: browsers check and translate
+/// what they are given for WebGPU before a driver compiles it.
+pub(crate) fn makes_pipelines_slowly(gpu: &Gpu) -> bool {
+    gpu.adapter_info.backend == wgpu::Backend::BrowserWebGpu
 }
 
 /// Opens the scene of a request: a world, bytes that were dropped, or an address of the page's own
