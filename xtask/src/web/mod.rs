@@ -17,6 +17,7 @@ use std::{
 };
 
 use anyhow::{Context, Result, bail};
+use brotli::enc::BrotliEncoderParams;
 use flate2::{Compression, write::GzEncoder};
 
 pub use self::check::check_in_browser;
@@ -26,7 +27,7 @@ use crate::run::{cargo, output, root, run, succeeds};
 /// Crate of the page; `CRATES` adds the crates that applications build for browsers.
 const PAGE: &str = "umbrage-web";
 const CRATES: [&str; 5] = [PAGE, "umbrage", "umbrage-shaders", "umbrage-wgpu", "umbrage-render"];
-/// Largest number of bytes that a visitor has to load before the page runs.
+/// Largest number of bytes, as brotli, that a visitor has to load before the page runs.
 const MOST_BYTES: usize = 3_000_000;
 /// Files that the page's menu opens, with the files that their licences require.
 const ASSETS: [&str; 3] = ["assets/city_candela.glb", "assets/README.md", "assets/ATTRIBUTION-stk.txt"];
@@ -141,68 +142,25 @@ fn copy(from: &Path, to: &Path) -> Result<()> {
     fs::copy(from, to).map(drop).with_context(|| format!("{} cannot be copied to {}", from.display(), to.display()))
 }
 
-/// Prints the size of the page. More than [`MOST_BYTES`] is an error.
+/// Writes the page's files compressed beside them, for servers that send such files, and prints
+/// their sizes. More than [`MOST_BYTES`] in all is an error.
 fn report(out: &Path) -> Result<()> {
-    let mut sum = 0;
+    let (mut as_gzip, mut as_brotli) = (0, 0);
     for name in ["index.html", "umbrage-web.js", "umbrage-web_bg.wasm"] {
         let bytes = fs::read(out.join(name)).with_context(|| format!("{name} was not built"))?;
         let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
         encoder.write_all(&bytes).context("gzip")?;
-        let packed = encoder.finish().context("gzip")?.len();
-        eprintln!("xtask: {name}: {} bytes, {packed} as gzip", bytes.len());
-        sum += packed;
+        let gzip = encoder.finish().context("gzip")?.len();
+        let mut brotli = Vec::new();
+        ::brotli::BrotliCompress(&mut bytes.as_slice(), &mut brotli, &BrotliEncoderParams::default())
+            .context("brotli")?;
+        fs::write(out.join(format!("{name}.br")), &brotli).with_context(|| format!("{name}.br cannot be written"))?;
+        eprintln!("xtask: {name}: {} bytes, {gzip} as gzip, {} as brotli", bytes.len(), brotli.len());
+        (as_gzip, as_brotli) = (as_gzip + gzip, as_brotli + brotli.len());
     }
-    eprintln!("xtask: {}: {sum} bytes to load, as gzip", out.display());
-    if sum > MOST_BYTES {
+    eprintln!("xtask: {}: {as_brotli} bytes to load as brotli, {as_gzip} as gzip", out.display());
+    if as_brotli > MOST_BYTES {
         bail!("the page is larger than {MOST_BYTES} bytes; see what `umbrage-viewer` has begun to depend on");
     }
     Ok(())
-}
-
-/// Returns `wasm-bindgen` of the version that the page is linked with. It is built once, which
-/// takes some minutes.
-fn bindgen() -> Result<PathBuf> {
-    let lock = fs::read_to_string(root().join("Cargo.lock")).context("Cargo.lock cannot be read")?;
-    let version = locked(&lock, "wasm-bindgen").context("Cargo.lock has no wasm-bindgen")?;
-    let is_it =
-        |program: &Path| output(Command::new(program).arg("--version")).is_ok_and(|said| said.ends_with(version));
-    let folder = toolchain::folder().join("bindgen");
-    let built = folder.join("bin").join(format!("wasm-bindgen{}", std::env::consts::EXE_SUFFIX));
-    for program in [PathBuf::from("wasm-bindgen"), built.clone()] {
-        if succeeds(Command::new(&program).arg("--version")) && is_it(&program) {
-            return Ok(program);
-        }
-    }
-    run(cargo().args(["install", "wasm-bindgen-cli", "--version", version, "--root"]).arg(folder))?;
-    Ok(built)
-}
-
-/// Returns the version of a package in a lock file.
-fn locked<'l>(lock: &'l str, package: &str) -> Option<&'l str> {
-    let (_, behind) = lock.split_once(&format!("name = \"{package}\"\nversion = \""))?;
-    behind.split('"').next()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_locked_version_is_that_of_the_package_alone() {
-        let lock = "[[package]]\nname = \"wasm-bindgen-futures\"\nversion = \"0.4.80\"\n\n\
-                    [[package]]\nname = \"wasm-bindgen\"\nversion = \"0.2.130\"\n";
-        assert_eq!(locked(lock, "wasm-bindgen"), Some("0.2.130"));
-        assert_eq!(locked(lock, "wasm"), None);
-    }
-
-    #[test]
-    fn options_are_read_or_said_to_be_wrong() {
-        let ask = Ask::read(&["--no-serve", "--out", "somewhere", "--port", "9000"]).expect("options");
-        assert_eq!((ask.serves, ask.out.as_path(), ask.port), (false, Path::new("somewhere"), 9000));
-        for (options, why) in [(&["--port", "high"][..], "--port"), (&["--out"], "--out"), (&["--fast"], "--no-serve")]
-        {
-            let error = Ask::read(options).err().expect("wrong").to_string();
-            assert!(error.contains(why), "{error}");
-        }
-    }
 }

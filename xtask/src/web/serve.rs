@@ -51,12 +51,34 @@ impl Server {
 }
 
 fn answer(folder: &Path, request: Request) {
-    let file = file_of(folder, request.url()).and_then(|path| Some((File::open(&path).ok()?, kind(&path))));
+    let takes_brotli = takes_brotli(request.headers());
+    let file = file_of(folder, request.url()).and_then(|path| {
+        let packed = takes_brotli.then(|| File::open(packed(&path)).ok()).flatten();
+        Some((packed.is_some(), packed.or_else(|| File::open(&path).ok())?, kind(&path)))
+    });
     // Whoever asked may be gone.
     drop(match file {
-        Some((file, kind)) => request.respond(Response::from_file(file).with_header(kind)),
+        Some((true, file, kind)) => request.respond(Response::from_file(file).with_header(kind).with_header(brotli())),
+        Some((false, file, kind)) => request.respond(Response::from_file(file).with_header(kind)),
         None => request.respond(Response::from_string("not found").with_status_code(404)),
     });
+}
+
+/// Returns whether a browser reads brotli.
+fn takes_brotli(headers: &[Header]) -> bool {
+    let accepted = headers.iter().filter(|header| header.field.equiv("Accept-Encoding"));
+    accepted.flat_map(|header| header.value.as_str().split(',')).any(|encoding| encoding.trim() == "br")
+}
+
+/// Returns the place of a file's compressed copy.
+fn packed(path: &Path) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".br");
+    name.into()
+}
+
+fn brotli() -> Header {
+    Header::from_bytes("Content-Encoding", "br").expect("these are headers")
 }
 
 /// Returns the file of an address; `None` outside of the folder.
@@ -85,6 +107,14 @@ fn kind(path: &Path) -> Header {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn brotli_is_for_browsers_that_ask_for_it() {
+        let header = |value: &str| Header::from_bytes("Accept-Encoding", value).expect("a header");
+        assert!(takes_brotli(&[header("gzip, deflate, br, zstd")]) && takes_brotli(&[header("br")]));
+        assert!(!takes_brotli(&[header("gzip, zebra")]) && !takes_brotli(&[]));
+        assert_eq!(packed(Path::new("web/a.wasm")), Path::new("web/a.wasm.br"));
+    }
 
     #[test]
     fn nothing_outside_of_the_folder_is_served() {
