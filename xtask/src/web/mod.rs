@@ -164,3 +164,51 @@ fn report(out: &Path) -> Result<()> {
     }
     Ok(())
 }
+
+/// Returns `wasm-bindgen` of the version that the page is linked with. It is built once, which
+/// takes some minutes.
+fn bindgen() -> Result<PathBuf> {
+    let lock = fs::read_to_string(root().join("Cargo.lock")).context("Cargo.lock cannot be read")?;
+    let version = locked(&lock, "wasm-bindgen").context("Cargo.lock has no wasm-bindgen")?;
+    let is_it =
+        |program: &Path| output(Command::new(program).arg("--version")).is_ok_and(|said| said.ends_with(version));
+    let folder = toolchain::folder().join("bindgen");
+    let built = folder.join("bin").join(format!("wasm-bindgen{}", std::env::consts::EXE_SUFFIX));
+    for program in [PathBuf::from("wasm-bindgen"), built.clone()] {
+        if succeeds(Command::new(&program).arg("--version")) && is_it(&program) {
+            return Ok(program);
+        }
+    }
+    run(cargo().args(["install", "wasm-bindgen-cli", "--version", version, "--root"]).arg(folder))?;
+    Ok(built)
+}
+
+/// Returns the version of a package in a lock file.
+fn locked<'l>(lock: &'l str, package: &str) -> Option<&'l str> {
+    let (_, behind) = lock.split_once(&format!("name = \"{package}\"\nversion = \""))?;
+    behind.split('"').next()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_locked_version_is_that_of_the_package_alone() {
+        let lock = "[[package]]\nname = \"wasm-bindgen-futures\"\nversion = \"0.4.80\"\n\n\
+                    [[package]]\nname = \"wasm-bindgen\"\nversion = \"0.2.130\"\n";
+        assert_eq!(locked(lock, "wasm-bindgen"), Some("0.2.130"));
+        assert_eq!(locked(lock, "wasm"), None);
+    }
+
+    #[test]
+    fn options_are_read_or_said_to_be_wrong() {
+        let ask = Ask::read(&["--no-serve", "--out", "somewhere", "--port", "9000"]).expect("options");
+        assert_eq!((ask.serves, ask.out.as_path(), ask.port), (false, Path::new("somewhere"), 9000));
+        for (options, why) in [(&["--port", "high"][..], "--port"), (&["--out"], "--out"), (&["--fast"], "--no-serve")]
+        {
+            let error = Ask::read(options).err().expect("wrong").to_string();
+            assert!(error.contains(why), "{error}");
+        }
+    }
+}
