@@ -86,7 +86,7 @@ struct Goal {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HeldRectangle {
     held: Option<Rectangle>,
-    /// Its goal before planes move, while the camera stands still.
+    /// Goal before planes move, while the camera stands still.
     goal: Option<Goal>,
     /// Factor by which edges were too long at the last frame; 1 if that is not worth a step.
     excess: f64,

@@ -9,6 +9,7 @@
 //! ```
 
 mod cost;
+mod judge;
 mod mask;
 mod pictures;
 mod scores;

@@ -8,7 +8,7 @@ use umbrage_bevy::umbrage::View;
 use umbrage_scene::Pose;
 use umbrage_truth::Truth;
 
-use crate::mask::{Judge, Verdict};
+use crate::judge::{Judge, Verdict};
 use crate::studio::{Shadows, Size, Studio};
 use crate::worlds::Stage;
 use crate::{Failure, say};

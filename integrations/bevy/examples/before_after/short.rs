@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use umbrage_truth::Truth;
 
-use crate::mask::Judge;
+use crate::judge::Judge;
 use crate::scores::{answer, cases, range_of};
 use crate::studio::Size;
 use crate::worlds::Stage;

@@ -74,8 +74,8 @@ impl Stage {
     }
 }
 
-/// All primitives of a mesh as one, with their materials' colours at the vertices, so that an object
-/// is one caster, as it is in the judge's scene.
+/// All primitives of a mesh as one, with their materials' colours at the vertices: an object is one
+/// caster, as it is in the judge's scene.
 fn mesh_of(scene: &Scene, mesh: &umbrage_scene::Mesh) -> Mesh {
     let (mut positions, mut normals, mut colours, mut indices) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for primitive in &mesh.primitives {
