@@ -6,7 +6,7 @@ use crate::casters::{Gathered, Near, spread};
 use crate::config::Crop;
 use crate::coverage::Served;
 use crate::geometry::limits::Limits;
-use crate::geometry::region::{Hull, Region, Undecided};
+use crate::geometry::region::{Fan, Hull, Region, Undecided};
 use crate::geometry::volume::{Lies, Slice};
 use crate::held::ends::Range;
 use crate::{Aabb, View};
@@ -72,79 +72,115 @@ impl InView {
     pub fn receivers_in(&mut self, slice: &Slice, sun: &Sun<'_>, seen_alone: bool) -> Served {
         let Self { receivers, seen, across, .. } = self;
         let receivers = if seen_alone { seen } else { receivers };
-        let fan = &sun.fan;
-        let mut region = Region::EMPTY;
-        let mut bounds = Aabb::EMPTY;
-        // Few boxes make most of the bounds: those that are large, a ground above all.
-        let large = LARGE * slice.corners[0].distance(slice.corners[7]);
-        let of_large = |part: &Placed| part.half.max_element() > large;
-        let limits = Limits::new(slice, fan);
-        // Asked for each group and box anew, as bounds that have grown hold more.
-        let widened = |region: &Region, bounds: &Aabb, own: &Aabb, placed: &Placed, lies: Lies| {
-            let widened = region.widened_by(&Hull::new(fan, placed));
-            let is_held = widened.is_nothing() && bounds.union(*own) == *bounds;
-            match lies {
-                _ if is_held => None,
-                Lies::Across => limits.widened(fan, (placed, own), (region, bounds), widened),
-                Lies::Inside | Lies::Outside => Some(widened),
+        let mut part = PartInSlice::new(slice, &sun.fan);
+        part.include_large(receivers);
+        part.include_inside(receivers, across);
+        for receiver in across.iter().map(|&at| &receivers.boxes[at as usize]) {
+            if part.is_large(receiver) {
+                continue;
             }
-        };
-        let include = |region: &mut Region, bounds: &mut Aabb, receiver: &Placed, widened: Undecided| {
-            let own = receiver.bounds();
-            slice.clip_box(&own, |point| {
-                region.include_point_in(fan, point, widened);
-                // Rounding leads no part out of its box.
-                *bounds = bounds.including(point.clamp(own.min, own.max));
-            });
-        };
-        for group in receivers.groups.iter().filter(|group| of_large(&group.bounds)) {
-            for receiver in receivers.boxes[group.range()].iter().filter(|it| of_large(it)) {
-                match slice.classify(receiver.center, receiver.half) {
-                    Lies::Across => include(&mut region, &mut bounds, receiver, Undecided::ALL),
-                    // One inside is taken below.
-                    Lies::Inside | Lies::Outside => {}
+            if let Some(widened) = part.widened(&receiver.bounds(), receiver, Lies::Across) {
+                part.include_clipped(receiver, widened);
+            }
+        }
+        (part.region, part.bounds)
+    }
+}
+
+/// The part of a slice that receivers take up, box by box.
+struct PartInSlice<'a> {
+    slice: &'a Slice,
+    fan: &'a Fan,
+    limits: Limits,
+    /// Least half extent of a large receiver in metres.
+    large: f64,
+    region: Region,
+    bounds: Aabb,
+}
+
+impl<'a> PartInSlice<'a> {
+    fn new(slice: &'a Slice, fan: &'a Fan) -> Self {
+        let large = LARGE * slice.corners[0].distance(slice.corners[7]);
+        Self { slice, fan, limits: Limits::new(slice, fan), large, region: Region::EMPTY, bounds: Aabb::EMPTY }
+    }
+
+    fn is_large(&self, part: &Placed) -> bool {
+        part.half.max_element() > self.large
+    }
+
+    /// Bounds that a group or a box widens; `None` if it widens none. They are asked for anew each
+    /// time, as bounds that have grown hold more.
+    fn widened(&self, own: &Aabb, placed: &Placed, lies: Lies) -> Option<Undecided> {
+        let widened = self.region.widened_by(&Hull::new(self.fan, placed));
+        let is_held = widened.is_nothing() && self.bounds.union(*own) == self.bounds;
+        match lies {
+            _ if is_held => None,
+            Lies::Across => self.limits.widened(self.fan, (placed, own), (&self.region, &self.bounds), widened),
+            Lies::Inside | Lies::Outside => Some(widened),
+        }
+    }
+
+    /// Includes the part of a receiver inside the slice.
+    fn include_clipped(&mut self, receiver: &Placed, widened: Undecided) {
+        let Self { slice, fan, region, bounds, .. } = self;
+        let own = receiver.bounds();
+        slice.clip_box(&own, |point| {
+            region.include_point_in(fan, point, widened);
+            // Rounding leads no part out of its box.
+            *bounds = bounds.including(point.clamp(own.min, own.max));
+        });
+    }
+
+    /// Includes large receivers across the slice. Few boxes make most of the bounds: a ground above
+    /// all.
+    fn include_large(&mut self, receivers: &Gathered) {
+        for group in &receivers.groups {
+            if !self.is_large(&group.bounds) {
+                continue;
+            }
+            for receiver in &receivers.boxes[group.range()] {
+                if self.is_large(receiver) && self.slice.classify(receiver.center, receiver.half) == Lies::Across {
+                    self.include_clipped(receiver, Undecided::ALL);
                 }
             }
         }
+    }
+
+    /// Includes receivers inside the slice, and lists those across it.
+    fn include_inside(&mut self, receivers: &Gathered, across: &mut Vec<u32>) {
         across.clear();
         for block in spread(&receivers.blocks) {
-            let around = slice.classify(block.bounds.center, block.bounds.half);
-            if around == Lies::Outside || widened(&region, &bounds, &block.exact, &block.bounds, around).is_none() {
+            let around = self.slice.classify(block.bounds.center, block.bounds.half);
+            if around == Lies::Outside || self.widened(&block.exact, &block.bounds, around).is_none() {
                 continue;
             }
             for group in &receivers.groups[block.range()] {
                 let lies = match around {
                     Lies::Inside => around,
-                    _ => slice.classify(group.bounds.center, group.bounds.half),
+                    _ => self.slice.classify(group.bounds.center, group.bounds.half),
                 };
                 if lies == Lies::Outside {
                     continue;
                 }
-                let Some(widened) = widened(&region, &bounds, &group.exact, &group.bounds, lies) else { continue };
+                let Some(widened) = self.widened(&group.exact, &group.bounds, lies) else { continue };
                 let boxes = &receivers.boxes[group.range()];
                 if lies == Lies::Inside {
-                    region.include_boxes(fan, boxes.iter(), widened);
-                    bounds = bounds.union(group.exact);
+                    self.region.include_boxes(self.fan, boxes.iter(), widened);
+                    self.bounds = self.bounds.union(group.exact);
                     continue;
                 }
                 for (receiver, at) in boxes.iter().zip(group.begin..) {
-                    match slice.classify(receiver.center, receiver.half) {
+                    match self.slice.classify(receiver.center, receiver.half) {
                         Lies::Outside => {}
                         Lies::Inside => {
-                            region.include_boxes(fan, std::iter::once(receiver), widened);
-                            bounds = bounds.union(receiver.bounds());
+                            self.region.include_boxes(self.fan, std::iter::once(receiver), widened);
+                            self.bounds = self.bounds.union(receiver.bounds());
                         }
                         Lies::Across => across.push(at),
                     }
                 }
             }
         }
-        for receiver in across.iter().map(|&at| &receivers.boxes[at as usize]).filter(|it| !of_large(it)) {
-            if let Some(widened) = widened(&region, &bounds, &receiver.bounds(), receiver, Lies::Across) {
-                include(&mut region, &mut bounds, receiver, widened);
-            }
-        }
-        (region, bounds)
     }
 }
 
